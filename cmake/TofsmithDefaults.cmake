@@ -1,0 +1,26 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+# Language level, warnings and ccache, shared by every target of the project.
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+find_program(TOFSMITH_CCACHE ccache)
+if(TOFSMITH_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  # The sloppiness lets ccache serve translation units that use a precompiled header.
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+      ${CMAKE_COMMAND} -E env
+      CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+      ${TOFSMITH_CCACHE})
+endif()
+
+add_library(tofsmith_build_options INTERFACE)
+target_compile_features(tofsmith_build_options INTERFACE cxx_std_20)
+target_compile_options(tofsmith_build_options INTERFACE
+  -Wall -Wextra -Wconversion -Wno-sign-conversion
+  # Contraction would make a sum depend on how the compiler fused it; kernels ask for FMA explicitly.
+  -ffp-contract=off
+  $<$<BOOL:${TOFSMITH_WERROR}>:-Werror>
+  $<$<AND:$<BOOL:${TOFSMITH_CCACHE}>,$<CXX_COMPILER_ID:GNU>>:-fpch-preprocess>)

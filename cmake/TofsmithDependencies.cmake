@@ -1,0 +1,28 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+# Everything comes from Debian packages; scripts/packages.sh lists them.
+
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(TBB REQUIRED)
+find_package(HWY REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(tomlplusplus REQUIRED)
+find_package(OpenEXR REQUIRED)
+find_package(PNG REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
+find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
+if(TOFSMITH_USE_FFTW)
+  pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3)
+endif()
+if(TOFSMITH_BUILD_APPS)
+  find_package(CLI11 REQUIRED)
+endif()
+if(TOFSMITH_BUILD_TESTS)
+  find_package(GTest REQUIRED)
+endif()
+if(TOFSMITH_BUILD_BENCHMARKS)
+  find_package(benchmark REQUIRED)
+endif()

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+namespace tofsmith {
+
+/// Half-open range of work items.
+struct IndexRange {
+  std::int64_t begin = 0;
+  std::int64_t end = 0;
+};
+
+/// Calls `work` for blocks of at most `block` indices that together cover [0, count), on all
+/// threads. Block boundaries do not depend on the number of threads, so a result stored per block
+/// and summed in order afterwards has the same bits on any machine.
+void parallel_for_blocks(std::int64_t count, std::int64_t block,
+                         const std::function<void(IndexRange)>& work);
+
+/// Calls `work(i)` for every i in [0, count), on all threads.
+void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& work);
+
+/// While it lives, at most `threads` threads work (0 = as many as there are cores).
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int threads);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  struct Control;
+  std::unique_ptr<Control> control_;
+};
+
+}  // namespace tofsmith

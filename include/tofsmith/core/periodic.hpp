@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+namespace tofsmith {
+
+/// Real Fourier transform of a periodic signal sampled at N points, end point excluded.
+///   X[k] = sum_n x[n] exp(-2 pi i k n / N),  k = 0 .. N/2
+/// Plans are made once per object. An object serves one thread at a time; copies are independent.
+class PeriodicTransform {
+ public:
+  /// @throws std::invalid_argument unless samples >= 1
+  explicit PeriodicTransform(int samples);
+  PeriodicTransform(const PeriodicTransform& other);
+  PeriodicTransform& operator=(const PeriodicTransform& other);
+  ~PeriodicTransform();
+
+  int samples() const { return samples_; }
+  /// Number of independent coefficients, N/2 + 1.
+  int coefficients() const { return samples_ / 2 + 1; }
+
+  /// Half spectrum of `signal` (N), written to `spectrum` (N/2 + 1).
+  void forward(const Eigen::VectorXd& signal, Eigen::VectorXcd& spectrum) const;
+  /// Signal (N) of the half spectrum (N/2 + 1); inverse(forward(x)) = x.
+  void inverse(const Eigen::VectorXcd& spectrum, Eigen::VectorXd& signal) const;
+
+ private:
+  struct Plans;
+  int samples_;
+  std::unique_ptr<Plans> plans_;
+};
+
+/// (a * b)[n] = sum_j a[j] b[n - j], indices modulo N.
+Eigen::VectorXd circular_convolution(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+
+/// (a corr b)[z] = sum_n a[n] b[n - z], indices modulo N: how well b, delayed by z, matches a.
+Eigen::VectorXd circular_correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+
+/// Circular total variation: sum_n |x[n + 1] - x[n]|, indices modulo N.
+double circular_total_variation(const Eigen::VectorXd& x);
+
+/// x[n - shift], indices modulo N: the signal arrives `shift` samples later.
+Eigen::VectorXd circular_shift(const Eigen::VectorXd& x, int shift);
+
+}  // namespace tofsmith

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace tofsmith {
+
+/// A figure and the standard deviation of its own uncertainty.
+struct Estimate {
+  double value = 0.0;
+  double standard_error = 0.0;
+};
+
+/// Mean and variance of a stream of values in one pass (Welford), mergeable (Chan et al.).
+class RunningStatistics {
+ public:
+  void add(double value);
+  void merge(const RunningStatistics& other);
+
+  std::int64_t count() const { return count_; }
+  double mean() const { return mean_; }
+  /// Unbiased sample variance; 0 below two values.
+  double variance() const;
+  /// Standard deviation of mean() as an estimate of the true mean; 0 below two values.
+  double standard_error() const;
+  Estimate estimate() const { return {mean(), standard_error()}; }
+
+ private:
+  std::int64_t count_ = 0;
+  double mean_ = 0.0;
+  double sum_of_squares_ = 0.0;  // of differences from the mean
+};
+
+/// Arithmetic mean of independent estimates, errors propagated.
+Estimate mean_of(std::span<const Estimate> estimates);
+
+/// Geometric mean of independent positive estimates, errors propagated to first order.
+/// A value of exactly 0 makes the mean 0.
+Estimate geometric_mean_of(std::span<const Estimate> estimates);
+
+}  // namespace tofsmith

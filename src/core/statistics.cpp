@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/core/statistics.hpp"
+
+#include <cmath>
+
+namespace tofsmith {
+
+void RunningStatistics::add(double value) {
+  ++count_;
+  const double difference = value - mean_;
+  mean_ += difference / static_cast<double>(count_);
+  sum_of_squares_ += difference * (value - mean_);
+}
+
+void RunningStatistics::merge(const RunningStatistics& other) {
+  if (other.count_ == 0) return;
+  const double total = static_cast<double>(count_ + other.count_);
+  const double difference = other.mean_ - mean_;
+  sum_of_squares_ += other.sum_of_squares_ + difference * difference * static_cast<double>(count_) *
+                                                 static_cast<double>(other.count_) / total;
+  mean_ += difference * static_cast<double>(other.count_) / total;
+  count_ += other.count_;
+}
+
+double RunningStatistics::variance() const {
+  return count_ < 2 ? 0.0 : sum_of_squares_ / static_cast<double>(count_ - 1);
+}
+
+double RunningStatistics::standard_error() const {
+  return count_ < 2 ? 0.0 : std::sqrt(variance() / static_cast<double>(count_));
+}
+
+Estimate mean_of(std::span<const Estimate> estimates) {
+  Estimate mean;
+  if (estimates.empty()) return mean;
+  double variance = 0.0;
+  for (const Estimate& e : estimates) {
+    mean.value += e.value;
+    variance += e.standard_error * e.standard_error;
+  }
+  const double count = static_cast<double>(estimates.size());
+  return {mean.value / count, std::sqrt(variance) / count};
+}
+
+Estimate geometric_mean_of(std::span<const Estimate> estimates) {
+  if (estimates.empty()) return {};
+  double log_sum = 0.0, relative_variance = 0.0;
+  for (const Estimate& e : estimates) {
+    if (!(e.value > 0.0)) return {};
+    log_sum += std::log(e.value);
+    const double relative = e.standard_error / e.value;
+    relative_variance += relative * relative;
+  }
+  const double count = static_cast<double>(estimates.size());
+  const double value = std::exp(log_sum / count);
+  return {value, value * std::sqrt(relative_variance) / count};
+}
+
+}  // namespace tofsmith
