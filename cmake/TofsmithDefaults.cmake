@@ -19,7 +19,7 @@ endif()
 add_library(tofsmith_build_options INTERFACE)
 target_compile_features(tofsmith_build_options INTERFACE cxx_std_20)
 target_compile_options(tofsmith_build_options INTERFACE
-  -Wall -Wextra -Wconversion -Wno-sign-conversion
+  -Wall -Wextra -Wconversion -Wno-sign-conversion -Wno-missing-field-initializers
   # Contraction would make a sum depend on how the compiler fused it; kernels ask for FMA explicitly.
   -ffp-contract=off
   $<$<BOOL:${TOFSMITH_WERROR}>:-Werror>

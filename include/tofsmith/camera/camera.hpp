@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tofsmith/camera/impulse_response.hpp"
+#include "tofsmith/code/code_set.hpp"
+
+namespace tofsmith {
+
+/// How the noise of electrons is drawn.
+enum class NoiseModel {
+  poisson,   ///< Poisson electrons plus Gaussian read noise
+  gaussian,  ///< one Gaussian of the same variance, as in the paper
+};
+
+/// Which difference between true and decoded depth counts.
+enum class DepthErrorKind {
+  linear,    ///< |decoded - true|, as in the paper: a wrap at the end of the range costs all of it
+  circular,  ///< the shorter way round the range
+};
+
+/// How the values of an exposure's taps leave the sensor.
+enum class Readout {
+  separate,    ///< each tap by itself
+  difference,  ///< two taps as A - B; their shot and read noise add
+};
+
+/// The modulated light source.
+struct LightSource {
+  double peak_factor = 15.0;  ///< p = P_max / P_ave, >= 1
+  bool binary = true;         ///< a design for it may only switch on and off
+  ImpulseResponse impulse_response;
+};
+
+/// The demodulating pixel.
+struct Sensor {
+  int taps = 1;        ///< values read out of one exposure; 2 = two-bucket; n = exclusive taps
+  bool binary = true;  ///< a design for it may only switch on and off
+  ImpulseResponse impulse_response;
+  double read_noise_e = 20.0;              ///< standard deviation per readout [e], >= 0
+  NoiseModel noise = NoiseModel::poisson;  ///< how noise is drawn
+  double dark_current_e_per_s = 0.0;       ///< per tap [e/s], >= 0
+  double modulation_contrast = 1.0;        ///< C in (0, 1]; below 1 the taps mix
+  std::optional<double> full_well_e;       ///< clip at this many electrons [e], > 0
+  std::optional<int> adc_bits;             ///< quantize to this many bits, 1 .. 24
+  std::optional<double> gain_e_per_dn;     ///< electrons per count [e/DN], > 0; with adc_bits
+  std::optional<double> black_level_dn;    ///< count without light [DN], >= 0; with adc_bits
+  std::optional<double> shortest_pulse_s;  ///< shortest pulse or gap a design may use [s], > 0
+  bool drain = true;                       ///< charge may be thrown away; else taps add to 1
+  Readout readout = Readout::separate;     ///< how taps leave the sensor
+};
+
+/// Pinhole of the sensor; needed for point clouds and to turn z-depth into radial distance.
+struct Lens {
+  double fx_px = 0.0;  ///< focal length in columns [px], > 0
+  double fy_px = 0.0;  ///< focal length in rows [px], > 0
+  double cx_px = 0.0;  ///< column of the optical axis [px]
+  double cy_px = 0.0;  ///< row of the optical axis [px]
+};
+
+/// Light levels, as photo-electron rates were the sensor fully open.
+struct OperatingPoint {
+  double signal_e_per_s = 0.0;   ///< S, of the modulated light
+  double ambient_e_per_s = 0.0;  ///< A, of everything else
+};
+
+/// Where a code is judged: every pair of signal and ambient.
+struct OperatingRange {
+  std::vector<double> signal_e_per_s;
+  std::vector<double> ambient_e_per_s;
+  DepthErrorKind error = DepthErrorKind::linear;
+  double albedo = 1.0;          ///< scales the signal, (0, 1]
+  bool uniform_albedo = false;  ///< instead: a fresh uniform draw in (0, 1) for every trial
+
+  /// All pairs, signal by signal.
+  std::vector<OperatingPoint> points() const;
+  /// The pair in the middle of both lists.
+  OperatingPoint middle() const;
+};
+
+/// Integration time: a total that is split evenly over the exposures, or one time per exposure.
+struct ExposureTime {
+  double total_s = 0.3;        ///< [s], > 0; used when `each_s` is empty
+  std::vector<double> each_s;  ///< [s], each > 0; must then match the code's exposures
+  double of(int exposure, int exposures) const;
+};
+
+/// A continuous-wave time-of-flight camera. Field names are the keys of the TOML file.
+struct Camera {
+  std::string name = "camera";
+  double fundamental_frequency_hz = 15e6;  ///< f0, > 0
+  ExposureTime exposure_s;
+  int samples = 240;  ///< N, samples per period, 8 .. 65536
+  LightSource light;
+  Sensor sensor;
+  std::optional<Lens> lens;
+  OperatingRange operating;
+
+  /// Largest depth the camera can tell from zero [m]: c / (2 f0).
+  double range_m() const;
+  /// Depth of one bin [m]: range / N.
+  double bin_m() const;
+  /// H_d(n f0) conj(H_m(n f0)) for n = 0 .. highest: what both arms leave of harmonic n.
+  Eigen::VectorXcd transfer(int highest) const;
+  /// Whether either arm has an impulse response.
+  bool band_limited() const;
+
+  /// @throws std::invalid_argument naming the field, its value and the rule it breaks
+  void validate() const;
+};
+
+/// Whether `code` can be played and read out on `camera`.
+/// @throws std::invalid_argument naming what does not fit: peak, taps, exposures, samples
+void require_fits(const CodeSet& code, const Camera& camera);
+
+/// The family `name`, built for the camera: within its peak, on its samples, with the second bucket
+/// of every measurement where the sensor has two taps.
+/// @throws std::invalid_argument for an unknown family or one the camera cannot play
+CodeSet build_family(std::string_view name, const Camera& camera);
+
+/// Cameras that need no file: paper-30x, paper-10f0, paper-5f0.
+std::vector<std::string> built_in_camera_names();
+/// @throws std::invalid_argument for an unknown name, with the nearest known one
+Camera built_in_camera(const std::string& name);
+
+/// Light levels of the paper's grid: the 25 pairs of S in {1e3, 10^3.5, 1e4, 10^4.5, 1e5} and
+/// A in {1e2, 1e3, 1e4, 10^4.5, 1e5} e/s.
+OperatingRange paper_operating_range();
+
+}  // namespace tofsmith

@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/camera/camera.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+void require_positive(double value, std::string_view field) {
+  require(std::isfinite(value) && value > 0.0, field, value, "must be finite and > 0");
+}
+void require_not_negative(double value, std::string_view field) {
+  require(std::isfinite(value) && value >= 0.0, field, value, "must be finite and >= 0");
+}
+
+void validate_light(const LightSource& light) {
+  require(std::isfinite(light.peak_factor) && light.peak_factor >= 1.0, "light.peak_factor",
+          light.peak_factor, "must be finite and >= 1: the peak is never below the average");
+  light.impulse_response.validate("light.impulse_response");
+}
+
+void validate_adc(const Sensor& sensor) {
+  if (sensor.adc_bits) {
+    require(*sensor.adc_bits >= 1 && *sensor.adc_bits <= 24, "sensor.adc_bits", *sensor.adc_bits,
+            "must be in [1, 24]");
+    require(sensor.gain_e_per_dn.has_value(), "sensor.adc_bits", *sensor.adc_bits,
+            "needs sensor.gain_e_per_dn beside it");
+  }
+  if (sensor.gain_e_per_dn) {
+    require_positive(*sensor.gain_e_per_dn, "sensor.gain_e_per_dn");
+    require(sensor.adc_bits.has_value(), "sensor.gain_e_per_dn", *sensor.gain_e_per_dn,
+            "needs sensor.adc_bits beside it");
+  }
+  if (sensor.black_level_dn) {
+    require_not_negative(*sensor.black_level_dn, "sensor.black_level_dn");
+    require(sensor.adc_bits.has_value(), "sensor.black_level_dn", *sensor.black_level_dn,
+            "needs sensor.adc_bits beside it");
+    require(*sensor.black_level_dn < std::exp2(*sensor.adc_bits), "sensor.black_level_dn",
+            *sensor.black_level_dn, "must be below the largest count");
+  }
+}
+
+void validate_sensor(const Sensor& sensor) {
+  require(sensor.taps >= 1 && sensor.taps <= 16, "sensor.taps", sensor.taps, "must be in [1, 16]");
+  sensor.impulse_response.validate("sensor.impulse_response");
+  require_not_negative(sensor.read_noise_e, "sensor.read_noise_e");
+  require_not_negative(sensor.dark_current_e_per_s, "sensor.dark_current_e_per_s");
+  const double contrast = sensor.modulation_contrast;
+  require(contrast > 0.0 && contrast <= 1.0, "sensor.modulation_contrast", contrast,
+          "must be in (0, 1]");
+  require(contrast == 1.0 || sensor.taps >= 2, "sensor.modulation_contrast", contrast,
+          "must be 1 for one tap: contrast mixes taps");
+  if (sensor.full_well_e) require_positive(*sensor.full_well_e, "sensor.full_well_e");
+  validate_adc(sensor);
+  if (sensor.shortest_pulse_s)
+    require_positive(*sensor.shortest_pulse_s, "sensor.shortest_pulse_s");
+  require(sensor.readout == Readout::separate || sensor.taps == 2, "sensor.readout", "difference",
+          "needs sensor.taps = 2");
+}
+
+void validate_operating(const OperatingRange& range) {
+  const auto levels = [](const std::vector<double>& values, const std::string& field, bool zero) {
+    require(!values.empty(), field, "[]", "must list at least one level");
+    for (const double value : values)
+      zero ? require_not_negative(value, field) : require_positive(value, field);
+  };
+  levels(range.signal_e_per_s, "operating.signal_e_per_s", false);
+  levels(range.ambient_e_per_s, "operating.ambient_e_per_s", true);
+  require(range.albedo > 0.0 && range.albedo <= 1.0, "operating.albedo", range.albedo,
+          "must be in (0, 1] or \"uniform\"");
+}
+
+}  // namespace
+
+std::vector<OperatingPoint> OperatingRange::points() const {
+  std::vector<OperatingPoint> all;
+  for (const double s : signal_e_per_s)
+    for (const double a : ambient_e_per_s) all.push_back({s, a});
+  return all;
+}
+
+OperatingPoint OperatingRange::middle() const {
+  return {signal_e_per_s.at(signal_e_per_s.size() / 2),
+          ambient_e_per_s.at(ambient_e_per_s.size() / 2)};
+}
+
+double ExposureTime::of(int exposure, int exposures) const {
+  return each_s.empty() ? total_s / exposures : each_s.at(static_cast<std::size_t>(exposure));
+}
+
+double Camera::range_m() const { return unambiguous_range_m(fundamental_frequency_hz); }
+double Camera::bin_m() const { return range_m() / samples; }
+
+bool Camera::band_limited() const {
+  return light.impulse_response.kind != ImpulseResponse::Kind::none ||
+         sensor.impulse_response.kind != ImpulseResponse::Kind::none;
+}
+
+Eigen::VectorXcd Camera::transfer(int highest) const {
+  Eigen::VectorXcd result(highest + 1);
+  for (int n = 0; n <= highest; ++n) {
+    const double frequency_hz = n * fundamental_frequency_hz;
+    result[n] = sensor.impulse_response.transfer(frequency_hz) *
+                std::conj(light.impulse_response.transfer(frequency_hz));
+  }
+  return result;
+}
+
+void Camera::validate() const {
+  require_positive(fundamental_frequency_hz, "fundamental_frequency_hz");
+  require(samples >= 8 && samples <= 65536, "samples", samples, "must be in [8, 65536]");
+  if (exposure_s.each_s.empty()) require_positive(exposure_s.total_s, "exposure_s");
+  for (const double time_s : exposure_s.each_s) require_positive(time_s, "exposure_s");
+  validate_light(light);
+  validate_sensor(sensor);
+  if (lens) {
+    require_positive(lens->fx_px, "lens.fx_px");
+    require_positive(lens->fy_px, "lens.fy_px");
+    require(std::isfinite(lens->cx_px), "lens.cx_px", lens->cx_px, "must be finite");
+    require(std::isfinite(lens->cy_px), "lens.cy_px", lens->cy_px, "must be finite");
+  }
+  validate_operating(operating);
+}
+
+void require_fits(const CodeSet& code, const Camera& camera) {
+  const std::string what = "code " + code.name();
+  require(code.taps() == camera.sensor.taps, what + " taps", code.taps(),
+          fmt::format("must equal the camera's sensor.taps = {}", camera.sensor.taps));
+  require(code.samples() == camera.samples, what + " samples", code.samples(),
+          fmt::format("must equal the camera's samples = {}", camera.samples));
+  require(code.peak() <= camera.light.peak_factor * (1 + 1e-9), what + " peak", code.peak(),
+          fmt::format("must be <= the camera's light.peak_factor = {}", camera.light.peak_factor));
+  if (!camera.exposure_s.each_s.empty())
+    require(camera.exposure_s.each_s.size() == static_cast<std::size_t>(code.exposures()),
+            "number of exposure_s", camera.exposure_s.each_s.size(),
+            fmt::format("must equal the {} exposures of {}", code.exposures(), what));
+}
+
+CodeSet build_family(std::string_view name, const Camera& camera) {
+  CodeSet code =
+      make_family(name, {.samples = camera.samples, .peak_factor = camera.light.peak_factor});
+  require(camera.sensor.taps <= 2, "sensor.taps", camera.sensor.taps,
+          "built-in families are for one tap or two buckets");
+  if (camera.sensor.taps == 2) code = code.with_two_buckets();
+  code.provenance.camera = camera.name;
+  return code;
+}
+
+OperatingRange paper_operating_range() {
+  OperatingRange range;
+  range.signal_e_per_s = {1e3, 3162.2776601683795, 1e4, 31622.776601683792, 1e5};
+  range.ambient_e_per_s = {1e2, 1e3, 1e4, 31622.776601683792, 1e5};
+  return range;
+}
+
+std::vector<std::string> built_in_camera_names() {
+  return {"paper-30x", "paper-10f0", "paper-5f0"};
+}
+
+Camera built_in_camera(const std::string& name) {
+  Camera camera;
+  camera.name = name;
+  camera.sensor.noise = NoiseModel::gaussian;  // as the paper simulates it
+  camera.operating = paper_operating_range();
+  const auto limit_band = [&](double multiple) {
+    ImpulseResponse response;
+    response.kind = ImpulseResponse::Kind::hann;
+    response.f_max_hz = multiple * camera.fundamental_frequency_hz;
+    camera.light.impulse_response = camera.sensor.impulse_response = response;
+  };
+  if (name == "paper-30x") {
+    camera.light.peak_factor = 30.0;
+  } else if (name == "paper-10f0") {
+    camera.light.peak_factor = 15.0;
+    limit_band(10.0);
+  } else if (name == "paper-5f0") {
+    camera.light.peak_factor = 15.0;
+    limit_band(5.0);
+  } else {
+    const std::string near = nearest_word(name, built_in_camera_names());
+    reject("camera", name,
+           fmt::format("is not a built-in camera ({}){}", fmt::join(built_in_camera_names(), ", "),
+                       near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  }
+  return camera;
+}
+
+}  // namespace tofsmith

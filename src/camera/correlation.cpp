@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/camera/correlation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/periodic.hpp"
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Running integral of a step function from 0, for any real t.
+class Integral {
+ public:
+  explicit Integral(const StepFunction& function) : function_(function), at_breakpoint_{0.0} {
+    TOFSMITH_ASSERT_EQ(function.breakpoints.front(), 0.0);
+    for (std::size_t i = 0; i < function.values.size(); ++i)
+      at_breakpoint_.push_back(at_breakpoint_.back() + function.values[i] * (end(i) - begin(i)));
+  }
+  double operator()(double t) const {
+    const double whole = std::floor(t);
+    const double u = t - whole;
+    const auto after =
+        std::upper_bound(function_.breakpoints.begin(), function_.breakpoints.end(), u);
+    const auto i = static_cast<std::size_t>(after - function_.breakpoints.begin()) - 1;
+    return whole * at_breakpoint_.back() + at_breakpoint_[i] + function_.values[i] * (u - begin(i));
+  }
+
+ private:
+  double begin(std::size_t i) const { return function_.breakpoints[i]; }
+  double end(std::size_t i) const {
+    return i + 1 < function_.breakpoints.size() ? function_.breakpoints[i + 1] : 1.0;
+  }
+  const StepFunction& function_;
+  std::vector<double> at_breakpoint_;
+};
+
+/// Positions where the correlation of two step functions changes slope, sorted, without repeats.
+std::vector<double> corner_positions(const StepFunction& d, const StepFunction& m) {
+  std::vector<double> corners{0.0};
+  corners.reserve(d.breakpoints.size() * m.breakpoints.size() + 1);
+  for (const double t : d.breakpoints)
+    for (const double s : m.breakpoints) corners.push_back(wrap(t - s, 1.0));
+  std::sort(corners.begin(), corners.end());
+  constexpr double same = 1e-12;  // differences that are rounding
+  const auto last =
+      std::unique(corners.begin(), corners.end(), [](double a, double b) { return b - a < same; });
+  corners.erase(last, corners.end());
+  while (corners.size() > 1 && corners.back() > 1.0 - same) corners.pop_back();
+  return corners;
+}
+
+}  // namespace
+
+CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Waveform& modulation) {
+  const StepFunction d = demodulation.steps(), m = modulation.steps();
+  const Integral integral(d);
+  corners_ = corner_positions(d, m);
+  values_.reserve(corners_.size());
+  for (const double u : corners_) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < m.values.size(); ++i) {
+      if (m.values[i] == 0.0) continue;
+      const double end = i + 1 < m.breakpoints.size() ? m.breakpoints[i + 1] : 1.0;
+      sum += m.values[i] * (integral(end + u) - integral(m.breakpoints[i] + u));
+    }
+    values_.push_back(sum);
+  }
+}
+
+CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Waveform& modulation,
+                                         const Eigen::VectorXcd& transfer) {
+  const int highest = static_cast<int>(transfer.size()) - 1;
+  harmonics_ = demodulation.harmonics(highest)
+                   .cwiseProduct(modulation.harmonics(highest).conjugate())
+                   .cwiseProduct(transfer);
+}
+
+double CorrelationFunction::operator()(double u) const {
+  if (harmonics_.size() > 0) {
+    const std::complex<double> turn = std::polar(1.0, 2 * std::numbers::pi * wrap(u, 1.0));
+    std::complex<double> sum = 0.0;  // Horner, from the highest harmonic down to the first
+    for (Eigen::Index n = harmonics_.size() - 1; n >= 1; --n) sum = (sum + harmonics_[n]) * turn;
+    return harmonics_[0].real() + 2.0 * sum.real();
+  }
+  const double position = wrap(u, 1.0);
+  const auto after = std::upper_bound(corners_.begin(), corners_.end(), position);
+  const auto i = static_cast<std::size_t>(after - corners_.begin()) - 1;
+  const bool last = i + 1 == corners_.size();
+  const double end = last ? 1.0 + corners_[0] : corners_[i + 1];
+  const double value_at_end = last ? values_[0] : values_[i + 1];
+  const double share = (position - corners_[i]) / (end - corners_[i]);
+  return values_[i] + share * (value_at_end - values_[i]);
+}
+
+Eigen::VectorXd CorrelationFunction::table(int points) const {
+  require(points >= 1, "points", points, "must be >= 1");
+  Eigen::VectorXd values(points);
+  if (harmonics_.size() == 0) {
+    for (int j = 0; j < points; ++j) values[j] = (*this)(static_cast<double>(j) / points);
+    return values;
+  }
+  // Harmonics above points/2 fold onto lower ones: exact at the points of the table.
+  std::vector<std::complex<double>> folded(static_cast<std::size_t>(points), 0.0);
+  folded[0] = harmonics_[0].real();
+  for (Eigen::Index n = 1; n < harmonics_.size(); ++n) {
+    const auto k = static_cast<std::size_t>(n % points);
+    folded[k] += harmonics_[n];
+    folded[k == 0 ? 0 : static_cast<std::size_t>(points) - k] += std::conj(harmonics_[n]);
+  }
+  const PeriodicTransform transform(points);
+  Eigen::VectorXcd spectrum(transform.coefficients());
+  for (Eigen::Index k = 0; k < spectrum.size(); ++k)
+    spectrum[k] = folded[static_cast<std::size_t>(k)] * static_cast<double>(points);
+  transform.inverse(spectrum, values);
+  return values;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/camera/forward_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Harmonics that matter under an impulse response. Both arms of a Hann pair fall as 1/n^3, a pair
+/// of low-passes as 1/n, and binary waveforms add 1/n^2: what is left out is far below 1e-9 or, for
+/// one low-pass arm alone, below 1e-6.
+int harmonics_kept(int samples) { return std::max(2048, 8 * samples); }
+
+/// Contrast below 1 mixes the taps of an exposure: C x_j + (1 - C) / t sum_k x_k.
+template <typename Columns>
+void mix_taps(Columns& values, int taps, double contrast) {
+  if (contrast == 1.0) return;
+  for (Eigen::Index first = 0; first < values.cols(); first += taps) {
+    const Eigen::VectorXd mean = values.middleCols(first, taps).rowwise().mean();
+    for (Eigen::Index j = first; j < first + taps; ++j)
+      values.col(j) = contrast * values.col(j) + (1.0 - contrast) * mean;
+  }
+}
+
+Eigen::MatrixXd readout_matrix(int tap_values, Readout readout) {
+  if (readout == Readout::separate) return Eigen::MatrixXd::Identity(tap_values, tap_values);
+  Eigen::MatrixXd differences = Eigen::MatrixXd::Zero(tap_values / 2, tap_values);
+  for (Eigen::Index i = 0; i < differences.rows(); ++i) {
+    differences(i, 2 * i) = 1.0;
+    differences(i, 2 * i + 1) = -1.0;
+  }
+  return differences;
+}
+
+}  // namespace
+
+ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
+    : samples_(code.samples()),
+      taps_(code.taps()),
+      contrast_(camera.sensor.modulation_contrast),
+      dark_current_e_per_s_(camera.sensor.dark_current_e_per_s) {
+  camera.validate();
+  require_fits(code, camera);
+  const int tap_values = code.measurements();
+  readout_ = readout_matrix(tap_values, camera.sensor.readout);
+
+  const double step_e = camera.sensor.gain_e_per_dn.value_or(0.0);
+  tap_constant_variance_e2_ =
+      camera.sensor.read_noise_e * camera.sensor.read_noise_e + step_e * step_e / 12.0;
+
+  const Eigen::VectorXcd transfer =
+      camera.band_limited() ? camera.transfer(harmonics_kept(code.samples())) : Eigen::VectorXcd();
+  Eigen::RowVectorXd gain(tap_values);
+  tap_exposure_s_.resize(tap_values);
+  for (int i = 0; i < tap_values; ++i) {
+    const Waveform& d = code.demodulation(i);
+    const Waveform& m = code.modulation_of(i);
+    functions_.push_back(camera.band_limited() ? CorrelationFunction(d, m, transfer)
+                                               : CorrelationFunction(d, m));
+    gain[i] = d.mean();
+    tap_exposure_s_[i] = camera.exposure_s.of(code.exposure_of(i), code.exposures());
+  }
+  mix_taps(gain, taps_, contrast_);
+  tap_ambient_gain_ = gain.transpose();
+  ambient_gain_ = readout_ * tap_ambient_gain_;
+  exposure_s_.resize(measurements());
+  for (int i = 0; i < measurements(); ++i)
+    exposure_s_[i] = tap_exposure_s_[i * tap_values / measurements()];
+}
+
+Eigen::VectorXd ForwardModel::tap_correlation(double depth_bin) const {
+  Eigen::RowVectorXd values(tap_values());
+  for (int i = 0; i < tap_values(); ++i)
+    values[i] = functions_[static_cast<std::size_t>(i)](depth_bin / samples_);
+  mix_taps(values, taps_, contrast_);
+  return values.transpose();
+}
+
+Eigen::VectorXd ForwardModel::correlation(double depth_bin) const {
+  return readout_ * tap_correlation(depth_bin);
+}
+
+Eigen::MatrixXd ForwardModel::tap_correlation_table(int points) const {
+  Eigen::MatrixXd table(points, tap_values());
+  for (int i = 0; i < tap_values(); ++i)
+    table.col(i) = functions_[static_cast<std::size_t>(i)].table(points);
+  mix_taps(table, taps_, contrast_);
+  return table;
+}
+
+Eigen::MatrixXd ForwardModel::correlation_table(int points) const {
+  return tap_correlation_table(points) * readout_.transpose();
+}
+
+Eigen::VectorXd ForwardModel::dark_electrons() const {
+  return readout_ * (dark_current_e_per_s_ * tap_exposure_s_);
+}
+
+Eigen::VectorXd ForwardModel::constant_variance_e2() const {
+  return tap_constant_variance_e2_ * readout_.cwiseAbs().rowwise().sum();
+}
+
+Eigen::VectorXd ForwardModel::expected_tap_electrons(std::span<const Return> returns,
+                                                     double ambient_e_per_s) const {
+  Eigen::VectorXd rate = (ambient_e_per_s * tap_ambient_gain_).array() + dark_current_e_per_s_;
+  for (const Return& r : returns) rate += r.signal_e_per_s * tap_correlation(r.depth_bin);
+  return tap_exposure_s_.cwiseProduct(rate);
+}
+
+Eigen::VectorXd ForwardModel::expected_electrons(std::span<const Return> returns,
+                                                 double ambient_e_per_s) const {
+  return readout_ * expected_tap_electrons(returns, ambient_e_per_s);
+}
+
+Eigen::VectorXd ForwardModel::variance_e2(std::span<const Return> returns,
+                                          double ambient_e_per_s) const {
+  return readout_.cwiseAbs() * expected_tap_electrons(returns, ambient_e_per_s) +
+         constant_variance_e2();
+}
+
+}  // namespace tofsmith

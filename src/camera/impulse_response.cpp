@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/camera/impulse_response.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+namespace {
+constexpr double pi = std::numbers::pi;
+
+// sinc(x) / (1 - x^2) = 1/5 at x = 1.4437: the width of a Hann window over its f_max.
+constexpr double hann_width_times_f_max = 1.444010597686313;
+
+double hann_transfer(double x) {
+  x = std::abs(x);
+  if (x < 1e-9) return 1.0;
+  if (std::abs(x - 1.0) < 1e-7) return 0.5;  // removable singularity
+  return std::sin(pi * x) / (pi * x) / (1.0 - x * x);
+}
+
+std::complex<double> measured_transfer(const ImpulseResponse& response, double frequency_hz) {
+  std::complex<double> sum = 0.0;
+  double total = 0.0;
+  for (std::size_t i = 0; i < response.samples.size(); ++i) {
+    const double phase = -2 * pi * frequency_hz * response.time_step_s * static_cast<double>(i);
+    sum += response.samples[i] * std::polar(1.0, phase);
+    total += response.samples[i];
+  }
+  return sum / total;
+}
+}  // namespace
+
+std::complex<double> ImpulseResponse::transfer(double frequency_hz) const {
+  switch (kind) {
+    case Kind::none:
+      return 1.0;
+    case Kind::hann:
+      return hann_transfer(frequency_hz * hann_width_times_f_max / f_max_hz);
+    case Kind::gaussian: {
+      const double ratio = frequency_hz / cutoff_hz;
+      return std::exp2(-0.5 * ratio * ratio);  // 2^(-1/2), -3 dB, at the cutoff
+    }
+    case Kind::lowpass:
+      return 1.0 / std::complex<double>(1.0, frequency_hz / cutoff_hz);
+    case Kind::file:
+      return measured_transfer(*this, frequency_hz);
+  }
+  return 1.0;
+}
+
+void ImpulseResponse::validate(std::string_view field) const {
+  const auto member = [&](const char* name) { return fmt::format("{}.{}", field, name); };
+  const auto positive = [&](const char* name, double value) {
+    require(std::isfinite(value) && value > 0.0, member(name), value,
+            fmt::format("must be finite and > 0 for kind = \"{}\"", name_of(kind)));
+  };
+  switch (kind) {
+    case Kind::none:
+      return;
+    case Kind::hann:
+      return positive("f_max_hz", f_max_hz);
+    case Kind::gaussian:
+    case Kind::lowpass:
+      return positive("cutoff_hz", cutoff_hz);
+    case Kind::file: {
+      positive("time_step_s", time_step_s);
+      require(!samples.empty(), member("samples"), "empty", "must hold at least one sample");
+      double total = 0.0;
+      for (const double sample : samples) {
+        require(std::isfinite(sample), member("samples"), sample, "must be finite");
+        total += sample;
+      }
+      require(total > 0.0, member("samples") + " sum", total, "must be > 0");
+      return;
+    }
+  }
+}
+
+std::string_view name_of(ImpulseResponse::Kind kind) {
+  switch (kind) {
+    case ImpulseResponse::Kind::none:
+      return "none";
+    case ImpulseResponse::Kind::hann:
+      return "hann";
+    case ImpulseResponse::Kind::gaussian:
+      return "gaussian";
+    case ImpulseResponse::Kind::lowpass:
+      return "lowpass";
+    case ImpulseResponse::Kind::file:
+      return "file";
+  }
+  return "none";
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/code/code_set.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+namespace {
+// Room for rounding in files and refinements; far below any effect on depth.
+constexpr double tolerance = 1e-9;
+
+void check_modulation(const Waveform& waveform, int exposure) {
+  const std::string name = fmt::format("modulation {}", exposure);
+  require(waveform.minimum() >= -tolerance, name + " minimum", waveform.minimum(), "must be >= 0");
+  require(waveform.mean() <= 1.0 + tolerance, name + " mean", waveform.mean(),
+          "must be <= 1: modulation is power over average power");
+}
+
+void check_demodulation(const Waveform& waveform, int measurement) {
+  const std::string name = fmt::format("demodulation {}", measurement);
+  require(waveform.minimum() >= -tolerance, name + " minimum", waveform.minimum(),
+          "must be >= 0: demodulation is a gain in [0, 1]");
+  require(waveform.peak() <= 1.0 + tolerance, name + " peak", waveform.peak(),
+          "must be <= 1: demodulation is a gain in [0, 1]");
+}
+}  // namespace
+
+CodeSet CodeSet::create(std::string name, int samples, int taps, std::vector<Waveform> modulation,
+                        std::vector<Waveform> demodulation) {
+  require(samples >= 2, "samples", samples, "must be >= 2");
+  require(taps >= 1, "taps", taps, "must be >= 1");
+  require(!modulation.empty(), "number of modulation functions", modulation.size(), "must be >= 1");
+  require(demodulation.size() == modulation.size() * static_cast<std::size_t>(taps),
+          "number of demodulation functions", demodulation.size(),
+          fmt::format("must be exposures x taps = {} x {}", modulation.size(), taps));
+  const auto check_length = [&](const Waveform& w, const char* kind, std::size_t i) {
+    require(w.is_binary() || w.samples().size() == samples, fmt::format("{} {} length", kind, i),
+            w.samples().size(), fmt::format("must equal samples = {}", samples));
+  };
+  for (std::size_t e = 0; e < modulation.size(); ++e) {
+    check_length(modulation[e], "modulation", e);
+    check_modulation(modulation[e], static_cast<int>(e));
+  }
+  for (std::size_t i = 0; i < demodulation.size(); ++i) {
+    check_length(demodulation[i], "demodulation", i);
+    check_demodulation(demodulation[i], static_cast<int>(i));
+  }
+  for (std::size_t e = 0; taps > 1 && e < modulation.size(); ++e) {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(samples);
+    for (int t = 0; t < taps; ++t)
+      sum += demodulation[e * static_cast<std::size_t>(taps) + static_cast<std::size_t>(t)]
+                 .cell_averages(samples);
+    require(sum.maxCoeff() <= 1.0 + 1e-6, fmt::format("sum over taps of exposure {}", e),
+            sum.maxCoeff(), "must be <= 1: an electron goes to one tap");
+  }
+  CodeSet code;
+  code.name_ = std::move(name);
+  code.samples_ = samples;
+  code.taps_ = taps;
+  code.modulation_ = std::move(modulation);
+  code.demodulation_ = std::move(demodulation);
+  return code;
+}
+
+double CodeSet::peak() const {
+  double peak = 0.0;
+  for (const Waveform& m : modulation_) peak = std::max(peak, m.peak());
+  return peak;
+}
+
+Eigen::MatrixXd CodeSet::modulation_samples() const {
+  Eigen::MatrixXd columns(samples_, exposures());
+  for (int e = 0; e < exposures(); ++e) columns.col(e) = modulation(e).cell_averages(samples_);
+  return columns;
+}
+
+Eigen::MatrixXd CodeSet::demodulation_samples() const {
+  Eigen::MatrixXd columns(samples_, measurements());
+  for (int i = 0; i < measurements(); ++i) columns.col(i) = demodulation(i).cell_averages(samples_);
+  return columns;
+}
+
+CodeSet CodeSet::renamed(std::string name) const {
+  CodeSet copy = *this;
+  copy.name_ = std::move(name);
+  return copy;
+}
+
+CodeSet CodeSet::resampled(int samples) const {
+  CodeSet copy = *this;
+  copy.samples_ = samples;
+  for (auto* waveforms : {&copy.modulation_, &copy.demodulation_})
+    for (Waveform& w : *waveforms)
+      if (!w.is_binary()) w = Waveform::sampled(w.cell_averages(samples));
+  return copy;
+}
+
+CodeSet CodeSet::rotated(int rotation_bin) const {
+  CodeSet copy = *this;
+  for (Waveform& m : copy.modulation_)
+    m = m.delayed(static_cast<double>(rotation_bin) / static_cast<double>(samples_));
+  return copy;
+}
+
+CodeSet CodeSet::with_two_buckets() const {
+  require(taps_ == 1, "taps", taps_, "only a code for one tap can be given a second bucket");
+  std::vector<Waveform> demodulation;
+  for (const Waveform& d : demodulation_) {
+    demodulation.push_back(d);
+    demodulation.push_back(d.complement());
+  }
+  CodeSet code = create(name_, samples_, 2, modulation_, std::move(demodulation));
+  code.provenance = provenance;
+  return code;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/code/square.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "code/grid.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+CodeSet square_code(int phase_steps, const FamilyOptions& options) {
+  options.validate();
+  require(phase_steps >= 2, "phase steps", phase_steps, "must be >= 2");
+  const std::string name = fmt::format("square-k{}", phase_steps);
+  require_grid(name, std::lcm(2, phase_steps), options);
+  const double duty = std::max(0.5, 1.0 / options.peak_factor);
+  std::vector<Waveform> modulation, demodulation;
+  for (int step = 0; step < phase_steps; ++step) {
+    modulation.push_back(rectangular_pulse(duty));
+    demodulation.push_back(square_wave(1, static_cast<double>(step) / phase_steps));
+  }
+  return CodeSet::create(name, options.samples, 1, std::move(modulation), std::move(demodulation));
+}
+
+CodeSet pulsed_multi_frequency_code(int high_frequency, const FamilyOptions& options) {
+  options.validate();
+  require(high_frequency >= 2, "high frequency", high_frequency, "must be >= 2");
+  const std::string name = high_frequency == 3
+                               ? "pulsed-multifrequency-k5"
+                               : fmt::format("pulsed-multifrequency-k5-q{}", high_frequency);
+  require_grid(name, std::lcm(6, 4 * high_frequency), options);
+  const double low_duty = std::max(1.0 / options.peak_factor, 1.0 / 6.0);
+  const double high_duty = std::max(1.0 / options.peak_factor, 1.0 / 4.0);
+  std::vector<Waveform> modulation, demodulation;
+  for (int step = 0; step < 3; ++step) {
+    modulation.push_back(pulse_train(1, low_duty));
+    demodulation.push_back(square_wave(1, step / 3.0));
+  }
+  for (int step = 0; step < 2; ++step) {
+    modulation.push_back(pulse_train(high_frequency, high_duty));
+    demodulation.push_back(square_wave(high_frequency, 0.25 * step / high_frequency));
+  }
+  return CodeSet::create(name, options.samples, 1, std::move(modulation), std::move(demodulation));
+}
+
+CodeSet gray_code(int bits, const FamilyOptions& options) {
+  options.validate();
+  require(bits >= 3 && bits <= 10, "bits", bits, "must be in [3, 10]");
+  const std::string name = fmt::format("gray-k{}", bits);
+  const int cells = 1 << bits;
+  require_grid(name, cells, options);
+  const double duty = std::max(1.0 / options.peak_factor, 1.0 / cells);
+  std::vector<Waveform> modulation, demodulation;
+  for (int bit = bits - 1; bit >= 0; --bit) {
+    Eigen::VectorXd word(cells);
+    for (int cell = 0; cell < cells; ++cell) word[cell] = ((cell ^ (cell >> 1)) >> bit) & 1;
+    modulation.push_back(rectangular_pulse(duty));
+    demodulation.push_back(Waveform::binary_from_samples(word, 1.0));
+  }
+  return CodeSet::create(name, options.samples, 1, std::move(modulation), std::move(demodulation));
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,269 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/code/waveform.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/periodic.hpp"
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+
+namespace {
+constexpr double pi = std::numbers::pi;
+
+/// Splits intervals at the end of the period so that all lie in [0, 1], sorted.
+std::vector<OnInterval> unrolled(const std::vector<OnInterval>& on) {
+  std::vector<OnInterval> pieces;
+  for (const OnInterval& interval : on) {
+    if (interval.fall > 1.0) {
+      pieces.push_back({0.0, interval.fall - 1.0});
+      pieces.push_back({interval.rise, 1.0});
+    } else {
+      pieces.push_back(interval);
+    }
+  }
+  std::sort(pieces.begin(), pieces.end(),
+            [](const OnInterval& a, const OnInterval& b) { return a.rise < b.rise; });
+  return pieces;
+}
+
+double on_time(const std::vector<OnInterval>& on) {
+  double sum = 0.0;
+  for (const OnInterval& interval : on) sum += interval.fall - interval.rise;
+  return sum;
+}
+}  // namespace
+
+Waveform Waveform::binary(std::vector<OnInterval> on, double level) {
+  require(std::isfinite(level) && level > 0.0, "level", level, "must be finite and > 0");
+  for (std::size_t i = 0; i < on.size(); ++i) {
+    const std::string name = fmt::format("on interval {}", i);
+    const std::string value = fmt::format("[{}, {})", on[i].rise, on[i].fall);
+    const bool inside = on[i].rise >= 0.0 && on[i].rise < 1.0 && on[i].fall > on[i].rise &&
+                        on[i].fall <= on[i].rise + 1.0;
+    require(inside, name, value, "must satisfy 0 <= rise < 1 and rise < fall <= rise + 1");
+    const bool last = i + 1 == on.size();
+    const double next_rise = last ? on[0].rise + 1.0 : on[i + 1].rise;
+    require(on[i].fall <= next_rise, name, value,
+            fmt::format("switching times must be sorted: the next rise is at {}", next_rise));
+  }
+  Waveform waveform;
+  waveform.on_ = std::move(on);
+  waveform.level_ = level;
+  return waveform;
+}
+
+Waveform Waveform::sampled(Eigen::VectorXd samples) {
+  require(samples.size() > 0, "number of samples", samples.size(), "must be >= 1");
+  for (Eigen::Index n = 0; n < samples.size(); ++n)
+    require(std::isfinite(samples[n]), fmt::format("sample {}", n), samples[n], "must be finite");
+  Waveform waveform;
+  waveform.samples_ = std::move(samples);
+  return waveform;
+}
+
+Waveform Waveform::constant(double level) {
+  return level == 0.0 ? binary({}, 1.0) : binary({{0.0, 1.0}}, level);
+}
+
+Waveform Waveform::binary_from_samples(const Eigen::VectorXd& samples, double level,
+                                       double threshold) {
+  const Eigen::Index size = samples.size();
+  require(size > 0, "number of samples", size, "must be >= 1");
+  const double limit = threshold * samples.maxCoeff();
+  const auto on = [&](Eigen::Index n) { return samples[n % size] > limit; };
+  std::vector<OnInterval> intervals;
+  for (Eigen::Index n = 0; n < size; ++n) {
+    if (!on(n) || on(n + size - 1)) continue;
+    Eigen::Index end = n + 1;
+    while (on(end)) ++end;
+    intervals.push_back({static_cast<double>(n) / static_cast<double>(size),
+                         static_cast<double>(end) / static_cast<double>(size)});
+  }
+  if (intervals.empty()) return on(0) ? constant(level) : binary({}, level);
+  return binary(std::move(intervals), level);
+}
+
+double Waveform::mean() const { return is_binary() ? level_ * on_time(on_) : samples_.mean(); }
+
+double Waveform::minimum() const {
+  if (!is_binary()) return samples_.minCoeff();
+  return on_time(on_) >= 1.0 ? level_ : 0.0;
+}
+
+double Waveform::peak() const {
+  if (!is_binary()) return samples_.maxCoeff();
+  return on_.empty() ? 0.0 : level_;
+}
+
+double Waveform::duty() const {
+  if (is_binary()) return on_time(on_);
+  const double half = 0.5 * samples_.maxCoeff();
+  return static_cast<double>((samples_.array() > half).count()) /
+         static_cast<double>(samples_.size());
+}
+
+int Waveform::edges() const {
+  const StepFunction function = steps();
+  int count = 0;
+  for (std::size_t i = 0; i < function.values.size(); ++i) {
+    const std::size_t before = i == 0 ? function.values.size() - 1 : i - 1;
+    if (function.values[i] != function.values[before]) ++count;
+  }
+  return count;
+}
+
+Eigen::VectorXd Waveform::cell_averages(int samples) const {
+  require(samples >= 1, "samples", samples, "must be >= 1");
+  if (!is_binary() && samples_.size() == samples) return samples_;
+  // Integrate the step function over each cell.
+  const StepFunction function = steps();
+  Eigen::VectorXd cells = Eigen::VectorXd::Zero(samples);
+  const double count = samples;
+  for (std::size_t i = 0; i < function.values.size(); ++i) {
+    if (function.values[i] == 0.0) continue;
+    const bool last = i + 1 == function.values.size();
+    const double begin = function.breakpoints[i] * count;
+    const double end = (last ? function.breakpoints[0] + 1.0 : function.breakpoints[i + 1]) * count;
+    for (double cell = std::floor(begin); cell < end; cell += 1.0) {
+      const double share = std::min(end, cell + 1.0) - std::max(begin, cell);
+      const int index = static_cast<int>(wrap(cell, count));
+      if (share > 1e-12) cells[index] += function.values[i] * share;
+    }
+  }
+  return cells;
+}
+
+Eigen::VectorXcd Waveform::harmonics(int highest) const {
+  using namespace std::complex_literals;
+  Eigen::VectorXcd result = Eigen::VectorXcd::Zero(highest + 1);
+  result[0] = mean();
+  if (is_binary()) {
+    for (const OnInterval& interval : on_)
+      for (int n = 1; n <= highest; ++n)
+        result[n] += level_ *
+                     (std::polar(1.0, -2 * pi * n * interval.rise) -
+                      std::polar(1.0, -2 * pi * n * interval.fall)) /
+                     (2i * pi * static_cast<double>(n));
+    return result;
+  }
+  const int size = static_cast<int>(samples_.size());
+  Eigen::VectorXcd spectrum;
+  PeriodicTransform(size).forward(samples_, spectrum);
+  for (int n = 1; n <= highest; ++n) {
+    const int k = n % size;
+    const std::complex<double> dft = k <= size / 2 ? spectrum[k] : std::conj(spectrum[size - k]);
+    const double x = pi * n / size;  // each sample is held over its cell
+    result[n] = dft / static_cast<double>(size) * std::polar(std::sin(x) / x, -x);
+  }
+  return result;
+}
+
+StepFunction Waveform::steps() const {
+  StepFunction function;
+  if (!is_binary()) {
+    const double count = static_cast<double>(samples_.size());
+    for (Eigen::Index n = 0; n < samples_.size(); ++n) {
+      function.breakpoints.push_back(static_cast<double>(n) / count);
+      function.values.push_back(samples_[n]);
+    }
+    return function;
+  }
+  const auto add = [&](double position, double value) {
+    if (!function.breakpoints.empty() && function.breakpoints.back() == position)
+      function.values.back() = value;
+    else
+      function.breakpoints.push_back(position), function.values.push_back(value);
+  };
+  add(0.0, 0.0);
+  for (const OnInterval& piece : unrolled(on_)) {
+    add(piece.rise, level_);
+    if (piece.fall < 1.0) add(piece.fall, 0.0);
+  }
+  return function;
+}
+
+Waveform Waveform::delayed(double periods) const {
+  if (is_binary()) {
+    std::vector<OnInterval> moved = on_;
+    for (OnInterval& interval : moved) {
+      const double width = interval.fall - interval.rise;
+      interval.rise = wrap(interval.rise + periods, 1.0);
+      interval.fall = interval.rise + width;
+    }
+    std::sort(moved.begin(), moved.end(),
+              [](const OnInterval& a, const OnInterval& b) { return a.rise < b.rise; });
+    // Rounding may make neighbours that touched overlap by one unit in the last place.
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+      const bool last = i + 1 == moved.size();
+      const double next_rise = last ? moved[0].rise + 1.0 : moved[i + 1].rise;
+      if (moved[i].fall > next_rise && moved[i].fall < next_rise + 1e-12) moved[i].fall = next_rise;
+    }
+    return binary(std::move(moved), level_);
+  }
+  const double shift = periods * static_cast<double>(samples_.size());
+  require(std::abs(shift - std::round(shift)) < 1e-6, "delay", periods,
+          "must be a whole number of samples for a sampled waveform");
+  return sampled(circular_shift(samples_, static_cast<int>(std::lround(shift))));
+}
+
+Waveform Waveform::complement() const {
+  require(minimum() >= -1e-12 && peak() <= 1.0 + 1e-12, "peak", peak(),
+          "a complement needs values in [0, 1]");
+  if (!is_binary()) return sampled(1.0 - samples_.array());
+  if (on_.empty()) return constant(1.0);
+  require(level_ == 1.0, "level", level_, "the complement of a binary waveform needs level 1");
+  std::vector<OnInterval> off;
+  for (std::size_t i = 0; i < on_.size(); ++i) {
+    const bool last = i + 1 == on_.size();
+    const double next_rise = last ? on_[0].rise + 1.0 : on_[i + 1].rise;
+    if (next_rise <= on_[i].fall) continue;  // touching intervals leave no gap
+    const double rise = wrap(on_[i].fall, 1.0);
+    off.push_back({rise, rise + (next_rise - on_[i].fall)});
+  }
+  std::sort(off.begin(), off.end(),
+            [](const OnInterval& a, const OnInterval& b) { return a.rise < b.rise; });
+  return off.empty() ? constant(0.0) : binary(std::move(off), 1.0);
+}
+
+bool operator==(const Waveform& a, const Waveform& b) {
+  return a.on_ == b.on_ && a.level_ == b.level_ && a.samples_.size() == b.samples_.size() &&
+         a.samples_ == b.samples_;
+}
+
+Waveform rectangular_pulse(double duty, double begin) {
+  require(duty > 0.0 && duty <= 1.0, "duty", duty, "must be in (0, 1]");
+  const double rise = wrap(begin, 1.0);
+  return Waveform::binary({{rise, rise + duty}}, 1.0 / duty);
+}
+
+Waveform pulse_train(int count, double duty) {
+  require(count >= 1, "number of pulses", count, "must be >= 1");
+  require(duty > 0.0 && duty <= 1.0, "duty", duty, "must be in (0, 1]");
+  std::vector<OnInterval> on;
+  for (int i = 0; i < count; ++i) {
+    const double rise = static_cast<double>(i) / count;
+    on.push_back({rise, std::min(rise + duty / count, static_cast<double>(i + 1) / count)});
+  }
+  return Waveform::binary(std::move(on), 1.0 / duty);
+}
+
+Waveform square_wave(int frequency, double begin) {
+  require(frequency >= 1, "frequency", frequency, "must be >= 1");
+  std::vector<OnInterval> on;
+  for (int i = 0; i < frequency; ++i) {
+    const double rise = wrap(begin + static_cast<double>(i) / frequency, 1.0);
+    on.push_back({rise, rise + 0.5 / frequency});
+  }
+  std::sort(on.begin(), on.end(),
+            [](const OnInterval& a, const OnInterval& b) { return a.rise < b.rise; });
+  return Waveform::binary(std::move(on));
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/camera/forward_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/code/hamiltonian.hpp"
+#include "tofsmith/core/periodic.hpp"
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+namespace {
+
+/// Equation (3) on a fine grid, by plain sums: the reference for every correlation function.
+Eigen::VectorXd correlation_by_sums(const Waveform& d, const Waveform& m, int points) {
+  return circular_correlation(d.cell_averages(points), m.cell_averages(points)) / points;
+}
+
+TEST(CorrelationFunction, IsExactBetweenBins) {
+  const CodeSet code = make_family("hamiltonian-k4", {.samples = 240, .peak_factor = 7.0});
+  for (int k = 0; k < 4; ++k) {
+    const CorrelationFunction chi(code.demodulation(k), code.modulation(k));
+    const Eigen::VectorXd fine =
+        correlation_by_sums(code.demodulation(k), code.modulation(k), 8400);
+    for (int j = 0; j < 8400; j += 7) EXPECT_NEAR(chi(j / 8400.0), fine[j], 1e-9);
+    EXPECT_LT((chi.table(8400) - fine).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
+TEST(CorrelationFunction, HarmonicsAndCornersAgree) {
+  const CodeSet code = make_family("sinusoid-k3", {.samples = 60});
+  const Eigen::VectorXcd no_response = Eigen::VectorXcd::Ones(20001);
+  const CorrelationFunction corners(code.demodulation(1), code.modulation(1));
+  const CorrelationFunction harmonics(code.demodulation(1), code.modulation(1), no_response);
+  for (const double u : {0.0, 0.1234, 0.5, 0.987, 3.21, -0.3})
+    EXPECT_NEAR(corners(u), harmonics(u), 1e-6);
+  EXPECT_LT((corners.table(90) - harmonics.table(90)).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+TEST(CorrelationFunction, IdealHamiltonianCodeWalksFromVertexToVertex) {
+  const auto walk = hamiltonian_walk(3);
+  const Camera camera = built_in_camera("paper-30x");
+  const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
+  // Peak 30 shortens nothing: the ideal pulse of K = 3 needs a peak of 6 only.
+  for (int n = 0; n < 6; ++n)
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(model.correlation(40.0 * n)[k], (walk[static_cast<std::size_t>(n)] >> k) & 1,
+                  1e-9);
+}
+
+TEST(ForwardModel, TheTableHoldsTheFunctionAtItsBins) {
+  for (const char* camera_name : {"paper-30x", "paper-10f0"}) {
+    const Camera camera = built_in_camera(camera_name);
+    const ForwardModel model(build_family("hamiltonian-k5", camera), camera);
+    const Eigen::MatrixXd table = model.correlation_table(480);
+    for (int j = 0; j < 480; j += 13)
+      EXPECT_LT((table.row(j).transpose() - model.correlation(j * 0.5)).cwiseAbs().maxCoeff(),
+                1e-9);
+  }
+}
+
+TEST(ForwardModel, OutputsKeepTheBoundsOfTheInputs) {
+  const Camera camera = built_in_camera("paper-5f0");
+  for (const char* name : {"hamiltonian-k5", "square-k4", "sinusoid-k3"}) {
+    const Eigen::MatrixXd table =
+        ForwardModel(build_family(name, camera), camera).correlation_table(960);
+    EXPECT_GE(table.minCoeff(), -1e-9) << name;
+    EXPECT_LE(table.maxCoeff(), 1 + 1e-9) << name;
+  }
+}
+
+TEST(ForwardModel, ReturnsAdd) {
+  const Camera camera = built_in_camera("paper-10f0");
+  const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
+  const Return first{1e4, 33.3}, second{3e3, 80.0};
+  const Return both[] = {first, second};
+  const Eigen::VectorXd sum = model.expected_electrons(std::span(&first, 1), 1e3) +
+                              model.expected_electrons(std::span(&second, 1), 1e3) -
+                              model.expected_electrons({}, 1e3);
+  EXPECT_LT((model.expected_electrons(both, 1e3) - sum).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(ForwardModel, MeanFollowsEquationFour) {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.sensor.dark_current_e_per_s = 50.0;
+  const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
+  const Return r{2e4, 77.7};
+  const Eigen::VectorXd expected = 0.1 * (2e4 * model.correlation(77.7).array() + 1e3 * 0.5 + 50.0);
+  EXPECT_LT((model.expected_electrons(std::span(&r, 1), 1e3) - expected).cwiseAbs().maxCoeff(),
+            1e-9);
+  const Eigen::VectorXd variance = expected.array() + 20.0 * 20.0;
+  EXPECT_LT((model.variance_e2(std::span(&r, 1), 1e3) - variance).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(ForwardModel, TwoBucketsShareTheLight) {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.sensor.taps = 2;
+  const ForwardModel model(build_family("hamiltonian-k4", camera), camera);
+  EXPECT_EQ(model.measurements(), 8);
+  EXPECT_DOUBLE_EQ(model.exposure_s()[0], 0.3 / 4);
+  const Eigen::MatrixXd chi = model.correlation_table(240);
+  for (int e = 0; e < 4; ++e)
+    EXPECT_LT(
+        (chi.col(2 * e) + chi.col(2 * e + 1) - Eigen::VectorXd::Ones(240)).cwiseAbs().maxCoeff(),
+        1e-9);
+}
+
+TEST(ForwardModel, DifferenceCancelsTheAmbientMeanButNotItsNoise) {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.sensor.taps = 2;
+  camera.sensor.readout = Readout::difference;
+  const ForwardModel model(build_family("hamiltonian-k4", camera), camera);
+  EXPECT_EQ(model.measurements(), 4);
+  EXPECT_LT(model.expected_electrons({}, 1e5).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_NEAR(model.variance_e2({}, 1e5)[0], 1e5 * 0.3 / 4 + 2 * 400.0, 1e-6);
+}
+
+TEST(ForwardModel, ContrastPullsTapsTogether) {
+  Camera camera = built_in_camera("paper-30x");
+  camera.sensor.taps = 2;
+  camera.sensor.modulation_contrast = 0.6;
+  const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
+  const Eigen::MatrixXd chi = model.correlation_table(240);
+  EXPECT_NEAR(chi.maxCoeff(), 0.8, 1e-9);
+  EXPECT_NEAR(chi.minCoeff(), 0.2, 1e-9);
+}
+
+TEST(ImpulseResponse, HannAttenuatesByFiveAtItsLimit) {
+  ImpulseResponse hann{.kind = ImpulseResponse::Kind::hann, .f_max_hz = 150e6};
+  EXPECT_NEAR(hann.transfer(150e6).real(), 0.2, 1e-12);
+  EXPECT_NEAR(hann.transfer(0).real(), 1.0, 1e-12);
+}
+
+TEST(ImpulseResponse, CutoffIsMinusThreeDecibel) {
+  for (const auto kind : {ImpulseResponse::Kind::gaussian, ImpulseResponse::Kind::lowpass}) {
+    const ImpulseResponse response{.kind = kind, .cutoff_hz = 80e6};
+    EXPECT_NEAR(std::norm(response.transfer(80e6)), 0.5, 1e-12);
+  }
+}
+
+TEST(ImpulseResponse, MeasuredExponentialIsALowPass) {
+  ImpulseResponse measured{.kind = ImpulseResponse::Kind::file, .time_step_s = 1e-12};
+  const double time_constant_s = 2e-9;
+  for (int i = 0; i < 40000; ++i)
+    measured.samples.push_back(std::exp(-i * 1e-12 / time_constant_s));
+  const ImpulseResponse lowpass{.kind = ImpulseResponse::Kind::lowpass,
+                                .cutoff_hz = 1 / (2 * M_PI * time_constant_s)};
+  for (const double f : {0.0, 15e6, 60e6, 150e6})
+    EXPECT_LT(std::abs(measured.transfer(f) - lowpass.transfer(f)), 2e-3);
+}
+
+TEST(Camera, NamesTheFieldTheValueAndTheRule) {
+  const auto message = [](auto change) -> std::string {
+    Camera camera = built_in_camera("paper-10f0");
+    change(camera);
+    try {
+      camera.validate();
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(
+      message([](Camera& c) { c.light.peak_factor = 0.5; }),
+      "light.peak_factor = 0.5; must be finite and >= 1: the peak is never below the average");
+  EXPECT_EQ(message([](Camera& c) { c.sensor.read_noise_e = -1; }),
+            "sensor.read_noise_e = -1; must be finite and >= 0");
+  EXPECT_EQ(message([](Camera& c) { c.sensor.impulse_response.f_max_hz = 0; }),
+            "sensor.impulse_response.f_max_hz = 0; must be finite and > 0 for kind = \"hann\"");
+  EXPECT_EQ(message([](Camera& c) { c.fundamental_frequency_hz = std::nan(""); }),
+            "fundamental_frequency_hz = nan; must be finite and > 0");
+  EXPECT_EQ(message([](Camera& c) { c.sensor.adc_bits = 12; }),
+            "sensor.adc_bits = 12; needs sensor.gain_e_per_dn beside it");
+  EXPECT_EQ(message([](Camera& c) { c.operating.ambient_e_per_s.clear(); }),
+            "operating.ambient_e_per_s = []; must list at least one level");
+}
+
+TEST(Camera, RangeFollowsTheFrequency) {
+  EXPECT_NEAR(built_in_camera("paper-10f0").range_m(), 9.993, 1e-3);
+  EXPECT_DOUBLE_EQ(wrap(-0.25, 1.0), 0.75);
+  EXPECT_NEAR(circular_difference(0.1, 9.9, 10.0), 0.2, 1e-12);
+}
+
+}  // namespace
+}  // namespace tofsmith

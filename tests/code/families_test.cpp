@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/code/families.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <set>
+
+#include "tofsmith/code/coding_curve.hpp"
+#include "tofsmith/code/hamiltonian.hpp"
+#include "tofsmith/code/ramp.hpp"
+#include "tofsmith/code/square.hpp"
+
+namespace tofsmith {
+namespace {
+
+class HamiltonianOrder : public testing::TestWithParam<int> {};
+
+TEST_P(HamiltonianOrder, WalkIsClosedAndStepsAlongEdges) {
+  const auto walk = hamiltonian_walk(GetParam());
+  for (std::size_t i = 0; i < walk.size(); ++i)
+    EXPECT_EQ(std::popcount(walk[i] ^ walk[(i + 1) % walk.size()]), 1) << "step " << i;
+}
+
+TEST_P(HamiltonianOrder, WalkVisitsNoVertexTwiceAndIsAsLongAsItCanBe) {
+  const int k = GetParam();
+  const auto walk = hamiltonian_walk(k);
+  const std::set<std::uint32_t> vertices(walk.begin(), walk.end());
+  EXPECT_EQ(vertices.size(), walk.size());
+  EXPECT_EQ(static_cast<int>(walk.size()), (1 << k) - (k % 2 == 0 ? 4 : 2));
+  EXPECT_FALSE(vertices.contains(0));
+  EXPECT_FALSE(vertices.contains((1u << k) - 1));
+}
+
+TEST_P(HamiltonianOrder, EveryDutyIsOneHalfAndMeanPowerIsOne) {
+  const int length = hamiltonian_length(GetParam());
+  const CodeSet code = hamiltonian_code(GetParam(), {.samples = 4 * length});
+  for (int i = 0; i < code.measurements(); ++i) {
+    EXPECT_NEAR(code.demodulation(i).mean(), 0.5, 1e-12);
+    EXPECT_NEAR(code.modulation(i).mean(), 1.0, 1e-12);
+  }
+  EXPECT_NEAR(code.peak(), length, 1e-9);
+}
+
+TEST_P(HamiltonianOrder, GridHoldsTheCodeExactly) {
+  const CodeSet code =
+      hamiltonian_code(GetParam(), {.samples = 2 * hamiltonian_length(GetParam())});
+  const Eigen::MatrixXd d = code.demodulation_samples();
+  EXPECT_LT((d.array() * (1.0 - d.array())).abs().maxCoeff(), 1e-12) << "samples are 0 or 1";
+}
+
+INSTANTIATE_TEST_SUITE_P(PublishedAndConstructed, HamiltonianOrder, testing::Range(3, 10));
+
+TEST(Hamiltonian, PulseRespectsThePeak) {
+  const CodeSet code = hamiltonian_code(5, {.samples = 240, .peak_factor = 4.0});
+  EXPECT_DOUBLE_EQ(code.peak(), 4.0);
+  EXPECT_NEAR(code.modulation(0).mean(), 1.0, 1e-12);
+}
+
+TEST(Hamiltonian, SaysWhichSampleCountsAreUsable) {
+  try {
+    hamiltonian_code(5, {.samples = 1000});
+    FAIL() << "1000 samples cannot hold 30 edges";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("990"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("1020"), std::string::npos) << error.what();
+  }
+  EXPECT_NO_THROW(hamiltonian_code(5, {.samples = 1000, .exact_grid = false}));
+}
+
+class Family : public testing::TestWithParam<const char*> {};
+
+TEST_P(Family, StaysWithinAnyPeakAndUsesTheWholePower) {
+  for (const double peak : {1.2, 2.0, 5.0, 15.0, 30.0}) {
+    const CodeSet code = make_family(GetParam(), {.samples = 240, .peak_factor = peak});
+    EXPECT_LE(code.peak(), peak * (1 + 1e-12));
+    for (int e = 0; e < code.exposures(); ++e) {
+      const double mean = code.modulation(e).mean();
+      if (mean == 0.0) continue;  // a background exposure
+      EXPECT_NEAR(mean, 1.0, 1e-12) << GetParam() << " at peak " << peak;
+    }
+  }
+}
+
+TEST_P(Family, GainsLieBetweenZeroAndOne) {
+  const Eigen::MatrixXd d = make_family(GetParam(), {.samples = 240}).demodulation_samples();
+  EXPECT_GE(d.minCoeff(), 0.0);
+  EXPECT_LE(d.maxCoeff(), 1.0 + 1e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(BuiltIn, Family,
+                         testing::Values("sinusoid-k3", "sinusoid-k4", "square-k3", "square-k4",
+                                         "hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5",
+                                         "hamiltonian-k6", "multifrequency-k5",
+                                         "multifrequency-1x4-5x4", "pulsed-multifrequency-k5",
+                                         "pulsed-multifrequency-k5-q5", "gray-k3", "gray-k4",
+                                         "single-ramp-k3", "double-ramp-k3"));
+
+TEST(Families, EveryListedExampleCanBeBuilt) {
+  for (const FamilyDescription& family : list_families()) {
+    EXPECT_TRUE(is_family(family.example)) << family.example;
+    EXPECT_NO_THROW(make_family(family.example, {.samples = 240})) << family.example;
+  }
+}
+
+TEST(Families, UnknownNameSuggestsTheNearest) {
+  try {
+    make_family("hamiltonain-k4", {});
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("hamiltonian-k4"), std::string::npos) << error.what();
+  }
+}
+
+TEST(GrayCode, NeighbouringCellsDifferInOneBit) {
+  const Eigen::MatrixXd d = gray_code(4, {.samples = 16}).demodulation_samples();
+  for (int n = 0; n < 16; ++n)
+    EXPECT_DOUBLE_EQ((d.row((n + 1) % 16) - d.row(n)).cwiseAbs().sum(), 1.0);
+}
+
+TEST(CodingCurve, SquareWaveWithSquareLightIsATriangle) {
+  Eigen::MatrixXd table(4, 1);
+  table << 0, 0.5, 1, 0.5;
+  EXPECT_DOUBLE_EQ(coding_curve_length(table), 2.0);
+  EXPECT_EQ(harmonics_used(table), 1);
+}
+
+TEST(CodingCurve, RankCountsIndependentDirections) {
+  Eigen::MatrixXd table(60, 3);
+  for (int n = 0; n < 60; ++n)
+    table.row(n) << std::cos(n * 0.1047198), std::sin(n * 0.1047198), std::cos(n * 0.1047198) + 3;
+  EXPECT_EQ(coding_curve_rank(table), 2);
+}
+
+}  // namespace
+}  // namespace tofsmith

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/code/waveform.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tofsmith/code/code_set.hpp"
+#include "tofsmith/core/random.hpp"
+
+namespace tofsmith {
+namespace {
+
+Waveform random_binary(std::uint64_t item) {
+  RandomStream random(11, item);
+  std::vector<double> times;
+  for (int i = 0; i < 6; ++i) times.push_back(random.uniform());
+  std::sort(times.begin(), times.end());
+  // The last interval runs past the end of the period.
+  return Waveform::binary({{times[1], times[2]}, {times[3], times[4]}, {times[5], times[0] + 1.0}},
+                          0.5 + random.uniform());
+}
+
+TEST(Waveform, CellAveragesKeepTheMean) {
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    const Waveform w = random_binary(i);
+    for (const int samples : {7, 60, 241})
+      EXPECT_NEAR(w.cell_averages(samples).mean(), w.mean(), 1e-12);
+  }
+}
+
+TEST(Waveform, HarmonicsAgreeWithFineSamples) {
+  const Waveform w = random_binary(3);
+  const Eigen::VectorXcd exact = w.harmonics(5);
+  const Eigen::VectorXcd fine = Waveform::sampled(w.cell_averages(20000)).harmonics(5);
+  EXPECT_LT((exact - fine).cwiseAbs().maxCoeff(), 1e-7);
+}
+
+TEST(Waveform, ComplementAddsToOneEverywhere) {
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    Waveform w = random_binary(i);
+    w = Waveform::binary(w.on_intervals());
+    const Eigen::VectorXd sum = w.cell_averages(97) + w.complement().cell_averages(97);
+    EXPECT_LT((sum.array() - 1.0).abs().maxCoeff(), 1e-12);
+  }
+  EXPECT_EQ(Waveform::constant(1.0).complement(), Waveform::constant(0.0));
+  EXPECT_EQ(Waveform::constant(0.0).complement(), Waveform::constant(1.0));
+}
+
+TEST(Waveform, DelayTurnsHarmonicsOnly) {
+  const Waveform w = random_binary(5);
+  const Eigen::VectorXcd before = w.harmonics(4), after = w.delayed(0.37).harmonics(4);
+  for (int n = 0; n <= 4; ++n)
+    EXPECT_LT(std::abs(after[n] - before[n] * std::polar(1.0, -2 * M_PI * n * 0.37)), 1e-12);
+}
+
+TEST(Waveform, SamplesAndSwitchingTimesAgree) {
+  Eigen::VectorXd samples(8);
+  samples << 1, 0, 0, 1, 1, 0, 1, 1;
+  const Waveform w = Waveform::binary_from_samples(samples, 1.0);
+  EXPECT_EQ(w.on_intervals().size(), 2u);
+  EXPECT_EQ(w.cell_averages(8), samples);
+  EXPECT_EQ(w.edges(), 4);
+}
+
+TEST(Waveform, RefusesUnsortedSwitchingTimes) {
+  EXPECT_THROW(Waveform::binary({{0.5, 0.7}, {0.1, 0.2}}), std::invalid_argument);
+  EXPECT_THROW(Waveform::binary({{0.1, 0.4}, {0.3, 0.6}}), std::invalid_argument);
+  EXPECT_THROW(Waveform::binary({{-0.1, 0.4}}), std::invalid_argument);
+  EXPECT_THROW(Waveform::binary({{0.2, 0.2}}), std::invalid_argument);
+  EXPECT_THROW(Waveform::binary({{0.8, 1.3}, {0.9, 1.0}}), std::invalid_argument);
+}
+
+TEST(CodeSet, RefusesWhatNoCameraCanPlay) {
+  const Waveform half = square_wave(1, 0.0);
+  const auto create = [&](Waveform m, Waveform d) {
+    return CodeSet::create("x", 60, 1, {std::move(m)}, {std::move(d)});
+  };
+  EXPECT_NO_THROW(create(rectangular_pulse(0.1), half));
+  EXPECT_THROW(create(Waveform::constant(1.1), half), std::invalid_argument);
+  EXPECT_THROW(create(rectangular_pulse(0.1), Waveform::constant(1.2)), std::invalid_argument);
+  EXPECT_THROW(create(Waveform::sampled(Eigen::VectorXd::Ones(59)), half), std::invalid_argument);
+  EXPECT_THROW(CodeSet::create("x", 60, 2, {rectangular_pulse(0.1)}, {half, half}),
+               std::invalid_argument)
+      << "an electron cannot go to both taps";
+}
+
+TEST(CodeSet, TwoBucketsShareEveryElectron) {
+  const CodeSet code = CodeSet::create("x", 60, 1, {rectangular_pulse(0.1), rectangular_pulse(0.1)},
+                                       {square_wave(1, 0.0), square_wave(2, 0.1)})
+                           .with_two_buckets();
+  EXPECT_EQ(code.measurements(), 4);
+  EXPECT_EQ(code.exposure_of(3), 1);
+  const Eigen::MatrixXd d = code.demodulation_samples();
+  EXPECT_LT((d.col(2) + d.col(3) - Eigen::VectorXd::Ones(60)).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+}  // namespace
+}  // namespace tofsmith
