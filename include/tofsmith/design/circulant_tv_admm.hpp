@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "tofsmith/design/circulant_tv.hpp"
+
+namespace tofsmith {
+
+struct CirculantTvAdmmOptions {
+  int max_iterations = 20000;           ///< splitting steps, >= 1
+  double tolerance = 1e-11;             ///< rms of both residuals, in units of the upper bound, > 0
+  double certificate_tolerance = 1e-7;  ///< converged when the certificate is at most this, > 0
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+
+/// The problem by alternating directions with one split: x meets the data (a division of spectra),
+/// z everything else, by the exact proximal map
+///   prox(v) = clip(prox_TV(v) - mu, 0, upper_bound),  mu >= 0 the price of the budget.
+/// Hundreds of times slower than the active set; independent of it.
+/// @param warm_start  where to start (N, finite), or empty
+/// @return z, feasible, with its certificate; stalled if the residuals vanish but the certificate
+///         stays above its tolerance
+/// @throws std::invalid_argument if problem, options or start are not valid
+CirculantTvResult solve_circulant_tv_by_admm(const CirculantTvProblem& problem,
+                                             const CirculantTvAdmmOptions& options = {},
+                                             const std::optional<Eigen::VectorXd>& warm_start = {});
+
+}  // namespace tofsmith
