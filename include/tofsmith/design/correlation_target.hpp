@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tofsmith/code/code_set.hpp"
+
+namespace tofsmith {
+
+/// A pair of waveforms that measure one value per pixel.
+struct WaveformPair {
+  Waveform modulation;
+  Waveform demodulation;
+};
+
+/// The correlation function that one measurement should have.
+struct CorrelationTarget {
+  Eigen::VectorXd samples;          ///< chi at the N bins; linear in between
+  double demodulation_mean = 0.5;   ///< mean gain to hold: what ambient light sees
+  /// Waveforms that have this correlation function on a camera without limits, if known.
+  std::optional<WaveformPair> ideal;
+};
+
+/// The correlation functions of a whole code.
+struct TargetSet {
+  std::string name;
+  std::vector<CorrelationTarget> measurements;
+
+  int samples() const { return static_cast<int>(measurements.front().samples.size()); }
+};
+
+/// The correlation functions of a one-tap code without impulse responses. Of a family built without
+/// a peak limit these are the ideal ones.
+TargetSet targets_of(const CodeSet& code);
+
+/// A user's own correlation functions.
+/// @param table      (rows, K), values at equal steps of depth over one period, end point left out;
+///                   resampled linearly onto `samples` bins
+/// @param normalize  rescale every column to minimum 0 and maximum 1
+/// @throws std::invalid_argument naming column and row of a value that is not finite
+TargetSet targets_from_table(std::string name, const Eigen::MatrixXd& table, int samples,
+                             bool normalize);
+
+}  // namespace tofsmith

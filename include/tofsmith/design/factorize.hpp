@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/progress.hpp"
+#include "tofsmith/design/correlation_target.hpp"
+
+namespace tofsmith {
+
+/// Options of the factorization of one correlation function into a playable pair of waveforms.
+struct FactorizeOptions {
+  /// lambda of problem (6), in [1e-7, 1e-2]; at 1e-2 the iteration collapses to constants.
+  double total_variation_weight = 3e-4;
+  int max_iterations = 12;            ///< pairs of convex steps per start, >= 1
+  double objective_tolerance = 1e-4;  ///< stop when the objective changes less than this, relative
+  /// Go on from the binary projection, as the paper words it, instead of keeping the best
+  /// projection beside the relaxed iterates. Measured: finds zero error less often.
+  bool feed_back_projection = false;
+  int random_starts = 20;         ///< >= 0
+  bool structured_starts = true;  ///< thresholded target with pulses and pulse trains
+  bool keep_naive = true;         ///< the ideal demodulation with one pulse stays a candidate
+  bool refine_edges = true;       ///< move switching times continuously afterwards
+  int refined = 8;                ///< how many of the best projections are refined, >= 1
+  int kept = 6;                   ///< how many distinct pairs are returned, >= 1
+  std::uint64_t seed = 1;
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+
+/// One pair of convex steps.
+struct FactorizeIteration {
+  double objective = 0.0;              ///< rms + lambda (TV(d) + TV(m) / p)
+  double relaxed_residual_rms = 0.0;   ///< before projection
+  double playable_residual_rms = 0.0;  ///< after projection to what the arms can play
+};
+
+/// A playable pair and how far its correlation function is from the target.
+struct PairCandidate {
+  WaveformPair pair;
+  double residual_rms = 0.0;  ///< rms over the N bins
+  std::string start;          ///< "random 3", "pulse train 5", "naive", ..
+  int iterations = 0;         ///< convex steps it took
+};
+
+/// What factorizing one correlation function gave.
+struct Factorization {
+  std::vector<PairCandidate> candidates;  ///< distinct, smallest residual first; never empty
+  std::vector<FactorizeIteration> history;  ///< of the start that led to the first candidate
+  std::vector<int> iterations_per_start;    ///< of all starts that alternated
+  double target_variation_rms = 0.0;        ///< rms of the target about its mean
+  std::string message;                      ///< one line: reached, approached or out of reach
+
+  const PairCandidate& best() const { return candidates.front(); }
+  bool exact() const { return best().residual_rms < 1e-6; }
+};
+
+/// Finds waveforms whose correlation function on `camera` comes closest to `target`:
+///   min over m, d of  rms(chi - (h_m * m) corr (h_d * d)) + lambda (TV(d) + TV(m) / p)
+///   s.t.  mean m <= 1,  0 <= m <= p,  0 <= d <= 1
+/// with m and d binary where the camera's arms are. A target that cannot be reached ends as a
+/// result with its residual and a message, never as an exception.
+/// @throws std::invalid_argument for bad options, a bad camera or a target of other length than N
+/// @throws Interrupted if `progress` asks to stop
+/// @see Gutierrez-Barragan et al., CVPR 2019, problems (6) and (7); deviates: keeps the projection
+///      beside the iteration, refines switching times
+Factorization factorize(const CorrelationTarget& target, const Camera& camera,
+                        const FactorizeOptions& options = {}, const Progress& progress = {});
+
+}  // namespace tofsmith

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/design/correlation_target.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tofsmith/camera/correlation.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+TargetSet targets_of(const CodeSet& code) {
+  require(code.taps() == 1, "taps of the target", code.taps(), "must be 1");
+  TargetSet set{code.name(), {}};
+  for (int i = 0; i < code.measurements(); ++i) {
+    const Waveform& d = code.demodulation(i);
+    const Waveform& m = code.modulation_of(i);
+    set.measurements.push_back(
+        {CorrelationFunction(d, m).table(code.samples()), d.mean(), WaveformPair{m, d}});
+  }
+  return set;
+}
+
+TargetSet targets_from_table(std::string name, const Eigen::MatrixXd& table, int samples,
+                             bool normalize) {
+  require(table.rows() >= 2, "rows of the target", table.rows(), "must be >= 2");
+  require(table.cols() >= 1, "columns of the target", table.cols(), "must be >= 1");
+  require(samples >= 8, "samples", samples, "must be >= 8");
+  TargetSet set{std::move(name), {}};
+  for (Eigen::Index k = 0; k < table.cols(); ++k) {
+    Eigen::VectorXd column = table.col(k);
+    for (Eigen::Index n = 0; n < column.size(); ++n)
+      require(std::isfinite(column[n]), fmt::format("target[{}, {}]", n, k), column[n],
+              "must be finite");
+    if (normalize) {
+      const double low = column.minCoeff(), high = column.maxCoeff();
+      require(high > low, fmt::format("target column {}", k), low,
+              "is constant and cannot be rescaled to [0, 1]");
+      column = (column.array() - low) / (high - low);
+    }
+    Eigen::VectorXd bins(samples);
+    for (int n = 0; n < samples; ++n) {
+      const double position = static_cast<double>(n) * static_cast<double>(column.size()) / samples;
+      const auto before = static_cast<Eigen::Index>(position);
+      const double share = position - static_cast<double>(before);
+      bins[n] = (1.0 - share) * column[before] + share * column[(before + 1) % column.size()];
+    }
+    const double mean = bins.mean();
+    set.measurements.push_back({std::move(bins), mean, std::nullopt});
+  }
+  return set;
+}
+
+}  // namespace tofsmith
