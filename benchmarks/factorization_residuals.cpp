@@ -18,10 +18,10 @@ namespace {
 using namespace tofsmith;
 
 struct Row {
-  int order;                     // K
-  int measurement;               // 1-based
+  int order;        // K
+  int measurement;  // 1-based
   double peak_factor;
-  double f_max;                  // in fundamental frequencies; 0 = no limit
+  double f_max;  // in fundamental frequencies; 0 = no limit
   double prototype_rms;
 };
 
@@ -82,15 +82,16 @@ int main(int argc, char** argv) {
     const PairCandidate& best = f.best();
     // The prototype's figures are rounded to their last digit, which is worth half a unit.
     const double rounding = row.prototype_rms >= .1 || row.prototype_rms < .03 ? 5e-4 : 5e-5;
-    const bool met = best.residual_rms <= 1.02 * row.prototype_rms + (row.prototype_rms > 0 ? rounding : 1e-6);
+    const bool met =
+        best.residual_rms <= 1.02 * row.prototype_rms + (row.prototype_rms > 0 ? rounding : 1e-6);
     missed += !met;
-    fmt::print("  {} {:4} {:4} {:>6} {:11.4f} {:11.6f} {:>6} {:7.3f} {:7.3f} {:3}/{:<3} {}{}\n", row.order,
-               row.measurement, row.peak_factor, row.f_max > 0 ? fmt::format("{} f0", row.f_max) : "none",
-               row.prototype_rms, best.residual_rms,
-               row.prototype_rms > 0 ? fmt::format("{:.2f}", best.residual_rms / row.prototype_rms) : "-",
-               best.pair.demodulation.duty(), best.pair.modulation.duty(),
-               best.pair.modulation.edges(), best.pair.demodulation.edges(), best.start,
-               met ? "" : "  MISSED");
+    fmt::print(
+        "  {} {:4} {:4} {:>6} {:11.4f} {:11.6f} {:>6} {:7.3f} {:7.3f} {:3}/{:<3} {}{}\n", row.order,
+        row.measurement, row.peak_factor, row.f_max > 0 ? fmt::format("{} f0", row.f_max) : "none",
+        row.prototype_rms, best.residual_rms,
+        row.prototype_rms > 0 ? fmt::format("{:.2f}", best.residual_rms / row.prototype_rms) : "-",
+        best.pair.demodulation.duty(), best.pair.modulation.duty(), best.pair.modulation.edges(),
+        best.pair.demodulation.edges(), best.start, met ? "" : "  MISSED");
   }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   fmt::print("{} of {} within 2 % (and rounding) of the prototype or better, {:.1f} s\n",

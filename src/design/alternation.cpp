@@ -25,7 +25,8 @@ Eigen::VectorXd fit(CirculantTvSolver& solver, CirculantTvProblem problem,
 }  // namespace
 
 AlternationResult alternate(const PairModel& model, SampledPair start,
-                            const FactorizeOptions& options, CirculantTvSolver& solver) {
+                            double total_variation_weight, const FactorizeOptions& options,
+                            CirculantTvSolver& solver) {
   const double samples = model.samples();
   SampledPair x = std::move(start);
   AlternationResult result{x, x, model.residual_rms(x.modulation, x.demodulation), {}};
@@ -35,29 +36,27 @@ AlternationResult alternate(const PairModel& model, SampledPair start,
   int without_gain = 0;
 
   for (int iteration = 1; iteration <= options.max_iterations; ++iteration) {
-    x.demodulation =
-        fit(solver,
-            {.kernel = model.demodulation_kernel(x.modulation),
-             .target = model.target_samples(),
-             .total_variation_weight =
-                 options.total_variation_weight * samples * std::max(rms, smallest_rms),
-             .upper_bound = 1.0},
-            x.demodulation);
+    x.demodulation = fit(
+        solver,
+        {.kernel = model.demodulation_kernel(x.modulation),
+         .target = model.target_samples(),
+         .total_variation_weight = total_variation_weight * samples * std::max(rms, smallest_rms),
+         .upper_bound = 1.0},
+        x.demodulation);
     rms = model.residual_rms(x.modulation, x.demodulation);
     x.modulation = fit(solver,
                        {.kernel = model.modulation_kernel(x.demodulation),
                         .target = model.reversed_target_samples(),
-                        .total_variation_weight = options.total_variation_weight /
-                                                  model.peak_factor() * samples *
-                                                  std::max(rms, smallest_rms),
+                        .total_variation_weight = total_variation_weight / model.peak_factor() *
+                                                  samples * std::max(rms, smallest_rms),
                         .upper_bound = model.peak_factor(),
                         .budget = samples},
                        x.modulation);
     rms = model.residual_rms(x.modulation, x.demodulation);
     const double objective =
-        rms + options.total_variation_weight *
-                  (circular_total_variation(x.demodulation) +
-                   circular_total_variation(x.modulation) / model.peak_factor());
+        rms +
+        total_variation_weight * (circular_total_variation(x.demodulation) +
+                                  circular_total_variation(x.modulation) / model.peak_factor());
 
     const BinaryProjection projection = project_to_binary(model, x);
     result.history.push_back({objective, rms, projection.residual_rms});

@@ -23,6 +23,7 @@ struct AlternationResult {
 /// The residual's norm is not squared; rms <= rms^2 / (2 c) + c / 2 with c the current rms turns
 /// each step into 1/2 |A x - b|^2 + lambda N c TV(x), which does not raise the true objective.
 AlternationResult alternate(const PairModel& model, SampledPair start,
-                            const FactorizeOptions& options, CirculantTvSolver& solver);
+                            double total_variation_weight, const FactorizeOptions& options,
+                            CirculantTvSolver& solver);
 
 }  // namespace tofsmith

@@ -14,9 +14,9 @@ namespace tofsmith {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double duty_weight = 2.0;      // of (mean d - target's) beside the harmonics
-constexpr double shortest_run = 2e-3;    // of the period; shorter runs fade away in the fit
-constexpr int most_rounds = 4;           // of fitting and dropping short runs
+constexpr double duty_weight = 2.0;    // of (mean d - target's) beside the harmonics
+constexpr double shortest_run = 2e-3;  // of the period; shorter runs fade away in the fit
+constexpr int most_rounds = 4;         // of fitting and dropping short runs
 
 /// Fourier coefficients of a unit-level binary waveform by its switching times, and their
 /// derivatives: X[n] = sum_j s_j exp(-2 pi i n e_j) / (2 pi i n), s = +1 at rises, -1 at falls.

@@ -28,10 +28,12 @@ struct StartResult {
   std::vector<FactorizeIteration> history;
 };
 
-StartResult run_start(const PairModel& model, const AlternationStart& start,
-                      const FactorizeOptions& options) {
+StartResult run_start(const PairModel& model, const FactorizeOptions& options, int index) {
   CirculantTvSolver solver(model.samples());
-  AlternationResult found = alternate(model, start.pair, options, solver);
+  const AlternationStart start = random_start(model, options.seed, index);
+  const double weight = options.total_variation_weights[static_cast<std::size_t>(index) %
+                                                        options.total_variation_weights.size()];
+  AlternationResult found = alternate(model, start.pair, weight, options, solver);
   const SampledPair& p = found.playable;
   WaveformPair pair{as_waveform(p.modulation, model.binary_modulation(), p.modulation.maxCoeff()),
                     as_waveform(p.demodulation, model.binary_demodulation(), 1.0)};
@@ -50,7 +52,8 @@ void refine_best(const PairModel& model, const FactorizeOptions& options,
   const auto count = std::min<std::int64_t>(options.refined, std::ssize(candidates));
   parallel_for(count, [&](std::int64_t i) {
     PairCandidate& c = candidates[static_cast<std::size_t>(i)];
-    if (c.residual_rms < 1e-9 || c.start == "naive") return;  // nothing to gain; naive stays as it is
+    if (c.residual_rms < 1e-9 || c.start == "naive")
+      return;  // nothing to gain; naive stays as it is
     const auto refined = refine_edges(model, c.pair);
     if (!refined) return;
     const double residual = model.residual_rms(*refined);
@@ -63,12 +66,11 @@ void refine_best(const PairModel& model, const FactorizeOptions& options,
 /// Different waveforms with the same residual to nine digits are the same design, moved in time.
 void drop_repeats(std::vector<PairCandidate>& candidates) {
   std::stable_sort(candidates.begin(), candidates.end(), by_residual);
-  const auto last = std::unique(candidates.begin(), candidates.end(),
-                                [](const PairCandidate& a, const PairCandidate& b) {
-                                  return b.start != "naive" &&
-                                         b.residual_rms - a.residual_rms <
-                                             1e-6 * a.residual_rms + 1e-12;
-                                });
+  const auto last = std::unique(
+      candidates.begin(), candidates.end(), [](const PairCandidate& a, const PairCandidate& b) {
+        return b.start != "naive" &&
+               b.residual_rms - a.residual_rms < 1e-6 * a.residual_rms + 1e-12;
+      });
   candidates.erase(last, candidates.end());
 }
 
@@ -87,9 +89,11 @@ std::string describe(const Factorization& f, const CorrelationTarget& target) {
 }  // namespace
 
 void FactorizeOptions::validate() const {
-  require(total_variation_weight >= 1e-7 && total_variation_weight <= 1e-2,
-          "FactorizeOptions::total_variation_weight", total_variation_weight,
-          "must be in [1e-7, 1e-2]");
+  require(!total_variation_weights.empty(), "FactorizeOptions::total_variation_weights", "[]",
+          "must list at least one weight");
+  for (const double weight : total_variation_weights)
+    require(weight >= 1e-7 && weight <= 1e-2, "FactorizeOptions::total_variation_weights", weight,
+            "must be in [1e-7, 1e-2]");
   require(max_iterations >= 1, "FactorizeOptions::max_iterations", max_iterations, "must be >= 1");
   require(objective_tolerance >= 0, "FactorizeOptions::objective_tolerance", objective_tolerance,
           "must be >= 0");
@@ -111,14 +115,13 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
   // 1. What the camera makes of a pair, and how far that is from the target.
   const PairModel model(target, camera);
   Factorization result;
-  result.target_variation_rms = std::sqrt(
-      (target.samples.array() - target.samples.mean()).square().mean());
+  result.target_variation_rms =
+      std::sqrt((target.samples.array() - target.samples.mean()).square().mean());
 
   // 2. Alternate the convex steps from random starts, each with its best binary projection.
   std::vector<StartResult> runs(static_cast<std::size_t>(options.random_starts));
   parallel_for(std::ssize(runs), [&](std::int64_t i) {
-    runs[static_cast<std::size_t>(i)] =
-        run_start(model, random_start(model, options.seed, static_cast<int>(i)), options);
+    runs[static_cast<std::size_t>(i)] = run_start(model, options, static_cast<int>(i));
   });
   for (const StartResult& run : runs) {
     result.candidates.push_back(run.candidate);

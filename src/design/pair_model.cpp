@@ -87,10 +87,19 @@ double PairModel::residual_rms(const Eigen::VectorXd& modulation,
 double PairModel::residual_rms(const WaveformPair& pair) const {
   const CorrelationFunction function =
       camera_.band_limited()
-          ? CorrelationFunction(pair.demodulation, pair.modulation,
-                                camera_.transfer(4 * samples()))
+          ? CorrelationFunction(pair.demodulation, pair.modulation, camera_.transfer(4 * samples()))
           : CorrelationFunction(pair.demodulation, pair.modulation);
-  return std::sqrt((function.table(samples()) - target_.samples).squaredNorm() / samples());
+  constexpr int points_per_bin = 8;
+  const Eigen::VectorXd values = function.table(points_per_bin * samples());
+  double sum = 0.0;
+  for (Eigen::Index j = 0; j < values.size(); ++j) {
+    const Eigen::Index bin = j / points_per_bin;
+    const double share = static_cast<double>(j % points_per_bin) / points_per_bin;
+    const double target = (1.0 - share) * target_.samples[bin] +
+                          share * target_.samples[(bin + 1) % target_.samples.size()];
+    sum += (values[j] - target) * (values[j] - target);
+  }
+  return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
 }  // namespace tofsmith

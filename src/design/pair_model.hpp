@@ -39,10 +39,12 @@ class PairModel {
   Eigen::VectorXd modulation_kernel(const Eigen::VectorXd& demodulation) const;
 
   /// rms over the bins of (correlation function - target), from half spectra.
-  double residual_rms(const Eigen::VectorXcd& modulation, const Eigen::VectorXcd& demodulation) const;
+  double residual_rms(const Eigen::VectorXcd& modulation,
+                      const Eigen::VectorXcd& demodulation) const;
   /// The same from samples.
   double residual_rms(const Eigen::VectorXd& modulation, const Eigen::VectorXd& demodulation) const;
-  /// rms over the bins for waveforms of any kind: switching times enter exactly.
+  /// rms over depth for waveforms of any kind: switching times enter exactly, the target is linear
+  /// between bins, and the difference is sampled at 8 points per bin.
   double residual_rms(const WaveformPair& pair) const;
 
  private:

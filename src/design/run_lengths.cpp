@@ -16,7 +16,8 @@ namespace {
 void softmax(const Eigen::VectorXd& logits, Eigen::Index first, Eigen::Index stride,
              Eigen::VectorXd& shares, Eigen::MatrixXd& derivatives) {
   double largest = -1e300, sum = 0.0;
-  for (Eigen::Index i = first; i < logits.size(); i += stride) largest = std::max(largest, logits[i]);
+  for (Eigen::Index i = first; i < logits.size(); i += stride)
+    largest = std::max(largest, logits[i]);
   for (Eigen::Index i = first; i < logits.size(); i += stride)
     sum += shares[i] = std::exp(logits[i] - largest);
   for (Eigen::Index i = first; i < logits.size(); i += stride) shares[i] /= sum;
@@ -58,7 +59,8 @@ RunLengths::RunLengths(const Waveform& waveform, double shortest_duty)
   }
   if (shortest_duty > 0.0) {
     // t = 0 would be a stationary point; a start on the limit begins a little inside.
-    const double excess = (waveform.duty() - shortest_duty) / (1.0 - std::min(shortest_duty, 0.999));
+    const double excess =
+        (waveform.duty() - shortest_duty) / (1.0 - std::min(shortest_duty, 0.999));
     parameters_[1 + runs_] = std::sqrt(std::clamp(excess, 1e-3, 0.98));
   }
 }
@@ -121,7 +123,9 @@ Waveform RunLengths::waveform(const Eigen::VectorXd& parameters, double shortest
   }
   std::sort(on.begin(), on.end(),
             [](const OnInterval& a, const OnInterval& b) { return a.rise < b.rise; });
-  return Waveform::binary(std::move(on), shortest_duty_ > 0.0 ? 1.0 / duty : 1.0);
+  // Where a short pulse was dropped, the rest may not emit more than the peak.
+  const double level = shortest_duty_ > 0.0 ? 1.0 / std::max(duty, shortest_duty_) : 1.0;
+  return Waveform::binary(std::move(on), level);
 }
 
 }  // namespace tofsmith

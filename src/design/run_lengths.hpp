@@ -27,7 +27,8 @@ class RunLengths {
   void edges(const Eigen::VectorXd& parameters, Eigen::VectorXd& times,
              Eigen::MatrixXd& derivatives) const;
 
-  /// The waveform at these parameters; level 1 / duty if a duty limit was given, else 1.
+  /// The waveform at these parameters; level 1 / duty if a duty limit was given, never above
+  /// 1 / shortest duty; else 1.
   /// Runs shorter than `shortest_run` [periods] are dropped.
   Waveform waveform(const Eigen::VectorXd& parameters, double shortest_run) const;
 

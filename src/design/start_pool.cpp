@@ -66,8 +66,9 @@ std::vector<PairCandidate> structured_starts(const PairModel& model) {
         if (count > per_period || duty * per_period / count > 0.95) continue;
         if (count == 1 && per_period > 1 && per_period != pulses) continue;  // the same pulse
         const Waveform m = centred_pulses(count, 1.0 / per_period, duty);
-        starts.push_back(candidate(
-            model, {m, d}, fmt::format("{} pulses 1/{} apart, duty {:.3g}", count, per_period, duty)));
+        starts.push_back(
+            candidate(model, {m, d},
+                      fmt::format("{} pulses 1/{} apart, duty {:.3g}", count, per_period, duty)));
       }
   return starts;
 }

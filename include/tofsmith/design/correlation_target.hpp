@@ -19,8 +19,8 @@ struct WaveformPair {
 
 /// The correlation function that one measurement should have.
 struct CorrelationTarget {
-  Eigen::VectorXd samples;          ///< chi at the N bins; linear in between
-  double demodulation_mean = 0.5;   ///< mean gain to hold: what ambient light sees
+  Eigen::VectorXd samples;         ///< chi at the N bins; linear in between
+  double demodulation_mean = 0.5;  ///< mean gain to hold: what ambient light sees
   /// Waveforms that have this correlation function on a camera without limits, if known.
   std::optional<WaveformPair> ideal;
 };

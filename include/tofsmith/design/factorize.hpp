@@ -14,18 +14,19 @@ namespace tofsmith {
 
 /// Options of the factorization of one correlation function into a playable pair of waveforms.
 struct FactorizeOptions {
-  /// lambda of problem (6), in [1e-7, 1e-2]; at 1e-2 the iteration collapses to constants.
-  double total_variation_weight = 3e-4;
+  /// lambda of problem (6), each in [1e-7, 1e-2]; starts take them in turn. Large ones find few
+  /// edges and simple codes, small ones many edges; at 1e-2 the iteration collapses to constants.
+  std::vector<double> total_variation_weights = {3e-4, 1e-5};
   int max_iterations = 12;            ///< pairs of convex steps per start, >= 1
   double objective_tolerance = 1e-4;  ///< stop when the objective changes less than this, relative
   /// Go on from the binary projection, as the paper words it, instead of keeping the best
   /// projection beside the relaxed iterates. Measured: finds zero error less often.
   bool feed_back_projection = false;
-  int random_starts = 20;         ///< >= 0
+  int random_starts = 30;         ///< >= 0
   bool structured_starts = true;  ///< thresholded target with pulses and pulse trains
   bool keep_naive = true;         ///< the ideal demodulation with one pulse stays a candidate
   bool refine_edges = true;       ///< move switching times continuously afterwards
-  int refined = 8;                ///< how many of the best projections are refined, >= 1
+  int refined = 16;               ///< how many of the best projections are refined, >= 1
   int kept = 6;                   ///< how many distinct pairs are returned, >= 1
   std::uint64_t seed = 1;
 
@@ -43,14 +44,14 @@ struct FactorizeIteration {
 /// A playable pair and how far its correlation function is from the target.
 struct PairCandidate {
   WaveformPair pair;
-  double residual_rms = 0.0;  ///< rms over the N bins
+  double residual_rms = 0.0;  ///< rms over depth; the target is linear between bins
   std::string start;          ///< "random 3", "pulse train 5", "naive", ..
   int iterations = 0;         ///< convex steps it took
 };
 
 /// What factorizing one correlation function gave.
 struct Factorization {
-  std::vector<PairCandidate> candidates;  ///< distinct, smallest residual first; never empty
+  std::vector<PairCandidate> candidates;    ///< distinct, smallest residual first; never empty
   std::vector<FactorizeIteration> history;  ///< of the start that led to the first candidate
   std::vector<int> iterations_per_start;    ///< of all starts that alternated
   double target_variation_rms = 0.0;        ///< rms of the target about its mean
