@@ -181,7 +181,7 @@ CirculantTvResult CirculantTvSolver::Workspace::report(Termination termination,
   result.budget_multiplier = budget.multiplier;
   result.iterations = iterations;
   result.newton_steps = face.newton_steps();
-  result.pieces = x.size();
+  result.pieces = x.distinct();
   return result;
 }
 
