@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "design/face_minimizer.hpp"
 #include "design/least_squares_term.hpp"
@@ -16,7 +17,7 @@ namespace tofsmith {
 namespace {
 
 // Of the paying moves, one per piece, those are made that pay this share of what the best one does.
-constexpr double worthwhile_share = 0.3;
+constexpr double worthwhile_share = 0.15;
 // Rounds without a visible decrease of the objective: first make one move at a time, then give up.
 constexpr int rounds_before_caution = 4;
 constexpr int rounds_before_stall = 24;

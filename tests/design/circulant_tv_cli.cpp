@@ -4,6 +4,8 @@
 // solver, in another language, judge ours.
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "tofsmith/design/circulant_tv.hpp"
 
