@@ -48,6 +48,8 @@ struct CirculantTvSolver::Workspace {
   void update_gradient();
   void update_scan();
   void update_slopes();
+  // A dual path may have to give way at both ends of an interval that pays.
+  double violation() const { return 2 * scan.violation; }
   void make_moves(bool one_at_a_time);
   CirculantTvResult report(Termination termination, int iterations) const;
 };
@@ -107,12 +109,12 @@ CirculantTvResult CirculantTvSolver::Workspace::run(const CirculantTvOptions& op
     const double decrease = face.minimize(x, budget, limits);
     update_gradient();
     update_scan();
-    if (scan.violation <= options.certificate_tolerance && !by_transform) {
+    if (violation() <= options.certificate_tolerance && !by_transform) {
       by_transform = true;
       update_gradient();
       update_scan();
     }
-    if (scan.violation <= options.certificate_tolerance)
+    if (violation() <= options.certificate_tolerance)
       return report(Termination::converged, iteration);
 
     // Where rounding eats the progress, spend a transform per round and move with care.
@@ -178,7 +180,7 @@ CirculantTvResult CirculantTvSolver::Workspace::report(Termination termination,
   result.termination = termination;
   x.write_to(result.x);
   result.objective = squares + limits.total_variation_weight * x.total_variation();
-  result.certificate = scan.violation;
+  result.certificate = violation();
   result.budget_multiplier = budget.multiplier;
   result.iterations = iterations;
   result.newton_steps = face.newton_steps();
