@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/periodic.hpp"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "design/face_minimizer.hpp"
 #include "design/least_squares_term.hpp"
@@ -16,7 +17,7 @@ namespace tofsmith {
 namespace {
 
 // Of the paying moves, one per piece, those are made that pay this share of what the best one does.
-constexpr double worthwhile_share = 0.3;
+constexpr double worthwhile_share = 0.15;
 // Rounds without a visible decrease of the objective: first make one move at a time, then give up.
 constexpr int rounds_before_caution = 4;
 constexpr int rounds_before_stall = 24;
@@ -47,6 +48,8 @@ struct CirculantTvSolver::Workspace {
   void update_gradient();
   void update_scan();
   void update_slopes();
+  // A dual path may have to give way at both ends of an interval that pays.
+  double violation() const { return 2 * scan.violation; }
   void make_moves(bool one_at_a_time);
   CirculantTvResult report(Termination termination, int iterations) const;
 };
@@ -106,12 +109,12 @@ CirculantTvResult CirculantTvSolver::Workspace::run(const CirculantTvOptions& op
     const double decrease = face.minimize(x, budget, limits);
     update_gradient();
     update_scan();
-    if (scan.violation <= options.certificate_tolerance && !by_transform) {
+    if (violation() <= options.certificate_tolerance && !by_transform) {
       by_transform = true;
       update_gradient();
       update_scan();
     }
-    if (scan.violation <= options.certificate_tolerance)
+    if (violation() <= options.certificate_tolerance)
       return report(Termination::converged, iteration);
 
     // Where rounding eats the progress, spend a transform per round and move with care.
@@ -177,11 +180,11 @@ CirculantTvResult CirculantTvSolver::Workspace::report(Termination termination,
   result.termination = termination;
   x.write_to(result.x);
   result.objective = squares + limits.total_variation_weight * x.total_variation();
-  result.certificate = scan.violation;
+  result.certificate = violation();
   result.budget_multiplier = budget.multiplier;
   result.iterations = iterations;
   result.newton_steps = face.newton_steps();
-  result.pieces = x.size();
+  result.pieces = x.distinct();
   return result;
 }
 

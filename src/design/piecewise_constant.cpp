@@ -35,6 +35,12 @@ void PiecewiseConstant::take_pieces_of(const Eigen::VectorXd& x, double upper_bo
   }
 }
 
+int PiecewiseConstant::distinct() const {
+  int jumps = 0;
+  for (int j = 0; j < size(); ++j) jumps += pieces_[j].value != pieces_[previous(j)].value;
+  return std::max(jumps, 1);
+}
+
 double PiecewiseConstant::sum() const {
   double sum = 0;
   for (const Piece& piece : pieces_) sum += piece.value * piece.length;

@@ -41,6 +41,8 @@ class PiecewiseConstant {
   /// First sample after piece j, in [0, N].
   int end_of(int j) const { return size() > 1 ? pieces_[next(j)].start : pieces_[0].start; }
 
+  /// Pieces that differ from the one before, at least 1: a jump may still be, or again be, zero.
+  int distinct() const;
   double sum() const;
   double total_variation() const;
   /// Slope of total variation when piece j alone is raised: -2, 0 or 2.

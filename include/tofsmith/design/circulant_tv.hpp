@@ -54,8 +54,8 @@ struct CirculantTvResult {
   CirculantTvMethod method = CirculantTvMethod::active_set;
   Eigen::VectorXd x;  ///< feasible (N)
   double objective = std::numeric_limits<double>::infinity();
-  /// Largest violation of the optimality conditions, in units of w: by how much raising or lowering
-  /// any interval of x would pay, per unit of height.
+  /// Largest violation of the optimality conditions, in units of w: twice what raising or lowering
+  /// any interval of x would gain, per unit of height (active set), or the dual path's (ADMM).
   double certificate = std::numeric_limits<double>::infinity();
   double budget_multiplier = 0;  ///< price of the budget, >= 0; 0 where it does not bind
   int iterations = 0;            ///< scans (active set) or splitting steps (ADMM)

@@ -1,0 +1,259 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/design/circulant_tv.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "circulant_tv_instances.hpp"
+#include "tofsmith/design/circulant_tv_certificate.hpp"
+
+namespace tofsmith {
+namespace {
+
+constexpr double tolerance = 1e-7;
+
+CirculantTvProblem instance(std::uint64_t item, double weight_per_sample = 2e-5, int samples = 240,
+                            std::optional<bool> band_limited = {}) {
+  RandomStream random(7, item);
+  return test::random_circulant_tv(
+      {samples, weight_per_sample, band_limited.value_or(item % 2 == 1)}, random);
+}
+
+void expect_solved(const CirculantTvProblem& problem, const CirculantTvResult& result) {
+  EXPECT_EQ(result.termination, Termination::converged) << result.brief();
+  EXPECT_TRUE(result.is_usable());
+  EXPECT_LE(result.certificate, tolerance);
+  const OptimalityCertificate judged = certificate(problem, result.x);
+  EXPECT_LE(judged.violation, tolerance) << result.brief();
+  EXPECT_LE(judged.infeasibility, 1e-12);
+  EXPECT_NEAR(result.objective, problem.objective(result.x), 1e-11 * (1 + result.objective));
+}
+
+class CirculantTvInstances : public testing::TestWithParam<double> {};
+
+// Modulations and demodulations, sharp and band-limited, clean and noisy.
+TEST_P(CirculantTvInstances, AreSolvedAndCertifiedWithoutFallback) {
+  const double weight_per_sample = GetParam();
+  for (const int samples : {120, 240, 480, 1000}) {
+    CirculantTvSolver solver(samples);
+    for (int item = 0; item < 63; ++item) {
+      const std::uint64_t key =
+          combine_keys(samples, static_cast<std::uint64_t>(1 / weight_per_sample));
+      const CirculantTvProblem problem =
+          instance(combine_keys(key, item), weight_per_sample, samples, item % 2 == 1);
+      SCOPED_TRACE("samples " + std::to_string(samples) + ", item " + std::to_string(item));
+      expect_solved(problem, solver.solve(problem));
+    }
+  }
+}
+
+// 252 instances each. At the last weight a gradient summed twice in double precision would have
+// lost the digits that the certificate asks for.
+INSTANTIATE_TEST_SUITE_P(WeightPerSample, CirculantTvInstances,
+                         testing::Values(2e-5, 2e-6, 2e-7, 2e-8, 2e-9));
+
+TEST(CirculantTv, ShiftingTheTargetShiftsTheSolution) {
+  for (int item = 0; item < 20; ++item) {
+    CirculantTvProblem problem = instance(item);
+    const CirculantTvResult still = solve_circulant_tv(problem);
+    problem.target = circular_shift(problem.target, 17);
+    const CirculantTvResult moved = solve_circulant_tv(problem);
+    EXPECT_NEAR(moved.objective, still.objective, 1e-10 * still.objective);
+    EXPECT_LE(certificate(problem, circular_shift(still.x, 17)).worst(), tolerance);
+  }
+}
+
+TEST(CirculantTv, ScalingTheTargetTheBoundsAndTheWeightScalesTheSolution) {
+  constexpr double factor = 7.25;
+  for (int item = 0; item < 20; ++item) {
+    CirculantTvProblem problem = instance(item);
+    const CirculantTvResult small = solve_circulant_tv(problem);
+    problem.target *= factor;
+    problem.upper_bound *= factor;
+    problem.total_variation_weight *= factor;
+    if (problem.budget) *problem.budget *= factor;
+    const CirculantTvResult large = solve_circulant_tv(problem);
+    EXPECT_NEAR(large.objective, factor * factor * small.objective, 1e-10 * large.objective);
+    EXPECT_LE(certificate(problem, factor * small.x).worst(), tolerance);
+  }
+}
+
+TEST(CirculantTv, AWarmStartFromTheSolutionStaysThere) {
+  CirculantTvSolver solver(240);
+  for (int item = 0; item < 50; ++item) {
+    const CirculantTvProblem problem = instance(item);
+    const CirculantTvResult cold = solver.solve(problem);
+    const CirculantTvResult warm = solver.solve(problem, {}, cold.x);
+    expect_solved(problem, warm);
+    EXPECT_LE(warm.iterations, 3);
+    EXPECT_NEAR(warm.objective, cold.objective, 1e-12 * cold.objective);
+  }
+}
+
+TEST(CirculantTv, ReachesTheSameObjectiveFromAnyStart) {
+  CirculantTvSolver solver(240);
+  for (int item = 0; item < 30; ++item) {
+    const CirculantTvProblem problem = instance(item);
+    const double objective = solver.solve(problem).objective;
+    RandomStream random(8, item);
+    Eigen::VectorXd noise(240), pulse = Eigen::VectorXd::Zero(240);
+    for (double& value : noise) value = 3 * random.normal();
+    // All samples at a bound and the budget spent: a vertex with no free piece.
+    pulse.head(static_cast<int>(240 / problem.upper_bound)).setConstant(problem.upper_bound);
+    const Eigen::VectorXd full = Eigen::VectorXd::Constant(240, problem.upper_bound);
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(240);
+    for (const Eigen::VectorXd& start : {noise, pulse, full, zero}) {
+      const CirculantTvResult result = solver.solve(problem, {}, start);
+      expect_solved(problem, result);
+      EXPECT_NEAR(result.objective, objective, 1e-10 * objective);
+    }
+  }
+}
+
+TEST(CirculantTv, ASolverForgetsTheProblemBefore) {
+  CirculantTvSolver used(240);
+  for (int item = 0; item < 10; ++item) {
+    const CirculantTvProblem problem = instance(item);
+    CirculantTvSolver fresh(240);
+    EXPECT_EQ(used.solve(problem).x, fresh.solve(problem).x);
+  }
+}
+
+TEST(CirculantTv, SolvesDegenerateProblems) {
+  CirculantTvProblem problem = instance(0);
+  problem.upper_bound = 6;
+  problem.budget = 0.0;
+  EXPECT_LT(solve_circulant_tv(problem).x.sum(), 1e-12);
+
+  problem.budget = 240.0;
+  problem.kernel.setZero();
+  expect_solved(problem, solve_circulant_tv(problem));
+
+  // A kernel without a mean leaves the level of x to the bounds.
+  problem = instance(2);
+  problem.kernel.array() -= problem.kernel.mean();
+  expect_solved(problem, solve_circulant_tv(problem));
+
+  // A weight that leaves no jump.
+  problem = instance(4);
+  problem.total_variation_weight = 1e6;
+  const CirculantTvResult flat = solve_circulant_tv(problem);
+  expect_solved(problem, flat);
+  EXPECT_EQ(flat.pieces, 1);
+}
+
+// A pulse at full peak that spends the budget exactly: no piece of it is strictly inside the box.
+TEST(CirculantTv, FindsTheIdealPulseOfThreeCodes) {
+  constexpr int samples = 240;
+  CirculantTvProblem problem;
+  problem.kernel = Eigen::VectorXd::Zero(samples);
+  problem.kernel.head(samples / 2).setConstant(1.0 / samples);
+  problem.target = test::trapezoid_target(samples, 1.0 / 6);
+  problem.upper_bound = 6;
+  problem.budget = samples;
+  problem.total_variation_weight = 1e-8;
+  const CirculantTvResult result = solve_circulant_tv(problem);
+  expect_solved(problem, result);
+  // The weight rounds the pulse off, by its own small size.
+  EXPECT_EQ((result.x.array() > 6 - 1e-5).count(), samples / 6);
+  EXPECT_EQ((result.x.array() < 1e-5).count(), samples - samples / 6);
+}
+
+TEST(CirculantTv, SolvesTheShortestSignals) {
+  for (const int samples : {1, 2, 3, 4, 5, 7})
+    for (int item = 0; item < 20; ++item) {
+      RandomStream random(9, item, static_cast<std::uint32_t>(samples));
+      CirculantTvProblem problem;
+      problem.kernel.resize(samples);
+      problem.target.resize(samples);
+      for (double& value : problem.kernel) value = random.normal();
+      for (double& value : problem.target) value = 2 * random.normal();
+      problem.total_variation_weight = 0.5 * random.uniform();
+      problem.upper_bound = 2;
+      if (item % 2 == 0) problem.budget = 0.7 * samples;
+      SCOPED_TRACE("samples " + std::to_string(samples) + " item " + std::to_string(item));
+      expect_solved(problem, CirculantTvSolver(samples).solve(problem));
+    }
+}
+
+TEST(CirculantTv, FallsBackAndSaysSo) {
+  const CirculantTvProblem problem = instance(1);
+  CirculantTvOptions options;
+  options.max_iterations = 1;
+  const CirculantTvResult alone = CirculantTvSolver(240).solve(problem, options);
+  EXPECT_EQ(alone.termination, Termination::iteration_limit);
+  const CirculantTvResult helped = solve_circulant_tv(problem, options);
+  EXPECT_NE(helped.method, CirculantTvMethod::active_set);
+  EXPECT_LT(helped.certificate, alone.certificate);
+  EXPECT_THAT(helped.brief(), testing::HasSubstr("admm"));
+}
+
+TEST(CirculantTv, AResultStartsAsFailure) {
+  EXPECT_FALSE(CirculantTvResult{}.is_usable());
+  EXPECT_THAT(CirculantTvResult{}.brief(), testing::StartsWith("not_run"));
+}
+
+// Solving `problem` must fail, with a message that names all of `words`.
+void expect_refused(const CirculantTvProblem& problem, const std::vector<std::string>& words,
+                    const CirculantTvOptions& options = {}) {
+  try {
+    solve_circulant_tv(problem, options);
+    FAIL() << "accepted; expected a complaint about " << words.front();
+  } catch (const std::invalid_argument& error) {
+    for (const std::string& word : words) EXPECT_THAT(error.what(), testing::HasSubstr(word));
+  }
+}
+
+TEST(CirculantTv, NamesFieldValueAndRuleOfBadInput) {
+  const CirculantTvProblem good = instance(0);
+  CirculantTvProblem bad = good;
+  bad.kernel[3] = std::numeric_limits<double>::quiet_NaN();
+  expect_refused(bad, {"kernel[3]", "nan", "finite"});
+  bad = good;
+  bad.target[5] = std::numeric_limits<double>::infinity();
+  expect_refused(bad, {"target[5]", "inf", "finite"});
+  bad = good;
+  bad.target.conservativeResize(239);
+  expect_refused(bad, {"target.size()", "239", "240"});
+  bad = {};
+  expect_refused(bad, {"kernel.size()", "0", ">= 1"});
+  for (const double weight : {0.0, -1.0}) {
+    bad = good;
+    bad.total_variation_weight = weight;
+    expect_refused(bad, {"total_variation_weight", "> 0"});
+  }
+  bad = good;
+  bad.upper_bound = -2;
+  expect_refused(bad, {"upper_bound", "-2", "> 0"});
+  bad = good;
+  bad.budget = -3.0;
+  expect_refused(bad, {"budget", "-3", ">= 0"});
+  CirculantTvOptions options;
+  options.max_iterations = -3;
+  expect_refused(good, {"max_iterations", "-3", ">= 1"}, options);
+  options = {};
+  options.certificate_tolerance = 0;
+  expect_refused(good, {"certificate_tolerance", "0", "> 0"}, options);
+}
+
+TEST(CirculantTv, RefusesStartsAndProblemsOfOtherLength) {
+  const CirculantTvProblem problem = instance(0);
+  CirculantTvSolver solver(240), other(120);
+  EXPECT_THROW(other.solve(problem), std::invalid_argument);
+  EXPECT_THROW(solver.solve(problem, {}, Eigen::VectorXd::Zero(239)), std::invalid_argument);
+  EXPECT_THROW(
+      solver.solve(problem, {},
+                   Eigen::VectorXd::Constant(240, std::numeric_limits<double>::quiet_NaN())),
+      std::invalid_argument);
+  EXPECT_THROW(CirculantTvSolver(0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tofsmith
