@@ -21,6 +21,27 @@ Json colours_of(const BarSeries& series, const std::vector<LineStyle>& category_
   return colours;
 }
 
+/// What a dash is to a line, hatching is to a bar.
+const char* pattern_name(Dash dash) {
+  switch (dash) {
+    case Dash::dash:
+      return "/";
+    case Dash::dot:
+      return ".";
+    case Dash::dash_dot:
+      return "x";
+    default:
+      return "";
+  }
+}
+
+Json patterns_of(const BarSeries& series, const std::vector<LineStyle>& category_styles) {
+  if (category_styles.empty()) return pattern_name(series.style.dash);
+  Json patterns = Json::array();
+  for (const LineStyle& style : category_styles) patterns.push_back(pattern_name(style.dash));
+  return patterns;
+}
+
 }  // namespace
 
 Figure bar_figure(FigureText text, const std::vector<std::string>& categories,
@@ -35,7 +56,9 @@ Figure bar_figure(FigureText text, const std::vector<std::string>& categories,
   for (const std::string& category : categories) names.push_back(plotly::text(category));
 
   Json data = Json::array();
+  std::vector<double> all_values;
   for (const BarSeries& one : series) {
+    all_values.insert(all_values.end(), one.values.begin(), one.values.end());
     require(one.values.size() == categories.size(), "BarSeries::values.size", one.values.size(),
             rule);
     require(one.errors.empty() || one.errors.size() == categories.size(), "BarSeries::errors.size",
@@ -51,22 +74,22 @@ Figure bar_figure(FigureText text, const std::vector<std::string>& categories,
       trace["marker"]["size"] = 9;
     } else {
       trace["orientation"] = "h";
+      trace["marker"]["pattern"] = {
+          {"shape", patterns_of(one, category_styles)}, {"fillmode", "overlay"}, {"size", 7}};
     }
     if (!one.errors.empty())
       trace["error_x"] = {{"type", "data"},
                           {"array", plotly::numbers(one.errors)},
                           {"thickness", 1.4},
                           {"width", 4},
-                          {"color", "#8a8f98"}};
+                          {"color", "#000000"}};
     data.push_back(trace);
   }
 
-  Json y = {{"type", "category"},
-            {"autorange", "reversed"},
-            {"automargin", true},
-            {"showgrid", value_axis.logarithmic},
-            {"ticks", ""}};
-  const Json layout = {{"xaxis", plotly::axis(value_axis)},
+  Json y = {{"type", "category"}, {"autorange", "reversed"},
+            {"automargin", true}, {"showgrid", value_axis.logarithmic},
+            {"ticks", "outside"}, {"tickcolor", "rgba(0,0,0,0)"}};
+  const Json layout = {{"xaxis", plotly::axis(value_axis, all_values)},
                        {"yaxis", y},
                        {"barmode", "group"},
                        {"bargap", 0.35},

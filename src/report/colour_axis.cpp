@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "report/logarithmic_ticks.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith::plotly {
@@ -53,24 +54,6 @@ Json diverging_stops() {
   return stops;
 }
 
-/// Ticks at 1, 2 and 5 of every decade, or at the decades alone when there are many.
-void add_logarithmic_ticks(Json& colour_bar, const ValueRange& range) {
-  const double decades = std::log10(range.high / range.low);
-  colour_bar["tickvals"] = Json::array();
-  colour_bar["ticktext"] = Json::array();
-  const int first = static_cast<int>(std::floor(std::log10(range.low)));
-  const int last = static_cast<int>(std::ceil(std::log10(range.high)));
-  for (int exponent = first; exponent <= last; ++exponent) {
-    for (const int digit : {1, 2, 5}) {
-      if (digit != 1 && decades > 2.5) continue;
-      const double value = digit * std::pow(10.0, exponent);
-      if (value < range.low * 0.999 || value > range.high * 1.001) continue;
-      colour_bar["tickvals"].push_back(number(std::log10(value)));
-      colour_bar["ticktext"].push_back(fmt::format("{:.3g}", value));
-    }
-  }
-}
-
 }  // namespace
 
 ColourAxis::ColourAxis(const ColourScale& scale, std::span<const float> values) : scale_(scale) {
@@ -101,7 +84,12 @@ Json ColourAxis::layout() const {
   static constexpr std::array names = {"Viridis", "Cividis"};
   Json colour_bar = {
       {"title", {{"text", text(axis_title(scale_.label, scale_.unit))}, {"side", "right"}}}};
-  if (scale_.logarithmic) add_logarithmic_ticks(colour_bar, range_);
+  if (scale_.logarithmic) {
+    for (const Tick& tick : logarithmic_ticks(range_)) {
+      colour_bar["tickvals"].push_back(number(std::log10(tick.value)));
+      colour_bar["ticktext"].push_back(tick.text);
+    }
+  }
   Json colours = diverging_stops();
   if (scale_.map != ColourMap::diverging) colours = names[static_cast<std::size_t>(scale_.map)];
   return {{"colorscale", colours},

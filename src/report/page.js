@@ -15,26 +15,30 @@
   // Fonts and colours of the page; the figures' JSON holds none.
   function template() {
     const colours = isDark()
-      ? {ink: '#c9d1d9', grid: '#2a3038', line: '#6b7580', hover: '#22272e'}
-      : {ink: '#3d444d', grid: '#e9ecef', line: '#8a939d', hover: '#ffffff'};
+      ? {ink: '#c9d1d9', grid: '#2a3038', spaceGrid: '#3d454f', line: '#6b7580', hover: '#22272e'}
+      : {ink: '#3d444d', grid: '#e9ecef', spaceGrid: '#d4d9de', line: '#8a939d', hover: '#ffffff'};
     const axis = {
       automargin: true, color: colours.ink, exponentformat: 'power', gridcolor: colours.grid,
       linecolor: colours.line, showline: true, tickcolor: colours.line, ticklen: 4,
-      ticks: 'outside', title: {standoff: 8}, zeroline: false,
+      ticks: 'outside', title: {font: {size: 12.5}, standoff: 8}, zeroline: false,
     };
     const spaceAxis = {
-      backgroundcolor: 'rgba(0,0,0,0)', color: colours.ink, gridcolor: colours.grid,
+      backgroundcolor: 'rgba(0,0,0,0)', color: colours.ink, gridcolor: colours.spaceGrid,
       linecolor: colours.line, nticks: 5, showbackground: false, showspikes: false,
-      tickfont: {size: 11}, title: {font: {size: 12}}, zeroline: false, zerolinecolor: colours.grid,
+      tickfont: {size: 11}, title: {font: {size: 12}}, zeroline: false, zerolinecolor: colours.spaceGrid,
     };
     return {
       layout: {
-        annotationdefaults: {font: {color: colours.ink, size: 13}},
-        coloraxis: {colorbar: {outlinewidth: 0, thickness: 12, tickcolor: colours.line, ticks: 'outside', ticklen: 4, x: 1.01, xpad: 6}},
-        font: {color: colours.ink, family: getComputedStyle(document.body).fontFamily, size: 12.5},
+        annotationdefaults: {font: {color: colours.ink, size: 12.5}},
+        coloraxis: {colorbar: {
+          outlinewidth: 0, thickness: 12, tickcolor: colours.line,
+          ticklen: 4, ticks: 'outside',
+          title: {font: {size: 12.5}}, x: 1.01, xpad: 6, ypad: 4}},
+        font: {color: colours.ink, family: getComputedStyle(document.body).fontFamily, size: 12},
         hoverlabel: {bgcolor: colours.hover, bordercolor: colours.line, font: {color: colours.ink}},
         legend: {bgcolor: 'rgba(0,0,0,0)', orientation: 'h', x: 0, xanchor: 'left', y: 1.02, yanchor: 'bottom'},
         margin: {b: 48, l: 60, r: 16, t: 16},
+        modebar: {activecolor: colours.ink, bgcolor: 'rgba(0,0,0,0)', color: colours.line},
         paper_bgcolor: 'rgba(0,0,0,0)',
         plot_bgcolor: 'rgba(0,0,0,0)',
         scene: {bgcolor: 'rgba(0,0,0,0)', xaxis: spaceAxis, yaxis: spaceAxis, zaxis: spaceAxis},
@@ -70,6 +74,14 @@
     return {width: Math.round(width), height: Math.round(height)};
   }
 
+  // A legend of several lines takes its height from the axes; the figure grows by it.
+  function makeRoomForLegend(plot) {
+    const legend = plot.querySelector('.legend .bg');
+    const extra = legend ? legend.getBoundingClientRect().height - 32 : 0;
+    if (extra > 0) return Plotly.relayout(plot, {height: size(plot).height + Math.round(extra)});
+    return undefined;
+  }
+
   function draw(plot) {
     const id = plot.dataset.figure;
     const json = JSON.parse(document.getElementById('data-' + id).textContent);
@@ -80,16 +92,21 @@
       displaylogo: false, responsive: false,
       toImageButtonOptions: {filename: id, format: 'svg', scale: 1},
     };
-    return Plotly.react(plot, data, Object.assign(layout, {template: page}, size(plot)), config);
+    return Plotly.react(plot, data, Object.assign(layout, {template: page}, size(plot)), config)
+      .then(() => makeRoomForLegend(plot));
   }
 
-  // Each figure is drawn once, whoever asks first; drawings are queued so that the page stays alive.
+  // Each figure is drawn once, whoever asks first, and one after the other with a breath between,
+  // so that the page stays alive.
   const drawings = new Map();
+  let last = Promise.resolve();
   function drawOnce(plot) {
     if (!drawings.has(plot)) {
-      drawings.set(plot, Promise.resolve().then(() => draw(plot)).then(
-        () => { status.rendered += 1; },
-        (error) => { status.errors.push(plot.dataset.figure + ': ' + error); }));
+      last = last.then(() => new Promise((resolve) => { setTimeout(resolve); }))
+        .then(() => draw(plot))
+        .then(() => { status.rendered += 1; },
+              (error) => { status.errors.push(plot.dataset.figure + ': ' + error); });
+      drawings.set(plot, last);
     }
     return drawings.get(plot);
   }
@@ -114,8 +131,7 @@
   darkScheme.addEventListener('change', redraw);
   window.addEventListener('beforeprint', () => {
     printing = true;
-    for (const plot of plots) drawOnce(plot);
-    redraw();
+    for (const plot of plots) draw(plot);  // now: the printer does not wait
   });
   window.addEventListener('afterprint', () => { printing = false; redraw(); });
 
@@ -128,7 +144,7 @@
       lastWidth = window.innerWidth;
       for (const plot of plots) {
         plot.style.minHeight = size(plot).height + 'px';
-        if (drawings.has(plot)) Plotly.relayout(plot, size(plot));
+        if (drawings.has(plot)) Plotly.relayout(plot, size(plot)).then(() => makeRoomForLegend(plot));
       }
     }, 150);
   });

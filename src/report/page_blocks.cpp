@@ -83,7 +83,7 @@ std::string html_of(const Table& table, const Numbering& numbering) {
   }
   const std::string id = table.id.empty() ? "" : fmt::format(" id=\"{}\"", escape(table.id));
   return fmt::format(
-      "<div class=\"table\"{}>\n<table>\n<caption><b>{}.</b> {}</caption>\n"
+      "<div class=\"table\"{}>\n<table>\n<caption><span><b>{}.</b> {}</span></caption>\n"
       "<thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody>\n</table>\n</div>\n",
       id, numbering.label(table), inline_html(table.caption, numbering), header, rows);
 }

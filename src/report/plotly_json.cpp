@@ -4,10 +4,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
+#include <optional>
+
+#include "report/logarithmic_ticks.hpp"
+#include "tofsmith/core/error.hpp"
 
 namespace tofsmith::plotly {
 namespace {
@@ -64,6 +70,19 @@ Json plain_values(const Json& typed) {
     }
   }
   return values;
+}
+
+/// From the smallest to the largest positive value, and what the margin of an axis adds to that.
+std::optional<ValueRange> positive_range(std::span<const double> values) {
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value) || value <= 0) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (high == 0) return std::nullopt;
+  const double margin = std::pow(high / low, 0.05);
+  return low < high ? ValueRange{low / margin, high * margin} : ValueRange{low / 3, low * 3};
 }
 
 const char* dash_name(Dash dash) {
@@ -128,13 +147,26 @@ std::string text(std::string_view plain) {
 
 Json title(const std::string& plain) { return {{"text", text(plain)}}; }
 
-Json axis(const Axis& axis) {
+Json axis(const Axis& axis, std::span<const double> values) {
   Json json = {{"title", title(axis_title(axis.label, axis.unit))}};
-  if (axis.logarithmic) json["type"] = "log";
-  if (axis.from_zero && !axis.logarithmic) json["rangemode"] = "tozero";
   if (axis.range) {
+    require(axis.range->low < axis.range->high, "Axis::range.low", axis.range->low,
+            "must be below range.high");
+    require(!axis.logarithmic || axis.range->low > 0, "Axis::range.low", axis.range->low,
+            "must be > 0 on a logarithmic axis");
     const auto end = [&](double v) { return number(axis.logarithmic ? std::log10(v) : v); };
     json["range"] = {end(axis.range->low), end(axis.range->high)};
+  }
+  if (axis.logarithmic) {
+    json["type"] = "log";
+    if (const auto range = axis.range ? axis.range : positive_range(values)) {
+      for (const Tick& tick : logarithmic_ticks(*range)) {
+        json["tickvals"].push_back(number(tick.value));
+        json["ticktext"].push_back(tick.text);
+      }
+    }
+  } else if (axis.from_zero) {
+    json["rangemode"] = "tozero";
   }
   return json;
 }

@@ -30,7 +30,9 @@ std::string text(std::string_view plain);
 Json title(const std::string& plain);
 
 /// Layout entry of an axis.
-Json axis(const Axis& axis);
+/// @param values  what is drawn along it; places the ticks of a logarithmic axis without a range
+/// @throws std::invalid_argument if a range is empty, or not positive on a logarithmic axis
+Json axis(const Axis& axis, std::span<const double> values = {});
 /// "x", "x2", .. : what traces call the axis with this index from 0.
 std::string axis_name(const std::string& letter, int index);
 /// "xaxis", "xaxis2", ..: what the layout calls it.

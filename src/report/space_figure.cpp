@@ -17,7 +17,10 @@ namespace {
 
 using plotly::Json;
 
-/// Column `axis` of the points, with the first point again at the end.
+/// Plotly draws a 3D marker of size 1 this wide.
+constexpr double plotly_size_unit_px = 4;
+
+/// The values, with the first one again at the end.
 Json closed_column(const Eigen::VectorXd& column) {
   std::vector<double> values = to_values(column);
   values.push_back(values.front());
@@ -129,7 +132,7 @@ Figure point_cloud_figure(FigureText text, const Eigen::MatrixX3f& points,
         {"y", plotly::typed_array(y, shape)},
         {"z", plotly::typed_array(z, shape)},
         {"marker",
-         {{"size", options.point_size_px},
+         {{"size", options.point_size_px / plotly_size_unit_px},
           {"color", plotly::typed_array(colour, shape)},
           {"coloraxis", "coloraxis"}}},
         {"hovertemplate", fmt::format("(%{{x:.3f}}, %{{y:.3f}}, %{{z:.3f}}) m: {}<extra></extra>",
@@ -141,7 +144,8 @@ Figure point_cloud_figure(FigureText text, const Eigen::MatrixX3f& points,
                         {{"aspectmode", "data"},
                          {"camera",
                           {{"up", {{"x", 0}, {"y", -1}, {"z", 0}}},
-                           {"eye", {{"x", 0.75}, {"y", -0.7}, {"z", -1.35}}}}},
+                           {"eye", {{"x", 0.9}, {"y", -0.85}, {"z", -1.6}}},
+                           {"center", {{"x", 0}, {"y", 0.1}, {"z", 0}}}}},
                          {"xaxis", plotly::axis({.label = "x", .unit = "m"})},
                          {"yaxis", plotly::axis({.label = "y", .unit = "m"})},
                          {"zaxis", plotly::axis({.label = "z", .unit = "m"})}}}};

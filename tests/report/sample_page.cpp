@@ -12,7 +12,7 @@
 #include "tofsmith/report/bar_figure.hpp"
 #include "tofsmith/report/heat_map_figure.hpp"
 #include "tofsmith/report/image_figure.hpp"
-#include "tofsmith/report/line_figure.hpp"
+#include "tofsmith/report/small_multiples.hpp"
 #include "tofsmith/report/space_figure.hpp"
 
 namespace tofsmith {
@@ -29,7 +29,7 @@ double triangle(double phase) { return 4 * std::abs(phase - std::floor(phase + 0
 /// f sampled at n points of [0, span).
 template <typename Function>
 Series sampled(const std::string& name, LineStyle style, double span, int n, Function f) {
-  Series series{.name = name, .style = style, .period = span};
+  Series series{.name = name, .period = span, .style = style};
   for (int i = 0; i < n; ++i) {
     const double phase = static_cast<double>(i) / n;
     series.x.push_back(phase * span);
@@ -87,8 +87,8 @@ Figure error_by_signal(ColourAssignment& colours) {
   for (std::size_t c = 0; c < codes.size(); ++c) {
     Series one{
         .name = codes[c],
-        .style = colours.style(codes[c]),
         .mark = Mark::line_and_markers,
+        .style = colours.style(codes[c]),
 
     };
     for (int i = 0; i <= 4; ++i) {
@@ -107,7 +107,7 @@ Figure error_by_signal(ColourAssignment& colours) {
   for (const double s : bound.x) bound.y.push_back(20 / s);
   series.push_back(bound);
   return line_figure({"error-by-signal", "Depth error by signal",
-                      "Mean absolute depth error, ambient 10^4 electrons per second; bars are four "
+                      "Mean absolute depth error, ambient 10⁴ electrons per second; bars are four "
                       "standard errors.",
                       ""},
                      series, {.label = "Signal", .unit = "electrons/s", .logarithmic = true},
@@ -169,8 +169,8 @@ Figure operating_points() {
   return heat_map_figure(
       {"operating-points", "Depth error by operating point",
        "Mean absolute depth error of all candidates; one colour scale.", ""},
-      maps, {"Signal", "electrons/s", {"1e3", "3e3", "1e4", "3e4", "1e5"}},
-      {"Ambient", "electrons/s", {"1e2", "1e3", "1e4", "3e4", "1e5"}},
+      maps, {"Signal", "electrons/s", {"10³", "3·10³", "10⁴", "3·10⁴", "10⁵"}},
+      {"Ambient", "electrons/s", {"10²", "10³", "10⁴", "3·10⁴", "10⁵"}},
       {.label = "Mean depth error", .unit = "m", .map = ColourMap::cividis, .logarithmic = true});
 }
 

@@ -27,7 +27,7 @@ Figure curve_3d_figure(FigureText text, const std::vector<Curve3d>& curves,
 
 struct PointCloudOptions {
   int max_points = 40000;      ///< a larger cloud is thinned at random; the caption says so
-  double point_size_px = 1.6;  ///< diameter
+  double point_size_px = 2.2;  ///< diameter
 };
 
 /// Points in the camera's frame (x right, y down, z forward) [m], coloured by a value. Points with

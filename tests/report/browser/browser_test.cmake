@@ -6,6 +6,8 @@ add_executable(write_sample_page report/browser/write_sample_page.cpp report/sam
 target_link_libraries(write_sample_page PRIVATE tofsmith tofsmith_build_options fmt::fmt)
 target_include_directories(write_sample_page PRIVATE report)
 
+target_include_directories(test_report PRIVATE "${PROJECT_SOURCE_DIR}/src")
+
 set(sample_page "${CMAKE_CURRENT_BINARY_DIR}/sample_page.html")
 set(browser_test /usr/bin/python3 "${CMAKE_CURRENT_SOURCE_DIR}/report/browser/browser_test.py")
 add_test(NAME Report.WritesTheSamplePage COMMAND write_sample_page "${sample_page}")
