@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/report/image_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "report/colour_axis.hpp"
+#include "report/panel_layout.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+namespace {
+
+using plotly::Json;
+
+constexpr double left_margin_px = 8;
+
+/// Every n-th pixel of both directions, so that no side is longer than `max_side`.
+int thinning_step(const Image<float>& pixels, int max_side) {
+  const int longest = std::max(pixels.height, pixels.width);
+  return (longest + max_side - 1) / max_side;
+}
+
+std::vector<float> every_nth_pixel(const Image<float>& pixels, int step) {
+  std::vector<float> kept;
+  for (int row = 0; row < pixels.height; row += step)
+    for (int column = 0; column < pixels.width; column += step) kept.push_back(pixels(row, column));
+  return kept;
+}
+
+}  // namespace
+
+Figure image_figure(FigureText text, const std::vector<ValueImage>& images,
+                    const ColourScale& colours, const ImageFigureOptions& options) {
+  require(!images.empty(), "images.size", images.size(), "must be >= 1");
+  require(options.columns >= 1, "ImageFigureOptions::columns", options.columns, "must be >= 1");
+  require(options.max_side >= 1, "ImageFigureOptions::max_side", options.max_side, "must be >= 1");
+  const Image<float>& first = images.front().pixels;
+  require(!first.empty(), "images[0].size", first.size(), "must be >= 1");
+  for (const ValueImage& image : images)
+    require(image.pixels.height == first.height && image.pixels.width == first.width,
+            "ValueImage::pixels", fmt::format("{} x {}", image.pixels.height, image.pixels.width),
+            fmt::format("must be {} x {} like the first", first.height, first.width));
+
+  const int step = thinning_step(first, options.max_side);
+  const auto height = static_cast<std::size_t>((first.height + step - 1) / step);
+  const auto width = static_cast<std::size_t>((first.width + step - 1) / step);
+  std::vector<std::vector<float>> kept;
+  std::vector<float> all_values;
+  for (const ValueImage& image : images) {
+    kept.push_back(every_nth_pixel(image.pixels, step));
+    all_values.insert(all_values.end(), kept.back().begin(), kept.back().end());
+  }
+  const plotly::ColourAxis colour_axis(colours, all_values);
+  const plotly::PanelLayout panels(static_cast<int>(images.size()), options.columns, 0.02);
+  // The height of the pictures follows the width of the page; titles between them do not. Their
+  // share of the height is made large enough for a narrow page.
+  const double per_width = panels.rows() * panels.panel_width() * static_cast<double>(height) /
+                           static_cast<double>(width);
+  const double gaps_px = plotly::panel_title_px * (panels.rows() - 1);
+  const double row_gap =
+      plotly::panel_title_px / (gaps_px + per_width * (620 - plotly::colour_bar_px));
+
+  Json data = Json::array();
+  Json layout = {{"coloraxis", colour_axis.layout()}, {"annotations", Json::array()}};
+  for (int p = 0; p < std::ssize(images); ++p) {
+    auto& values = kept[static_cast<std::size_t>(p)];
+    for (float& value : values)
+      value = static_cast<float>(colour_axis.to_trace(static_cast<double>(value)));
+    data.push_back({{"type", "heatmap"},
+                    {"z", plotly::typed_array(values, {height, width})},
+                    {"dx", step},
+                    {"dy", step},
+                    {"x0", 0},
+                    {"y0", 0},
+                    {"hoverongaps", false},
+                    {"hovertemplate", fmt::format("column %{{x}}, row %{{y}}: {}<extra></extra>",
+                                                  colour_axis.hover("z"))},
+                    {"coloraxis", "coloraxis"},
+                    {"xaxis", plotly::axis_name("x", p)},
+                    {"yaxis", plotly::axis_name("y", p)}});
+    Json x = {{"visible", false}, {"constrain", "domain"}};
+    Json y = {{"visible", false},
+              {"constrain", "domain"},
+              {"autorange", "reversed"},
+              {"scaleanchor", plotly::axis_name("x", p)}};
+    if (p > 0) x["matches"] = "x";  // zooming into one picture zooms all
+    if (p > 0) y["matches"] = "y";
+    panels.place(layout, p, row_gap, images[static_cast<std::size_t>(p)].title, x, y);
+  }
+  layout["margin"] = {
+      {"l", left_margin_px}, {"r", plotly::colour_bar_px}, {"t", plotly::panel_title_px}, {"b", 8}};
+  if (step > 1)
+    text.caption += fmt::format(" Shown at every {}{} pixel of {} x {}.", step,
+                                step == 2   ? "nd"
+                                : step == 3 ? "rd"
+                                            : "th",
+                                first.width, first.height);
+  return plotly::figure(std::move(text), data, layout,
+                        {.fixed_px = gaps_px + plotly::panel_title_px + 8 -
+                                     per_width * (left_margin_px + plotly::colour_bar_px),
+                         .per_width = per_width,
+                         .min_width_px = 180.0 * panels.columns() + plotly::colour_bar_px});
+}
+
+}  // namespace tofsmith

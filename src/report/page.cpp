@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/report/page.hpp"
+
+#include <fmt/format.h>
+
+#include "report/html.hpp"
+#include "report/page_blocks.hpp"
+#include "report/resources.hpp"
+
+namespace tofsmith {
+namespace {
+
+using html::escape;
+
+/// What a browser may do with the page: run what is in it and load nothing. plotly.js compiles
+/// its 3D drawing code with `new Function`, hence unsafe-eval.
+constexpr std::string_view content_policy =
+    "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; "
+    "img-src data: blob:; base-uri 'none'; form-action 'none'";
+
+std::string head(const Page& page) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"color-scheme\" content=\"light dark\">\n"
+      "<meta name=\"generator\" content=\"tofsmith\">\n"
+      "<link rel=\"icon\" href=\"data:,\">\n<title>{}</title>\n<style>\n{}</style>\n</head>\n",
+      content_policy, escape(page.title), resources::page_css());
+}
+
+std::string section_id(std::size_t index) { return fmt::format("section-{}", index + 1); }
+
+std::string contents(const Page& page) {
+  std::string list;
+  for (std::size_t i = 0; i < page.sections.size(); ++i)
+    list += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", section_id(i),
+                        escape(page.sections[i].title));
+  return fmt::format(
+      "<nav class=\"contents\" aria-label=\"Contents\">\n<details open>\n"
+      "<summary>Contents</summary>\n<ol>\n{}</ol>\n</details>\n</nav>\n",
+      list);
+}
+
+std::string masthead(const Page& page) {
+  std::string subtitle;
+  if (!page.subtitle.empty())
+    subtitle = fmt::format("<p class=\"subtitle\">{}</p>\n", escape(page.subtitle));
+  return fmt::format("<header>\n<h1>{}</h1>\n{}</header>\n", escape(page.title), subtitle);
+}
+
+/// The figures' JSON and the scripts, last: text can be read while they load.
+std::string scripts(const Page& page) {
+  std::string elements;
+  for (const Section& section : page.sections)
+    for (const Block& block : section.blocks)
+      if (const auto* figure = std::get_if<Figure>(&block))
+        elements +=
+            fmt::format("<script type=\"application/json\" id=\"data-{}\">{}</script>\n",
+                        figure->text().id, html::escape_json_for_script(figure->plotly_json()));
+  return fmt::format("{}<script>\n{}\n</script>\n<script>\n{}</script>\n", elements,
+                     resources::plotly_js(), resources::page_js());
+}
+
+}  // namespace
+
+std::string render(const Page& page) {
+  const page_blocks::Numbering numbering(page);
+  std::string body;
+  for (std::size_t i = 0; i < page.sections.size(); ++i) {
+    body += fmt::format(
+        "<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n"
+        "<h2 id=\"{0}-title\">{1}</h2>\n",
+        section_id(i), escape(page.sections[i].title));
+    for (const Block& block : page.sections[i].blocks) body += page_blocks::html(block, numbering);
+    body += "</section>\n";
+  }
+  std::string footer;
+  if (!page.footer.empty()) footer = fmt::format("<footer>{}</footer>\n", escape(page.footer));
+  return fmt::format(
+      "{}<body>\n<div class=\"page\">\n{}<main>\n{}{}{}</main>\n</div>\n{}</body>\n"
+      "</html>\n",
+      head(page), contents(page), masthead(page), body, footer, scripts(page));
+}
+
+}  // namespace tofsmith

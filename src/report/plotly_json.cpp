@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "report/plotly_json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <optional>
+
+#include "report/logarithmic_ticks.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith::plotly {
+namespace {
+
+constexpr std::string_view base64_digits =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+std::string encode_base64(std::span<const std::uint8_t> bytes) {
+  std::string encoded;
+  encoded.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t present = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t triple = 0;
+    for (std::size_t j = 0; j < 3; ++j) triple = triple << 8 | (j < present ? bytes[i + j] : 0u);
+    for (std::size_t j = 0; j < 4; ++j)
+      encoded += j <= present ? base64_digits[triple >> (18 - 6 * j) & 63] : '=';
+  }
+  return encoded;
+}
+
+std::vector<std::uint8_t> decode_base64(const std::string& encoded) {
+  std::vector<std::uint8_t> bytes;
+  std::uint32_t buffer = 0;
+  int bits = 0;
+  for (const char c : encoded) {
+    if (c == '=') break;
+    buffer = buffer << 6 | static_cast<std::uint32_t>(base64_digits.find(c));
+    bits += 6;
+    if (bits >= 8) {
+      bits -= 8;
+      bytes.push_back(static_cast<std::uint8_t>(buffer >> bits & 255));
+    }
+  }
+  return bytes;
+}
+
+Json plain_values(const Json& typed) {
+  const auto bytes = decode_base64(typed.at("bdata").get<std::string>());
+  const std::string shape = typed.value("shape", "");
+  const auto comma = shape.find(',');
+  const std::size_t columns = comma == std::string::npos ? 0 : std::stoul(shape.substr(comma + 1));
+
+  Json values = Json::array();
+  for (std::size_t i = 0; 4 * i < bytes.size(); ++i) {
+    std::uint32_t word = 0;
+    for (std::size_t b = 0; b < 4; ++b)
+      word |= static_cast<std::uint32_t>(bytes[4 * i + b]) << 8 * b;
+    const Json value = number(static_cast<double>(std::bit_cast<float>(word)));
+    if (columns == 0) {
+      values.push_back(value);
+    } else {
+      if (i % columns == 0) values.push_back(Json::array());
+      values.back().push_back(value);
+    }
+  }
+  return values;
+}
+
+/// From the smallest to the largest positive value, and what the margin of an axis adds to that.
+std::optional<ValueRange> positive_range(std::span<const double> values) {
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value) || value <= 0) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (high == 0) return std::nullopt;
+  const double margin = std::pow(high / low, 0.05);
+  return low < high ? ValueRange{low / margin, high * margin} : ValueRange{low / 3, low * 3};
+}
+
+const char* dash_name(Dash dash) {
+  switch (dash) {
+    case Dash::dash:
+      return "dash";
+    case Dash::dot:
+      return "dot";
+    case Dash::dash_dot:
+      return "dashdot";
+    default:
+      return "solid";
+  }
+}
+
+}  // namespace
+
+Json number(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  // The JSON writer prints the shortest digits that read back the same.
+  return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
+}
+
+Json numbers(std::span<const double> values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(number(value));
+  return list;
+}
+
+Json typed_array(std::span<const float> values, const std::vector<std::size_t>& shape) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(4 * values.size());
+  for (const float value : values) {
+    const auto word = std::bit_cast<std::uint32_t>(value);
+    for (int b = 0; b < 4; ++b) bytes.push_back(static_cast<std::uint8_t>(word >> 8 * b & 255));
+  }
+  return {{"dtype", "f4"},
+          {"bdata", encode_base64(bytes)},
+          {"shape", fmt::format("{}", fmt::join(shape, ", "))}};
+}
+
+void expand_typed_arrays(Json& json) {
+  if (json.is_object() && json.contains("bdata")) {
+    json = plain_values(json);
+  } else if (json.is_structured()) {
+    for (auto& child : json) expand_typed_arrays(child);
+  }
+}
+
+std::string text(std::string_view plain) {
+  std::string escaped;
+  for (const char c : plain) {
+    if (c == '<')
+      escaped += "&lt;";
+    else if (c == '&')
+      escaped += "&amp;";
+    else
+      escaped += c;
+  }
+  return escaped;
+}
+
+Json title(const std::string& plain) { return {{"text", text(plain)}}; }
+
+Json axis(const Axis& axis, std::span<const double> values) {
+  Json json = {{"title", title(axis_title(axis.label, axis.unit))}};
+  if (axis.range) {
+    require(axis.range->low < axis.range->high, "Axis::range.low", axis.range->low,
+            "must be below range.high");
+    require(!axis.logarithmic || axis.range->low > 0, "Axis::range.low", axis.range->low,
+            "must be > 0 on a logarithmic axis");
+    const auto end = [&](double v) { return number(axis.logarithmic ? std::log10(v) : v); };
+    json["range"] = {end(axis.range->low), end(axis.range->high)};
+  }
+  if (axis.logarithmic) {
+    json["type"] = "log";
+    if (const auto range = axis.range ? axis.range : positive_range(values)) {
+      for (const Tick& tick : logarithmic_ticks(*range)) {
+        json["tickvals"].push_back(number(tick.value));
+        json["ticktext"].push_back(tick.text);
+      }
+    }
+  } else if (axis.from_zero) {
+    json["rangemode"] = "tozero";
+  }
+  return json;
+}
+
+std::string axis_name(const std::string& letter, int index) {
+  return index == 0 ? letter : letter + std::to_string(index + 1);
+}
+
+std::string axis_key(const std::string& letter, int index) {
+  return index == 0 ? letter + "axis" : letter + "axis" + std::to_string(index + 1);
+}
+
+Json line(const LineStyle& style) {
+  return {{"color", style.colour}, {"dash", dash_name(style.dash)}, {"width", style.width_px}};
+}
+
+Json panel_title(const std::string& plain, double x, double y) {
+  return {{"text", text(plain)}, {"x", number(x)},  {"xref", "paper"},     {"xanchor", "center"},
+          {"y", number(y)},      {"yref", "paper"}, {"yanchor", "bottom"}, {"showarrow", false}};
+}
+
+Figure figure(FigureText text, const Json& data, Json layout, const FigureSize& size) {
+  const Json json = {{"data", data}, {"layout", std::move(layout)}};
+  return Figure(std::move(text),
+                json.dump(-1, ' ', false, nlohmann::detail::error_handler_t::replace), size);
+}
+
+}  // namespace tofsmith::plotly

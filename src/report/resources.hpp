@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+namespace tofsmith::resources {
+
+/// plotly.js, minified, its licence first.
+std::string_view plotly_js();
+/// Style sheet of the page (src/report/page.css).
+std::string_view page_css();
+/// Script of the page (src/report/page.js).
+std::string_view page_js();
+
+}  // namespace tofsmith::resources

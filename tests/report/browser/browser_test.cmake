@@ -1,0 +1,20 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+# The sample page in a browser, wide and light, narrow and dark. Included from tests/CMakeLists.txt.
+
+add_executable(write_sample_page report/browser/write_sample_page.cpp report/sample_page.cpp)
+target_link_libraries(write_sample_page PRIVATE tofsmith tofsmith_build_options fmt::fmt)
+target_include_directories(write_sample_page PRIVATE report)
+
+target_include_directories(test_report PRIVATE "${PROJECT_SOURCE_DIR}/src")
+
+set(sample_page "${CMAKE_CURRENT_BINARY_DIR}/sample_page.html")
+set(browser_test /usr/bin/python3 "${CMAKE_CURRENT_SOURCE_DIR}/report/browser/browser_test.py")
+add_test(NAME Report.WritesTheSamplePage COMMAND write_sample_page "${sample_page}")
+set_tests_properties(Report.WritesTheSamplePage PROPERTIES FIXTURES_SETUP sample_page)
+add_test(NAME Report.DrawsEveryFigureInABrowser
+  COMMAND ${browser_test} "${sample_page}" --screenshot sample_page.png)
+add_test(NAME Report.DrawsEveryFigureOnADarkPhone
+  COMMAND ${browser_test} "${sample_page}" --screenshot sample_page_phone.png --width 390 --dark)
+set_tests_properties(Report.DrawsEveryFigureInABrowser Report.DrawsEveryFigureOnADarkPhone
+  PROPERTIES FIXTURES_REQUIRED sample_page SKIP_RETURN_CODE 77 TIMEOUT 300)

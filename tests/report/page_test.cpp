@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/report/page.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "report/resources.hpp"
+#include "sample_page.hpp"
+#include "tofsmith/report/line_figure.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// A page with these blocks, without the embedded plotly.js.
+std::string render_blocks(std::vector<Block> blocks) {
+  std::string page = render({.title = "Page", .sections = {{"Section", std::move(blocks)}}});
+  const auto plotly = page.find(resources::plotly_js());
+  return page.erase(plotly, resources::plotly_js().size());
+}
+
+Figure some_figure(const std::string& id, const std::string& name = "series") {
+  return line_figure({id, "Title of " + id, "Caption of " + id},
+                     {{.name = name, .x = {1}, .y = {1}}}, {}, {});
+}
+
+int count(const std::string& text, const std::string& word) {
+  int found = 0;
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++found;
+  return found;
+}
+
+TEST(Page, HasTheSameBytesEveryTime) {
+  EXPECT_TRUE(render(sample_page()) == render(sample_page()));
+}
+
+TEST(Page, ShowsMarkupInTextAsText) {
+  const std::string evil = "<img src=x onerror=\"alert('&')\">";
+  const std::string shown = "&lt;img src=x onerror=&quot;alert(&#39;&amp;&#39;)&quot;&gt;";
+  const std::string page = render_blocks(
+      {Paragraph{evil}, Paragraph{"`" + evil + "`"}, CodeBlock{evil}, KeyValueList{{{evil, evil}}},
+       KeyNumbers{{{evil, evil}}}, Table{.caption = evil, .columns = {{evil}}, .rows = {{evil}}},
+       line_figure({"id", evil, evil, evil}, {{.name = evil, .x = {1}, .y = {1}}}, {}, {})});
+  EXPECT_THAT(page, Not(HasSubstr("<img")));
+  EXPECT_EQ(count(page, shown), 14);
+}
+
+TEST(Page, KeepsScriptElementsWholeWhateverTheNames) {
+  const std::string page = render_blocks({some_figure("id", "</script><script>alert(1)//<!--")});
+  EXPECT_EQ(count(page, "<script"), 3);
+  EXPECT_EQ(count(page, "</script"), 3);
+  EXPECT_THAT(page, Not(HasSubstr("<!--")));
+}
+
+TEST(Page, EmbedsPlotlyWithItsLicenceAndWithoutEndingItsScript) {
+  const std::string plotly(resources::plotly_js());
+  EXPECT_THAT(plotly.substr(0, 200), HasSubstr("Licensed under the MIT license"));
+  EXPECT_EQ(count(plotly, "</script"), 0);
+  EXPECT_EQ(count(plotly, "<!--"), 0);
+  EXPECT_THAT(render(sample_page()), HasSubstr(plotly));
+}
+
+TEST(Page, NamesNoPlaceOnTheNetwork) {
+  std::string page = render(sample_page());
+  page.erase(page.find(resources::plotly_js()), resources::plotly_js().size());
+  EXPECT_EQ(count(page, "http://"), 0);
+  EXPECT_EQ(count(page, "https://"), 0);
+  EXPECT_EQ(count(page, " src="), 0);
+  EXPECT_THAT(page, HasSubstr("default-src 'none'"));  // and plotly.js may load nothing either
+}
+
+TEST(Page, HasNoIdTwice) {
+  const std::string page = render(sample_page());
+  std::set<std::string> ids;
+  const std::string body = page.substr(0, page.find(resources::plotly_js()));
+  for (auto at = body.find(" id=\""); at != std::string::npos; at = body.find(" id=\"", at + 1)) {
+    const std::string id = body.substr(at + 5, body.find('"', at + 5) - at - 5);
+    EXPECT_TRUE(ids.insert(id).second) << id;
+  }
+  EXPECT_GT(ids.size(), 20u);
+}
+
+TEST(Page, NumbersFiguresAndTablesInOrderAndLinksToThem) {
+  const std::string page = render_blocks(
+      {Paragraph{"See [[second]] and [[numbers]], not [these] or [[this."}, some_figure("first"),
+       some_figure("second"), Table{.id = "numbers", .columns = {{"a"}}}});
+  EXPECT_THAT(page,
+              HasSubstr("<a href=\"#second\">Figure 2</a> and <a href=\"#numbers\">Table 1</a>"
+                        ", not [these] or [[this."));
+  EXPECT_THAT(page, HasSubstr("<b>Figure 1. Title of first.</b> Caption of first"));
+  EXPECT_THAT(page, HasSubstr("<b>Figure 2. Title of second.</b>"));
+}
+
+TEST(Page, RefusesWhatDoesNotFit) {
+  EXPECT_THROW(render_blocks({some_figure("a"), some_figure("a")}), std::invalid_argument);
+  EXPECT_THROW(render_blocks({some_figure("a"), Table{.id = "a"}}), std::invalid_argument);
+  EXPECT_THROW(render_blocks({Paragraph{"[[nothing]]"}}), std::invalid_argument);
+  EXPECT_THROW(render_blocks({Table{.columns = {{"a"}, {"b"}}, .rows = {{"1", "2"}, {"1"}}}}),
+               std::invalid_argument);
+}
+
+TEST(Page, StressesTheHighlightedRowAlone) {
+  const Table table{.columns = {{"Code"}, {"Error", true}},
+                    .rows = {{"a", "1"}, {"b", "2"}},
+                    .highlighted_row = 1};
+  const std::string page = render_blocks({table});
+  EXPECT_THAT(
+      page,
+      HasSubstr(
+          "<tr class=\"highlighted\"><th scope=\"row\">b</th><td class=\"number\">2</td></tr>"));
+  EXPECT_EQ(count(page, "<tr class=\"highlighted\">"), 1);
+}
+
+}  // namespace
+}  // namespace tofsmith
