@@ -38,7 +38,7 @@ if [[ -z "$output" ]]; then
   set -- -o "$output" "$@"
 fi
 
-install_packages demo
+install_packages build
 use_debian_tools
 
 echo "Building tofsmith in $build"

@@ -5,8 +5,8 @@
 # The Debian packages of the project, in one place. Sourced by the other scripts; run by hand it
 # installs what is missing of the groups named:
 #
-#   scripts/packages.sh build|demo|test|check ...     install what is missing
-#   scripts/packages.sh --list build|demo|test|check  print the names, one a line
+#   scripts/packages.sh build|test|benchmark|check ..  install what is missing
+#   scripts/packages.sh --list GROUP                  print the names, one a line
 
 # The library and the command line.
 packages_build=(
@@ -17,19 +17,17 @@ packages_build=(
   librandom123-dev    # random streams
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev
   libzip-dev libopenexr-dev libpng-dev
-)
-# What the report embeds.
-packages_demo=(
-  "${packages_build[@]}"
-  python3-plotly      # plotly.js
+  python3-plotly      # its plotly.js goes into the reports
   esbuild             # minifies it
 )
 packages_test=(
-  "${packages_demo[@]}"
-  libgtest-dev libgmock-dev librapidcheck-dev
-  python3 python3-numpy python3-pytest
-  python3-cvxopt      # an independent solver to compare with
+  "${packages_build[@]}"
+  libgtest-dev libgmock-dev
   chromium chromium-driver python3-selenium  # the report, in a browser
+)
+packages_benchmark=(
+  "${packages_build[@]}"
+  libbenchmark-dev
 )
 # Format and lint, on top of the tests: what .ci/run needs.
 packages_check=(
@@ -46,10 +44,10 @@ tofsmith_die() {
 packages_of() {
   case "$1" in
     build) printf '%s\n' "${packages_build[@]}" ;;
-    demo) printf '%s\n' "${packages_demo[@]}" ;;
     test) printf '%s\n' "${packages_test[@]}" ;;
+    benchmark) printf '%s\n' "${packages_benchmark[@]}" ;;
     check) printf '%s\n' "${packages_check[@]}" ;;
-    *) tofsmith_die "no package group '$1'; there are build, demo, test and check" ;;
+    *) tofsmith_die "no package group '$1'; there are build, test, benchmark and check" ;;
   esac
 }
 
@@ -101,9 +99,9 @@ use_debian_tools() {
 
 if [[ "${BASH_SOURCE[0]}" == "$0" ]]; then
   set -euo pipefail
-  (($#)) || tofsmith_die "which group? build, demo, test or check"
+  (($#)) || tofsmith_die "which group? build, test, benchmark or check"
   if [[ "$1" == --list ]]; then
-    packages_of "${2:?which group? build, demo, test or check}"
+    packages_of "${2:?which group? build, test, benchmark or check}"
   else
     for group in "$@"; do
       install_packages "$group"
