@@ -77,6 +77,7 @@ $(paste -sd' ' <<<"$list")"
     command -v sudo >/dev/null ||
       tofsmith_die "must install packages but is neither root nor finds sudo. As root, run:
 apt-get install --no-install-recommends ${missing[*]}"
+    sudo true </dev/null || tofsmith_die "must install packages and sudo does not let it: ${missing[*]}"
     as_root=(sudo "${as_root[@]}")
   fi
   # A machine just started may be updating itself: wait for its lock.
