@@ -1,0 +1,111 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# The Debian packages of the project, in one place. Sourced by the other scripts; run by hand it
+# installs what is missing of the groups named:
+#
+#   scripts/packages.sh build|test|benchmark|check ..  install what is missing
+#   scripts/packages.sh --list GROUP                  print the names, one a line
+
+# The library and the command line.
+packages_build=(
+  g++ cmake ninja-build pkgconf
+  libeigen3-dev       # linear algebra, FFT
+  libtbb-dev          # threads
+  libhwy-dev          # SIMD
+  librandom123-dev    # random streams
+  libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev
+  libzip-dev libopenexr-dev libpng-dev
+  python3-plotly      # its plotly.js goes into the reports
+  esbuild             # minifies it
+)
+packages_test=(
+  "${packages_build[@]}"
+  libgtest-dev libgmock-dev
+  chromium chromium-driver python3-selenium  # the report, in a browser
+)
+packages_benchmark=(
+  "${packages_build[@]}"
+  libbenchmark-dev
+)
+# Format and lint, on top of the tests: what .ci/run needs.
+packages_check=(
+  "${packages_test[@]}"
+  clang-format clang-tidy shellcheck
+)
+
+tofsmith_die() {
+  printf '%s: %s\n' "$(basename "$0")" "$*" >&2
+  exit 1
+}
+
+# The packages of one group, one a line.
+packages_of() {
+  case "$1" in
+    build) printf '%s\n' "${packages_build[@]}" ;;
+    test) printf '%s\n' "${packages_test[@]}" ;;
+    benchmark) printf '%s\n' "${packages_benchmark[@]}" ;;
+    check) printf '%s\n' "${packages_check[@]}" ;;
+    *) tofsmith_die "no package group '$1'; there are build, test, benchmark and check" ;;
+  esac
+}
+
+# Those of the packages named on standard input that are not installed.
+missing_packages() {
+  local package
+  while read -r package; do
+    [[ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" == installed* ]] ||
+      printf '%s\n' "$package"
+  done
+}
+
+# Installs what is missing of a group. Asks nothing, and does not touch apt when nothing is missing.
+install_packages() {
+  local group=$1 list
+  list=$(packages_of "$group")
+  command -v dpkg-query >/dev/null ||
+    tofsmith_die "installs packages on Debian only; elsewhere, install the counterparts of:
+$(paste -sd' ' <<<"$list")"
+
+  local -a missing
+  mapfile -t missing < <(missing_packages <<<"$list")
+  ((${#missing[@]})) || return 0
+
+  local -a as_root=(env DEBIAN_FRONTEND=noninteractive)
+  if ((EUID != 0)); then
+    command -v sudo >/dev/null ||
+      tofsmith_die "must install packages but is neither root nor finds sudo. As root, run:
+apt-get install --no-install-recommends ${missing[*]}"
+    sudo true </dev/null || tofsmith_die "must install packages and sudo does not let it: ${missing[*]}"
+    as_root=(sudo "${as_root[@]}")
+  fi
+  # A machine just started may be updating itself: wait for its lock.
+  local -a apt=("${as_root[@]}" apt-get -q -y -o DPkg::Lock::Timeout=600)
+
+  printf 'Installing %d Debian packages: %s\n' "${#missing[@]}" "${missing[*]}"
+  # One broken third-party source fails the update but need not hide our packages.
+  "${apt[@]}" update </dev/null ||
+    printf 'apt-get update failed; trying with the package lists as they are\n' >&2
+  "${apt[@]}" install --no-install-recommends "${missing[@]}" </dev/null ||
+    tofsmith_die "apt-get could not install: ${missing[*]}
+See its messages above; tofsmith is built on Debian 12 (bookworm)."
+}
+
+# A python3, a cmake or libraries of another origin (pyenv, conda) may come first on PATH, and CMake
+# searches beside what it finds there. What we installed is what we use.
+use_debian_tools() {
+  export PATH="/usr/bin:/bin:$PATH"
+}
+
+if [[ "${BASH_SOURCE[0]}" == "$0" ]]; then
+  set -euo pipefail
+  (($#)) || tofsmith_die "which group? build, test, benchmark or check"
+  if [[ "$1" == --list ]]; then
+    packages_of "${2:?which group? build, test, benchmark or check}"
+  else
+    for group in "$@"; do
+      install_packages "$group"
+    done
+  fi
+fi

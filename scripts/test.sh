@@ -1,0 +1,65 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Installs what is missing, builds tofsmith and runs its tests. Ends with a line
+# `N passed, N failed, N skipped`, and fails unless some ran and none failed.
+#
+#   scripts/test.sh [--preset NAME] [--floors core,io,..] [options of ctest]
+#
+#   --preset NAME   a preset of CMakePresets.json: dev (default), asan, tsan
+#   --floors LIST   build and run the unit tests of these folders only
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# shellcheck source=scripts/packages.sh
+source "$root/scripts/packages.sh"
+
+preset=dev
+floors=()
+while (($#)); do
+  case "$1" in
+    -h | --help)
+      sed -n '/^# Installs/,/^set /s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+      exit 0
+      ;;
+    --preset) preset=${2:?a preset} && shift 2 ;;
+    --floors) IFS=, read -ra floors <<<"${2:?a list of folders}" && shift 2 ;;
+    *) break ;;
+  esac
+done
+
+install_packages test
+use_debian_tools
+cd "$root" # presets are looked up here
+build="$root/build-$preset"
+results="$build/test-results.xml"
+
+targets=(all)
+if ((${#floors[@]})); then
+  targets=()
+  for floor in "${floors[@]}"; do
+    compgen -G "tests/$floor/*.cpp" >/dev/null || tofsmith_die "there are no tests in tests/$floor"
+    targets+=("test_$floor")
+  done
+  set -- -L "^($(IFS='|' && echo "${floors[*]}"))\$" "$@"
+fi
+echo "Building tofsmith and its tests in $build"
+cmake --log-level=WARNING --preset "$preset"
+cmake --build "$build" --target "${targets[@]}"
+
+failures="$build/Testing/Temporary/LastTestsFailed.log" # one a line, with those that could not run
+rm -f "$results" "$failures"
+status=0
+ctest --preset "$preset" --parallel "$(nproc)" --output-on-failure --output-junit "$results" "$@" \
+  </dev/null || status=$?
+
+[[ -s "$results" ]] || tofsmith_die "ctest wrote no results"
+total=$(grep -c '<testcase ' "$results" || true)
+passed=$(grep -c '<testcase .* status="run"' "$results" || true)
+failed=0
+[[ ! -f "$failures" ]] || failed=$(grep -c . "$failures" || true)
+skipped=$((total - passed - failed))
+((passed + failed)) || tofsmith_die "no test ran"
+echo "$passed passed, $failed failed, $skipped skipped"
+((status == 0 && failed == 0))
