@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+namespace tofsmith {
+
+/// What happens when the output file is already there.
+enum class OutputPolicy { refuse_existing, overwrite };
+
+/// An output file that appears whole or not at all: everything goes to a hidden file in the same
+/// directory, and commit() renames it. Without commit(), the destructor removes the hidden file
+/// and what was there before stays as it was.
+/// A symbolic link as target is followed; a file that is overwritten keeps its permissions.
+class AtomicFile {
+ public:
+  /// @throws IoError naming `target` if it exists and must not be replaced, is no regular file, or
+  ///         if its directory is missing or cannot be written
+  AtomicFile(std::filesystem::path target, OutputPolicy policy);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// The hidden file, for libraries that open files by path. It ends as the target does.
+  const std::filesystem::path& temporary_path() const { return temporary_; }
+
+  /// Appends bytes. @throws IoError if the disk is full or fails
+  void write(std::span<const std::byte> bytes);
+  void write(std::string_view text);
+  /// Replaces bytes written earlier, `offset` bytes from the start. @throws IoError as write()
+  void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
+
+  /// Flushes to disk and gives the file its name. Call it once, last.
+  /// @throws IoError if that fails, or if under refuse_existing the target has appeared meanwhile
+  void commit();
+
+ private:
+  void create_temporary();
+  void rename_to_target();
+
+  std::filesystem::path target_;
+  std::filesystem::path temporary_;
+  OutputPolicy policy_;
+  int descriptor_ = -1;
+  bool committed_ = false;
+};
+
+/// Writes a whole file: afterwards `path` holds either all of the content or what it held before.
+/// @throws IoError as AtomicFile does
+void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> content,
+                           OutputPolicy policy);
+void write_file_atomically(const std::filesystem::path& path, std::string_view content,
+                           OutputPolicy policy);
+
+}  // namespace tofsmith

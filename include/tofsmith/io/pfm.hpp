@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "tofsmith/io/atomic_file.hpp"
+
+namespace tofsmith {
+
+/// A float image, (H, W, C), last axis fastest, top row first (the file has the bottom row first).
+struct PfmImage {
+  int height = 0;
+  int width = 0;
+  int channels = 1;  ///< 1 grey, 3 RGB
+  /// Size of the scale in the header. Programs disagree on its meaning: it is told, not applied.
+  double scale = 1.0;
+  std::vector<float> values;
+};
+
+/// Reads either byte order.
+/// @param file  what errors call it
+/// @throws IoError if the header is malformed, the data is not exactly as long as it says, or the
+///         image is larger than the limits of image_limits.hpp
+PfmImage parse_pfm(std::span<const std::byte> content, std::string_view file);
+PfmImage read_pfm(const std::filesystem::path& path);
+
+enum class PfmByteOrder { little_endian, big_endian };
+
+/// @throws std::invalid_argument if a member is outside what its comment says
+std::vector<std::byte> serialize_pfm(const PfmImage& image,
+                                     PfmByteOrder order = PfmByteOrder::little_endian);
+/// @throws IoError as AtomicFile does
+void write_pfm(const std::filesystem::path& path, const PfmImage& image, OutputPolicy policy);
+
+}  // namespace tofsmith

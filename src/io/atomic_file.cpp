@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string system_message(int error) { return std::generic_category().message(error); }
+
+fs::path follow_link(fs::path path) {
+  std::error_code ignored;
+  if (!fs::is_symlink(path, ignored)) return path;
+  const fs::path resolved = fs::weakly_canonical(path, ignored);
+  return ignored ? path : resolved;
+}
+
+fs::path directory_of(const fs::path& target) {
+  return target.has_parent_path() ? target.parent_path() : fs::path(".");
+}
+
+[[noreturn]] void refuse_existing_file(const fs::path& target) {
+  throw IoError(target.string(), "the file exists already; choose another name or pass --force");
+}
+
+void check_target(const fs::path& target, OutputPolicy policy) {
+  if (target.empty()) throw IoError("output", "found an empty file name; expected a path");
+  std::error_code error;
+  const fs::file_status there = fs::status(target, error);
+  if (there.type() == fs::file_type::none)
+    throw IoError(target.string(), fmt::format("cannot write: {}", error.message()));
+  if (fs::is_directory(there))
+    throw IoError(target.string(), "found a directory; expected the name of an output file");
+  // Renaming over a device would replace it.
+  if (fs::exists(there) && !fs::is_regular_file(there))
+    throw IoError(target.string(), "found a device or pipe; expected the name of an output file");
+  if (!target.has_filename())
+    throw IoError(target.string(), "expected the name of an output file after the last slash");
+  if (fs::exists(there) && policy == OutputPolicy::refuse_existing) refuse_existing_file(target);
+
+  const fs::path directory = directory_of(target);
+  const fs::file_status parent = fs::status(directory, error);
+  if (parent.type() == fs::file_type::not_found)
+    throw IoError(target.string(), fmt::format("cannot write: there is no directory {}; create "
+                                               "it first",
+                                               directory.string()));
+  if (fs::exists(parent) && !fs::is_directory(parent))
+    throw IoError(target.string(), fmt::format("cannot write: {} is a file; expected a directory",
+                                               directory.string()));
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(fs::path target, OutputPolicy policy)
+    : target_(follow_link(std::move(target))), policy_(policy) {
+  check_target(target_, policy_);
+  create_temporary();
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  std::error_code ignored;
+  if (!committed_) fs::remove(temporary_, ignored);
+}
+
+void AtomicFile::create_temporary() {
+  static std::atomic<unsigned> counter{0};
+  std::string extension = target_.extension().string();
+  if (extension.size() > 32) extension.clear();  // a name has at most 255 bytes
+  do {
+    temporary_ =
+        directory_of(target_) / fmt::format(".tofsmith-{}-{}{}", ::getpid(), counter++, extension);
+    descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (descriptor_ < 0 && errno == EEXIST);  // left behind by a killed run
+  if (descriptor_ < 0)
+    throw IoError(target_.string(),
+                  fmt::format("cannot create a file in {}: {}", directory_of(target_).string(),
+                              system_message(errno)));
+  struct stat old {};
+  if (::stat(target_.c_str(), &old) == 0) (void)::fchmod(descriptor_, old.st_mode & 07777);
+}
+
+void AtomicFile::write(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0)
+      throw IoError(target_.string(), fmt::format("cannot write: {}", system_message(errno)));
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void AtomicFile::write(std::string_view text) { write(std::as_bytes(std::span(text))); }
+
+void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
+  const off_t end = ::lseek(descriptor_, 0, SEEK_CUR);
+  if (end < 0 || ::lseek(descriptor_, static_cast<off_t>(offset), SEEK_SET) < 0)
+    throw IoError(target_.string(), fmt::format("cannot seek: {}", system_message(errno)));
+  write(bytes);
+  ::lseek(descriptor_, end, SEEK_SET);
+}
+
+void AtomicFile::commit() {
+  // A library that was given temporary_path() may have put a new file there: flush what has the
+  // name now, not what was opened first.
+  const int written = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool flushed = written >= 0 && ::fsync(written) == 0;
+  const int error = errno;
+  if (written >= 0) ::close(written);
+  if (!flushed)
+    throw IoError(target_.string(), fmt::format("cannot write: {}", system_message(error)));
+  rename_to_target();
+  committed_ = true;
+  // The name is safe against a power cut once its directory is flushed; not every file system can.
+  const int directory = ::open(directory_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (directory >= 0) {
+    (void)::fsync(directory);
+    ::close(directory);
+  }
+}
+
+void AtomicFile::rename_to_target() {
+#ifdef RENAME_NOREPLACE
+  if (policy_ == OutputPolicy::refuse_existing) {
+    if (::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0)
+      return;
+    if (errno == EEXIST) refuse_existing_file(target_);
+    // Some file systems lack the flag: look, then rename.
+  }
+#endif
+  if (policy_ == OutputPolicy::refuse_existing && ::access(target_.c_str(), F_OK) == 0)
+    refuse_existing_file(target_);
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0)
+    throw IoError(target_.string(), fmt::format("cannot write: {}", system_message(errno)));
+}
+
+void write_file_atomically(const fs::path& path, std::span<const std::byte> content,
+                           OutputPolicy policy) {
+  AtomicFile file(path, policy);
+  file.write(content);
+  file.commit();
+}
+
+void write_file_atomically(const fs::path& path, std::string_view content, OutputPolicy policy) {
+  write_file_atomically(path, std::as_bytes(std::span(content)), policy);
+}
+
+}  // namespace tofsmith

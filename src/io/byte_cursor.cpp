@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/byte_cursor.hpp"
+
+#include <fmt/format.h>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+std::span<const std::byte> ByteCursor::take(std::size_t count, std::string_view what) {
+  const auto left = rest();
+  if (left.size() < count)
+    fail_at(bytes_.size(), fmt::format("the file ends here; expected {} more bytes of {}",
+                                       count - left.size(), what));
+  position_ += count;
+  return left.first(count);
+}
+
+std::string_view ByteCursor::take_text(std::size_t count, std::string_view what) {
+  const auto bytes = take(count, what);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::string_view ByteCursor::take_until(char end, std::string_view what) {
+  const auto left = rest();
+  const std::string_view text(reinterpret_cast<const char*>(left.data()), left.size());
+  const std::size_t length = text.find(end);
+  if (length == std::string_view::npos)
+    fail_at(bytes_.size(), fmt::format("the file ends here; expected the end of {}", what));
+  position_ += length + 1;
+  return text.substr(0, length);
+}
+
+std::uint16_t ByteCursor::take_u16_little(std::string_view what) {
+  const auto bytes = take(2, what);
+  return static_cast<std::uint16_t>(std::to_integer<unsigned>(bytes[0]) |
+                                    std::to_integer<unsigned>(bytes[1]) << 8);
+}
+
+std::uint32_t ByteCursor::take_u32_little(std::string_view what) {
+  const auto bytes = take(4, what);
+  std::uint32_t value = 0;
+  for (int i = 3; i >= 0; --i) value = value << 8 | std::to_integer<std::uint32_t>(bytes[i]);
+  return value;
+}
+
+void ByteCursor::fail_at(std::size_t position, std::string_view problem) const {
+  throw IoError(fmt::format("{}: byte {}", file_, position), problem);
+}
+
+}  // namespace tofsmith

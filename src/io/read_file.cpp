@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/read_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+#include "io/input_file.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+namespace {
+
+[[noreturn]] void refuse_size(const std::filesystem::path& path, std::string_view found,
+                              std::uint64_t max_bytes) {
+  throw IoError(path.string(),
+                fmt::format("found {} bytes; expected at most {}", found, max_bytes));
+}
+
+template <typename Container>
+Container read_whole_file(const std::filesystem::path& path, std::uint64_t max_bytes) {
+  InputFile file(path);
+  const std::uint64_t announced = file.size().value_or(0);
+  if (announced > max_bytes) refuse_size(path, fmt::format("{}", announced), max_bytes);
+  Container content;
+  // /proc gives files of size 0 that hold something, and pipes have no size: read until the end,
+  // for which one byte more than expected is asked for.
+  std::size_t expected = static_cast<std::size_t>(announced) + 1;
+  for (;;) {
+    const std::size_t done = content.size();
+    content.resize(done + std::max(expected - std::min(expected, done), std::size_t{4096}));
+    const auto free = std::as_writable_bytes(std::span(content)).subspan(done);
+    const std::size_t got = file.read(free);
+    content.resize(done + got);
+    if (content.size() > max_bytes) refuse_size(path, "more", max_bytes);
+    if (got < free.size()) return content;
+    expected = content.size() + content.size() / 2;
+  }
+}
+
+}  // namespace
+
+std::string read_text_file(const std::filesystem::path& path, std::uint64_t max_bytes) {
+  return read_whole_file<std::string>(path, max_bytes);
+}
+
+std::vector<std::byte> read_binary_file(const std::filesystem::path& path,
+                                        std::uint64_t max_bytes) {
+  return read_whole_file<std::vector<std::byte>>(path, max_bytes);
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/atomic_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <fstream>
+
+#include "damaged_files.hpp"
+#include "temporary_directory.hpp"
+#include "tofsmith/io/read_file.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr auto refuse = OutputPolicy::refuse_existing;
+constexpr auto overwrite = OutputPolicy::overwrite;
+
+TEST(AtomicFile, WritesWhatItIsGiven) {
+  const TemporaryDirectory directory;
+  write_file_atomically(directory / "a.txt", std::string_view("first"), refuse);
+  EXPECT_EQ(read_text_file(directory / "a.txt"), "first");
+  write_file_atomically(directory / "a.txt", std::string_view("second"), overwrite);
+  EXPECT_EQ(read_text_file(directory / "a.txt"), "second");
+  EXPECT_EQ(directory.files(), 1);
+}
+
+TEST(AtomicFile, ReplacesBytesWrittenEarlierAndGoesOnAtTheEnd) {
+  const TemporaryDirectory directory;
+  AtomicFile file(directory / "a.txt", refuse);
+  file.write("____, world");
+  file.write_at(0, std::as_bytes(std::span("Mars", 4)));
+  file.write("!");
+  file.commit();
+  EXPECT_EQ(read_text_file(directory / "a.txt"), "Mars, world!");
+}
+
+TEST(AtomicFile, RefusesAnExistingFileAndSuggestsForce) {
+  const TemporaryDirectory directory;
+  write_file_atomically(directory / "a.txt", std::string_view("old"), refuse);
+  const std::string message = io_error_of(
+      [&] { write_file_atomically(directory / "a.txt", std::string_view("new"), refuse); });
+  EXPECT_THAT(message, HasSubstr("--force"));
+  EXPECT_THAT(message, HasSubstr((directory / "a.txt").string()));
+  EXPECT_EQ(read_text_file(directory / "a.txt"), "old");
+}
+
+TEST(AtomicFile, RefusesAFileThatAppearsWhileItIsWritten) {
+  const TemporaryDirectory directory;
+  {
+    AtomicFile file(directory / "a.txt", refuse);
+    file.write("late");
+    std::ofstream(directory / "a.txt") << "early";
+    EXPECT_THROW(file.commit(), IoError);
+  }
+  EXPECT_EQ(read_text_file(directory / "a.txt"), "early");
+  EXPECT_EQ(directory.files(), 1);
+}
+
+TEST(AtomicFile, AnExceptionHalfwayLeavesTheOldFileAndNothingElse) {
+  const TemporaryDirectory directory;
+  write_file_atomically(directory / "a.txt", std::string_view("old"), refuse);
+  try {
+    AtomicFile file(directory / "a.txt", overwrite);
+    file.write("half of the new");
+    throw std::runtime_error("stop");
+  } catch (const std::runtime_error&) {
+  }
+  EXPECT_EQ(read_text_file(directory / "a.txt"), "old");
+  EXPECT_EQ(directory.files(), 1);
+}
+
+TEST(AtomicFile, AFullDiskLeavesTheOldFileAndNothingElse) {
+  const TemporaryDirectory directory;
+  write_file_atomically(directory / "a.txt", std::string_view("old"), refuse);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{1000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  EXPECT_THROW(write_file_atomically(directory / "a.txt", std::string(5000, 'x'), overwrite),
+               IoError);
+  setrlimit(RLIMIT_FSIZE, &before);
+  signal(SIGXFSZ, handler);
+  EXPECT_EQ(read_text_file(directory / "a.txt"), "old");
+  EXPECT_EQ(directory.files(), 1);
+}
+
+TEST(AtomicFile, KeepsPermissionsAndFollowsLinks) {
+  const TemporaryDirectory directory;
+  write_file_atomically(directory / "a.txt", std::string_view("old"), refuse);
+  ASSERT_EQ(chmod((directory / "a.txt").c_str(), 0640), 0);
+  std::filesystem::create_symlink("a.txt", directory / "link.txt");
+  write_file_atomically(directory / "link.txt", std::string_view("new"), overwrite);
+  EXPECT_TRUE(std::filesystem::is_symlink(directory / "link.txt"));
+  EXPECT_EQ(read_text_file(directory / "a.txt"), "new");
+  struct stat status {};
+  ASSERT_EQ(stat((directory / "a.txt").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777, 0640u);
+}
+
+TEST(AtomicFile, TemporaryPathMayBeReplacedByALibrary) {
+  const TemporaryDirectory directory;
+  AtomicFile file(directory / "a.exr", refuse);
+  EXPECT_EQ(file.temporary_path().extension(), ".exr");
+  EXPECT_EQ(file.temporary_path().parent_path(), directory.path());
+  std::filesystem::remove(file.temporary_path());
+  std::ofstream(file.temporary_path()) << "by path";
+  file.commit();
+  EXPECT_EQ(read_text_file(directory / "a.exr"), "by path");
+}
+
+TEST(AtomicFile, NamesWhatIsWrongWithTheTarget) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "file") << "x";
+  const auto message = [](const std::filesystem::path& path) {
+    return io_error_of([&] { AtomicFile(path, overwrite); });
+  };
+  EXPECT_THAT(message(directory / "missing/a.txt"), HasSubstr("there is no directory"));
+  EXPECT_THAT(message(directory / "file/a.txt"), HasSubstr("is a file; expected a directory"));
+  EXPECT_THAT(message(directory.path()), HasSubstr("found a directory"));
+  EXPECT_THAT(message(directory / "new/"), HasSubstr("after the last slash"));
+  EXPECT_THAT(message("/dev/null"), HasSubstr("found a device"));
+  EXPECT_THAT(message("/proc/a.txt"), HasSubstr("cannot create a file in /proc"));
+  EXPECT_THAT(message(directory / std::string(300, 'n')), HasSubstr(directory.path().string()));
+  EXPECT_THAT(message(""), HasSubstr("empty file name"));
+  EXPECT_EQ(directory.files(), 1);
+}
+
+TEST(ReadFile, ReturnsTheContentOfFilesWithAndWithoutAnnouncedSize) {
+  const TemporaryDirectory directory;
+  const std::string long_text(100000, 'a');
+  std::ofstream(directory / "a") << long_text;
+  EXPECT_EQ(read_text_file(directory / "a"), long_text);
+  EXPECT_EQ(read_binary_file(directory / "a"), bytes_of(long_text));
+  std::ofstream(directory / "empty");
+  EXPECT_EQ(read_text_file(directory / "empty"), "");
+  EXPECT_THAT(read_text_file("/proc/self/status"), HasSubstr("Pid:"));
+}
+
+TEST(ReadFile, SaysWhatIsWrong) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "a") << "12345";
+  EXPECT_THAT(io_error_of([&] { read_text_file(directory / "none"); }), HasSubstr("no such file"));
+  EXPECT_THAT(io_error_of([&] { read_text_file(directory.path()); }), HasSubstr("a directory"));
+  EXPECT_THAT(io_error_of([&] { read_text_file(directory / "a/b"); }), HasSubstr("cannot read"));
+  EXPECT_THAT(io_error_of([&] { read_text_file(directory / "a", 4); }),
+              HasSubstr("found 5 bytes; expected at most 4"));
+  EXPECT_THAT(io_error_of([&] { read_text_file("/proc/self/status", 10); }),
+              HasSubstr("expected at most 10"));
+  EXPECT_EQ(read_text_file(directory / "a", 5), "12345");
+}
+
+}  // namespace
+}  // namespace tofsmith

@@ -1,0 +1,271 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/npy.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "damaged_files.hpp"
+#include "temporary_directory.hpp"
+#include "tofsmith/io/npy_stream.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// A file with this header text, padded as NumPy does, in front of `data`.
+FileBytes npy_file(std::string header, std::string_view data, int major = 1) {
+  const std::size_t prefix = major == 1 ? 10 : 12;
+  header.append(63 - (prefix + header.size()) % 64, ' ');
+  header += '\n';
+  std::string file = "\x93NUMPY";
+  file += {static_cast<char>(major), '\0', static_cast<char>(header.size() & 0xff),
+           static_cast<char>(header.size() >> 8)};
+  if (major > 1) file.append(2, '\0');
+  return bytes_of(file + header + std::string(data));
+}
+
+std::string refusal(const FileBytes& file) {
+  return io_error_of([&] { parse_npy(file, "a.npy"); });
+}
+
+std::string descr_refusal(const std::string& descr) {
+  return refusal(npy_file(
+      fmt::format("{{'descr': {}, 'fortran_order': False, 'shape': (1,), }}", descr), "12345678"));
+}
+
+template <typename Item>
+class NpyItem : public testing::Test {};
+using Items = testing::Types<std::int8_t, std::int16_t, std::int32_t, std::int64_t, std::uint8_t,
+                             std::uint16_t, std::uint32_t, std::uint64_t, float, double>;
+TYPED_TEST_SUITE(NpyItem, Items);
+
+TYPED_TEST(NpyItem, ReadingUndoesWriting) {
+  const std::vector<TypeParam> values = {std::numeric_limits<TypeParam>::lowest(), 0, 1, 2, 3,
+                                         std::numeric_limits<TypeParam>::max()};
+  const auto array = NpyArray::of<TypeParam>({2, 3, 1}, values);
+  const NpyArray back = parse_npy(serialize_npy(array), "a.npy");
+  EXPECT_EQ(back.type(), npy_type_of<TypeParam>);
+  EXPECT_THAT(back.shape(), ElementsAre(2, 3, 1));
+  EXPECT_TRUE(std::ranges::equal(back.as<TypeParam>(), values));
+  EXPECT_EQ(back.to_doubles()[5], static_cast<double>(values[5]));
+  EXPECT_EQ(back.to_floats()[0], static_cast<float>(values[0]));
+}
+
+TYPED_TEST(NpyItem, ByteOrderDoesNotChangeTheValues) {
+  const std::vector<TypeParam> values = {0, 1, 2, 100};
+  FileBytes file = serialize_npy(NpyArray::of<TypeParam>({4}, values));
+  const std::size_t items = file.size() - 4 * sizeof(TypeParam);
+  for (auto item = file.begin() + static_cast<std::ptrdiff_t>(items); item != file.end();
+       item += sizeof(TypeParam))
+    std::reverse(item, item + sizeof(TypeParam));
+  const auto order = std::ranges::find(file, std::byte{sizeof(TypeParam) == 1 ? '|' : '<'});
+  *order = std::byte{'>'};
+  EXPECT_TRUE(std::ranges::equal(parse_npy(file, "a.npy").as<TypeParam>(), values));
+}
+
+TEST(Npy, HeaderIsTheOneNumpyWrites) {
+  const std::vector<float> values = {1.0f, -2.0f};
+  const std::string expected = std::string("\x93NUMPY\x01\x00v\x00", 10) +
+                               "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 2), }" +
+                               std::string(58, ' ') + "\n" +
+                               std::string("\x00\x00\x80\x3f\x00\x00\x00\xc0", 8);
+  EXPECT_EQ(serialize_npy(NpyArray::of<float>({1, 2}, values)), bytes_of(expected));
+}
+
+TEST(Npy, FortranOrderBecomesCOrder) {
+  // Item (i, j, k) of shape (2, 3, 2) holds 100 i + 10 j + k and lies first axis fastest.
+  std::string data;
+  for (int k = 0; k < 2; ++k)
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 2; ++i) data += static_cast<char>(100 * i + 10 * j + k);
+  const NpyArray array = parse_npy(
+      npy_file("{'descr': '|u1', 'fortran_order': True, 'shape': (2, 3, 2)}", data), "a.npy");
+  const auto items = array.as<std::uint8_t>();
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t k = 0; k < 2; ++k)
+        EXPECT_EQ(items[(i * 3 + j) * 2 + k], 100 * i + 10 * j + k);
+}
+
+TEST(Npy, ReadsEveryVersionAndEverySpellingOfTheHeader) {
+  const std::string data(24, '\1');
+  for (const int version : {1, 2, 3}) {
+    const auto array = parse_npy(
+        npy_file("{'descr': '<u4', 'fortran_order': False, 'shape': (2, 3), }", data, version),
+        "a.npy");
+    EXPECT_THAT(array.shape(), ElementsAre(2, 3));
+    EXPECT_EQ(array.as<std::uint32_t>()[5], 0x01010101u);
+  }
+  EXPECT_THAT(
+      parse_npy(npy_file("{\"shape\":(2L,3L),\"fortran_order\":False,\"descr\":\"<i4\"}", data),
+                "a.npy")
+          .shape(),
+      ElementsAre(2, 3));
+  EXPECT_EQ(parse_npy(npy_file("{'descr': '<f8', 'fortran_order': False, 'shape': (), }",
+                               data.substr(0, 8)),
+                      "a.npy")
+                .size(),
+            1u);
+  EXPECT_EQ(
+      parse_npy(npy_file("{'descr': '<f8', 'fortran_order': True, 'shape': (0, 7), }", ""), "a.npy")
+          .size(),
+      0u);
+}
+
+TEST(Npy, BooleansAreZeroOrOne) {
+  const auto array = parse_npy(
+      npy_file("{'descr': '|b1', 'fortran_order': False, 'shape': (3,), }", {"\0\1\7", 3}),
+      "a.npy");
+  EXPECT_EQ(array.type(), NpyType::boolean);
+  EXPECT_THAT(array.as<std::uint8_t>(), ElementsAre(0, 1, 1));
+  EXPECT_THAT(array.to_floats(), ElementsAre(0.0f, 1.0f, 1.0f));
+}
+
+TEST(Npy, RefusesItemsItDoesNotUnderstandByName) {
+  EXPECT_THAT(descr_refusal("'|O'"), HasSubstr("Python objects"));
+  EXPECT_THAT(descr_refusal("'<c8'"), HasSubstr("complex"));
+  EXPECT_THAT(descr_refusal("[('x', '<f4'), ('y', '<f4')]"), HasSubstr("records"));
+  EXPECT_THAT(descr_refusal("'<U2'"), HasSubstr("type '<U2'; expected one of bool"));
+  EXPECT_THAT(descr_refusal("'<f2'"), HasSubstr("'<f2'"));
+  EXPECT_THAT(descr_refusal("'|f4'"), HasSubstr("'|f4'"));
+  EXPECT_THAT(descr_refusal("'=f4'"), HasSubstr("'=f4'"));
+  EXPECT_THAT(descr_refusal("''"), HasSubstr("type ''"));
+  EXPECT_THAT(descr_refusal("7"), HasSubstr("quoted"));
+}
+
+TEST(Npy, ErrorsNameFileAndByte) {
+  EXPECT_THAT(refusal(bytes_of("PK\3\4 something else")), HasSubstr("a.npy: byte 0: "));
+  EXPECT_THAT(refusal(bytes_of("\x93NUMPY\x04")), HasSubstr("byte 7"));
+  EXPECT_THAT(
+      refusal(npy_file("{'descr': '<f4', 'fortran_order': Maybe, 'shape': (1,), }", "1234")),
+      HasSubstr("a.npy: byte 44: expected True or False"));
+}
+
+TEST(Npy, RefusesMalformedHeaders) {
+  for (const char* header :
+       {"", "{", "{}", "{'descr': '<f4', 'fortran_order': False}",
+        "{'descr': '<f4', 'fortran_order': False, 'shape': (1,)",
+        "{'descr': '<f4', 'fortran_order': False, 'shape': (1,)} x",
+        "{'descr': '<f4', 'descr': '<f4', 'fortran_order': False, 'shape': (1,)}",
+        "{'descr': '<f4', 'fortran_order': False, 'shape': (1,), 'more': 1}",
+        "{'descr': '<f4', 'fortran_order': False, 'shape': (1)}",
+        "{'descr': '<f4', 'fortran_order': False, 'shape': 1}",
+        "{'descr': '<f4', 'fortran_order': False, 'shape': (-1,)}",
+        "{'descr': '<f4', 'fortran_order': False, 'shape': (1.0,)}",
+        "{'descr': '<f4', 'fortran_order': False, 'shape': (,)}",
+        "{'descr': '<f4' 'fortran_order': False, 'shape': (1,)}",
+        "{'descr': '<f4, 'fortran_order': False, 'shape': (1,)}"})
+    EXPECT_THAT(refusal(npy_file(header, "1234")), HasSubstr("a.npy: byte ")) << header;
+}
+
+TEST(Npy, RefusesShapesThatDoNotMatchTheData) {
+  const auto shape_refusal = [](const std::string& shape) {
+    return refusal(
+        npy_file(fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': {}, }}", shape),
+                 "12345678"));
+  };
+  EXPECT_THAT(shape_refusal("(3,)"), HasSubstr("found 8 bytes of data; expected 12"));
+  EXPECT_THAT(shape_refusal("(1,)"), HasSubstr("found 8 bytes of data; expected 4"));
+  EXPECT_THAT(shape_refusal("(99999999999999999999,)"), HasSubstr("longer than memory"));
+  EXPECT_THAT(shape_refusal("(4294967296, 4294967296)"), HasSubstr("fits in memory"));
+  EXPECT_THAT(shape_refusal("(4611686018427387905,)"), HasSubstr("fits in memory"));
+  EXPECT_THAT(shape_refusal("(1000000, 1000000)"), HasSubstr("expected 4000000000000"));
+}
+
+TEST(Npy, RefusesEveryTruncation) {
+  const std::vector<float> values = {1, 2, 3};
+  expect_truncations_refused(serialize_npy(NpyArray::of<float>({3}, values)),
+                             [](auto bytes) { parse_npy(bytes, "a.npy"); });
+}
+
+TEST(Npy, DamagedFilesAreReadOrRefused) {
+  const std::vector<std::uint16_t> values(12, 7);
+  const int refused =
+      expect_damage_read_or_refused(serialize_npy(NpyArray::of<std::uint16_t>({3, 4}, values)),
+                                    4000, 1, [](auto bytes) { parse_npy(bytes, "a.npy"); });
+  EXPECT_GT(refused, 1000);
+}
+
+TEST(Npy, TypedAccessChecksTheType) {
+  const NpyArray array(NpyType::float32, {2});
+  EXPECT_THROW(array.as<double>(), std::invalid_argument);
+  EXPECT_THROW(NpyArray::of<float>({3}, array.as<float>()), std::invalid_argument);
+  EXPECT_THROW(NpyArray(NpyType::float32, {1ull << 40, 1ull << 40}), std::invalid_argument);
+}
+
+TEST(NpyReader, SlicesAreThoseOfTheWholeArray) {
+  const TemporaryDirectory directory;
+  std::vector<float> values(5 * 2 * 3);
+  std::iota(values.begin(), values.end(), 0.0f);
+  write_npy(directory / "c.npy", NpyArray::of<float>({5, 2, 3}, values), OutputPolicy::overwrite);
+  // The same array in Fortran order.
+  std::vector<float> columns;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t j = 0; j < 2; ++j)
+      for (std::size_t i = 0; i < 5; ++i) columns.push_back(values[(i * 2 + j) * 3 + k]);
+  const auto column_bytes = std::as_bytes(std::span(columns));
+  write_file_atomically(
+      directory / "f.npy",
+      npy_file("{'descr': '<f4', 'fortran_order': True, 'shape': (5, 2, 3), }",
+               {reinterpret_cast<const char*>(column_bytes.data()), column_bytes.size()}),
+      OutputPolicy::overwrite);
+
+  for (const char* name : {"c.npy", "f.npy"}) {
+    const NpyReader reader(directory / name);
+    EXPECT_THAT(reader.shape(), ElementsAre(5, 2, 3));
+    EXPECT_TRUE(std::ranges::equal(reader.read_all().as<float>(), values));
+    for (std::size_t begin = 0; begin <= 5; ++begin)
+      for (std::size_t count = 0; begin + count <= 5; ++count) {
+        const NpyArray slice = reader.read_rows(begin, count);
+        EXPECT_THAT(slice.shape(), ElementsAre(count, 2, 3));
+        EXPECT_TRUE(
+            std::ranges::equal(slice.as<float>(), std::span(values).subspan(begin * 6, count * 6)));
+      }
+    EXPECT_THROW(reader.read_rows(6, 0), std::invalid_argument);
+    EXPECT_THROW(reader.read_rows(3, 3), std::invalid_argument);
+  }
+}
+
+TEST(NpyReader, RefusesFilesThatAreNotAsLongAsTheHeaderSays) {
+  const TemporaryDirectory directory;
+  FileBytes file = serialize_npy(NpyArray(NpyType::float64, {100, 100}));
+  file.pop_back();
+  write_file_atomically(directory / "a.npy", file, OutputPolicy::overwrite);
+  EXPECT_THAT(io_error_of([&] { NpyReader(directory / "a.npy"); }),
+              HasSubstr("found 79999 bytes of data; expected 80000"));
+  EXPECT_THAT(io_error_of([&] { NpyReader(directory / "b.npy"); }), HasSubstr("no such file"));
+}
+
+TEST(NpyReader, NoticesAFileThatShrinks) {
+  const TemporaryDirectory directory;
+  write_npy(directory / "a.npy", NpyArray(NpyType::float64, {10, 10}), OutputPolicy::overwrite);
+  const NpyReader reader(directory / "a.npy");
+  std::filesystem::resize_file(directory / "a.npy", 500);
+  EXPECT_THAT(io_error_of([&] { reader.read_rows(0, 10); }), HasSubstr("the file ends here"));
+}
+
+TEST(NpyWriter, SliceBySliceGivesTheFileOfTheWholeArray) {
+  const TemporaryDirectory directory;
+  std::vector<std::int32_t> values(12 * 4);
+  std::iota(values.begin(), values.end(), -5);
+  NpyWriter writer(directory / "a.npy", NpyType::int32, {4}, OutputPolicy::refuse_existing);
+  for (std::size_t row = 0; row < 12; row += 3)
+    writer.append(NpyArray::of<std::int32_t>({3, 4}, std::span(values).subspan(row * 4, 12)));
+  EXPECT_THROW(writer.append(NpyArray(NpyType::int32, {3, 5})), std::invalid_argument);
+  EXPECT_THROW(writer.append(NpyArray(NpyType::float32, {3, 4})), std::invalid_argument);
+  EXPECT_FALSE(std::filesystem::exists(directory / "a.npy"));
+  writer.commit();
+  EXPECT_EQ(writer.rows(), 12u);
+  EXPECT_EQ(serialize_npy(read_npy(directory / "a.npy")),
+            serialize_npy(NpyArray::of<std::int32_t>({12, 4}, values)));
+}
+
+}  // namespace
+}  // namespace tofsmith
