@@ -35,6 +35,7 @@ NpyReader::NpyReader(NpyReader&&) noexcept = default;
 
 NpyType NpyReader::type() const { return state_->header.type; }
 const NpyShape& NpyReader::shape() const { return state_->header.shape; }
+bool NpyReader::fortran_order() const { return state_->header.fortran_order; }
 
 NpyArray NpyReader::read_rows(std::size_t begin, std::size_t count) const {
   const NpyHeader& header = state_->header;

@@ -21,6 +21,8 @@ class NpyReader {
 
   NpyType type() const;
   const NpyShape& shape() const;
+  /// The file has its first axis fastest, so that slices are slow.
+  bool fortran_order() const;
 
   /// Slices [begin, begin + count) of the first axis, shape (count, ...), C order. Memory and time
   /// grow with the slice; a file in Fortran order is slow, one read per item of a slice.

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/file_kind.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+std::string known_extension(const std::filesystem::path& path,
+                            std::initializer_list<std::string_view> known) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (std::find(known.begin(), known.end(), extension) != known.end()) return extension;
+  throw IoError(
+      path.string(),
+      fmt::format("found {}; expected one of {}",
+                  extension.empty() ? "no extension" : fmt::format("the extension '{}'", extension),
+                  fmt::join(known, ", ")));
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/albedo_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "damaged_files.hpp"
+#include "temporary_directory.hpp"
+#include "tofsmith/io/colour.hpp"
+#include "tofsmith/io/exr.hpp"
+#include "tofsmith/io/npy.hpp"
+#include "tofsmith/io/pfm.hpp"
+#include "tofsmith/io/png.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr auto overwrite = OutputPolicy::overwrite;
+
+std::string refusal(const std::filesystem::path& path) {
+  return io_error_of([&] { read_albedo(path); });
+}
+
+TEST(AlbedoFile, PngValuesAreMadeLinearUnlessToldOtherwise) {
+  const TemporaryDirectory directory;
+  for (const int bits : {8, 16}) {
+    const std::uint16_t half = bits == 8 ? 128 : 32896;  // 128 x 257
+    const auto white = static_cast<std::uint16_t>(bits == 8 ? 255 : 65535);
+    write_png(directory / "a.png", PngImage{1, 3, 1, bits, {0, half, white}}, overwrite);
+    const Image<float> srgb = read_albedo(directory / "a.png");
+    EXPECT_EQ(srgb(0, 0), 0.0f);
+    EXPECT_NEAR(srgb(0, 1), linear_from_srgb(128 / 255.0), 1e-7);
+    EXPECT_NEAR(srgb(0, 2), 1.0f, 1e-7);
+    const Image<float> linear = read_albedo(directory / "a.png", Transfer::linear);
+    EXPECT_NEAR(linear(0, 1), 128 / 255.0, 1e-7);
+  }
+}
+
+TEST(AlbedoFile, ColoursBecomeLuminanceInEveryFormat) {
+  const TemporaryDirectory directory;
+  const std::vector<float> rgb = {0.25f, 0.5f, 1.0f, 1.0f, 0.0f, 0.0f};
+  write_npy(directory / "a.npy", NpyArray::of<float>({1, 2, 3}, rgb), overwrite);
+  write_pfm(directory / "a.pfm", PfmImage{1, 2, 3, 1.0, rgb}, overwrite);
+  ExrPlanes planes;
+  for (std::size_t c = 0; c < 3; ++c) {
+    Image<float> plane(1, 2);
+    plane.pixels = {rgb[c], rgb[3 + c]};
+    planes[std::string(1, "RGB"[c])] = plane;
+  }
+  write_exr(directory / "a.exr", planes, overwrite);
+  for (const char* name : {"a.npy", "a.pfm", "a.exr"}) {
+    const Image<float> albedo = read_albedo(directory / name);
+    EXPECT_FLOAT_EQ(albedo(0, 0), 0.2126f * 0.25f + 0.7152f * 0.5f + 0.0722f) << name;
+    EXPECT_FLOAT_EQ(albedo(0, 1), 0.2126f) << name;
+  }
+}
+
+TEST(AlbedoFile, LinearisesBeforeMixingColoursAndLeavesAlphaOut) {
+  const TemporaryDirectory directory;
+  write_png(directory / "a.png", PngImage{1, 1, 4, 8, {255, 128, 0, 7}}, overwrite);
+  EXPECT_NEAR(read_albedo(directory / "a.png")(0, 0),
+              luminance_rec709(1.0, linear_from_srgb(128 / 255.0), 0.0), 1e-6);
+  write_png(directory / "a.png", PngImage{1, 1, 2, 8, {255, 7}}, overwrite);
+  EXPECT_NEAR(read_albedo(directory / "a.png")(0, 0), 1.0, 1e-6);
+}
+
+TEST(AlbedoFile, GreyValuesAreTakenAsTheyAre) {
+  const TemporaryDirectory directory;
+  const std::vector<double> grey = {0.25, 0.75};
+  write_npy(directory / "a.npy", NpyArray::of<double>({2, 1}, grey), overwrite);
+  write_pfm(directory / "a.pfm", PfmImage{2, 1, 1, 1.0, {0.25f, 0.75f}}, overwrite);
+  Image<float> plane(2, 1);
+  plane.pixels = {0.25f, 0.75f};
+  write_exr(directory / "a.exr", {{"Y", plane}, {"A", Image<float>(2, 1)}}, overwrite);
+  write_exr(directory / "b.exr", {{"albedo", plane}}, overwrite);
+  for (const char* name : {"a.npy", "a.pfm", "a.exr", "b.exr"})
+    EXPECT_EQ(read_albedo(directory / name).pixels, plane.pixels) << name;
+}
+
+TEST(AlbedoFile, RefusesWhatIsNoPicture) {
+  const TemporaryDirectory directory;
+  EXPECT_THAT(refusal(directory / "a.jpg"), HasSubstr("expected one of .png, .npy, .exr, .pfm"));
+  EXPECT_THAT(refusal(directory / "a.png"), HasSubstr("no such file"));
+  write_npy(directory / "a.npy", NpyArray(NpyType::float32, {2, 2, 4}), overwrite);
+  EXPECT_THAT(refusal(directory / "a.npy"), HasSubstr("shape (2, 2, 4); expected (H, W) or"));
+  write_npy(directory / "a.npy", NpyArray(NpyType::uint8, {2, 2, 3}), overwrite);
+  EXPECT_THAT(refusal(directory / "a.npy"), HasSubstr("type uint8"));
+  write_npy(directory / "a.npy", NpyArray(NpyType::float32, {0, 2, 3}), overwrite);
+  EXPECT_THAT(refusal(directory / "a.npy"), HasSubstr("0 x 2 pixels"));
+  write_exr(directory / "a.exr", {{"R", Image<float>(1, 1)}, {"G", Image<float>(1, 1)}}, overwrite);
+  EXPECT_THAT(refusal(directory / "a.exr"), HasSubstr("found the channels G, R"));
+}
+
+}  // namespace
+}  // namespace tofsmith

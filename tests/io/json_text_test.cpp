@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/json_text.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "damaged_files.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::string refusal(std::string_view text) {
+  return io_error_of([&] { parse_json(text, "a.json"); });
+}
+
+TEST(JsonText, ParsesJson) { EXPECT_EQ(parse_json("{\"n\": [1, 2]}", "a.json")["n"][1], 2); }
+
+TEST(JsonText, ErrorsNameLineAndColumn) {
+  EXPECT_THAT(refusal("{\n  \"a\": 1,\n  \"b\": x\n}"), StartsWith("a.json:3:8: "));
+  EXPECT_THAT(refusal("[1 2]"), StartsWith("a.json:1:4: "));
+  EXPECT_THAT(refusal(""), StartsWith("a.json:1:1: "));
+  EXPECT_THAT(refusal("[1,\n"), StartsWith("a.json:2:1: "));
+  EXPECT_THAT(refusal("[1] 2"), StartsWith("a.json:1:5: "));
+  EXPECT_THAT(refusal("\"\xff\""), StartsWith("a.json:1:"));
+  EXPECT_THAT(refusal("[1e999]"), StartsWith("a.json"));
+}
+
+TEST(JsonText, ErrorsSayWhatWasFound) {
+  EXPECT_THAT(refusal("[1 2]"), HasSubstr("unexpected number literal"));
+  EXPECT_THAT(refusal("[1 2]"), testing::Not(HasSubstr("json.exception")));
+}
+
+TEST(JsonText, DamagedTextIsReadOrRefused) {
+  EXPECT_GT(
+      expect_damage_read_or_refused(
+          bytes_of("{\"name\": \"a\", \"samples\": 240, \"x\": [1.5e3, true, null]}"), 2000, 11,
+          [](auto bytes) {
+            parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "a.json");
+          }),
+      500);
+}
+
+}  // namespace
+}  // namespace tofsmith
