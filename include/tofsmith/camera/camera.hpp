@@ -35,6 +35,8 @@ struct LightSource {
   double peak_factor = 15.0;  ///< p = P_max / P_ave, >= 1
   bool binary = true;         ///< a design for it may only switch on and off
   ImpulseResponse impulse_response;
+
+  friend bool operator==(const LightSource&, const LightSource&) = default;
 };
 
 /// The demodulating pixel.
@@ -53,6 +55,8 @@ struct Sensor {
   std::optional<double> shortest_pulse_s;  ///< shortest pulse or gap a design may use [s], > 0
   bool drain = true;                       ///< charge may be thrown away; else taps add to 1
   Readout readout = Readout::separate;     ///< how taps leave the sensor
+
+  friend bool operator==(const Sensor&, const Sensor&) = default;
 };
 
 /// Pinhole of the sensor; needed for point clouds and to turn z-depth into radial distance.
@@ -61,12 +65,16 @@ struct Lens {
   double fy_px = 0.0;  ///< focal length in rows [px], > 0
   double cx_px = 0.0;  ///< column of the optical axis [px]
   double cy_px = 0.0;  ///< row of the optical axis [px]
+
+  friend bool operator==(const Lens&, const Lens&) = default;
 };
 
 /// Light levels, as photo-electron rates were the sensor fully open.
 struct OperatingPoint {
   double signal_e_per_s = 0.0;   ///< S, of the modulated light
   double ambient_e_per_s = 0.0;  ///< A, of everything else
+
+  friend bool operator==(const OperatingPoint&, const OperatingPoint&) = default;
 };
 
 /// Where a code is judged: every pair of signal and ambient.
@@ -81,6 +89,8 @@ struct OperatingRange {
   std::vector<OperatingPoint> points() const;
   /// The pair in the middle of both lists.
   OperatingPoint middle() const;
+
+  friend bool operator==(const OperatingRange&, const OperatingRange&) = default;
 };
 
 /// Integration time: a total that is split evenly over the exposures, or one time per exposure.
@@ -88,6 +98,8 @@ struct ExposureTime {
   double total_s = 0.3;        ///< [s], > 0; used when `each_s` is empty
   std::vector<double> each_s;  ///< [s], each > 0; must then match the code's exposures
   double of(int exposure, int exposures) const;
+
+  friend bool operator==(const ExposureTime&, const ExposureTime&) = default;
 };
 
 /// A continuous-wave time-of-flight camera. Field names are the keys of the TOML file.
@@ -112,6 +124,8 @@ struct Camera {
 
   /// @throws std::invalid_argument naming the field, its value and the rule it breaks
   void validate() const;
+
+  friend bool operator==(const Camera&, const Camera&) = default;
 };
 
 /// Whether `code` can be played and read out on `camera`.

@@ -31,6 +31,8 @@ struct ImpulseResponse {
 
   /// @throws std::invalid_argument naming `field`.member, value and rule
   void validate(std::string_view field) const;
+
+  friend bool operator==(const ImpulseResponse&, const ImpulseResponse&) = default;
 };
 
 /// "none", "hann", "gaussian", "lowpass", "file".

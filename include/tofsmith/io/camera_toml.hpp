@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "tofsmith/camera/camera.hpp"
+
+namespace tofsmith {
+
+/// Keys that replace those of a file, each as the file would say it: "light.peak_factor=5",
+/// "exposure_s=[0.1, 0.2]", "sensor.readout=difference" (quotes around one word may be left out).
+/// They are laid over the file before anything is checked; the last one of a key counts.
+using Settings = std::span<const std::string>;
+
+/// Reads a camera from TOML. Keys are the names of the fields; all but fundamental_frequency_hz
+/// may be left out. Light levels default to the paper's, the name to that of the file.
+/// An impulse response of kind "file" names a file beside this one, see read_impulse_response().
+/// @param source_name  path of the file, or what errors shall call it
+/// @throws IoError "file:line:column: .." (or "setting '..': ..") for what is no TOML, unknown
+///         keys (with the nearest known one), wrong types, missing and contradictory keys, values
+///         that are not finite or break a rule of Camera::validate()
+Camera parse_camera_toml(std::string_view text, std::string_view source_name = "camera.toml",
+                         Settings settings = {});
+/// @throws IoError as parse_camera_toml(), or if the file cannot be read
+Camera read_camera_toml(const std::filesystem::path& path, Settings settings = {});
+
+/// A built-in camera or a file, with some keys replaced.
+/// @throws IoError as read_camera_toml(), or if `name_or_path` is neither
+Camera load_camera(const std::string& name_or_path, Settings settings = {});
+
+/// The camera with some keys replaced. @throws IoError as parse_camera_toml()
+Camera with_settings(const Camera& camera, Settings settings);
+
+/// The camera as TOML, every default filled in: parse_camera_toml(camera_to_toml(c)) == c.
+/// @throws std::invalid_argument if the camera is invalid
+std::string camera_to_toml(const Camera& camera);
+/// The same document as JSON.
+std::string camera_to_json(const Camera& camera);
+
+}  // namespace tofsmith

@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/table_reader.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+namespace {
+
+/// What stands in the file, for "found ..".
+std::string describe(const toml::node& node) {
+  if (node.is_table()) return "a table";
+  if (node.is_array()) return "a list";
+  if (const auto* text = node.as_string()) return fmt::format("\"{}\"", text->get());
+  std::ostringstream out;
+  node.visit([&](const auto& value) {
+    if constexpr (toml::is_value<decltype(value)>) out << value;
+  });
+  return out.str();
+}
+
+}  // namespace
+
+TableReader::TableReader(const TomlDocument& document, Places& places)
+    : TableReader(document, places, document.root(), "") {}
+
+TableReader::TableReader(const TomlDocument& document, Places& places, const toml::table& table,
+                         std::string prefix)
+    : document_(document), places_(places), table_(table), prefix_(std::move(prefix)) {}
+
+const toml::node* TableReader::find(std::string_view key) {
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
+  const toml::node* node = table_.get(key);
+  if (node) places_[full(key)] = document_.place_of(node->source());
+  return node;
+}
+
+bool TableReader::contains(std::string_view key) { return find(key) != nullptr; }
+
+void TableReader::mistyped(const std::string& name, const toml::node& node,
+                           std::string_view expected) const {
+  throw IoError(document_.place_of(node.source()),
+                fmt::format("{}: found {}; expected {}", name, describe(node), expected));
+}
+
+void TableReader::fail(std::string_view key, std::string_view problem) const {
+  const toml::node* node = table_.get(key);
+  throw IoError(document_.place_of(node ? node->source() : table_.source()),
+                fmt::format("{}: {}", full(key), problem));
+}
+
+double TableReader::finite_number(const std::string& name, const toml::node& node,
+                                  std::string_view expected) const {
+  if (const auto* integer = node.as_integer()) return static_cast<double>(integer->get());
+  const auto* number = node.as_floating_point();
+  if (!number) mistyped(name, node, expected);
+  if (!std::isfinite(number->get())) mistyped(name, node, "a finite number");
+  return number->get();
+}
+
+std::vector<double> TableReader::number_list(const std::string& name,
+                                             const toml::array& list) const {
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < list.size(); ++i)
+    numbers.push_back(finite_number(fmt::format("{}[{}]", name, i), *list.get(i), "a number"));
+  return numbers;
+}
+
+void TableReader::value(std::string_view key, bool& target) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  if (!node->is_boolean()) mistyped(full(key), *node, "true or false");
+  target = node->as_boolean()->get();
+}
+
+void TableReader::value(std::string_view key, int& target) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  if (!node->is_integer()) mistyped(full(key), *node, "an integer");
+  const std::int64_t number = node->as_integer()->get();
+  if (number < std::numeric_limits<int>::min() || number > std::numeric_limits<int>::max())
+    mistyped(full(key), *node, "an integer of at most 32 bits");
+  target = static_cast<int>(number);
+}
+
+void TableReader::value(std::string_view key, double& target) {
+  if (const toml::node* node = find(key)) target = finite_number(full(key), *node, "a number");
+}
+
+void TableReader::value(std::string_view key, std::string& target) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  if (!node->is_string()) mistyped(full(key), *node, "a text in quotes");
+  target = node->as_string()->get();
+}
+
+void TableReader::value(std::string_view key, std::vector<double>& target) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  if (!node->is_array()) mistyped(full(key), *node, "a list of numbers");
+  target = number_list(full(key), *node->as_array());
+}
+
+void TableReader::number_or_list(std::string_view key, double& number, std::vector<double>& list) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  if (!node->is_array()) {
+    number = finite_number(full(key), *node, "a number or a list of numbers");
+    list.clear();
+    return;
+  }
+  list = number_list(full(key), *node->as_array());
+  if (list.empty()) fail(key, "found an empty list; expected at least one number");
+}
+
+void TableReader::number_or_word(std::string_view key, double& number, std::string_view word,
+                                 bool& is_word) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  is_word = node->is_string() && node->as_string()->get() == word;
+  if (!is_word) number = finite_number(full(key), *node, fmt::format("a number or \"{}\"", word));
+}
+
+std::optional<std::size_t> TableReader::index_of_word(std::string_view key,
+                                                      std::span<const std::string_view> words) {
+  const toml::node* node = find(key);
+  if (!node) return std::nullopt;
+  const auto* text = node->as_string();
+  const auto found = std::find(words.begin(), words.end(), text ? text->get() : std::string());
+  if (found == words.end()) {
+    const std::string near = text ? nearest_word(text->get(), words) : "";
+    mistyped(full(key), *node,
+             fmt::format("one of \"{}\"{}", fmt::join(words, "\", \""),
+                         near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near)));
+  }
+  return static_cast<std::size_t>(found - words.begin());
+}
+
+std::optional<TableReader> TableReader::enter(std::string_view key) {
+  const toml::node* node = find(key);
+  if (!node) return std::nullopt;
+  if (!node->is_table()) mistyped(full(key), *node, "a table");
+  return TableReader(document_, places_, *node->as_table(), full(key) + ".");
+}
+
+TableReader& TableReader::required(std::string_view key, std::string_view example) {
+  if (table_.contains(key)) return *this;
+  const std::string problem =
+      fmt::format("found no {}; expected a line such as `{} = {}`", full(key), key, example);
+  if (prefix_.empty()) throw IoError(document_.source_name(), problem);
+  throw IoError(document_.place_of(table_.source()), problem);
+}
+
+void TableReader::refuse(std::initializer_list<std::string_view> keys, std::string_view condition) {
+  for (const std::string_view key : keys)
+    if (contains(key)) fail(key, fmt::format("has a meaning only with {}", condition));
+}
+
+std::filesystem::path TableReader::resolve(std::string_view key, const std::string& path) const {
+  const toml::node* node = table_.get(key);
+  return node ? document_.directory_of(node->source()) / path : std::filesystem::path(path);
+}
+
+void TableReader::finish() const {
+  for (const auto& [key, node] : table_) {
+    if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
+    const std::string near = nearest_word(key.str(), known_);
+    throw IoError(document_.place_of(key.source()),
+                  fmt::format("unknown key {}; {}", full(key.str()),
+                              near.empty() ? fmt::format("expected {}", fmt::join(known_, ", "))
+                                           : fmt::format("did you mean {}?", full(near))));
+  }
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/choices.hpp"
+#include "io/toml_document.hpp"
+
+namespace tofsmith {
+
+/// Reads the fields of one table of a TOML document. A field that is not there keeps the value it
+/// has. Every field that is asked for is known; finish() refuses all others.
+///
+/// Every member throws IoError that names file:line:column, the key, what was found and what was
+/// expected.
+class TableReader {
+ public:
+  static constexpr bool reads = true;
+  /// Where each value that was read stands, by its full key such as "light.peak_factor".
+  using Places = std::map<std::string, std::string>;
+
+  /// The whole document. Both must outlive the reader.
+  TableReader(const TomlDocument& document, Places& places);
+
+  void value(std::string_view key, bool& target);
+  void value(std::string_view key, int& target);
+  void value(std::string_view key, double& target);
+  void value(std::string_view key, std::string& target);
+  /// A list of numbers.
+  void value(std::string_view key, std::vector<double>& target);
+  template <typename Value>
+  void value(std::string_view key, std::optional<Value>& target) {
+    if (contains(key)) value(key, target.emplace());
+  }
+
+  /// One word of a fixed set.
+  template <typename Enum>
+  void choice(std::string_view key, Enum& target, Choices<Enum> choices) {
+    std::vector<std::string_view> words;
+    for (const auto& entry : choices) words.push_back(entry.first);
+    if (const auto index = index_of_word(key, words)) target = choices[*index].second;
+  }
+
+  /// A number, or a list of them.
+  void number_or_list(std::string_view key, double& number, std::vector<double>& list);
+  /// A number, or `word`, in which case `is_word`.
+  void number_or_word(std::string_view key, double& number, std::string_view word, bool& is_word);
+
+  /// Reads a nested table when it is there: `fields(TableReader&, Value&)`.
+  template <typename Value, typename Fields>
+  void table(std::string_view key, Value& target, Fields&& fields) {
+    if (auto inner = enter(key)) {
+      fields(*inner, target);
+      inner->finish();
+    }
+  }
+  template <typename Value, typename Fields>
+  void table(std::string_view key, std::optional<Value>& target, Fields&& fields) {
+    if (contains(key)) table(key, target.emplace(), fields);
+  }
+
+  /// The next field must be there. @param example  a value to show the user
+  TableReader& required(std::string_view key, std::string_view example);
+  /// Refuses keys that mean something only under a condition that does not hold.
+  /// @param condition  as the user would write it, such as `kind = "hann"`
+  void refuse(std::initializer_list<std::string_view> keys, std::string_view condition);
+
+  bool contains(std::string_view key);
+  /// The path in `key`, from where it was written.
+  std::filesystem::path resolve(std::string_view key, const std::string& path) const;
+  /// @throws IoError about the value of `key`
+  [[noreturn]] void fail(std::string_view key, std::string_view problem) const;
+  /// Refuses keys that nobody asked for, with the nearest one that was.
+  void finish() const;
+
+ private:
+  TableReader(const TomlDocument& document, Places& places, const toml::table& table,
+              std::string prefix);
+  const toml::node* find(std::string_view key);
+  std::optional<TableReader> enter(std::string_view key);
+  std::optional<std::size_t> index_of_word(std::string_view key,
+                                           std::span<const std::string_view> words);
+  double finite_number(const std::string& name, const toml::node& node,
+                       std::string_view expected) const;
+  std::vector<double> number_list(const std::string& name, const toml::array& list) const;
+  std::string full(std::string_view key) const { return prefix_ + std::string(key); }
+  [[noreturn]] void mistyped(const std::string& name, const toml::node& node,
+                             std::string_view expected) const;
+
+  const TomlDocument& document_;
+  Places& places_;
+  const toml::table& table_;
+  std::string prefix_;  // "" or "light."
+  std::vector<std::string> known_;
+};
+
+}  // namespace tofsmith
