@@ -83,7 +83,7 @@ TEST(Decoder, AgreesWithTheReferenceOnFineGrids) {
 }
 
 TEST(Decoder, AgreesWithTheReferenceAtAnyRank) {
-  for (const char* code : {"hamiltonian-k6", "hamiltonian-k8", "hamiltonian-k10"}) {
+  for (const char* code : {"hamiltonian-k6", "sinusoid-k8", "multifrequency-1x3-2x3-3x3-4x3"}) {
     const DecodeSetup setup(code, camera_with("paper-30x"));
     expect_agreement(setup.decoder, pixels_at_all_light_levels(setup.decoder.table(), 800), 397);
   }
