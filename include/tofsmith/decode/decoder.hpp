@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "tofsmith/core/progress.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
+#include "tofsmith/decode/depth_image.hpp"
+
+namespace tofsmith {
+
+/// When a depth is doubted.
+struct DecodeOptions {
+  /// low_signal below this many standard deviations of the signal estimate; >= 0.
+  double low_signal_sigma = 3.0;
+  /// ambiguous below this probability that the main lobe is the right one; in [0, 1].
+  double minimum_confidence = 0.9;
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+
+/// Depth by zero-mean normalized cross-correlation, with what ambient light explains projected out
+/// instead of the mean:
+///   y' = electrons - dark,  a = T o kappa,  x(z) = T o chi(z),  P = I - a a^T / |a|^2
+///   z_hat = argmax_z <P y', P x(z)> / |P x(z)|
+/// over all bins with contrast; scores within 1e-11 |P y'| of the best tie, and the lowest bin
+/// wins. Then the best point on the chords to both neighbour bins. Every pixel gets exactly the bin
+/// of double arithmetic, whatever the processor and the number of threads.
+///
+/// Immutable and safe to use from many threads at once.
+/// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 3; deviates: projects out ambient, not the mean
+class Decoder {
+ public:
+  /// @throws std::invalid_argument if the table or the options are invalid
+  explicit Decoder(DecodingTable table, const DecodeOptions& options = {});
+  ~Decoder();
+  Decoder(Decoder&&) noexcept;
+  Decoder& operator=(Decoder&&) noexcept;
+
+  const DecodingTable& table() const;
+  const DecodeOptions& options() const;
+  int measurements() const { return table().measurements(); }
+  int samples() const { return table().samples(); }
+  /// Dimension of what is left of the measurements without ambient light, 2 .. K.
+  int rank() const;
+
+  /// Decodes one frame on all threads.
+  ///   signal and ambient: least squares of y' on x(z_hat) and a;
+  ///   predicted standard deviation: noise of the measurements at the estimate (mu_i + constant
+  ///     variance), carried through the least squares over (z, S, A) that z_hat solves;
+  ///   confidence: normal probability that the best score beats, beyond noise, the best score
+  ///     outside the main lobe, which is the run of bins around the best along which the code's own
+  ///     score falls (1 if nothing is outside).
+  /// @param raw       electrons or counts, (F, H, W, K), K as in the table
+  /// @param frame     in [0, F)
+  /// @throws std::invalid_argument if the shape does not fit; Interrupted if progress says so
+  /// @note deterministic for any number of threads
+  DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
+
+  /// Positions in [0, N), refined between bins, of many pixels: the decoder inside a Monte Carlo
+  /// loop. No status: the best position is given even if its score is not positive.
+  /// @param measurements  raw numbers (pixels, K), measurements of a pixel side by side
+  /// @param depth_bin     (pixels); NaN where a measurement is NaN or infinite
+  /// @note single-threaded; allocates nothing
+  void decode_depth_bins(const float* measurements, std::int64_t pixels, double* depth_bin) const;
+  /// The same without refinement: bins in [0, N), -1 where a measurement is NaN or infinite.
+  void decode_bins(const float* measurements, std::int64_t pixels, std::int32_t* bin) const;
+
+ private:
+  struct Plan;
+  std::unique_ptr<const Plan> plan_;
+};
+
+}  // namespace tofsmith

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "decode/ambient_projection.hpp"
+
+#include <Eigen/SVD>
+
+namespace tofsmith {
+
+namespace {
+// Below these shares of the whole, what is left is rounding.
+constexpr double no_ambient = 1e-9;
+constexpr double no_dimension = 1e-12;
+constexpr double no_contrast = 1e-9;
+}  // namespace
+
+AmbientProjection::AmbientProjection(const DecodingTable& table) {
+  ambient = table.exposure_s.cwiseProduct(table.ambient_gain);
+  if (ambient.norm() <= no_ambient * table.exposure_s.norm()) ambient.setZero();
+  gated = table.correlation * table.exposure_s.asDiagonal();
+
+  Eigen::MatrixXd projected = gated;
+  if (!ambient.isZero(0.0)) {
+    const Eigen::VectorXd direction = ambient.normalized();
+    projected -= (projected * direction) * direction.transpose();
+  }
+
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(projected, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const double whole = gated.norm();
+  Eigen::Index kept = 0;
+  while (kept < svd.singularValues().size() && svd.singularValues()[kept] > no_dimension * whole)
+    ++kept;
+  basis = svd.matrixV().leftCols(kept);
+
+  curve = projected * basis;
+  const double largest = curve.rows() > 0 && kept > 0 ? curve.rowwise().norm().maxCoeff() : 0.0;
+  for (Eigen::Index n = 0; n < curve.rows(); ++n)
+    if (curve.row(n).norm() <= no_contrast * largest) curve.row(n).setZero();
+}
+
+}  // namespace tofsmith

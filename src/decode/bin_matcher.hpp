@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "decode/block_search.hpp"
+
+namespace tofsmith {
+
+/// A tile of pixels, from raw numbers to bins. Its vectors are what is left of a pixel without
+/// ambient light, q = V^T P y', as length and unit vector.
+struct Tile {
+  int pixels = 0;
+  double length[pixels_per_tile];                        ///< |q| [e]
+  double unit[max_measurements * pixels_per_tile];       ///< [rank][pixels_per_tile]
+  float unit_float[max_measurements * pixels_per_tile];  ///< the same, rounded
+  std::int32_t bin[pixels_per_tile];                     ///< -1 for an invalid pixel
+};
+
+/// The bins whose directions match pixels best, exactly as double arithmetic finds them.
+class BinMatcher {
+ public:
+  BinMatcher(const DecodingTable& table, const AmbientProjection& projection);
+
+  const DirectionTable& directions() const { return directions_; }
+
+  /// Electrons without dark ones of one raw number.
+  double electrons(float raw, int measurement) const {
+    return (raw - dark_raw_[static_cast<std::size_t>(measurement)]) * gain_e_per_raw_;
+  }
+  /// @param raw  (pixels, K), pixels in 1 .. pixels_per_tile
+  void match(const float* raw, int pixels, Tile& tile) const;
+
+ private:
+  void project(const float* raw, Tile& tile) const;
+  void normalize(const double* size, Tile& tile) const;
+  std::int32_t choose(const Tile& tile, int pixel, int first_block, int last_block) const;
+
+  DirectionTable directions_;
+  Eigen::MatrixXd basis_;         // V (K, rank)
+  std::vector<double> dark_raw_;  // raw number of every measurement without light
+  double gain_e_per_raw_;
+};
+
+}  // namespace tofsmith

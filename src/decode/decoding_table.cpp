@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/decode/decoding_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "decode/ambient_projection.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+std::string shape_of(const Eigen::MatrixXd& matrix) {
+  return std::to_string(matrix.rows()) + " x " + std::to_string(matrix.cols());
+}
+
+void require_table(const Eigen::MatrixXd& values, const char* field, const DecodingTable& table) {
+  require(values.rows() == table.correlation.rows() && values.cols() == table.correlation.cols(),
+          field, shape_of(values),
+          "must have the shape of correlation, " + shape_of(table.correlation));
+  require(values.allFinite(), field, "NaN or infinite", "must be finite");
+}
+
+void require_list(const Eigen::VectorXd& values, const char* field, double minimum,
+                  const DecodingTable& table) {
+  require(
+      values.size() == table.correlation.cols(), field, std::to_string(values.size()) + " entries",
+      "must have one for each of the " + std::to_string(table.measurements()) + " measurements");
+  for (const double value : values) {
+    require(std::isfinite(value), field, value, "must be finite");
+    require(value >= minimum, field, value, "must not be negative");
+  }
+}
+
+}  // namespace
+
+void DecodingTable::validate() const {
+  constexpr double any = std::numeric_limits<double>::lowest();
+  require(samples() >= 2, "correlation", shape_of(correlation), "must have at least 2 rows");
+  require(measurements() >= 2 && measurements() <= max_measurements, "measurements", measurements(),
+          "must be in [3, 64] (2 are enough where ambient light cancels)");
+  require_table(correlation, "correlation", *this);
+  require_list(ambient_gain, "ambient_gain", any, *this);
+  require_list(exposure_s, "exposure_s", 0.0, *this);
+  require(exposure_s.minCoeff() > 0.0, "exposure_s", exposure_s.minCoeff(), "must be > 0");
+  require_list(dark_electrons, "dark_electrons", any, *this);
+  require_list(constant_variance_e2, "constant_variance_e2", 0.0, *this);
+  if (shot_correlation.size() > 0) require_table(shot_correlation, "shot_correlation", *this);
+  if (shot_ambient_gain.size() > 0)
+    require_list(shot_ambient_gain, "shot_ambient_gain", 0.0, *this);
+  if (shot_dark_electrons.size() > 0)
+    require_list(shot_dark_electrons, "shot_dark_electrons", 0.0, *this);
+  require(std::isfinite(black_level), "black_level", black_level, "must be finite");
+  require(std::isfinite(gain_e_per_raw) && gain_e_per_raw > 0.0, "gain_e_per_raw", gain_e_per_raw,
+          "must be finite and > 0");
+  if (saturation_level)
+    require(!std::isnan(*saturation_level), "saturation_level", *saturation_level,
+            "must be a number");
+  require(std::isfinite(range_m) && range_m > 0.0, "range_m", range_m, "must be finite and > 0");
+
+  const AmbientProjection projection(*this);
+  require(measurements() >= 3 || projection.ambient.isZero(0.0), "measurements", measurements(),
+          "must be >= 3: signal, ambient light and depth are unknown");
+  require(projection.rank() >= 2, "rank of correlation without ambient light", projection.rank(),
+          "must be >= 2, or depth cannot be told from signal");
+}
+
+DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camera) {
+  require(model.samples() == camera.samples, "samples of the code", model.samples(),
+          "must equal the camera's samples = " + std::to_string(camera.samples));
+  DecodingTable table;
+  table.correlation = model.correlation_table(model.samples());
+  table.ambient_gain = model.ambient_gain();
+  table.exposure_s = model.exposure_s();
+  table.dark_electrons = model.dark_electrons();
+  table.constant_variance_e2 = model.constant_variance_e2();
+  table.range_m = camera.range_m();
+
+  const Sensor& sensor = camera.sensor;
+  table.gain_e_per_raw = sensor.gain_e_per_dn.value_or(1.0);
+  if (sensor.readout == Readout::difference) {
+    const Eigen::MatrixXd sums = model.readout().cwiseAbs();
+    table.shot_correlation = model.tap_correlation_table(model.samples()) * sums.transpose();
+    table.shot_ambient_gain = sums * model.tap_ambient_gain();
+    table.shot_dark_electrons = sums * (sensor.dark_current_e_per_s * model.tap_exposure_s());
+    return table;
+  }
+  table.black_level = sensor.black_level_dn.value_or(0.0);
+  double level = std::numeric_limits<double>::infinity();
+  if (sensor.full_well_e) {
+    level = *sensor.full_well_e / table.gain_e_per_raw + table.black_level;
+    if (sensor.adc_bits) level = std::floor(level);
+  }
+  if (sensor.adc_bits) level = std::min(level, std::exp2(*sensor.adc_bits) - 1.0);
+  if (std::isfinite(level)) table.saturation_level = static_cast<float>(level);
+  return table;
+}
+
+DecodingTable make_decoding_table(const Eigen::MatrixXd& correlation, double range_m) {
+  const Eigen::Index measurements = correlation.cols();
+  DecodingTable table;
+  table.correlation = correlation;
+  table.ambient_gain = Eigen::VectorXd::Ones(measurements);
+  table.exposure_s = Eigen::VectorXd::Ones(measurements);
+  table.dark_electrons = Eigen::VectorXd::Zero(measurements);
+  table.constant_variance_e2 = Eigen::VectorXd::Zero(measurements);
+  table.range_m = range_m;
+  return table;
+}
+
+std::vector<AmbiguousDepths> ambiguous_depths(const DecodingTable& table) {
+  table.validate();
+  constexpr double equal = 1e-9;  // distance of unit vectors that only rounding tells apart
+  RowMajorMatrix direction = AmbientProjection(table).curve;
+  std::vector<int> order;
+  for (int n = 0; n < direction.rows(); ++n) {
+    if (direction.row(n).isZero(0.0)) continue;
+    direction.row(n).normalize();
+    order.push_back(n);
+  }
+
+  // Equal directions have equal keys: sorted by key they are neighbours.
+  Eigen::VectorXd weights(direction.cols());
+  for (Eigen::Index j = 0; j < weights.size(); ++j) weights[j] = std::cos(1.0 + double(j));
+  const Eigen::VectorXd key = direction * weights.normalized();
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return key[a] < key[b]; });
+
+  std::vector<int> lowest(static_cast<std::size_t>(direction.rows()));
+  std::iota(lowest.begin(), lowest.end(), 0);
+  for (auto a = order.begin(); a != order.end(); ++a) {
+    for (auto b = a + 1; b != order.end() && key[*b] - key[*a] <= equal; ++b) {
+      if ((direction.row(*a) - direction.row(*b)).norm() > equal) continue;
+      auto& of_higher = lowest[static_cast<std::size_t>(std::max(*a, *b))];
+      of_higher = std::min({of_higher, *a, *b});
+    }
+  }
+
+  std::vector<AmbiguousDepths> found;
+  for (int n = 0; n < direction.rows(); ++n) {
+    const int first = lowest[static_cast<std::size_t>(n)];
+    if (first < n) found.push_back({first, n, first * table.bin_m(), n * table.bin_m()});
+  }
+  return found;
+}
+
+}  // namespace tofsmith

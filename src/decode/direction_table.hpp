@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "decode/ambient_projection.hpp"
+
+namespace tofsmith {
+
+/// Rows whose scores are compared in one go; the float search names such a block, double arithmetic
+/// then chooses within it.
+inline constexpr int rows_per_block = 8;
+
+/// Scores of unit vectors this close tie.
+inline constexpr double tie_tolerance = 1e-11;
+
+/// Bins around one bin along which the code's own score falls: [begin, end), begin may be negative
+/// and end past N, modulo N. Longest possible: N.
+struct Lobe {
+  std::int32_t begin = 0;
+  std::int32_t end = 0;
+};
+
+/// Unit directions of a code's curve, laid out for search. There is one row per bin, and a last
+/// block is filled up. Bins without contrast have no direction: their rows repeat that of another
+/// bin, so that no score of theirs is new.
+class DirectionTable {
+ public:
+  explicit DirectionTable(const AmbientProjection& projection);
+
+  int samples() const { return samples_; }
+  int rank() const { return rank_; }
+  int blocks() const { return static_cast<int>(bin_of_row_.size()) / rows_per_block; }
+
+  /// Bin whose direction stands in a row.
+  std::int32_t bin_of_row(std::int32_t row) const {
+    return bin_of_row_[static_cast<std::size_t>(row)];
+  }
+  /// Directions of a block, [rank][rows_per_block].
+  const double* block(int b) const { return &directions_[static_cast<std::size_t>(b) * stride_]; }
+  /// All blocks in single precision, [blocks][rank][rows_per_block].
+  const float* float_blocks() const { return float_directions_.data(); }
+  /// One component of the directions of all bins, twice around, followed by room to read past.
+  const float* float_component(int j) const {
+    return &float_components_[static_cast<std::size_t>(j) * component_stride_];
+  }
+  std::ptrdiff_t component_stride() const { return static_cast<std::ptrdiff_t>(component_stride_); }
+  double direction(std::int32_t row, int j) const {
+    return block(row / rows_per_block)[j * rows_per_block + row % rows_per_block];
+  }
+
+  /// A float score that leads by more than this leads by more than tie_tolerance in exact
+  /// arithmetic.
+  float proof_margin() const;
+
+  const Lobe& main_lobe(std::int32_t bin) const {
+    return main_lobes_[static_cast<std::size_t>(bin)];
+  }
+
+ private:
+  double score_between(std::int32_t bin, std::int32_t other) const;
+  std::int32_t fall(std::int32_t bin, std::int32_t step) const;
+
+  int samples_ = 0;
+  int rank_ = 0;
+  std::size_t stride_ = 0;            // of a block
+  std::size_t component_stride_ = 0;  // of a component
+  std::vector<std::int32_t> bin_of_row_;
+  std::vector<double> directions_;
+  std::vector<float> float_directions_;
+  std::vector<float> float_components_;
+  std::vector<Lobe> main_lobes_;
+};
+
+}  // namespace tofsmith

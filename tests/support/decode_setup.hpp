@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/random.hpp"
+#include "tofsmith/decode/decoder.hpp"
+
+namespace tofsmith {
+
+/// A code on a camera, with the decoder that belongs to it.
+struct DecodeSetup {
+  Camera camera;
+  ForwardModel model;
+  Decoder decoder;
+
+  DecodeSetup(const std::string& code, const Camera& camera_, const DecodeOptions& options = {})
+      : camera(camera_),
+        model(build_family(code, camera), camera),
+        decoder(make_decoding_table(model, camera), options) {}
+
+  /// Expected raw electrons of one pixel, appended.
+  void append_expected(std::vector<float>& raw, double signal, double depth_bin,
+                       double ambient) const {
+    const Return r{signal, depth_bin};
+    for (const double e : model.expected_electrons({&r, 1}, ambient))
+      raw.push_back(static_cast<float>(e));
+  }
+};
+
+inline Camera camera_with(const std::string& name, int taps = 1,
+                          Readout readout = Readout::separate) {
+  Camera camera = built_in_camera(name);
+  camera.sensor.taps = taps;
+  camera.sensor.readout = readout;
+  return camera;
+}
+
+/// Noisy electrons (pixels, K) at random depths, from the chords of the decoder's table.
+inline std::vector<float> noisy_pixels(const DecodingTable& table, double signal, double ambient,
+                                       int pixels, std::uint64_t seed) {
+  const int k_count = table.measurements();
+  const auto& shot = table.shot_correlation.size() > 0 ? table.shot_correlation : table.correlation;
+  const auto& kappa =
+      table.shot_ambient_gain.size() > 0 ? table.shot_ambient_gain : table.ambient_gain;
+  std::vector<float> raw;
+  raw.reserve(static_cast<std::size_t>(pixels * k_count));
+  RandomStream random(seed, 0);
+  for (int i = 0; i < pixels; ++i) {
+    const double depth_bin = table.samples() * random.uniform();
+    const int from = static_cast<int>(depth_bin), to = (from + 1) % table.samples();
+    const double t = depth_bin - from;
+    for (int k = 0; k < k_count; ++k) {
+      const double chi = (1 - t) * table.correlation(from, k) + t * table.correlation(to, k);
+      const double shot_chi = (1 - t) * shot(from, k) + t * shot(to, k);
+      const double mean = table.exposure_s[k] * (signal * chi + ambient * table.ambient_gain[k]);
+      const double variance = table.exposure_s[k] * (signal * shot_chi + ambient * kappa[k]) +
+                              table.constant_variance_e2[k];
+      raw.push_back(static_cast<float>(mean + std::sqrt(variance) * random.normal()));
+    }
+  }
+  return raw;
+}
+
+inline std::vector<std::int32_t> bins_of(const Decoder& decoder, const std::vector<float>& raw) {
+  std::vector<std::int32_t> bins(raw.size() / static_cast<std::size_t>(decoder.measurements()));
+  decoder.decode_bins(raw.data(), static_cast<std::int64_t>(bins.size()), bins.data());
+  return bins;
+}
+
+inline std::vector<double> depth_bins_of(const Decoder& decoder, const std::vector<float>& raw) {
+  std::vector<double> bins(raw.size() / static_cast<std::size_t>(decoder.measurements()));
+  decoder.decode_depth_bins(raw.data(), static_cast<std::int64_t>(bins.size()), bins.data());
+  return bins;
+}
+
+/// One row of pixels as a frame.
+inline RawFrames frame_of(const std::vector<float>& raw, int measurements) {
+  RawFrames frames;
+  frames.frames = frames.height = 1;
+  frames.width = static_cast<int>(raw.size()) / measurements;
+  frames.measurements = measurements;
+  frames.values = raw;
+  return frames;
+}
+
+}  // namespace tofsmith
