@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/progress.hpp"
+#include "tofsmith/scene/scene_image.hpp"
+
+namespace tofsmith {
+
+/// Light of a simulated capture.
+struct CaptureOptions {
+  double signal_e_per_s = 1e4;  ///< S of albedo 1 facing the camera at the reference distance, >= 0
+  double ambient_e_per_s = 1e4;       ///< A where ambient_scale is 1, >= 0
+  double reference_distance_m = 1.0;  ///< where S is signal_e_per_s [m], > 0
+  bool falloff = true;     ///< S = signal albedo cosine / (d / d_ref)^2; else signal albedo
+  std::uint64_t seed = 1;  ///< of all noise
+  int frames = 1;          ///< F, independent noise for each, >= 1
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+
+/// Signal of a pixel, were the sensor fully open [e/s]; 0 where nothing returns (NaN depth).
+double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,
+                            const CaptureOptions& options);
+
+/// Raw measurements of a scene, (F, H, W, K): electrons, or counts if the sensor has an ADC.
+/// Depth beyond the unambiguous range wraps, as in a camera. A pixel without return sees ambient
+/// light only.
+/// @throws std::invalid_argument if scene, camera or options are invalid, or the code does not fit
+///         the camera; Interrupted if progress says so
+/// @note the noise of a pixel depends on (seed, pixel, frame) alone: same bits for any number of
+///       threads
+RawFrames capture(const SceneImage& scene, const CodeSet& code, const Camera& camera,
+                  const CaptureOptions& options = {}, const Progress& progress = {});
+
+}  // namespace tofsmith

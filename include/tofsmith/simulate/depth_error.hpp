@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/progress.hpp"
+#include "tofsmith/core/statistics.hpp"
+
+namespace tofsmith {
+
+/// Where the true depths of trials lie.
+enum class DepthSampling {
+  uniform,  ///< anywhere in the range
+  bins,     ///< on bins only: flatters codes that cannot tell what lies between
+};
+
+/// How depth error is measured.
+struct EvaluateOptions {
+  std::int64_t trials = 20000;       ///< per operating point, 2 .. 4e9; odd numbers are rounded up
+  std::uint64_t seed = 1;            ///< of all trials
+  double outlier_threshold_m = 0.5;  ///< circular errors beyond are outliers [m], >= 0
+  bool sub_bin = true;               ///< decode between bins; else to the nearest bin
+  DepthSampling depth = DepthSampling::uniform;
+  /// Clip electrons of every tap to [0, T (S + A)], as the simulator of the paper's authors does.
+  bool clip_to_open_sensor = false;
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+
+/// Depth error at one operating point.
+struct PointDepthError {
+  OperatingPoint point;
+  Estimate linear_mde_m;              ///< mean |decoded - true|
+  Estimate circular_mde_m;            ///< mean of the shorter way round the range
+  Estimate outlier_rate;              ///< share of circular errors beyond the threshold
+  double cramer_rao_mae_m = 0.0;      ///< CramerRaoBound of the code
+  double receiver_bound_mae_m = 0.0;  ///< ReceiverBound of the camera, with the code's exposures
+};
+
+/// One figure for all operating points.
+struct DepthErrorMean {
+  Estimate geometric_mean_m;
+  Estimate mean_m;
+};
+
+/// Depth error of a code on a camera.
+struct DepthErrorReport {
+  std::string code;
+  int exposures = 0;
+  int taps = 0;
+  int measurements = 0;  ///< that leave the sensor
+  int samples = 0;
+  std::int64_t trials = 0;  ///< made, per operating point
+  std::uint64_t seed = 0;
+  double outlier_threshold_m = 0.0;
+  std::vector<PointDepthError> points;  ///< in the order of OperatingRange::points()
+  DepthErrorMean linear, circular;
+
+  const DepthErrorMean& of(DepthErrorKind kind) const {
+    return kind == DepthErrorKind::linear ? linear : circular;
+  }
+};
+
+/// Monte Carlo depth error at every operating point of the camera, with bounds beside it.
+///
+/// Trial t of point p draws from the stream (seed, p, t): first its depth, uniform on the t-th of
+/// `trials` equal slices of the range, then its albedo if that is uniform, then the noise of one
+/// tap after the other. Codes are so compared on the same depths and the same noise. Standard
+/// errors come from the differences of trials in neighbouring slices; they hold for the sliced
+/// depths (and err on the large side).
+/// @throws std::invalid_argument if the camera or the options are invalid or the code does not fit;
+///         Interrupted if progress says so
+/// @note same bits for any number of threads
+DepthErrorReport evaluate(const CodeSet& code, const Camera& camera,
+                          const EvaluateOptions& options = {}, const Progress& progress = {});
+
+/// The best origin of depth of a code.
+struct BestRotation {
+  int rotation_bin = 0;  ///< CodeSet::rotated by this many bins has the least linear error
+  /// Geometric mean over the operating points of the linear error [m], for each rotation (N).
+  std::vector<double> linear_geometric_mean_m;
+};
+
+/// Finds the rotation with the least linear depth error. Circular error does not depend on it.
+///
+/// Rotating a code moves true and decoded depths alike: a trial costs |decoded - true| at every
+/// rotation but those that put the origin between the two, where it costs the range less that. So
+/// one run of trials gives the error at all N rotations. (Every rotation is judged by the same
+/// trials and the least is taken: its own figure is a little low; evaluate the rotated code for an
+/// honest one.)
+/// @param options  as for evaluate
+BestRotation best_rotation(const CodeSet& code, const Camera& camera,
+                           const EvaluateOptions& options = {}, const Progress& progress = {});
+
+}  // namespace tofsmith

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/scene/shapes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Two unit vectors that span the plane across `normal`.
+std::pair<Eigen::Vector3d, Eigen::Vector3d> axes_across(const Eigen::Vector3d& normal) {
+  Eigen::Index smallest = 0;
+  normal.cwiseAbs().minCoeff(&smallest);
+  const Eigen::Vector3d first = normal.cross(Eigen::Vector3d::Unit(smallest)).normalized();
+  return {first, normal.cross(first)};
+}
+
+void require_texture(const Texture& texture) {
+  for (const double albedo : {texture.albedo, texture.other_albedo})
+    require(albedo >= 0.0 && albedo <= 1.0, "texture.albedo", albedo, "must be in [0, 1]");
+  require(std::isfinite(texture.period_m) && texture.period_m > 0.0, "texture.period_m",
+          texture.period_m, "must be finite and > 0");
+}
+
+void require_finite(const Eigen::Vector3d& point, std::string_view field) {
+  require(point.allFinite(), field, point.transpose(), "must be finite");
+}
+
+void validate_shape(const Plane& plane) {
+  require_finite(plane.point, "plane.point");
+  require_finite(plane.normal, "plane.normal");
+  require(plane.normal.norm() > 0.0, "plane.normal", plane.normal.transpose(), "must not be zero");
+}
+
+void validate_shape(const Box& box) {
+  require_finite(box.centre, "box.centre");
+  require_finite(box.size_m, "box.size_m");
+  require(box.size_m.minCoeff() > 0.0, "box.size_m", box.size_m.transpose(), "must be > 0");
+  const double skew =
+      (box.rotation.transpose() * box.rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  require(skew < 1e-6, "box.rotation", skew, "must have orthonormal columns (deviation shown)");
+}
+
+void validate_shape(const Sphere& sphere) {
+  require_finite(sphere.centre, "sphere.centre");
+  require(std::isfinite(sphere.radius_m) && sphere.radius_m > 0.0, "sphere.radius_m",
+          sphere.radius_m, "must be finite and > 0");
+}
+
+}  // namespace
+
+double Texture::at(double first_m, double second_m) const {
+  if (pattern == Pattern::uniform) return albedo;
+  double field = std::floor(first_m / period_m);
+  if (pattern == Pattern::checker) field += std::floor(second_m / period_m);
+  return std::fmod(std::abs(field), 2.0) == 0.0 ? albedo : other_albedo;
+}
+
+std::optional<Hit> intersect(const Plane& plane, const Ray& ray) {
+  const Eigen::Vector3d normal = plane.normal.normalized();
+  const double distance_m =
+      normal.dot(plane.point - ray.origin) / normal.dot(ray.direction);  // +-inf, NaN if parallel
+  if (!(distance_m > 0.0) || !std::isfinite(distance_m)) return std::nullopt;
+  const auto [first, second] = axes_across(normal);
+  const Eigen::Vector3d on_plane = ray.origin + distance_m * ray.direction - plane.point;
+  return Hit{distance_m, normal, plane.texture.at(first.dot(on_plane), second.dot(on_plane))};
+}
+
+std::optional<Hit> intersect(const Box& box, const Ray& ray) {
+  const Eigen::Vector3d origin = box.rotation.transpose() * (ray.origin - box.centre);
+  const Eigen::Vector3d direction = box.rotation.transpose() * ray.direction;
+  double enter = -std::numeric_limits<double>::infinity();
+  double leave = std::numeric_limits<double>::infinity();
+  Eigen::Index enter_axis = 0, leave_axis = 0;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const double half = 0.5 * box.size_m[axis];
+    if (direction[axis] == 0.0) {
+      if (std::abs(origin[axis]) > half) return std::nullopt;
+      continue;
+    }
+    double near = (-half - origin[axis]) / direction[axis];
+    double far = (half - origin[axis]) / direction[axis];
+    if (near > far) std::swap(near, far);
+    if (near > enter) std::tie(enter, enter_axis) = std::pair(near, axis);
+    if (far < leave) std::tie(leave, leave_axis) = std::pair(far, axis);
+  }
+  if (enter > leave || leave <= 0.0) return std::nullopt;
+  const bool inside = enter <= 0.0;
+  const double distance_m = inside ? leave : enter;
+  const Eigen::Index axis = inside ? leave_axis : enter_axis;
+  const Eigen::Vector3d on_box = origin + distance_m * direction + 0.5 * box.size_m;
+  return Hit{distance_m, box.rotation.col(axis),
+             box.texture.at(on_box[(axis + 1) % 3], on_box[(axis + 2) % 3])};
+}
+
+std::optional<Hit> intersect(const Sphere& sphere, const Ray& ray) {
+  const Eigen::Vector3d to_centre = sphere.centre - ray.origin;
+  const double along = to_centre.dot(ray.direction);
+  // The distance of the centre from the ray by a cross product: no cancellation for far spheres.
+  const double aside = to_centre.cross(ray.direction).norm();
+  if (aside > sphere.radius_m) return std::nullopt;
+  const double half_chord =
+      std::sqrt(std::max(0.0, (sphere.radius_m - aside) * (sphere.radius_m + aside)));
+  const double distance_m = along - half_chord > 0.0 ? along - half_chord : along + half_chord;
+  if (distance_m <= 0.0) return std::nullopt;
+  const Eigen::Vector3d normal =
+      (ray.origin + distance_m * ray.direction - sphere.centre) / sphere.radius_m;
+  const double longitude_rad = std::atan2(normal.x(), normal.z());
+  const double latitude_rad = std::asin(std::clamp(normal.y(), -1.0, 1.0));
+  return Hit{distance_m, normal,
+             sphere.texture.at(sphere.radius_m * longitude_rad, sphere.radius_m * latitude_rad)};
+}
+
+void validate(const Shape& shape) {
+  std::visit(
+      [](const auto& s) {
+        validate_shape(s);
+        require_texture(s.texture);
+      },
+      shape);
+}
+
+}  // namespace tofsmith

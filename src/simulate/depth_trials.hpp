@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/simulate/fine_correlation.hpp"
+#include "tofsmith/simulate/noise.hpp"
+
+namespace tofsmith {
+
+/// True and decoded positions of some trials, [bin] in [0, N).
+struct TrialBlock {
+  std::int64_t block = 0;  ///< number of the block, 0 .. blocks() - 1
+  std::span<const double> true_bin;
+  std::span<const double> decoded_bin;
+};
+
+/// The Monte Carlo loop behind every depth error: draw depth and noise, decode.
+class DepthTrials {
+ public:
+  DepthTrials(const ForwardModel& model, const Camera& camera, const EvaluateOptions& options);
+
+  int samples() const { return decoder_.samples(); }
+  std::int64_t trials() const { return options_.trials; }
+  std::int64_t blocks() const;
+  const std::vector<OperatingPoint>& points() const { return points_; }
+
+  /// Runs all trials of a point on all threads and hands them over block by block, an even number
+  /// of trials in each; blocks may come at the same time and in any order.
+  void run(std::size_t point, const std::function<void(const TrialBlock&)>& use,
+           const Progress& progress) const;
+
+ private:
+  void run_block(std::size_t point, IndexRange trials, std::vector<double>& true_bin,
+                 std::vector<double>& decoded_bin) const;
+  void decode(const std::vector<float>& raw, std::vector<double>& decoded_bin) const;
+
+  EvaluateOptions options_;
+  bool uniform_albedo_;
+  double albedo_;
+  double dark_e_per_s_;
+  std::vector<OperatingPoint> points_;
+  FineCorrelation correlation_;
+  PixelNoise noise_;
+  Decoder decoder_;
+  Eigen::VectorXd exposure_s_, ambient_gain_;  // of the tap values
+};
+
+}  // namespace tofsmith

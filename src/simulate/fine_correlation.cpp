@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/simulate/fine_correlation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+FineCorrelation::FineCorrelation(const ForwardModel& model, int points_per_bin)
+    : tap_values_(model.tap_values()),
+      points_(model.samples() * points_per_bin),
+      points_per_bin_(points_per_bin) {
+  require(points_per_bin >= 1, "points_per_bin", points_per_bin, "must be >= 1");
+  const Eigen::MatrixXd exact = model.tap_correlation_table(points_);
+  table_.reserve(static_cast<std::size_t>(points_ + 1) * static_cast<std::size_t>(tap_values_));
+  for (int row = 0; row <= points_; ++row)
+    for (int j = 0; j < tap_values_; ++j) table_.push_back(exact(row % points_, j));
+}
+
+void FineCorrelation::at(double depth_bin, double* chi) const {
+  const double position = depth_bin * points_per_bin_;
+  const int cell = std::clamp(static_cast<int>(position), 0, points_ - 1);
+  const double share = position - cell;
+  const double* below = table_.data() + static_cast<std::ptrdiff_t>(cell) * tap_values_;
+  const double* above = below + tap_values_;
+  for (int j = 0; j < tap_values_; ++j) chi[j] = below[j] + share * (above[j] - below[j]);
+}
+
+double FineCorrelation::largest_error(const ForwardModel& model) const {
+  const Eigen::MatrixXd exact = model.tap_correlation_table(2 * points_);
+  std::vector<double> chi(static_cast<std::size_t>(tap_values_));
+  double largest = 0.0;
+  for (int cell = 0; cell < points_; ++cell) {
+    at((cell + 0.5) / points_per_bin_, chi.data());
+    for (int j = 0; j < tap_values_; ++j)
+      largest =
+          std::max(largest, std::abs(chi[static_cast<std::size_t>(j)] - exact(2 * cell + 1, j)));
+  }
+  return largest;
+}
+
+}  // namespace tofsmith
