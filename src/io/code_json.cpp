@@ -123,11 +123,13 @@ std::string code_to_json(const CodeSet& code) {
   OrderedJson json = {{"format", format_name},         {"version", format_version},
                       {"name", code.name()},           {"samples", code.samples()},
                       {"exposures", code.exposures()}, {"taps", code.taps()}};
-  json["modulation"] = json["demodulation"] = OrderedJson::array();
+  OrderedJson modulation = OrderedJson::array(), demodulation = modulation;
   for (int e = 0; e < code.exposures(); ++e)
-    json["modulation"].push_back(waveform_to_json(code.modulation(e)));
+    modulation.push_back(waveform_to_json(code.modulation(e)));
   for (int i = 0; i < code.measurements(); ++i)
-    json["demodulation"].push_back(waveform_to_json(code.demodulation(i)));
+    demodulation.push_back(waveform_to_json(code.demodulation(i)));
+  json["modulation"] = std::move(modulation);
+  json["demodulation"] = std::move(demodulation);
   json["provenance"] = provenance_to_json(code.provenance);
   return format_json(json) + "\n";
 }

@@ -57,6 +57,33 @@ TEST(CodeJson, ReadingUndoesWriting) {
   }
 }
 
+TEST(CodeJson, IsWrittenForPeopleToRead) {
+  const CodeSet code = CodeSet::create("k1", 8, 1, {rectangular_pulse(0.25)}, {square_wave(1, 0)});
+  EXPECT_EQ(code_to_json(code), R"({
+  "format": "tofsmith-code",
+  "version": 1,
+  "name": "k1",
+  "samples": 8,
+  "exposures": 1,
+  "taps": 1,
+  "modulation": [
+    {"kind": "binary", "level": 4.0, "on": [[0.0, 0.25]]}
+  ],
+  "demodulation": [
+    {"kind": "binary", "level": 1.0, "on": [[0.0, 0.5]]}
+  ],
+  "provenance": {
+    "method": "",
+    "camera": "",
+    "seed": 0,
+    "version": "",
+    "residuals": [],
+    "depth_error_m": 0.0
+  }
+}
+)");
+}
+
 TEST(CodeJson, ProvenanceMayBeMissingInPartOrAsAWhole) {
   EXPECT_EQ(parse_code_json(without("", "provenance").dump()).provenance.method, "");
   const CodeSet code = parse_code_json(without("/provenance", "residuals").dump());
@@ -165,9 +192,9 @@ TEST(CodeJson, RefusesNumbersThatAreNoNumbers) {
   std::string text = code_to_json(awkward_code());
   for (const char* number : {"NaN", "Infinity", "1e999"}) {
     std::string broken = text;
-    const std::string level = "\"level\":2.0";
+    const std::string level = "\"level\": 2.0";
     ASSERT_NE(broken.find(level), std::string::npos);
-    broken.replace(broken.find(level), level.size(), std::string("\"level\":") + number);
+    broken.replace(broken.find(level), level.size(), std::string("\"level\": ") + number);
     EXPECT_THAT(io_error_of([&] { parse_code_json(broken, "c.json"); }), HasSubstr("c.json"));
   }
 }
