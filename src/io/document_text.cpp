@@ -11,12 +11,23 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string one_line(const Json& value) {
+std::string plain(const Json& value) {
   try {
     return value.dump();
   } catch (const Json::exception& error) {
     throw std::invalid_argument(fmt::format("cannot be written: {}", error.what()));
   }
+}
+
+std::string one_line(const Json& value) {
+  if (!value.is_structured()) return plain(value);
+  std::string text;
+  for (const auto& [key, member] : value.items()) {
+    if (!text.empty()) text += ", ";
+    if (value.is_object()) text += plain(key) + ": ";
+    text += one_line(member);
+  }
+  return value.is_object() ? "{" + text + "}" : "[" + text + "]";
 }
 
 bool holds_objects(const Json& list) {
@@ -31,7 +42,7 @@ std::string indented(const Json& value, const std::string& indent) {
   for (const auto& [key, member] : value.items()) {
     text += text.empty() ? "\n" : ",\n";
     text += inner;
-    text += list ? one_line(member) : one_line(key) + ": " + indented(member, inner);
+    text += list ? one_line(member) : plain(key) + ": " + indented(member, inner);
   }
   return fmt::format("{}{}\n{}{}", list ? '[' : '{', text, indent, list ? ']' : '}');
 }

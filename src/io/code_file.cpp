@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/code_file.hpp"
+
+#include <fmt/format.h>
+
+#include "io/file_kind.hpp"
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/read_file.hpp"
+
+namespace tofsmith {
+namespace {
+
+std::string near_family(const std::string& name) {
+  std::vector<std::string> known;
+  for (const FamilyDescription& family : list_families()) known.push_back(family.example);
+  const std::string near = nearest_word(name, known);
+  return near.empty() ? "" : fmt::format("; did you mean {}?", near);
+}
+
+}  // namespace
+
+CodeSet read_code(const std::filesystem::path& path, const TapLayout& layout) {
+  if (known_extension(path, {".json", ".npz"}) == ".json")
+    return parse_code_json(read_text_file(path), path.string());
+  return parse_code_npz(read_binary_file(path), path.string(), layout);
+}
+
+void write_code(const std::filesystem::path& path, const CodeSet& code, OutputPolicy policy,
+                std::optional<TapOrder> order) {
+  if (known_extension(path, {".json", ".npz"}) == ".json")
+    write_file_atomically(path, code_to_json(code), policy);
+  else
+    write_file_atomically(path, serialize_code_npz(code, order), policy);
+}
+
+CodeSet load_code(const std::string& name_or_path, const Camera& camera,
+                  const CodeFileOptions& options) {
+  if (is_family(name_or_path)) return build_family(name_or_path, camera);
+  std::error_code ignored;
+  if (!std::filesystem::exists(name_or_path, ignored))
+    throw IoError(name_or_path, fmt::format("there is no such file and no built-in family of that "
+                                            "name{}",
+                                            near_family(name_or_path)));
+  return read_code(name_or_path, {options.taps.value_or(camera.sensor.taps), options.tap_order});
+}
+
+TapOrder parse_tap_order(std::string_view word) {
+  if (word == "blocked") return TapOrder::blocked;
+  require(word == "interleaved", "tap order", word, "must be blocked or interleaved");
+  return TapOrder::interleaved;
+}
+
+}  // namespace tofsmith

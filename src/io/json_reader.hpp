@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tofsmith {
+
+/// One value of a JSON document and its place in it. Every member throws IoError
+/// "file: /json/pointer: found ..; expected ..".
+class JsonReader {
+ public:
+  /// The whole document. Both must outlive the reader. @param file  what errors call it
+  JsonReader(const nlohmann::json& document, std::string_view file);
+
+  double number() const;
+  /// A number of [low, high], give or take `tolerance`.
+  double number(double low, double high, double tolerance) const;
+  int integer(int low, int high) const;
+  std::uint64_t unsigned_integer() const;
+  std::string text() const;
+
+  /// Elements of a list. @param count  how many there must be, and `because` why
+  std::vector<JsonReader> elements() const;
+  std::vector<JsonReader> elements(std::size_t count, std::string_view because) const;
+
+  /// Refuses members of an object other than these, with the nearest of them.
+  void only(std::initializer_list<std::string_view> members) const;
+  JsonReader member(std::string_view name) const;
+  std::optional<JsonReader> optional_member(std::string_view name) const;
+
+  [[noreturn]] void fail(std::string_view problem) const;
+  [[noreturn]] void mistyped(std::string_view expected) const;
+
+ private:
+  JsonReader(const nlohmann::json& value, std::string_view file, std::string pointer);
+  void check_object() const;
+
+  const nlohmann::json* value_;
+  std::string_view file_;
+  std::string pointer_;
+};
+
+}  // namespace tofsmith
