@@ -17,6 +17,8 @@ namespace {
 
 using plotly::Json;
 
+constexpr double cell_px = 42;  // least width that holds a value
+
 /// Two significant digits, as short as a cell needs them.
 std::string cell_text(double value) {
   const double size = std::abs(value);
@@ -105,9 +107,10 @@ Figure heat_map_figure(FigureText text, const std::vector<HeatMap>& maps, const 
                  category_axis(y, leftmost, leftmost));
   }
   layout["margin"] = {{"r", plotly::colour_bar_px}, {"t", plotly::panel_title_px + 8}};
-  return plotly::figure(std::move(text), data, layout,
-                        {.fixed_px = plot_px + plotly::panel_title_px + 70,
-                         .min_width_px = 170.0 * panels.columns() + 150});
+  return plotly::figure(
+      std::move(text), data, layout,
+      {.fixed_px = plot_px + plotly::panel_title_px + 70,
+       .min_width_px = panels.columns() * cell_px * static_cast<double>(x.ticks.size()) + 150});
 }
 
 }  // namespace tofsmith
