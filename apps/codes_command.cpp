@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/code/coding_curve.hpp"
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/io/code_file.hpp"
+#include "tofsmith/report/code_figures.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+struct CodesArguments {
+  std::string name;
+  int samples = 0;
+  std::string output;
+  CameraArguments camera{.name = "paper-30x"};
+};
+
+void list(const Session& session) {
+  nlohmann::ordered_json document = nlohmann::ordered_json::array();
+  std::vector<std::vector<std::string>> rows{{"family", "", "", ""}};
+  std::string text;
+  for (const FamilyDescription& family : list_families()) {
+    document.push_back({{"name", family.name},
+                        {"example", family.example},
+                        {"description", family.description}});
+    text += fmt::format("  {:28} {}\n", family.name, family.description);
+  }
+  session.print_json(document);
+  session.say("Built-in families (a number replaces the capital letter):\n" + text +
+              "Show one with `tofsmith codes hamiltonian-k4`.");
+}
+
+/// One line of # and . per waveform: what a binary waveform looks like over the period.
+std::string strip(const Waveform& waveform) {
+  constexpr int cells = 60;
+  const Eigen::VectorXd values = waveform.cell_averages(cells);
+  const double peak = std::max(values.maxCoeff(), 1e-12);
+  constexpr std::string_view shades = " .:-=+*#";
+  std::string text;
+  for (int n = 0; n < cells; ++n)
+    text += shades[static_cast<std::size_t>(std::min(7.0, std::floor(7.999 * values[n] / peak)))];
+  return text;
+}
+
+void show(const Session& session, const CodeSet& code, const Camera& camera) {
+  const ForwardModel model(code, camera);
+  const Eigen::MatrixXd table = model.correlation_table(8 * code.samples());
+  nlohmann::ordered_json document = {
+      {"name", code.name()},
+      {"samples", code.samples()},
+      {"exposures", code.exposures()},
+      {"taps", code.taps()},
+      {"measurements", code.measurements()},
+      {"peak", code.peak()},
+      {"coding_curve_length", coding_curve_length(table)},
+      {"coding_curve_rank", coding_curve_rank(table)},
+      {"harmonics_99_percent", harmonics_used(table)}};
+  std::vector<std::vector<std::string>> rows{
+      {"measurement", "mod. duty", "mod. peak", "edges", "dem. duty", "edges"}};
+  std::string strips;
+  for (int i = 0; i < code.measurements(); ++i) {
+    const Waveform& m = code.modulation_of(i);
+    const Waveform& d = code.demodulation(i);
+    document["per_measurement"].push_back({{"modulation_duty", m.duty()},
+                                           {"modulation_peak", m.peak()},
+                                           {"modulation_edges", m.edges()},
+                                           {"demodulation_duty", d.mean()},
+                                           {"demodulation_edges", d.edges()}});
+    rows.push_back({fmt::format("{}", i + 1), fmt::format("{:.4f}", m.duty()),
+                    fmt::format("{:.3f}", m.peak()), fmt::format("{}", m.edges()),
+                    fmt::format("{:.4f}", d.mean()), fmt::format("{}", d.edges())});
+    strips += fmt::format("  m{:<2} |{}|\n  d{:<2} |{}|\n", i + 1, strip(m), i + 1, strip(d));
+  }
+  session.print_json(document);
+  session.say(fmt::format(
+      "{} on {}: {} measurements, {} exposures, N = {}, peak {:.3g}\n"
+      "coding curve: length {:.4g}, rank {}, 99 % of its energy within {} harmonics\n\n{}\n{}",
+      code.name(), camera.name, code.measurements(), code.exposures(), code.samples(), code.peak(),
+      coding_curve_length(table), coding_curve_rank(table), harmonics_used(table), text_table(rows),
+      strips));
+}
+
+void write(const Session& session, const CodeSet& code, const Camera& camera,
+           const std::filesystem::path& path) {
+  if (path.extension() == ".html")
+    write_file_atomically(path, render(code_page(code, camera, session.command_line)),
+                          session.output_policy());
+  else
+    write_code(path, code, session.output_policy());
+  session.say(fmt::format("wrote {}", path.string()));
+}
+
+}  // namespace
+
+void add_codes_command(CLI::App& app, Session& session) {
+  auto arguments = std::make_shared<CodesArguments>();
+  CLI::App* command = app.add_subcommand(
+      "codes", "list the built-in code families, or print, plot and save one code");
+  command->add_option("NAME", arguments->name, "a family's name, or a code file");
+  command->add_option("-N,--samples", arguments->samples, "samples per period (the camera's)")
+      ->check(CLI::Range(8, 65536));
+  command->add_option("-o,--output", arguments->output,
+                      "save as .code.json, .npz, .csv, or as a page with plots, .html");
+  arguments->camera.add_to(*command);
+  command->callback([arguments, &session] {
+    if (arguments->name.empty()) {
+      if (!arguments->output.empty()) throw UsageError("-o needs the NAME of a code");
+      return list(session);
+    }
+    if (arguments->samples > 0)
+      arguments->camera.settings.push_back(fmt::format("samples={}", arguments->samples));
+    const Camera camera = arguments->camera.load();
+    const CodeSet code = load_code(arguments->name, camera);
+    if (arguments->output.empty() || !session.json) show(session, code, camera);
+    if (!arguments->output.empty()) write(session, code, camera, arguments->output);
+  });
+}
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "session.hpp"
+
+namespace tofsmith::apps {
+
+/// Each adds one subcommand, in a file of its own. The subcommand's callback does the work and
+/// throws on failure; main() turns exceptions into messages and exit codes.
+void add_demo_command(CLI::App& app, Session& session);
+void add_codes_command(CLI::App& app, Session& session);
+void add_design_command(CLI::App& app, Session& session);
+void add_evaluate_command(CLI::App& app, Session& session);
+void add_simulate_command(CLI::App& app, Session& session);
+void add_decode_command(CLI::App& app, Session& session);
+void add_report_command(CLI::App& app, Session& session);
+
+}  // namespace tofsmith::apps

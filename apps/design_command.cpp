@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "design_output.hpp"
+#include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/correlation_file.hpp"
+#include "tofsmith/io/design_directory.hpp"
+#include "tofsmith/io/result_document.hpp"
+#include "terminal_progress.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+struct DesignArguments {
+  CameraArguments camera;
+  std::string method = "best";
+  std::string target;
+  bool normalize = false;
+  std::vector<int> exposures{3, 4, 5};
+  std::uint64_t seed = 1;
+  int trials = 20000;
+  std::string output;
+};
+
+/// A family, a code file, or a file of correlation functions.
+TargetSet load_target(const DesignArguments& arguments, const Camera& camera) {
+  const std::filesystem::path path = arguments.target;
+  const std::string extension = path.extension().string();
+  if (extension == ".csv" || extension == ".txt" || extension == ".npy" || extension == ".npz")
+    return targets_from_table(path.stem().string(), read_correlation_functions(path),
+                              camera.samples, arguments.normalize);
+  Camera ideal = camera;
+  ideal.sensor.taps = 1;
+  ideal.sensor.readout = Readout::separate;
+  ideal.sensor.modulation_contrast = 1.0;
+  ideal.light.peak_factor = 1e6;  // the ideal code, not the one within this camera's peak
+  return targets_of(load_code(arguments.target, ideal).resampled(camera.samples));
+}
+
+DesignOptions options_for(const DesignArguments& arguments, const Camera& camera) {
+  DesignOptions options;
+  options.exposures = arguments.exposures;
+  options.seed = arguments.seed;
+  options.factorize.seed = arguments.seed;
+  options.trials = arguments.trials;
+  if (!arguments.target.empty()) options.target = load_target(arguments, camera);
+  if (arguments.method == "factorize") {
+    options.baselines.clear();
+    for (const int e : options.exposures)
+      options.baselines.push_back(fmt::format("hamiltonian-k{}", e));
+  }
+  return options;
+}
+
+void run(const DesignArguments& arguments, const Session& session) {
+  const Camera camera = arguments.camera.load();
+  const DesignOptions options = options_for(arguments, camera);
+  if (arguments.output.empty()) {
+    const DesignResult result = design(camera, options, terminal_progress("designing"));
+    print_design(session, camera, result, options);
+    return;
+  }
+  const DesignDirectory directory(arguments.output);
+  if (directory.holds_design() && !session.force)
+    throw IoError((directory.path() / "design.json").string(),
+                  "already exists; use --force to replace the finished design, or another -o DIR");
+  const DesignResult result =
+      design(camera, options, terminal_progress("designing"), directory.store(camera, options));
+  directory.write(camera, result, options, OutputPolicy::overwrite);
+  write_report(session, directory.path(), OutputPolicy::overwrite);
+  print_design(session, camera, result, options);
+  session.say(fmt::format("wrote {}", (directory.path() / "report.html").string()));
+}
+
+}  // namespace
+
+void add_design_command(CLI::App& app, Session& session) {
+  auto arguments = std::make_shared<DesignArguments>();
+  CLI::App* command = app.add_subcommand(
+      "design", "find the modulation and demodulation functions that suit a camera");
+  arguments->camera.add_positional(*command);
+  arguments->camera.add_to(*command);
+  command
+      ->add_option("--method", arguments->method,
+                   "factorize: factorize correlation functions; best: that, with every baseline "
+                   "as a competitor")
+      ->check(CLI::IsMember({"factorize", "best"}))
+      ->capture_default_str();
+  command->add_option("--target", arguments->target,
+                      "correlation functions to aim at: a family, a code file, or a table "
+                      "(.csv .npy .npz); default: Hamiltonian codes");
+  command->add_flag("--normalize", arguments->normalize,
+                    "rescale a table's columns to [0, 1] before use");
+  command->add_option("--exposures", arguments->exposures, "numbers of exposures to try, e.g. 3,4,5")
+      ->delimiter(',')
+      ->check(CLI::Range(3, 6))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "seed of every random choice")
+      ->capture_default_str();
+  command->add_option("--trials", arguments->trials, "trials per operating point for final figures")
+      ->check(CLI::Range(1000, 100000000))
+      ->capture_default_str();
+  command->add_option("-o,--output", arguments->output,
+                      "directory for codes, figures and the report; an interrupted run resumes");
+  command->callback([arguments, &session] { run(*arguments, session); });
+}
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tofsmith/io/design_directory.hpp"
+#include "tofsmith/io/result_document.hpp"
+#include "tofsmith/io/scene_directory.hpp"
+#include "tofsmith/report/design_report.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+std::string estimate_text(const Estimate& e) {
+  return fmt::format("{:.1f} +- {:.1f}", 1e3 * e.value, 1e3 * e.standard_error);
+}
+
+/// Sentences on who won, by how much and over whom.
+std::string verdict(const Camera& camera, const DesignResult& result) {
+  const DepthErrorKind kind = camera.operating.error;
+  const Candidate& winner = result.winner();
+  const double best_m = chosen_error_m(winner.error, kind);
+  std::string text = fmt::format(
+      "best: {} with {} {} depth error (geometric mean over {} operating points, N = {})",
+      winner.code.name(), length_text(best_m),
+      kind == DepthErrorKind::linear ? "linear" : "circular", winner.error.points.size(),
+      camera.samples);
+  for (const char* name : {"sinusoid-k3", "sinusoid-k4", "square-k4", "pulsed-multifrequency-k5"})
+    if (const Candidate* other = result.find(name); other && other != &winner)
+      text += fmt::format("\n  {:.2f}x better than {}",
+                          chosen_error_m(other->error, kind) / best_m, name);
+  for (const Candidate& c : result.candidates)
+    if (c.method != "family" && !c.per_measurement.empty())
+      text += fmt::format("\n  {}: {} ({})", c.code.name(), c.message, time_text(c.seconds));
+  return text;
+}
+
+}  // namespace
+
+void print_design(const Session& session, const Camera& camera, const DesignResult& result,
+                  const DesignOptions& options) {
+  if (session.json) {
+    fmt::print("{}\n", design_document(camera, result, options));
+    return;
+  }
+  const DepthErrorKind kind = camera.operating.error;
+  std::vector<const Candidate*> order;
+  for (const Candidate& c : result.candidates) order.push_back(&c);
+  std::ranges::stable_sort(order, {},
+                           [&](const Candidate* c) { return chosen_error_m(c->error, kind); });
+  std::vector<std::vector<std::string>> rows{
+      {"code", "K", "linear (mm)", "circular (mm)", "rotation (bin)", "made by"}};
+  for (const Candidate* c : order)
+    rows.push_back({c->code.name(), fmt::format("{}", c->error.measurements),
+                    estimate_text(c->error.linear.geometric_mean_m),
+                    estimate_text(c->error.circular.geometric_mean_m),
+                    fmt::format("{}", c->rotation_bin), c->method});
+  session.say(text_table(rows));
+  session.say(verdict(camera, result));
+  for (const std::string& reason : result.left_out) session.say("  left out: " + reason);
+}
+
+void write_report(const Session& session, const std::filesystem::path& directory,
+                  OutputPolicy policy) {
+  const DesignRecord record = DesignDirectory(directory).read();
+  std::optional<SceneResult> scene;
+  if (holds_scene_result(directory / "scene")) scene = read_scene_result(directory / "scene");
+  write_file_atomically(directory / "report.html",
+                        render(design_report(record.camera, record.result, scene,
+                                             session.command_line)),
+                        policy);
+}
+
+}  // namespace tofsmith::apps

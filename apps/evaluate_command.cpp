@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "terminal_progress.hpp"
+#include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/result_document.hpp"
+#include "tofsmith/report/design_report.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+struct EvaluateArguments {
+  std::vector<std::string> codes;
+  CameraArguments camera;
+  EvaluateOptions options;
+  bool on_bins = false;
+  bool best_rotation = false;
+  std::optional<int> taps;
+  std::string tap_order;
+  std::string output;
+};
+
+CodeFileOptions file_options(const EvaluateArguments& arguments) {
+  CodeFileOptions options{.taps = arguments.taps, .tap_order = std::nullopt};
+  if (!arguments.tap_order.empty()) options.tap_order = parse_tap_order(arguments.tap_order);
+  return options;
+}
+
+std::string points_csv(const std::vector<EvaluatedCode>& codes) {
+  std::string text =
+      "code,signal_e_per_s,ambient_e_per_s,linear_mde_m,linear_se_m,circular_mde_m,circular_se_m,"
+      "outlier_rate,cramer_rao_mae_m,receiver_bound_mae_m\n";
+  for (const EvaluatedCode& code : codes)
+    for (const PointDepthError& p : code.error.points)
+      text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n",
+                          code.error.code, p.point.signal_e_per_s, p.point.ambient_e_per_s,
+                          p.linear_mde_m.value, p.linear_mde_m.standard_error,
+                          p.circular_mde_m.value, p.circular_mde_m.standard_error,
+                          p.outlier_rate.value, p.cramer_rao_mae_m, p.receiver_bound_mae_m);
+  return text;
+}
+
+void print(const Session& session, const Camera& camera, const std::vector<EvaluatedCode>& codes,
+           const EvaluateOptions& options) {
+  if (session.json) {
+    fmt::print("{}\n", evaluation_document(camera, codes, options));
+    return;
+  }
+  std::vector<std::vector<std::string>> rows{
+      {"code", "K", "signal (e/s)", "ambient (e/s)", "linear (mm)", "circular (mm)", "outliers (%)",
+       "Cramer-Rao (mm)", "receiver (mm)"}};
+  const auto estimate = [](const Estimate& e) {
+    return fmt::format("{:.4g} +- {:.2g}", 1e3 * e.value, 1e3 * e.standard_error);
+  };
+  for (const EvaluatedCode& code : codes) {
+    for (const PointDepthError& p : code.error.points)
+      rows.push_back({code.error.code, fmt::format("{}", code.error.measurements),
+                      fmt::format("{:.3g}", p.point.signal_e_per_s),
+                      fmt::format("{:.3g}", p.point.ambient_e_per_s), estimate(p.linear_mde_m),
+                      estimate(p.circular_mde_m), fmt::format("{:.2f}", 100 * p.outlier_rate.value),
+                      fmt::format("{:.4g}", 1e3 * p.cramer_rao_mae_m),
+                      fmt::format("{:.4g}", 1e3 * p.receiver_bound_mae_m)});
+    rows.push_back({code.error.code, "", "geometric", "mean",
+                    estimate(code.error.linear.geometric_mean_m),
+                    estimate(code.error.circular.geometric_mean_m), "", "", ""});
+  }
+  session.say(text_table(rows));
+  session.say(fmt::format(
+      "{} trials per operating point, seed {}, N = {}, true depths {}; +- is one standard error",
+      codes.empty() ? options.trials : codes.front().error.trials, options.seed, camera.samples,
+      options.depth == DepthSampling::bins ? "on bins" : "anywhere in the range"));
+}
+
+void run(EvaluateArguments& arguments, const Session& session) {
+  const Camera camera = arguments.camera.load();
+  if (arguments.on_bins) arguments.options.depth = DepthSampling::bins;
+  arguments.options.validate();
+  std::vector<CodeSet> codes;
+  for (const std::string& name : arguments.codes)
+    codes.push_back(load_code(name, camera, file_options(arguments)));
+
+  std::vector<EvaluatedCode> evaluated;
+  const Progress progress = terminal_progress("evaluating");
+  const double count = static_cast<double>(codes.size());
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    const double done = static_cast<double>(i);
+    const Progress part = part_of(progress, done / count, (done + 1) / count);
+    int rotation = 0;
+    if (arguments.best_rotation) {
+      rotation = best_rotation(codes[i], camera, arguments.options).rotation_bin;
+      codes[i] = codes[i].rotated(rotation);
+    }
+    evaluated.push_back({evaluate(codes[i], camera, arguments.options, part), rotation});
+  }
+
+  if (!arguments.output.empty()) {
+    const std::filesystem::path path = arguments.output;
+    std::string content;
+    if (path.extension() == ".csv") {
+      content = points_csv(evaluated);
+    } else if (path.extension() == ".json") {
+      content = evaluation_document(camera, evaluated, arguments.options) + "\n";
+    } else if (path.extension() == ".html") {
+      std::vector<DepthErrorReport> errors;
+      for (const EvaluatedCode& code : evaluated) errors.push_back(code.error);
+      content = render(evaluation_report(camera, codes, errors, session.command_line));
+    } else {
+      throw UsageError(fmt::format("-o {}: unknown extension; expected .csv, .json or .html",
+                                   path.string()));
+    }
+    write_file_atomically(path, content, session.output_policy());
+  }
+  print(session, camera, evaluated, arguments.options);
+}
+
+}  // namespace
+
+void add_evaluate_command(CLI::App& app, Session& session) {
+  auto arguments = std::make_shared<EvaluateArguments>();
+  CLI::App* command = app.add_subcommand(
+      "evaluate", "depth error of codes at every operating point of a camera, with bounds");
+  command->add_option("CODE", arguments->codes, "families or code files (.code.json, .npz)")
+      ->required();
+  arguments->camera.add_to(*command);
+  command->add_option("--trials", arguments->options.trials, "trials per operating point")
+      ->capture_default_str();
+  command->add_option("--seed", arguments->options.seed, "seed of all trials")
+      ->capture_default_str();
+  command
+      ->add_option("--outlier-threshold", arguments->options.outlier_threshold_m,
+                   "circular errors beyond this many metres are outliers")
+      ->capture_default_str();
+  command->add_flag("--on-bins", arguments->on_bins,
+                    "true depths on bins only (flatters codes; for comparison with others)");
+  command->add_flag("!--no-sub-bin", arguments->options.sub_bin,
+                    "decode to the nearest bin only");
+  command->add_flag("--clip-to-open-sensor", arguments->options.clip_to_open_sensor,
+                    "clip electrons to [0, T (S + A)], as the paper's authors' simulator does");
+  command->add_flag("--best-rotation", arguments->best_rotation,
+                    "move each code's origin of depth to where its linear error is least");
+  command->add_option("--taps", arguments->taps, "taps of an NPZ code");
+  command->add_option("--tap-order", arguments->tap_order, "of an NPZ code's columns")
+      ->check(CLI::IsMember({"blocked", "interleaved"}));
+  command->add_option("-o,--output", arguments->output, "write a table (.csv .json) or page (.html)");
+  command->callback([arguments, &session] { run(*arguments, session); });
+}
+
+}  // namespace tofsmith::apps

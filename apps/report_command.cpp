@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/design_directory.hpp"
+#include "tofsmith/io/scene_directory.hpp"
+#include "tofsmith/report/design_report.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+struct ReportArguments {
+  std::string directory;
+  std::string output;
+};
+
+void run(const ReportArguments& arguments, const Session& session) {
+  const std::filesystem::path directory = arguments.directory;
+  if (!std::filesystem::exists(directory / "design.json"))
+    throw IoError(directory.string(),
+                  "holds no design.json; expected a directory made by `tofsmith design -o` or "
+                  "`tofsmith demo -o`");
+  const DesignRecord record = DesignDirectory(directory).read();
+  std::optional<SceneResult> scene;
+  if (holds_scene_result(directory / "scene")) scene = read_scene_result(directory / "scene");
+  const std::filesystem::path output =
+      arguments.output.empty() ? directory / "report.html" : arguments.output;
+  write_file_atomically(
+      output, render(design_report(record.camera, record.result, scene, session.command_line)),
+      session.output_policy());
+  session.say(fmt::format("wrote {}", output.string()));
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& app, Session& session) {
+  auto arguments = std::make_shared<ReportArguments>();
+  CLI::App* command =
+      app.add_subcommand("report", "build the report page of a design or demo directory");
+  command->add_option("DIR", arguments->directory, "directory made by design -o or demo -o")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "HTML file (DIR/report.html)");
+  command->callback([arguments, &session] { run(*arguments, session); });
+}
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/camera_toml.hpp"
+
+namespace tofsmith::apps {
+
+void Session::say(std::string_view line) const {
+  if (!json) fmt::print("{}\n", line);
+}
+
+void Session::print_json(const nlohmann::ordered_json& document) const {
+  if (json) fmt::print("{}\n", document.dump(2));
+}
+
+void CameraArguments::add_to(CLI::App& command) {
+  command.add_option("--camera", name, "camera: a TOML file or a built-in name")
+      ->capture_default_str();
+  command
+      .add_option("--set", settings,
+                  "override a key of the camera, e.g. --set light.peak_factor=5 (repeatable)")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
+void CameraArguments::add_positional(CLI::App& command) {
+  command.add_option("CAMERA", name, "camera: a TOML file or a built-in name");
+}
+
+Camera CameraArguments::load() const { return load_camera(name, settings); }
+
+std::string length_text(double metres) {
+  const double size = std::abs(metres);
+  if (size < 1e-3) return fmt::format("{:.3g} um", metres * 1e6);
+  if (size < 1.0) return fmt::format("{:.3g} mm", metres * 1e3);
+  return fmt::format("{:.3g} m", metres);
+}
+
+std::string time_text(double seconds) {
+  return seconds < 1.0 ? fmt::format("{:.3g} ms", seconds * 1e3) : fmt::format("{:.3g} s", seconds);
+}
+
+std::string text_table(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i)
+      line += i == 0 ? fmt::format("{:<{}}", row[i], widths[i])
+                     : fmt::format("  {:>{}}", row[i], widths[i]);
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  return text;
+}
+
+void create_directories(const std::filesystem::path& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error)
+    throw IoError(directory.string(),
+                  fmt::format("cannot create the directory ({}); expected a writable place",
+                              error.message()));
+  if (!std::filesystem::is_directory(directory))
+    throw IoError(directory.string(), "is a file; expected a directory");
+}
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/io/atomic_file.hpp"
+
+namespace tofsmith::apps {
+
+/// Wrong usage that only shows once the arguments are looked at together: exit 2.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What every subcommand shares: flags, how to print, how to write.
+struct Session {
+  bool json = false;    ///< one JSON document on stdout and nothing else there
+  bool force = false;   ///< overwrite output files
+  int threads = 0;      ///< 0 = every core
+  std::string command_line;  ///< as typed, for reports
+
+  OutputPolicy output_policy() const {
+    return force ? OutputPolicy::overwrite : OutputPolicy::refuse_existing;
+  }
+  /// Prints a line for people; nothing with --json.
+  void say(std::string_view line) const;
+  /// Prints the document with --json.
+  void print_json(const nlohmann::ordered_json& document) const;
+};
+
+/// The options that name a camera: a positional or `--camera` name or file, and `--set key=value`.
+struct CameraArguments {
+  std::string name = "paper-10f0";
+  std::vector<std::string> settings;
+
+  /// Adds `--camera` and `--set` to a subcommand.
+  void add_to(CLI::App& command);
+  /// Adds a positional CAMERA beside them.
+  void add_positional(CLI::App& command);
+  Camera load() const;
+};
+
+/// "0.0653" -> "65.3 mm", "1.25" -> "1.25 m".
+std::string length_text(double metres);
+
+/// "13.2 ms", "4.1 s".
+std::string time_text(double seconds);
+
+/// A table of text with a header, columns padded, numbers (all columns but the first) to the right.
+std::string text_table(const std::vector<std::vector<std::string>>& rows);
+
+/// Creates a directory and its parents. @throws IoError naming it
+void create_directories(const std::filesystem::path& directory);
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "scene_source.hpp"
+#include "terminal_progress.hpp"
+#include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/depth_file.hpp"
+#include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/simulate/capture.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+struct SimulateArguments {
+  SceneSource scene;
+  CameraArguments camera;
+  std::string code;
+  std::optional<double> signal_e_per_s, ambient_e_per_s;
+  CaptureOptions options;
+  std::string output, truth;
+};
+
+void run(SimulateArguments& arguments, const Session& session) {
+  const Camera camera = arguments.camera.load();
+  const CodeSet code = load_code(arguments.code, camera);
+  const LoadedScene scene = load_scene(arguments.scene, camera);
+  const OperatingPoint middle = camera.operating.middle();
+  arguments.options.signal_e_per_s = arguments.signal_e_per_s.value_or(middle.signal_e_per_s);
+  arguments.options.ambient_e_per_s = arguments.ambient_e_per_s.value_or(middle.ambient_e_per_s);
+  const RawFrames raw =
+      capture(scene.image, code, camera, arguments.options, terminal_progress("capturing"));
+  write_raw_frames(arguments.output, raw, session.output_policy());
+  if (!arguments.truth.empty())
+    write_depth(arguments.truth, scene.image.depth_m, session.output_policy());
+  session.print_json({{"scene", scene.name},
+                      {"code", code.name()},
+                      {"camera", camera.name},
+                      {"frames", raw.frames},
+                      {"height", raw.height},
+                      {"width", raw.width},
+                      {"measurements", raw.measurements},
+                      {"signal_e_per_s", arguments.options.signal_e_per_s},
+                      {"ambient_e_per_s", arguments.options.ambient_e_per_s},
+                      {"seed", arguments.options.seed},
+                      {"output", arguments.output}});
+  session.say(fmt::format(
+      "wrote {}: {} frame{} of {} x {} pixels, {} measurements of {} (S = {:.4g} e/s at {:.3g} m, "
+      "A = {:.4g} e/s, seed {})",
+      arguments.output, raw.frames, raw.frames == 1 ? "" : "s", raw.height, raw.width,
+      raw.measurements, code.name(), arguments.options.signal_e_per_s,
+      arguments.options.reference_distance_m, arguments.options.ambient_e_per_s,
+      arguments.options.seed));
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& app, Session& session) {
+  auto arguments = std::make_shared<SimulateArguments>();
+  CLI::App* command = app.add_subcommand("simulate", "raw measurements of a scene");
+  command
+      ->add_option("SCENE", arguments->scene.depth,
+                   "depth image (.npy .npz .exr .pfm .png in mm), or table-top")
+      ->required();
+  command->add_option("--image", arguments->scene.image, "albedo image (.png .npy .exr .pfm)");
+  command->add_flag("--linear-image", arguments->scene.linear_image,
+                    "the PNG holds linear light, not sRGB");
+  command
+      ->add_option("--kind", arguments->scene.kind,
+                   "what the depth image holds: z along the axis, or radial distance")
+      ->check(CLI::IsMember({"z", "radial"}))
+      ->capture_default_str();
+  command->add_option("--code", arguments->code, "a family or a code file")->required();
+  arguments->camera.add_to(*command);
+  command->add_option("--signal", arguments->signal_e_per_s,
+                      "signal of albedo 1 at the reference distance [e/s] (middle of the camera's)");
+  command->add_option("--ambient", arguments->ambient_e_per_s,
+                      "ambient light [e/s] (middle of the camera's)");
+  command
+      ->add_option("--reference-distance", arguments->options.reference_distance_m,
+                   "where the signal is as given [m]")
+      ->capture_default_str();
+  command->add_flag("!--no-falloff", arguments->options.falloff,
+                    "signal depends on albedo only, not on distance and angle");
+  command->add_option("--frames", arguments->options.frames, "independent frames")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->options.seed, "seed of all noise")
+      ->capture_default_str();
+  command->add_option("-o,--output", arguments->output, "raw frames (.npy .npz)")->required();
+  command->add_option("--truth", arguments->truth, "also write the true radial distance");
+  command->callback([arguments, &session] { run(*arguments, session); });
+}
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "tofsmith/design/design.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
+
+namespace tofsmith {
+
+/// A code's depth error and how far its origin was moved for it.
+struct EvaluatedCode {
+  DepthErrorReport error;
+  int rotation_bin = 0;
+};
+
+/// What `tofsmith evaluate --json` prints: version, seed, trials, the camera with its defaults
+/// filled in, and one entry per code with its depth errors and bounds.
+std::string evaluation_document(const Camera& camera, std::span<const EvaluatedCode> codes,
+                                const EvaluateOptions& options);
+
+/// What `tofsmith design --json` prints: the same with one entry per candidate, the name of the
+/// best, and how each designed code compares with its target.
+std::string design_document(const Camera& camera, const DesignResult& result,
+                            const DesignOptions& options);
+
+}  // namespace tofsmith

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/simulate/scene_result.hpp"
+
+namespace tofsmith {
+
+/// Writes a scene and its decodings into a directory:
+///   scene.json                what is there, with the errors
+///   true_depth.npy, albedo.npy, cosine.npy
+///   LIGHT-CODE.npy            decoded depth [m]
+/// @throws IoError
+void write_scene_result(const std::filesystem::path& directory, const SceneResult& scene,
+                        OutputPolicy policy);
+
+/// Whether write_scene_result() has finished here.
+bool holds_scene_result(const std::filesystem::path& directory);
+
+/// @throws IoError naming the file and what is wrong with it
+SceneResult read_scene_result(const std::filesystem::path& directory);
+
+}  // namespace tofsmith

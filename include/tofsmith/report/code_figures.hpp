@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/report/colours.hpp"
+#include "tofsmith/report/page.hpp"
+
+namespace tofsmith {
+
+/// An id for a figure about something named freely: other characters than letters and digits become
+/// dashes.
+std::string figure_id(const std::string& prefix, const std::string& name);
+
+/// Modulation, demodulation and correlation function of every measurement, one row each: as the
+/// generator is told to play them and as the camera's impulse responses leave them.
+/// @param target  what the correlation functions were designed for (N, K), drawn dotted; may be
+///                empty
+Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camera,
+                       const Eigen::MatrixXd& target = {});
+
+/// The coding curves of some codes in their three directions of largest extent, coloured by depth.
+Figure coding_curve_figure(FigureText text, const std::vector<CodeSet>& codes,
+                           const Camera& camera);
+
+/// The camera in words and numbers.
+KeyValueList camera_description(const Camera& camera);
+
+/// A page that shows one code on one camera.
+/// @param command_line  as typed, to be shown on the page; may be empty
+Page code_page(const CodeSet& code, const Camera& camera, const std::string& command_line);
+
+}  // namespace tofsmith

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/pair_choice.hpp"
+
+#include <map>
+
+namespace tofsmith {
+
+namespace {
+
+/// Index of the naive pair, or of the best one where there is no naive pair.
+std::size_t naive_index(const Factorization& factorization) {
+  for (std::size_t i = 0; i < factorization.candidates.size(); ++i)
+    if (factorization.candidates[i].start == "naive") return i;
+  return 0;
+}
+
+}  // namespace
+
+CodeSet assemble(const std::string& name, const std::vector<Factorization>& factorizations,
+                 const PairChoice& choice, const Camera& camera) {
+  std::vector<Waveform> modulation, demodulation;
+  for (std::size_t k = 0; k < choice.size(); ++k) {
+    const WaveformPair& pair = factorizations[k].candidates[choice[k]].pair;
+    modulation.push_back(pair.modulation);
+    demodulation.push_back(pair.demodulation);
+  }
+  const CodeSet code = CodeSet::create(name, camera.samples, 1, std::move(modulation),
+                                       std::move(demodulation));
+  return camera.sensor.taps == 2 ? code.with_two_buckets() : code;
+}
+
+PairChoice choose_by_depth_error(const std::vector<Factorization>& factorizations,
+                                 const Camera& camera, const EvaluateOptions& options,
+                                 const Progress& progress) {
+  std::map<PairChoice, double> known;
+  const auto error_of = [&](const PairChoice& choice) {
+    const auto [entry, fresh] = known.try_emplace(choice, 0.0);
+    if (fresh) {
+      const CodeSet code = assemble("candidate", factorizations, choice, camera);
+      entry->second = chosen_error_m(evaluate(code, camera, options), camera.operating.error);
+    }
+    return entry->second;
+  };
+
+  PairChoice best(factorizations.size(), 0);
+  PairChoice naive;
+  for (const Factorization& f : factorizations) naive.push_back(naive_index(f));
+  if (error_of(naive) < error_of(best)) best = naive;
+
+  bool improved = true;
+  for (int round = 0; improved && round < 3; ++round) {
+    improved = false;
+    for (std::size_t k = 0; k < best.size(); ++k) {
+      for (std::size_t i = 0; i < factorizations[k].candidates.size(); ++i) {
+        PairChoice trial = best;
+        trial[k] = i;
+        if (error_of(trial) >= error_of(best)) continue;
+        best = trial;
+        improved = true;
+      }
+      report(progress, (round + static_cast<double>(k + 1) / static_cast<double>(best.size())) / 3,
+             "choosing pairs by depth error");
+    }
+  }
+  return best;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "tofsmith/design/design.hpp"
+
+namespace tofsmith {
+
+/// A code's entry of evaluation and design documents.
+nlohmann::ordered_json depth_error_json(const DepthErrorReport& report, int rotation_bin);
+
+/// The same back from a document; light levels and figures as written.
+DepthErrorReport depth_error_from_json(const nlohmann::json& entry, const nlohmann::json& document);
+
+/// How the measurements of a designed code compare with their targets.
+nlohmann::ordered_json measurements_json(const std::vector<MeasurementReport>& reports);
+/// The same back, without histories; none where the entry has no `per_measurement`.
+std::vector<MeasurementReport> measurements_from_json(const nlohmann::json& entry);
+
+/// Version, seed, trials, outlier threshold and camera: the head of every result document.
+nlohmann::ordered_json document_head(const Camera& camera, std::uint64_t seed, std::int64_t trials,
+                                     double outlier_threshold_m);
+
+/// The head, the name of the best and one entry per candidate.
+nlohmann::ordered_json design_json(const Camera& camera, const DesignResult& result,
+                                   const DesignOptions& options);
+
+}  // namespace tofsmith

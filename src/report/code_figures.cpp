@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/report/code_figures.hpp"
+
+#include <fmt/format.h>
+
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/camera/played_waveform.hpp"
+#include "tofsmith/code/coding_curve.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/report/small_multiples.hpp"
+#include "tofsmith/report/space_figure.hpp"
+#include "tofsmith/version.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr int curve_points = 480;  // of a drawn period
+
+std::vector<double> axis_values(int points, double end) {
+  std::vector<double> values(static_cast<std::size_t>(points));
+  for (int j = 0; j < points; ++j) values[static_cast<std::size_t>(j)] = end * j / points;
+  return values;
+}
+
+/// A waveform as told to the generator: its switching times as steps, not a grid's.
+Series told(const std::string& name, const Waveform& waveform, double period_ns, LineStyle style) {
+  const StepFunction steps = waveform.steps();
+  Series series{.name = name, .period = period_ns, .mark = Mark::steps, .style = style};
+  for (std::size_t i = 0; i < steps.values.size(); ++i) {
+    series.x.push_back(steps.breakpoints[i] * period_ns);
+    series.y.push_back(steps.values[i]);
+  }
+  return series;
+}
+
+std::vector<Series> arm_series(const Waveform& waveform, const ImpulseResponse& response,
+                               double frequency_hz, LineStyle style) {
+  const double period_ns = 1e9 / frequency_hz;
+  LineStyle faint = style;
+  faint.width_px = 1.0;
+  if (response.kind == ImpulseResponse::Kind::none)
+    return {told("played", waveform, period_ns, style)};
+  Series smooth{.name = "after the impulse response",
+                .x = axis_values(curve_points, period_ns),
+                .y = to_values(played_waveform(waveform, response, frequency_hz, curve_points)),
+                .period = period_ns,
+                .style = style};
+  return {told("played", waveform, period_ns, faint), smooth};
+}
+
+std::string response_text(const ImpulseResponse& response) {
+  switch (response.kind) {
+    case ImpulseResponse::Kind::none:
+      return "none";
+    case ImpulseResponse::Kind::hann:
+      return fmt::format("Hann window, f_max {:.4g} MHz", response.f_max_hz / 1e6);
+    case ImpulseResponse::Kind::gaussian:
+    case ImpulseResponse::Kind::lowpass:
+      return fmt::format("{}, -3 dB at {:.4g} MHz", name_of(response.kind),
+                         response.cutoff_hz / 1e6);
+    case ImpulseResponse::Kind::file:
+      return fmt::format("measured, {} ({} samples)", response.file, response.samples.size());
+  }
+  return "";
+}
+
+std::string arm_text(bool binary) { return binary ? "switches on and off" : "analog"; }
+
+}  // namespace
+
+std::string figure_id(const std::string& prefix, const std::string& name) {
+  std::string id = prefix + "-";
+  for (const char c : name)
+    id += (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ? c : '-';
+  return id;
+}
+
+Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camera,
+                       const Eigen::MatrixXd& target) {
+  ColourAssignment colours;
+  const LineStyle light = colours.style("light"), sensor = colours.style("sensor"),
+                  correlation = colours.style("correlation");
+  const double frequency_hz = camera.fundamental_frequency_hz;
+  const ForwardModel model(code, camera);
+  const Eigen::MatrixXd table = model.tap_correlation_table(curve_points);
+  const double range_m = camera.range_m();
+
+  std::vector<PanelRow> rows;
+  for (int i = 0; i < code.measurements(); ++i) {
+    std::vector<Series> correlations{{.name = "correlation function",
+                                      .x = axis_values(curve_points, range_m),
+                                      .y = to_values(table.col(i)),
+                                      .period = range_m,
+                                      .style = correlation}};
+    const int target_column = code.exposure_of(i);
+    if (i % code.taps() == 0 && target_column < target.cols())
+      correlations.push_back(
+          {.name = "target",
+           .x = axis_values(static_cast<int>(target.rows()), range_m),
+           .y = to_values(target.col(target_column)),
+           .period = range_m,
+           .style = reference_style()});
+    rows.push_back({.title = fmt::format("{}", i + 1),
+                    .panels = {arm_series(code.modulation_of(i), camera.light.impulse_response,
+                                          frequency_hz, light),
+                               arm_series(code.demodulation(i), camera.sensor.impulse_response,
+                                          frequency_hz, sensor),
+                               std::move(correlations)}});
+  }
+  return small_multiples(
+      std::move(text),
+      {{.title = "Modulation", .x = {.label = "time", .unit = "ns"}, .y = {.label = "power / average", .from_zero = true}},
+       {.title = "Demodulation", .x = {.label = "time", .unit = "ns"}, .y = {.label = "gain", .from_zero = true}},
+       {.title = "Correlation", .x = {.label = "depth", .unit = "m"}, .y = {.label = "chi", .from_zero = true}}},
+      rows);
+}
+
+Figure coding_curve_figure(FigureText text, const std::vector<CodeSet>& codes,
+                           const Camera& camera) {
+  std::vector<Curve3d> curves;
+  Eigen::VectorXd depth_m(curve_points);
+  for (int j = 0; j < curve_points; ++j) depth_m[j] = camera.range_m() * j / curve_points;
+  for (const CodeSet& code : codes) {
+    const Eigen::MatrixXd table = ForwardModel(code, camera).correlation_table(curve_points);
+    curves.push_back({.title = fmt::format("{} (length {:.2f})", code.name(),
+                                           coding_curve_length(table)),
+                      .points = coding_curve_in_space(table),
+                      .values = depth_m});
+  }
+  return curve_3d_figure(std::move(text), curves,
+                         {Axis{.label = "axis 1"}, Axis{.label = "axis 2"}, Axis{.label = "axis 3"}},
+                         {.label = "depth", .unit = "m"});
+}
+
+KeyValueList camera_description(const Camera& camera) {
+  KeyValueList list;
+  const auto add = [&](std::string key, std::string value) {
+    list.entries.push_back({std::move(key), std::move(value)});
+  };
+  add("name", camera.name);
+  add("fundamental frequency", fmt::format("{:.4g} MHz (range {:.3f} m)",
+                                           camera.fundamental_frequency_hz / 1e6, camera.range_m()));
+  add("exposure", camera.exposure_s.each_s.empty()
+                      ? fmt::format("{:.4g} ms in total", camera.exposure_s.total_s * 1e3)
+                      : fmt::format("{} listed exposures", camera.exposure_s.each_s.size()));
+  add("samples per period", fmt::format("{}", camera.samples));
+  add("peak over average power", fmt::format("{:.4g}", camera.light.peak_factor));
+  add("light source", arm_text(camera.light.binary) + "; response: " +
+                          response_text(camera.light.impulse_response));
+  add("sensor", fmt::format("{} tap{}, {}; response: {}", camera.sensor.taps,
+                            camera.sensor.taps > 1 ? "s" : "", arm_text(camera.sensor.binary),
+                            response_text(camera.sensor.impulse_response)));
+  add("noise", fmt::format("{} electrons, read noise {:.4g} e",
+                           camera.sensor.noise == NoiseModel::poisson ? "Poisson" : "Gaussian",
+                           camera.sensor.read_noise_e));
+  add("judged by", fmt::format("{} depth error over {} signal x {} ambient levels",
+                               camera.operating.error == DepthErrorKind::linear ? "linear"
+                                                                               : "circular",
+                               camera.operating.signal_e_per_s.size(),
+                               camera.operating.ambient_e_per_s.size()));
+  return list;
+}
+
+Page code_page(const CodeSet& code, const Camera& camera, const std::string& command_line) {
+  Page page{.title = code.name(),
+            .subtitle = fmt::format("{} measurements on {}", code.measurements(), camera.name),
+            .footer = "tofsmith " TOFSMITH_VERSION};
+  page.sections.push_back({"Camera", {camera_description(camera)}});
+  page.sections.push_back(
+      {"Waveforms",
+       {waveform_figure({.id = "waveforms",
+                         .title = "Waveforms and correlation functions.",
+                         .caption = "One row per measurement, over one period."},
+                        code, camera),
+        coding_curve_figure({.id = "coding-curve",
+                             .title = "Coding curve.",
+                             .caption = "The path that the correlation values draw as depth runs "
+                                        "through the range."},
+                            {code}, camera)}});
+  if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
+  return page;
+}
+
+}  // namespace tofsmith

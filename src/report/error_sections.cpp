@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "report/error_sections.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "tofsmith/report/bar_figure.hpp"
+#include "tofsmith/report/heat_map_figure.hpp"
+#include "tofsmith/report/line_figure.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+std::string level_text(double electrons_per_s) { return fmt::format("{:.2g}", electrons_per_s); }
+
+std::vector<std::size_t> by_error(std::span<const ComparedCode> codes, DepthErrorKind kind) {
+  std::vector<std::size_t> order(codes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return codes[a].error->of(kind).geometric_mean_m.value <
+           codes[b].error->of(kind).geometric_mean_m.value;
+  });
+  return order;
+}
+
+std::string estimate_mm(const Estimate& e) {
+  return fmt::format("{:.1f} ± {:.1f}", 1e3 * e.value, 1e3 * e.standard_error);
+}
+
+Table comparison_table(const Camera& camera, std::span<const ComparedCode> codes,
+                       const std::vector<std::size_t>& order, std::size_t best) {
+  const DepthErrorReport& first = *codes[0].error;
+  Table table{
+      .id = "comparison",
+      .caption = fmt::format("Depth error over {} operating points, {} trials each, N = {}, true "
+                             "depths anywhere in the range; ± is one standard error. Outliers are "
+                             "circular errors beyond {:.2g} m.",
+                             first.points.size(), first.trials, camera.samples,
+                             first.outlier_threshold_m),
+      .columns = {{"code"}, {"made by"}, {"K", true}, {"linear, geometric mean (mm)", true},
+                  {"circular, geometric mean (mm)", true}, {"circular, mean (mm)", true},
+                  {"outliers (%)", true}}};
+  for (const std::size_t i : order) {
+    const DepthErrorReport& e = *codes[i].error;
+    double outliers = 0.0;
+    for (const PointDepthError& p : e.points) outliers += p.outlier_rate.value;
+    if (i == best) table.highlighted_row = static_cast<int>(table.rows.size());
+    table.rows.push_back({e.code, codes[i].method, fmt::format("{}", e.measurements),
+                          estimate_mm(e.linear.geometric_mean_m),
+                          estimate_mm(e.circular.geometric_mean_m), estimate_mm(e.circular.mean_m),
+                          fmt::format("{:.1f}", 100 * outliers / static_cast<double>(e.points.size()))});
+  }
+  return table;
+}
+
+Figure bars(std::span<const ComparedCode> codes, const std::vector<std::size_t>& order,
+            ColourAssignment& colours) {
+  BarSeries linear{.name = "linear"}, circular{.name = "circular"};
+  linear.style = colours.style("linear");
+  circular.style = colours.style("circular");
+  std::vector<std::string> names;
+  for (const std::size_t i : order) {
+    const DepthErrorReport& e = *codes[i].error;
+    names.push_back(e.code);
+    linear.values.push_back(1e3 * e.linear.geometric_mean_m.value);
+    linear.errors.push_back(1e3 * e.linear.geometric_mean_m.standard_error);
+    circular.values.push_back(1e3 * e.circular.geometric_mean_m.value);
+    circular.errors.push_back(1e3 * e.circular.geometric_mean_m.standard_error);
+  }
+  return bar_figure({.id = "depth-error",
+                     .title = "Depth error of all candidates.",
+                     .caption = "Geometric mean over the operating points. The linear error counts "
+                                "a wrap at the end of the range in full, the circular one takes "
+                                "the shorter way round."},
+                    names, {linear, circular},
+                    {.label = "depth error", .unit = "mm", .from_zero = true});
+}
+
+/// Error along signal at the middle ambient level, with the bounds.
+Figure curves(const Camera& camera, std::span<const ComparedCode> codes,
+              const std::vector<std::size_t>& order, std::size_t best, ColourAssignment& colours) {
+  const double ambient = camera.operating.middle().ambient_e_per_s;
+  constexpr std::size_t most = 6;  // more lines hide each other
+  std::vector<Series> series;
+  for (std::size_t rank = 0; rank < std::min(most, order.size()); ++rank) {
+    const DepthErrorReport& e = *codes[order[rank]].error;
+    Series line{.name = e.code, .mark = Mark::line_and_markers, .style = colours.style(e.code)};
+    for (const PointDepthError& p : e.points) {
+      if (p.point.ambient_e_per_s != ambient) continue;
+      line.x.push_back(p.point.signal_e_per_s);
+      line.y.push_back(1e3 * p.circular_mde_m.value);
+      line.y_error.push_back(1e3 * p.circular_mde_m.standard_error);
+    }
+    series.push_back(std::move(line));
+  }
+  const DepthErrorReport& winner = *codes[best].error;
+  Series cramer_rao{.name = "Cramér-Rao bound of " + winner.code, .style = reference_style()};
+  Series receiver{.name = "receiver bound of the camera", .style = reference_style()};
+  receiver.style.dash = Dash::dash_dot;
+  for (const PointDepthError& p : winner.points) {
+    if (p.point.ambient_e_per_s != ambient) continue;
+    cramer_rao.x.push_back(p.point.signal_e_per_s);
+    cramer_rao.y.push_back(1e3 * p.cramer_rao_mae_m);
+    receiver.x.push_back(p.point.signal_e_per_s);
+    receiver.y.push_back(1e3 * p.receiver_bound_mae_m);
+  }
+  series.push_back(std::move(cramer_rao));
+  if (receiver.y.front() > 0.0) series.push_back(std::move(receiver));
+  return line_figure(
+      {.id = "error-by-signal",
+       .title = "Circular depth error by signal.",
+       .caption = fmt::format("At ambient light of {} e/s; the {} best codes. The bounds hold "
+                              "for estimators without bias and know no wrap, so a code may come "
+                              "below them where it is little better than guessing.",
+                              level_text(ambient), std::min(most, order.size()))},
+      series, {.label = "signal", .unit = "e/s", .logarithmic = true},
+      {.label = "mean circular depth error", .unit = "mm", .logarithmic = true});
+}
+
+Figure heat_maps(const Camera& camera, std::span<const ComparedCode> codes,
+                 const std::vector<std::size_t>& order, DepthErrorKind kind) {
+  const OperatingRange& range = camera.operating;
+  CategoryAxis x{.label = "ambient", .unit = "e/s"}, y{.label = "signal", .unit = "e/s"};
+  for (const double a : range.ambient_e_per_s) x.ticks.push_back(level_text(a));
+  for (const double s : range.signal_e_per_s) y.ticks.push_back(level_text(s));
+  std::vector<HeatMap> maps;
+  for (const std::size_t i : order) {
+    const DepthErrorReport& e = *codes[i].error;
+    HeatMap map{.title = e.code};
+    map.values.resize(std::ssize(range.signal_e_per_s), std::ssize(range.ambient_e_per_s));
+    for (Eigen::Index s = 0; s < map.values.rows(); ++s)
+      for (Eigen::Index a = 0; a < map.values.cols(); ++a) {
+        const PointDepthError& p = e.points[static_cast<std::size_t>(s * map.values.cols() + a)];
+        map.values(s, a) = 1e3 * (kind == DepthErrorKind::linear ? p.linear_mde_m.value
+                                                                 : p.circular_mde_m.value);
+      }
+    maps.push_back(std::move(map));
+  }
+  const std::string name = kind == DepthErrorKind::linear ? "linear" : "circular";
+  return heat_map_figure({.id = "error-maps",
+                          .title = fmt::format("Mean {} depth error by operating point.", name),
+                          .caption = "In mm, all codes on one logarithmic colour scale, best first."},
+                         maps, x, y, {.label = "depth error", .unit = "mm", .logarithmic = true});
+}
+
+}  // namespace
+
+Section depth_error_section(const Camera& camera, std::span<const ComparedCode> codes,
+                            std::size_t best) {
+  const DepthErrorKind kind = camera.operating.error;
+  const std::vector<std::size_t> order = by_error(codes, kind);
+  ColourAssignment colours;
+  Section section{.title = "Depth error"};
+  section.blocks.push_back(comparison_table(camera, codes, order, best));
+  section.blocks.push_back(bars(codes, order, colours));
+  section.blocks.push_back(heat_maps(camera, codes, order, kind));
+  if (camera.operating.signal_e_per_s.size() > 1)
+    section.blocks.push_back(curves(camera, codes, order, best, colours));
+  return section;
+}
+
+}  // namespace tofsmith
