@@ -23,6 +23,7 @@ packages_build=(
 packages_test=(
   "${packages_build[@]}"
   libgtest-dev libgmock-dev
+  python3-numpy                              # reads and writes NPY as others do
   chromium chromium-driver python3-selenium  # the report, in a browser
 )
 packages_benchmark=(
