@@ -23,7 +23,7 @@ constexpr std::uint32_t version_mask = 0xff, tiled_flag = 0x200, long_names_flag
 struct Layout {
   std::uint64_t height = 0, width = 0;
   std::uint64_t tile_height = 0, tile_width = 0;
-  bool has_channels = false;
+  std::uint64_t channels = 0;
 };
 
 void check_version(ByteCursor& cursor) {
@@ -49,12 +49,12 @@ void note_data_window(ByteCursor value, Layout& layout, std::string_view file) {
 
 void note_channels(ByteCursor value, Layout& layout) {
   constexpr std::uint32_t half_type = 1, float_type = 2;
-  constexpr int max_channels = 64;
-  int count = 0;
+  constexpr std::uint64_t max_channels = 64;
+  layout.channels = 0;
   for (;;) {
     const std::string_view name = value.take_until('\0', "a channel name");
     if (name.empty()) break;
-    if (++count > max_channels)
+    if (++layout.channels > max_channels)
       value.fail(fmt::format("found more than {} channels; expected fewer", max_channels));
     const std::uint32_t type = value.take_u32_little("a channel");
     if (type != half_type && type != float_type)
@@ -66,7 +66,6 @@ void note_channels(ByteCursor value, Layout& layout) {
       value.fail(
           fmt::format("channel '{}' has every {}th column and {}th row; expected all", name, x, y));
   }
-  layout.has_channels = count > 0;
 }
 
 void note_tiles(ByteCursor value, Layout& layout) {
@@ -80,13 +79,25 @@ void note_tiles(ByteCursor value, Layout& layout) {
 }
 
 /// Every tile has an 8-byte entry in the file's offset table.
-void check_tile_count(const Layout& layout, std::size_t file_bytes, ByteCursor& cursor) {
+void check_tile_count(const Layout& layout, std::size_t file_bytes, const ByteCursor& cursor) {
   if (layout.tile_width == 0) return;
   const std::uint64_t across = (layout.width - 1) / layout.tile_width + 1;
   const std::uint64_t down = (layout.height - 1) / layout.tile_height + 1;
   if (across * down * 8 > file_bytes)
     cursor.fail(
         fmt::format("found {} x {} tiles; expected no more than the file can hold", down, across));
+}
+
+/// A flat image can be packed almost without end, so a bound on the ratio alone would refuse small
+/// ones; the ratio is what a constant image reaches in large DWA blocks.
+void check_unpacked_size(const Layout& layout, std::size_t file_bytes, const ByteCursor& cursor) {
+  constexpr std::uint64_t harmless_bytes = std::uint64_t{1} << 26, largest_ratio = 65536;
+  const std::uint64_t unpacked = layout.channels * layout.height * layout.width * sizeof(float);
+  if (unpacked > harmless_bytes && unpacked / largest_ratio > file_bytes)
+    cursor.fail(
+        fmt::format("found {} channels of {} x {} pixels; expected at most what a file of "
+                    "{} bytes can unpack to",
+                    layout.channels, layout.height, layout.width, file_bytes));
 }
 
 }  // namespace
@@ -112,8 +123,9 @@ void check_exr_layout(std::span<const std::byte> content, std::string_view file)
     if (name == "tiles" && type == "tiledesc") note_tiles(value, layout);
   }
   if (layout.width == 0) cursor.fail("the header ends here; expected a data window in it");
-  if (!layout.has_channels) cursor.fail("the header ends here; expected channels in it");
+  if (layout.channels == 0) cursor.fail("the header ends here; expected channels in it");
   check_tile_count(layout, content.size(), cursor);
+  check_unpacked_size(layout, content.size(), cursor);
 }
 
 }  // namespace tofsmith

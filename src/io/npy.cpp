@@ -109,7 +109,14 @@ std::vector<std::byte> serialize_npy(const NpyArray& array) {
 }
 
 void write_npy(const std::filesystem::path& path, const NpyArray& array, OutputPolicy policy) {
-  write_file_atomically(path, serialize_npy(array), policy);
+  AtomicFile file(path, policy);
+  if constexpr (host_is_little_endian) {  // no copy of what may be gigabytes
+    file.write(serialize_npy_header(array.type(), array.shape()));
+    file.write(array.bytes());
+  } else {
+    file.write(serialize_npy(array));
+  }
+  file.commit();
 }
 
 }  // namespace tofsmith
