@@ -75,6 +75,20 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"hamiltonian-k4", "paper-10f0", 2},
                     Case{"hamiltonian-k5", "paper-10f0", 2, Readout::difference}));
 
+TEST(Decoder, SaysTheSameOnEveryInstructionSet) {
+  const DecodeSetup setup("hamiltonian-k5", camera_with("paper-10f0", 2));
+  const RawFrames frame = frame_of(noisy_pixels(setup.decoder.table(), 2e3, 1e4, 3000, 9), 10);
+  const DepthImage expected = setup.decoder.decode(frame);
+  for_each_target([&] {
+    const DepthImage image = setup.decoder.decode(frame);
+    EXPECT_EQ(image.depth_m.pixels, expected.depth_m.pixels);
+    EXPECT_EQ(image.confidence.pixels, expected.confidence.pixels);
+    EXPECT_EQ(image.predicted_standard_deviation_m.pixels,
+              expected.predicted_standard_deviation_m.pixels);
+    EXPECT_EQ(image.status.pixels, expected.status.pixels);
+  });
+}
+
 TEST(Decoder, AgreesWithTheReferenceOnFineGrids) {
   Camera camera = camera_with("paper-10f0");
   camera.samples = 3000;
