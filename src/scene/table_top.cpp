@@ -15,7 +15,7 @@ constexpr double first_book_z_m = 1.7;
 constexpr double wall_z_m = first_book_z_m + 2.0;
 
 Shape book(double x_m, double z_m, double turn_rad, const Texture& cover) {
-  const Eigen::Vector3d size_m(0.30, 0.42, 0.06);  // width, height, thickness
+  const Eigen::Vector3d size_m(0.34, 0.48, 0.06);  // width, height, thickness
   return Box{.centre = {x_m, -0.5 * size_m.y(), z_m + 0.5 * size_m.z()},
              .size_m = size_m,
              .rotation = Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitY()).toRotationMatrix(),
@@ -35,10 +35,10 @@ StagedScene table_top_scene(int width, int height) {
       Plane{.point = {0.0, 0.0, wall_z_m},
             .normal = {0.0, 0.0, -1.0},
             .texture = {Pattern::checker, 0.80, 0.65, 0.50}},
-      book(-0.48, first_book_z_m, 0.10, {Pattern::uniform, 0.10, 0.10, 0.1}),
-      book(-0.10, first_book_z_m + 0.2, -0.08, {Pattern::stripes, 0.70, 0.50, 0.07}),
-      book(0.28, first_book_z_m + 0.4, 0.06, {Pattern::checker, 0.90, 0.60, 0.06}),
-      Sphere{.centre = {0.42, -0.20, 1.25},
+      book(-0.62, first_book_z_m, 0.10, {Pattern::uniform, 0.10, 0.10, 0.1}),
+      book(-0.14, first_book_z_m + 0.2, -0.08, {Pattern::stripes, 0.70, 0.50, 0.07}),
+      book(0.35, first_book_z_m + 0.4, 0.06, {Pattern::checker, 0.90, 0.60, 0.06}),
+      Sphere{.centre = {0.45, -0.20, 1.25},
              .radius_m = 0.20,
              .texture = {Pattern::checker, 0.95, 0.60, 0.20 * std::numbers::pi / 6}},
   };

@@ -1,0 +1,230 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/simulate/bounds.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/core/random.hpp"
+
+namespace tofsmith {
+namespace {
+
+using std::numbers::pi;
+
+CramerRaoBound bound_of(const CodeSet& code, const Camera& camera,
+                        NoiseInformation information = NoiseInformation::mean) {
+  return {ForwardModel(code, camera), camera, information};
+}
+
+TEST(CramerRaoBound, OfSinusoidsUnderStrongAmbientLightIsThatOfFourPhases) {
+  Camera camera = built_in_camera("paper-30x");
+  const CramerRaoBound bound = bound_of(build_family("sinusoid-k4", camera), camera);
+  // chi = 1/2 + cos / 4: phase deviates by sqrt(V / 2) / a with a = T S / 4, T = 0.3 s / 4.
+  const double S = 1e5, A = 1e8, T = 0.3 / 4;
+  const double V = T * (S + A) / 2 + 400.0;
+  const double sigma_m = camera.range_m() / (2 * pi) * std::sqrt(V / 2) / (T * S / 4);
+  EXPECT_NEAR(bound.mae_m({S, A}), std::sqrt(2 / pi) * sigma_m, 2e-3 * sigma_m);
+}
+
+TEST(CramerRaoBound, MatchesAnInverseOfTheFisherMatrix) {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.sensor.dark_current_e_per_s = 300.0;
+  const CodeSet code = build_family("hamiltonian-k5", camera);
+  const ForwardModel model(code, camera);
+  const OperatingPoint point{2e4, 3e3};
+  const Eigen::VectorXd sigma_m = bound_of(code, camera).sigma_m(point);
+  ASSERT_EQ(sigma_m.size(), 960);
+  for (int j = 3; j < 960; j += 61) {
+    const double z = (j + 0.5) / 4, h = 1e-3;
+    const Return seen{point.signal_e_per_s, z};
+    const Eigen::VectorXd weight = model.variance_e2(std::span(&seen, 1), 3e3).cwiseInverse();
+    Eigen::MatrixXd jacobian(5, 3);
+    jacobian.col(0) =
+        model.exposure_s().cwiseProduct(model.correlation(z + h) - model.correlation(z - h)) *
+        point.signal_e_per_s / (2 * h);
+    jacobian.col(1) = model.exposure_s().cwiseProduct(model.correlation(z));
+    jacobian.col(2) = model.exposure_s().cwiseProduct(model.ambient_gain());
+    const Eigen::Matrix3d fisher = jacobian.transpose() * weight.asDiagonal() * jacobian;
+    const double expected_m = std::sqrt(fisher.inverse()(0, 0)) * camera.bin_m();
+    EXPECT_NEAR(sigma_m[j] / expected_m, 1.0, 1e-3) << j;
+  }
+}
+
+TEST(CramerRaoBound, VarianceAddsLittleInformationAndNeverTakesAny) {
+  const Camera camera = built_in_camera("paper-10f0");
+  const CodeSet code = build_family("hamiltonian-k4", camera);
+  const double mean = bound_of(code, camera).mae_m({1e4, 1e4});
+  const double both = bound_of(code, camera, NoiseInformation::mean_and_variance).mae_m({1e4, 1e4});
+  EXPECT_LE(both, mean * (1 + 1e-12));
+  EXPECT_GT(both, 0.99 * mean);
+}
+
+TEST(CramerRaoBound, NeedsNoAmbientInTheMeasurements) {
+  // Differences of buckets cancel ambient light: its column of the Fisher matrix is zero.
+  Camera camera = built_in_camera("paper-10f0");
+  camera.sensor.taps = 2;
+  const CodeSet code = build_family("hamiltonian-k3", camera);
+  const double separate = bound_of(code, camera).mae_m({1e4, 1e4});
+  camera.sensor.readout = Readout::difference;
+  const double difference = bound_of(code, camera).mae_m({1e4, 1e4});
+  EXPECT_TRUE(std::isfinite(difference));
+  EXPECT_GE(difference, separate * (1 - 1e-9));
+  EXPECT_LT(difference, 1.2 * separate);
+}
+
+TEST(CramerRaoBound, IsInfiniteWhereDepthChangesNothing) {
+  const Camera camera = built_in_camera("paper-30x");
+  // One narrow pulse against half-open gates: away from the edges nothing changes.
+  const CodeSet code =
+      CodeSet::create("dead zones", 240, 1, {3, rectangular_pulse(1.0 / 30)},
+                      {square_wave(1, 0.0), square_wave(1, 1.0 / 3), square_wave(1, 2.0 / 3)});
+  EXPECT_TRUE(std::isinf(bound_of(code, camera).mae_m({1e5, 1e3})));
+}
+
+TEST(CramerRaoBound, UniformAlbedoCostsMoreThanFullAlbedoAndStaysFinite) {
+  const Camera camera = built_in_camera("paper-10f0");
+  const CramerRaoBound bound = bound_of(build_family("hamiltonian-k4", camera), camera);
+  const OperatingPoint point{1e5, 1e3};
+  EXPECT_GT(bound.mae_uniform_albedo_m(point), bound.mae_m(point));
+  EXPECT_LT(bound.mae_uniform_albedo_m(point), camera.range_m() / 4);
+  // Against a plain midpoint sum over 400 albedos.
+  double sum = 0.0;
+  for (int i = 0; i < 400; ++i)
+    sum += std::min(camera.range_m() / 4, bound.mae_m({(i + 0.5) / 400 * 1e5, 1e3}));
+  EXPECT_NEAR(bound.mae_uniform_albedo_m(point) / (sum / 400), 1.0, 0.02);
+}
+
+TEST(ReceiverBound, IsTheClosedFormForOneTap) {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.sensor.impulse_response = {};
+  camera.light.impulse_response = {.kind = ImpulseResponse::Kind::gaussian, .cutoff_hz = 45e6};
+  camera.light.peak_factor = 4.0;
+  const double S = 3e3, A = 2e4, T = 0.3;
+  double v = 0.0;
+  for (int n = 1; n < 40; ++n)
+    v = std::max(v, std::pow(2 * pi * n * 4 / pi * std::sin(pi / 4), 2) *
+                        std::pow(0.5, std::pow(n / 3.0, 2)));
+  double gated = 0.0;
+  for (int i = 1; i < 100000; ++i)
+    gated = std::max(gated, i * 1e-5 * (1 - i * 1e-5) / (4 * 400.0 + T * A * i * 1e-5));
+  const ReceiverBound bound(camera, 4);
+  EXPECT_NEAR(bound.tap_information({S, A}) / (v * S * S * T * T * gated), 1.0, 1e-6);
+}
+
+TEST(ReceiverBound, OfPhotonsIsThatOfTheResponseItself) {
+  // Without noise other than the photons' own, a Gaussian response of deviation s has 1 / s^2 per
+  // photon.
+  Camera camera = built_in_camera("paper-10f0");
+  camera.sensor.impulse_response = {};
+  camera.sensor.read_noise_e = 0.0;
+  camera.light.impulse_response = {.kind = ImpulseResponse::Kind::gaussian, .cutoff_hz = 150e6};
+  const double deviation = std::sqrt(std::log(2.0)) / (2 * pi * 10.0);  // periods; |H(fc)|^2 = 1/2
+  const ReceiverBound bound(camera, 3);
+  EXPECT_NEAR(bound.photon_information({1e4, 0.0}) * deviation * deviation / (1e4 * 0.3), 1.0,
+              1e-3);
+}
+
+TEST(ReceiverBound, IsZeroWithoutImpulseResponses) {
+  EXPECT_EQ(ReceiverBound(built_in_camera("paper-30x"), 4).mae_m({1e4, 1e4}), 0.0);
+}
+
+// -- No code beats the receiver bound --------------------------------------------------------
+
+std::vector<CodeSet> codes_for(const Camera& camera) {
+  std::vector<CodeSet> codes;
+  for (const char* name :
+       {"sinusoid-k3", "square-k4", "hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5",
+        "multifrequency-k5", "pulsed-multifrequency-k5", "pulsed-multifrequency-k5-q5", "gray-k4"})
+    codes.push_back(build_family(name, camera));
+  if (camera.sensor.taps > 1) return codes;
+  // Pulse trains against gates of every duty: built to have steep correlation functions.
+  const double duty = 1.0 / camera.light.peak_factor;
+  for (const int frequency : {1, 3, 5, 8}) {
+    for (const double gate : {0.05, 0.3, 0.5, 0.8}) {
+      std::vector<Waveform> gates;
+      for (int k = 0; k < 4; ++k) {
+        std::vector<OnInterval> on;
+        for (int i = 0; i < frequency; ++i) {
+          const double rise = (i + 0.23 * k) / frequency;
+          const double begin = rise - std::floor(rise);
+          on.push_back({begin, begin + gate / frequency});
+        }
+        std::sort(on.begin(), on.end(), [](auto& a, auto& b) { return a.rise < b.rise; });
+        gates.push_back(Waveform::binary(on));
+      }
+      codes.push_back(CodeSet::create("train", camera.samples, 1,
+                                      {4, pulse_train(frequency, std::max(duty, 0.02))}, gates));
+    }
+  }
+  // Noise-like gates of unequal duties.
+  for (std::uint64_t item = 0; item < 6; ++item) {
+    RandomStream random(3, item);
+    std::vector<Waveform> gates;
+    for (int k = 0; k < 4; ++k) {
+      Eigen::VectorXd samples(camera.samples);
+      const double share = 0.1 + 0.8 * random.uniform();
+      for (double& x : samples) x = random.uniform() < share ? 1.0 : 0.0;
+      gates.push_back(Waveform::binary_from_samples(samples, 1.0));
+    }
+    codes.push_back(
+        CodeSet::create("noise", camera.samples, 1, {4, rectangular_pulse(duty)}, gates));
+  }
+  return codes;
+}
+
+TEST(ReceiverBound, NoCodeBeatsIt) {
+  double closest = 100.0;
+  for (const double peak_factor : {1.3, 2.0, 5.0, 15.0}) {
+    for (const char* name : {"paper-10f0", "paper-5f0"}) {
+      for (const int taps : {1, 2}) {
+        Camera camera = built_in_camera(name);
+        camera.light.peak_factor = peak_factor;
+        camera.sensor.taps = taps;
+        for (const CodeSet& code : codes_for(camera)) {
+          const CramerRaoBound of_code = bound_of(code, camera);
+          const ReceiverBound of_camera(camera, code.exposures());
+          for (const OperatingPoint& point :
+               {OperatingPoint{1e3, 1e2}, OperatingPoint{1e4, 1e4}, OperatingPoint{1e5, 0.0},
+                OperatingPoint{1e6, 1e2}, OperatingPoint{1e3, 1e7}}) {
+            const double ratio = of_code.mae_m(point) / of_camera.mae_m(point);
+            EXPECT_GE(ratio, 1.0) << code.name() << " peak " << peak_factor << " " << name << " S "
+                                  << point.signal_e_per_s << " A " << point.ambient_e_per_s;
+            closest = std::min(closest, ratio);
+          }
+        }
+      }
+    }
+  }
+  EXPECT_LT(closest, 2.0) << "a bound no code comes near would say nothing";
+}
+
+TEST(ReceiverBound, DifferencesAndUniformAlbedoStayAboveIt) {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.samples = 60;
+  camera.sensor.taps = 2;
+  camera.sensor.readout = Readout::difference;
+  const CodeSet code = build_family("hamiltonian-k4", camera);
+  const CramerRaoBound of_code = bound_of(code, camera);
+  const ReceiverBound of_camera(camera, 4);
+  for (const OperatingPoint& point : camera.operating.points()) {
+    EXPECT_GE(of_code.mae_m(point), of_camera.mae_m(point));
+    EXPECT_GE(of_code.mae_uniform_albedo_m(point), of_camera.mae_uniform_albedo_m(point));
+  }
+}
+
+TEST(ReceiverBound, ThrowingChargeAwayCanOnlyHelp) {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.sensor.taps = 2;
+  const OperatingPoint point{1e3, 1e7};
+  const double with_drain = ReceiverBound(camera, 4).tap_information(point);
+  camera.sensor.drain = false;
+  const double without = ReceiverBound(camera, 4).tap_information(point);
+  EXPECT_GT(with_drain, without * 1.5);
+}
+
+}  // namespace
+}  // namespace tofsmith

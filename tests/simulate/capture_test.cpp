@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/simulate/capture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/statistics.hpp"
+#include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/scene/table_top.hpp"
+#include "tofsmith/simulate/fine_correlation.hpp"
+
+namespace tofsmith {
+namespace {
+
+Camera noiseless_camera() {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.sensor.noise = NoiseModel::gaussian;
+  camera.sensor.read_noise_e = 0.0;
+  camera.exposure_s.total_s = 1e9;  // shot noise far below every tolerance
+  return camera;
+}
+
+TEST(FineCorrelation, StaysWithinItsStatedError) {
+  for (const char* name : {"hamiltonian-k5", "multifrequency-k5", "square-k4"}) {
+    const Camera camera = built_in_camera("paper-10f0");
+    const ForwardModel model(build_family(name, camera), camera);
+    const FineCorrelation fine(model);
+    const double error = fine.largest_error(model);
+    EXPECT_LT(error, 2e-5) << name;
+    std::vector<double> chi(static_cast<std::size_t>(fine.tap_values()));
+    for (const double z : {0.0, 0.013, 17.77, 239.99, 240.0}) {
+      fine.at(z, chi.data());
+      const Eigen::VectorXd exact = model.correlation(z);
+      for (int i = 0; i < model.measurements(); ++i)
+        EXPECT_NEAR(chi[static_cast<std::size_t>(i)], exact[i], 1.01 * error + 1e-12);
+    }
+  }
+}
+
+TEST(FineCorrelation, IsExactWhereCornersFallOnTheTable) {
+  const Camera camera = built_in_camera("paper-30x");
+  const ForwardModel model(build_family("hamiltonian-k5", camera), camera);
+  EXPECT_LT(FineCorrelation(model).largest_error(model), 1e-9);
+}
+
+TEST(Capture, SameBitsForAnyNumberOfThreads) {
+  const Camera camera = built_in_camera("paper-10f0");
+  const CodeSet code = build_family("hamiltonian-k4", camera);
+  const SceneImage scene = table_top_image(48, 36);
+  const auto run = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return capture(scene, code, camera, {.frames = 2});
+  };
+  const RawFrames one = run(1), two = run(2);
+  ASSERT_EQ(one.values.size(), 2u * 36 * 48 * 4);
+  EXPECT_EQ(std::memcmp(one.values.data(), two.values.data(), one.values.size() * sizeof(float)),
+            0);
+}
+
+TEST(Capture, FramesAndSeedsDifferPixelsRepeat) {
+  const Camera camera = built_in_camera("paper-10f0");
+  const CodeSet code = build_family("hamiltonian-k3", camera);
+  SceneImage scene(4, 4);
+  const RawFrames a = capture(scene, code, camera, {.seed = 1, .frames = 2});
+  const RawFrames b = capture(scene, code, camera, {.seed = 2, .frames = 2});
+  EXPECT_NE(a.frame(0)[0], a.frame(1)[0]);
+  EXPECT_NE(a.frame(0)[0], b.frame(0)[0]);
+  EXPECT_NE(a.frame(0)[0], a.frame(0)[3]);
+  const RawFrames first_only = capture(scene, code, camera, {.seed = 1, .frames = 1});
+  EXPECT_EQ(std::memcmp(first_only.values.data(), a.frame(0), 4 * 4 * 3 * sizeof(float)), 0);
+}
+
+TEST(Capture, MomentsFollowTheForwardModel) {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.sensor.noise = NoiseModel::poisson;
+  camera.sensor.dark_current_e_per_s = 2e3;
+  const CodeSet code = build_family("hamiltonian-k3", camera);
+  const ForwardModel model(code, camera);
+  SceneImage scene(40, 100);  // 4000 equal pixels
+  scene.depth_m = Image<float>(40, 100, 2.5f);
+  scene.albedo = Image<float>(40, 100, 0.5f);
+  scene.cosine = Image<float>(40, 100, 0.8f);
+  scene.ambient_scale = Image<float>(40, 100, 3.0f);
+  const RawFrames raw =
+      capture(scene, code, camera,
+              {.signal_e_per_s = 5e4, .ambient_e_per_s = 2e3, .reference_distance_m = 2.0});
+  const Return seen{5e4 * 0.5 * 0.8 / (1.25 * 1.25), 2.5 / camera.bin_m()};
+  const Eigen::VectorXd mean = model.expected_electrons(std::span(&seen, 1), 6e3);
+  const Eigen::VectorXd variance = model.variance_e2(std::span(&seen, 1), 6e3);
+  for (int k = 0; k < 3; ++k) {
+    RunningStatistics statistics;
+    for (std::size_t i = 0; i < 4000; ++i)
+      statistics.add(raw.values[3 * i + static_cast<std::size_t>(k)]);
+    EXPECT_NEAR(statistics.mean(), mean[k], 4 * std::sqrt(variance[k] / 4000));
+    EXPECT_NEAR(statistics.variance(), variance[k], 4 * variance[k] * std::sqrt(2.0 / 4000));
+  }
+}
+
+TEST(Capture, DepthBeyondTheRangeWraps) {
+  const Camera camera = noiseless_camera();
+  const CodeSet code = build_family("hamiltonian-k4", camera);
+  SceneImage scene(1, 2);
+  scene.depth_m(0, 0) = 3.0f;
+  scene.depth_m(0, 1) = static_cast<float>(3.0 + 2 * camera.range_m());
+  const RawFrames raw = capture(scene, code, camera, {.falloff = false});
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(raw.values[k] / raw.values[4 + k], 1.0, 1e-4);
+}
+
+TEST(Capture, NoReturnSeesAmbientOnly) {
+  const Camera camera = noiseless_camera();
+  const CodeSet code = build_family("hamiltonian-k4", camera);
+  const RawFrames raw = capture(SceneImage(1, 1), code, camera, {.ambient_e_per_s = 100.0});
+  for (const float value : raw.values) EXPECT_NEAR(value / (1e9 / 4 * 100.0 * 0.5), 1.0, 1e-4);
+}
+
+TEST(Capture, WithoutFalloffOnlyAlbedoCounts) {
+  SceneImage scene(1, 1);
+  scene.depth_m(0, 0) = 4.0f;
+  scene.albedo(0, 0) = 0.25f;
+  scene.cosine(0, 0) = 0.5f;
+  EXPECT_DOUBLE_EQ(pixel_signal_e_per_s(scene, 0, 0, {.signal_e_per_s = 100, .falloff = false}),
+                   25.0);
+  EXPECT_DOUBLE_EQ(
+      pixel_signal_e_per_s(scene, 0, 0, {.signal_e_per_s = 100, .reference_distance_m = 2.0}),
+      25.0 * 0.5 / 4.0);
+}
+
+TEST(Capture, DecodesBackToTheScene) {
+  for (const Readout readout : {Readout::separate, Readout::difference}) {
+    Camera camera = noiseless_camera();
+    camera.sensor.taps = 2;
+    camera.sensor.readout = readout;
+    const CodeSet code = build_family("hamiltonian-k4", camera);
+    const SceneImage scene = table_top_image(32, 24);
+    const RawFrames raw = capture(scene, code, camera);
+    const Decoder decoder(make_decoding_table(ForwardModel(code, camera), camera));
+    const DepthImage depth = decoder.decode(raw);
+    for (std::size_t i = 0; i < scene.depth_m.size(); ++i) {
+      if (std::isnan(scene.depth_m.pixels[i])) continue;
+      EXPECT_NEAR(depth.depth_m.pixels[i], scene.depth_m.pixels[i], 0.01);
+    }
+  }
+}
+
+TEST(Capture, StopsWhenAskedAndRefusesNonsense) {
+  const Camera camera = built_in_camera("paper-10f0");
+  const CodeSet code = build_family("hamiltonian-k3", camera);
+  const SceneImage scene(8, 8);
+  EXPECT_THROW(capture(scene, code, camera, {}, [](double, std::string_view) { return false; }),
+               Interrupted);
+  EXPECT_THROW(capture(scene, code, camera, {.frames = 0}), std::invalid_argument);
+  EXPECT_THROW(capture(scene, code, camera, {.signal_e_per_s = -1}), std::invalid_argument);
+  EXPECT_THROW(capture(SceneImage(), code, camera), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tofsmith
