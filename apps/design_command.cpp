@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "design_output.hpp"
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/correlation_file.hpp"
 #include "tofsmith/io/design_directory.hpp"

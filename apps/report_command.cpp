@@ -27,7 +27,8 @@ void run(const ReportArguments& arguments, const Session& session) {
   std::optional<SceneResult> scene;
   if (holds_scene_result(directory / "scene")) scene = read_scene_result(directory / "scene");
   const std::filesystem::path output =
-      arguments.output.empty() ? directory / "report.html" : arguments.output;
+      arguments.output.empty() ? directory / "report.html"
+                               : std::filesystem::path(arguments.output);
   write_file_atomically(
       output, render(design_report(record.camera, record.result, scene, session.command_line)),
       session.output_policy());

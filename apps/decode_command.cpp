@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "depth_output.hpp"
+#include "terminal_progress.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/raw_frames_file.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+struct DecodeArguments {
+  std::string raw, code, output;
+  CameraArguments camera;
+  std::string method = "zncc";
+  std::vector<std::string> planes = plane_names();
+  DecodeOptions options;
+  int frame = -1;
+};
+
+PinholeView view_of(const Camera& camera, int width, int height) {
+  if (!camera.lens) return PinholeView::centred(width, height, M_PI / 3);
+  return {camera.lens->fx_px, camera.lens->fy_px, camera.lens->cx_px, camera.lens->cy_px,
+          width,              height};
+}
+
+/// name.npz, frame 3 of 12 -> name-03.npz
+std::filesystem::path frame_path(const std::filesystem::path& path, int frame, int frames) {
+  if (frames == 1) return path;
+  const std::size_t digits = std::to_string(frames - 1).size();
+  std::filesystem::path numbered = path;
+  numbered.replace_filename(fmt::format("{}-{:0{}}{}", path.stem().string(), frame, digits,
+                                        path.extension().string()));
+  return numbered;
+}
+
+void run(const DecodeArguments& arguments, const Session& session) {
+  const Camera camera = arguments.camera.load();
+  const CodeSet code = load_code(arguments.code, camera);
+  const Decoder decoder(make_decoding_table(ForwardModel(code, camera), camera),
+                        arguments.options);
+  const RawFrames raw = read_raw_frames(arguments.raw, decoder.measurements());
+  if (arguments.frame >= raw.frames)
+    throw UsageError(fmt::format("--frame {}: {} holds {} frame{}, counted from 0", arguments.frame,
+                                 arguments.raw, raw.frames, raw.frames == 1 ? "" : "s"));
+  const int first = std::max(0, arguments.frame);
+  const int last = arguments.frame < 0 ? raw.frames : arguments.frame + 1;
+  const PinholeView view = view_of(camera, raw.width, raw.height);
+  const Progress progress = terminal_progress("decoding");
+  nlohmann::ordered_json outputs = nlohmann::ordered_json::array();
+  std::string lines;
+  for (int frame = first; frame < last; ++frame) {
+    const double count = last - first;
+    const DepthImage image = decoder.decode(
+        raw, frame, part_of(progress, (frame - first) / count, (frame - first + 1) / count));
+    const std::filesystem::path path = frame_path(arguments.output, frame, last - first);
+    write_decoded(path, image, arguments.planes, view, session.output_policy());
+    outputs.push_back({{"frame", frame}, {"output", path.string()},
+                       {"status", status_summary(image)}});
+    lines += fmt::format("wrote {}: {}\n", path.string(), status_summary(image));
+  }
+  session.print_json({{"code", code.name()},
+                      {"camera", camera.name},
+                      {"height", raw.height},
+                      {"width", raw.width},
+                      {"measurements", raw.measurements},
+                      {"frames", std::move(outputs)}});
+  lines.pop_back();
+  session.say(lines);
+}
+
+}  // namespace
+
+void add_decode_command(CLI::App& app, Session& session) {
+  auto arguments = std::make_shared<DecodeArguments>();
+  CLI::App* command = app.add_subcommand("decode", "depth from raw measurements");
+  command->add_option("RAW", arguments->raw, "raw frames (.npy .npz): (H,W,K) or (F,H,W,K)")
+      ->required();
+  command->add_option("--code", arguments->code, "the code that was played: a family or a file")
+      ->required();
+  arguments->camera.add_to(*command);
+  command->add_option("--method", arguments->method, "decoder")
+      ->check(CLI::IsMember({"zncc"}))
+      ->capture_default_str();
+  command
+      ->add_option("--outputs", arguments->planes,
+                   "planes to write: depth,signal,ambient,confidence,deviation,status")
+      ->delimiter(',')
+      ->check(CLI::IsMember(plane_names()));
+  command->add_option("--frame", arguments->frame, "decode this frame only, counted from 0")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--low-signal-sigma", arguments->options.low_signal_sigma,
+                   "signals below this many standard deviations are marked low_signal")
+      ->capture_default_str();
+  command
+      ->add_option("--minimum-confidence", arguments->options.minimum_confidence,
+                   "pixels below are marked ambiguous")
+      ->capture_default_str();
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "depth: .npy .npz .exr .pfm .png (16 bits, mm) .ply; several frames get numbers")
+      ->required();
+  command->callback([arguments, &session] { run(*arguments, session); });
+}
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "commands.hpp"
+#include "depth_output.hpp"
+#include "design_output.hpp"
+#include "scene_source.hpp"
+#include "terminal_progress.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/design_directory.hpp"
+#include "tofsmith/io/result_document.hpp"
+#include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/io/scene_directory.hpp"
+#include "tofsmith/io/waveform_csv.hpp"
+#include "tofsmith/simulate/capture.hpp"
+#include "tofsmith/simulate/scene_result.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DemoArguments {
+  CameraArguments camera;
+  SceneSource scene{.depth = "table-top"};
+  std::uint64_t seed = 1;
+  int trials = 20000;
+  std::string output = "tofsmith-demo";
+};
+
+/// Light of the demo's captures: the middle ambient level of the paper's grid, three signals.
+const std::vector<NamedLight> lights = {{"low", {3162.2776601683795, 1e4}},
+                                        {"medium", {1e4, 1e4}},
+                                        {"high", {1e5, 1e4}}};
+
+DesignOptions design_options(const DemoArguments& arguments) {
+  DesignOptions options;
+  options.seed = options.factorize.seed = arguments.seed;
+  options.trials = arguments.trials;
+  return options;
+}
+
+/// The winner and the sinusoids.
+std::vector<CodeSet> codes_for_scene(const DesignResult& result) {
+  std::vector<CodeSet> codes{result.winner().code};
+  for (const char* name : {"sinusoid-k4", "multifrequency-k5"})
+    if (const Candidate* c = result.find(name); c && c != &result.winner())
+      codes.push_back(c->code);
+  return codes;
+}
+
+SceneResult capture_scene(const DemoArguments& arguments, const Camera& camera,
+                          const DesignResult& result, const Progress& progress) {
+  LoadedScene loaded = load_scene(arguments.scene, camera);
+  SceneResult scene{.name = loaded.name, .truth = std::move(loaded.image), .view = loaded.view};
+  scene.reference_distance_m = median_depth_m(scene.truth);
+  capture_and_decode(scene, codes_for_scene(result), camera, lights, arguments.seed, progress);
+  return scene;
+}
+
+/// The winner's raw frames and depth in every format, and all waveforms.
+void write_products(const fs::path& directory, const SceneResult& scene, const Camera& camera,
+                    const DesignResult& result, std::uint64_t seed) {
+  const CodeSet& best = result.winner().code;
+  const NamedLight& light = lights.back();
+  const RawFrames raw = capture(scene.truth, best, camera,
+                                {.signal_e_per_s = light.point.signal_e_per_s,
+                                 .ambient_e_per_s = light.point.ambient_e_per_s,
+                                 .reference_distance_m = scene.reference_distance_m,
+                                 .seed = seed});
+  const Decoder decoder(make_decoding_table(ForwardModel(best, camera), camera));
+  const DepthImage image = decoder.decode(raw);
+  constexpr OutputPolicy replace = OutputPolicy::overwrite;
+  write_raw_frames(directory / "raw.npy", raw, replace);
+  for (const char* name : {"depth.npy", "depth.npz", "depth.exr", "depth.pfm", "depth.png"})
+    write_decoded(directory / name, image, plane_names(), scene.view, replace);
+  write_decoded(directory / "points.ply", image, {"signal", "confidence"}, scene.view, replace);
+  apps::create_directories(directory / "waveforms");
+  for (const Candidate& c : result.candidates) {
+    const fs::path path = directory / "waveforms" / (c.code.name() + ".csv");
+    write_file_atomically(path, waveforms_to_csv(c.code, camera.fundamental_frequency_hz), replace);
+  }
+}
+
+double scene_gain(const SceneCapture& capture, std::size_t other) {
+  return capture.decodings[other].error.mean_m / capture.decodings[0].error.mean_m;
+}
+
+void print_summary(const Session& session, const fs::path& directory, const Camera& camera,
+                   const DesignResult& result, const SceneResult& scene, double seconds) {
+  const DepthErrorKind kind = camera.operating.error;
+  const Candidate& winner = result.winner();
+  const double best_m = chosen_error_m(winner.error, kind);
+  session.say(fmt::format("winner on {}: {} ({} exposures)", camera.name, winner.code.name(),
+                          winner.code.exposures()));
+  session.say(fmt::format("  {} depth error {}, geometric mean over {} light levels (N = {})",
+                          kind == DepthErrorKind::linear ? "linear" : "circular",
+                          length_text(best_m), winner.error.points.size(), camera.samples));
+  std::string gains;
+  for (const char* name : {"sinusoid-k3", "sinusoid-k4", "square-k4", "multifrequency-k5",
+                           "pulsed-multifrequency-k5"})
+    if (const Candidate* c = result.find(name); c && c != &winner)
+      gains += fmt::format("{}{:.2f}x {}", gains.empty() ? "" : ", ",
+                           chosen_error_m(c->error, kind) / best_m, name);
+  session.say("  better than " + gains);
+  for (const SceneCapture& capture : scene.captures) {
+    std::string line = fmt::format("scene {}, {} light: mean error {}", scene.name, capture.light,
+                                   length_text(capture.decodings[0].error.mean_m));
+    for (std::size_t i = 1; i < capture.decodings.size(); ++i)
+      line += fmt::format(", {} with {} ({:.2f}x)",
+                          length_text(capture.decodings[i].error.mean_m),
+                          capture.decodings[i].code, scene_gain(capture, i));
+    session.say(line);
+  }
+  session.say(fmt::format("codes: {}, waveforms: {}", (directory / "codes").string(),
+                          (directory / "waveforms").string()));
+  session.say(fmt::format("depth: {} (.npz .exr .pfm .png), point cloud: {}",
+                          (directory / "depth.npy").string(), (directory / "points.ply").string()));
+  session.say(fmt::format("report: {}", (directory / "report.html").string()));
+  session.say(fmt::format("done in {}", time_text(seconds)));
+}
+
+void run(const DemoArguments& arguments, const Session& session) {
+  const auto begin = std::chrono::steady_clock::now();
+  // 1. The camera, and somewhere to put the results.
+  const Camera camera = arguments.camera.load();
+  const DesignOptions options = design_options(arguments);
+  const DesignDirectory directory(arguments.output);
+  if (directory.holds_design() && !session.force)
+    throw IoError((directory.path() / "design.json").string(),
+                  "already exists; use --force to replace the finished demo, or another -o DIR");
+  const Progress progress = terminal_progress("tofsmith demo");
+
+  // 2. Design codes and compare them with the standard ones.
+  const DesignResult result =
+      design(camera, options, part_of(progress, 0.0, 0.8), directory.store(camera, options));
+
+  // 3. Capture the scene at three light levels and decode it.
+  const SceneResult scene =
+      capture_scene(arguments, camera, result, part_of(progress, 0.8, 0.95));
+
+  // 4. Write everything, the report last.
+  write_scene_result(directory.path() / "scene", scene, OutputPolicy::overwrite);
+  write_products(directory.path(), scene, camera, result, arguments.seed);
+  directory.write(camera, result, options, OutputPolicy::overwrite);
+  write_report(session, directory.path(), OutputPolicy::overwrite);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  if (session.json)
+    fmt::print("{}\n", design_document(camera, result, options));
+  else
+    print_summary(session, directory.path(), camera, result, scene, seconds.count());
+}
+
+}  // namespace
+
+void add_demo_command(CLI::App& app, Session& session) {
+  auto arguments = std::make_shared<DemoArguments>();
+  CLI::App* command = app.add_subcommand(
+      "demo", "design codes, compare them, capture and decode a scene, write a report");
+  arguments->camera.add_to(*command);
+  command->add_option("-o,--output", arguments->output, "directory for everything")
+      ->capture_default_str();
+  command->add_option("--depth", arguments->scene.depth,
+                      "depth image instead of the built-in table-top scene");
+  command->add_option("--image", arguments->scene.image, "albedo image of that scene");
+  command
+      ->add_option("--kind", arguments->scene.kind,
+                   "what the depth image holds: z along the axis, or radial distance")
+      ->check(CLI::IsMember({"z", "radial"}))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "seed of every random choice")
+      ->capture_default_str();
+  command->add_option("--trials", arguments->trials, "trials per operating point")
+      ->check(CLI::Range(1000, 100000000))
+      ->capture_default_str();
+  command->callback([arguments, &session] { run(*arguments, session); });
+}
+
+}  // namespace tofsmith::apps
