@@ -3,6 +3,7 @@
 #include "decode/bin_matcher.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace tofsmith {
@@ -11,6 +12,17 @@ namespace {
 constexpr int width = pixels_per_tile;
 /// Below this share of what is measured, what is left of it is rounding.
 constexpr double nothing = 1e-12;
+
+/// Index of the first score that is at least `least`, or their number. Free of branches, which
+/// nobody could predict.
+template <typename Scores>
+int first_at_least(const Scores& scores, double least) {
+  unsigned reached = 1u << rows_per_block;
+  for (int row = 0; row < rows_per_block; ++row)
+    reached |= static_cast<unsigned>(scores[row] >= least) << row;
+  return std::countr_zero(reached);
+}
+
 }  // namespace
 
 BinMatcher::BinMatcher(const DecodingTable& table, const AmbientProjection& projection)
@@ -28,12 +40,8 @@ void BinMatcher::match(const float* raw, int pixels, Tile& tile) const {
   search_blocks(directions_, tile.unit_float, best);
   const float proven = directions_.proof_margin();
   for (int i = 0; i < pixels; ++i) {
-    if (!std::isfinite(tile.length[i]))
-      tile.bin[i] = -1;
-    else if (best.lead[i] > proven)
-      tile.bin[i] = choose(tile, i, best.block[i], best.block[i]);
-    else
-      tile.bin[i] = choose(tile, i, 0, directions_.blocks() - 1);
+    const int row = best.lead[i] > proven ? choose_in(tile, i, best.block[i]) : choose(tile, i);
+    tile.bin[i] = std::isfinite(tile.length[i]) ? directions_.bin_of_row(row) : -1;
   }
 }
 
@@ -72,29 +80,30 @@ void BinMatcher::normalize(const double* size, Tile& tile) const {
     }
 }
 
-/// The lowest row of the blocks whose score ties with the best of them.
-std::int32_t BinMatcher::choose(const Tile& tile, int pixel, int first_block,
-                                int last_block) const {
-  double scores[rows_per_block];
-  const auto score_block = [&](int b) {
-    const double* directions = directions_.block(b);
-    std::fill_n(scores, rows_per_block, 0.0);
-    for (int j = 0; j < directions_.rank(); ++j)
-      for (int row = 0; row < rows_per_block; ++row)
-        scores[row] += tile.unit[j * width + pixel] * directions[j * rows_per_block + row];
-  };
+BinMatcher::BlockScores BinMatcher::scores(const Tile& tile, int pixel, int block) const {
+  const double* directions = directions_.block(block);
+  BlockScores sum = tile.unit[pixel] * Eigen::Map<const BlockScores>(directions);
+  for (int j = 1; j < directions_.rank(); ++j)
+    sum += tile.unit[j * width + pixel] *
+           Eigen::Map<const BlockScores>(directions + j * rows_per_block);
+  return sum;
+}
+
+/// The lowest row of a block whose score ties with the best in it.
+int BinMatcher::choose_in(const Tile& tile, int pixel, int block) const {
+  const BlockScores all = scores(tile, pixel, block);
+  return block * rows_per_block + first_at_least(all, all.maxCoeff() - tie_tolerance);
+}
+
+/// The lowest of all rows whose score ties with the best.
+int BinMatcher::choose(const Tile& tile, int pixel) const {
   double best = -2.0;
-  for (int b = first_block; b <= last_block; ++b) {
-    score_block(b);
-    best = std::max(best, *std::max_element(scores, scores + rows_per_block));
-  }
-  for (int b = first_block; b <= last_block; ++b) {
-    if (first_block != last_block) score_block(b);
-    for (int row = 0; row < rows_per_block; ++row)
-      if (scores[row] >= best - tie_tolerance)
-        return directions_.bin_of_row(b * rows_per_block + row);
-  }
-  return -1;
+  for (int b = 0; b < directions_.blocks(); ++b)
+    best = std::max(best, scores(tile, pixel, b).maxCoeff());
+  int block = 0, row = rows_per_block;
+  while (row == rows_per_block)
+    row = first_at_least(scores(tile, pixel, block++), best - tie_tolerance);
+  return (block - 1) * rows_per_block + row;
 }
 
 }  // namespace tofsmith

@@ -34,9 +34,12 @@ class BinMatcher {
   void match(const float* raw, int pixels, Tile& tile) const;
 
  private:
+  using BlockScores = Eigen::Array<double, rows_per_block, 1>;
   void project(const float* raw, Tile& tile) const;
   void normalize(const double* size, Tile& tile) const;
-  std::int32_t choose(const Tile& tile, int pixel, int first_block, int last_block) const;
+  BlockScores scores(const Tile& tile, int pixel, int block) const;
+  int choose_in(const Tile& tile, int pixel, int block) const;
+  int choose(const Tile& tile, int pixel) const;
 
   DirectionTable directions_;
   Eigen::MatrixXd basis_;         // V (K, rank)

@@ -65,9 +65,10 @@ Position PixelModel::refine(const double* plane, std::int32_t bin) const {
   const double at_bin = along(plane, bin);
   const ChordPoint before = best_inside(left, along(plane, left), at_bin);
   const ChordPoint after = best_inside(bin, at_bin, along(plane, next(bin)));
-  if (before.score > std::max(after.score, 0.0)) return {left, before.fraction};
-  if (after.score > 0.0) return {bin, after.fraction};
-  return {bin, 0.0};
+  if (!(before.score > 0.0 || after.score > 0.0)) return {bin, 0.0};
+  // As among bins, the lower depth wins a tie.
+  if (before.score >= (1 - tie_tolerance) * after.score) return {left, before.fraction};
+  return {bin, after.fraction};
 }
 
 PixelEstimate PixelModel::estimate(const double* electrons, const double* plane,

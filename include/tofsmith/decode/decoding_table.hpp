@@ -52,7 +52,7 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
 
 /// The table of a measured correlation (N, K) that comes without a camera: equal duties and
 /// exposures, so that the mean over measurements is what ambient light explains. Signal and ambient
-/// are then in units of the table, and noise is unknown.
+/// are then in raw numbers, of which noise is taken as if they were electrons.
 DecodingTable make_decoding_table(const Eigen::MatrixXd& correlation, double range_m);
 
 /// Two depths that look the same in every measurement once ambient light is unknown.

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// Decoding inside Monte Carlo loops must not go to the heap. This file counts what does, for the
+// whole test program.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "decode_setup.hpp"
+
+namespace {
+std::atomic<std::int64_t> allocations{0};
+
+void* counted(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
+  throw std::bad_alloc();
+}
+}  // namespace
+
+void* operator new(std::size_t size) { return counted(size); }
+void* operator new[](std::size_t size) { return counted(size); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace tofsmith {
+namespace {
+
+template <typename Work>
+std::int64_t allocations_of(const Work& work) {
+  const std::int64_t before = allocations;
+  work();
+  return allocations - before;
+}
+
+TEST(Decoder, AllocatesNothingInBatches) {
+  const DecodeSetup setup("hamiltonian-k5", camera_with("paper-10f0"));
+  const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 1e3, 1e4, 3000, 1);
+  std::vector<std::int32_t> bins(3000);
+  std::vector<double> positions(3000);
+  ASSERT_GT(allocations_of([] { std::vector<int> seen(10); }), 0);
+  EXPECT_EQ(allocations_of([&] { setup.decoder.decode_bins(raw.data(), 3000, bins.data()); }), 0);
+  EXPECT_EQ(
+      allocations_of([&] { setup.decoder.decode_depth_bins(raw.data(), 3000, positions.data()); }),
+      0);
+}
+
+TEST(Decoder, AllocatesNothingPerPixelInFrames) {
+  const DecodeSetup setup("hamiltonian-k5", camera_with("paper-10f0"));
+  const auto of_frame = [&](int pixels) {
+    const RawFrames frame = frame_of(noisy_pixels(setup.decoder.table(), 1e3, 1e4, pixels, 1), 5);
+    return allocations_of([&] { setup.decoder.decode(frame); });
+  };
+  of_frame(64);  // the first use of threads allocates
+  EXPECT_LE(of_frame(4000), of_frame(400) + 2);
+}
+
+}  // namespace
+}  // namespace tofsmith

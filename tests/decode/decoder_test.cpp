@@ -1,0 +1,244 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/decode/decoder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <limits>
+#include <numeric>
+
+#include "decode_setup.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+namespace {
+
+struct Case {
+  const char* code;
+  int taps = 1;
+  Readout readout = Readout::separate;
+};
+constexpr Case cases[] = {{"sinusoid-k4"},
+                          {"square-k4"},
+                          {"hamiltonian-k3"},
+                          {"hamiltonian-k4"},
+                          {"hamiltonian-k5"},
+                          {"multifrequency-k5"},
+                          {"pulsed-multifrequency-k5"},
+                          {"gray-k4"},
+                          {"hamiltonian-k4", 2},
+                          {"hamiltonian-k5", 2, Readout::difference},
+                          {"gray-k4", 2}};
+
+std::string name_of_case(const Case& c) {
+  return std::string(c.code) + (c.taps == 2 ? " x 2" : "") +
+         (c.readout == Readout::difference ? " difference" : "");
+}
+
+/// Depths at which the code has clear contrast, and that no other depth equals in direction.
+std::vector<bool> is_told_apart(const DecodingTable& table) {
+  const Eigen::VectorXd a = table.exposure_s.cwiseProduct(table.ambient_gain);
+  Eigen::MatrixXd x = table.correlation * table.exposure_s.asDiagonal();
+  if (a.norm() > 1e-9) x -= x * a * a.transpose() / a.squaredNorm();
+  const Eigen::VectorXd contrast = x.rowwise().norm() / x.rowwise().norm().maxCoeff();
+  std::vector<bool> unique;
+  for (const double value : contrast) unique.push_back(value > 0.1);
+  for (const AmbiguousDepths& pair : ambiguous_depths(table))
+    unique[static_cast<std::size_t>(pair.first_bin)] =
+        unique[static_cast<std::size_t>(pair.second_bin)] = false;
+  return unique;
+}
+
+/// Largest error [bin] over many depths that no noise touches.
+double largest_error_bin(const DecodeSetup& setup) {
+  const std::vector<bool> unique = is_told_apart(setup.decoder.table());
+  const int samples = setup.decoder.samples();
+  std::vector<double> truth;
+  std::vector<float> raw;
+  for (int i = 0; i < 4 * samples; ++i) {
+    const double z = 0.25 * i;
+    const auto from = static_cast<std::size_t>(z), to = (from + 1) % unique.size();
+    if (!unique[from] || !unique[to]) continue;
+    truth.push_back(z);
+    setup.append_expected(raw, 1e6, z, 1e4);
+  }
+  EXPECT_GT(truth.size(), 2u * static_cast<std::size_t>(samples));
+  const std::vector<double> found = depth_bins_of(setup.decoder, raw);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    largest = std::max(largest, std::abs(circular_difference(found[i], truth[i], samples)));
+  return largest;
+}
+
+TEST(Decoder, RecoversEveryDepthWithoutNoise) {
+  for (const Case& c : cases) {
+    // Without band limit the codes are chords between bins, and found exactly.
+    EXPECT_LT(largest_error_bin(DecodeSetup(c.code, camera_with("paper-30x", c.taps, c.readout))),
+              1e-3)
+        << name_of_case(c);
+    // Smoothed one-tap Gray codes pass through words without contrast and back along the same ray.
+    if (c.taps == 1 && std::string_view(c.code) == "gray-k4") continue;
+    for (const char* camera : {"paper-10f0", "paper-5f0"})
+      EXPECT_LT(largest_error_bin(DecodeSetup(c.code, camera_with(camera, c.taps, c.readout))),
+                0.02)
+          << name_of_case(c) << " on " << camera;
+  }
+}
+
+TEST(Decoder, RecoversEveryDepthOnTheRiseOfARamp) {
+  // Ramps have unequal duties. Where they fall back, near the ends, depths repeat.
+  for (const char* code : {"single-ramp-k3", "double-ramp-k3"}) {
+    const DecodeSetup setup(code, camera_with("paper-30x"));
+    for (double z = 10.0; z < 225.0; z += 0.25) {
+      std::vector<float> raw;
+      setup.append_expected(raw, 1e6, z, 1e4);
+      EXPECT_NEAR(depth_bins_of(setup.decoder, raw)[0], z, 1e-3) << code;
+    }
+  }
+}
+
+TEST(Decoder, RecoversEveryDepthWithUnequalExposuresAndDarkCurrent) {
+  Camera camera = camera_with("paper-30x");
+  camera.exposure_s.each_s = {0.05, 0.08, 0.17};
+  camera.sensor.dark_current_e_per_s = 3e3;
+  EXPECT_LT(largest_error_bin(DecodeSetup("hamiltonian-k3", camera)), 1e-3);
+}
+
+/// Whole electrons, so that sums and multiples of them are exact in single precision.
+std::vector<float> whole_noisy_pixels(const DecodingTable& table, int pixels) {
+  std::vector<float> raw = noisy_pixels(table, 1e4, 1e4, pixels, 7);
+  for (float& value : raw) value = std::round(value);
+  return raw;
+}
+
+TEST(Decoder, PermutingTheColumnsOfACodeLeavesDepthUnchanged) {
+  const DecodeSetup setup("hamiltonian-k5", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  const std::array order = {3, 0, 4, 2, 1};
+  DecodingTable permuted = table;
+  for (int k = 0; k < 5; ++k)
+    permuted.correlation.col(k) = table.correlation.col(order[static_cast<std::size_t>(k)]);
+  const Decoder other(permuted);
+
+  const std::vector<float> raw = whole_noisy_pixels(table, 5000);
+  std::vector<float> permuted_raw(raw.size());
+  for (std::size_t i = 0; i < raw.size(); ++i)
+    permuted_raw[i] = raw[i / 5 * 5 + static_cast<std::size_t>(order[i % 5])];
+  EXPECT_EQ(bins_of(setup.decoder, raw), bins_of(other, permuted_raw));
+  const auto a = depth_bins_of(setup.decoder, raw), b = depth_bins_of(other, permuted_raw);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    EXPECT_NEAR(circular_difference(a[i], b[i], 240), 0.0, 1e-6);
+}
+
+TEST(Decoder, AddingAmbientLightLeavesDepthUnchanged) {
+  for (const char* code : {"hamiltonian-k4", "hamiltonian-k3"}) {
+    const DecodeSetup setup(code, camera_with("paper-10f0"));
+    const std::vector<float> raw = whole_noisy_pixels(setup.decoder.table(), 5000);
+    std::vector<float> brighter = raw;
+    for (float& value : brighter) value += 30000.0f;
+    EXPECT_EQ(bins_of(setup.decoder, raw), bins_of(setup.decoder, brighter));
+    const auto a = depth_bins_of(setup.decoder, raw), b = depth_bins_of(setup.decoder, brighter);
+    for (std::size_t i = 0; i < a.size(); ++i)
+      EXPECT_NEAR(circular_difference(a[i], b[i], 240), 0.0, 1e-6);
+  }
+}
+
+TEST(Decoder, ScalingTheLightLeavesDepthUnchanged) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const std::vector<float> raw = whole_noisy_pixels(setup.decoder.table(), 5000);
+  for (const float factor : {3.0f, 1e-30f, 1e28f}) {
+    std::vector<float> scaled = raw;
+    for (float& value : scaled) value *= factor;
+    const auto a = depth_bins_of(setup.decoder, raw), b = depth_bins_of(setup.decoder, scaled);
+    // Factors that are no whole numbers round.
+    for (std::size_t i = 0; i < a.size(); ++i)
+      EXPECT_NEAR(circular_difference(a[i], b[i], 240), 0.0, factor == 3.0f ? 1e-6 : 0.05);
+  }
+}
+
+TEST(Decoder, ReadsCountsAsElectrons) {
+  Camera camera = camera_with("paper-10f0");
+  const DecodeSetup electrons("hamiltonian-k4", camera);
+  camera.sensor.adc_bits = 16;
+  camera.sensor.gain_e_per_dn = 0.5;
+  camera.sensor.black_level_dn = 64.0;
+  const DecodeSetup counts("hamiltonian-k4", camera);
+  const std::vector<float> raw = whole_noisy_pixels(electrons.decoder.table(), 2000);
+  std::vector<float> raw_counts = raw;
+  for (float& value : raw_counts) value = 2.0f * value + 64.0f;
+  EXPECT_EQ(bins_of(electrons.decoder, raw), bins_of(counts.decoder, raw_counts));
+}
+
+TEST(Decoder, PositionsAreWithinOneBinOfTheBestBin) {
+  const DecodeSetup setup("multifrequency-k5", camera_with("paper-10f0"));
+  const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 1e3, 1e5, 5000, 3);
+  const auto bins = bins_of(setup.decoder, raw);
+  const auto positions = depth_bins_of(setup.decoder, raw);
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    EXPECT_GE(positions[i], 0.0);
+    EXPECT_LT(positions[i], 240.0);
+    EXPECT_LE(std::abs(circular_difference(positions[i], bins[i], 240.0)), 1.0);
+  }
+}
+
+bool same_bits(const Image<float>& a, const Image<float>& b) {
+  return a.size() == b.size() &&
+         std::memcmp(a.pixels.data(), b.pixels.data(), a.size() * sizeof(float)) == 0;
+}
+
+TEST(Decoder, GivesTheSameBitsOnAnyNumberOfThreads) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const RawFrames frame = frame_of(noisy_pixels(setup.decoder.table(), 3e3, 1e4, 20011, 5), 4);
+  const auto decode_on = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return setup.decoder.decode(frame);
+  };
+  const DepthImage one = decode_on(1), many = decode_on(4);
+  EXPECT_TRUE(same_bits(one.depth_m, many.depth_m));
+  EXPECT_TRUE(same_bits(one.signal_e_per_s, many.signal_e_per_s));
+  EXPECT_TRUE(same_bits(one.ambient_e_per_s, many.ambient_e_per_s));
+  EXPECT_TRUE(same_bits(one.confidence, many.confidence));
+  EXPECT_TRUE(same_bits(one.predicted_standard_deviation_m, many.predicted_standard_deviation_m));
+  EXPECT_EQ(one.status.pixels, many.status.pixels);
+}
+
+TEST(Decoder, FramesAreDecodedOneByOne) {
+  const DecodeSetup setup("hamiltonian-k3", camera_with("paper-30x"));
+  RawFrames frames = frame_of({}, 3);
+  frames.frames = 2;
+  frames.width = 1;
+  setup.append_expected(frames.values, 1e5, 60.0, 0.0);
+  setup.append_expected(frames.values, 1e5, 120.0, 0.0);
+  EXPECT_NEAR(setup.decoder.decode(frames, 0).depth_m(0, 0), setup.camera.range_m() / 4, 1e-5);
+  EXPECT_NEAR(setup.decoder.decode(frames, 1).depth_m(0, 0), setup.camera.range_m() / 2, 1e-5);
+  EXPECT_THROW(setup.decoder.decode(frames, 2), std::invalid_argument);
+  frames.measurements = 4;
+  EXPECT_THROW(setup.decoder.decode(frames, 0), std::invalid_argument);
+}
+
+TEST(Decoder, StopsWhenAsked) {
+  const DecodeSetup setup("hamiltonian-k3", camera_with("paper-30x"));
+  const RawFrames frame = frame_of(std::vector<float>(300, 1.0f), 3);
+  EXPECT_THROW(setup.decoder.decode(frame, 0, [](double, std::string_view) { return false; }),
+               Interrupted);
+}
+
+TEST(DecodeOptions, NamesTheFieldTheValueAndTheRule) {
+  DecodeOptions options;
+  options.minimum_confidence = 1.5;
+  try {
+    options.validate();
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "DecodeOptions::minimum_confidence = 1.5; must be in [0, 1]");
+  }
+  options = {.low_signal_sigma = -1.0};
+  EXPECT_THROW(options.validate(), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tofsmith
