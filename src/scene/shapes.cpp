@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/scene/shapes.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "tofsmith/core/error.hpp"

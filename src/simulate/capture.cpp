@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -200,6 +202,18 @@ TEST(ReceiverBound, NoCodeBeatsIt) {
     }
   }
   EXPECT_LT(closest, 2.0) << "a bound no code comes near would say nothing";
+}
+
+TEST(ReceiverBound, ALightThatCannotBeBrighterThanItsAverageMayStillBlink) {
+  // With peak factor 1 the largest harmonic needs only half of the mean power.
+  Camera camera = built_in_camera("paper-5f0");
+  camera.light.peak_factor = 1.0;
+  std::vector<Waveform> gates;
+  for (int k = 0; k < 3; ++k) gates.push_back(square_wave(1, k / 3.0));
+  const CodeSet code =
+      CodeSet::create("blinking", camera.samples, 1, {3, square_wave(1, 0.0)}, gates);
+  const OperatingPoint point{1e4, 1e5};
+  EXPECT_LE(ReceiverBound(camera, 3).mae_m(point), bound_of(code, camera).mae_m(point));
 }
 
 TEST(ReceiverBound, DifferencesAndUniformAlbedoStayAboveIt) {

@@ -13,8 +13,8 @@ namespace tofsmith {
 ///
 /// Interpolation is off by at most max|chi''| / (8 points^2), and by |slope change| / (4 points)
 /// in a cell in which chi has a corner (none where corners fall on the table, as those of the ideal
-/// codes do). At 10 f0 and N = 240 that is below 2e-5: under 0.02 mm of depth on a range of 10 m, and
-/// 1/256 of what a decoder's own chords between bins leave.
+/// codes do). At 10 f0 and N = 240 that is below 2e-5: under 0.02 mm of depth on a range of 10 m,
+/// and 1/256 of what a decoder's own chords between bins leave.
 class FineCorrelation {
  public:
   /// @param points_per_bin  table points per bin, >= 1
