@@ -27,9 +27,8 @@ void list(const Session& session) {
   std::vector<std::vector<std::string>> rows{{"family", "", "", ""}};
   std::string text;
   for (const FamilyDescription& family : list_families()) {
-    document.push_back({{"name", family.name},
-                        {"example", family.example},
-                        {"description", family.description}});
+    document.push_back(
+        {{"name", family.name}, {"example", family.example}, {"description", family.description}});
     text += fmt::format("  {:28} {}\n", family.name, family.description);
   }
   session.print_json(document);
@@ -52,16 +51,15 @@ std::string strip(const Waveform& waveform) {
 void show(const Session& session, const CodeSet& code, const Camera& camera) {
   const ForwardModel model(code, camera);
   const Eigen::MatrixXd table = model.correlation_table(8 * code.samples());
-  nlohmann::ordered_json document = {
-      {"name", code.name()},
-      {"samples", code.samples()},
-      {"exposures", code.exposures()},
-      {"taps", code.taps()},
-      {"measurements", code.measurements()},
-      {"peak", code.peak()},
-      {"coding_curve_length", coding_curve_length(table)},
-      {"coding_curve_rank", coding_curve_rank(table)},
-      {"harmonics_99_percent", harmonics_used(table)}};
+  nlohmann::ordered_json document = {{"name", code.name()},
+                                     {"samples", code.samples()},
+                                     {"exposures", code.exposures()},
+                                     {"taps", code.taps()},
+                                     {"measurements", code.measurements()},
+                                     {"peak", code.peak()},
+                                     {"coding_curve_length", coding_curve_length(table)},
+                                     {"coding_curve_rank", coding_curve_rank(table)},
+                                     {"harmonics_99_percent", harmonics_used(table)}};
   std::vector<std::vector<std::string>> rows{
       {"measurement", "mod. duty", "mod. peak", "edges", "dem. duty", "edges"}};
   std::string strips;

@@ -25,8 +25,12 @@ struct DecodeArguments {
 
 PinholeView view_of(const Camera& camera, int width, int height) {
   if (!camera.lens) return PinholeView::centred(width, height, M_PI / 3);
-  return {camera.lens->fx_px, camera.lens->fy_px, camera.lens->cx_px, camera.lens->cy_px,
-          width,              height};
+  return {camera.lens->fx_px,
+          camera.lens->fy_px,
+          camera.lens->cx_px,
+          camera.lens->cy_px,
+          width,
+          height};
 }
 
 /// name.npz, frame 3 of 12 -> name-03.npz
@@ -34,16 +38,15 @@ std::filesystem::path frame_path(const std::filesystem::path& path, int frame, i
   if (frames == 1) return path;
   const std::size_t digits = std::to_string(frames - 1).size();
   std::filesystem::path numbered = path;
-  numbered.replace_filename(fmt::format("{}-{:0{}}{}", path.stem().string(), frame, digits,
-                                        path.extension().string()));
+  numbered.replace_filename(
+      fmt::format("{}-{:0{}}{}", path.stem().string(), frame, digits, path.extension().string()));
   return numbered;
 }
 
 void run(const DecodeArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
   const CodeSet code = load_code(arguments.code, camera);
-  const Decoder decoder(make_decoding_table(ForwardModel(code, camera), camera),
-                        arguments.options);
+  const Decoder decoder(make_decoding_table(ForwardModel(code, camera), camera), arguments.options);
   const RawFrames raw = read_raw_frames(arguments.raw, decoder.measurements());
   if (arguments.frame >= raw.frames)
     throw UsageError(fmt::format("--frame {}: {} holds {} frame{}, counted from 0", arguments.frame,
@@ -60,8 +63,8 @@ void run(const DecodeArguments& arguments, const Session& session) {
         raw, frame, part_of(progress, (frame - first) / count, (frame - first + 1) / count));
     const std::filesystem::path path = frame_path(arguments.output, frame, last - first);
     write_decoded(path, image, arguments.planes, view, session.output_policy());
-    outputs.push_back({{"frame", frame}, {"output", path.string()},
-                       {"status", status_summary(image)}});
+    outputs.push_back(
+        {{"frame", frame}, {"output", path.string()}, {"status", status_summary(image)}});
     lines += fmt::format("wrote {}: {}\n", path.string(), status_summary(image));
   }
   session.print_json({{"code", code.name()},

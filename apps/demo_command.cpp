@@ -13,8 +13,8 @@
 #include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/design_directory.hpp"
-#include "tofsmith/io/result_document.hpp"
 #include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/io/result_document.hpp"
 #include "tofsmith/io/scene_directory.hpp"
 #include "tofsmith/io/waveform_csv.hpp"
 #include "tofsmith/simulate/capture.hpp"
@@ -35,9 +35,8 @@ struct DemoArguments {
 };
 
 /// Light of the demo's captures: the middle ambient level of the paper's grid, three signals.
-const std::vector<NamedLight> lights = {{"low", {3162.2776601683795, 1e4}},
-                                        {"medium", {1e4, 1e4}},
-                                        {"high", {1e5, 1e4}}};
+const std::vector<NamedLight> lights = {
+    {"low", {3162.2776601683795, 1e4}}, {"medium", {1e4, 1e4}}, {"high", {1e5, 1e4}}};
 
 DesignOptions design_options(const DemoArguments& arguments) {
   DesignOptions options;
@@ -103,18 +102,17 @@ void print_summary(const Session& session, const fs::path& directory, const Came
                           kind == DepthErrorKind::linear ? "linear" : "circular",
                           length_text(best_m), winner.error.points.size(), camera.samples));
   std::string gains;
-  for (const char* name : {"sinusoid-k3", "sinusoid-k4", "square-k4", "multifrequency-k5",
-                           "pulsed-multifrequency-k5"})
+  for (const char* name :
+       {"sinusoid-k3", "sinusoid-k4", "square-k4", "multifrequency-k5", "pulsed-multifrequency-k5"})
     if (const Candidate* c = result.find(name); c && c != &winner)
-      gains += fmt::format("{}{:.2f}x {}", gains.empty() ? "" : ", ",
+      gains += fmt::format("{}{:.2f}x better than {}", gains.empty() ? "" : ", ",
                            chosen_error_m(c->error, kind) / best_m, name);
-  session.say("  better than " + gains);
+  session.say("  " + gains);
   for (const SceneCapture& capture : scene.captures) {
     std::string line = fmt::format("scene {}, {} light: mean error {}", scene.name, capture.light,
                                    length_text(capture.decodings[0].error.mean_m));
     for (std::size_t i = 1; i < capture.decodings.size(); ++i)
-      line += fmt::format(", {} with {} ({:.2f}x)",
-                          length_text(capture.decodings[i].error.mean_m),
+      line += fmt::format(", {} with {} ({:.2f}x)", length_text(capture.decodings[i].error.mean_m),
                           capture.decodings[i].code, scene_gain(capture, i));
     session.say(line);
   }
@@ -142,8 +140,7 @@ void run(const DemoArguments& arguments, const Session& session) {
       design(camera, options, part_of(progress, 0.0, 0.8), directory.store(camera, options));
 
   // 3. Capture the scene at three light levels and decode it.
-  const SceneResult scene =
-      capture_scene(arguments, camera, result, part_of(progress, 0.8, 0.95));
+  const SceneResult scene = capture_scene(arguments, camera, result, part_of(progress, 0.8, 0.95));
 
   // 4. Write everything, the report last.
   write_scene_result(directory.path() / "scene", scene, OutputPolicy::overwrite);

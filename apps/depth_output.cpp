@@ -105,9 +105,9 @@ std::string status_summary(const DepthImage& image) {
   for (const PixelStatus s : image.status.pixels) ++counts[s];
   std::string text;
   for (const auto& [status, count] : counts)
-    text += fmt::format("{}{} {:.2f} %", text.empty() ? "" : ", ", name_of(status),
-                        100.0 * static_cast<double>(count) /
-                            static_cast<double>(image.status.size()));
+    text +=
+        fmt::format("{}{} {:.2f} %", text.empty() ? "" : ", ", name_of(status),
+                    100.0 * static_cast<double>(count) / static_cast<double>(image.status.size()));
   return text;
 }
 

@@ -4,12 +4,12 @@
 
 #include "commands.hpp"
 #include "design_output.hpp"
+#include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/correlation_file.hpp"
 #include "tofsmith/io/design_directory.hpp"
 #include "tofsmith/io/result_document.hpp"
-#include "terminal_progress.hpp"
 
 namespace tofsmith::apps {
 
@@ -95,7 +95,8 @@ void add_design_command(CLI::App& app, Session& session) {
                       "(.csv .npy .npz); default: Hamiltonian codes");
   command->add_flag("--normalize", arguments->normalize,
                     "rescale a table's columns to [0, 1] before use");
-  command->add_option("--exposures", arguments->exposures, "numbers of exposures to try, e.g. 3,4,5")
+  command
+      ->add_option("--exposures", arguments->exposures, "numbers of exposures to try, e.g. 3,4,5")
       ->delimiter(',')
       ->check(CLI::Range(3, 6))
       ->capture_default_str();

@@ -31,8 +31,8 @@ std::string verdict(const Camera& camera, const DesignResult& result) {
       camera.samples);
   for (const char* name : {"sinusoid-k3", "sinusoid-k4", "square-k4", "pulsed-multifrequency-k5"})
     if (const Candidate* other = result.find(name); other && other != &winner)
-      text += fmt::format("\n  {:.2f}x better than {}",
-                          chosen_error_m(other->error, kind) / best_m, name);
+      text += fmt::format("\n  {:.2f}x better than {}", chosen_error_m(other->error, kind) / best_m,
+                          name);
   for (const Candidate& c : result.candidates)
     if (c.method != "family" && !c.per_measurement.empty())
       text += fmt::format("\n  {}: {} ({})", c.code.name(), c.message, time_text(c.seconds));
@@ -69,10 +69,9 @@ void write_report(const Session& session, const std::filesystem::path& directory
   const DesignRecord record = DesignDirectory(directory).read();
   std::optional<SceneResult> scene;
   if (holds_scene_result(directory / "scene")) scene = read_scene_result(directory / "scene");
-  write_file_atomically(directory / "report.html",
-                        render(design_report(record.camera, record.result, scene,
-                                             session.command_line)),
-                        policy);
+  write_file_atomically(
+      directory / "report.html",
+      render(design_report(record.camera, record.result, scene, session.command_line)), policy);
 }
 
 }  // namespace tofsmith::apps

@@ -49,9 +49,9 @@ void print(const Session& session, const Camera& camera, const std::vector<Evalu
     fmt::print("{}\n", evaluation_document(camera, codes, options));
     return;
   }
-  std::vector<std::vector<std::string>> rows{
-      {"code", "K", "signal (e/s)", "ambient (e/s)", "linear (mm)", "circular (mm)", "outliers (%)",
-       "Cramer-Rao (mm)", "receiver (mm)"}};
+  std::vector<std::vector<std::string>> rows{{"code", "K", "signal (e/s)", "ambient (e/s)",
+                                              "linear (mm)", "circular (mm)", "outliers (%)",
+                                              "Cramer-Rao (mm)", "receiver (mm)"}};
   const auto estimate = [](const Estimate& e) {
     return fmt::format("{:.4g} +- {:.2g}", 1e3 * e.value, 1e3 * e.standard_error);
   };
@@ -108,8 +108,8 @@ void run(EvaluateArguments& arguments, const Session& session) {
       for (const EvaluatedCode& code : evaluated) errors.push_back(code.error);
       content = render(evaluation_report(camera, codes, errors, session.command_line));
     } else {
-      throw UsageError(fmt::format("-o {}: unknown extension; expected .csv, .json or .html",
-                                   path.string()));
+      throw UsageError(
+          fmt::format("-o {}: unknown extension; expected .csv, .json or .html", path.string()));
     }
     write_file_atomically(path, content, session.output_policy());
   }
@@ -135,8 +135,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
       ->capture_default_str();
   command->add_flag("--on-bins", arguments->on_bins,
                     "true depths on bins only (flatters codes; for comparison with others)");
-  command->add_flag("!--no-sub-bin", arguments->options.sub_bin,
-                    "decode to the nearest bin only");
+  command->add_flag("!--no-sub-bin", arguments->options.sub_bin, "decode to the nearest bin only");
   command->add_flag("--clip-to-open-sensor", arguments->options.clip_to_open_sensor,
                     "clip electrons to [0, T (S + A)], as the paper's authors' simulator does");
   command->add_flag("--best-rotation", arguments->best_rotation,
@@ -144,7 +143,8 @@ void add_evaluate_command(CLI::App& app, Session& session) {
   command->add_option("--taps", arguments->taps, "taps of an NPZ code");
   command->add_option("--tap-order", arguments->tap_order, "of an NPZ code's columns")
       ->check(CLI::IsMember({"blocked", "interleaved"}));
-  command->add_option("-o,--output", arguments->output, "write a table (.csv .json) or page (.html)");
+  command->add_option("-o,--output", arguments->output,
+                      "write a table (.csv .json) or page (.html)");
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

@@ -32,8 +32,9 @@ std::string as_typed(int argc, char** argv) {
 int run(int argc, char** argv) {
   Session session;
   session.command_line = as_typed(argc, argv);
-  CLI::App app{"tofsmith designs, evaluates, simulates and decodes the coding functions of "
-               "continuous-wave time-of-flight cameras."};
+  CLI::App app{
+      "tofsmith designs, evaluates, simulates and decodes the coding functions of "
+      "continuous-wave time-of-flight cameras."};
   app.set_version_flag("--version", "tofsmith " TOFSMITH_VERSION);
   app.require_subcommand(1);
   app.fallthrough();

@@ -26,9 +26,9 @@ void run(const ReportArguments& arguments, const Session& session) {
   const DesignRecord record = DesignDirectory(directory).read();
   std::optional<SceneResult> scene;
   if (holds_scene_result(directory / "scene")) scene = read_scene_result(directory / "scene");
-  const std::filesystem::path output =
-      arguments.output.empty() ? directory / "report.html"
-                               : std::filesystem::path(arguments.output);
+  const std::filesystem::path output = arguments.output.empty()
+                                           ? directory / "report.html"
+                                           : std::filesystem::path(arguments.output);
   write_file_atomically(
       output, render(design_report(record.camera, record.result, scene, session.command_line)),
       session.output_policy());

@@ -20,8 +20,12 @@ constexpr double default_view_rad = std::numbers::pi / 3;
 
 PinholeView view_of(const Camera& camera, int width, int height) {
   if (!camera.lens) return PinholeView::centred(width, height, default_view_rad);
-  return {camera.lens->fx_px, camera.lens->fy_px, camera.lens->cx_px, camera.lens->cy_px,
-          width,              height};
+  return {camera.lens->fx_px,
+          camera.lens->fy_px,
+          camera.lens->cx_px,
+          camera.lens->cy_px,
+          width,
+          height};
 }
 
 }  // namespace
@@ -40,10 +44,9 @@ LoadedScene load_scene(const SceneSource& source, const Camera& camera) {
     scene.image.albedo =
         read_albedo(source.image, source.linear_image ? Transfer::linear : Transfer::srgb);
     if (scene.image.albedo.height != depth_m.height || scene.image.albedo.width != depth_m.width)
-      throw IoError(source.image,
-                    fmt::format("is {} x {} pixels; expected {} x {}, the size of {}",
-                                scene.image.albedo.height, scene.image.albedo.width, depth_m.height,
-                                depth_m.width, source.depth));
+      throw IoError(source.image, fmt::format("is {} x {} pixels; expected {} x {}, the size of {}",
+                                              scene.image.albedo.height, scene.image.albedo.width,
+                                              depth_m.height, depth_m.width, source.depth));
     // Radiance of a render can exceed 1; as albedo it is scaled down as a whole.
     const float brightest =
         *std::max_element(scene.image.albedo.pixels.begin(), scene.image.albedo.pixels.end());

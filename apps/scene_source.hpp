@@ -10,10 +10,10 @@ namespace tofsmith::apps {
 
 /// What a command is told about the scene it shall capture.
 struct SceneSource {
-  std::string depth;          ///< a depth image, or "table-top"
-  std::string image;          ///< albedo image; empty: albedo 1
-  std::string kind = "z";     ///< of the depth image: "z" or "radial"
-  bool linear_image = false;  ///< a PNG holds linear light, not sRGB
+  std::string depth;              ///< a depth image, or "table-top"
+  std::string image;              ///< albedo image; empty: albedo 1
+  std::string kind = "z";         ///< of the depth image: "z" or "radial"
+  bool linear_image = false;      ///< a PNG holds linear light, not sRGB
   int width = 320, height = 240;  ///< of the built-in scene
 };
 

@@ -23,9 +23,9 @@ class UsageError : public std::runtime_error {
 
 /// What every subcommand shares: flags, how to print, how to write.
 struct Session {
-  bool json = false;    ///< one JSON document on stdout and nothing else there
-  bool force = false;   ///< overwrite output files
-  int threads = 0;      ///< 0 = every core
+  bool json = false;         ///< one JSON document on stdout and nothing else there
+  bool force = false;        ///< overwrite output files
+  int threads = 0;           ///< 0 = every core
   std::string command_line;  ///< as typed, for reports
 
   OutputPolicy output_policy() const {

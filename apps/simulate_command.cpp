@@ -74,8 +74,9 @@ void add_simulate_command(CLI::App& app, Session& session) {
       ->capture_default_str();
   command->add_option("--code", arguments->code, "a family or a code file")->required();
   arguments->camera.add_to(*command);
-  command->add_option("--signal", arguments->signal_e_per_s,
-                      "signal of albedo 1 at the reference distance [e/s] (middle of the camera's)");
+  command->add_option(
+      "--signal", arguments->signal_e_per_s,
+      "signal of albedo 1 at the reference distance [e/s] (middle of the camera's)");
   command->add_option("--ambient", arguments->ambient_e_per_s,
                       "ambient light [e/s] (middle of the camera's)");
   command

@@ -62,8 +62,7 @@ class Line {
 }  // namespace
 
 Progress terminal_progress(std::string_view title) {
-  if (!isatty(STDERR_FILENO))
-    return [](double, std::string_view) { return !interrupted(); };
+  if (!isatty(STDERR_FILENO)) return [](double, std::string_view) { return !interrupted(); };
   return [line = std::make_shared<Line>(title)](double fraction, std::string_view step) {
     line->draw(fraction, step);
     return !interrupted();

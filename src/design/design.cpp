@@ -31,6 +31,29 @@ Eigen::MatrixXd target_table(const TargetSet& targets) {
   return table;
 }
 
+/// The circular error does not depend on the origin.
+bool rotates(const Camera& camera, const DesignOptions& options) {
+  return options.best_rotation && camera.operating.error == DepthErrorKind::linear;
+}
+
+/// How near the correlation functions are to their targets, in one line.
+std::string describe_residuals(const std::vector<MeasurementReport>& reports,
+                               const std::vector<Factorization>& factorizations) {
+  std::string residuals, unreachable;
+  bool exact = true;
+  for (std::size_t k = 0; k < reports.size(); ++k) {
+    exact = exact && reports[k].residual_rms < 1e-6;
+    residuals += fmt::format("{}{:.3g}", k ? ", " : "", reports[k].residual_rms);
+    if (reports[k].residual_rms > 0.5 * factorizations[k].target_variation_rms)
+      unreachable += fmt::format("{}{}", unreachable.empty() ? "" : ", ", k + 1);
+  }
+  if (exact) return "all targets reached exactly";
+  std::string text = "residuals " + residuals + " rms";
+  if (!unreachable.empty())
+    text += fmt::format("; target {} out of reach of this camera", unreachable);
+  return text;
+}
+
 MeasurementReport measurement_report(const Factorization& f, const PairCandidate& chosen) {
   return {.residual_rms = chosen.residual_rms,
           .demodulation_duty = chosen.pair.demodulation.mean(),
@@ -50,19 +73,21 @@ Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
   const double count = static_cast<double>(targets.measurements.size());
   for (const CorrelationTarget& target : targets.measurements) {
     const double done = static_cast<double>(factorizations.size());
-    factorizations.push_back(factorize(target, camera, options.factorize,
-                                       part_of(progress, 0.7 * done / count, 0.7 * (done + 1) / count)));
+    factorizations.push_back(
+        factorize(target, camera, options.factorize,
+                  part_of(progress, 0.7 * done / count, 0.7 * (done + 1) / count)));
   }
   // 2. Choose among the pairs by the depth error of the whole code.
   EvaluateOptions search;
   search.trials = options.search_trials;
   search.seed = options.seed;
-  const PairChoice choice =
-      choose_by_depth_error(factorizations, camera, search, part_of(progress, 0.7, 1.0));
+  const PairChoice choice = choose_by_depth_error(
+      factorizations, camera, search, rotates(camera, options), part_of(progress, 0.7, 1.0));
   // 3. Put the code together and say how near its target it is.
-  Candidate candidate{.code = assemble(targets.name + "-factorized", factorizations, choice, camera),
-                      .method = "factorize",
-                      .target = target_table(targets)};
+  Candidate candidate{
+      .code = assemble(targets.name + "-factorized", factorizations, choice, camera),
+      .method = "factorize",
+      .target = target_table(targets)};
   Provenance& provenance = candidate.code.provenance;
   provenance.method = "factorize";
   provenance.camera = camera.name;
@@ -72,8 +97,8 @@ Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
     candidate.per_measurement.push_back(measurement_report(f, f.candidates[choice[k]]));
     provenance.residuals.push_back(candidate.per_measurement.back().residual_rms);
     for (const int iterations : f.iterations_per_start) candidate.iterations += iterations;
-    candidate.message += fmt::format("{}{}: {}", k ? "; " : "", k + 1, f.message);
   }
+  candidate.message = describe_residuals(candidate.per_measurement, factorizations);
   candidate.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return candidate;
@@ -84,16 +109,15 @@ void judge(Candidate& candidate, const Camera& camera, const DesignOptions& opti
   EvaluateOptions judging;
   judging.trials = options.trials;
   judging.seed = options.seed + 1;  // not the numbers it was chosen by
-  if (options.best_rotation && camera.operating.error == DepthErrorKind::linear) {
+  if (rotates(camera, options)) {
     EvaluateOptions search;
-    search.trials = options.search_trials;
+    search.trials = options.trials;
     search.seed = options.seed;
     candidate.rotation_bin = best_rotation(candidate.code, camera, search).rotation_bin;
     candidate.code = candidate.code.rotated(candidate.rotation_bin);
   }
   candidate.error = evaluate(candidate.code, camera, judging);
-  candidate.code.provenance.depth_error_m =
-      chosen_error_m(candidate.error, camera.operating.error);
+  candidate.code.provenance.depth_error_m = chosen_error_m(candidate.error, camera.operating.error);
 }
 
 }  // namespace

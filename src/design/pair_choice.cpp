@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "design/pair_choice.hpp"
 
+#include <algorithm>
 #include <map>
 
 namespace tofsmith {
@@ -25,20 +26,23 @@ CodeSet assemble(const std::string& name, const std::vector<Factorization>& fact
     modulation.push_back(pair.modulation);
     demodulation.push_back(pair.demodulation);
   }
-  const CodeSet code = CodeSet::create(name, camera.samples, 1, std::move(modulation),
-                                       std::move(demodulation));
+  const CodeSet code =
+      CodeSet::create(name, camera.samples, 1, std::move(modulation), std::move(demodulation));
   return camera.sensor.taps == 2 ? code.with_two_buckets() : code;
 }
 
 PairChoice choose_by_depth_error(const std::vector<Factorization>& factorizations,
                                  const Camera& camera, const EvaluateOptions& options,
-                                 const Progress& progress) {
+                                 bool at_best_rotation, const Progress& progress) {
   std::map<PairChoice, double> known;
   const auto error_of = [&](const PairChoice& choice) {
     const auto [entry, fresh] = known.try_emplace(choice, 0.0);
     if (fresh) {
       const CodeSet code = assemble("candidate", factorizations, choice, camera);
-      entry->second = chosen_error_m(evaluate(code, camera, options), camera.operating.error);
+      entry->second =
+          at_best_rotation
+              ? std::ranges::min(best_rotation(code, camera, options).linear_geometric_mean_m)
+              : chosen_error_m(evaluate(code, camera, options), camera.operating.error);
     }
     return entry->second;
   };

@@ -18,8 +18,9 @@ CodeSet assemble(const std::string& name, const std::vector<Factorization>& fact
 /// Chooses pairs by depth error, not by residual: starts from the smallest residuals and from the
 /// naive pairs, and changes one measurement at a time as long as the error falls. All trials share
 /// their random numbers, so small differences count.
+/// @param at_best_rotation  judge by the linear error at each code's best origin
 PairChoice choose_by_depth_error(const std::vector<Factorization>& factorizations,
                                  const Camera& camera, const EvaluateOptions& options,
-                                 const Progress& progress);
+                                 bool at_best_rotation, const Progress& progress);
 
 }  // namespace tofsmith

@@ -12,8 +12,8 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/random.hpp"
 #include "tofsmith/io/camera_toml.hpp"
-#include "tofsmith/io/code_json.hpp"
 #include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/code_json.hpp"
 #include "tofsmith/io/read_file.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/version.hpp"
@@ -65,11 +65,11 @@ void read_details(const nlohmann::json& details, Candidate& candidate) {
 /// Everything that determines a designed code, as text.
 std::string design_key(const Camera& camera, const DesignOptions& options) {
   const FactorizeOptions& f = options.factorize;
-  std::string key = fmt::format(
-      "{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", TOFSMITH_VERSION, camera_to_json(camera),
-      options.seed, options.search_trials, fmt::join(f.total_variation_weights, ","),
-      f.max_iterations, f.objective_tolerance, f.feed_back_projection, f.random_starts,
-      f.structured_starts, f.keep_naive, f.refine_edges, f.refined);
+  std::string key = fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", TOFSMITH_VERSION,
+                                camera_to_json(camera), options.seed, options.search_trials,
+                                fmt::join(f.total_variation_weights, ","), f.max_iterations,
+                                f.objective_tolerance, f.feed_back_projection, f.random_starts,
+                                f.structured_starts, f.keep_naive, f.refine_edges, f.refined);
   key += fmt::format("|{}|{}", f.kept, f.seed);
   if (options.target)
     for (const CorrelationTarget& t : options.target->measurements)
@@ -133,17 +133,19 @@ DesignStore DesignDirectory::store(const Camera& camera, const DesignOptions& op
               return candidate;
             });
           },
-          .save = [key, directory](const Candidate& candidate) {
-            const Json json = {{"key", key},
-                         {"method", candidate.method},
-                         {"iterations", candidate.iterations},
-                         {"seconds", candidate.seconds},
-                         {"per_measurement", measurements_json(candidate.per_measurement)},
-                         {"code", Json::parse(code_to_json(candidate.code))},
-                         {"details", details_json(candidate)}};
-            write_file_atomically(directory / (candidate.code.name() + ".json"), json.dump(1),
-                                  OutputPolicy::overwrite);
-          }};
+          .save =
+              [key, directory](const Candidate& candidate) {
+                const Json json = {
+                    {"key", key},
+                    {"method", candidate.method},
+                    {"iterations", candidate.iterations},
+                    {"seconds", candidate.seconds},
+                    {"per_measurement", measurements_json(candidate.per_measurement)},
+                    {"code", Json::parse(code_to_json(candidate.code))},
+                    {"details", details_json(candidate)}};
+                write_file_atomically(directory / (candidate.code.name() + ".json"), json.dump(1),
+                                      OutputPolicy::overwrite);
+              }};
 }
 
 void DesignDirectory::write(const Camera& camera, const DesignResult& result,

@@ -68,13 +68,13 @@ DepthErrorReport depth_error_from_json(const nlohmann::json& entry,
   report.linear = mean_from_json(entry.at("linear"));
   report.circular = mean_from_json(entry.at("circular"));
   for (const auto& p : entry.at("points"))
-    report.points.push_back({.point = {p.at("signal_e_per_s"), p.at("ambient_e_per_s")},
-                             .linear_mde_m = {p.at("linear_mde_m"), p.at("linear_se_m")},
-                             .circular_mde_m = {p.at("circular_mde_m"), p.at("circular_se_m")},
-                             .outlier_rate = {p.at("outlier_rate"), 0.0},
-                             .cramer_rao_mae_m = number_or_infinity(p.at("cramer_rao_mae_m")),
-                             .receiver_bound_mae_m =
-                                 number_or_infinity(p.at("receiver_bound_mae_m"))});
+    report.points.push_back(
+        {.point = {p.at("signal_e_per_s"), p.at("ambient_e_per_s")},
+         .linear_mde_m = {p.at("linear_mde_m"), p.at("linear_se_m")},
+         .circular_mde_m = {p.at("circular_mde_m"), p.at("circular_se_m")},
+         .outlier_rate = {p.at("outlier_rate"), 0.0},
+         .cramer_rao_mae_m = number_or_infinity(p.at("cramer_rao_mae_m")),
+         .receiver_bound_mae_m = number_or_infinity(p.at("receiver_bound_mae_m"))});
   return report;
 }
 
@@ -133,8 +133,7 @@ Json design_json(const Camera& camera, const DesignResult& result, const DesignO
 
 std::string evaluation_document(const Camera& camera, std::span<const EvaluatedCode> codes,
                                 const EvaluateOptions& options) {
-  Json document =
-      document_head(camera, options.seed, options.trials, options.outlier_threshold_m);
+  Json document = document_head(camera, options.seed, options.trials, options.outlier_threshold_m);
   document["codes"] = Json::array();
   for (const EvaluatedCode& code : codes)
     document["codes"].push_back(depth_error_json(code.error, code.rotation_bin));

@@ -88,9 +88,8 @@ SceneResult read_scene_result(const fs::path& directory) {
     scene.view = {view.at("fx_px"), view.at("fy_px"),    view.at("cx_px"),
                   view.at("cy_px"), scene.truth.width(), scene.truth.height()};
     for (const auto& entry : document.at("captures")) {
-      SceneCapture capture{entry.at("light"),
-                           {entry.at("signal_e_per_s"), entry.at("ambient_e_per_s")},
-                           {}};
+      SceneCapture capture{
+          entry.at("light"), {entry.at("signal_e_per_s"), entry.at("ambient_e_per_s")}, {}};
       for (const auto& d : entry.at("decodings")) {
         const std::string file = d.at("file");
         if (fs::path(file).has_parent_path())
@@ -102,8 +101,9 @@ SceneResult read_scene_result(const fs::path& directory) {
     }
     return scene;
   } catch (const nlohmann::json::exception& error) {
-    throw IoError(path.string(), fmt::format("is no scene document of this version of tofsmith ({})",
-                                             error.what()));
+    throw IoError(
+        path.string(),
+        fmt::format("is no scene document of this version of tofsmith ({})", error.what()));
   } catch (const std::invalid_argument& error) {
     throw IoError(path.string(), error.what());
   }

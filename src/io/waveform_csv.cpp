@@ -16,7 +16,8 @@ std::string waveforms_to_csv(const CodeSet& code, double fundamental_frequency_h
   for (int n = 0; n < code.samples(); ++n) {
     text += fmt::format("{:.9g}", n / (fundamental_frequency_hz * code.samples()));
     for (int e = 0; e < code.exposures(); ++e) text += fmt::format(",{:.9g}", modulation(n, e));
-    for (int i = 0; i < code.measurements(); ++i) text += fmt::format(",{:.9g}", demodulation(n, i));
+    for (int i = 0; i < code.measurements(); ++i)
+      text += fmt::format(",{:.9g}", demodulation(n, i));
     text += "\n";
   }
   return text;

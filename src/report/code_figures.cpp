@@ -96,25 +96,29 @@ Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camer
                                       .style = correlation}};
     const int target_column = code.exposure_of(i);
     if (i % code.taps() == 0 && target_column < target.cols())
-      correlations.push_back(
-          {.name = "target",
-           .x = axis_values(static_cast<int>(target.rows()), range_m),
-           .y = to_values(target.col(target_column)),
-           .period = range_m,
-           .style = reference_style()});
-    rows.push_back({.title = fmt::format("{}", i + 1),
-                    .panels = {arm_series(code.modulation_of(i), camera.light.impulse_response,
-                                          frequency_hz, light),
-                               arm_series(code.demodulation(i), camera.sensor.impulse_response,
-                                          frequency_hz, sensor),
-                               std::move(correlations)}});
+      correlations.push_back({.name = "target",
+                              .x = axis_values(static_cast<int>(target.rows()), range_m),
+                              .y = to_values(target.col(target_column)),
+                              .period = range_m,
+                              .style = reference_style()});
+    rows.push_back(
+        {.title = fmt::format("{}", i + 1),
+         .panels = {
+             arm_series(code.modulation_of(i), camera.light.impulse_response, frequency_hz, light),
+             arm_series(code.demodulation(i), camera.sensor.impulse_response, frequency_hz, sensor),
+             std::move(correlations)}});
   }
-  return small_multiples(
-      std::move(text),
-      {{.title = "Modulation", .x = {.label = "time", .unit = "ns"}, .y = {.label = "power / average", .from_zero = true}},
-       {.title = "Demodulation", .x = {.label = "time", .unit = "ns"}, .y = {.label = "gain", .from_zero = true}},
-       {.title = "Correlation", .x = {.label = "depth", .unit = "m"}, .y = {.label = "chi", .from_zero = true}}},
-      rows);
+  return small_multiples(std::move(text),
+                         {{.title = "Modulation",
+                           .x = {.label = "time", .unit = "ns"},
+                           .y = {.label = "power / average", .from_zero = true}},
+                          {.title = "Demodulation",
+                           .x = {.label = "time", .unit = "ns"},
+                           .y = {.label = "gain", .from_zero = true}},
+                          {.title = "Correlation",
+                           .x = {.label = "depth", .unit = "m"},
+                           .y = {.label = "chi", .from_zero = true}}},
+                         rows);
 }
 
 Figure coding_curve_figure(FigureText text, const std::vector<CodeSet>& codes,
@@ -124,14 +128,15 @@ Figure coding_curve_figure(FigureText text, const std::vector<CodeSet>& codes,
   for (int j = 0; j < curve_points; ++j) depth_m[j] = camera.range_m() * j / curve_points;
   for (const CodeSet& code : codes) {
     const Eigen::MatrixXd table = ForwardModel(code, camera).correlation_table(curve_points);
-    curves.push_back({.title = fmt::format("{} (length {:.2f})", code.name(),
-                                           coding_curve_length(table)),
-                      .points = coding_curve_in_space(table),
-                      .values = depth_m});
+    curves.push_back(
+        {.title = fmt::format("{} (length {:.2f})", code.name(), coding_curve_length(table)),
+         .points = coding_curve_in_space(table),
+         .values = depth_m});
   }
-  return curve_3d_figure(std::move(text), curves,
-                         {Axis{.label = "axis 1"}, Axis{.label = "axis 2"}, Axis{.label = "axis 3"}},
-                         {.label = "depth", .unit = "m"});
+  return curve_3d_figure(
+      std::move(text), curves,
+      {Axis{.label = "axis 1"}, Axis{.label = "axis 2"}, Axis{.label = "axis 3"}},
+      {.label = "depth", .unit = "m"});
 }
 
 KeyValueList camera_description(const Camera& camera) {
@@ -140,26 +145,26 @@ KeyValueList camera_description(const Camera& camera) {
     list.entries.push_back({std::move(key), std::move(value)});
   };
   add("name", camera.name);
-  add("fundamental frequency", fmt::format("{:.4g} MHz (range {:.3f} m)",
-                                           camera.fundamental_frequency_hz / 1e6, camera.range_m()));
+  add("fundamental frequency",
+      fmt::format("{:.4g} MHz (range {:.3f} m)", camera.fundamental_frequency_hz / 1e6,
+                  camera.range_m()));
   add("exposure", camera.exposure_s.each_s.empty()
                       ? fmt::format("{:.4g} ms in total", camera.exposure_s.total_s * 1e3)
                       : fmt::format("{} listed exposures", camera.exposure_s.each_s.size()));
   add("samples per period", fmt::format("{}", camera.samples));
   add("peak over average power", fmt::format("{:.4g}", camera.light.peak_factor));
-  add("light source", arm_text(camera.light.binary) + "; response: " +
-                          response_text(camera.light.impulse_response));
+  add("light source", arm_text(camera.light.binary) +
+                          "; response: " + response_text(camera.light.impulse_response));
   add("sensor", fmt::format("{} tap{}, {}; response: {}", camera.sensor.taps,
                             camera.sensor.taps > 1 ? "s" : "", arm_text(camera.sensor.binary),
                             response_text(camera.sensor.impulse_response)));
   add("noise", fmt::format("{} electrons, read noise {:.4g} e",
                            camera.sensor.noise == NoiseModel::poisson ? "Poisson" : "Gaussian",
                            camera.sensor.read_noise_e));
-  add("judged by", fmt::format("{} depth error over {} signal x {} ambient levels",
-                               camera.operating.error == DepthErrorKind::linear ? "linear"
-                                                                               : "circular",
-                               camera.operating.signal_e_per_s.size(),
-                               camera.operating.ambient_e_per_s.size()));
+  add("judged by",
+      fmt::format("{} depth error over {} signal x {} ambient levels",
+                  camera.operating.error == DepthErrorKind::linear ? "linear" : "circular",
+                  camera.operating.signal_e_per_s.size(), camera.operating.ambient_e_per_s.size()));
   return list;
 }
 

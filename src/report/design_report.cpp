@@ -18,8 +18,8 @@ namespace {
 std::string gain_over(const DesignResult& result, std::string_view name, DepthErrorKind kind) {
   const Candidate* other = result.find(name);
   if (!other) return "";
-  return fmt::format("{:.2f}x", chosen_error_m(other->error, kind) /
-                                    chosen_error_m(result.winner().error, kind));
+  return fmt::format(
+      "{:.2f}x", chosen_error_m(other->error, kind) / chosen_error_m(result.winner().error, kind));
 }
 
 KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
@@ -57,13 +57,13 @@ Section waveform_section(const Camera& camera, const DesignResult& result) {
 Section coding_curve_section(const Camera& camera, const DesignResult& result) {
   std::vector<CodeSet> shown{result.winner().code};
   for (const char* name : {"sinusoid-k4", "hamiltonian-k4", "hamiltonian-k5"})
-    if (const Candidate* c = result.find(name);
-        c && c != &result.winner() && shown.size() < 3)
+    if (const Candidate* c = result.find(name); c && c != &result.winner() && shown.size() < 3)
       shown.push_back(c->code);
   Section section{.title = "Coding curves"};
   section.blocks.push_back(Paragraph{
       "As depth runs through the range, the vector of correlation values draws a closed curve. A "
-      "long curve that keeps away from itself separates depths; noise moves a measurement off it."});
+      "long curve that keeps away from itself separates depths; noise moves a measurement off "
+      "it."});
   section.blocks.push_back(coding_curve_figure(
       {.id = "coding-curves",
        .title = "Coding curves.",
@@ -103,19 +103,24 @@ Section convergence_section(const DesignResult& result) {
 Section residual_section(const DesignResult& result) {
   Section section{.title = "Designed codes"};
   Table table{.id = "residuals",
-              .caption = "Every measurement of every designed code: distance of its correlation "
-                         "function from the target, duties and edges.",
-              .columns = {{"code"}, {"measurement", true}, {"residual, rms", true},
-                          {"modulation duty", true}, {"peak", true}, {"demodulation duty", true},
-                          {"edges", true}, {"found from"}}};
+              .caption =
+                  "Every measurement of every designed code: distance of its correlation "
+                  "function from the target, duties and edges.",
+              .columns = {{"code"},
+                          {"measurement", true},
+                          {"residual, rms", true},
+                          {"modulation duty", true},
+                          {"peak", true},
+                          {"demodulation duty", true},
+                          {"edges", true},
+                          {"found from"}}};
   for (const Candidate& c : result.candidates)
     for (std::size_t k = 0; k < c.per_measurement.size(); ++k) {
       const MeasurementReport& m = c.per_measurement[k];
-      table.rows.push_back({c.code.name(), fmt::format("{}", k + 1),
-                            fmt::format("{:.4f}", m.residual_rms),
-                            fmt::format("{:.4f}", m.modulation_duty), fmt::format("{:.2f}", m.peak),
-                            fmt::format("{:.4f}", m.demodulation_duty), fmt::format("{}", m.edges),
-                            m.start});
+      table.rows.push_back(
+          {c.code.name(), fmt::format("{}", k + 1), fmt::format("{:.4f}", m.residual_rms),
+           fmt::format("{:.4f}", m.modulation_duty), fmt::format("{:.2f}", m.peak),
+           fmt::format("{:.4f}", m.demodulation_duty), fmt::format("{}", m.edges), m.start});
     }
   section.blocks.push_back(std::move(table));
   return section;
@@ -127,10 +132,9 @@ Page design_report(const Camera& camera, const DesignResult& result,
                    const std::optional<SceneResult>& scene, const std::string& command_line) {
   const Candidate& winner = result.winner();
   Page page{.title = fmt::format("Codes for {}", camera.name),
-            .subtitle = fmt::format("{} candidates, judged by {} depth error",
-                                    result.candidates.size(),
-                                    camera.operating.error == DepthErrorKind::linear ? "linear"
-                                                                                    : "circular"),
+            .subtitle = fmt::format(
+                "{} candidates, judged by {} depth error", result.candidates.size(),
+                camera.operating.error == DepthErrorKind::linear ? "linear" : "circular"),
             .footer = fmt::format("tofsmith {}, seed {}", TOFSMITH_VERSION, winner.error.seed)};
   page.sections.push_back({"Result", {headline(result, camera.operating.error)}});
   page.sections.push_back({"Camera", {camera_description(camera)}});

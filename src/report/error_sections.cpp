@@ -34,25 +34,29 @@ std::string estimate_mm(const Estimate& e) {
 Table comparison_table(const Camera& camera, std::span<const ComparedCode> codes,
                        const std::vector<std::size_t>& order, std::size_t best) {
   const DepthErrorReport& first = *codes[0].error;
-  Table table{
-      .id = "comparison",
-      .caption = fmt::format("Depth error over {} operating points, {} trials each, N = {}, true "
-                             "depths anywhere in the range; ± is one standard error. Outliers are "
-                             "circular errors beyond {:.2g} m.",
-                             first.points.size(), first.trials, camera.samples,
-                             first.outlier_threshold_m),
-      .columns = {{"code"}, {"made by"}, {"K", true}, {"linear, geometric mean (mm)", true},
-                  {"circular, geometric mean (mm)", true}, {"circular, mean (mm)", true},
-                  {"outliers (%)", true}}};
+  Table table{.id = "comparison",
+              .caption = fmt::format(
+                  "Depth error over {} operating points, {} trials each, N = {}, true "
+                  "depths anywhere in the range; ± is one standard error. Outliers are "
+                  "circular errors beyond {:.2g} m.",
+                  first.points.size(), first.trials, camera.samples, first.outlier_threshold_m),
+              .columns = {{"code"},
+                          {"made by"},
+                          {"K", true},
+                          {"linear, geometric mean (mm)", true},
+                          {"circular, geometric mean (mm)", true},
+                          {"circular, mean (mm)", true},
+                          {"outliers (%)", true}}};
   for (const std::size_t i : order) {
     const DepthErrorReport& e = *codes[i].error;
     double outliers = 0.0;
     for (const PointDepthError& p : e.points) outliers += p.outlier_rate.value;
     if (i == best) table.highlighted_row = static_cast<int>(table.rows.size());
-    table.rows.push_back({e.code, codes[i].method, fmt::format("{}", e.measurements),
-                          estimate_mm(e.linear.geometric_mean_m),
-                          estimate_mm(e.circular.geometric_mean_m), estimate_mm(e.circular.mean_m),
-                          fmt::format("{:.1f}", 100 * outliers / static_cast<double>(e.points.size()))});
+    table.rows.push_back(
+        {e.code, codes[i].method, fmt::format("{}", e.measurements),
+         estimate_mm(e.linear.geometric_mean_m), estimate_mm(e.circular.geometric_mean_m),
+         estimate_mm(e.circular.mean_m),
+         fmt::format("{:.1f}", 100 * outliers / static_cast<double>(e.points.size()))});
   }
   return table;
 }
@@ -135,16 +139,17 @@ Figure heat_maps(const Camera& camera, std::span<const ComparedCode> codes,
     for (Eigen::Index s = 0; s < map.values.rows(); ++s)
       for (Eigen::Index a = 0; a < map.values.cols(); ++a) {
         const PointDepthError& p = e.points[static_cast<std::size_t>(s * map.values.cols() + a)];
-        map.values(s, a) = 1e3 * (kind == DepthErrorKind::linear ? p.linear_mde_m.value
-                                                                 : p.circular_mde_m.value);
+        map.values(s, a) =
+            1e3 * (kind == DepthErrorKind::linear ? p.linear_mde_m.value : p.circular_mde_m.value);
       }
     maps.push_back(std::move(map));
   }
   const std::string name = kind == DepthErrorKind::linear ? "linear" : "circular";
-  return heat_map_figure({.id = "error-maps",
-                          .title = fmt::format("Mean {} depth error by operating point.", name),
-                          .caption = "In mm, all codes on one logarithmic colour scale, best first."},
-                         maps, x, y, {.label = "depth error", .unit = "mm", .logarithmic = true});
+  return heat_map_figure(
+      {.id = "error-maps",
+       .title = fmt::format("Mean {} depth error by operating point.", name),
+       .caption = "In mm, all codes on one logarithmic colour scale, best first."},
+      maps, x, y, {.label = "depth error", .unit = "mm", .logarithmic = true});
 }
 
 }  // namespace

@@ -56,8 +56,7 @@ Figure albedo_figure(const SceneResult& scene) {
                       {{.title = "albedo", .pixels = scene.truth.albedo}}, colours);
 }
 
-Figure decoded_figure(const SceneResult& scene, const SceneCapture& capture,
-                      const Camera& camera) {
+Figure decoded_figure(const SceneResult& scene, const SceneCapture& capture, const Camera& camera) {
   std::vector<ValueImage> images;
   for (const SceneDecoding& d : capture.decodings)
     images.push_back({.title = d.code, .pixels = d.depth_m});
@@ -66,40 +65,44 @@ Figure decoded_figure(const SceneResult& scene, const SceneCapture& capture,
                        .caption = "All codes on one colour scale, the scene's; errors beyond it "
                                   "take the colours of its ends.",
                        .alt_text = "Maps of decoded depth"},
-                      images,
-                      {.label = "depth", .unit = "m", .range = depth_range(scene, camera)});
+                      images, {.label = "depth", .unit = "m", .range = depth_range(scene, camera)});
 }
 
 Figure error_figure(const SceneResult& scene, const SceneCapture& capture, const Camera& camera) {
   std::vector<ValueImage> images;
   double scale_m = 0.0;
   for (const SceneDecoding& d : capture.decodings) {
-    images.push_back({.title = fmt::format("{}: mean {:.3g} mm", d.code, 1e3 * d.error.mean_m),
-                      .pixels = depth_difference_m(d.depth_m, scene.truth, camera,
-                                                   DepthErrorKind::circular)});
+    images.push_back(
+        {.title = fmt::format("{}: mean {:.3g} mm", d.code, 1e3 * d.error.mean_m),
+         .pixels = depth_difference_m(d.depth_m, scene.truth, camera, DepthErrorKind::circular)});
     scale_m = std::max(scale_m, d.error.median_m);
   }
   for (ValueImage& image : images)
     for (float& value : image.pixels.pixels) value *= 1e3f;
   const double limit_mm = std::max(1.0, 4e3 * scale_m);
-  return image_figure(
-      {.id = figure_id("error", capture.light),
-       .title = fmt::format("Depth error, {}.", light_text(capture)),
-       .caption = "Decoded minus true depth, the shorter way round the range.",
-       .alt_text = "Maps of depth error"},
-      images,
-      {.label = "error", .unit = "mm", .map = ColourMap::diverging,
-       .range = ValueRange{-limit_mm, limit_mm}});
+  return image_figure({.id = figure_id("error", capture.light),
+                       .title = fmt::format("Depth error, {}.", light_text(capture)),
+                       .caption = "Decoded minus true depth, the shorter way round the range.",
+                       .alt_text = "Maps of depth error"},
+                      images,
+                      {.label = "error",
+                       .unit = "mm",
+                       .map = ColourMap::diverging,
+                       .range = ValueRange{-limit_mm, limit_mm}});
 }
 
 Table error_table(const SceneResult& scene) {
-  Table table{.id = "scene-errors",
-              .caption = fmt::format("Depth errors on the scene; outliers are off by more than "
-                                     "{:.3g} m or have no depth.",
-                                     scene.captures.front().decodings.front().error
-                                         .outlier_threshold_m),
-              .columns = {{"light"}, {"code"}, {"mean (mm)", true}, {"median (mm)", true},
-                          {"outliers (%)", true}, {"pixels with depth (%)", true}}};
+  Table table{
+      .id = "scene-errors",
+      .caption = fmt::format("Depth errors on the scene; outliers are off by more than "
+                             "{:.3g} m or have no depth.",
+                             scene.captures.front().decodings.front().error.outlier_threshold_m),
+      .columns = {{"light"},
+                  {"code"},
+                  {"mean (mm)", true},
+                  {"median (mm)", true},
+                  {"outliers (%)", true},
+                  {"pixels with depth (%)", true}}};
   for (const SceneCapture& capture : scene.captures)
     for (const SceneDecoding& d : capture.decodings)
       table.rows.push_back({capture.light, d.code, fmt::format("{:.2f}", 1e3 * d.error.mean_m),
@@ -118,9 +121,8 @@ Figure cloud_figure(const SceneResult& scene, const SceneCapture& capture,
   for (int row = 0; row < decoding.depth_m.height; ++row)
     for (int column = 0; column < decoding.depth_m.width; ++column, ++i) {
       const float depth_m = decoding.depth_m(row, column);
-      points.row(i) = (scene.view.ray(row, column) * static_cast<double>(depth_m))
-                          .cast<float>()
-                          .transpose();
+      points.row(i) =
+          (scene.view.ray(row, column) * static_cast<double>(depth_m)).cast<float>().transpose();
       values[i] = depth_m;
     }
   return point_cloud_figure(
@@ -150,8 +152,7 @@ Section scene_section(const SceneResult& scene, const Camera& camera,
   section.blocks.push_back(error_table(scene));
   const SceneCapture& brightest = scene.captures.back();
   for (const SceneDecoding& d : brightest.decodings)
-    if (d.code == best_code)
-      section.blocks.push_back(cloud_figure(scene, brightest, d, camera));
+    if (d.code == best_code) section.blocks.push_back(cloud_figure(scene, brightest, d, camera));
   return section;
 }
 

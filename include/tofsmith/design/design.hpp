@@ -21,10 +21,9 @@ struct DesignOptions {
   FactorizeOptions factorize;
   /// Families that compete, whether or not anything is designed; those the camera cannot play are
   /// left out.
-  std::vector<std::string> baselines = {"sinusoid-k3",    "sinusoid-k4",
-                                        "square-k4",      "multifrequency-k5",
-                                        "hamiltonian-k3", "hamiltonian-k4",
-                                        "hamiltonian-k5", "pulsed-multifrequency-k5"};
+  std::vector<std::string> baselines = {
+      "sinusoid-k3",    "sinusoid-k4",    "square-k4",      "multifrequency-k5",
+      "hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5", "pulsed-multifrequency-k5"};
   bool best_rotation = true;  ///< for the linear error: give every candidate its best origin
   int search_trials = 600;    ///< per operating point, while pairs are chosen; >= 100
   int trials = 20000;         ///< per operating point, for the final figures; >= 1000
@@ -48,14 +47,14 @@ struct MeasurementReport {
 /// A code that competes for the camera.
 struct Candidate {
   CodeSet code;
-  std::string method;           ///< "family" or "factorize"
-  DepthErrorReport error;       ///< at every operating point, fresh seed
-  int rotation_bin = 0;         ///< how far the origin was moved
-  int iterations = 0;           ///< convex steps over all starts that led to it; 0 for a family
-  double seconds = 0.0;         ///< time it took to design
-  Eigen::MatrixXd target;       ///< what it was designed for (N, K); empty for a family
+  std::string method;      ///< "family" or "factorize"
+  DepthErrorReport error;  ///< at every operating point, fresh seed
+  int rotation_bin = 0;    ///< how far the origin was moved
+  int iterations = 0;      ///< convex steps over all starts that led to it; 0 for a family
+  double seconds = 0.0;    ///< time it took to design
+  Eigen::MatrixXd target;  ///< what it was designed for (N, K); empty for a family
   std::vector<MeasurementReport> per_measurement;
-  std::string message;          ///< one line on how near the target is
+  std::string message;  ///< one line on how near the target is
 };
 
 /// All candidates of a camera and which one is best by the camera's chosen depth error.

@@ -12,9 +12,9 @@ namespace tofsmith {
 
 /// How far a decoded frame is from the scene, over the pixels that have a true depth.
 struct SceneError {
-  double mean_m = 0.0;        ///< mean |decoded - true|, pixels without decoded depth left out
-  double median_m = 0.0;      ///< median of the same
-  double outlier_rate = 0.0;  ///< share beyond the threshold or without decoded depth
+  double mean_m = 0.0;         ///< mean |decoded - true|, pixels without decoded depth left out
+  double median_m = 0.0;       ///< median of the same
+  double outlier_rate = 0.0;   ///< share beyond the threshold or without decoded depth
   double decoded_share = 0.0;  ///< share of pixels that got a depth
   std::int64_t pixels = 0;     ///< with a true depth
   double outlier_threshold_m = 0.0;
