@@ -48,7 +48,11 @@ Eigen::MatrixXd coding_curve_in_space(const Eigen::MatrixXd& table) {
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(centred, Eigen::ComputeThinV);
   const Eigen::Index axes = std::min<Eigen::Index>(3, centred.cols());
   Eigen::MatrixXd points = Eigen::MatrixXd::Zero(table.rows(), 3);
-  points.leftCols(axes) = centred * svd.matrixV().leftCols(axes);
+  for (Eigen::Index axis = 0; axis < axes; ++axis) {
+    // What is left of a flat curve's missing direction is rounding, not shape.
+    if (svd.singularValues()[axis] < 1e-9 * svd.singularValues()[0]) break;
+    points.col(axis) = centred * svd.matrixV().col(axis);
+  }
   return points;
 }
 

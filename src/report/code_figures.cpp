@@ -176,11 +176,11 @@ Page code_page(const CodeSet& code, const Camera& camera, const std::string& com
   page.sections.push_back(
       {"Waveforms",
        {waveform_figure({.id = "waveforms",
-                         .title = "Waveforms and correlation functions.",
+                         .title = "Waveforms and correlation functions",
                          .caption = "One row per measurement, over one period."},
                         code, camera),
         coding_curve_figure({.id = "coding-curve",
-                             .title = "Coding curve.",
+                             .title = "Coding curve",
                              .caption = "The path that the correlation values draw as depth runs "
                                         "through the range."},
                             {code}, camera)}});

@@ -35,18 +35,27 @@ KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
   return numbers;
 }
 
+/// The target, seen from the origin the candidate was moved to.
+Eigen::MatrixXd rotated_target(const Candidate& candidate) {
+  const Eigen::Index rows = candidate.target.rows();
+  Eigen::MatrixXd rotated(rows, candidate.target.cols());
+  for (Eigen::Index n = 0; n < rows; ++n)
+    rotated.row(n) = candidate.target.row((n + candidate.rotation_bin + rows) % rows);
+  return rotated;
+}
+
 Section waveform_section(const Camera& camera, const DesignResult& result) {
   Section section{.title = "Waveforms"};
   const auto add = [&](const Candidate& c) {
     std::string id = figure_id("waveforms", c.code.name());
     section.blocks.push_back(waveform_figure(
         {.id = id,
-         .title = fmt::format("Waveforms of {}.", c.code.name()),
+         .title = fmt::format("Waveforms of {}", c.code.name()),
          .caption = c.target.size() > 0
                         ? "One row per measurement: what is played, what the camera's impulse "
                           "responses leave of it, and the correlation function with its target."
                         : "One row per measurement, over one period."},
-        c.code, camera, c.rotation_bin == 0 ? c.target : Eigen::MatrixXd()));
+        c.code, camera, rotated_target(c)));
   };
   add(result.winner());
   for (const Candidate& c : result.candidates)
@@ -66,7 +75,7 @@ Section coding_curve_section(const Camera& camera, const DesignResult& result) {
       "it."});
   section.blocks.push_back(coding_curve_figure(
       {.id = "coding-curves",
-       .title = "Coding curves.",
+       .title = "Coding curves",
        .caption = "In the three directions of largest extent, coloured by depth. Drag to turn."},
       shown, camera));
   return section;
@@ -91,7 +100,7 @@ Section convergence_section(const DesignResult& result) {
     if (series.empty()) continue;
     section.blocks.push_back(line_figure(
         {.id = figure_id("convergence", c.code.name()),
-         .title = fmt::format("Convergence of {}.", c.code.name()),
+         .title = fmt::format("Convergence of {}", c.code.name()),
          .caption = "Residual of the binary projection after each pair of convex steps, for the "
                     "start that led to the pair of smallest residual; values below 1e-6 are drawn "
                     "at 1e-6."},
@@ -172,7 +181,7 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
   for (const CodeSet& code : codes)
     waveforms.blocks.push_back(
         waveform_figure({.id = figure_id("waveforms", code.name()),
-                         .title = fmt::format("Waveforms of {}.", code.name()),
+                         .title = fmt::format("Waveforms of {}", code.name()),
                          .caption = "One row per measurement, over one period."},
                         code, camera));
   page.sections.push_back(std::move(waveforms));

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "report/level_text.hpp"
 #include "tofsmith/report/bar_figure.hpp"
 #include "tofsmith/report/heat_map_figure.hpp"
 #include "tofsmith/report/line_figure.hpp"
@@ -14,8 +15,6 @@
 namespace tofsmith {
 
 namespace {
-
-std::string level_text(double electrons_per_s) { return fmt::format("{:.2g}", electrons_per_s); }
 
 std::vector<std::size_t> by_error(std::span<const ComparedCode> codes, DepthErrorKind kind) {
   std::vector<std::size_t> order(codes.size());
@@ -76,7 +75,7 @@ Figure bars(std::span<const ComparedCode> codes, const std::vector<std::size_t>&
     circular.errors.push_back(1e3 * e.circular.geometric_mean_m.standard_error);
   }
   return bar_figure({.id = "depth-error",
-                     .title = "Depth error of all candidates.",
+                     .title = "Depth error of all candidates",
                      .caption = "Geometric mean over the operating points. The linear error counts "
                                 "a wrap at the end of the range in full, the circular one takes "
                                 "the shorter way round."},
@@ -116,7 +115,7 @@ Figure curves(const Camera& camera, std::span<const ComparedCode> codes,
   if (receiver.y.front() > 0.0) series.push_back(std::move(receiver));
   return line_figure(
       {.id = "error-by-signal",
-       .title = "Circular depth error by signal.",
+       .title = "Circular depth error by signal",
        .caption = fmt::format("At ambient light of {} e/s; the {} best codes. The bounds hold "
                               "for estimators without bias and know no wrap, so a code may come "
                               "below them where it is little better than guessing.",
@@ -147,7 +146,7 @@ Figure heat_maps(const Camera& camera, std::span<const ComparedCode> codes,
   const std::string name = kind == DepthErrorKind::linear ? "linear" : "circular";
   return heat_map_figure(
       {.id = "error-maps",
-       .title = fmt::format("Mean {} depth error by operating point.", name),
+       .title = fmt::format("Mean {} depth error by operating point", name),
        .caption = "In mm, all codes on one logarithmic colour scale, best first."},
       maps, x, y, {.label = "depth error", .unit = "mm", .logarithmic = true});
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/level_text.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/image_figure.hpp"
 #include "tofsmith/report/space_figure.hpp"
@@ -14,8 +15,6 @@
 namespace tofsmith {
 
 namespace {
-
-std::string level_text(double electrons_per_s) { return fmt::format("{:.3g}", electrons_per_s); }
 
 std::string light_text(const SceneCapture& capture) {
   return fmt::format("{} light (S = {} e/s, A = {} e/s)", capture.light,
@@ -39,7 +38,7 @@ ValueRange depth_range(const SceneResult& scene, const Camera& camera) {
 Figure true_scene_figure(const SceneResult& scene, const Camera& camera) {
   ColourScale colours{.label = "depth", .unit = "m", .range = depth_range(scene, camera)};
   return image_figure({.id = "true-depth",
-                       .title = "The scene.",
+                       .title = "The scene",
                        .caption = "True distance along each ray; pixels without return are left "
                                   "empty.",
                        .alt_text = "Map of true depth"},
@@ -50,7 +49,7 @@ Figure true_scene_figure(const SceneResult& scene, const Camera& camera) {
 Figure albedo_figure(const SceneResult& scene) {
   ColourScale colours{.label = "albedo", .map = ColourMap::cividis, .range = ValueRange{0.0, 1.0}};
   return image_figure({.id = "albedo",
-                       .title = "Albedo.",
+                       .title = "Albedo",
                        .caption = "Share of light that each surface returns.",
                        .alt_text = "Map of albedo"},
                       {{.title = "albedo", .pixels = scene.truth.albedo}}, colours);
@@ -61,7 +60,7 @@ Figure decoded_figure(const SceneResult& scene, const SceneCapture& capture, con
   for (const SceneDecoding& d : capture.decodings)
     images.push_back({.title = d.code, .pixels = d.depth_m});
   return image_figure({.id = figure_id("decoded", capture.light),
-                       .title = fmt::format("Decoded depth, {}.", light_text(capture)),
+                       .title = fmt::format("Decoded depth, {}", light_text(capture)),
                        .caption = "All codes on one colour scale, the scene's; errors beyond it "
                                   "take the colours of its ends.",
                        .alt_text = "Maps of decoded depth"},
@@ -73,22 +72,24 @@ Figure error_figure(const SceneResult& scene, const SceneCapture& capture, const
   double scale_m = 0.0;
   for (const SceneDecoding& d : capture.decodings) {
     images.push_back(
-        {.title = fmt::format("{}: mean {:.3g} mm", d.code, 1e3 * d.error.mean_m),
+        {.title = fmt::format("{}: {:.1f} mm", d.code, 1e3 * d.error.mean_m),
          .pixels = depth_difference_m(d.depth_m, scene.truth, camera, DepthErrorKind::circular)});
     scale_m = std::max(scale_m, d.error.median_m);
   }
   for (ValueImage& image : images)
     for (float& value : image.pixels.pixels) value *= 1e3f;
   const double limit_mm = std::max(1.0, 4e3 * scale_m);
-  return image_figure({.id = figure_id("error", capture.light),
-                       .title = fmt::format("Depth error, {}.", light_text(capture)),
-                       .caption = "Decoded minus true depth, the shorter way round the range.",
-                       .alt_text = "Maps of depth error"},
-                      images,
-                      {.label = "error",
-                       .unit = "mm",
-                       .map = ColourMap::diverging,
-                       .range = ValueRange{-limit_mm, limit_mm}});
+  return image_figure(
+      {.id = figure_id("error", capture.light),
+       .title = fmt::format("Depth error, {}", light_text(capture)),
+       .caption = "Decoded minus true depth, the shorter way round the range; its mean size beside "
+                  "each code's name.",
+       .alt_text = "Maps of depth error"},
+      images,
+      {.label = "error",
+       .unit = "mm",
+       .map = ColourMap::diverging,
+       .range = ValueRange{-limit_mm, limit_mm}});
 }
 
 Table error_table(const SceneResult& scene) {
@@ -127,7 +128,7 @@ Figure cloud_figure(const SceneResult& scene, const SceneCapture& capture,
     }
   return point_cloud_figure(
       {.id = "point-cloud",
-       .title = fmt::format("Point cloud, {}, {} light.", decoding.code, capture.light),
+       .title = fmt::format("Point cloud, {}, {} light", decoding.code, capture.light),
        .caption = "Every decoded pixel at its place in front of the camera. Drag to turn.",
        .alt_text = "Point cloud of the decoded scene"},
       points, values, {.label = "depth", .unit = "m", .range = depth_range(scene, camera)});

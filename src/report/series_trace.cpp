@@ -35,6 +35,8 @@ Json trace_of(const Series& open_series) {
                 {"y", numbers(series.y)},
                 {"line", line(series.style)},
                 {"hovertemplate", "%{x:.4g}, %{y:.4g}"}};
+  // Plotly would drop points it takes for collinear and tilt the flat parts of a waveform.
+  trace["line"]["simplify"] = false;
   if (series.mark == Mark::steps) trace["line"]["shape"] = "hv";
   if (has_markers) trace["marker"] = {{"color", series.style.colour}, {"size", 6}};
   if (!series.y_error.empty()) {

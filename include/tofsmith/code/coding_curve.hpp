@@ -15,7 +15,8 @@ double coding_curve_length(const Eigen::MatrixXd& table);
 /// Lowest harmonic h such that harmonics 1..h hold `share` of the energy of the non-constant part.
 int harmonics_used(const Eigen::MatrixXd& table, double share = 0.99);
 
-/// The curve in its three directions of largest extent (principal axes), (N, 3), for drawing.
+/// The curve in its three directions of largest extent (principal axes), (N, 3), for drawing; 0
+/// along directions it does not have.
 Eigen::MatrixXd coding_curve_in_space(const Eigen::MatrixXd& table);
 
 /// Number of independent directions of the table, each column taken about its mean: singular values
