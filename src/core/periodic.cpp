@@ -9,22 +9,19 @@
 
 namespace tofsmith {
 
-struct PeriodicTransform::Plans {
-  Eigen::FFT<double> fft{Eigen::default_fft_impl<double>(), Eigen::FFT<double>::HalfSpectrum};
-};
+namespace {
+/// Eigen's transform keeps its plans by length, and scratch space beside them, so it must not be
+/// shared between threads.
+Eigen::FFT<double>& plans_of_this_thread() {
+  thread_local Eigen::FFT<double> fft{Eigen::default_fft_impl<double>(),
+                                      Eigen::FFT<double>::HalfSpectrum};
+  return fft;
+}
+}  // namespace
 
-PeriodicTransform::PeriodicTransform(int samples)
-    : samples_(samples), plans_(std::make_unique<Plans>()) {
+PeriodicTransform::PeriodicTransform(int samples) : samples_(samples) {
   require(samples >= 1, "samples", samples, "must be >= 1");
 }
-PeriodicTransform::PeriodicTransform(const PeriodicTransform& other)
-    : PeriodicTransform(other.samples_) {}
-PeriodicTransform& PeriodicTransform::operator=(const PeriodicTransform& other) {
-  samples_ = other.samples_;
-  plans_ = std::make_unique<Plans>();
-  return *this;
-}
-PeriodicTransform::~PeriodicTransform() = default;
 
 void PeriodicTransform::forward(const Eigen::VectorXd& signal, Eigen::VectorXcd& spectrum) const {
   TOFSMITH_ASSERT_EQ(signal.size(), samples_);
@@ -33,7 +30,7 @@ void PeriodicTransform::forward(const Eigen::VectorXd& signal, Eigen::VectorXcd&
     spectrum[0] = signal[0];
     return;
   }
-  plans_->fft.fwd(spectrum.data(), signal.data(), samples_);
+  plans_of_this_thread().fwd(spectrum.data(), signal.data(), samples_);
 }
 
 void PeriodicTransform::inverse(const Eigen::VectorXcd& spectrum, Eigen::VectorXd& signal) const {
@@ -43,7 +40,7 @@ void PeriodicTransform::inverse(const Eigen::VectorXcd& spectrum, Eigen::VectorX
     signal[0] = spectrum[0].real();
     return;
   }
-  plans_->fft.inv(signal.data(), spectrum.data(), samples_);
+  plans_of_this_thread().inv(signal.data(), spectrum.data(), samples_);
 }
 
 namespace {

@@ -1,17 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
-#include <tofsmith/core/periodic.hpp>
-#include <tofsmith/core/units.hpp>
-#include <tofsmith/version.hpp>
+#include <tofsmith/decode/decoder.hpp>
+#include <tofsmith/design/design.hpp>
 
-// Where a pulse that left at bin 0 correlates best after a delay of 3 bins.
 int main() {
-  const Eigen::VectorXd sent = Eigen::VectorXd::Unit(8, 0);
-  const Eigen::VectorXd received = tofsmith::circular_shift(sent, 3);
-  Eigen::Index delay_bin = 0;
-  tofsmith::circular_correlation(received, sent).maxCoeff(&delay_bin);
-  std::cout << "tofsmith " << TOFSMITH_VERSION << ": delay " << delay_bin << " of 8, "
-            << tofsmith::unambiguous_range_m(15e6) << " m range\n";
-  return delay_bin == 3 ? 0 : 1;
+  using namespace tofsmith;
+  Camera camera = built_in_camera("paper-10f0");
+  camera.light.peak_factor = 10;
+  const DesignResult result = design(camera, {.exposures = {3, 4}, .trials = 5000});
+  const CodeSet& code = result.winner().code;
+  std::cout << code.name() << ": " << result.winner().error.linear.geometric_mean_m.value << " m\n";
+
+  const ForwardModel model(code, camera);  // what a pixel at bin 123.4 measures ..
+  const Return light{.signal_e_per_s = 1e5, .depth_bin = 123.4};
+  const Eigen::VectorXf raw = model.expected_electrons({&light, 1}, 1e4).cast<float>();
+  const Decoder decoder(make_decoding_table(model, camera));
+  double depth_bin = 0;  // .. and what the decoder makes of it
+  decoder.decode_depth_bins(raw.data(), 1, &depth_bin);
+  std::cout << "decoded bin " << depth_bin << ", " << depth_bin * camera.bin_m() << " m\n";
 }

@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <thread>
+#include <vector>
+
 namespace tofsmith {
 namespace {
 
@@ -43,6 +47,25 @@ TEST_P(PeriodicLength, CorrelationIsTheAdjointOfConvolution) {
 
 INSTANTIATE_TEST_SUITE_P(EvenOddPrimeAndTiny, PeriodicLength,
                          testing::Values(1, 2, 3, 60, 97, 240));
+
+TEST(Periodic, OneTransformServesManyThreadsAtOnce) {
+  const PeriodicTransform transform(240);
+  const Eigen::VectorXd x = Eigen::VectorXd::Random(240);
+  Eigen::VectorXcd expected;
+  transform.forward(x, expected);
+  std::atomic<int> wrong = 0;
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&] {
+      Eigen::VectorXcd spectrum;
+      for (int i = 0; i < 2000; ++i) {
+        transform.forward(x, spectrum);
+        wrong += spectrum != expected;
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(wrong, 0);
+}
 
 TEST(Periodic, ShiftMovesTheCorrelationPeak) {
   const Eigen::VectorXd x = Eigen::VectorXd::Random(50);

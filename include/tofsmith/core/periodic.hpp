@@ -3,20 +3,16 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 
 namespace tofsmith {
 
 /// Real Fourier transform of a periodic signal sampled at N points, end point excluded.
 ///   X[k] = sum_n x[n] exp(-2 pi i k n / N),  k = 0 .. N/2
-/// Plans are made once per object. An object serves one thread at a time; copies are independent.
+/// Plans are made once per thread and length and kept; any thread may use any object.
 class PeriodicTransform {
  public:
   /// @throws std::invalid_argument unless samples >= 1
   explicit PeriodicTransform(int samples);
-  PeriodicTransform(const PeriodicTransform& other);
-  PeriodicTransform& operator=(const PeriodicTransform& other);
-  ~PeriodicTransform();
 
   int samples() const { return samples_; }
   /// Number of independent coefficients, N/2 + 1.
@@ -28,9 +24,7 @@ class PeriodicTransform {
   void inverse(const Eigen::VectorXcd& spectrum, Eigen::VectorXd& signal) const;
 
  private:
-  struct Plans;
   int samples_;
-  std::unique_ptr<Plans> plans_;
 };
 
 /// (a * b)[n] = sum_j a[j] b[n - j], indices modulo N.
