@@ -124,7 +124,9 @@ TEST(AmbiguousDepths, AreReportedInBinsAndMetres) {
 TEST(AmbiguousDepths, AreNoneInGoodCodes) {
   EXPECT_TRUE(ambiguous_depths(good_table()).empty());
   const Camera camera = camera_with("paper-30x");
-  for (const char* code : {"sinusoid-k4", "hamiltonian-k3", "hamiltonian-k5", "multifrequency-k5"})
+  for (const char* code :
+       {"sinusoid-k3", "sinusoid-k4", "square-k3", "square-k4", "hamiltonian-k3", "hamiltonian-k4",
+        "hamiltonian-k5", "hamiltonian-k6", "multifrequency-k5", "pulsed-multifrequency-k5"})
     EXPECT_TRUE(ambiguous_depths(
                     make_decoding_table(ForwardModel(build_family(code, camera), camera), camera))
                     .empty())

@@ -18,3 +18,15 @@ add_test(NAME Report.DrawsEveryFigureOnADarkPhone
   COMMAND ${browser_test} "${sample_page}" --screenshot sample_page_phone.png --width 390 --dark)
 set_tests_properties(Report.DrawsEveryFigureInABrowser Report.DrawsEveryFigureOnADarkPhone
   PROPERTIES FIXTURES_REQUIRED sample_page SKIP_RETURN_CODE 77 TIMEOUT 300)
+
+if(TOFSMITH_BUILD_APPS)
+  # The demo's own report, as a user gets it.
+  set(demo_directory "${CMAKE_CURRENT_BINARY_DIR}/demo")
+  add_test(NAME Report.DemoRuns
+    COMMAND tofsmith_cli demo -o "${demo_directory}" --trials 2000 --force)
+  set_tests_properties(Report.DemoRuns PROPERTIES FIXTURES_SETUP demo_report TIMEOUT 300)
+  add_test(NAME Report.DrawsEveryFigureOfTheDemoInABrowser
+    COMMAND ${browser_test} "${demo_directory}/report.html" --screenshot demo_report.png)
+  set_tests_properties(Report.DrawsEveryFigureOfTheDemoInABrowser
+    PROPERTIES FIXTURES_REQUIRED demo_report SKIP_RETURN_CODE 77 TIMEOUT 300)
+endif()
