@@ -14,7 +14,7 @@ namespace {
 constexpr double smallest_rms = 1e-4;  // keeps the majorizer's weight positive near a perfect fit
 
 /// One convex step; returns the best x for this kernel, or `current` where the solver fails.
-Eigen::VectorXd fit(CirculantTvSolver& solver, CirculantTvProblem problem,
+Eigen::VectorXd fit(CirculantTvSolver& solver, const CirculantTvProblem& problem,
                     const Eigen::VectorXd& current) {
   const CirculantTvResult result = solver.solve(problem);
   if (result.is_usable()) return result.x;

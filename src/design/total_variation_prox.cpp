@@ -18,7 +18,7 @@ void TotalVariationProx::linear(const Eigen::VectorXd& y, double weight, Eigen::
   // The derivative of the cost-to-go of x[n] is piecewise linear and increasing. Its knots live in
   // [first, last] of a buffer that grows from the middle; outside them it is the line
   // slope * x + offset given by the left and the right accumulators.
-  knots_.resize(static_cast<std::size_t>(2 * size));
+  knots_.resize(2 * static_cast<std::size_t>(size));
   lower_.resize(static_cast<std::size_t>(size));
   upper_.resize(static_cast<std::size_t>(size));
   int first = size, last = size - 1;

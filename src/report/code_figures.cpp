@@ -25,7 +25,8 @@ std::vector<double> axis_values(int points, double end) {
 }
 
 /// A waveform as told to the generator: its switching times as steps, not a grid's.
-Series told(const std::string& name, const Waveform& waveform, double period_ns, LineStyle style) {
+Series told(const std::string& name, const Waveform& waveform, double period_ns,
+            const LineStyle& style) {
   const StepFunction steps = waveform.steps();
   Series series{.name = name, .period = period_ns, .mark = Mark::steps, .style = style};
   for (std::size_t i = 0; i < steps.values.size(); ++i) {
@@ -36,7 +37,7 @@ Series told(const std::string& name, const Waveform& waveform, double period_ns,
 }
 
 std::vector<Series> arm_series(const Waveform& waveform, const ImpulseResponse& response,
-                               double frequency_hz, LineStyle style) {
+                               double frequency_hz, const LineStyle& style) {
   const double period_ns = 1e9 / frequency_hz;
   LineStyle faint = style;
   faint.width_px = 1.0;
