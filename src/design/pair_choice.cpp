@@ -56,15 +56,15 @@ PairChoice choose_by_depth_error(const std::vector<Factorization>& factorization
   for (int round = 0; improved && round < 3; ++round) {
     improved = false;
     for (std::size_t k = 0; k < best.size(); ++k) {
+      const double done = (round + static_cast<double>(k) / static_cast<double>(best.size())) / 3;
       for (std::size_t i = 0; i < factorizations[k].candidates.size(); ++i) {
+        report(progress, done, "choosing pairs by depth error");
         PairChoice trial = best;
         trial[k] = i;
         if (error_of(trial) >= error_of(best)) continue;
         best = trial;
         improved = true;
       }
-      report(progress, (round + static_cast<double>(k + 1) / static_cast<double>(best.size())) / 3,
-             "choosing pairs by depth error");
     }
   }
   return best;
