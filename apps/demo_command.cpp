@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "depth_output.hpp"
 #include "design_output.hpp"
+#include "fresh_directory.hpp"
 #include "scene_source.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
@@ -129,6 +130,7 @@ void run(const DemoArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
   LoadedScene loaded = load_scene(arguments.scene, camera);
   const DesignOptions options = design_options(arguments);
+  const FreshDirectory cleanup(arguments.output);
   const DesignDirectory directory(arguments.output);
   if (directory.holds_design() && !session.force)
     throw IoError((directory.path() / "design.json").string(),
