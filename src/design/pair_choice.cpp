@@ -3,7 +3,9 @@
 #include "design/pair_choice.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
+#include <stdexcept>
 
 namespace tofsmith {
 
@@ -39,10 +41,15 @@ PairChoice choose_by_depth_error(const std::vector<Factorization>& factorization
     const auto [entry, fresh] = known.try_emplace(choice, 0.0);
     if (fresh) {
       const CodeSet code = assemble("candidate", factorizations, choice, camera);
-      entry->second =
-          at_best_rotation
-              ? std::ranges::min(best_rotation(code, camera, options).linear_geometric_mean_m)
-              : chosen_error_m(evaluate(code, camera, options), camera.operating.error);
+      try {
+        entry->second =
+            at_best_rotation
+                ? std::ranges::min(best_rotation(code, camera, options).linear_geometric_mean_m)
+                : chosen_error_m(evaluate(code, camera, options), camera.operating.error);
+      } catch (const std::invalid_argument&) {
+        // Pairs that are good one by one can together leave depth untold.
+        entry->second = std::numeric_limits<double>::infinity();
+      }
     }
     return entry->second;
   };
