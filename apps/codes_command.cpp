@@ -9,6 +9,7 @@
 #include "tofsmith/code/coding_curve.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/waveform_csv.hpp"
 #include "tofsmith/report/code_figures.hpp"
 
 namespace tofsmith::apps {
@@ -24,7 +25,6 @@ struct CodesArguments {
 
 void list(const Session& session) {
   nlohmann::ordered_json document = nlohmann::ordered_json::array();
-  std::vector<std::vector<std::string>> rows{{"family", "", "", ""}};
   std::string text;
   for (const FamilyDescription& family : list_families()) {
     document.push_back(
@@ -87,12 +87,14 @@ void show(const Session& session, const CodeSet& code, const Camera& camera) {
 
 void write(const Session& session, const CodeSet& code, const Camera& camera,
            const std::filesystem::path& path) {
-  if (path.extension() == ".html")
+  if (path.extension() == ".csv")
+    write_file_atomically(path, waveforms_to_csv(code, camera.fundamental_frequency_hz),
+                          session.output_policy());
+  else if (path.extension() == ".html")
     write_file_atomically(path, render(code_page(code, camera, session.command_line)),
                           session.output_policy());
   else
     write_code(path, code, session.output_policy());
-  session.say(fmt::format("wrote {}", path.string()));
 }
 
 }  // namespace
@@ -116,8 +118,9 @@ void add_codes_command(CLI::App& app, Session& session) {
       arguments->camera.settings.push_back(fmt::format("samples={}", arguments->samples));
     const Camera camera = arguments->camera.load();
     const CodeSet code = load_code(arguments->name, camera);
-    if (arguments->output.empty() || !session.json) show(session, code, camera);
     if (!arguments->output.empty()) write(session, code, camera, arguments->output);
+    show(session, code, camera);
+    if (!arguments->output.empty()) session.say(fmt::format("wrote {}", arguments->output));
   });
 }
 

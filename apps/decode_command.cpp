@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "depth_output.hpp"
+#include "scene_source.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decoder.hpp"
@@ -22,16 +23,6 @@ struct DecodeArguments {
   DecodeOptions options;
   int frame = -1;
 };
-
-PinholeView view_of(const Camera& camera, int width, int height) {
-  if (!camera.lens) return PinholeView::centred(width, height, M_PI / 3);
-  return {camera.lens->fx_px,
-          camera.lens->fy_px,
-          camera.lens->cx_px,
-          camera.lens->cy_px,
-          width,
-          height};
-}
 
 /// name.npz, frame 3 of 12 -> name-03.npz
 std::filesystem::path frame_path(const std::filesystem::path& path, int frame, int frames) {
@@ -54,6 +45,8 @@ void run(const DecodeArguments& arguments, const Session& session) {
   const int first = std::max(0, arguments.frame);
   const int last = arguments.frame < 0 ? raw.frames : arguments.frame + 1;
   const PinholeView view = view_of(camera, raw.width, raw.height);
+  for (int frame = first; frame < last; ++frame)
+    check_decoded_output(frame_path(arguments.output, frame, last - first), session);
   const Progress progress = terminal_progress("decoding");
   nlohmann::ordered_json outputs = nlohmann::ordered_json::array();
   std::string lines;
@@ -67,6 +60,7 @@ void run(const DecodeArguments& arguments, const Session& session) {
         {{"frame", frame}, {"output", path.string()}, {"status", status_summary(image)}});
     lines += fmt::format("wrote {}: {}\n", path.string(), status_summary(image));
   }
+  report(progress, 1.0, "done");
   session.print_json({{"code", code.name()},
                       {"camera", camera.name},
                       {"height", raw.height},

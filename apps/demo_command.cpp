@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "depth_output.hpp"
 #include "design_output.hpp"
+#include "fresh_directory.hpp"
 #include "scene_source.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
@@ -54,12 +55,11 @@ std::vector<CodeSet> codes_for_scene(const DesignResult& result) {
   return codes;
 }
 
-SceneResult capture_scene(const DemoArguments& arguments, const Camera& camera,
+SceneResult capture_scene(LoadedScene loaded, std::uint64_t seed, const Camera& camera,
                           const DesignResult& result, const Progress& progress) {
-  LoadedScene loaded = load_scene(arguments.scene, camera);
   SceneResult scene{.name = loaded.name, .truth = std::move(loaded.image), .view = loaded.view};
   scene.reference_distance_m = median_depth_m(scene.truth);
-  capture_and_decode(scene, codes_for_scene(result), camera, lights, arguments.seed, progress);
+  capture_and_decode(scene, codes_for_scene(result), camera, lights, seed, progress);
   return scene;
 }
 
@@ -126,9 +126,11 @@ void print_summary(const Session& session, const fs::path& directory, const Came
 
 void run(const DemoArguments& arguments, const Session& session) {
   const auto begin = std::chrono::steady_clock::now();
-  // 1. The camera, and somewhere to put the results.
+  // 1. The camera, the scene, and somewhere to put the results.
   const Camera camera = arguments.camera.load();
+  LoadedScene loaded = load_scene(arguments.scene, camera);
   const DesignOptions options = design_options(arguments);
+  const FreshDirectory cleanup(arguments.output);
   const DesignDirectory directory(arguments.output);
   if (directory.holds_design() && !session.force)
     throw IoError((directory.path() / "design.json").string(),
@@ -140,16 +142,18 @@ void run(const DemoArguments& arguments, const Session& session) {
       design(camera, options, part_of(progress, 0.0, 0.8), directory.store(camera, options));
 
   // 3. Capture the scene at three light levels and decode it.
-  const SceneResult scene = capture_scene(arguments, camera, result, part_of(progress, 0.8, 0.95));
+  const SceneResult scene = capture_scene(std::move(loaded), arguments.seed, camera, result,
+                                          part_of(progress, 0.8, 0.95));
 
   // 4. Write everything, the report last.
   write_scene_result(directory.path() / "scene", scene, OutputPolicy::overwrite);
   write_products(directory.path(), scene, camera, result, arguments.seed);
   directory.write(camera, result, options, OutputPolicy::overwrite);
   write_report(session, directory.path(), OutputPolicy::overwrite);
+  report(progress, 1.0, "done");
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   if (session.json)
-    fmt::print("{}\n", design_document(camera, result, options));
+    session.print_document(design_document(camera, result, options));
   else
     print_summary(session, directory.path(), camera, result, scene, seconds.count());
 }

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -90,14 +92,20 @@ void write_decoded(const std::filesystem::path& path, const DepthImage& image,
     for (const std::string& name : planes)
       channels[name == "depth" ? "Z" : name] = plane(image, name);
     write_exr(path, channels, policy);
-  } else if (extension == ".npy" || extension == ".pfm" || extension == ".png") {
-    write_depth(path, image.depth_m, policy);
   } else {
+    write_depth(path, image.depth_m, policy);
+  }
+}
+
+void check_decoded_output(const std::filesystem::path& path, const Session& session) {
+  const std::string extension = path.extension().string();
+  constexpr std::array<std::string_view, 6> known{".npy", ".npz", ".exr", ".pfm", ".png", ".ply"};
+  if (std::ranges::find(known, extension) == known.end())
     throw IoError(path.string(),
                   fmt::format("unknown extension \"{}\"; expected .npy, .npz, .exr, .pfm, .png "
                               "(16 bits, mm) or .ply",
                               extension));
-  }
+  session.check_output(path);
 }
 
 std::string status_summary(const DepthImage& image) {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "session.hpp"
 #include "tofsmith/decode/depth_image.hpp"
-#include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/scene/pinhole.hpp"
 
 namespace tofsmith::apps {
@@ -23,6 +23,10 @@ std::vector<std::string> plane_names();
 void write_decoded(const std::filesystem::path& path, const DepthImage& image,
                    const std::vector<std::string>& planes, const PinholeView& view,
                    OutputPolicy policy);
+
+/// Fails before the work if write_decoded() could not write there.
+/// @throws IoError
+void check_decoded_output(const std::filesystem::path& path, const Session& session);
 
 /// "ok 76.1 %, low_signal 3.2 %, .."
 std::string status_summary(const DepthImage& image);

@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "design_output.hpp"
+#include "fresh_directory.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
@@ -64,6 +65,7 @@ void run(const DesignArguments& arguments, const Session& session) {
     print_design(session, camera, result, options);
     return;
   }
+  const FreshDirectory cleanup(arguments.output);
   const DesignDirectory directory(arguments.output);
   if (directory.holds_design() && !session.force)
     throw IoError((directory.path() / "design.json").string(),

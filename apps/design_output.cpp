@@ -43,10 +43,7 @@ std::string verdict(const Camera& camera, const DesignResult& result) {
 
 void print_design(const Session& session, const Camera& camera, const DesignResult& result,
                   const DesignOptions& options) {
-  if (session.json) {
-    fmt::print("{}\n", design_document(camera, result, options));
-    return;
-  }
+  if (session.json) return session.print_document(design_document(camera, result, options));
   const DepthErrorKind kind = camera.operating.error;
   std::vector<const Candidate*> order;
   for (const Candidate& c : result.candidates) order.push_back(&c);

@@ -45,10 +45,7 @@ std::string points_csv(const std::vector<EvaluatedCode>& codes) {
 
 void print(const Session& session, const Camera& camera, const std::vector<EvaluatedCode>& codes,
            const EvaluateOptions& options) {
-  if (session.json) {
-    fmt::print("{}\n", evaluation_document(camera, codes, options));
-    return;
-  }
+  if (session.json) return session.print_document(evaluation_document(camera, codes, options));
   std::vector<std::vector<std::string>> rows{{"code", "K", "signal (e/s)", "ambient (e/s)",
                                               "linear (mm)", "circular (mm)", "outliers (%)",
                                               "Cramer-Rao (mm)", "receiver (mm)"}};
@@ -74,45 +71,66 @@ void print(const Session& session, const Camera& camera, const std::vector<Evalu
       options.depth == DepthSampling::bins ? "on bins" : "anywhere in the range"));
 }
 
-void run(EvaluateArguments& arguments, const Session& session) {
-  const Camera camera = arguments.camera.load();
-  if (arguments.on_bins) arguments.options.depth = DepthSampling::bins;
-  arguments.options.validate();
-  std::vector<CodeSet> codes;
-  for (const std::string& name : arguments.codes)
-    codes.push_back(load_code(name, camera, file_options(arguments)));
+/// Where to write, looked at before the long work.
+void check_output(const std::filesystem::path& path, const Session& session) {
+  if (path.empty()) return;
+  const std::string extension = path.extension().string();
+  if (extension != ".csv" && extension != ".json" && extension != ".html")
+    throw UsageError(
+        fmt::format("-o {}: unknown extension; expected .csv, .json or .html", path.string()));
+  session.check_output(path);
+}
 
+/// Depth error of each code, which is moved to its best origin first if that was asked for.
+std::vector<EvaluatedCode> evaluate_all(std::vector<CodeSet>& codes, const Camera& camera,
+                                        const EvaluateArguments& arguments) {
   std::vector<EvaluatedCode> evaluated;
   const Progress progress = terminal_progress("evaluating");
   const double count = static_cast<double>(codes.size());
   for (std::size_t i = 0; i < codes.size(); ++i) {
     const double done = static_cast<double>(i);
-    const Progress part = part_of(progress, done / count, (done + 1) / count);
+    const double middle = arguments.best_rotation ? done + 0.5 : done;
     int rotation = 0;
     if (arguments.best_rotation) {
-      rotation = best_rotation(codes[i], camera, arguments.options).rotation_bin;
+      rotation = best_rotation(codes[i], camera, arguments.options,
+                               part_of(progress, done / count, middle / count))
+                     .rotation_bin;
       codes[i] = codes[i].rotated(rotation);
     }
-    evaluated.push_back({evaluate(codes[i], camera, arguments.options, part), rotation});
+    evaluated.push_back({evaluate(codes[i], camera, arguments.options,
+                                  part_of(progress, middle / count, (done + 1) / count)),
+                         rotation});
   }
+  return evaluated;
+}
 
-  if (!arguments.output.empty()) {
-    const std::filesystem::path path = arguments.output;
-    std::string content;
-    if (path.extension() == ".csv") {
-      content = points_csv(evaluated);
-    } else if (path.extension() == ".json") {
-      content = evaluation_document(camera, evaluated, arguments.options) + "\n";
-    } else if (path.extension() == ".html") {
-      std::vector<DepthErrorReport> errors;
-      for (const EvaluatedCode& code : evaluated) errors.push_back(code.error);
-      content = render(evaluation_report(camera, codes, errors, session.command_line));
-    } else {
-      throw UsageError(
-          fmt::format("-o {}: unknown extension; expected .csv, .json or .html", path.string()));
-    }
-    write_file_atomically(path, content, session.output_policy());
+void write(const std::filesystem::path& path, const Session& session, const Camera& camera,
+           const std::vector<CodeSet>& codes, const std::vector<EvaluatedCode>& evaluated,
+           const EvaluateOptions& options) {
+  std::string content;
+  if (path.extension() == ".csv") {
+    content = points_csv(evaluated);
+  } else if (path.extension() == ".json") {
+    content = evaluation_document(camera, evaluated, options) + "\n";
+  } else {
+    std::vector<DepthErrorReport> errors;
+    for (const EvaluatedCode& code : evaluated) errors.push_back(code.error);
+    content = render(evaluation_report(camera, codes, errors, session.command_line));
   }
+  write_file_atomically(path, content, session.output_policy());
+}
+
+void run(EvaluateArguments& arguments, const Session& session) {
+  const Camera camera = arguments.camera.load();
+  if (arguments.on_bins) arguments.options.depth = DepthSampling::bins;
+  arguments.options.validate();
+  check_output(arguments.output, session);
+  std::vector<CodeSet> codes;
+  for (const std::string& name : arguments.codes)
+    codes.push_back(load_code(name, camera, file_options(arguments)));
+  const std::vector<EvaluatedCode> evaluated = evaluate_all(codes, camera, arguments);
+  if (!arguments.output.empty())
+    write(arguments.output, session, camera, codes, evaluated, arguments.options);
   print(session, camera, evaluated, arguments.options);
 }
 
@@ -126,12 +144,14 @@ void add_evaluate_command(CLI::App& app, Session& session) {
       ->required();
   arguments->camera.add_to(*command);
   command->add_option("--trials", arguments->options.trials, "trials per operating point")
+      ->check(CLI::Range(std::int64_t{2}, std::int64_t{4'000'000'000}))
       ->capture_default_str();
   command->add_option("--seed", arguments->options.seed, "seed of all trials")
       ->capture_default_str();
   command
       ->add_option("--outlier-threshold", arguments->options.outlier_threshold_m,
                    "circular errors beyond this many metres are outliers")
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_flag("--on-bins", arguments->on_bins,
                     "true depths on bins only (flatters codes; for comparison with others)");

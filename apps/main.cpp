@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <memory>
+#include <system_error>
 
 #include "commands.hpp"
 #include "interrupt.hpp"
@@ -29,6 +31,59 @@ std::string as_typed(int argc, char** argv) {
   return line;
 }
 
+/// The subcommand that was typed, or the program itself.
+const CLI::App& chosen(const CLI::App& app) {
+  const auto subcommands = app.get_subcommands();
+  return subcommands.empty() ? app : *subcommands.front();
+}
+
+/// What could have been meant: commands where none was given, options elsewhere.
+std::vector<std::string> known_words(const CLI::App& app, bool options) {
+  std::vector<std::string> words;
+  for (const CLI::App* scope : {&chosen(app), &app})
+    for (const CLI::Option* option : scope->get_options())
+      for (const std::string& name : option->get_lnames())
+        if (options) words.push_back("--" + name);
+  if (!options)
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+      words.push_back(command->get_name());
+  return words;
+}
+
+/// What is wrong with the arguments, in one sentence.
+std::string usage_problem(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> rest = app.remaining(true);
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || rest.empty()) return error.what();
+  const std::string& word = rest.front();
+  const bool option = word.size() > 1 && word.front() == '-';
+  const bool command = !option && &chosen(app) == &app;
+  const std::vector<std::string> known = known_words(app, option);
+  std::string near;
+  if (option || command) near = nearest_word(word, known);
+  std::string text = fmt::format("{} '{}'",
+                                 option    ? "unknown option"
+                                 : command ? "unknown command"
+                                           : "unexpected",
+                                 word);
+  if (!near.empty()) return text + fmt::format("; did you mean {}?", near);
+  return command ? text + fmt::format("; expected one of {}", fmt::join(known, ", ")) : text;
+}
+
+int refuse_usage(const CLI::App& app, const std::string& problem) {
+  const CLI::App& command = chosen(app);
+  fmt::print(stderr, "tofsmith: {}\nSee `tofsmith{} --help`.\n", problem,
+             &command == &app ? "" : " " + command.get_name());
+  return exit_usage;
+}
+
+/// A full disk may show only now.
+int finish_output() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
+  fmt::print(stderr, "tofsmith: standard output: cannot write: {}\n",
+             std::generic_category().message(errno));
+  return exit_failed;
+}
+
 int run(int argc, char** argv) {
   Session session;
   session.command_line = as_typed(argc, argv);
@@ -36,7 +91,7 @@ int run(int argc, char** argv) {
       "tofsmith designs, evaluates, simulates and decodes the coding functions of "
       "continuous-wave time-of-flight cameras."};
   app.set_version_flag("--version", "tofsmith " TOFSMITH_VERSION);
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   app.fallthrough();
   app.add_flag("--json", session.json, "print one JSON document on stdout and nothing else there");
   app.add_flag("--force", session.force, "overwrite existing output files");
@@ -57,11 +112,14 @@ int run(int argc, char** argv) {
 
   try {
     app.parse(argc, argv);
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
-    app.exit(error);
+    if (!app.get_subcommands().empty()) return finish_output();
+    fmt::print(stderr, "{}", app.help());
     return exit_usage;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success))
+      return refuse_usage(app, usage_problem(app, error));
+    app.exit(error);  // --help, --version
+    return finish_output();
   }
 }
 

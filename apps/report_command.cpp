@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "commands.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/design_directory.hpp"
@@ -32,6 +34,11 @@ void run(const ReportArguments& arguments, const Session& session) {
   write_file_atomically(
       output, render(design_report(record.camera, record.result, scene, session.command_line)),
       session.output_policy());
+  session.print_json({{"directory", directory.string()},
+                      {"camera", record.camera.name},
+                      {"best", record.result.winner().code.name()},
+                      {"scene", scene.has_value()},
+                      {"output", output.string()}});
   session.say(fmt::format("wrote {}", output.string()));
 }
 

@@ -18,6 +18,8 @@ namespace {
 
 constexpr double default_view_rad = std::numbers::pi / 3;
 
+}  // namespace
+
 PinholeView view_of(const Camera& camera, int width, int height) {
   if (!camera.lens) return PinholeView::centred(width, height, default_view_rad);
   return {camera.lens->fx_px,
@@ -28,10 +30,12 @@ PinholeView view_of(const Camera& camera, int width, int height) {
           height};
 }
 
-}  // namespace
-
 LoadedScene load_scene(const SceneSource& source, const Camera& camera) {
   if (source.depth == "table-top") {
+    if (!source.image.empty())
+      throw UsageError(fmt::format(
+          "--image {}: the built-in table-top scene has its own albedo; give a depth image too",
+          source.image));
     StagedScene staged = table_top_scene(source.width, source.height);
     return {"table-top", table_top_image(source.width, source.height), staged.view};
   }

@@ -24,9 +24,12 @@ struct LoadedScene {
   PinholeView view;
 };
 
+/// How an image of this size is seen: through the camera's lens, or 60 degrees wide without one.
+PinholeView view_of(const Camera& camera, int width, int height);
+
 /// Loads a depth image with its albedo, or the built-in scene. z-depth becomes radial distance
 /// through the camera's lens (without one: a view 60 degrees wide).
-/// @throws IoError, std::invalid_argument
+/// @throws IoError, std::invalid_argument; UsageError for an albedo image without a depth image
 LoadedScene load_scene(const SceneSource& source, const Camera& camera);
 
 }  // namespace tofsmith::apps

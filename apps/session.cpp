@@ -18,7 +18,15 @@ void Session::say(std::string_view line) const {
 }
 
 void Session::print_json(const nlohmann::ordered_json& document) const {
-  if (json) fmt::print("{}\n", document.dump(2));
+  print_document(document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+void Session::print_document(std::string_view document) const {
+  if (json) fmt::print("{}\n", document);
+}
+
+void Session::check_output(const std::filesystem::path& path) const {
+  const AtomicFile probe(path, output_policy());  // never committed
 }
 
 void CameraArguments::add_to(CLI::App& command) {

@@ -33,8 +33,14 @@ struct Session {
   }
   /// Prints a line for people; nothing with --json.
   void say(std::string_view line) const;
-  /// Prints the document with --json.
+  /// Prints the document with --json. Text that is not UTF-8 (a file's name) is made so.
   void print_json(const nlohmann::ordered_json& document) const;
+  /// Prints a finished document with --json.
+  void print_document(std::string_view document) const;
+
+  /// Fails before long work, not after it, when its output could not be written.
+  /// @throws IoError as write_file_atomically() would
+  void check_output(const std::filesystem::path& path) const;
 };
 
 /// The options that name a camera: a positional or `--camera` name or file, and `--set key=value`.

@@ -27,6 +27,8 @@ void run(SimulateArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
   const CodeSet code = load_code(arguments.code, camera);
   const LoadedScene scene = load_scene(arguments.scene, camera);
+  session.check_output(arguments.output);
+  if (!arguments.truth.empty()) session.check_output(arguments.truth);
   const OperatingPoint middle = camera.operating.middle();
   arguments.options.signal_e_per_s = arguments.signal_e_per_s.value_or(middle.signal_e_per_s);
   arguments.options.ambient_e_per_s = arguments.ambient_e_per_s.value_or(middle.ambient_e_per_s);
@@ -82,6 +84,7 @@ void add_simulate_command(CLI::App& app, Session& session) {
   command
       ->add_option("--reference-distance", arguments->options.reference_distance_m,
                    "where the signal is as given [m]")
+      ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_flag("!--no-falloff", arguments->options.falloff,
                     "signal depends on albedo only, not on distance and angle");

@@ -3,8 +3,10 @@
 #include "terminal_progress.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -24,6 +26,14 @@ std::string duration_text(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
+/// One column less than the terminal has, at most 100.
+std::size_t line_width() {
+  constexpr std::size_t widest = 100, usual_columns = 80;
+  struct winsize size {};
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return std::min(widest, (known ? size.ws_col : usual_columns) - 1);
+}
+
 class Line {
  public:
   explicit Line(std::string_view title) : title_(title) {}
@@ -32,6 +42,7 @@ class Line {
   Line& operator=(const Line&) = delete;
 
   void draw(double fraction, std::string_view step) {
+    if (fraction >= 1.0) return clear();  // what comes next may write where the line is
     const auto now = Clock::now();
     if (now - drawn_at_ < std::chrono::milliseconds(100)) return;
     drawn_at_ = now;
@@ -39,8 +50,7 @@ class Line {
     std::string text = fmt::format("{} {:3.0f} %  {}", title_, 100 * fraction, step);
     if (fraction > 0.02 && passed_s > 1)
       text += fmt::format(", {} left", duration_text(passed_s * (1 - fraction) / fraction));
-    constexpr std::size_t width = 100;
-    text.resize(width, ' ');
+    text.resize(line_width(), ' ');  // a line that wraps could not be drawn over
     fmt::print(stderr, "\r{}", text);
     std::fflush(stderr);
     visible_ = true;
@@ -49,8 +59,9 @@ class Line {
  private:
   void clear() {
     if (!visible_) return;
-    fmt::print(stderr, "\r{:100}\r", "");
+    fmt::print(stderr, "\r{:{}}\r", "", line_width());
     std::fflush(stderr);
+    visible_ = false;
   }
 
   std::string title_;

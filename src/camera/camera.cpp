@@ -136,7 +136,8 @@ void require_fits(const CodeSet& code, const Camera& camera) {
   require(code.taps() == camera.sensor.taps, what + " taps", code.taps(),
           fmt::format("must equal the camera's sensor.taps = {}", camera.sensor.taps));
   require(code.samples() == camera.samples, what + " samples", code.samples(),
-          fmt::format("must equal the camera's samples = {}", camera.samples));
+          fmt::format("must equal the camera's samples = {}; give the camera samples={}",
+                      camera.samples, code.samples()));
   require(code.peak() <= camera.light.peak_factor * (1 + 1e-9), what + " peak", code.peak(),
           fmt::format("must be <= the camera's light.peak_factor = {}", camera.light.peak_factor));
   if (!camera.exposure_s.each_s.empty())

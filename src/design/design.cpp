@@ -105,7 +105,8 @@ Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
 }
 
 /// Judges a candidate with fresh random numbers, at its best origin if asked.
-void judge(Candidate& candidate, const Camera& camera, const DesignOptions& options) {
+void judge(Candidate& candidate, const Camera& camera, const DesignOptions& options,
+           const Progress& progress) {
   EvaluateOptions judging;
   judging.trials = options.trials;
   judging.seed = options.seed + 1;  // not the numbers it was chosen by
@@ -113,10 +114,11 @@ void judge(Candidate& candidate, const Camera& camera, const DesignOptions& opti
     EvaluateOptions search;
     search.trials = options.trials;
     search.seed = options.seed;
-    candidate.rotation_bin = best_rotation(candidate.code, camera, search).rotation_bin;
+    candidate.rotation_bin =
+        best_rotation(candidate.code, camera, search, part_of(progress, 0.0, 0.5)).rotation_bin;
     candidate.code = candidate.code.rotated(candidate.rotation_bin);
   }
-  candidate.error = evaluate(candidate.code, camera, judging);
+  candidate.error = evaluate(candidate.code, camera, judging, part_of(progress, 0.5, 1.0));
   candidate.code.provenance.depth_error_m = chosen_error_m(candidate.error, camera.operating.error);
 }
 
@@ -175,8 +177,9 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
   // 3. Judge all with the same fresh random numbers and pick by the camera's depth error.
   for (std::size_t i = 0; i < result.candidates.size(); ++i) {
     const double count = static_cast<double>(result.candidates.size());
-    report(progress, 0.8 + 0.2 * static_cast<double>(i) / count, "measuring depth errors");
-    judge(result.candidates[i], camera, options);
+    judge(result.candidates[i], camera, options,
+          part_of(progress, 0.8 + 0.2 * static_cast<double>(i) / count,
+                  0.8 + 0.2 * static_cast<double>(i + 1) / count));
     if (chosen_error_m(result.candidates[i].error, camera.operating.error) <
         chosen_error_m(result.winner().error, camera.operating.error))
       result.best = i;

@@ -3,7 +3,9 @@
 #include "design/pair_choice.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
+#include <stdexcept>
 
 namespace tofsmith {
 
@@ -39,10 +41,15 @@ PairChoice choose_by_depth_error(const std::vector<Factorization>& factorization
     const auto [entry, fresh] = known.try_emplace(choice, 0.0);
     if (fresh) {
       const CodeSet code = assemble("candidate", factorizations, choice, camera);
-      entry->second =
-          at_best_rotation
-              ? std::ranges::min(best_rotation(code, camera, options).linear_geometric_mean_m)
-              : chosen_error_m(evaluate(code, camera, options), camera.operating.error);
+      try {
+        entry->second =
+            at_best_rotation
+                ? std::ranges::min(best_rotation(code, camera, options).linear_geometric_mean_m)
+                : chosen_error_m(evaluate(code, camera, options), camera.operating.error);
+      } catch (const std::invalid_argument&) {
+        // Pairs that are good one by one can together leave depth untold.
+        entry->second = std::numeric_limits<double>::infinity();
+      }
     }
     return entry->second;
   };
@@ -56,15 +63,15 @@ PairChoice choose_by_depth_error(const std::vector<Factorization>& factorization
   for (int round = 0; improved && round < 3; ++round) {
     improved = false;
     for (std::size_t k = 0; k < best.size(); ++k) {
+      const double done = (round + static_cast<double>(k) / static_cast<double>(best.size())) / 3;
       for (std::size_t i = 0; i < factorizations[k].candidates.size(); ++i) {
+        report(progress, done, "choosing pairs by depth error");
         PairChoice trial = best;
         trial[k] = i;
         if (error_of(trial) >= error_of(best)) continue;
         best = trial;
         improved = true;
       }
-      report(progress, (round + static_cast<double>(k + 1) / static_cast<double>(best.size())) / 3,
-             "choosing pairs by depth error");
     }
   }
   return best;

@@ -81,6 +81,9 @@ Camera with_settings(const Camera& camera, Settings settings) {
 
 Camera load_camera(const std::string& name_or_path, Settings settings) {
   const std::vector<std::string> names = built_in_camera_names();
+  if (name_or_path.empty())
+    throw IoError("camera", fmt::format("found an empty name; expected a file or one of {}",
+                                        fmt::join(names, ", ")));
   if (std::find(names.begin(), names.end(), name_or_path) != names.end())
     return with_settings(built_in_camera(name_or_path), settings);
   std::error_code ignored;

@@ -15,8 +15,16 @@ namespace {
 std::string near_family(const std::string& name) {
   std::vector<std::string> known;
   for (const FamilyDescription& family : list_families()) known.push_back(family.example);
-  const std::string near = nearest_word(name, known);
-  return near.empty() ? "" : fmt::format("; did you mean {}?", near);
+  std::string near = nearest_word(name, known);
+  if (near.empty()) return "; `tofsmith codes` lists them";
+  // Keep the number the user asked for: only the word before it is wrong.
+  const auto without_number = [](const std::string& word) {
+    return word.substr(0, word.find_last_not_of("0123456789") + 1);
+  };
+  const std::string number = name.substr(without_number(name).size());
+  if (!number.empty() && is_family(without_number(near) + number))
+    near = without_number(near) + number;
+  return fmt::format("; did you mean {}?", near);
 }
 
 }  // namespace
@@ -37,6 +45,8 @@ void write_code(const std::filesystem::path& path, const CodeSet& code, OutputPo
 
 CodeSet load_code(const std::string& name_or_path, const Camera& camera,
                   const CodeFileOptions& options) {
+  if (name_or_path.empty())
+    throw IoError("code", "found an empty name; expected a built-in family or a file");
   if (is_family(name_or_path)) return build_family(name_or_path, camera);
   std::error_code ignored;
   if (!std::filesystem::exists(name_or_path, ignored))

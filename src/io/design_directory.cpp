@@ -102,7 +102,9 @@ fs::path code_path(const fs::path& directory, const std::string& name) {
 
 }  // namespace
 
-DesignDirectory::DesignDirectory(fs::path path) : path_(std::move(path)) {
+DesignDirectory::DesignDirectory(fs::path path) : path_(std::move(path)) {}
+
+void DesignDirectory::create() const {
   for (const fs::path& directory : {path_, path_ / "codes", path_ / "finished"}) {
     std::error_code error;
     fs::create_directories(directory, error);
@@ -116,6 +118,7 @@ DesignDirectory::DesignDirectory(fs::path path) : path_(std::move(path)) {
 bool DesignDirectory::holds_design() const { return fs::exists(path_ / "design.json"); }
 
 DesignStore DesignDirectory::store(const Camera& camera, const DesignOptions& options) const {
+  create();
   const std::string key = design_key(camera, options);
   const fs::path directory = path_ / "finished";
   return {.load = [key, directory](const std::string& name) -> std::optional<Candidate> {
@@ -150,6 +153,7 @@ DesignStore DesignDirectory::store(const Camera& camera, const DesignOptions& op
 
 void DesignDirectory::write(const Camera& camera, const DesignResult& result,
                             const DesignOptions& options, OutputPolicy policy) const {
+  create();
   write_file_atomically(path_ / "camera.toml", camera_to_toml(camera), policy);
   for (const Candidate& c : result.candidates)
     write_code(code_path(path_, c.code.name()), c.code, policy);

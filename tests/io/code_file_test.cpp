@@ -59,8 +59,13 @@ TEST(LoadCode, SaysWhatANameCouldHaveMeant) {
   EXPECT_EQ(io_error_of([&] { load_code("hamiltonain-k4", camera); }),
             "hamiltonain-k4: there is no such file and no built-in family of that name; did you "
             "mean hamiltonian-k4?");
-  EXPECT_EQ(io_error_of([&] { load_code("my/own.code.json", camera); }),
-            "my/own.code.json: there is no such file and no built-in family of that name");
+  EXPECT_EQ(
+      io_error_of([&] { load_code("my/own.code.json", camera); }),
+      "my/own.code.json: there is no such file and no built-in family of that name; `tofsmith "
+      "codes` lists them");
+  EXPECT_EQ(io_error_of([&] { load_code("hamiltonan-k3", camera); }),
+            "hamiltonan-k3: there is no such file and no built-in family of that name; did you "
+            "mean hamiltonian-k3?");
 }
 
 TEST(TapOrder, IsOneOfTwoWords) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -36,7 +37,7 @@ void require(bool holds, std::string_view field, const Value& value, std::string
 }
 
 /// The entry of `known` closest to `word` in edit distance, or "" when none is near enough to be
-/// what the user meant.
+/// what the user meant. Of equally close ones, the one with the longer common beginning.
 template <typename Range>
 std::string nearest_word(std::string_view word, const Range& known);
 
@@ -57,10 +58,14 @@ std::string describe(const Value& value) {
 template <typename Range>
 std::string nearest_word(std::string_view word, const Range& known) {
   std::string best;
+  const auto common_beginning = [word](std::string_view other) {
+    return std::mismatch(word.begin(), word.end(), other.begin(), other.end()).first - word.begin();
+  };
   int best_distance = static_cast<int>(word.size()) / 3 + 2;
   for (const auto& candidate : known) {
     const int distance = edit_distance(word, candidate);
-    if (distance < best_distance) {
+    if (distance < best_distance || (distance == best_distance && !best.empty() &&
+                                     common_beginning(candidate) > common_beginning(best))) {
       best_distance = distance;
       best = candidate;
     }

@@ -24,13 +24,14 @@ struct DesignRecord {
 ///                            camera, target, options and seed takes them from here
 class DesignDirectory {
  public:
-  /// Creates the directory if need be. @throws IoError
+  /// store() and write() create the directory if need be.
   explicit DesignDirectory(std::filesystem::path path);
 
   const std::filesystem::path& path() const { return path_; }
   bool holds_design() const;
 
   /// Keeps finished codes of one design, whose inputs `camera` and `options` are.
+  /// @throws IoError if the directory cannot be created
   DesignStore store(const Camera& camera, const DesignOptions& options) const;
   /// @throws IoError if files exist and may not be replaced, or cannot be written
   void write(const Camera& camera, const DesignResult& result, const DesignOptions& options,
@@ -39,6 +40,8 @@ class DesignDirectory {
   DesignRecord read() const;
 
  private:
+  void create() const;
+
   std::filesystem::path path_;
 };
 

@@ -1,0 +1,281 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Every subcommand does what it says: documents, files, round trips, same seed same bytes."""
+
+import json
+import os
+import pty
+import subprocess
+import unittest
+
+import numpy as np
+
+import command_line
+from command_line import CommandLineTest
+
+FAST = ("--trials", "1000")
+SMALL = "scene.npy"
+
+
+class Commands(CommandLineTest):
+    def small_scene(self):
+        """A ramp of distances [m], 12 x 16 pixels."""
+        truth = np.linspace(1.0, 4.0, 12 * 16).reshape(12, 16).astype(np.float32)
+        np.save(self.path(SMALL), truth)
+        return truth
+
+    def simulate(self, *more, code="hamiltonian-k3", raw="raw.npy"):
+        return self.do_json("simulate", SMALL, "--kind", "radial", "--code", code, "--signal",
+                            "1e7", "--no-falloff", "-o", raw, *more)
+
+    def decode(self, *more, code="hamiltonian-k3", raw="raw.npy", output="depth.npy"):
+        return self.do_json("decode", raw, "--code", code, "-o", output, *more)
+
+    def test_codes_lists_families(self):
+        names = [family["name"] for family in self.do_json("codes")]
+        self.assertIn("hamiltonian-kK", names)
+        self.assertIn("hamiltonian-kK", self.do("codes"))
+
+    def test_codes_shows_one(self):
+        document = self.do_json("codes", "hamiltonian-k4")
+        self.assertEqual((document["measurements"], document["samples"]), (4, 240))
+        self.assertEqual(len(document["per_measurement"]), 4)
+        self.assertIn("|###", self.do("codes", "square-k4"))
+
+    def test_codes_writes_every_format(self):
+        for name in ("c.code.json", "c.npz", "c.csv", "c.html"):
+            self.assertEqual(self.do_json("codes", "hamiltonian-k3", "-o", name)["samples"], 240)
+        self.assertIn("modfs", np.load(self.path("c.npz")))
+        table = np.genfromtxt(self.path("c.csv"), delimiter=",", names=True, comments="#")
+        self.assertEqual(len(table), 240)
+        for name in ("c.code.json", "c.npz"):
+            again = self.do_json("evaluate", name, *FAST)["codes"][0]
+            direct = self.do_json("evaluate", "hamiltonian-k3", *FAST)["codes"][0]
+            self.assertAlmostEqual(again["circular"]["mean_m"], direct["circular"]["mean_m"], 6)
+
+    def test_evaluate_keeps_its_contract(self):
+        document = self.do_json("evaluate", "sinusoid-k4", "square-k4", *FAST, "--seed", "7")
+        self.assertEqual(list(document), ["tofsmith", "seed", "trials", "outlier_threshold_m",
+                                          "camera", "codes"])
+        self.assertEqual((document["seed"], document["trials"]), (7, 1000))
+        self.assertEqual([c["name"] for c in document["codes"]], ["sinusoid-k4", "square-k4"])
+        mean = {"geometric_mean_m", "geometric_mean_se_m", "mean_m", "mean_se_m"}
+        for code in document["codes"]:
+            self.assertEqual(list(code), ["name", "exposures", "taps", "measurements", "samples",
+                                          "rotation_bin", "linear", "circular", "points"])
+            self.assertEqual(set(code["linear"]), mean)
+            self.assertEqual(set(code["circular"]), mean)
+            self.assertEqual(len(code["points"]), 25)
+            for point in code["points"]:
+                self.assertEqual(list(point), [
+                    "signal_e_per_s", "ambient_e_per_s", "linear_mde_m", "linear_se_m",
+                    "circular_mde_m", "circular_se_m", "outlier_rate", "cramer_rao_mae_m",
+                    "receiver_bound_mae_m"])
+                self.assertLessEqual(point["receiver_bound_mae_m"], point["cramer_rao_mae_m"])
+
+    def test_evaluate_writes_every_format(self):
+        document = self.do_json("evaluate", "sinusoid-k4", *FAST, "-o", "e.json")
+        self.assertEqual(document, json.loads(self.bytes_of("e.json")))
+        self.do("evaluate", "sinusoid-k4", *FAST, "-o", "e.csv")
+        self.assertEqual(len(self.bytes_of("e.csv").splitlines()), 26)
+        self.do("evaluate", "sinusoid-k4", *FAST, "-o", "e.html")
+        self.assertIn(b"sinusoid-k4", self.bytes_of("e.html"))
+
+    def test_an_infinite_bound_is_null(self):
+        document = self.do_json("evaluate", "sinusoid-k3", *FAST, "--set",
+                                "operating.signal_e_per_s=[1e-200]")
+        self.assertIsNone(document["codes"][0]["points"][0]["cramer_rao_mae_m"])
+
+    def test_settings_change_the_camera(self):
+        document = self.do_json("evaluate", "sinusoid-k4", *FAST, "--set", "sensor.taps=2",
+                                "--set", "sensor.readout=difference", "--set",
+                                "sensor.noise=poisson", "--set", "light.peak_factor=5")
+        sensor = document["camera"]["sensor"]
+        self.assertEqual((sensor["taps"], sensor["readout"], sensor["noise"]),
+                         (2, "difference", "poisson"))
+        self.assertEqual(document["camera"]["light"]["peak_factor"], 5)
+        code = document["codes"][0]
+        self.assertEqual((code["taps"], code["exposures"], code["measurements"]), (2, 4, 4))
+        separate = self.do_json("evaluate", "sinusoid-k4", *FAST, "--set", "sensor.taps=2")
+        self.assertEqual(separate["codes"][0]["measurements"], 8)
+
+    def test_threads_do_not_change_figures(self):
+        one, two = (self.do("evaluate", "hamiltonian-k4", *FAST, "--best-rotation", "--json",
+                            "--threads", threads) for threads in "12")
+        self.assertEqual(one, two)
+
+    def test_decode_recovers_what_simulate_saw(self):
+        for settings in ((), ("--set", "sensor.taps=2"),
+                         ("--set", "sensor.taps=2", "--set", "sensor.readout=difference"),
+                         ("--set", "sensor.noise=poisson")):
+            truth = self.small_scene()
+            self.simulate("--force", *settings)
+            self.decode("--force", *settings)
+            error = np.abs(np.load(self.path("depth.npy")) - truth)
+            self.assertLess(error.max(), 0.01, settings)  # 1 % of a bin is 0.4 mm; noise adds 1 mm
+
+    def test_table_top_comes_back(self):
+        self.do("simulate", "table-top", "--code", "hamiltonian-k3", "--signal", "1e7", "-o",
+                "raw.npy", "--truth", "truth.npy")
+        self.decode()
+        error = np.abs(np.load(self.path("depth.npy")) - np.load(self.path("truth.npy")))
+        self.assertLess(np.nanmedian(error), 0.01)
+
+    def test_decode_writes_every_format(self):
+        self.small_scene()
+        self.simulate()
+        for extension in ("npy", "npz", "exr", "pfm", "png", "ply"):
+            document = self.decode(output="d." + extension)
+            self.assertEqual(document["frames"][0]["output"], "d." + extension)
+            self.assertTrue(self.bytes_of("d." + extension))
+        self.assertEqual(set(np.load(self.path("d.npz")).files),
+                         {"depth", "signal", "ambient", "confidence", "deviation", "status"})
+
+    def test_frames_are_numbered(self):
+        self.small_scene()
+        self.assertEqual(self.simulate("--frames", "2")["frames"], 2)
+        self.decode()
+        self.assertLessEqual({"depth-0.npy", "depth-1.npy"}, set(self.files()))
+        self.decode("--frame", "1", output="one.npy")
+        self.assertEqual(self.bytes_of("one.npy"), self.bytes_of("depth-1.npy"))
+
+    def test_decode_reads_what_numpy_writes(self):
+        self.small_scene()
+        self.simulate()
+        self.decode()
+        raw, expected = np.load(self.path("raw.npy")), np.load(self.path("depth.npy"))
+        for change in (lambda a: a.astype(">f4"), np.asfortranarray, lambda a: a.astype("f8")):
+            np.save(self.path("changed.npy"), change(raw))
+            self.decode("--force", raw="changed.npy", output="changed-depth.npy")
+            np.testing.assert_array_equal(np.load(self.path("changed-depth.npy")), expected)
+        np.savez_compressed(self.path("changed.npz"), raw=raw)
+        self.decode("--force", raw="changed.npz", output="changed-depth.npy")
+        np.testing.assert_array_equal(np.load(self.path("changed-depth.npy")), expected)
+        raw[3, 4, :] = np.nan  # pixels are data
+        np.save(self.path("changed.npy"), raw)
+        status = self.decode("--force", raw="changed.npy", output="changed-depth.npy")["frames"][0]
+        self.assertIn("invalid", status["status"])
+
+    def test_force_overwrites(self):
+        self.small_scene()
+        self.write("raw.npy", "old")
+        self.refuse(["simulate", SMALL, "--code", "sinusoid-k4", "-o", "raw.npy"], "raw.npy",
+                    "--force")
+        self.simulate("--force")
+        self.assertNotEqual(self.bytes_of("raw.npy"), b"old")
+
+    def test_names_need_not_be_utf8(self):
+        truth = self.small_scene()
+        os.rename(os.fsencode(self.path(SMALL)), os.fsencode(self.directory) + b"/\xff.npy")
+        document = self.do_json("simulate", b"\xff.npy", "--code", "sinusoid-k4", "-o", "raw.npy")
+        self.assertEqual((document["height"], document["width"]), truth.shape)
+
+    def test_works_without_environment(self):
+        self.do("evaluate", "sinusoid-k4", *FAST, env={})
+
+    def test_help_and_version(self):
+        self.assertRegex(self.do("--version"), r"^tofsmith \d+\.\d+\.\d+\n$")
+        for command in ("demo", "codes", "design", "evaluate", "simulate", "decode", "report"):
+            self.assertIn(command, self.do("--help"))
+            self.assertIn("--json", self.do(command, "--help") + self.do("--help"))
+        code, out, error = self.run_tool()
+        self.assertEqual((code, out), (2, b""))
+        self.assertIn("Usage", error)
+
+    def test_a_closed_pipe_is_no_crash(self):
+        process = self.start("codes")
+        process.stdout.close()
+        self.assertIn(process.wait(timeout=60), (0, 1, -13))
+        process.stderr.close()
+
+    def test_a_full_disk_is_an_error(self):
+        with open("/dev/full", "wb") as full:
+            result = subprocess.run([command_line.TOOL, "codes"], stdout=full,
+                                    stderr=subprocess.PIPE, timeout=60)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(b"standard output", result.stderr)
+
+    def test_progress_is_drawn_on_a_terminal_and_cleared(self):
+        controller, terminal = pty.openpty()
+        process = subprocess.Popen([command_line.TOOL, "evaluate", "sinusoid-k4", "--trials",
+                                    "200000"], stdout=subprocess.PIPE, stderr=terminal)
+        os.close(terminal)
+        drawn = b""
+        try:
+            while block := os.read(controller, 65536):
+                drawn += block
+        except OSError:  # the terminal is gone
+            pass
+        out, _ = process.communicate(timeout=60)
+        os.close(controller)
+        self.assertEqual(process.returncode, 0)
+        self.assertNotIn(b"\r", out)
+        lines = drawn.split(b"\r")
+        self.assertIn(b"evaluating", drawn)
+        self.assertTrue(all(len(line) < 80 for line in lines))
+        self.assertEqual(lines[-1], b"")
+        self.assertEqual(lines[-2].strip(), b"")
+
+
+class Design(CommandLineTest):
+    ARGUMENTS = ("design", "paper-10f0", "--exposures", "3", *FAST)
+
+    def test_design_report_and_resume(self):
+        document = self.do_json(*self.ARGUMENTS, "-o", "d", "--threads", "1")
+        names = [code["name"] for code in document["codes"]]
+        self.assertIn(document["best"], names)
+        designed = [code for code in document["codes"] if "per_measurement" in code]
+        self.assertTrue(designed)
+        for code in designed:
+            self.assertLessEqual({"method", "iterations", "seconds"}, set(code))
+            for measurement in code["per_measurement"]:
+                self.assertLessEqual({"residual_rms", "demodulation_duty", "modulation_duty",
+                                      "peak", "edges"}, set(measurement))
+        self.assertEqual(document, json.loads(self.bytes_of("d/design.json")))
+
+        with self.subTest("a design may not be replaced unasked"):
+            self.refuse([*self.ARGUMENTS, "-o", "d"], "d/design.json", "--force")
+        with self.subTest("report"):
+            self.assertEqual(self.do_json("report", "d", "-o", "r.html")["best"], document["best"])
+            self.assertIn(document["best"].encode(), self.bytes_of("r.html"))
+            self.refuse(["report", "d"], "report.html", "--force")
+        with self.subTest("finished codes are reused"):
+            name = f"d/finished/{designed[0]['name']}.json"
+            record = json.loads(self.bytes_of(name))
+            record["seconds"] = 12345.5
+            self.write(name, json.dumps(record))
+            again = self.do_json(*self.ARGUMENTS, "-o", "d", "--force")
+            kept = next(c for c in again["codes"] if c["name"] == designed[0]["name"])
+            self.assertEqual(kept["seconds"], 12345.5)
+            self.assertEqual(again["best"], document["best"])
+        with self.subTest("same seed, same bytes, any number of threads"):
+            self.do(*self.ARGUMENTS, "-o", "e", "--threads", "2")
+            codes = os.listdir(self.path("d/codes"))
+            self.assertGreater(len(codes), 5)
+            for code in codes:
+                self.assertEqual(self.bytes_of("d/codes/" + code), self.bytes_of("e/codes/" + code))
+
+    def test_designs_for_two_buckets(self):
+        document = self.do_json(*self.ARGUMENTS, "--set", "sensor.taps=2")
+        self.assertTrue(all(code["taps"] == 2 for code in document["codes"]))
+
+    def test_designs_for_a_table(self):
+        np.savetxt(self.path("t.csv"), np.stack(
+            [0.5 + 0.5 * np.cos(2 * np.pi * (np.arange(240) / 240 - k / 3)) for k in range(3)], 1),
+            delimiter=",")
+        document = self.do_json("design", "--target", "t.csv", *FAST)
+        self.assertIn("t-factorized", [code["name"] for code in document["codes"]])
+
+    def test_demo(self):
+        truth = np.full((12, 16), 2.0, np.float32)
+        np.save(self.path("s.npy"), truth)
+        document = self.do_json("demo", "--depth", "s.npy", *FAST, "-o", "demo")
+        self.assertIn(document["best"], [code["name"] for code in document["codes"]])
+        self.assertEqual(np.load(self.path("demo/depth.npy")).shape, truth.shape)
+        self.assertLessEqual({"demo/report.html", "demo/points.ply", "demo/depth.exr"},
+                             set(self.files()))
+        self.assertTrue(self.do_json("report", "demo", "-o", "r.html")["scene"])
+
+
+if __name__ == "__main__":
+    unittest.main()

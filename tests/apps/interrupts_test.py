@@ -1,0 +1,66 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Ctrl-C stops any work soon, leaves no part of a file and keeps what is finished."""
+
+import json
+import os
+import signal
+import time
+import unittest
+
+from command_line import CommandLineTest
+
+LONG = ("--trials", "100000000")
+
+
+class Interrupts(CommandLineTest):
+    def interrupt(self, *arguments, after=lambda: time.sleep(0.5)):
+        process = self.start(*arguments)
+        after()
+        process.send_signal(signal.SIGINT)
+        out, error = process.communicate(timeout=60)
+        self.assertEqual((process.returncode, out), (130, b""), error)
+        self.assertIn(b"interrupted", error)
+        self.assertFalse([name for name in self.files() if ".tofsmith" in name])
+
+    def wait_for(self, name):
+        for _ in range(600):
+            if os.path.exists(self.path(name)):
+                return
+            time.sleep(0.1)
+        self.fail(f"{name} did not appear")
+
+    def test_evaluate(self):
+        self.interrupt("evaluate", "sinusoid-k4", *LONG, "-o", "e.csv")
+        self.assertEqual(self.files(), [])
+
+    def test_evaluate_at_the_best_rotation(self):
+        self.interrupt("evaluate", "sinusoid-k4", "--best-rotation", *LONG)
+
+    def test_simulate(self):
+        self.interrupt("simulate", "table-top", "--code", "hamiltonian-k5", "--frames", "500",
+                       "-o", "raw.npy")
+        self.assertEqual(self.files(), [])
+
+    def test_design_while_codes_are_factorized(self):
+        self.interrupt("design", *LONG, "--set", "samples=2040", "-o", "d")
+        self.assertNotIn("d/design.json", self.files())
+
+    def test_design_keeps_finished_codes_and_resumes(self):
+        kept = "d/finished/hamiltonian-k3-factorized.json"
+
+        def once_finished():
+            self.wait_for(kept)
+            time.sleep(0.5)  # it is being judged now
+
+        self.interrupt("design", "--exposures", "3", *LONG, "-o", "d", after=once_finished)
+        self.assertNotIn("d/design.json", self.files())
+        before = self.bytes_of(kept)
+        document = self.do_json("design", "--exposures", "3", "--trials", "1000", "-o", "d")
+        self.assertEqual(self.bytes_of(kept), before)
+        resumed = next(c for c in document["codes"] if c["name"] == "hamiltonian-k3-factorized")
+        self.assertEqual(resumed["seconds"], json.loads(before)["seconds"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,231 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Whatever is wrong with what it is given, the tool says where, what it found and what it expected,
+and leaves no file behind."""
+
+import json
+import unittest
+
+import numpy as np
+
+from command_line import CommandLineTest
+
+CAMERA = """fundamental_frequency_hz = 15e6
+samples = 240
+
+[light]
+peak_factor = 15
+"""
+
+
+class Refusals(CommandLineTest):
+    def refuse_camera(self, text, *words):
+        self.write("c.toml", text)
+        self.refuse(["evaluate", "sinusoid-k4", "--camera", "c.toml", "--trials", "1000"], *words)
+
+    def refuse_setting(self, setting, *words, code="sinusoid-k4"):
+        self.refuse(["evaluate", code, "--trials", "1000", "--set", setting], *words)
+
+    def test_usage(self):
+        for arguments, words in (
+                (["bogus"], ["unknown command 'bogus'", "expected one of"]),
+                (["evalute"], ["did you mean evaluate?"]),
+                ([""], []),
+                (["--bogus"], ["unknown option '--bogus'"]),
+                (["evaluate"], ["CODE"]),
+                (["evaluate", "sinusoid-k4", "--trails", "5"], ["did you mean --trials?"]),
+                (["evaluate", "sinusoid-k4", "--trials", "0"], ["--trials", "0"]),
+                (["evaluate", "sinusoid-k4", "--trials", "many"], ["--trials", "many"]),
+                (["evaluate", "sinusoid-k4", "--trials", ""], ["--trials"]),
+                (["evaluate", "sinusoid-k4", "-o", "x.xls"], ["x.xls", "expected .csv"]),
+                (["evaluate", "sinusoid-k4", "--threads", "-1"], ["--threads"]),
+                (["design", "a", "b"], ["'b'"]),
+                (["design", "--method", "magic"], ["magic", "factorize"]),
+                (["design", "--exposures", "7"], ["7"]),
+                (["codes", "-o", "x.npz"], ["NAME"]),
+                (["simulate", "table-top", "--code", "sinusoid-k4"], ["--output"]),
+                (["simulate", "table-top", "--image", "a.png", "--code", "sinusoid-k4", "-o",
+                  "r.npy"], ["--image a.png"]),
+                (["simulate", "table-top", "--code", "sinusoid-k4", "--frames", "0", "-o",
+                  "r.npy"], ["--frames"]),
+                (["report"], ["DIR"])):
+            self.refuse(arguments, *words, code=2)
+            self.refuse([*arguments, "--json"], *words, code=2)
+
+    def test_names(self):
+        self.refuse(["evaluate", "hamiltonan-k3"], "did you mean hamiltonian-k3?")
+        self.refuse(["evaluate", "nothing-like-it"], "no such file", "codes")
+        self.refuse(["evaluate", ""], "empty name")
+        self.refuse(["evaluate", "sinusoid-k4", "--camera", "paper-10"], "did you mean paper-10f0?")
+        self.refuse(["evaluate", "sinusoid-k4", "--camera", ""], "empty name")
+        self.refuse(["decode", "", "--code", "sinusoid-k4", "-o", "d.npy"], "expected")
+        self.refuse(["report", ""], "design.json")
+        self.refuse(["evaluate", "sinusoid-k4", "--camera", "."], "directory", "expected a file")
+        self.refuse(["decode", ".", "--code", "sinusoid-k4", "-o", "d.npy"], "expected")
+
+    def test_cameras(self):
+        self.refuse_camera("", "c.toml", "fundamental_frequency_hz")
+        self.refuse_camera("samples = ", "c.toml:1")
+        self.refuse_camera(CAMERA + "peak_facter = 3", "c.toml:6", "did you mean")
+        self.refuse_camera(CAMERA.replace("240", "'many'"), "c.toml:2", "samples", "many")
+        self.refuse_camera(CAMERA.replace("240", "3"), "c.toml:2", "samples", "3")
+        self.refuse_camera(CAMERA.replace("= 15\n", "= 0.5\n"), "c.toml:5", "peak_factor", ">= 1")
+        self.refuse_camera(CAMERA.replace("= 15\n", "= nan\n"), "c.toml:5", "peak_factor", "finite")
+        self.refuse_camera(CAMERA + 'impulse_response = { kind = "hann" }', "c.toml", "f_max_hz")
+        self.refuse_camera(CAMERA + 'impulse_response = { kind = "bell" }', "c.toml", "bell")
+        self.refuse_camera(CAMERA + '[sensor]\nreadout = "difference"\n', "c.toml", "readout",
+                           "taps")
+        self.refuse_camera(b"\xff\xfe", "c.toml")
+        self.refuse_camera(b"\0" * 100, "c.toml")
+
+    def test_settings(self):
+        self.refuse_setting("light.peak_facter=3", "unknown key", "did you mean light.peak_factor?")
+        self.refuse_setting("foo", "'foo'", "key = value")
+        self.refuse_setting("", "key")
+        self.refuse_setting("=3", "'=3'")
+        self.refuse_setting("light.peak_factor=0.5", "0.5", ">= 1")
+        self.refuse_setting("sensor.read_noise_e=-1", "-1", ">= 0")
+        self.refuse_setting("fundamental_frequency_hz=0", "> 0")
+        self.refuse_setting("exposure_s=-1", "exposure_s")
+        self.refuse_setting("operating.error=round", "round", "linear")
+        self.refuse_setting("light.impulse_response={kind='hann', f_max_hz=0}", "f_max_hz", "> 0")
+
+    def test_codes_a_camera_cannot_play(self):
+        self.refuse_setting("samples=1000", "1000", "multiple of 30", code="hamiltonian-k5")
+        for code in ("sinusoid-k2", "square-k2"):
+            self.refuse(["evaluate", code], "measurements = 2", ">= 3")
+        # three equal measurements cannot tell depth from signal
+        code = self.code()
+        code["modulation"] = [code["modulation"][0]] * 3
+        code["demodulation"] = [code["demodulation"][0]] * 3
+        self.write("c.code.json", json.dumps(code))
+        self.refuse(["evaluate", "c.code.json"], "rank", ">= 2")
+        self.refuse(["design", "--set", "samples=1000", "-o", "d"], "samples = 1000")
+
+    def code(self, name="sinusoid-k3"):
+        """A code as its file says it; the file is gone."""
+        self.do("codes", name, "-o", "made.code.json", "--force", "--camera", "paper-10f0")
+        return json.loads(self.bytes_of("made.code.json"))
+
+    def test_code_files(self):
+        def refuse(change, *words, name="sinusoid-k3"):
+            code = self.code(name)
+            change(code)
+            self.write("c.code.json", json.dumps(code))
+            self.refuse(["evaluate", "c.code.json", "--trials", "1000"], "c.code.json", *words)
+
+        def value(kind, at, new):
+            def change(code):
+                code[kind][0]["values"][at] = new
+            return change
+        refuse(value("demodulation", 3, float("nan")), "c.code.json:1:")
+        refuse(value("demodulation", 3, 1.5), "demodulation", "1.5")
+        refuse(value("demodulation", 3, -0.5), "demodulation", "-0.5")
+        refuse(value("modulation", 3, "one"), "modulation")
+        refuse(lambda c: c["modulation"][0]["values"].pop(), "239", "240")
+        refuse(lambda c: c["modulation"].pop(), "modulation")
+        refuse(lambda c: c.pop("samples"), "samples")
+        refuse(lambda c: c.update(samples=-1), "samples")
+        refuse(lambda c: c.update(samples=1e300), "samples")
+        refuse(lambda c: c.update(format="other"), "tofsmith-code")
+        refuse(lambda c: c.update(version=99), "version")
+        refuse(lambda c: c["demodulation"][0].update(on=[[0.5, 0.2]]), "on",
+               name="hamiltonian-k3")
+        refuse(lambda c: c["demodulation"][0].update(on=[[0.5, 0.6], [0.1, 0.2]]), "on",
+               name="hamiltonian-k3")
+        self.write("c.code.json", '{"format": "tofsmith-code",')
+        self.refuse(["evaluate", "c.code.json"], "c.code.json:1:")
+        self.write("c.txt", "")
+        self.refuse(["evaluate", "c.txt"], "c.txt", "expected one of .json, .npz")
+
+    def test_codes_for_another_camera(self):
+        self.do("codes", "hamiltonian-k3", "-o", "h.code.json")
+        evaluate = ["evaluate", "h.code.json", "--set"]
+        self.refuse([*evaluate, "samples=480"], "240", "480", "samples=240")
+        self.refuse([*evaluate, "light.peak_factor=2"], "peak = 6", "peak_factor = 2")
+        self.refuse([*evaluate, "sensor.taps=2"], "taps = 1", "sensor.taps = 2")
+
+    def test_raw_frames(self):
+        good = np.ones((4, 5, 3), np.float32)
+        np.save(self.path("good.npy"), good)
+        content = self.bytes_of("good.npy")
+
+        def refuse(*words, name="raw.npy", code="hamiltonian-k3"):
+            self.refuse(["decode", name, "--code", code, "-o", "d.npy"], name, *words)
+
+        def refuse_array(array, *words):
+            np.save(self.path("raw.npy"), array)
+            refuse(*words)
+
+        def refuse_bytes(content, *words):
+            self.write("raw.npy", content)
+            refuse(*words)
+        refuse_array(good[:, :, :2], "2 measurements", "expected 3")
+        refuse_array(good[0], "shape", "expected")
+        refuse_array(good[:0], "0")
+        refuse_array(good.astype("c8"), "complex", "expected")
+        refuse_array(good.astype("i8"), "int64", "expected float32")
+        refuse_array(good.astype("U3"), "expected")
+        refuse_bytes(content[:-1], "expected")
+        refuse_bytes(content + b"x", "expected")
+        refuse_bytes(content[:20], "expected")
+        refuse_bytes(b"", "expected")
+        refuse_bytes(content.replace(b"(4, 5, 3)", b"(9" + b"9" * 18 + b", 5, 3)"))
+        refuse_bytes(content.replace(b"(4, 5, 3)", b"(-4, 5,3)"))
+        refuse_bytes(content.replace(b"'<f4'", b"'|O'"))
+        np.savez(self.path("raw.npz"), a=good, b=good)
+        refuse("raw", name="raw.npz")
+        self.write("raw.npz", self.bytes_of("raw.npz")[:-30])
+        refuse(name="raw.npz")
+        refuse("expected 4", name="good.npy", code="sinusoid-k4")
+        refuse("no such file", name="absent.npy")
+        self.refuse(["decode", "good.npy", "--code", "hamiltonian-k3", "--frame", "1", "-o",
+                     "d.npy"], "--frame 1", "1 frame", code=2)
+
+    def test_scenes(self):
+        np.save(self.path("depth.npy"), np.ones((4, 5), np.float32))
+        np.save(self.path("albedo.npy"), np.ones((5, 5), np.float32))
+        np.save(self.path("deep.npy"), np.ones((4, 5, 2), np.float32))
+        self.write("scene.tiff", "II")
+        self.write("broken.png", b"\x89PNG\r\n\x1a\n")
+        simulate = lambda *scene: ["simulate", *scene, "--code", "sinusoid-k4", "-o", "raw.npy"]
+        self.refuse(simulate("depth.npy", "--image", "albedo.npy"), "albedo.npy", "5 x 5", "4 x 5")
+        self.refuse(simulate("deep.npy"), "deep.npy", "shape")
+        self.refuse(simulate("scene.tiff"), "scene.tiff", ".tiff", ".png")
+        self.refuse(simulate("broken.png"), "broken.png")
+        self.refuse(simulate("absent.npy"), "absent.npy")
+        self.refuse(simulate("depth.npy", "--signal", "nan"), "signal_e_per_s", "nan")
+        self.refuse(simulate("depth.npy", "--ambient", "-1"), "ambient_e_per_s", "-1")
+
+    def test_outputs(self):
+        np.save(self.path("raw.npy"), np.ones((4, 5, 3), np.float32))
+        self.write("old.npy", "old")
+        self.write("file", "")
+        decode = lambda output: ["decode", "raw.npy", "--code", "hamiltonian-k3", "-o", output]
+        self.refuse(decode("old.npy"), "old.npy", "exists", "--force")
+        self.refuse(decode("d.xyz"), ".xyz", ".npy")
+        self.refuse(decode(""), "expected")
+        self.refuse(decode("absent/d.npy"), "no directory absent")
+        self.refuse(decode("file/d.npy"), "file/d.npy")
+        self.refuse(decode("/dev/full"), "/dev/full")
+        self.refuse(decode("/proc/d.npy"), "/proc/d.npy", "cannot")
+        self.refuse(["codes", "sinusoid-k4", "-o", "c.txt"], "c.txt", ".json")
+        self.refuse(["design", "-o", "file"], "directory")
+        self.refuse(["design", "-o", "file/d"], "file/d", "directory")
+        # before long work, not after it
+        self.write("e.csv", "old")
+        self.refuse(["evaluate", "sinusoid-k4", "--trials", "100000000", "-o", "e.csv"], "e.csv",
+                    "--force")
+
+    def test_designs(self):
+        self.refuse(["report", "."], "design.json")
+        self.write("design.json", "{}")
+        self.refuse(["report", "."], "details.json")
+        self.refuse(["demo", "-o", "."], "design.json", "--force")
+        self.refuse(["demo", "--depth", "absent.npy", "-o", "d"], "absent.npy")
+        self.write("t.csv", "1,2\nx,3\n")
+        self.refuse(["design", "--target", "t.csv", "-o", "d"], "t.csv:2")
+
+
+if __name__ == "__main__":
+    unittest.main()
