@@ -93,7 +93,7 @@ Section convergence_section(const DesignResult& result) {
         {.id = figure_id("convergence", c.code.name()),
          .title = fmt::format("Convergence of {}.", c.code.name()),
          .caption = "Residual of the binary projection after each pair of convex steps, for the "
-                    "start that led to the pair of smallest residual; values below 1e-6 are drawn "
+                    "random start that came closest; values below 1e-6 are drawn "
                     "at 1e-6."},
         series, {.label = "iteration"}, {.label = "residual, rms", .logarithmic = true}));
   }
