@@ -50,7 +50,7 @@ Section waveform_section(const Camera& camera, const DesignResult& result) {
   };
   add(result.winner());
   for (const Candidate& c : result.candidates)
-    if (&c != &result.winner() && c.method != "family") add(c);
+    if (&c != &result.winner() && !c.per_measurement.empty()) add(c);
   return section;
 }
 
