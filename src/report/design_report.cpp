@@ -17,7 +17,7 @@ namespace {
 /// How many times larger another candidate's chosen error is than the winner's.
 std::string gain_over(const DesignResult& result, std::string_view name, DepthErrorKind kind) {
   const Candidate* other = result.find(name);
-  if (!other) return "";
+  if (!other || other == &result.winner()) return "";
   return fmt::format(
       "{:.2f}x", chosen_error_m(other->error, kind) / chosen_error_m(result.winner().error, kind));
 }
@@ -35,6 +35,14 @@ KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
   return numbers;
 }
 
+/// What the correlation functions of a candidate should be, moved with its origin.
+Eigen::MatrixXd rotated_target(const Candidate& c) {
+  Eigen::MatrixXd target(c.target.rows(), c.target.cols());
+  for (Eigen::Index n = 0; n < target.rows(); ++n)
+    target.row(n) = c.target.row((n + c.rotation_bin) % target.rows());
+  return target;
+}
+
 Section waveform_section(const Camera& camera, const DesignResult& result) {
   Section section{.title = "Waveforms"};
   const auto add = [&](const Candidate& c) {
@@ -46,7 +54,7 @@ Section waveform_section(const Camera& camera, const DesignResult& result) {
                         ? "One row per measurement: what is played, what the camera's impulse "
                           "responses leave of it, and the correlation function with its target."
                         : "One row per measurement, over one period."},
-        c.code, camera, c.rotation_bin == 0 ? c.target : Eigen::MatrixXd()));
+        c.code, camera, rotated_target(c)));
   };
   add(result.winner());
   for (const Candidate& c : result.candidates)
@@ -169,9 +177,9 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
   }
   page.sections.push_back(depth_error_section(camera, compared, best));
   Section waveforms{.title = "Waveforms"};
-  for (const CodeSet& code : codes)
+  for (const CodeSet& code : codes)  // of any names, even the same
     waveforms.blocks.push_back(
-        waveform_figure({.id = figure_id("waveforms", code.name()),
+        waveform_figure({.id = fmt::format("waveforms-{}", waveforms.blocks.size() + 1),
                          .title = fmt::format("Waveforms of {}.", code.name()),
                          .caption = "One row per measurement, over one period."},
                         code, camera));
