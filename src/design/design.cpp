@@ -35,6 +35,11 @@ void require_designable(const TargetSet& targets, const Camera& camera) {
           "must be 1 or 2 to factorize correlation functions");
   require(targets.samples() == camera.samples, "length of the target", targets.samples(),
           fmt::format("must equal the camera's samples = {}", camera.samples));
+  const std::size_t values = targets.measurements.size() * camera.sensor.taps;
+  require(values >= 3 || camera.sensor.readout == Readout::difference,
+          "number of correlation functions", targets.measurements.size(),
+          fmt::format("must be >= {}: signal, ambient light and depth are unknown",
+                      camera.sensor.taps == 2 ? 2 : 3));
   const std::size_t listed = camera.exposure_s.each_s.size();
   require(
       listed == 0 || listed == targets.measurements.size(), "number of exposure_s", listed,

@@ -101,8 +101,8 @@ TEST(Design, AimsAtAUsersTarget) {
   ASSERT_NE(known.find("square-k3-factorized"), nullptr);
   EXPECT_EQ(known.find("hamiltonian-k3-factorized"), nullptr);
 
-  Eigen::MatrixXd table(4, 2);
-  table << 0.0, 0.5, 0.5, 1.0, 1.0, 0.5, 0.5, 0.0;
+  Eigen::MatrixXd table(4, 3);
+  table << 0.0, 0.5, 1.0, 0.5, 1.0, 0.5, 1.0, 0.5, 0.0, 0.5, 0.0, 0.5;
   options.target = targets_from_table("mine", table, camera.samples, false);
   const DesignResult own = design(camera, options);
   ASSERT_NE(own.find("mine-factorized"), nullptr);
@@ -207,6 +207,10 @@ TEST(Design, RefusesWhatCannotBeDesignedBeforeAnyWork) {
                 o.baselines = {"hamiltonian-k9"};
               }),
               HasSubstr("can play none"));
+  EXPECT_THAT(with([](auto& o) {
+                o.target = targets_from_table("two", Eigen::MatrixXd::Identity(4, 2), 60, false);
+              }),
+              HasSubstr("number of correlation functions = 2"));
   Camera camera = small_camera("paper-5f0");
   camera.samples = 200;
   EXPECT_THAT(refusal(camera, small_options({6})), HasSubstr("needs a multiple of 60"));
