@@ -31,8 +31,7 @@ void capture_and_decode(SceneResult& scene, std::span<const CodeSet> codes, cons
                                    .seed = seed};
       const RawFrames raw = capture(scene.truth, codes[i], camera, options);
       SceneDecoding decoding{codes[i].name(), decoders[i].decode(raw).depth_m, {}};
-      decoding.error =
-          scene_error(decoding.depth_m, scene.truth, camera, DepthErrorKind::circular);
+      decoding.error = scene_error(decoding.depth_m, scene.truth, camera, DepthErrorKind::circular);
       capture_result.decodings.push_back(std::move(decoding));
     }
     scene.captures.push_back(std::move(capture_result));
