@@ -14,6 +14,7 @@
 #include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/design_directory.hpp"
+#include "tofsmith/io/file_name.hpp"
 #include "tofsmith/io/raw_frames_file.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/io/scene_directory.hpp"
@@ -82,7 +83,7 @@ void write_products(const fs::path& directory, const SceneResult& scene, const C
   write_decoded(directory / "points.ply", image, {"signal", "confidence"}, scene.view, replace);
   apps::create_directories(directory / "waveforms");
   for (const Candidate& c : result.candidates) {
-    const fs::path path = directory / "waveforms" / (c.code.name() + ".csv");
+    const fs::path path = directory / "waveforms" / (file_name_of(c.code.name()) + ".csv");
     write_file_atomically(path, waveforms_to_csv(c.code, camera.fundamental_frequency_hz), replace);
   }
 }

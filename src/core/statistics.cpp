@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/core/statistics.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tofsmith {
@@ -29,6 +30,14 @@ double RunningStatistics::variance() const {
 
 double RunningStatistics::standard_error() const {
   return count_ < 2 ? 0.0 : std::sqrt(variance() / static_cast<double>(count_));
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
 Estimate mean_of(std::span<const Estimate> estimates) {

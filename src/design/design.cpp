@@ -3,13 +3,18 @@
 #include "tofsmith/design/design.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "design/pair_choice.hpp"
+#include "design/pair_model.hpp"
+#include "design/start_pool.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/code/hamiltonian.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/version.hpp"
 
 namespace tofsmith {
 
@@ -24,12 +29,47 @@ std::vector<TargetSet> targets_for(const Camera& camera, const DesignOptions& op
   return targets;
 }
 
+/// Whether codes for these targets can be played at all, before time is spent on them.
+void require_designable(const TargetSet& targets, const Camera& camera) {
+  require(camera.sensor.taps <= 2, "sensor.taps", camera.sensor.taps,
+          "must be 1 or 2 to factorize correlation functions");
+  require(targets.samples() == camera.samples, "length of the target", targets.samples(),
+          fmt::format("must equal the camera's samples = {}", camera.samples));
+  const std::size_t values = targets.measurements.size() * camera.sensor.taps;
+  require(values >= 3 || camera.sensor.readout == Readout::difference,
+          "number of correlation functions", targets.measurements.size(),
+          fmt::format("must be >= {}: signal, ambient light and depth are unknown",
+                      camera.sensor.taps == 2 ? 2 : 3));
+  const std::size_t listed = camera.exposure_s.each_s.size();
+  require(
+      listed == 0 || listed == targets.measurements.size(), "number of exposure_s", listed,
+      fmt::format("must equal the {} exposures of {}", targets.measurements.size(), targets.name));
+}
+
+/// What a designer would play for the targets without optimization: the ideal demodulation with one
+/// pulse each. None if that is not known or cannot be played.
+std::optional<CodeSet> naive_code(const TargetSet& targets, const Camera& camera) {
+  std::vector<Factorization> pairs;
+  for (const CorrelationTarget& target : targets.measurements) {
+    pairs.push_back({.candidates = naive_start(PairModel(target, camera))});
+    if (pairs.back().candidates.empty()) return std::nullopt;
+  }
+  CodeSet code = assemble(targets.name + "-naive", pairs, PairChoice(pairs.size(), 0), camera);
+  code.provenance.method = "naive";
+  code.provenance.camera = camera.name;
+  return code;
+}
+
 Eigen::MatrixXd target_table(const TargetSet& targets) {
   Eigen::MatrixXd table(targets.samples(), std::ssize(targets.measurements));
   for (Eigen::Index k = 0; k < table.cols(); ++k)
     table.col(k) = targets.measurements[static_cast<std::size_t>(k)].samples;
   return table;
 }
+
+/// Codes and origins are chosen by other random numbers than they are judged by. The judge's are
+/// those of evaluate() with the same seed.
+std::uint64_t search_seed(const DesignOptions& options) { return options.seed + 1; }
 
 /// The circular error does not depend on the origin.
 bool rotates(const Camera& camera, const DesignOptions& options) {
@@ -80,7 +120,7 @@ Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
   // 2. Choose among the pairs by the depth error of the whole code.
   EvaluateOptions search;
   search.trials = options.search_trials;
-  search.seed = options.seed;
+  search.seed = search_seed(options);
   const PairChoice choice = choose_by_depth_error(
       factorizations, camera, search, rotates(camera, options), part_of(progress, 0.7, 1.0));
   // 3. Put the code together and say how near its target it is.
@@ -92,6 +132,7 @@ Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
   provenance.method = "factorize";
   provenance.camera = camera.name;
   provenance.seed = options.seed;
+  provenance.version = TOFSMITH_VERSION;
   for (std::size_t k = 0; k < choice.size(); ++k) {
     const Factorization& f = factorizations[k];
     candidate.per_measurement.push_back(measurement_report(f, f.candidates[choice[k]]));
@@ -104,16 +145,15 @@ Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
   return candidate;
 }
 
-/// Judges a candidate with fresh random numbers, at its best origin if asked.
+/// Judges a candidate with random numbers it was not chosen by, at its best origin if asked.
 void judge(Candidate& candidate, const Camera& camera, const DesignOptions& options,
            const Progress& progress) {
   EvaluateOptions judging;
   judging.trials = options.trials;
-  judging.seed = options.seed + 1;  // not the numbers it was chosen by
+  judging.seed = options.seed;
   if (rotates(camera, options)) {
-    EvaluateOptions search;
-    search.trials = options.trials;
-    search.seed = options.seed;
+    EvaluateOptions search = judging;
+    search.seed = search_seed(options);
     candidate.rotation_bin =
         best_rotation(candidate.code, camera, search, part_of(progress, 0.0, 0.5)).rotation_bin;
     candidate.code = candidate.code.rotated(candidate.rotation_bin);
@@ -125,8 +165,16 @@ void judge(Candidate& candidate, const Camera& camera, const DesignOptions& opti
 }  // namespace
 
 void DesignOptions::validate() const {
-  for (const int e : exposures)
+  for (const int e : exposures) {
     require(e >= 3 && e <= 6, "DesignOptions::exposures", e, "each must be in [3, 6]");
+    require(std::ranges::count(exposures, e) == 1, "DesignOptions::exposures", e,
+            "must be listed once");
+  }
+  for (const std::string& name : baselines)
+    require(std::ranges::count(baselines, name) == 1, "DesignOptions::baselines", name,
+            "must be listed once");
+  require(!target || !target->measurements.empty(), "DesignOptions::target", "[]",
+          "must hold at least one correlation function");
   require(search_trials >= 100, "DesignOptions::search_trials", search_trials, "must be >= 100");
   require(trials >= 1000, "DesignOptions::trials", trials, "must be >= 1000");
   require(!exposures.empty() || target.has_value() || !baselines.empty(),
@@ -148,19 +196,31 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
                     const DesignStore& store) {
   options.validate();
   camera.validate();
+  const std::vector<TargetSet> targets = targets_for(camera, options);
+  for (const TargetSet& target : targets) require_designable(target, camera);
   DesignResult result;
 
-  // 1. Baselines compete as they are.
+  // 1. Baselines compete as they are, and so does the naive code of every target.
   for (const std::string& name : options.baselines) {
     try {
-      result.candidates.push_back({.code = build_family(name, camera), .method = "family"});
+      CodeSet code = build_family(name, camera);
+      require_fits(code, camera);
+      result.candidates.push_back({.code = std::move(code), .method = "family"});
     } catch (const std::invalid_argument& error) {
       result.left_out.push_back(fmt::format("{}: {}", name, error.what()));
     }
   }
 
+  for (const TargetSet& target : targets) {
+    if (!options.target && result.find(target.name)) continue;  // that family is the naive code
+    if (auto code = naive_code(target, camera))
+      result.candidates.push_back({.code = std::move(*code), .method = "naive"});
+  }
+  require(!result.candidates.empty() || !targets.empty(), "DesignOptions::baselines",
+          fmt::format("{}", fmt::join(options.baselines, ", ")),
+          "the camera can play none of them");
+
   // 2. Design a code for every target.
-  const std::vector<TargetSet> targets = targets_for(camera, options);
   for (std::size_t t = 0; t < targets.size(); ++t) {
     const double count = static_cast<double>(targets.size());
     const Progress part = part_of(progress, 0.8 * static_cast<double>(t) / count,

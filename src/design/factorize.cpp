@@ -146,9 +146,8 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
   for (PairCandidate& c : result.candidates)
     if (std::ssize(kept) < options.kept || c.start == "naive") kept.push_back(std::move(c));
   result.candidates = std::move(kept);
-  for (StartResult& run : runs)
-    if (run.candidate.start == result.best().start) result.history = std::move(run.history);
-  if (result.history.empty() && !runs.empty()) result.history = std::move(runs.front().history);
+  if (!runs.empty())
+    result.history = std::ranges::min_element(runs, by_residual, &StartResult::candidate)->history;
   result.message = describe(result, target);
   return result;
 }

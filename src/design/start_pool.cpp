@@ -76,7 +76,10 @@ std::vector<PairCandidate> structured_starts(const PairModel& model) {
 std::vector<PairCandidate> naive_start(const PairModel& model) {
   const auto& ideal = model.target().ideal;
   if (!ideal) return {};
-  if (ideal->modulation.peak() <= model.peak_factor()) return {candidate(model, *ideal, "naive")};
+  if (model.binary_demodulation() && !ideal->demodulation.is_binary()) return {};
+  const bool playable = ideal->modulation.is_binary() || !model.binary_modulation();
+  if (playable && ideal->modulation.peak() <= model.peak_factor())
+    return {candidate(model, *ideal, "naive")};
   const double duty = std::max(1.0 / model.peak_factor(), ideal->modulation.duty());
   return {candidate(model, {rectangular_pulse(duty), ideal->demodulation}, "naive")};
 }

@@ -24,7 +24,8 @@ AlternationStart random_start(const PairModel& model, std::uint64_t seed, int in
 std::vector<PairCandidate> structured_starts(const PairModel& model);
 
 /// The target's own demodulation with one pulse of duty max(1/p, ideal): what a designer would
-/// play without any optimization. Empty if the target's waveforms are not known.
+/// play without any optimization. Empty if the target's waveforms are not known or the sensor
+/// cannot play its demodulation.
 std::vector<PairCandidate> naive_start(const PairModel& model);
 
 }  // namespace tofsmith

@@ -4,16 +4,18 @@
 
 #include <fmt/format.h>
 
-#include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "io/json_reader.hpp"
 #include "io/json_text.hpp"
 #include "io/result_json.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/random.hpp"
+#include "tofsmith/core/hash.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/code_json.hpp"
+#include "tofsmith/io/file_name.hpp"
 #include "tofsmith/io/read_file.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/version.hpp"
@@ -41,55 +43,63 @@ Json details_json(const Candidate& candidate) {
   return details;
 }
 
-void read_details(const nlohmann::json& details, Candidate& candidate) {
-  candidate.message = details.at("message");
-  if (details.contains("target")) {
-    const auto columns = details.at("target").get<std::vector<std::vector<double>>>();
-    candidate.target.resize(static_cast<Eigen::Index>(columns.at(0).size()), std::ssize(columns));
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      if (columns[k].size() != columns[0].size())
-        throw std::invalid_argument("targets differ in length");
-      for (std::size_t n = 0; n < columns[k].size(); ++n)
-        candidate.target(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(k)) =
-            columns[k][n];
+/// @param samples  how many each target must have
+void read_details(const JsonReader& details, int samples, Candidate& candidate) {
+  candidate.message = details.member("message").text();
+  const std::size_t measurements = candidate.per_measurement.size();
+  if (measurements == 0) return;
+  const auto columns = details.member("target").elements(measurements, "one per measurement");
+  candidate.target.resize(samples, std::ssize(columns));
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const auto values =
+        columns[k].elements(static_cast<std::size_t>(samples), "one per sample of the camera");
+    for (std::size_t n = 0; n < values.size(); ++n)
+      candidate.target(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(k)) =
+          values[n].number();
+  }
+  const auto histories = details.member("histories").elements(measurements, "one per measurement");
+  for (std::size_t k = 0; k < histories.size(); ++k)
+    for (const JsonReader& entry : histories[k].elements()) {
+      const auto step = entry.elements(3, "objective, relaxed and playable residual");
+      candidate.per_measurement[k].history.push_back(
+          {step[0].number(), step[1].number(), step[2].number()});
     }
-  }
-  if (!details.contains("histories")) return;
-  std::size_t k = 0;
-  for (const auto& history : details.at("histories")) {
-    auto& target = candidate.per_measurement.at(k++).history;
-    for (const auto& step : history) target.push_back({step.at(0), step.at(1), step.at(2)});
-  }
+}
+
+/// The camera with its measured responses as samples: what it takes to know it without their files.
+Camera self_contained(Camera camera) {
+  camera.light.impulse_response.file.clear();
+  camera.sensor.impulse_response.file.clear();
+  return camera;
+}
+
+std::string waveform_key(const Waveform& waveform) {
+  std::string key = fmt::format("{}", waveform.level());
+  for (const OnInterval& on : waveform.on_intervals())
+    key += fmt::format(";{}-{}", on.rise, on.fall);
+  const Eigen::VectorXd& samples = waveform.samples();
+  key += fmt::format(";{}", fmt::join(samples.begin(), samples.end(), ","));
+  return key;
 }
 
 /// Everything that determines a designed code, as text.
 std::string design_key(const Camera& camera, const DesignOptions& options) {
   const FactorizeOptions& f = options.factorize;
-  std::string key = fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", TOFSMITH_VERSION,
-                                camera_to_json(camera), options.seed, options.search_trials,
-                                fmt::join(f.total_variation_weights, ","), f.max_iterations,
-                                f.objective_tolerance, f.feed_back_projection, f.random_starts,
-                                f.structured_starts, f.keep_naive, f.refine_edges, f.refined);
-  key += fmt::format("|{}|{}", f.kept, f.seed);
+  std::string key =
+      fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", TOFSMITH_VERSION,
+                  camera_to_json(self_contained(camera)), options.seed, options.search_trials,
+                  options.best_rotation, fmt::join(f.total_variation_weights, ","),
+                  f.max_iterations, f.objective_tolerance, f.feed_back_projection, f.random_starts,
+                  f.structured_starts, f.keep_naive, f.refine_edges, f.refined, f.kept, f.seed);
   if (options.target)
-    for (const CorrelationTarget& t : options.target->measurements)
-      key += fmt::format("|{}", fmt::join(t.samples.begin(), t.samples.end(), ","));
-  return fmt::format("{:016x}", combine_keys(std::hash<std::string>{}(key), key.size()));
-}
-
-/// Runs `read` and turns a missing or mistyped member into an error that names the file.
-template <typename Read>
-auto reading(const fs::path& path, Read&& read) {
-  try {
-    return read();
-  } catch (const nlohmann::json::exception& error) {
-    throw IoError(path.string(),
-                  fmt::format("is not a document of this version of tofsmith ({}); expected what "
-                              "`tofsmith design -o` writes",
-                              error.what()));
-  } catch (const std::logic_error& error) {
-    throw IoError(path.string(), error.what());
-  }
+    for (const CorrelationTarget& t : options.target->measurements) {
+      key += fmt::format("|{}|{}", t.demodulation_mean,
+                         fmt::join(t.samples.begin(), t.samples.end(), ","));
+      if (t.ideal)
+        key += fmt::format("|{}|{}", waveform_key(t.ideal->modulation),
+                           waveform_key(t.ideal->demodulation));
+    }
+  return fmt::format("{:016x}", fnv1a_64(key));
 }
 
 nlohmann::json read_json(const fs::path& path) {
@@ -97,47 +107,79 @@ nlohmann::json read_json(const fs::path& path) {
 }
 
 fs::path code_path(const fs::path& directory, const std::string& name) {
-  return directory / "codes" / (name + ".code.json");
+  return directory / "codes" / (file_name_of(name) + ".code.json");
+}
+
+/// A code must be what its file is called by and fit the camera, or reports could not draw it.
+void check_code(const Candidate& candidate, const std::string& name, const Camera& camera,
+                const fs::path& path) {
+  const std::size_t reported = candidate.per_measurement.size();
+  if (candidate.code.name() != name)
+    throw IoError(path.string(), fmt::format("found the code \"{}\"; expected \"{}\"",
+                                             candidate.code.name(), name));
+  if (reported != 0 && reported != static_cast<std::size_t>(candidate.code.exposures()))
+    throw IoError(path.string(), fmt::format("found {} reports per measurement of {}; expected {}",
+                                             reported, name, candidate.code.exposures()));
+  try {
+    require_fits(candidate.code, camera);
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path.string(),
+                  fmt::format("does not fit the camera beside it: {}", error.what()));
+  }
+}
+
+fs::path finished_path(const fs::path& directory, const std::string& name) {
+  return directory / "finished" / (file_name_of(name) + ".json");
+}
+
+/// A finished code, or none if it was designed from other inputs.
+std::optional<Candidate> read_finished(const fs::path& path, const std::string& key,
+                                       const std::string& name, const Camera& camera) {
+  const nlohmann::json document = read_json(path);
+  const std::string file = path.string();
+  const JsonReader json(document, file);
+  if (json.member("key").text() != key) return std::nullopt;
+  Candidate candidate{
+      .code = parse_code_json(json.member("code").dump(), file),
+      .method = json.member("method").text(),
+      .iterations = json.member("iterations").integer(0, std::numeric_limits<int>::max()),
+      .seconds = json.member("seconds").number(),
+      .per_measurement = measurements_from_json(json)};
+  check_code(candidate, name, camera, path);
+  read_details(json.member("details"), camera.samples, candidate);
+  return candidate;
+}
+
+void make_directory(const fs::path& directory) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error || !fs::is_directory(directory))
+    throw IoError(directory.string(),
+                  fmt::format("cannot create this directory ({}); expected a writable place",
+                              error ? error.message() : "a file is in the way"));
 }
 
 }  // namespace
 
 DesignDirectory::DesignDirectory(fs::path path) : path_(std::move(path)) {}
 
-void DesignDirectory::create() const {
-  for (const fs::path& directory : {path_, path_ / "codes", path_ / "finished"}) {
-    std::error_code error;
-    fs::create_directories(directory, error);
-    if (error || !fs::is_directory(directory))
-      throw IoError(directory.string(),
-                    fmt::format("cannot create this directory ({}); expected a writable place",
-                                error ? error.message() : "a file is in the way"));
-  }
-}
-
 bool DesignDirectory::holds_design() const { return fs::exists(path_ / "design.json"); }
 
 DesignStore DesignDirectory::store(const Camera& camera, const DesignOptions& options) const {
-  create();
+  make_directory(path_ / "finished");
   const std::string key = design_key(camera, options);
-  const fs::path directory = path_ / "finished";
-  return {.load = [key, directory](const std::string& name) -> std::optional<Candidate> {
-            const fs::path path = directory / (name + ".json");
+  return {.load = [key, camera,
+                   directory = path_](const std::string& name) -> std::optional<Candidate> {
+            const fs::path path = finished_path(directory, name);
             if (!fs::exists(path)) return std::nullopt;
-            const nlohmann::json json = read_json(path);
-            return reading(path, [&]() -> std::optional<Candidate> {
-              if (json.at("key") != key) return std::nullopt;
-              Candidate candidate{.code = parse_code_json(json.at("code").dump(), path.string()),
-                                  .method = json.at("method"),
-                                  .iterations = json.at("iterations"),
-                                  .seconds = json.at("seconds"),
-                                  .per_measurement = measurements_from_json(json)};
-              read_details(json.at("details"), candidate);
-              return candidate;
-            });
+            try {
+              return read_finished(path, key, name, camera);
+            } catch (const IoError&) {
+              return std::nullopt;  // damaged: designing again costs minutes and replaces it
+            }
           },
           .save =
-              [key, directory](const Candidate& candidate) {
+              [key, directory = path_](const Candidate& candidate) {
                 const Json json = {
                     {"key", key},
                     {"method", candidate.method},
@@ -146,15 +188,18 @@ DesignStore DesignDirectory::store(const Camera& camera, const DesignOptions& op
                     {"per_measurement", measurements_json(candidate.per_measurement)},
                     {"code", Json::parse(code_to_json(candidate.code))},
                     {"details", details_json(candidate)}};
-                write_file_atomically(directory / (candidate.code.name() + ".json"), json.dump(1),
+                write_file_atomically(finished_path(directory, candidate.code.name()), json.dump(1),
                                       OutputPolicy::overwrite);
               }};
 }
 
 void DesignDirectory::write(const Camera& camera, const DesignResult& result,
                             const DesignOptions& options, OutputPolicy policy) const {
-  create();
-  write_file_atomically(path_ / "camera.toml", camera_to_toml(camera), policy);
+  make_directory(path_ / "codes");
+  std::error_code
+      ignored;  // design.json is gone while the others change: a design in parts is none
+  if (policy == OutputPolicy::overwrite) fs::remove(path_ / "design.json", ignored);
+  write_file_atomically(path_ / "camera.toml", camera_to_toml(self_contained(camera)), policy);
   for (const Candidate& c : result.candidates)
     write_code(code_path(path_, c.code.name()), c.code, policy);
   Json details = Json::object();
@@ -166,29 +211,38 @@ void DesignDirectory::write(const Camera& camera, const DesignResult& result,
 }
 
 DesignRecord DesignDirectory::read() const {
-  const fs::path path = path_ / "design.json";
-  const nlohmann::json document = read_json(path);
-  const nlohmann::json details = read_json(path_ / "details.json");
+  const fs::path path = path_ / "design.json", details_path = path_ / "details.json";
+  const nlohmann::json document_json = read_json(path), details_json = read_json(details_path);
+  const std::string file = path.string(), details_file = details_path.string();
+  const JsonReader document(document_json, file), details(details_json, details_file);
   DesignRecord record{read_camera_toml(path_ / "camera.toml"), {}};
-  reading(path, [&] {
-    const std::string best = document.at("best");
-    for (const auto& entry : document.at("codes")) {
-      const std::string name = entry.at("name");
-      Candidate candidate{.code = read_code(code_path(path_, name)),
-                          .method = entry.at("method"),
-                          .error = depth_error_from_json(entry, document),
-                          .rotation_bin = entry.at("rotation_bin"),
-                          .iterations = entry.value("iterations", 0),
-                          .seconds = entry.value("seconds", 0.0),
-                          .per_measurement = measurements_from_json(entry)};
-      if (details.contains(name)) read_details(details.at(name), candidate);
-      if (name == best) record.result.best = record.result.candidates.size();
-      record.result.candidates.push_back(std::move(candidate));
+  DesignResult& result = record.result;
+  const std::string best = document.member("best").text();
+  for (const JsonReader& entry : document.member("codes").elements()) {
+    const std::string name = entry.member("name").text();
+    if (result.find(name)) entry.fail(fmt::format("names the code \"{}\" again", name));
+    const fs::path code_file = code_path(path_, name);
+    Candidate candidate{.code = read_code(code_file),
+                        .method = entry.member("method").text(),
+                        .error = depth_error_from_json(entry, document),
+                        .rotation_bin = entry.member("rotation_bin").integer(0, 65536),
+                        .per_measurement = measurements_from_json(entry)};
+    check_code(candidate, name, record.camera, code_file);
+    if (candidate.error.points.size() != record.camera.operating.points().size())
+      entry.member("points").fail(
+          fmt::format("found {} operating points; expected {}, as in camera.toml",
+                      candidate.error.points.size(), record.camera.operating.points().size()));
+    if (!candidate.per_measurement.empty()) {
+      candidate.iterations = entry.member("iterations").integer(0, std::numeric_limits<int>::max());
+      candidate.seconds = entry.member("seconds").number();
+      read_details(details.member(name), record.camera.samples, candidate);
     }
-    if (record.result.candidates.empty()) throw std::invalid_argument("lists no codes");
-    record.result.left_out = document.at("left_out").get<std::vector<std::string>>();
-    return 0;
-  });
+    if (name == best) result.best = result.candidates.size();
+    result.candidates.push_back(std::move(candidate));
+  }
+  if (!result.find(best)) document.member("best").mistyped("the name of one of the codes");
+  for (const JsonReader& reason : document.member("left_out").elements())
+    result.left_out.push_back(reason.text());
   return record;
 }
 

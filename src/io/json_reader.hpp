@@ -21,9 +21,13 @@ class JsonReader {
   double number() const;
   /// A number of [low, high], give or take `tolerance`.
   double number(double low, double high, double tolerance) const;
+  /// A number >= 0, or infinity where the document says null: JSON has no infinity.
+  double number_or_infinity() const;
   int integer(int low, int high) const;
   std::uint64_t unsigned_integer() const;
   std::string text() const;
+  /// The value as a document of its own.
+  std::string dump() const { return value_->dump(); }
 
   /// Elements of a list. @param count  how many there must be, and `because` why
   std::vector<JsonReader> elements() const;

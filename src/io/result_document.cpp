@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/io/result_document.hpp"
 
+#include <limits>
+
 #include "io/camera_json.hpp"
 #include "io/result_json.hpp"
 #include "tofsmith/version.hpp"
@@ -19,14 +21,25 @@ Json mean_json(const DepthErrorMean& mean) {
           {"mean_se_m", mean.mean_m.standard_error}};
 }
 
-DepthErrorMean mean_from_json(const nlohmann::json& json) {
-  return {{json.at("geometric_mean_m"), json.at("geometric_mean_se_m")},
-          {json.at("mean_m"), json.at("mean_se_m")}};
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double not_negative(const JsonReader& json, std::string_view member) {
+  return json.member(member).number(0.0, infinity, 0.0);
 }
 
-/// JSON has no infinity: a bound that does not exist is null.
-double number_or_infinity(const nlohmann::json& json) {
-  return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
+DepthErrorMean mean_from_json(const JsonReader& json) {
+  return {{not_negative(json, "geometric_mean_m"), not_negative(json, "geometric_mean_se_m")},
+          {not_negative(json, "mean_m"), not_negative(json, "mean_se_m")}};
+}
+
+PointDepthError point_from_json(const JsonReader& json) {
+  return {
+      .point = {not_negative(json, "signal_e_per_s"), not_negative(json, "ambient_e_per_s")},
+      .linear_mde_m = {not_negative(json, "linear_mde_m"), not_negative(json, "linear_se_m")},
+      .circular_mde_m = {not_negative(json, "circular_mde_m"), not_negative(json, "circular_se_m")},
+      .outlier_rate = {json.member("outlier_rate").number(0.0, 1.0, 0.0), 0.0},
+      .cramer_rao_mae_m = json.member("cramer_rao_mae_m").number_or_infinity(),
+      .receiver_bound_mae_m = json.member("receiver_bound_mae_m").number_or_infinity()};
 }
 
 }  // namespace
@@ -54,27 +67,21 @@ Json depth_error_json(const DepthErrorReport& report, int rotation_bin) {
   return entry;
 }
 
-DepthErrorReport depth_error_from_json(const nlohmann::json& entry,
-                                       const nlohmann::json& document) {
+DepthErrorReport depth_error_from_json(const JsonReader& entry, const JsonReader& document) {
+  constexpr int any = std::numeric_limits<int>::max();
   DepthErrorReport report;
-  report.code = entry.at("name");
-  report.exposures = entry.at("exposures");
-  report.taps = entry.at("taps");
-  report.measurements = entry.at("measurements");
-  report.samples = entry.at("samples");
-  report.trials = document.at("trials");
-  report.seed = document.at("seed");
-  report.outlier_threshold_m = document.at("outlier_threshold_m");
-  report.linear = mean_from_json(entry.at("linear"));
-  report.circular = mean_from_json(entry.at("circular"));
-  for (const auto& p : entry.at("points"))
-    report.points.push_back(
-        {.point = {p.at("signal_e_per_s"), p.at("ambient_e_per_s")},
-         .linear_mde_m = {p.at("linear_mde_m"), p.at("linear_se_m")},
-         .circular_mde_m = {p.at("circular_mde_m"), p.at("circular_se_m")},
-         .outlier_rate = {p.at("outlier_rate"), 0.0},
-         .cramer_rao_mae_m = number_or_infinity(p.at("cramer_rao_mae_m")),
-         .receiver_bound_mae_m = number_or_infinity(p.at("receiver_bound_mae_m"))});
+  report.code = entry.member("name").text();
+  report.exposures = entry.member("exposures").integer(1, any);
+  report.taps = entry.member("taps").integer(1, any);
+  report.measurements = entry.member("measurements").integer(1, any);
+  report.samples = entry.member("samples").integer(1, any);
+  report.trials = static_cast<std::int64_t>(document.member("trials").unsigned_integer());
+  report.seed = document.member("seed").unsigned_integer();
+  report.outlier_threshold_m = not_negative(document, "outlier_threshold_m");
+  report.linear = mean_from_json(entry.member("linear"));
+  report.circular = mean_from_json(entry.member("circular"));
+  for (const JsonReader& point : entry.member("points").elements())
+    report.points.push_back(point_from_json(point));
   return report;
 }
 
@@ -90,16 +97,17 @@ Json measurements_json(const std::vector<MeasurementReport>& reports) {
   return list;
 }
 
-std::vector<MeasurementReport> measurements_from_json(const nlohmann::json& entry) {
+std::vector<MeasurementReport> measurements_from_json(const JsonReader& entry) {
   std::vector<MeasurementReport> reports;
-  if (!entry.contains("per_measurement")) return reports;
-  for (const auto& m : entry.at("per_measurement"))
-    reports.push_back({.residual_rms = m.at("residual_rms"),
-                       .demodulation_duty = m.at("demodulation_duty"),
-                       .modulation_duty = m.at("modulation_duty"),
-                       .peak = m.at("peak"),
-                       .edges = m.at("edges"),
-                       .start = m.at("start")});
+  const auto list = entry.optional_member("per_measurement");
+  if (!list) return reports;
+  for (const JsonReader& m : list->elements())
+    reports.push_back({.residual_rms = not_negative(m, "residual_rms"),
+                       .demodulation_duty = m.member("demodulation_duty").number(),
+                       .modulation_duty = m.member("modulation_duty").number(),
+                       .peak = m.member("peak").number(),
+                       .edges = m.member("edges").integer(0, std::numeric_limits<int>::max()),
+                       .start = m.member("start").text()});
   return reports;
 }
 

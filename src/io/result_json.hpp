@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "io/json_reader.hpp"
 #include "tofsmith/design/design.hpp"
 
 namespace tofsmith {
@@ -12,13 +13,14 @@ namespace tofsmith {
 /// A code's entry of evaluation and design documents.
 nlohmann::ordered_json depth_error_json(const DepthErrorReport& report, int rotation_bin);
 
-/// The same back from a document; light levels and figures as written.
-DepthErrorReport depth_error_from_json(const nlohmann::json& entry, const nlohmann::json& document);
+/// The same back from a document; standard errors of outlier rates are not in it.
+/// @throws IoError naming file and member
+DepthErrorReport depth_error_from_json(const JsonReader& entry, const JsonReader& document);
 
 /// How the measurements of a designed code compare with their targets.
 nlohmann::ordered_json measurements_json(const std::vector<MeasurementReport>& reports);
 /// The same back, without histories; none where the entry has no `per_measurement`.
-std::vector<MeasurementReport> measurements_from_json(const nlohmann::json& entry);
+std::vector<MeasurementReport> measurements_from_json(const JsonReader& entry);
 
 /// Version, seed, trials, outlier threshold and camera: the head of every result document.
 nlohmann::ordered_json document_head(const Camera& camera, std::uint64_t seed, std::int64_t trials,

@@ -4,10 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "io/json_reader.hpp"
 #include "io/json_text.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/file_name.hpp"
 #include "tofsmith/io/float_image_file.hpp"
 #include "tofsmith/io/read_file.hpp"
 
@@ -19,7 +22,7 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 std::string depth_file_name(const std::string& light, const std::string& code) {
-  return fmt::format("{}-{}.npy", light, code);
+  return fmt::format("{}-{}.npy", file_name_of(light), file_name_of(code));
 }
 
 Json error_json(const SceneError& e) {
@@ -31,9 +34,54 @@ Json error_json(const SceneError& e) {
           {"outlier_threshold_m", e.outlier_threshold_m}};
 }
 
-SceneError error_from_json(const nlohmann::json& json) {
-  return {json.at("mean_m"),        json.at("median_m"), json.at("outlier_rate"),
-          json.at("decoded_share"), json.at("pixels"),   json.at("outlier_threshold_m")};
+double share(const JsonReader& json, std::string_view member) {
+  return json.member(member).number(0.0, 1.0, 1e-9);
+}
+
+SceneError error_from_json(const JsonReader& json) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto length_m = [&](std::string_view member) {
+    return json.member(member).number(0.0, infinity, 0.0);
+  };
+  return {.mean_m = length_m("mean_m"),
+          .median_m = length_m("median_m"),
+          .outlier_rate = share(json, "outlier_rate"),
+          .decoded_share = share(json, "decoded_share"),
+          .pixels = json.member("pixels").integer(0, std::numeric_limits<int>::max()),
+          .outlier_threshold_m = length_m("outlier_threshold_m")};
+}
+
+/// A plane of the scene's size.
+Image<float> read_plane(const fs::path& path, std::string_view what, const SceneImage& truth) {
+  Image<float> plane = read_float_image(path, what);
+  if (plane.height != truth.height() || plane.width != truth.width())
+    throw IoError(path.string(),
+                  fmt::format("found {} x {} pixels; expected the {} x {} of true_depth.npy",
+                              plane.height, plane.width, truth.height(), truth.width()));
+  return plane;
+}
+
+SceneImage read_truth(const fs::path& directory) {
+  SceneImage truth;
+  truth.depth_m = read_float_image(directory / "true_depth.npy", "depth");
+  truth.albedo = read_plane(directory / "albedo.npy", "albedo", truth);
+  truth.cosine = read_plane(directory / "cosine.npy", "cosine", truth);
+  try {
+    truth.validate();
+  } catch (const std::invalid_argument& error) {
+    throw IoError(directory.string(), error.what());
+  }
+  return truth;
+}
+
+SceneDecoding read_decoding(const JsonReader& json, const fs::path& directory,
+                            const SceneImage& truth) {
+  const std::string file = json.member("file").text();
+  if (fs::path(file).has_parent_path())
+    json.member("file").mistyped("a file of the same directory");
+  return {.code = json.member("code").text(),
+          .depth_m = read_plane(directory / file, "depth", truth),
+          .error = error_from_json(json.member("error"))};
 }
 
 }  // namespace
@@ -45,6 +93,8 @@ void write_scene_result(const fs::path& directory, const SceneResult& scene, Out
     throw IoError(directory.string(), fmt::format("cannot create this directory ({}); expected a "
                                                   "writable place",
                                                   error.message()));
+  std::error_code ignored;  // scene.json is gone while the others change
+  if (policy == OutputPolicy::overwrite) fs::remove(directory / "scene.json", ignored);
   write_float_image(directory / "true_depth.npy", scene.truth.depth_m, "depth", policy);
   write_float_image(directory / "albedo.npy", scene.truth.albedo, "albedo", policy);
   write_float_image(directory / "cosine.npy", scene.truth.cosine, "cosine", policy);
@@ -75,38 +125,32 @@ bool holds_scene_result(const fs::path& directory) { return fs::exists(directory
 
 SceneResult read_scene_result(const fs::path& directory) {
   const fs::path path = directory / "scene.json";
-  const nlohmann::json document = parse_json(read_text_file(path), path.string());
+  const std::string file = path.string();
+  const nlohmann::json json = parse_json(read_text_file(path), file);
+  const JsonReader document(json, file), view = document.member("view");
+  SceneResult scene{.name = document.member("name").text(),
+                    .truth = read_truth(directory),
+                    .reference_distance_m = document.member("reference_distance_m").number()};
+  scene.view = {.fx_px = view.member("fx_px").number(),
+                .fy_px = view.member("fy_px").number(),
+                .cx_px = view.member("cx_px").number(),
+                .cy_px = view.member("cy_px").number(),
+                .width = scene.truth.width(),
+                .height = scene.truth.height()};
   try {
-    SceneResult scene;
-    scene.name = document.at("name");
-    scene.reference_distance_m = document.at("reference_distance_m");
-    scene.truth.depth_m = read_float_image(directory / "true_depth.npy", "depth");
-    scene.truth.albedo = read_float_image(directory / "albedo.npy", "albedo");
-    scene.truth.cosine = read_float_image(directory / "cosine.npy", "cosine");
-    scene.truth.validate();
-    const auto& view = document.at("view");
-    scene.view = {view.at("fx_px"), view.at("fy_px"),    view.at("cx_px"),
-                  view.at("cy_px"), scene.truth.width(), scene.truth.height()};
-    for (const auto& entry : document.at("captures")) {
-      SceneCapture capture{
-          entry.at("light"), {entry.at("signal_e_per_s"), entry.at("ambient_e_per_s")}, {}};
-      for (const auto& d : entry.at("decodings")) {
-        const std::string file = d.at("file");
-        if (fs::path(file).has_parent_path())
-          throw std::invalid_argument("names a file outside its directory: " + file);
-        capture.decodings.push_back({d.at("code"), read_float_image(directory / file, "depth"),
-                                     error_from_json(d.at("error"))});
-      }
-      scene.captures.push_back(std::move(capture));
-    }
-    return scene;
-  } catch (const nlohmann::json::exception& error) {
-    throw IoError(
-        path.string(),
-        fmt::format("is no scene document of this version of tofsmith ({})", error.what()));
+    scene.view.validate();
   } catch (const std::invalid_argument& error) {
-    throw IoError(path.string(), error.what());
+    view.fail(error.what());
   }
+  for (const JsonReader& entry : document.member("captures").elements()) {
+    SceneCapture capture{.light = entry.member("light").text(),
+                         .point = {entry.member("signal_e_per_s").number(),
+                                   entry.member("ambient_e_per_s").number()}};
+    for (const JsonReader& decoding : entry.member("decodings").elements())
+      capture.decodings.push_back(read_decoding(decoding, directory, scene.truth));
+    scene.captures.push_back(std::move(capture));
+  }
+  return scene;
 }
 
 }  // namespace tofsmith

@@ -62,7 +62,9 @@ std::string response_text(const ImpulseResponse& response) {
       return fmt::format("{}, -3 dB at {:.4g} MHz", name_of(response.kind),
                          response.cutoff_hz / 1e6);
     case ImpulseResponse::Kind::file:
-      return fmt::format("measured, {} ({} samples)", response.file, response.samples.size());
+      return fmt::format("measured, {}{} samples",
+                         response.file.empty() ? "" : response.file + ", ",
+                         response.samples.size());
   }
   return "";
 }
@@ -73,8 +75,11 @@ std::string arm_text(bool binary) { return binary ? "switches on and off" : "ana
 
 std::string figure_id(const std::string& prefix, const std::string& name) {
   std::string id = prefix + "-";
-  for (const char c : name)
-    id += (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ? c : '-';
+  for (const char c : name) {
+    const bool plain =
+        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+    id += plain ? std::string(1, c) : fmt::format("-x{:02x}-", static_cast<unsigned char>(c));
+  }
   return id;
 }
 

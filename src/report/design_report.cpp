@@ -17,7 +17,7 @@ namespace {
 /// How many times larger another candidate's chosen error is than the winner's.
 std::string gain_over(const DesignResult& result, std::string_view name, DepthErrorKind kind) {
   const Candidate* other = result.find(name);
-  if (!other) return "";
+  if (!other || other == &result.winner()) return "";
   return fmt::format(
       "{:.2f}x", chosen_error_m(other->error, kind) / chosen_error_m(result.winner().error, kind));
 }
@@ -35,13 +35,12 @@ KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
   return numbers;
 }
 
-/// The target, seen from the origin the candidate was moved to.
-Eigen::MatrixXd rotated_target(const Candidate& candidate) {
-  const Eigen::Index rows = candidate.target.rows();
-  Eigen::MatrixXd rotated(rows, candidate.target.cols());
-  for (Eigen::Index n = 0; n < rows; ++n)
-    rotated.row(n) = candidate.target.row((n + candidate.rotation_bin + rows) % rows);
-  return rotated;
+/// What the correlation functions of a candidate should be, moved with its origin.
+Eigen::MatrixXd rotated_target(const Candidate& c) {
+  Eigen::MatrixXd target(c.target.rows(), c.target.cols());
+  for (Eigen::Index n = 0; n < target.rows(); ++n)
+    target.row(n) = c.target.row((n + c.rotation_bin) % target.rows());
+  return target;
 }
 
 Section waveform_section(const Camera& camera, const DesignResult& result) {
@@ -59,7 +58,7 @@ Section waveform_section(const Camera& camera, const DesignResult& result) {
   };
   add(result.winner());
   for (const Candidate& c : result.candidates)
-    if (&c != &result.winner() && c.method != "family") add(c);
+    if (&c != &result.winner() && !c.per_measurement.empty()) add(c);
   return section;
 }
 
@@ -102,7 +101,7 @@ Section convergence_section(const DesignResult& result) {
         {.id = figure_id("convergence", c.code.name()),
          .title = fmt::format("Convergence of {}", c.code.name()),
          .caption = "Residual of the binary projection after each pair of convex steps, for the "
-                    "start that led to the pair of smallest residual; values below 1e-6 are drawn "
+                    "random start that came closest; values below 1e-6 are drawn "
                     "at 1e-6."},
         series, {.label = "iteration"}, {.label = "residual, rms", .logarithmic = true}));
   }
@@ -178,9 +177,9 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
   }
   page.sections.push_back(depth_error_section(camera, compared, best));
   Section waveforms{.title = "Waveforms"};
-  for (const CodeSet& code : codes)
+  for (const CodeSet& code : codes)  // of any names, even the same
     waveforms.blocks.push_back(
-        waveform_figure({.id = figure_id("waveforms", code.name()),
+        waveform_figure({.id = fmt::format("waveforms-{}", waveforms.blocks.size() + 1),
                          .title = fmt::format("Waveforms of {}", code.name()),
                          .caption = "One row per measurement, over one period."},
                         code, camera));

@@ -63,14 +63,14 @@ std::string html_of(const KeyNumbers& numbers, const Numbering&) {
 }
 
 std::string html_of(const Table& table, const Numbering& numbering) {
-  const auto cell = [&](const char* tag, std::size_t column, const std::string& text) {
+  const auto cell = [&](const char* tag, std::size_t column, const std::string& content) {
     return fmt::format("<{}{}>{}</{}>", tag,
-                       table.columns[column].numeric ? " class=\"number\"" : "",
-                       inline_html(text, numbering), std::string_view(tag).substr(0, 2));
+                       table.columns[column].numeric ? " class=\"number\"" : "", content,
+                       std::string_view(tag).substr(0, 2));
   };
   std::string header, rows;
   for (std::size_t c = 0; c < table.columns.size(); ++c)
-    header += cell("th scope=\"col\"", c, table.columns[c].header);
+    header += cell("th scope=\"col\"", c, inline_html(table.columns[c].header, numbering));
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     require(table.rows[r].size() == table.columns.size(), fmt::format("Table::rows[{}].size", r),
             table.rows[r].size(),
@@ -78,7 +78,7 @@ std::string html_of(const Table& table, const Numbering& numbering) {
     const bool is_highlighted = table.highlighted_row && std::cmp_equal(*table.highlighted_row, r);
     rows += is_highlighted ? "<tr class=\"highlighted\">" : "<tr>";
     for (std::size_t c = 0; c < table.columns.size(); ++c)
-      rows += cell(c == 0 ? "th scope=\"row\"" : "td", c, table.rows[r][c]);
+      rows += cell(c == 0 ? "th scope=\"row\"" : "td", c, escape(table.rows[r][c]));
     rows += "</tr>\n";
   }
   const std::string id = table.id.empty() ? "" : fmt::format(" id=\"{}\"", escape(table.id));

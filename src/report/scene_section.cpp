@@ -93,17 +93,19 @@ Figure error_figure(const SceneResult& scene, const SceneCapture& capture, const
 }
 
 Table error_table(const SceneResult& scene) {
-  Table table{
-      .id = "scene-errors",
-      .caption = fmt::format("Depth errors on the scene; outliers are off by more than "
-                             "{:.3g} m or have no depth.",
-                             scene.captures.front().decodings.front().error.outlier_threshold_m),
-      .columns = {{"light"},
-                  {"code"},
-                  {"mean (mm)", true},
-                  {"median (mm)", true},
-                  {"outliers (%)", true},
-                  {"pixels with depth (%)", true}}};
+  double threshold_m = 0.0;  // the same for all
+  for (const SceneCapture& capture : scene.captures)
+    for (const SceneDecoding& d : capture.decodings) threshold_m = d.error.outlier_threshold_m;
+  Table table{.id = "scene-errors",
+              .caption = fmt::format("Depth errors on the scene; outliers are off by more than "
+                                     "{:.3g} m or have no depth.",
+                                     threshold_m),
+              .columns = {{"light"},
+                          {"code"},
+                          {"mean (mm)", true},
+                          {"median (mm)", true},
+                          {"outliers (%)", true},
+                          {"pixels with depth (%)", true}}};
   for (const SceneCapture& capture : scene.captures)
     for (const SceneDecoding& d : capture.decodings)
       table.rows.push_back({capture.light, d.code, fmt::format("{:.2f}", 1e3 * d.error.mean_m),
@@ -147,9 +149,11 @@ Section scene_section(const SceneResult& scene, const Camera& camera,
   section.blocks.push_back(true_scene_figure(scene, camera));
   section.blocks.push_back(albedo_figure(scene));
   for (const SceneCapture& capture : scene.captures) {
+    if (capture.decodings.empty()) continue;
     section.blocks.push_back(decoded_figure(scene, capture, camera));
     section.blocks.push_back(error_figure(scene, capture, camera));
   }
+  if (scene.captures.empty()) return section;
   section.blocks.push_back(error_table(scene));
   const SceneCapture& brightest = scene.captures.back();
   for (const SceneDecoding& d : brightest.decodings)

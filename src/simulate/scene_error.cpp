@@ -4,11 +4,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/statistics.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
@@ -58,9 +58,7 @@ SceneError scene_error(const Image<float>& decoded_m, const SceneImage& scene, c
   error.decoded_share = static_cast<double>(sizes.size()) / static_cast<double>(error.pixels);
   if (sizes.empty()) return error;
   error.mean_m /= static_cast<double>(sizes.size());
-  const auto middle = sizes.begin() + std::ssize(sizes) / 2;
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  error.median_m = *middle;
+  error.median_m = median_of(std::move(sizes));
   return error;
 }
 

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
+#include "tofsmith/core/statistics.hpp"
 #include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/simulate/capture.hpp"
 
@@ -40,13 +40,10 @@ void capture_and_decode(SceneResult& scene, std::span<const CodeSet> codes, cons
 }
 
 double median_depth_m(const SceneImage& scene) {
-  std::vector<float> depths;
+  std::vector<double> depths;
   for (const float depth : scene.depth_m.pixels)
     if (std::isfinite(depth)) depths.push_back(depth);
-  if (depths.empty()) return 1.0;
-  const auto middle = depths.begin() + std::ssize(depths) / 2;
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return depths.empty() ? 1.0 : median_of(std::move(depths));
 }
 
 }  // namespace tofsmith

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace tofsmith {
 
@@ -32,6 +33,9 @@ class RunningStatistics {
   double mean_ = 0.0;
   double sum_of_squares_ = 0.0;  // of differences from the mean
 };
+
+/// The middle value, or the mean of the middle two; 0 of none.
+double median_of(std::vector<double> values);
 
 /// Arithmetic mean of independent estimates, errors propagated.
 Estimate mean_of(std::span<const Estimate> estimates);

@@ -14,7 +14,7 @@ namespace tofsmith {
 
 /// How the codes of a camera are designed and judged.
 struct DesignOptions {
-  /// Hamiltonian targets to factorize: number of exposures of each, 3 .. 6.
+  /// Hamiltonian targets to factorize: number of exposures of each, 3 .. 6, each once.
   std::vector<int> exposures = {3, 4, 5};
   /// A target of the user's, factorized instead of the Hamiltonian ones.
   std::optional<TargetSet> target;
@@ -39,16 +39,16 @@ struct MeasurementReport {
   double demodulation_duty = 0.0;
   double modulation_duty = 0.0;
   double peak = 0.0;
-  int edges = 0;      ///< of modulation and demodulation together
-  std::string start;  ///< which start of the pool it came from
-  std::vector<FactorizeIteration> history;
+  int edges = 0;                            ///< of modulation and demodulation together
+  std::string start;                        ///< which start of the pool it came from
+  std::vector<FactorizeIteration> history;  ///< as Factorization::history
 };
 
 /// A code that competes for the camera.
 struct Candidate {
   CodeSet code;
-  std::string method;      ///< "family" or "factorize"
-  DepthErrorReport error;  ///< at every operating point, fresh seed
+  std::string method;      ///< "family", "naive" or "factorize"
+  DepthErrorReport error;  ///< what evaluate() says of the code with the design's seed and trials
   int rotation_bin = 0;    ///< how far the origin was moved
   int iterations = 0;      ///< convex steps over all starts that led to it; 0 for a family
   double seconds = 0.0;    ///< time it took to design
@@ -79,9 +79,12 @@ struct DesignStore {
 };
 
 /// Designs codes for `camera` by factorizing correlation functions, lets all baselines compete and
-/// picks by the camera's depth error. The naive version of every target is a baseline and the
-/// untouched naive pair is in every pool, so the winner is never worse than naive.
-/// @throws std::invalid_argument for bad options or an invalid camera; Interrupted
+/// picks by the camera's depth error. The naive code of every target (its ideal demodulation with
+/// one pulse, where that is known and playable) competes too, so the winner is never worse than
+/// naive.
+/// @throws std::invalid_argument for bad options, an invalid camera, or targets it cannot play:
+///         more than two taps, exposure times for another number of exposures, or a number of
+///         samples that cannot represent a Hamiltonian code; Interrupted
 /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 4 and 5
 DesignResult design(const Camera& camera, const DesignOptions& options = {},
                     const Progress& progress = {}, const DesignStore& store = {});

@@ -52,7 +52,7 @@ struct PairCandidate {
 /// What factorizing one correlation function gave.
 struct Factorization {
   std::vector<PairCandidate> candidates;    ///< distinct, smallest residual first; never empty
-  std::vector<FactorizeIteration> history;  ///< of the start that led to the first candidate
+  std::vector<FactorizeIteration> history;  ///< of the random start that came closest; else empty
   std::vector<int> iterations_per_start;    ///< of all starts that alternated
   double target_variation_rms = 0.0;        ///< rms of the target about its mean
   std::string message;                      ///< one line: reached, approached or out of reach

@@ -16,22 +16,23 @@ struct DesignRecord {
 };
 
 /// The output of a design as files:
-///   camera.toml              the camera, defaults filled in
+///   camera.toml              the camera, defaults filled in, measured responses as samples
 ///   design.json              the design document
 ///   details.json             targets and iteration histories, for reports
 ///   codes/NAME.code.json     every candidate
 ///   finished/NAME.json       designed codes as they are finished; a later run with the same
-///                            camera, target, options and seed takes them from here
+///                            camera, target, options and seed takes them from here; one that is
+///                            damaged is designed again
+/// NAME is file_name_of() the code's name.
 class DesignDirectory {
  public:
-  /// store() and write() create the directory if need be.
   explicit DesignDirectory(std::filesystem::path path);
 
   const std::filesystem::path& path() const { return path_; }
   bool holds_design() const;
 
-  /// Keeps finished codes of one design, whose inputs `camera` and `options` are.
-  /// @throws IoError if the directory cannot be created
+  /// Keeps finished codes of one design, whose inputs `camera` and `options` are. Creates the
+  /// directory if need be. @throws IoError
   DesignStore store(const Camera& camera, const DesignOptions& options) const;
   /// @throws IoError if files exist and may not be replaced, or cannot be written
   void write(const Camera& camera, const DesignResult& result, const DesignOptions& options,
@@ -40,8 +41,6 @@ class DesignDirectory {
   DesignRecord read() const;
 
  private:
-  void create() const;
-
   std::filesystem::path path_;
 };
 

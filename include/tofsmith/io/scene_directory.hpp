@@ -12,7 +12,8 @@ namespace tofsmith {
 /// Writes a scene and its decodings into a directory:
 ///   scene.json                what is there, with the errors
 ///   true_depth.npy, albedo.npy, cosine.npy
-///   LIGHT-CODE.npy            decoded depth [m]
+///   LIGHT-CODE.npy            decoded depth [m], of file_name_of() their names
+/// What scales ambient light, if anything does, is not kept.
 /// @throws IoError
 void write_scene_result(const std::filesystem::path& directory, const SceneResult& scene,
                         OutputPolicy policy);

@@ -12,8 +12,8 @@
 
 namespace tofsmith {
 
-/// An id for a figure about something named freely: other characters than letters and digits become
-/// dashes.
+/// An id for a figure about something named freely: bytes other than letters, digits and dashes
+/// become their hexadecimal code, so that "a/b" and "a b" differ.
 std::string figure_id(const std::string& prefix, const std::string& name);
 
 /// Modulation, demodulation and correlation function of every measurement, one row each: as the

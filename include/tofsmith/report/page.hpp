@@ -12,7 +12,8 @@
 namespace tofsmith {
 
 /// Text. `words` between backticks are set as code, [[id]] becomes a link that reads "Figure 3" or
-/// "Table 1".
+/// "Table 1". Captions and headers of tables are read in the same way; cells, titles and settings,
+/// which hold names that users give, stay as they are.
 struct Paragraph {
   std::string text = {};
 };

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/camera/correlation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/random.hpp"
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+namespace {
+
+Waveform random_waveform(RandomStream& random) {
+  if (random() % 2 == 0) {
+    Eigen::VectorXd samples(1 + static_cast<int>(random() % 9));
+    for (double& sample : samples) sample = random.uniform();
+    return Waveform::sampled(samples);
+  }
+  std::vector<double> times(2 + 2 * (random() % 3));
+  for (double& time : times) time = random.uniform();
+  std::sort(times.begin(), times.end());
+  std::vector<OnInterval> on;
+  for (std::size_t i = 0; i + 1 < times.size(); i += 2) on.push_back({times[i], times[i + 1]});
+  return Waveform::binary(std::move(on), 0.5 + random.uniform());
+}
+
+double value_at(const Waveform& waveform, double t) {
+  t = wrap(t, 1.0);
+  if (!waveform.is_binary())
+    return waveform
+        .samples()[static_cast<Eigen::Index>(t * static_cast<double>(waveform.samples().size()))];
+  for (const OnInterval& on : waveform.on_intervals())
+    if ((t >= on.rise && t < on.fall) || t + 1.0 < on.fall) return waveform.level();
+  return 0.0;
+}
+
+/// The definition, by the midpoint rule.
+double integrated(const Waveform& d, const Waveform& m, double u) {
+  constexpr int points = 40000;
+  double sum = 0.0;
+  for (int j = 0; j < points; ++j) {
+    const double t = (j + 0.5) / points;
+    sum += value_at(d, t) * value_at(m, t - u);
+  }
+  return sum / points;
+}
+
+TEST(CorrelationFunction, IsTheIntegralForWaveformsOfAnyKindAtAnyDepth) {
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    RandomStream random(11, i);
+    const Waveform d = random_waveform(random), m = random_waveform(random);
+    const CorrelationFunction correlation(d, m);
+    const double u = 4 * random.uniform() - 2;
+    EXPECT_NEAR(correlation(u), integrated(d, m, u), 2e-3) << "case " << i << " at " << u;
+    EXPECT_NEAR(correlation(u), correlation(u + 1), 1e-12);
+  }
+}
+
+TEST(CorrelationFunction, HarmonicsOfAnOpenCameraGiveTheSame) {
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    RandomStream random(12, i);
+    const Waveform d = random_waveform(random), m = random_waveform(random);
+    const CorrelationFunction corners(d, m), harmonics(d, m, Eigen::VectorXcd::Ones(4000));
+    for (int j = 0; j < 5; ++j) {
+      const double u = random.uniform();
+      EXPECT_NEAR(corners(u), harmonics(u), 1e-3);
+    }
+    const Eigen::VectorXd table = harmonics.table(37);
+    for (int j = 0; j < 37; ++j) EXPECT_NEAR(table[j], harmonics(j / 37.0), 1e-10);
+  }
+}
+
+TEST(CodeSet, RotationMovesTheOriginOfEveryCorrelationFunction) {
+  for (const char* name : {"paper-30x", "paper-5f0"}) {
+    const Camera camera = built_in_camera(name);
+    const CodeSet code = build_family("hamiltonian-k4", camera);
+    for (const int rotation : {1, 17, 239}) {
+      const Eigen::MatrixXd before = ForwardModel(code, camera).correlation_table(240);
+      const Eigen::MatrixXd after =
+          ForwardModel(code.rotated(rotation), camera).correlation_table(240);
+      for (int n = 0; n < 240; ++n)
+        EXPECT_LT((after.row(n) - before.row((n + rotation) % 240)).norm(), 1e-9)
+            << name << " rotated by " << rotation << ", bin " << n;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tofsmith

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/core/error.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "tofsmith/core/random.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::StrEq;
+
+TEST(Require, NamesFieldValueAndRule) {
+  EXPECT_NO_THROW(require(true, "field", 3, "rule"));
+  EXPECT_THAT(
+      [] { require(false, "DesignOptions::trials", -3, "must be >= 1000"); },
+      testing::ThrowsMessage<std::invalid_argument>("DesignOptions::trials = -3; must be >= 1000"));
+}
+
+TEST(IoError, StartsWithThePlace) {
+  EXPECT_THAT(IoError("camera.toml:3:1", "found a; expected b").what(),
+              StrEq("camera.toml:3:1: found a; expected b"));
+}
+
+TEST(EditDistance, CountsEditsAndSwapsOfNeighbours) {
+  EXPECT_EQ(edit_distance("", ""), 0);
+  EXPECT_EQ(edit_distance("", "abc"), 3);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
+  EXPECT_EQ(edit_distance("taps", "tpas"), 1);
+  EXPECT_EQ(edit_distance("ab", "ba"), 1);
+  EXPECT_EQ(edit_distance("peak", "peak_factor"), 7);
+}
+
+std::string random_word(RandomStream& random) {
+  std::string word(random() % 7, 'a');
+  for (char& c : word) c = static_cast<char>('a' + random() % 3);
+  return word;
+}
+
+TEST(EditDistance, IsSymmetricZeroForEqualsAndAtMostTheLongerWord) {
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    RandomStream random(5, i);
+    const std::string a = random_word(random), b = random_word(random);
+    const int distance = edit_distance(a, b);
+    EXPECT_EQ(distance, edit_distance(b, a)) << a << " " << b;
+    EXPECT_EQ(distance == 0, a == b) << a << " " << b;
+    EXPECT_LE(distance, static_cast<int>(std::max(a.size(), b.size())));
+    EXPECT_GE(distance, std::abs(static_cast<int>(a.size()) - static_cast<int>(b.size())));
+    EXPECT_LE(edit_distance(a + "x", b), distance + 1);
+  }
+}
+
+TEST(NearestWord, FindsMisspellingsAndNothingElse) {
+  const std::array<std::string_view, 3> known{"peak_factor", "read_noise_e", "taps"};
+  EXPECT_EQ(nearest_word("peak_facto", known), "peak_factor");
+  EXPECT_EQ(nearest_word("tpas", known), "taps");
+  EXPECT_EQ(nearest_word("taps", known), "taps");
+  EXPECT_EQ(nearest_word("wavelength_nm", known), "");
+  EXPECT_EQ(nearest_word("anything", std::array<std::string, 0>{}), "");
+}
+
+}  // namespace
+}  // namespace tofsmith

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/core/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tofsmith/core/hash.hpp"
+#include "tofsmith/core/random.hpp"
+
+namespace tofsmith {
+namespace {
+
+TEST(MeanOf, AveragesValuesAndPropagatesErrors) {
+  const std::vector<Estimate> estimates{{1.0, 0.3}, {3.0, 0.4}};
+  EXPECT_DOUBLE_EQ(mean_of(estimates).value, 2.0);
+  EXPECT_DOUBLE_EQ(mean_of(estimates).standard_error, 0.25);
+  EXPECT_EQ(mean_of({}).value, 0.0);
+  EXPECT_DOUBLE_EQ(geometric_mean_of(estimates).value, std::sqrt(3.0));
+  EXPECT_DOUBLE_EQ(geometric_mean_of(estimates).standard_error,
+                   std::sqrt(3.0) * std::hypot(0.3, 0.4 / 3) / 2);
+  EXPECT_EQ(geometric_mean_of(std::vector<Estimate>{{1.0, 0.1}, {0.0, 0.0}}).value, 0.0);
+}
+
+TEST(MedianOf, IsTheMiddle) {
+  EXPECT_EQ(median_of({}), 0.0);
+  EXPECT_EQ(median_of({4.0}), 4.0);
+  EXPECT_EQ(median_of({9.0, 1.0}), 5.0);
+  EXPECT_EQ(median_of({9.0, 1.0, 2.0}), 2.0);
+  EXPECT_EQ(median_of({9.0, 1.0, 2.0, 4.0}), 3.0);
+}
+
+TEST(RunningStatistics, MergedPartsAreTheWhole) {
+  RunningStatistics whole, left, right;
+  RandomStream random(1, 1);
+  for (int i = 0; i < 100; ++i) {
+    const double value = 1e6 + random.uniform();
+    whole.add(value);
+    (i < 37 ? left : right).add(value);
+  }
+  left.merge(right);
+  left.merge({});
+  EXPECT_EQ(left.count(), 100);
+  EXPECT_NEAR(left.mean(), whole.mean(), 1e-9);
+  EXPECT_NEAR(left.variance(), whole.variance(), 1e-9);
+  EXPECT_NEAR(left.standard_error(), std::sqrt(whole.variance() / 100), 1e-12);
+}
+
+TEST(Fnv1a, GivesThePublishedValues) {
+  EXPECT_EQ(fnv1a_64(""), 0xcbf29ce484222325ull);
+  EXPECT_EQ(fnv1a_64("a"), 0xaf63dc4c8601ec8cull);
+  EXPECT_EQ(fnv1a_64("foobar"), 0x85944171f73967e8ull);
+}
+
+}  // namespace
+}  // namespace tofsmith

@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/design/design.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "design/pair_choice.hpp"
+#include "same_code.hpp"
+#include "small_design.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::HasSubstr;
+
+Camera two_bucket() {
+  Camera camera = small_camera("paper-10f0", DepthErrorKind::circular);
+  camera.sensor.taps = 2;
+  return camera;
+}
+Camera analog() {
+  Camera camera = small_camera("paper-5f0");
+  camera.light.binary = camera.sensor.binary = false;
+  camera.sensor.noise = NoiseModel::poisson;
+  return camera;
+}
+Camera weak() {
+  Camera camera = small_camera("paper-30x");
+  camera.light.peak_factor = 3.0;
+  return camera;
+}
+
+/// The winner has the least chosen error of all candidates, and the naive code is one of them.
+void expect_best_wins(const Camera& camera, const DesignResult& result, const std::string& naive) {
+  ASSERT_NE(result.find(naive), nullptr) << naive;
+  const DepthErrorKind kind = camera.operating.error;
+  for (const Candidate& c : result.candidates) {
+    EXPECT_LE(chosen_error_m(result.winner().error, kind), chosen_error_m(c.error, kind))
+        << c.code.name();
+    EXPECT_NO_THROW(require_fits(c.code, camera));
+    EXPECT_EQ(c.error.code, c.code.name());
+    EXPECT_EQ(c.code.provenance.depth_error_m, chosen_error_m(c.error, kind));
+  }
+}
+
+TEST(Design, WinnerIsNeverWorseThanTheNaiveCodeOrAnyBaseline) {
+  for (const Camera& camera :
+       {small_camera("paper-5f0"), small_camera("paper-5f0", DepthErrorKind::circular), weak(),
+        two_bucket(), analog()}) {
+    const DesignResult result = design(camera, small_options());
+    expect_best_wins(camera, result, "hamiltonian-k3-naive");
+    const Candidate* designed = result.find("hamiltonian-k3-factorized");
+    ASSERT_NE(designed, nullptr);
+    EXPECT_EQ(designed->per_measurement.size(), 3u);
+    EXPECT_EQ(designed->target.rows(), camera.samples);
+    EXPECT_EQ(designed->target.cols(), 3);
+    EXPECT_FALSE(designed->message.empty());
+    for (const MeasurementReport& m : designed->per_measurement) {
+      EXPECT_LE(m.peak, camera.light.peak_factor * (1 + 1e-9));
+      EXPECT_FALSE(m.history.empty());
+    }
+  }
+}
+
+TEST(Design, ErrorIsWhatEvaluateSaysOfTheCodeWithTheSameSeed) {
+  const Camera camera = small_camera("paper-5f0");
+  const DesignOptions options = small_options();
+  const Candidate winner = design(camera, options).winner();
+  const DepthErrorReport again =
+      evaluate(winner.code, camera, {.trials = options.trials, .seed = options.seed});
+  EXPECT_EQ(again.linear.geometric_mean_m.value, winner.error.linear.geometric_mean_m.value);
+  EXPECT_EQ(again.seed, winner.error.seed);
+}
+
+TEST(Design, SameSeedGivesTheSameBitsForAnyNumberOfThreads) {
+  const Camera camera = small_camera("paper-5f0");
+  std::vector<DesignResult> results;
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    results.push_back(design(camera, small_options()));
+  }
+  ASSERT_EQ(results[0].candidates.size(), results[1].candidates.size());
+  EXPECT_EQ(results[0].best, results[1].best);
+  for (std::size_t i = 0; i < results[0].candidates.size(); ++i) {
+    const Candidate &a = results[0].candidates[i], &b = results[1].candidates[i];
+    expect_same_code(a.code, b.code);
+    EXPECT_EQ(a.error.linear.geometric_mean_m.value, b.error.linear.geometric_mean_m.value);
+    EXPECT_EQ(a.rotation_bin, b.rotation_bin);
+  }
+}
+
+TEST(Design, AimsAtAUsersTarget) {
+  const Camera camera = small_camera("paper-5f0");
+  DesignOptions options = small_options();
+  options.target = targets_of(build_family("square-k3", camera));
+  const DesignResult known = design(camera, options);
+  expect_best_wins(camera, known, "square-k3-naive");
+  ASSERT_NE(known.find("square-k3-factorized"), nullptr);
+  EXPECT_EQ(known.find("hamiltonian-k3-factorized"), nullptr);
+
+  Eigen::MatrixXd table(4, 3);
+  table << 0.0, 0.5, 1.0, 0.5, 1.0, 0.5, 1.0, 0.5, 0.0, 0.5, 0.0, 0.5;
+  options.target = targets_from_table("mine", table, camera.samples, false);
+  const DesignResult own = design(camera, options);
+  ASSERT_NE(own.find("mine-factorized"), nullptr);
+  EXPECT_EQ(own.find("mine-naive"), nullptr) << "no waveforms are known";
+}
+
+TEST(Design, BinaryArmsGetBinaryWaveformsOfASmoothTarget) {
+  const Camera camera = small_camera("paper-5f0", DepthErrorKind::circular);
+  DesignOptions options = small_options();
+  options.target = targets_of(build_family("sinusoid-k3", camera));
+  const DesignResult result = design(camera, options);
+  const CodeSet& code = result.find("sinusoid-k3-factorized")->code;
+  for (int i = 0; i < code.measurements(); ++i) {
+    EXPECT_TRUE(code.demodulation(i).is_binary());
+    EXPECT_TRUE(code.modulation_of(i).is_binary());
+  }
+}
+
+TEST(Design, UsesWhatTheStoreHoldsAndSavesWhatItDesigned) {
+  const Camera camera = small_camera("paper-5f0");
+  std::vector<Candidate> saved;
+  DesignStore store{.load = [](const std::string&) { return std::optional<Candidate>(); },
+                    .save = [&](const Candidate& c) { saved.push_back(c); }};
+  const DesignResult first = design(camera, small_options(), {}, store);
+  ASSERT_EQ(saved.size(), 1u);
+  EXPECT_EQ(saved[0].code.name(), "hamiltonian-k3-factorized");
+  store.load = [&](const std::string& name) {
+    EXPECT_EQ(name, "hamiltonian-k3-factorized");
+    Candidate kept = saved[0];
+    kept.message = "from the store";
+    return std::optional(kept);
+  };
+  store.save = [](const Candidate&) { FAIL() << "nothing new to save"; };
+  const DesignResult second = design(camera, small_options(), {}, store);
+  const Candidate* kept = second.find("hamiltonian-k3-factorized");
+  EXPECT_EQ(kept->message, "from the store");
+  expect_same_code(kept->code, first.find("hamiltonian-k3-factorized")->code);
+}
+
+TEST(Design, LeavesOutFamiliesTheCameraCannotPlayAndSaysWhy) {
+  Camera camera = small_camera("paper-5f0");
+  camera.exposure_s.each_s = {0.1, 0.1, 0.1};
+  DesignOptions options = small_options();
+  options.baselines = {"sinusoid-k4", "sinusoid-k3", "sinusoid-x"};
+  const DesignResult result = design(camera, options);
+  EXPECT_EQ(result.find("sinusoid-k4"), nullptr);
+  EXPECT_NE(result.find("sinusoid-k3"), nullptr);
+  ASSERT_EQ(result.left_out.size(), 2u);
+  EXPECT_THAT(result.left_out[0], HasSubstr("sinusoid-k4: number of exposure_s = 3"));
+  EXPECT_THAT(result.left_out[1], HasSubstr("not a built-in family"));
+}
+
+TEST(Design, StopsWhenAskedAtAnyTime) {
+  int calls = 0;
+  const auto stop_at = [&](int last) {
+    calls = 0;
+    return [&calls, last](double fraction, std::string_view) {
+      EXPECT_GE(fraction, 0.0);
+      EXPECT_LE(fraction, 1.0);
+      return ++calls < last;
+    };
+  };
+  const Camera camera = small_camera("paper-5f0");
+  design(camera, small_options(), stop_at(1 << 30));
+  const int all = calls;
+  for (const int last : {1, all / 2, all})
+    EXPECT_THROW(design(camera, small_options(), stop_at(last)), Interrupted) << last;
+}
+
+std::string refusal(const Camera& camera, const DesignOptions& options) {
+  try {
+    design(camera, options, [](double, std::string_view) -> bool {
+      throw std::runtime_error("work began before the check");
+    });
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Design, RefusesWhatCannotBeDesignedBeforeAnyWork) {
+  const auto with = [](auto&& change) {
+    DesignOptions options = small_options();
+    change(options);
+    return refusal(small_camera("paper-5f0"), options);
+  };
+  EXPECT_THAT(with([](auto& o) { o.exposures = {7}; }), HasSubstr("DesignOptions::exposures = 7"));
+  EXPECT_THAT(with([](auto& o) { o.exposures = {3, 3}; }), HasSubstr("must be listed once"));
+  EXPECT_THAT(with([](auto& o) {
+                o.baselines = {"gray-k4", "gray-k4"};
+              }),
+              HasSubstr("DesignOptions::baselines = gray-k4"));
+  EXPECT_THAT(with([](auto& o) { o.trials = 3; }), HasSubstr("DesignOptions::trials = 3"));
+  EXPECT_THAT(with([](auto& o) { o.search_trials = 3; }), HasSubstr("search_trials = 3"));
+  EXPECT_THAT(with([](auto& o) { o.factorize.kept = 0; }), HasSubstr("FactorizeOptions::kept"));
+  EXPECT_THAT(with([](auto& o) {
+                o.target = TargetSet{"none", {}};
+              }),
+              HasSubstr("DesignOptions::target"));
+  EXPECT_THAT(with([](auto& o) {
+                o.exposures.clear();
+                o.baselines = {"hamiltonian-k9"};
+              }),
+              HasSubstr("can play none"));
+  EXPECT_THAT(with([](auto& o) {
+                o.target = targets_from_table("two", Eigen::MatrixXd::Identity(4, 2), 60, false);
+              }),
+              HasSubstr("number of correlation functions = 2"));
+  Camera camera = small_camera("paper-5f0");
+  camera.samples = 200;
+  EXPECT_THAT(refusal(camera, small_options({6})), HasSubstr("needs a multiple of 60"));
+  camera = small_camera("paper-5f0");
+  camera.sensor.taps = 3;
+  EXPECT_THAT(refusal(camera, small_options()), HasSubstr("sensor.taps = 3"));
+  camera = small_camera("paper-5f0");
+  camera.exposure_s.each_s = {0.1, 0.2};
+  EXPECT_THAT(refusal(camera, small_options()), HasSubstr("3 exposures of hamiltonian-k3"));
+}
+
+TEST(ChooseByDepthError, IsNeverWorseThanEitherStart) {
+  for (const bool rotated : {false, true}) {
+    const Camera camera = small_camera("paper-5f0");
+    const TargetSet targets = targets_of(build_family("hamiltonian-k3", weak()));
+    std::vector<Factorization> factorizations;
+    for (const CorrelationTarget& target : targets.measurements)
+      factorizations.push_back(factorize(target, camera, small_options().factorize));
+    const EvaluateOptions search{.trials = 300, .seed = 5};
+    const auto error_of = [&](const PairChoice& choice) {
+      const CodeSet code = assemble("x", factorizations, choice, camera);
+      return rotated ? std::ranges::min(best_rotation(code, camera, search).linear_geometric_mean_m)
+                     : evaluate(code, camera, search).linear.geometric_mean_m.value;
+    };
+    PairChoice naive;
+    for (const Factorization& f : factorizations) {
+      std::size_t i = 0;
+      while (f.candidates[i].start != "naive") ++i;
+      naive.push_back(i);
+    }
+    const PairChoice chosen = choose_by_depth_error(factorizations, camera, search, rotated, {});
+    EXPECT_LE(error_of(chosen), error_of(naive));
+    EXPECT_LE(error_of(chosen), error_of(PairChoice(3, 0)));
+  }
+}
+
+}  // namespace
+}  // namespace tofsmith

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/result_document.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "small_design.hpp"
+
+namespace tofsmith {
+namespace {
+
+using nlohmann::json;
+using Keys = std::set<std::string>;
+
+Keys keys_of(const json& object) {
+  Keys keys;
+  for (const auto& [key, ignored] : object.items()) keys.insert(key);
+  return keys;
+}
+
+const Keys code_keys{"name",         "exposures", "taps",     "measurements", "samples",
+                     "rotation_bin", "linear",    "circular", "points"};
+const Keys mean_keys{"geometric_mean_m", "geometric_mean_se_m", "mean_m", "mean_se_m"};
+const Keys point_keys{"signal_e_per_s", "ambient_e_per_s",  "linear_mde_m",
+                      "linear_se_m",    "circular_mde_m",   "circular_se_m",
+                      "outlier_rate",   "cramer_rao_mae_m", "receiver_bound_mae_m"};
+
+TEST(EvaluationDocument, HasExactlyTheKeysOfTheContract) {
+  const Camera camera = small_camera("paper-5f0");
+  const EvaluateOptions options{.trials = 1000, .seed = 18446744073709551615ull};
+  std::vector<EvaluatedCode> codes{
+      {evaluate(build_family("sinusoid-k4", camera), camera, options), 7}};
+  codes[0].error.points[0].cramer_rao_mae_m = std::numeric_limits<double>::infinity();
+  const json document = json::parse(evaluation_document(camera, codes, options));
+  EXPECT_EQ(keys_of(document),
+            (Keys{"tofsmith", "seed", "trials", "outlier_threshold_m", "camera", "codes"}));
+  EXPECT_EQ(document["seed"], 18446744073709551615ull);
+  EXPECT_EQ(document["trials"], 1000);
+  EXPECT_EQ(document["camera"]["light"]["peak_factor"], camera.light.peak_factor);
+  ASSERT_EQ(document["codes"].size(), 1u);
+  const json& code = document["codes"][0];
+  EXPECT_EQ(keys_of(code), code_keys);
+  EXPECT_EQ(code["name"], "sinusoid-k4");
+  EXPECT_EQ(code["exposures"], 4);
+  EXPECT_EQ(code["rotation_bin"], 7);
+  EXPECT_EQ(keys_of(code["linear"]), mean_keys);
+  EXPECT_EQ(keys_of(code["circular"]), mean_keys);
+  ASSERT_EQ(code["points"].size(), 2u);
+  EXPECT_EQ(keys_of(code["points"][0]), point_keys);
+  EXPECT_TRUE(code["points"][0]["cramer_rao_mae_m"].is_null()) << "JSON has no infinity";
+  EXPECT_EQ(code["points"][1]["linear_mde_m"], codes[0].error.points[1].linear_mde_m.value);
+}
+
+TEST(DesignDocument, AddsTheBestAndHowEachDesignedCodeCompares) {
+  const Camera camera = small_camera("paper-5f0");
+  const DesignOptions options = small_options();
+  const DesignResult result = design(camera, options);
+  const json document = json::parse(design_document(camera, result, options));
+  EXPECT_EQ(document["best"], result.winner().code.name());
+  ASSERT_EQ(document["codes"].size(), result.candidates.size());
+  Keys names;
+  for (const json& code : document["codes"]) {
+    EXPECT_TRUE(names.insert(code["name"]).second) << "a name is told twice";
+    Keys expected = code_keys;
+    expected.insert("method");
+    if (code["method"] == "factorize")
+      expected.insert({"iterations", "seconds", "per_measurement"});
+    EXPECT_EQ(keys_of(code), expected) << code["name"];
+  }
+  EXPECT_TRUE(names.contains(document["best"]));
+  const json& designed = document["codes"].back();
+  ASSERT_EQ(designed["per_measurement"].size(), 3u);
+  for (const char* key : {"residual_rms", "demodulation_duty", "modulation_duty", "peak", "edges"})
+    EXPECT_TRUE(designed["per_measurement"][0][key].is_number()) << key;
+}
+
+}  // namespace
+}  // namespace tofsmith

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/report/design_report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "small_design.hpp"
+#include "tofsmith/report/code_figures.hpp"
+#include "tofsmith/report/scene_section.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string odd_name = "a/b \xc3\xbc<script>[[x]]`";
+
+std::vector<const Figure*> figures_of(const Page& page) {
+  std::vector<const Figure*> figures;
+  for (const Section& section : page.sections)
+    for (const Block& block : section.blocks)
+      if (const auto* figure = std::get_if<Figure>(&block)) figures.push_back(figure);
+  return figures;
+}
+
+/// The page renders, its figures have ids of their own, and `name` stands in it as text only.
+void expect_sound(const Page& page, std::size_t least_figures) {
+  std::set<std::string> ids;
+  for (const Figure* figure : figures_of(page)) {
+    EXPECT_TRUE(ids.insert(figure->text().id).second) << figure->text().id;
+    EXPECT_TRUE(nlohmann::json::accept(figure->plotly_json())) << figure->text().id;
+  }
+  EXPECT_GE(ids.size(), least_figures);
+  const std::string html = render(page);
+  EXPECT_THAT(html, Not(HasSubstr("\xc3\xbc<script>")));
+  for (const std::string& id : ids) EXPECT_THAT(html, HasSubstr("<figure id=\"" + id + "\">"));
+}
+
+SceneResult small_scene(const Camera& camera, const std::vector<CodeSet>& codes) {
+  SceneResult scene{.name = odd_name, .truth = SceneImage(4, 5)};
+  for (std::size_t i = 0; i < scene.truth.depth_m.size(); ++i)
+    scene.truth.depth_m.pixels[i] = 1.0f + 0.1f * static_cast<float>(i);
+  scene.truth.depth_m.pixels[3] = std::numeric_limits<float>::quiet_NaN();
+  scene.view = PinholeView::centred(5, 4, 1.0);
+  capture_and_decode(scene, codes, camera, std::vector<NamedLight>{{odd_name, {1e5, 1e4}}}, 1);
+  return scene;
+}
+
+DesignResult design_with_odd_names(const Camera& camera) {
+  DesignResult result = design(camera, small_options());
+  for (Candidate& c : result.candidates)
+    if (c.method != "factorize") {
+      c.code = c.code.renamed(odd_name + c.code.name());
+      c.error.code = c.code.name();
+    }
+  return result;
+}
+
+TEST(DesignReport, ShowsADesignWithItsSceneWhateverTheNames) {
+  const Camera camera = small_camera("paper-5f0");
+  const DesignResult result = design_with_odd_names(camera);
+  std::vector<CodeSet> codes;
+  for (const Candidate& c : result.candidates) codes.push_back(c.code);
+  const Page page = design_report(camera, result, small_scene(camera, codes), "tofsmith <design>");
+  expect_sound(page, 10);
+  const std::string html = render(page);
+  for (const Candidate& c : result.candidates) EXPECT_THAT(html, HasSubstr(c.method));
+  EXPECT_THAT(html, HasSubstr("tofsmith &lt;design&gt;"));
+  EXPECT_THAT(html, HasSubstr("A scene: a/b"));
+}
+
+TEST(DesignReport, ShowsCamerasOfManyKinds) {
+  Camera two_bucket = small_camera("paper-10f0", DepthErrorKind::circular);
+  two_bucket.sensor.taps = 2;
+  Camera one_point = small_camera("paper-30x");
+  one_point.operating.signal_e_per_s = {1e4};
+  Camera analog = small_camera("paper-5f0");
+  analog.light.binary = analog.sensor.binary = false;
+  for (const Camera& camera : {two_bucket, one_point, analog})
+    expect_sound(design_report(camera, design(camera, small_options()), std::nullopt, ""), 5);
+}
+
+TEST(DesignReport, BearsBoundsWithoutLimit) {
+  const Camera camera = small_camera("paper-5f0");
+  DesignResult result = design(camera, small_options());
+  for (Candidate& c : result.candidates)
+    for (PointDepthError& p : c.error.points)
+      p.cramer_rao_mae_m = p.receiver_bound_mae_m = std::numeric_limits<double>::infinity();
+  expect_sound(design_report(camera, result, std::nullopt, ""), 5);
+}
+
+TEST(DesignReport, DrawsTheTargetOfARotatedCodeWhereTheCodeIs) {
+  // The residual between the drawn correlation function and the drawn target is what is reported.
+  const Camera camera = small_camera("paper-30x");
+  DesignResult result = design(camera, small_options());
+  for (Candidate& c : result.candidates) {
+    if (c.method != "factorize") continue;
+    c.code = c.code.rotated(7);
+    c.rotation_bin = (c.rotation_bin + 7) % camera.samples;
+    ASSERT_LT(c.per_measurement[0].residual_rms, 1e-6);
+  }
+  const Page page = design_report(camera, result, std::nullopt, "");
+  for (const Figure* figure : figures_of(page)) {
+    if (figure->text().id != figure_id("waveforms", "hamiltonian-k3-factorized")) continue;
+    const auto plot = nlohmann::json::parse(figure->plain_plotly_json());
+    std::vector<double> drawn, target;
+    for (const auto& trace : plot["data"]) {
+      if (trace["name"] == "correlation function" && drawn.empty())
+        drawn = trace["y"].get<std::vector<double>>();
+      if (trace["name"] == "target" && target.empty())
+        target = trace["y"].get<std::vector<double>>();
+    }
+    ASSERT_FALSE(target.empty());
+    const std::size_t step = (drawn.size() - 1) / (target.size() - 1);
+    for (std::size_t n = 0; n < target.size(); ++n)
+      EXPECT_NEAR(target[n], drawn[n * step], 1e-4) << n;
+    return;
+  }
+  FAIL() << "no waveforms of the designed code";
+}
+
+TEST(EvaluationReport, ShowsCodesEvenOfTheSameName) {
+  const Camera camera = small_camera("paper-5f0");
+  const CodeSet code = build_family("sinusoid-k4", camera).renamed(odd_name);
+  const DepthErrorReport error = evaluate(code, camera, {.trials = 1000});
+  expect_sound(evaluation_report(camera, {code, code}, {error, error}, "x"), 4);
+}
+
+TEST(SceneSection, OfASceneWithoutCapturesShowsTheScene) {
+  const Camera camera = small_camera("paper-5f0");
+  SceneResult scene = small_scene(camera, {});
+  for (const bool captured : {true, false}) {
+    if (!captured) scene.captures.clear();
+    const Section section = scene_section(scene, camera, "none");
+    expect_sound({.title = "x", .sections = {section}}, 2);
+  }
+}
+
+TEST(FigureId, DiffersForDifferentNames) {
+  const std::set<std::string> ids{figure_id("p", "a/b"), figure_id("p", "a b"),
+                                  figure_id("p", "a-b"), figure_id("p", "")};
+  EXPECT_EQ(ids.size(), 4u);
+  EXPECT_EQ(figure_id("waveforms", "hamiltonian-k4"), "waveforms-hamiltonian-k4");
+}
+
+}  // namespace
+}  // namespace tofsmith
