@@ -76,7 +76,8 @@ bool rotates(const Camera& camera, const DesignOptions& options) {
   return options.best_rotation && camera.operating.error == DepthErrorKind::linear;
 }
 
-/// How near the correlation functions are to their targets, in one line.
+/// How near the correlation functions are to their targets, in one line. Whether a target is within
+/// reach is a matter of the pair that comes closest, not of the one that measures depth best.
 std::string describe_residuals(const std::vector<MeasurementReport>& reports,
                                const std::vector<Factorization>& factorizations) {
   std::string residuals, unreachable;
@@ -84,7 +85,7 @@ std::string describe_residuals(const std::vector<MeasurementReport>& reports,
   for (std::size_t k = 0; k < reports.size(); ++k) {
     exact = exact && reports[k].residual_rms < 1e-6;
     residuals += fmt::format("{}{:.3g}", k ? ", " : "", reports[k].residual_rms);
-    if (reports[k].residual_rms > 0.5 * factorizations[k].target_variation_rms)
+    if (reports[k].smallest_residual_rms > 0.5 * factorizations[k].target_variation_rms)
       unreachable += fmt::format("{}{}", unreachable.empty() ? "" : ", ", k + 1);
   }
   if (exact) return "all targets reached exactly";
@@ -96,6 +97,7 @@ std::string describe_residuals(const std::vector<MeasurementReport>& reports,
 
 MeasurementReport measurement_report(const Factorization& f, const PairCandidate& chosen) {
   return {.residual_rms = chosen.residual_rms,
+          .smallest_residual_rms = f.best().residual_rms,
           .demodulation_duty = chosen.pair.demodulation.mean(),
           .modulation_duty = chosen.pair.modulation.duty(),
           .peak = chosen.pair.modulation.peak(),

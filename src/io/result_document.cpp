@@ -89,6 +89,7 @@ Json measurements_json(const std::vector<MeasurementReport>& reports) {
   Json list = Json::array();
   for (const MeasurementReport& m : reports)
     list.push_back({{"residual_rms", m.residual_rms},
+                    {"smallest_residual_rms", m.smallest_residual_rms},
                     {"demodulation_duty", m.demodulation_duty},
                     {"modulation_duty", m.modulation_duty},
                     {"peak", m.peak},
@@ -103,6 +104,7 @@ std::vector<MeasurementReport> measurements_from_json(const JsonReader& entry) {
   if (!list) return reports;
   for (const JsonReader& m : list->elements())
     reports.push_back({.residual_rms = not_negative(m, "residual_rms"),
+                       .smallest_residual_rms = not_negative(m, "smallest_residual_rms"),
                        .demodulation_duty = m.member("demodulation_duty").number(),
                        .modulation_duty = m.member("modulation_duty").number(),
                        .peak = m.member("peak").number(),

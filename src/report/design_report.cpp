@@ -112,11 +112,13 @@ Section residual_section(const DesignResult& result) {
   Section section{.title = "Designed codes"};
   Table table{.id = "residuals",
               .caption =
-                  "Every measurement of every designed code: distance of its correlation "
-                  "function from the target, duties and edges.",
+                  "Every measurement of every designed code. Pairs are chosen by depth error: the "
+                  "residual is the chosen pair's distance from the target, beside the smallest "
+                  "distance of any pair found.",
               .columns = {{"code"},
                           {"measurement", true},
-                          {"residual, rms", true},
+                          {"residual", true},
+                          {"smallest", true},
                           {"modulation duty", true},
                           {"peak", true},
                           {"demodulation duty", true},
@@ -127,8 +129,9 @@ Section residual_section(const DesignResult& result) {
       const MeasurementReport& m = c.per_measurement[k];
       table.rows.push_back(
           {c.code.name(), fmt::format("{}", k + 1), fmt::format("{:.4f}", m.residual_rms),
-           fmt::format("{:.4f}", m.modulation_duty), fmt::format("{:.2f}", m.peak),
-           fmt::format("{:.4f}", m.demodulation_duty), fmt::format("{}", m.edges), m.start});
+           fmt::format("{:.4f}", m.smallest_residual_rms), fmt::format("{:.4f}", m.modulation_duty),
+           fmt::format("{:.2f}", m.peak), fmt::format("{:.4f}", m.demodulation_duty),
+           fmt::format("{}", m.edges), m.start});
     }
   section.blocks.push_back(std::move(table));
   return section;

@@ -74,6 +74,7 @@ void expect_same_candidate(const Candidate& a, const Candidate& b) {
   for (std::size_t k = 0; k < a.per_measurement.size(); ++k) {
     const MeasurementReport &x = a.per_measurement[k], &y = b.per_measurement[k];
     EXPECT_EQ(x.residual_rms, y.residual_rms);
+    EXPECT_EQ(x.smallest_residual_rms, y.smallest_residual_rms);
     EXPECT_EQ(x.edges, y.edges);
     EXPECT_EQ(x.start, y.start);
     ASSERT_EQ(x.history.size(), y.history.size());

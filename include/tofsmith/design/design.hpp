@@ -35,7 +35,8 @@ struct DesignOptions {
 
 /// How one measurement of a designed code compares with its target.
 struct MeasurementReport {
-  double residual_rms = 0.0;
+  double residual_rms = 0.0;           ///< of the pair chosen by depth error
+  double smallest_residual_rms = 0.0;  ///< of the pair that comes closest to the target
   double demodulation_duty = 0.0;
   double modulation_duty = 0.0;
   double peak = 0.0;
