@@ -59,6 +59,7 @@ TEST(Design, WinnerIsNeverWorseThanTheNaiveCodeOrAnyBaseline) {
     EXPECT_EQ(designed->target.cols(), 3);
     EXPECT_FALSE(designed->message.empty());
     for (const MeasurementReport& m : designed->per_measurement) {
+      EXPECT_LE(m.smallest_residual_rms, m.residual_rms);
       EXPECT_LE(m.peak, camera.light.peak_factor * (1 + 1e-9));
       EXPECT_FALSE(m.history.empty());
     }
