@@ -20,7 +20,7 @@ struct CodesArguments {
   std::string name;
   int samples = 0;
   std::string output;
-  CameraArguments camera{.name = "paper-30x"};
+  CameraArguments camera;
 };
 
 void list(const Session& session) {

@@ -22,6 +22,7 @@ struct DecodeArguments {
   std::vector<std::string> planes = plane_names();
   DecodeOptions options;
   int frame = -1;
+  std::string kind = "radial";
 };
 
 /// name.npz, frame 3 of 12 -> name-03.npz
@@ -52,13 +53,19 @@ void run(const DecodeArguments& arguments, const Session& session) {
   std::string lines;
   for (int frame = first; frame < last; ++frame) {
     const double count = last - first;
-    const DepthImage image = decoder.decode(
+    DepthImage image = decoder.decode(
         raw, frame, part_of(progress, (frame - first) / count, (frame - first + 1) / count));
     const std::filesystem::path path = frame_path(arguments.output, frame, last - first);
+    const bool as_z = arguments.kind == "z" && path.extension() != ".ply";
+    if (as_z) image.depth_m = z_from_radial(image.depth_m, view);
     write_decoded(path, image, arguments.planes, view, session.output_policy());
     outputs.push_back(
         {{"frame", frame}, {"output", path.string()}, {"status", status_summary(image)}});
-    lines += fmt::format("wrote {}: {}\n", path.string(), status_summary(image));
+    lines += fmt::format("wrote {} ({}): {}\n", path.string(),
+                         path.extension() == ".ply" ? "points"
+                         : as_z                     ? "z-depth"
+                                                    : "radial distance",
+                         status_summary(image));
   }
   report(progress, 1.0, "done");
   session.print_json({{"code", code.name()},
@@ -89,6 +96,13 @@ void add_decode_command(CLI::App& app, Session& session) {
                    "planes to write: depth,signal,ambient,confidence,deviation,status")
       ->delimiter(',')
       ->check(CLI::IsMember(plane_names()));
+  command
+      ->add_option(
+          "--kind", arguments->kind,
+          "depth to write: radial distance, as the camera measures it, or z along the axis "
+          "(what simulate and demo take a depth image for); .ply holds points either way")
+      ->check(CLI::IsMember({"radial", "z"}))
+      ->capture_default_str();
   command->add_option("--frame", arguments->frame, "decode this frame only, counted from 0")
       ->check(CLI::NonNegativeNumber);
   command

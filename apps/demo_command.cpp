@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <array>
 #include <chrono>
 
 #include "commands.hpp"
@@ -40,6 +41,9 @@ struct DemoArguments {
 const std::vector<NamedLight> lights = {
     {"low", {3162.2776601683795, 1e4}}, {"medium", {1e4, 1e4}}, {"high", {1e5, 1e4}}};
 
+constexpr std::array depth_files = {"depth.npy", "depth.npz", "depth.exr", "depth.pfm",
+                                    "depth.png"};
+
 DesignOptions design_options(const DemoArguments& arguments) {
   DesignOptions options;
   options.seed = options.factorize.seed = arguments.seed;
@@ -66,7 +70,7 @@ SceneResult capture_scene(LoadedScene loaded, std::uint64_t seed, const Camera& 
 
 /// The winner's raw frames and depth in every format, and all waveforms.
 void write_products(const fs::path& directory, const SceneResult& scene, const Camera& camera,
-                    const DesignResult& result, std::uint64_t seed) {
+                    const DesignResult& result, std::uint64_t seed, OutputPolicy policy) {
   const CodeSet& best = result.winner().code;
   const NamedLight& light = lights.back();
   const RawFrames raw = capture(scene.truth, best, camera,
@@ -76,15 +80,14 @@ void write_products(const fs::path& directory, const SceneResult& scene, const C
                                  .seed = seed});
   const Decoder decoder(make_decoding_table(ForwardModel(best, camera), camera));
   const DepthImage image = decoder.decode(raw);
-  constexpr OutputPolicy replace = OutputPolicy::overwrite;
-  write_raw_frames(directory / "raw.npy", raw, replace);
-  for (const char* name : {"depth.npy", "depth.npz", "depth.exr", "depth.pfm", "depth.png"})
-    write_decoded(directory / name, image, plane_names(), scene.view, replace);
-  write_decoded(directory / "points.ply", image, {"signal", "confidence"}, scene.view, replace);
+  write_raw_frames(directory / "raw.npy", raw, policy);
+  for (const char* name : depth_files)
+    write_decoded(directory / name, image, plane_names(), scene.view, policy);
+  write_decoded(directory / "points.ply", image, {"signal", "confidence"}, scene.view, policy);
   apps::create_directories(directory / "waveforms");
   for (const Candidate& c : result.candidates) {
     const fs::path path = directory / "waveforms" / (file_name_of(c.code.name()) + ".csv");
-    write_file_atomically(path, waveforms_to_csv(c.code, camera.fundamental_frequency_hz), replace);
+    write_file_atomically(path, waveforms_to_csv(c.code, camera.fundamental_frequency_hz), policy);
   }
 }
 
@@ -136,6 +139,10 @@ void run(const DemoArguments& arguments, const Session& session) {
   if (directory.holds_design() && !session.force)
     throw IoError((directory.path() / "design.json").string(),
                   "already exists; use --force to replace the finished demo, or another -o DIR");
+  for (const char* name : {"camera.toml", "details.json", "report.html", "raw.npy", "points.ply"})
+    if (fs::exists(directory.path() / name)) session.check_output(directory.path() / name);
+  for (const char* name : depth_files)
+    if (fs::exists(directory.path() / name)) session.check_output(directory.path() / name);
   const Progress progress = terminal_progress("tofsmith demo");
 
   // 2. Design codes and compare them with the standard ones.
@@ -147,10 +154,11 @@ void run(const DemoArguments& arguments, const Session& session) {
                                           part_of(progress, 0.8, 0.95));
 
   // 4. Write everything, the report last.
-  write_scene_result(directory.path() / "scene", scene, OutputPolicy::overwrite);
-  write_products(directory.path(), scene, camera, result, arguments.seed);
-  directory.write(camera, result, options, OutputPolicy::overwrite);
-  write_report(session, directory.path(), OutputPolicy::overwrite);
+  const OutputPolicy policy = session.output_policy();
+  write_scene_result(directory.path() / "scene", scene, policy);
+  write_products(directory.path(), scene, camera, result, arguments.seed, policy);
+  directory.write(camera, result, options, policy);
+  write_report(session, directory.path(), policy);
   report(progress, 1.0, "done");
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   if (session.json)

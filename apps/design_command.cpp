@@ -21,7 +21,7 @@ struct DesignArguments {
   std::string method = "best";
   std::string target;
   bool normalize = false;
-  std::vector<int> exposures{3, 4, 5};
+  std::vector<int> exposures;  // none: those of DesignOptions
   std::uint64_t seed = 1;
   int trials = 20000;
   std::string output;
@@ -34,6 +34,8 @@ TargetSet load_target(const DesignArguments& arguments, const Camera& camera) {
   if (extension == ".csv" || extension == ".txt" || extension == ".npy" || extension == ".npz")
     return targets_from_table(path.stem().string(), read_correlation_functions(path),
                               camera.samples, arguments.normalize);
+  if (arguments.normalize)
+    throw UsageError("--normalize goes with a --target that is a table; codes are as they are");
   Camera ideal = camera;
   ideal.sensor.taps = 1;
   ideal.sensor.readout = Readout::separate;
@@ -44,13 +46,16 @@ TargetSet load_target(const DesignArguments& arguments, const Camera& camera) {
 
 DesignOptions options_for(const DesignArguments& arguments, const Camera& camera) {
   DesignOptions options;
-  options.exposures = arguments.exposures;
+  if (!arguments.target.empty() && !arguments.exposures.empty())
+    throw UsageError("--exposures goes with Hamiltonian targets; a --target says how many it has");
+  if (!arguments.exposures.empty()) options.exposures = arguments.exposures;
   options.seed = arguments.seed;
   options.factorize.seed = arguments.seed;
   options.trials = arguments.trials;
   if (!arguments.target.empty()) options.target = load_target(arguments, camera);
   if (arguments.method == "factorize") {
     options.baselines.clear();
+    if (options.target) options.exposures.clear();
     for (const int e : options.exposures)
       options.baselines.push_back(fmt::format("hamiltonian-k{}", e));
   }
@@ -70,10 +75,13 @@ void run(const DesignArguments& arguments, const Session& session) {
   if (directory.holds_design() && !session.force)
     throw IoError((directory.path() / "design.json").string(),
                   "already exists; use --force to replace the finished design, or another -o DIR");
+  for (const char* name : {"camera.toml", "details.json", "report.html"})
+    if (std::filesystem::exists(directory.path() / name))
+      session.check_output(directory.path() / name);
   const DesignResult result =
       design(camera, options, terminal_progress("designing"), directory.store(camera, options));
-  directory.write(camera, result, options, OutputPolicy::overwrite);
-  write_report(session, directory.path(), OutputPolicy::overwrite);
+  directory.write(camera, result, options, session.output_policy());
+  write_report(session, directory.path(), session.output_policy());
   print_design(session, camera, result, options);
   session.say(fmt::format("wrote {}", (directory.path() / "report.html").string()));
 }
@@ -97,11 +105,9 @@ void add_design_command(CLI::App& app, Session& session) {
                       "(.csv .npy .npz); default: Hamiltonian codes");
   command->add_flag("--normalize", arguments->normalize,
                     "rescale a table's columns to [0, 1] before use");
-  command
-      ->add_option("--exposures", arguments->exposures, "numbers of exposures to try, e.g. 3,4,5")
+  command->add_option("--exposures", arguments->exposures, "numbers of exposures to try (3,4,5)")
       ->delimiter(',')
-      ->check(CLI::Range(3, 6))
-      ->capture_default_str();
+      ->check(CLI::Range(3, 6));
   command->add_option("--seed", arguments->seed, "seed of every random choice")
       ->capture_default_str();
   command->add_option("--trials", arguments->trials, "trials per operating point for final figures")

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tofsmith/io/design_directory.hpp"
 #include "tofsmith/io/result_document.hpp"
@@ -29,6 +30,16 @@ std::string verdict(const Camera& camera, const DesignResult& result) {
       winner.code.name(), length_text(best_m),
       kind == DepthErrorKind::linear ? "linear" : "circular", winner.error.points.size(),
       camera.samples);
+  std::string tied;
+  for (const Candidate& c : result.candidates) {
+    const Estimate mine = winner.error.of(kind).geometric_mean_m;
+    const Estimate other = c.error.of(kind).geometric_mean_m;
+    const double spread = 2.0 * std::hypot(mine.standard_error, other.standard_error);
+    if (&c != &winner && other.value - mine.value < spread)
+      tied += (tied.empty() ? "" : ", ") + c.code.name();
+  }
+  if (!tied.empty())
+    text += "\n  within two standard errors of it: " + tied + " (more --trials tell them apart)";
   for (const char* name : {"sinusoid-k3", "sinusoid-k4", "square-k4", "pulsed-multifrequency-k5"})
     if (const Candidate* other = result.find(name); other && other != &winner)
       text += fmt::format("\n  {:.2f}x better than {}", chosen_error_m(other->error, kind) / best_m,
@@ -57,6 +68,10 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
                     estimate_text(c->error.circular.geometric_mean_m),
                     fmt::format("{}", c->rotation_bin), c->method});
   session.say(text_table(rows));
+  if (kind == DepthErrorKind::linear)
+    session.say(
+        "each code at its best origin of depth; `evaluate` takes it as it is, or moves it "
+        "with --best-rotation");
   session.say(verdict(camera, result));
   for (const std::string& reason : result.left_out) session.say("  left out: " + reason);
 }

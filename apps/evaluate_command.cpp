@@ -29,17 +29,26 @@ CodeFileOptions file_options(const EvaluateArguments& arguments) {
   return options;
 }
 
+/// A field of a CSV file, quoted where it needs it (RFC 4180).
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
 std::string points_csv(const std::vector<EvaluatedCode>& codes) {
   std::string text =
       "code,signal_e_per_s,ambient_e_per_s,linear_mde_m,linear_se_m,circular_mde_m,circular_se_m,"
       "outlier_rate,cramer_rao_mae_m,receiver_bound_mae_m\n";
   for (const EvaluatedCode& code : codes)
     for (const PointDepthError& p : code.error.points)
-      text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n",
-                          code.error.code, p.point.signal_e_per_s, p.point.ambient_e_per_s,
-                          p.linear_mde_m.value, p.linear_mde_m.standard_error,
-                          p.circular_mde_m.value, p.circular_mde_m.standard_error,
-                          p.outlier_rate.value, p.cramer_rao_mae_m, p.receiver_bound_mae_m);
+      text +=
+          fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n",
+                      csv_field(code.error.code), p.point.signal_e_per_s, p.point.ambient_e_per_s,
+                      p.linear_mde_m.value, p.linear_mde_m.standard_error, p.circular_mde_m.value,
+                      p.circular_mde_m.standard_error, p.outlier_rate.value, p.cramer_rao_mae_m,
+                      p.receiver_bound_mae_m);
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "interrupt.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/design_directory.hpp"
 #include "tofsmith/io/scene_directory.hpp"
@@ -31,6 +32,7 @@ void run(const ReportArguments& arguments, const Session& session) {
   const std::filesystem::path output = arguments.output.empty()
                                            ? directory / "report.html"
                                            : std::filesystem::path(arguments.output);
+  if (interrupted()) throw Interrupted();
   write_file_atomically(
       output, render(design_report(record.camera, record.result, scene, session.command_line)),
       session.output_policy());

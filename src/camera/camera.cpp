@@ -63,6 +63,8 @@ void validate_sensor(const Sensor& sensor) {
   validate_adc(sensor);
   if (sensor.shortest_pulse_s)
     require_positive(*sensor.shortest_pulse_s, "sensor.shortest_pulse_s");
+  require(sensor.drain || sensor.taps >= 2, "sensor.drain", "false",
+          "needs sensor.taps >= 2: one tap that never lets go measures nothing");
   require(sensor.readout == Readout::separate || sensor.taps == 2, "sensor.readout", "difference",
           "needs sensor.taps = 2");
 }
@@ -70,8 +72,10 @@ void validate_sensor(const Sensor& sensor) {
 void validate_operating(const OperatingRange& range) {
   const auto levels = [](const std::vector<double>& values, const std::string& field, bool zero) {
     require(!values.empty(), field, "[]", "must list at least one level");
-    for (const double value : values)
+    for (const double value : values) {
       zero ? require_not_negative(value, field) : require_positive(value, field);
+      require(value <= 1e18, field, value, "must be <= 1e18: no sensor sees more electrons");
+    }
   };
   levels(range.signal_e_per_s, "operating.signal_e_per_s", false);
   levels(range.ambient_e_per_s, "operating.ambient_e_per_s", true);
@@ -131,6 +135,19 @@ void Camera::validate() const {
   validate_operating(operating);
 }
 
+namespace {
+/// Without a drain every electron goes to one of the taps.
+void require_taps_fill(const CodeSet& code, const std::string& what) {
+  const Eigen::MatrixXd gain = code.demodulation_samples();
+  for (int first = 0; first < code.measurements(); first += code.taps()) {
+    const double least = gain.middleCols(first, code.taps()).rowwise().sum().minCoeff();
+    require(least > 1.0 - 1e-6,
+            fmt::format("{} sum over the taps of exposure {}", what, first / code.taps()), least,
+            "must be 1 on a camera with sensor.drain = false");
+  }
+}
+}  // namespace
+
 void require_fits(const CodeSet& code, const Camera& camera) {
   const std::string what = "code " + code.name();
   require(code.taps() == camera.sensor.taps, what + " taps", code.taps(),
@@ -140,6 +157,7 @@ void require_fits(const CodeSet& code, const Camera& camera) {
                       camera.samples, code.samples()));
   require(code.peak() <= camera.light.peak_factor * (1 + 1e-9), what + " peak", code.peak(),
           fmt::format("must be <= the camera's light.peak_factor = {}", camera.light.peak_factor));
+  if (!camera.sensor.drain) require_taps_fill(code, what);
   if (!camera.exposure_s.each_s.empty())
     require(camera.exposure_s.each_s.size() == static_cast<std::size_t>(code.exposures()),
             "number of exposure_s", camera.exposure_s.each_s.size(),

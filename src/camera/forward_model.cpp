@@ -11,9 +11,10 @@ namespace tofsmith {
 
 namespace {
 
-/// Harmonics that matter under an impulse response. Both arms of a Hann pair fall as 1/n^3, a pair
-/// of low-passes as 1/n, and binary waveforms add 1/n^2: what is left out is far below 1e-9 or, for
-/// one low-pass arm alone, below 1e-6.
+/// Harmonics kept under an impulse response. Binary waveforms fall as 1/n^2, each arm of a Hann
+/// pair as 1/n^3 and of a low-pass as 1/n beyond its cutoff. For cutoffs within a few hundred f0
+/// what is left out is below 1e-6; a response far faster than that is cut at this many harmonics,
+/// which rounds corners of the correlation function by 1/n of a period.
 int harmonics_kept(int samples) { return std::max(2048, 8 * samples); }
 
 /// Contrast below 1 mixes the taps of an exposure: C x_j + (1 - C) / t sum_k x_k.

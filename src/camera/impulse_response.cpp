@@ -24,7 +24,13 @@ double hann_transfer(double x) {
   return std::sin(pi * x) / (pi * x) / (1.0 - x * x);
 }
 
+/// Transform of the measured samples joined by straight lines; nothing is known, and nothing
+/// passes, above half the sampling rate.
 std::complex<double> measured_transfer(const ImpulseResponse& response, double frequency_hz) {
+  const double turns_per_step = frequency_hz * response.time_step_s;
+  if (std::abs(turns_per_step) > 0.5) return 0.0;
+  const double x = pi * turns_per_step;
+  const double sinc = x == 0.0 ? 1.0 : std::sin(x) / x;
   std::complex<double> sum = 0.0;
   double total = 0.0;
   for (std::size_t i = 0; i < response.samples.size(); ++i) {
@@ -32,7 +38,7 @@ std::complex<double> measured_transfer(const ImpulseResponse& response, double f
     sum += response.samples[i] * std::polar(1.0, phase);
     total += response.samples[i];
   }
-  return sum / total;
+  return sum / total * sinc * sinc;
 }
 }  // namespace
 

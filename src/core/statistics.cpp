@@ -56,6 +56,7 @@ Estimate geometric_mean_of(std::span<const Estimate> estimates) {
   if (estimates.empty()) return {};
   double log_sum = 0.0, relative_variance = 0.0;
   for (const Estimate& e : estimates) {
+    if (std::isnan(e.value)) return {e.value, e.value};
     if (!(e.value > 0.0)) return {};
     log_sum += std::log(e.value);
     const double relative = e.standard_error / e.value;

@@ -14,6 +14,7 @@
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/code/hamiltonian.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {
@@ -80,16 +81,19 @@ bool rotates(const Camera& camera, const DesignOptions& options) {
 /// reach is a matter of the pair that comes closest, not of the one that measures depth best.
 std::string describe_residuals(const std::vector<MeasurementReport>& reports,
                                const std::vector<Factorization>& factorizations) {
-  std::string residuals, unreachable;
-  bool exact = true;
+  std::string residuals, smallest, unreachable;
+  bool exact = true, closest = true;
   for (std::size_t k = 0; k < reports.size(); ++k) {
     exact = exact && reports[k].residual_rms < 1e-6;
     residuals += fmt::format("{}{:.3g}", k ? ", " : "", reports[k].residual_rms);
+    smallest += fmt::format("{}{:.3g}", k ? ", " : "", reports[k].smallest_residual_rms);
+    closest = closest && reports[k].residual_rms < 1.01 * reports[k].smallest_residual_rms + 1e-9;
     if (reports[k].smallest_residual_rms > 0.5 * factorizations[k].target_variation_rms)
       unreachable += fmt::format("{}{}", unreachable.empty() ? "" : ", ", k + 1);
   }
   if (exact) return "all targets reached exactly";
-  std::string text = "residuals " + residuals + " rms";
+  std::string text = fmt::format("residuals {} rms", residuals);
+  if (!closest) text += fmt::format(" (chosen by depth error; smallest found {})", smallest);
   if (!unreachable.empty())
     text += fmt::format("; target {} out of reach of this camera", unreachable);
   return text;
@@ -235,6 +239,20 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
     }
     result.candidates.push_back(std::move(*kept));
   }
+
+  // A target may be such that no choice of pairs can tell depth: that is a result, not a failure.
+  std::erase_if(result.candidates, [&](const Candidate& c) {
+    if (c.method != "factorize") return false;
+    try {
+      make_decoding_table(ForwardModel(c.code, camera), camera).validate();
+      return false;
+    } catch (const std::invalid_argument& error) {
+      result.left_out.push_back(fmt::format("{} ({}): {}", c.code.name(), c.message, error.what()));
+      return true;
+    }
+  });
+  require(!result.candidates.empty(), "target", fmt::format("{}", fmt::join(result.left_out, "; ")),
+          "nothing that was designed can tell depth");
 
   // 3. Judge all with the same fresh random numbers and pick by the camera's depth error.
   for (std::size_t i = 0; i < result.candidates.size(); ++i) {

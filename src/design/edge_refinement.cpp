@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "design/edge_refinement.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -14,9 +15,9 @@ namespace tofsmith {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double duty_weight = 2.0;    // of (mean d - target's) beside the harmonics
-constexpr double shortest_run = 2e-3;  // of the period; shorter runs fade away in the fit
-constexpr int most_rounds = 4;         // of fitting and dropping short runs
+constexpr double duty_weight = 2.0;  // of (mean d - target's) beside the harmonics
+constexpr double fading_run = 2e-3;  // of the period; shorter runs fade away in the fit
+constexpr int most_rounds = 4;       // of fitting and dropping short runs
 
 /// Fourier coefficients of a unit-level binary waveform by its switching times, and their
 /// derivatives: X[n] = sum_j s_j exp(-2 pi i n e_j) / (2 pi i n), s = +1 at rises, -1 at falls.
@@ -52,7 +53,8 @@ class HarmonicFit {
   HarmonicFit(const PairModel& model, const WaveformPair& start)
       : modulation_(start.modulation, 1.0 / model.peak_factor()),
         demodulation_(start.demodulation, 0.0),
-        demodulation_mean_(model.target().demodulation_mean) {
+        demodulation_mean_(model.target().demodulation_mean),
+        shortest_run_(std::max(fading_run, model.shortest_run())) {
     const int samples = model.samples();
     const Eigen::VectorXcd response = model.transfer(samples / 2);
     // Harmonics that the camera does not pass cannot be fitted: they only cost time.
@@ -90,8 +92,9 @@ class HarmonicFit {
   }
 
   WaveformPair pair(const Eigen::VectorXd& parameters) const {
-    return {modulation_.waveform(parameters.head(modulation_.parameter_count()), shortest_run),
-            demodulation_.waveform(parameters.tail(demodulation_.parameter_count()), shortest_run)};
+    return {
+        modulation_.waveform(parameters.head(modulation_.parameter_count()), shortest_run_),
+        demodulation_.waveform(parameters.tail(demodulation_.parameter_count()), shortest_run_)};
   }
 
  private:
@@ -146,6 +149,7 @@ class HarmonicFit {
 
   RunLengths modulation_, demodulation_;
   double demodulation_mean_;
+  double shortest_run_;
   int highest_ = 0;
   Eigen::VectorXcd transfer_, target_;
 };

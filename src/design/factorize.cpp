@@ -74,6 +74,31 @@ void drop_repeats(std::vector<PairCandidate>& candidates) {
   candidates.erase(last, candidates.end());
 }
 
+bool keeps_shortest_run(const Waveform& waveform, double shortest_run) {
+  if (!waveform.is_binary()) return true;
+  const std::vector<OnInterval>& on = waveform.on_intervals();
+  for (std::size_t i = 0; i < on.size(); ++i) {
+    const double next = i + 1 < on.size() ? on[i + 1].rise : on[0].rise + 1.0;
+    const double gap = next - on[i].fall;
+    constexpr double rounding = 1e-9;
+    if (on[i].fall - on[i].rise < shortest_run - rounding) return false;
+    if (gap > rounding && gap < shortest_run - rounding) return false;
+  }
+  return true;
+}
+
+/// Leaves only pairs that respect the shortest pulse, if there are any.
+/// @return whether there are
+bool drop_short_pulses(const PairModel& model, std::vector<PairCandidate>& candidates) {
+  const auto too_short = [&](const PairCandidate& c) {
+    return !keeps_shortest_run(c.pair.modulation, model.shortest_run()) ||
+           !keeps_shortest_run(c.pair.demodulation, model.shortest_run());
+  };
+  if (std::ranges::all_of(candidates, too_short)) return false;
+  std::erase_if(candidates, too_short);
+  return true;
+}
+
 std::string describe(const Factorization& f, const CorrelationTarget& target) {
   if (f.exact()) return "reached exactly";
   const double share = f.best().residual_rms / std::max(f.target_variation_rms, 1e-300);
@@ -138,6 +163,7 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
   if (options.refine_edges) refine_best(model, options, result.candidates);
   if (options.keep_naive)
     std::ranges::move(naive_start(model), std::back_inserter(result.candidates));
+  const bool playable = drop_short_pulses(model, result.candidates);
   drop_repeats(result.candidates);
   report(progress, 1.0, "refining switching times");
 
@@ -149,6 +175,7 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
   if (!runs.empty())
     result.history = std::ranges::min_element(runs, by_residual, &StartResult::candidate)->history;
   result.message = describe(result, target);
+  if (!playable) result.message += "; no pair found keeps the sensor's shortest_pulse_s";
   return result;
 }
 

@@ -22,6 +22,8 @@ class PairModel {
   double peak_factor() const { return peak_factor_; }
   bool binary_modulation() const { return binary_modulation_; }
   bool binary_demodulation() const { return binary_demodulation_; }
+  /// Shortest run, on or off, that an arm which only switches may play [periods].
+  double shortest_run() const { return shortest_run_; }
   const CorrelationTarget& target() const { return target_; }
   /// Target at the bins, and the same read backwards (what the modulation step fits).
   const Eigen::VectorXd& target_samples() const { return target_.samples; }
@@ -51,6 +53,7 @@ class PairModel {
   CorrelationTarget target_;
   Camera camera_;
   double peak_factor_;
+  double shortest_run_;
   bool binary_modulation_, binary_demodulation_;
   PeriodicTransform transform_;
   Eigen::VectorXd reversed_target_;

@@ -16,7 +16,8 @@ struct AlternationStart {
   SampledPair pair;
 };
 
-/// Uniform random waveforms of full power; start `index` of `measurement_key` is always the same.
+/// Uniform random waveforms of full power. Start `index` depends on the seed and N alone: every
+/// measurement begins from the same waveforms.
 AlternationStart random_start(const PairModel& model, std::uint64_t seed, int index);
 
 /// The thresholded target as demodulation, with single pulses and pulse trains of several duties as

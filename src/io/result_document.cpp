@@ -147,12 +147,12 @@ std::string evaluation_document(const Camera& camera, std::span<const EvaluatedC
   document["codes"] = Json::array();
   for (const EvaluatedCode& code : codes)
     document["codes"].push_back(depth_error_json(code.error, code.rotation_bin));
-  return document.dump(2);
+  return document.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string design_document(const Camera& camera, const DesignResult& result,
                             const DesignOptions& options) {
-  return design_json(camera, result, options).dump(2);
+  return design_json(camera, result, options).dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace tofsmith

@@ -35,16 +35,18 @@ Table comparison_table(const Camera& camera, std::span<const ComparedCode> codes
   const DepthErrorReport& first = *codes[0].error;
   Table table{.id = "comparison",
               .caption = fmt::format(
-                  "Depth error over {} operating points, {} trials each, N = {}, true "
+                  "Depth error over {} operating points (geometric means; the last but "
+                  "one column is the arithmetic mean of the circular error), {} trials "
+                  "each, N = {}, true "
                   "depths anywhere in the range; ± is one standard error. Outliers are "
                   "circular errors beyond {:.2g} m.",
                   first.points.size(), first.trials, camera.samples, first.outlier_threshold_m),
               .columns = {{"code"},
                           {"made by"},
                           {"K", true},
-                          {"linear, geometric mean (mm)", true},
-                          {"circular, geometric mean (mm)", true},
-                          {"circular, mean (mm)", true},
+                          {"linear (mm)", true},
+                          {"circular (mm)", true},
+                          {"arithmetic (mm)", true},
                           {"outliers (%)", true}}};
   for (const std::size_t i : order) {
     const DepthErrorReport& e = *codes[i].error;

@@ -150,6 +150,19 @@ TEST(ImpulseResponse, MeasuredExponentialIsALowPass) {
     EXPECT_LT(std::abs(measured.transfer(f) - lowpass.transfer(f)), 2e-3);
 }
 
+TEST(ImpulseResponse, MeasuredSamplesPassNothingAboveHalfTheirRate) {
+  // A triangle of 10 ns, in steps as coarse as oscilloscopes give them.
+  ImpulseResponse measured{.kind = ImpulseResponse::Kind::file, .time_step_s = 1e-9};
+  for (int i = 0; i <= 10; ++i) measured.samples.push_back(i <= 5 ? i : 10 - i);
+  for (const double f : {0.51e9, 1e9, 2e9, 10e9})
+    EXPECT_EQ(std::abs(measured.transfer(f)), 0.0) << f;
+  // The transform of a triangle is a squared sinc.
+  for (const double f : {15e6, 60e6, 150e6}) {
+    const double x = M_PI * f * 5e-9;
+    EXPECT_NEAR(std::abs(measured.transfer(f)), std::pow(std::sin(x) / x, 2), 1e-9) << f;
+  }
+}
+
 TEST(Camera, NamesTheFieldTheValueAndTheRule) {
   const auto message = [](auto change) -> std::string {
     Camera camera = built_in_camera("paper-10f0");

@@ -41,7 +41,7 @@ double median_of(std::vector<double> values);
 Estimate mean_of(std::span<const Estimate> estimates);
 
 /// Geometric mean of independent positive estimates, errors propagated to first order.
-/// A value of exactly 0 makes the mean 0.
+/// A value of exactly 0 makes the mean 0; one that is not a number makes it not a number.
 Estimate geometric_mean_of(std::span<const Estimate> estimates);
 
 }  // namespace tofsmith

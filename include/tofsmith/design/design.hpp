@@ -51,7 +51,7 @@ struct Candidate {
   std::string method;      ///< "family", "naive" or "factorize"
   DepthErrorReport error;  ///< what evaluate() says of the code with the design's seed and trials
   int rotation_bin = 0;    ///< how far the origin was moved
-  int iterations = 0;      ///< convex steps over all starts that led to it; 0 for a family
+  int iterations = 0;      ///< pairs of convex steps over all starts that led to it; 0 for a family
   double seconds = 0.0;    ///< time it took to design
   Eigen::MatrixXd target;  ///< what it was designed for (N, K); empty for a family
   std::vector<MeasurementReport> per_measurement;

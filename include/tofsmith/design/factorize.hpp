@@ -45,8 +45,8 @@ struct FactorizeIteration {
 struct PairCandidate {
   WaveformPair pair;
   double residual_rms = 0.0;  ///< rms over depth; the target is linear between bins
-  std::string start;          ///< "random 3", "pulse train 5", "naive", ..
-  int iterations = 0;         ///< convex steps it took
+  std::string start;          ///< "random 3", "2 pulses 1/3 apart, duty 0.2", "naive"
+  int iterations = 0;         ///< pairs of convex steps it took
 };
 
 /// What factorizing one correlation function gave.
