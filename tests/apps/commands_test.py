@@ -121,6 +121,15 @@ class Commands(CommandLineTest):
         error = np.abs(np.load(self.path("depth.npy")) - np.load(self.path("truth.npy")))
         self.assertLess(np.nanmedian(error), 0.01)
 
+    def test_z_depth_goes_round(self):
+        self.do("simulate", "table-top", "--code", "hamiltonian-k3", "--signal", "1e7", "-o",
+                "raw.npy", "--truth", "truth.npy")
+        self.decode("--kind", "z")
+        self.do("simulate", "depth.npy", "--code", "hamiltonian-k3", "-o", "again.npy", "--truth",
+                "radial.npy")  # which takes z by default
+        error = np.abs(np.load(self.path("radial.npy")) - np.load(self.path("truth.npy")))
+        self.assertLess(np.nanmedian(error), 0.01)
+
     def test_decode_writes_every_format(self):
         self.small_scene()
         self.simulate()

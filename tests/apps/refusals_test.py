@@ -225,6 +225,15 @@ class Refusals(CommandLineTest):
         self.refuse(["demo", "--depth", "absent.npy", "-o", "d"], "absent.npy")
         self.write("t.csv", "1,2\nx,3\n")
         self.refuse(["design", "--target", "t.csv", "-o", "d"], "t.csv:2")
+        self.refuse(["design", "--target", "hamiltonian-k3", "--exposures", "4"], "--exposures",
+                    code=2)
+        self.refuse(["design", "--target", "hamiltonian-k3", "--normalize"], "--normalize", code=2)
+
+    def test_files_that_are_in_the_way_of_a_directory(self):
+        self.write("report.html", "mine")
+        self.refuse(["design", "--exposures", "3", "--trials", "1000", "-o", "."], "report.html",
+                    "--force")
+        self.refuse(["demo", "--trials", "1000", "-o", "."], "report.html", "--force")
 
 
 if __name__ == "__main__":

@@ -126,6 +126,19 @@ TEST(ForwardModel, ContrastPullsTapsTogether) {
   EXPECT_NEAR(chi.minCoeff(), 0.2, 1e-9);
 }
 
+TEST(ForwardModel, WithoutADrainEveryElectronGoesToATap) {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.sensor.taps = 2;
+  camera.sensor.drain = false;
+  EXPECT_NO_THROW(ForwardModel(build_family("hamiltonian-k3", camera), camera));
+  const Waveform half = square_wave(1, 0.0), quarter = Waveform::binary({{0.5, 0.75}});
+  const CodeSet leaky =
+      CodeSet::create("leaky", camera.samples, 2, {rectangular_pulse(0.1)}, {half, quarter});
+  EXPECT_THROW(require_fits(leaky, camera), std::invalid_argument);
+  camera.sensor.drain = true;
+  EXPECT_NO_THROW(require_fits(leaky, camera));
+}
+
 TEST(ImpulseResponse, HannAttenuatesByFiveAtItsLimit) {
   ImpulseResponse hann{.kind = ImpulseResponse::Kind::hann, .f_max_hz = 150e6};
   EXPECT_NEAR(hann.transfer(150e6).real(), 0.2, 1e-12);

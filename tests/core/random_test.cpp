@@ -101,5 +101,12 @@ TEST(Statistics, GeometricMeanPropagatesRelativeErrors) {
   EXPECT_NEAR(mean.standard_error, 10.0 * std::sqrt(0.02) / 2, 1e-12);
 }
 
+TEST(Statistics, GeometricMeanOfWhatIsNoNumberIsNone) {
+  const Estimate estimates[] = {{1.0, 0.1}, {std::nan(""), 0.0}};
+  EXPECT_TRUE(std::isnan(geometric_mean_of(estimates).value));
+  const Estimate with_zero[] = {{1.0, 0.1}, {0.0, 0.0}};
+  EXPECT_EQ(geometric_mean_of(with_zero).value, 0.0);
+}
+
 }  // namespace
 }  // namespace tofsmith

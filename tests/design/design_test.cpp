@@ -66,6 +66,19 @@ TEST(Design, WinnerIsNeverWorseThanTheNaiveCodeOrAnyBaseline) {
   }
 }
 
+TEST(Design, ATargetThatCannotTellDepthIsLeftOutWithItsReason) {
+  const Camera camera = small_camera("paper-10f0");
+  DesignOptions options = small_options();
+  const Eigen::MatrixXd constant = Eigen::MatrixXd::Constant(camera.samples, 3, 0.5);
+  options.target = targets_from_table("constant", constant, camera.samples, false);
+  options.baselines = {"hamiltonian-k3"};
+  const DesignResult result = design(camera, options);
+  EXPECT_EQ(result.winner().code.name(), "hamiltonian-k3");
+  ASSERT_EQ(result.left_out.size(), 1u);
+  EXPECT_NE(result.left_out[0].find("constant-factorized"), std::string::npos);
+  EXPECT_NE(result.left_out[0].find("rank"), std::string::npos) << result.left_out[0];
+}
+
 TEST(Design, ErrorIsWhatEvaluateSaysOfTheCodeWithTheSameSeed) {
   const Camera camera = small_camera("paper-5f0");
   const DesignOptions options = small_options();

@@ -115,6 +115,18 @@ TEST(Factorize, AnalogArmsFitAtLeastAsWellAsBinaryOnes) {
   EXPECT_LT(factorize(target, analog, options).best().residual_rms, binary * 1.01);
 }
 
+TEST(Factorize, KeepsTheShortestPulse) {
+  Camera camera = camera_with_peak(15.0, 20.0);
+  const CorrelationTarget target = hamiltonian_targets(5).measurements[2];
+  camera.sensor.shortest_pulse_s = 0.06 / camera.fundamental_frequency_hz;
+  for (const PairCandidate& c : factorize(target, camera).candidates)
+    for (const Waveform& w : {c.pair.modulation, c.pair.demodulation})
+      for (const OnInterval& on : w.on_intervals())
+        EXPECT_GE(on.fall - on.rise, 0.06 - 1e-9) << c.start;
+  camera.sensor.shortest_pulse_s = 0.9 / camera.fundamental_frequency_hz;
+  EXPECT_THAT(factorize(target, camera).message, testing::HasSubstr("shortest_pulse_s"));
+}
+
 TEST(Factorize, UnreachableTargetsEndAsAResult) {
   TargetSet shifted = hamiltonian_targets(3);
   shifted.measurements[0].samples.array() = 3.0 * shifted.measurements[0].samples.array() - 1.0;
