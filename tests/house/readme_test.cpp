@@ -6,6 +6,8 @@
 #include <sstream>
 #include <string>
 
+#include "tofsmith/io/camera_toml.hpp"
+
 namespace {
 
 std::string read(const std::string& path) {
@@ -22,6 +24,13 @@ TEST(Readme, ShowsTheProgramThatTheConsumerProjectRuns) {
   for (int licence_line = 0; licence_line < 2; ++licence_line)
     program.erase(0, program.find('\n') + 1);
   EXPECT_NE(read("README.md").find("```cpp\n" + program + "```"), std::string::npos);
+}
+
+TEST(Readme, ShowsACameraThatCanBeRead) {
+  const std::string readme = read("README.md");
+  const std::size_t begin = readme.find("```toml\n") + 8;
+  const std::string toml = readme.substr(begin, readme.find("```", begin) - begin);
+  EXPECT_DOUBLE_EQ(tofsmith::parse_camera_toml(toml, "README.md").light.peak_factor, 15.0);
 }
 
 }  // namespace
