@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "tap_arguments.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/code/coding_curve.hpp"
 #include "tofsmith/code/families.hpp"
@@ -21,6 +22,7 @@ struct CodesArguments {
   int samples = 0;
   std::string output;
   CameraArguments camera;
+  TapArguments taps;
 };
 
 void list(const Session& session) {
@@ -86,7 +88,7 @@ void show(const Session& session, const CodeSet& code, const Camera& camera) {
 }
 
 void write(const Session& session, const CodeSet& code, const Camera& camera,
-           const std::filesystem::path& path) {
+           const std::filesystem::path& path, std::optional<TapOrder> order) {
   if (path.extension() == ".csv")
     write_file_atomically(path, waveforms_to_csv(code, camera.fundamental_frequency_hz),
                           session.output_policy());
@@ -94,7 +96,7 @@ void write(const Session& session, const CodeSet& code, const Camera& camera,
     write_file_atomically(path, render(code_page(code, camera, session.command_line)),
                           session.output_policy());
   else
-    write_code(path, code, session.output_policy());
+    write_code(path, code, session.output_policy(), order);
 }
 
 }  // namespace
@@ -109,6 +111,7 @@ void add_codes_command(CLI::App& app, Session& session) {
   command->add_option("-o,--output", arguments->output,
                       "save as .code.json, .npz, .csv, or as a page with plots, .html");
   arguments->camera.add_to(*command);
+  arguments->taps.add_to(*command);
   command->callback([arguments, &session] {
     if (arguments->name.empty()) {
       if (!arguments->output.empty()) throw UsageError("-o needs the NAME of a code");
@@ -117,8 +120,9 @@ void add_codes_command(CLI::App& app, Session& session) {
     if (arguments->samples > 0)
       arguments->camera.settings.push_back(fmt::format("samples={}", arguments->samples));
     const Camera camera = arguments->camera.load();
-    const CodeSet code = load_code(arguments->name, camera);
-    if (!arguments->output.empty()) write(session, code, camera, arguments->output);
+    const CodeSet code = load_code(arguments->name, camera, arguments->taps.file_options());
+    if (!arguments->output.empty())
+      write(session, code, camera, arguments->output, arguments->taps.tap_order());
     show(session, code, camera);
     if (!arguments->output.empty()) session.say(fmt::format("wrote {}", arguments->output));
   });

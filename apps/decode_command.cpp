@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "depth_output.hpp"
 #include "scene_source.hpp"
+#include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decoder.hpp"
@@ -18,6 +19,7 @@ namespace {
 struct DecodeArguments {
   std::string raw, code, output;
   CameraArguments camera;
+  TapArguments taps;
   std::string method = "zncc";
   std::vector<std::string> planes = plane_names();
   DecodeOptions options;
@@ -37,7 +39,7 @@ std::filesystem::path frame_path(const std::filesystem::path& path, int frame, i
 
 void run(const DecodeArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
-  const CodeSet code = load_code(arguments.code, camera);
+  const CodeSet code = load_code(arguments.code, camera, arguments.taps.file_options());
   const Decoder decoder(make_decoding_table(ForwardModel(code, camera), camera), arguments.options);
   const RawFrames raw = read_raw_frames(arguments.raw, decoder.measurements());
   if (arguments.frame >= raw.frames)
@@ -88,6 +90,7 @@ void add_decode_command(CLI::App& app, Session& session) {
   command->add_option("--code", arguments->code, "the code that was played: a family or a file")
       ->required();
   arguments->camera.add_to(*command);
+  arguments->taps.add_to(*command);
   command->add_option("--method", arguments->method, "decoder")
       ->check(CLI::IsMember({"zncc"}))
       ->capture_default_str();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/result_document.hpp"
@@ -18,16 +19,9 @@ struct EvaluateArguments {
   EvaluateOptions options;
   bool on_bins = false;
   bool best_rotation = false;
-  std::optional<int> taps;
-  std::string tap_order;
+  TapArguments taps;
   std::string output;
 };
-
-CodeFileOptions file_options(const EvaluateArguments& arguments) {
-  CodeFileOptions options{.taps = arguments.taps, .tap_order = std::nullopt};
-  if (!arguments.tap_order.empty()) options.tap_order = parse_tap_order(arguments.tap_order);
-  return options;
-}
 
 /// A field of a CSV file, quoted where it needs it (RFC 4180).
 std::string csv_field(const std::string& text) {
@@ -136,7 +130,7 @@ void run(EvaluateArguments& arguments, const Session& session) {
   check_output(arguments.output, session);
   std::vector<CodeSet> codes;
   for (const std::string& name : arguments.codes)
-    codes.push_back(load_code(name, camera, file_options(arguments)));
+    codes.push_back(load_code(name, camera, arguments.taps.file_options()));
   const std::vector<EvaluatedCode> evaluated = evaluate_all(codes, camera, arguments);
   if (!arguments.output.empty())
     write(arguments.output, session, camera, codes, evaluated, arguments.options);
@@ -169,9 +163,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
                     "clip electrons to [0, T (S + A)], as the paper's authors' simulator does");
   command->add_flag("--best-rotation", arguments->best_rotation,
                     "move each code's origin of depth to where its linear error is least");
-  command->add_option("--taps", arguments->taps, "taps of an NPZ code");
-  command->add_option("--tap-order", arguments->tap_order, "of an NPZ code's columns")
-      ->check(CLI::IsMember({"blocked", "interleaved"}));
+  arguments->taps.add_to(*command);
   command->add_option("-o,--output", arguments->output,
                       "write a table (.csv .json) or page (.html)");
   command->callback([arguments, &session] { run(*arguments, session); });

@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "scene_source.hpp"
+#include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
@@ -17,6 +18,7 @@ namespace {
 struct SimulateArguments {
   SceneSource scene;
   CameraArguments camera;
+  TapArguments taps;
   std::string code;
   std::optional<double> signal_e_per_s, ambient_e_per_s;
   CaptureOptions options;
@@ -25,7 +27,7 @@ struct SimulateArguments {
 
 void run(SimulateArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
-  const CodeSet code = load_code(arguments.code, camera);
+  const CodeSet code = load_code(arguments.code, camera, arguments.taps.file_options());
   const LoadedScene scene = load_scene(arguments.scene, camera);
   session.check_output(arguments.output);
   if (!arguments.truth.empty()) session.check_output(arguments.truth);
@@ -76,6 +78,7 @@ void add_simulate_command(CLI::App& app, Session& session) {
       ->capture_default_str();
   command->add_option("--code", arguments->code, "a family or a code file")->required();
   arguments->camera.add_to(*command);
+  arguments->taps.add_to(*command);
   command->add_option(
       "--signal", arguments->signal_e_per_s,
       "signal of albedo 1 at the reference distance [e/s] (middle of the camera's)");

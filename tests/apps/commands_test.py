@@ -140,6 +140,19 @@ class Commands(CommandLineTest):
         self.assertEqual(set(np.load(self.path("d.npz")).files),
                          {"depth", "signal", "ambient", "confidence", "deviation", "status"})
 
+    def test_two_bucket_codes_go_through_npz(self):
+        two_buckets = ("--set", "sensor.taps=2")
+        blocked = ("--tap-order", "blocked")
+        self.do("codes", "hamiltonian-k3", *two_buckets, *blocked, "-o", "two.npz")
+        self.do("simulate", "table-top", "--code", "two.npz", *two_buckets, *blocked, "--signal",
+                "1e7", "-o", "raw.npy", "--truth", "truth.npy")
+        self.do("decode", "raw.npy", "--code", "two.npz", *two_buckets, *blocked, "-o",
+                "depth.npy")
+        error = np.abs(np.load(self.path("depth.npy")) - np.load(self.path("truth.npy")))
+        self.assertLess(np.nanmedian(error), 0.01)
+        self.refuse(["decode", "raw.npy", "--code", "two.npz", *two_buckets, "-o", "again.npy"],
+                    "two.npz", "order")
+
     def test_frames_are_numbered(self):
         self.small_scene()
         self.assertEqual(self.simulate("--frames", "2")["frames"], 2)
