@@ -16,6 +16,7 @@ pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
 find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
 if(TOFSMITH_USE_FFTW)
   pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3)
+  find_library(FFTW_THREADS_LIBRARY fftw3_threads REQUIRED)  # a planner that threads may share
 endif()
 if(TOFSMITH_BUILD_APPS)
   find_package(CLI11 REQUIRED)

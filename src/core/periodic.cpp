@@ -13,6 +13,11 @@ namespace {
 /// Eigen's transform keeps its plans by length, and scratch space beside them, so it must not be
 /// shared between threads.
 Eigen::FFT<double>& plans_of_this_thread() {
+#ifdef EIGEN_FFTW_DEFAULT
+  // FFTW's planner is one for the whole process.
+  static const bool planner_is_safe = (fftw_make_planner_thread_safe(), true);
+  static_cast<void>(planner_is_safe);
+#endif
   thread_local Eigen::FFT<double> fft{Eigen::default_fft_impl<double>(),
                                       Eigen::FFT<double>::HalfSpectrum};
   return fft;

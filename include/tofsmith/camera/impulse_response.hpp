@@ -21,8 +21,8 @@ struct ImpulseResponse {
   double f_max_hz = 0.0;
   /// Of a Gaussian or a first-order low-pass: the frequency of -3 dB [Hz], > 0.
   double cutoff_hz = 0.0;
-  /// Measured response, in steps of time_step_s, linear in between; scaled to sum 1 where it is used.
-  /// Nothing passes above half the sampling rate.
+  /// Measured response, in steps of time_step_s, linear in between; scaled to sum 1 where it is
+  /// used. Nothing passes above half the sampling rate.
   std::vector<double> samples;
   double time_step_s = 0.0;  ///< of `samples` [s], > 0
   std::string file;          ///< where `samples` came from
