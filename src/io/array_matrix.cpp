@@ -18,7 +18,7 @@ Eigen::MatrixXd matrix_of(const NpyArray& array, std::string_view place) {
     throw IoError(
         place, fmt::format("found the shape {}; expected (N, K)", describe_shape(array.shape())));
   const std::vector<double> values = array.to_doubles();
-  const Eigen::MatrixXd matrix =
+  Eigen::MatrixXd matrix =
       Eigen::Map<const RowMajor>(values.data(), static_cast<Eigen::Index>(array.shape()[0]),
                                  static_cast<Eigen::Index>(array.shape()[1]));
   for (Eigen::Index n = 0; n < matrix.rows(); ++n)
