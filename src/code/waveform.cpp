@@ -160,7 +160,7 @@ Eigen::VectorXcd Waveform::harmonics(int highest) const {
     const int k = n % size;
     const std::complex<double> dft = k <= size / 2 ? spectrum[k] : std::conj(spectrum[size - k]);
     const double x = pi * n / size;  // each sample is held over its cell
-    result[n] = dft / static_cast<double>(size) * std::polar(std::sin(x) / x, -x);
+    result[n] = dft / static_cast<double>(size) * (std::sin(x) / x) * std::polar(1.0, -x);
   }
   return result;
 }
