@@ -17,6 +17,7 @@ packages_build=(
   librandom123-dev    # random streams
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev
   libzip-dev libopenexr-dev libpng-dev
+  libembree-dev libassimp-dev  # ray casting, meshes
   python3-plotly      # its plotly.js goes into the reports
   esbuild             # minifies it
 )

@@ -24,13 +24,6 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> axes_across(const Eigen::Vector3d& n
   return {first, normal.cross(first)};
 }
 
-void require_texture(const Texture& texture) {
-  for (const double albedo : {texture.albedo, texture.other_albedo})
-    require(albedo >= 0.0 && albedo <= 1.0, "texture.albedo", albedo, "must be in [0, 1]");
-  require(std::isfinite(texture.period_m) && texture.period_m > 0.0, "texture.period_m",
-          texture.period_m, "must be finite and > 0");
-}
-
 void require_finite(const Eigen::Vector3d& point, std::string_view field) {
   require(point.allFinite(), field, point.transpose(), "must be finite");
 }
@@ -56,14 +49,20 @@ void validate_shape(const Sphere& sphere) {
           sphere.radius_m, "must be finite and > 0");
 }
 
-}  // namespace
-
-double Texture::at(double first_m, double second_m) const {
-  if (pattern == Pattern::uniform) return albedo;
-  double field = std::floor(first_m / period_m);
-  if (pattern == Pattern::checker) field += std::floor(second_m / period_m);
-  return std::fmod(std::abs(field), 2.0) == 0.0 ? albedo : other_albedo;
+void validate_shape(const Mesh& mesh) {
+  mesh.triangles.validate();
+  require(std::isfinite(mesh.scale_m) && mesh.scale_m > 0.0, "mesh.scale_m", mesh.scale_m,
+          "must be finite and > 0");
 }
+
+void validate_shape(const Capsule& capsule) {
+  require_finite(capsule.start, "capsule.start");
+  require_finite(capsule.end, "capsule.end");
+  require(std::isfinite(capsule.radius_m) && capsule.radius_m > 0.0, "capsule.radius_m",
+          capsule.radius_m, "must be finite and > 0");
+}
+
+}  // namespace
 
 std::optional<Hit> intersect(const Plane& plane, const Ray& ray) {
   const Eigen::Vector3d normal = plane.normal.normalized();
@@ -124,7 +123,7 @@ void validate(const Shape& shape) {
   std::visit(
       [](const auto& s) {
         validate_shape(s);
-        require_texture(s.texture);
+        s.texture.validate();
       },
       shape);
 }

@@ -20,7 +20,8 @@ Folders operator+(Folders a, const Folders& b) {
 }
 
 const Folders data_types = {"core", "code", "scene", "camera", "decode", "simulate", "design"};
-const Folders all = data_types + Folders{"io", "sweep", "calibrate", "instrument", "report"};
+const Folders products = data_types + Folders{"io", "sweep", "calibrate", "instrument", "report"};
+const Folders all = products + Folders{"reproduce"};
 
 /// The house: which other folders each folder may include. simulate never includes design: the
 /// judge does not know the candidate's maker.
@@ -37,6 +38,7 @@ const std::map<std::string, Folders> may_include = {
     {"calibrate", data_types + Folders{"io"}},
     {"instrument", data_types + Folders{"io"}},
     {"report", data_types + Folders{"io"}},
+    {"reproduce", products},
     {"apps", all},
 };
 

@@ -6,19 +6,10 @@
 #include <optional>
 #include <variant>
 
+#include "tofsmith/scene/mesh.hpp"
+#include "tofsmith/scene/texture.hpp"
+
 namespace tofsmith {
-
-/// How a surface reflects: one albedo, or two that alternate.
-struct Texture {
-  enum class Pattern { uniform, checker, stripes };
-  Pattern pattern = Pattern::uniform;
-  double albedo = 0.5;        ///< [0, 1]
-  double other_albedo = 0.5;  ///< of every second field, [0, 1]
-  double period_m = 0.1;      ///< width of a field [m], > 0; on a sphere measured along its equator
-
-  /// Albedo at surface coordinates [m]; stripes alternate along the first.
-  double at(double first_m, double second_m) const;
-};
 
 /// A half-line from a camera.
 struct Ray {
@@ -54,12 +45,23 @@ struct Sphere {
   Texture texture;
 };
 
-using Shape = std::variant<Plane, Box, Sphere>;
+/// All points within a radius of a line segment: a finger, a limb, a pole with round ends.
+struct Capsule {
+  Eigen::Vector3d start = Eigen::Vector3d::Zero();
+  Eigen::Vector3d end = Eigen::Vector3d::UnitY();  ///< may equal start: a sphere
+  double radius_m = 0.1;                           ///< > 0
+  Texture texture;  ///< first coordinate around the axis, second along it
+};
+
+using Shape = std::variant<Plane, Box, Sphere, Capsule, Mesh>;
 
 /// Nearest intersection in front of the ray's origin, in closed form.
 std::optional<Hit> intersect(const Plane& plane, const Ray& ray);
 std::optional<Hit> intersect(const Box& box, const Ray& ray);
 std::optional<Hit> intersect(const Sphere& sphere, const Ray& ray);
+std::optional<Hit> intersect(const Capsule& capsule, const Ray& ray);
+/// Triangle by triangle: a reference. RayCaster is the fast way.
+std::optional<Hit> intersect(const Mesh& mesh, const Ray& ray);
 
 /// @throws std::invalid_argument naming field, value and rule
 void validate(const Shape& shape);

@@ -2,21 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Geometry>
-#include <vector>
-
-#include "tofsmith/scene/pinhole.hpp"
 #include "tofsmith/scene/scene_image.hpp"
-#include "tofsmith/scene/shapes.hpp"
+#include "tofsmith/scene/staged_scene.hpp"
 
 namespace tofsmith {
-
-/// A scene, and the place from which it is seen.
-struct StagedScene {
-  std::vector<Shape> shapes;
-  PinholeView view;
-  Eigen::Isometry3d camera_to_world = Eigen::Isometry3d::Identity();
-};
 
 /// The demo scene, after the table-top scene and the ball of the paper: three upright books on a
 /// table, 20 cm apart in depth, the leftmost dark; a wall 2 m behind the first book; a ball of
