@@ -15,5 +15,6 @@ void add_evaluate_command(CLI::App& app, Session& session);
 void add_simulate_command(CLI::App& app, Session& session);
 void add_decode_command(CLI::App& app, Session& session);
 void add_report_command(CLI::App& app, Session& session);
+void add_reproduce_command(CLI::App& app, Session& session);
 
 }  // namespace tofsmith::apps

@@ -109,6 +109,7 @@ int run(int argc, char** argv) {
   add_simulate_command(app, session);
   add_decode_command(app, session);
   add_report_command(app, session);
+  add_reproduce_command(app, session);
 
   try {
     app.parse(argc, argv);

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "report/html.hpp"
 #include "report/page_blocks.hpp"
 #include "report/resources.hpp"
@@ -50,7 +52,8 @@ std::string masthead(const Page& page) {
   return fmt::format("<header>\n<h1>{}</h1>\n{}</header>\n", escape(page.title), subtitle);
 }
 
-/// The figures' JSON and the scripts, last: text can be read while they load.
+/// The figures' JSON and the scripts, last: text can be read while they load. A page without
+/// figures needs none.
 std::string scripts(const Page& page) {
   std::string elements;
   for (const Section& section : page.sections)
@@ -59,11 +62,18 @@ std::string scripts(const Page& page) {
         elements +=
             fmt::format("<script type=\"application/json\" id=\"data-{}\">{}</script>\n",
                         figure->text().id, html::escape_json_for_script(figure->plotly_json()));
+  if (elements.empty()) return "";
   return fmt::format("{}<script>\n{}\n</script>\n<script>\n{}</script>\n", elements,
                      resources::plotly_js(), resources::page_js());
 }
 
 }  // namespace
+
+std::string_view name_of(Verdict verdict) {
+  static constexpr std::array<std::string_view, 3> names = {"holds", "holds in part",
+                                                            "does not hold"};
+  return names[static_cast<std::size_t>(verdict)];
+}
 
 std::string render(const Page& page) {
   const page_blocks::Numbering numbering(page);

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cctype>
 #include <utility>
 
 #include "report/html.hpp"
@@ -90,6 +92,41 @@ std::string html_of(const Table& table, const Numbering& numbering) {
 
 std::string html_of(const CodeBlock& code, const Numbering&) {
   return fmt::format("<pre><code>{}</code></pre>\n", escape(code.text));
+}
+
+std::string html_of(const CheckedStatementList& list, const Numbering& numbering) {
+  static constexpr std::array classes = {"holds", "in-part", "fails"};
+  std::string items;
+  for (const CheckedStatement& entry : list.entries) {
+    const std::string why = entry.why.empty() ? ""
+                                              : fmt::format("<p class=\"why\">{}</p>",
+                                                            inline_html(entry.why, numbering));
+    items += fmt::format(
+        "<li class=\"{}\"><p class=\"verdict\">{}</p>\n<div><p class=\"statement\">{}</p>\n"
+        "<p class=\"measured\">{}</p>{}</div></li>\n",
+        classes[static_cast<std::size_t>(entry.verdict)], name_of(entry.verdict),
+        inline_html(entry.statement, numbering), inline_html(entry.measured, numbering), why);
+  }
+  return fmt::format("<ul class=\"statements\">\n{}</ul>\n", items);
+}
+
+/// A path as a URL: what could end it or start a scheme is escaped.
+std::string as_url(const std::string& path) {
+  std::string url;
+  for (const char c : path)
+    url += std::isalnum(static_cast<unsigned char>(c)) ||
+                   std::string_view("-._~/").find(c) != std::string_view::npos
+               ? std::string(1, c)
+               : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  return url;
+}
+
+std::string html_of(const LinkList& list, const Numbering& numbering) {
+  std::string items;
+  for (const Link& link : list.entries)
+    items += fmt::format("<li><a href=\"{}\">{}</a> {}</li>\n", as_url(link.path),
+                         escape(link.text), inline_html(link.note, numbering));
+  return fmt::format("<ul class=\"links\">\n{}</ul>\n", items);
 }
 
 std::string html_of(const Figure& figure, const Numbering& numbering) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -52,7 +53,37 @@ struct CodeBlock {
   std::string text = {};
 };
 
-using Block = std::variant<Paragraph, KeyValueList, KeyNumbers, Table, CodeBlock, Figure>;
+/// How a statement fared against our numbers; shown as a word and a colour.
+enum class Verdict { holds, in_part, fails };
+
+/// "holds", "holds in part", "does not hold".
+std::string_view name_of(Verdict verdict);
+
+/// What somebody stated, and what we found.
+struct CheckedStatement {
+  Verdict verdict = Verdict::fails;
+  std::string statement = {};
+  std::string measured = {};  ///< our number beside it
+  std::string why = {};       ///< what explains a difference; may be empty
+};
+
+struct CheckedStatementList {
+  std::vector<CheckedStatement> entries = {};
+};
+
+/// A way to another file, by a path relative to the page.
+struct Link {
+  std::string text = {};
+  std::string path = {};
+  std::string note = {};  ///< after the link; may be empty
+};
+
+struct LinkList {
+  std::vector<Link> entries = {};
+};
+
+using Block = std::variant<Paragraph, KeyValueList, KeyNumbers, Table, CodeBlock, Figure,
+                           CheckedStatementList, LinkList>;
 
 struct Section {
   std::string title = {};

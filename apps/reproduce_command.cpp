@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <numeric>
+
+#include "commands.hpp"
+#include "terminal_progress.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/reproduce/reproduction_directory.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+struct ReproduceArguments {
+  std::vector<std::string> names;
+  ReproduceOptions options;
+  std::string output = "tofsmith-reproduce";
+};
+
+std::vector<PaperItem> chosen_items(const std::vector<std::string>& names) {
+  std::vector<PaperItem> items;
+  for (const std::string& name : names) {
+    if (name == "all") return {paper_items().begin(), paper_items().end()};
+    try {
+      items.push_back(paper_item(name));
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(error.what());
+    }
+  }
+  return items;
+}
+
+void run(const ReproduceArguments& arguments, const Session& session) {
+  const std::vector<PaperItem> items = chosen_items(arguments.names);
+  const ReproductionDirectory directory(arguments.output);
+  apps::create_directories(directory.path());
+  CodeShelf shelf(directory.shelf());
+  const ReproduceContext context{arguments.options, shelf};
+  const Progress progress = terminal_progress("tofsmith reproduce");
+
+  const double whole =
+      std::accumulate(items.begin(), items.end(), 0.0,
+                      [](double sum, const PaperItem& item) { return sum + item.share; });
+  double done = 0.0;
+  nlohmann::ordered_json documents = nlohmann::ordered_json::array();
+  std::vector<std::string> lines;
+  for (const PaperItem& item : items) {
+    auto findings = session.force ? std::nullopt : directory.finished(item, arguments.options);
+    const bool kept = findings.has_value();
+    const Progress part = part_of(progress, done / whole, (done + item.share) / whole);
+    if (!kept) {
+      report(part, 0.0, item.name);
+      const Reproduction reproduction = item.reproduce(context, part);
+      directory.write(item, reproduction, arguments.options);
+      directory.write_index(arguments.options);
+      findings = reproduction.findings;
+    }
+    done += item.share;
+    lines.push_back(
+        fmt::format("{}: {}{}", item.name, item.title, kept ? " (finished before)" : ""));
+    nlohmann::ordered_json statements = nlohmann::ordered_json::array();
+    for (const CheckedStatement& finding : *findings) {
+      lines.push_back(fmt::format("  {}: {}\n    {}", name_of(finding.verdict), finding.statement,
+                                  finding.measured));
+      statements.push_back({{"verdict", name_of(finding.verdict)},
+                            {"statement", finding.statement},
+                            {"measured", finding.measured},
+                            {"why", finding.why}});
+    }
+    documents.push_back(
+        {{"name", item.name}, {"title", item.title}, {"findings", std::move(statements)}});
+  }
+  directory.write_index(arguments.options);
+  report(progress, 1.0, "done");
+  session.print_json({{"seed", arguments.options.seed},
+                      {"fast", arguments.options.fast},
+                      {"output", (directory.path() / "index.html").string()},
+                      {"items", std::move(documents)}});
+  for (const std::string& line : lines) session.say(line);
+  session.say(fmt::format("report: {}", (directory.path() / "index.html").string()));
+}
+
+}  // namespace
+
+void add_reproduce_command(CLI::App& app, Session& session) {
+  auto arguments = std::make_shared<ReproduceArguments>();
+  CLI::App* command =
+      app.add_subcommand("reproduce", "the paper's figures and statements, with our numbers");
+  std::string names = "all";
+  for (const PaperItem& item : paper_items()) names += ", " + item.name;
+  command->add_option("FIGURE", arguments->names, "one or several of " + names)->required();
+  command->add_flag("--fast", arguments->options.fast,
+                    "coarse: seconds instead of minutes, larger errors");
+  command->add_option("--seed", arguments->options.seed, "seed of every random choice")
+      ->capture_default_str();
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "directory; figures that are finished there are not made again (--force does)")
+      ->capture_default_str();
+  command->callback([arguments, &session] { run(*arguments, session); });
+}
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tofsmith/reproduce/paper.hpp"
+
+namespace tofsmith {
+
+/// The output of `tofsmith reproduce`:
+///   index.html                   every statement with its verdict, and the way to each page
+///   NAME/index.html              one figure's page
+///   NAME/data.npz, NAME/..       its numbers
+///   NAME/findings.json           statements and verdicts; written last, so that where it is, the
+///                                figure is finished and need not be made again
+///   codes/NAME.code.json         the codes that figures share
+class ReproductionDirectory {
+ public:
+  explicit ReproductionDirectory(std::filesystem::path path) : path_(std::move(path)) {}
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path shelf() const { return path_ / "codes"; }
+
+  /// The findings of an item that was finished with the same options by this version; none if it
+  /// was not, or its file is damaged.
+  std::optional<std::vector<CheckedStatement>> finished(const PaperItem& item,
+                                                        const ReproduceOptions& options) const;
+
+  /// Writes an item, its findings last. @throws IoError
+  void write(const PaperItem& item, const Reproduction& reproduction,
+             const ReproduceOptions& options) const;
+
+  /// Writes the index over all items that are finished. @throws IoError
+  void write_index(const ReproduceOptions& options) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace tofsmith

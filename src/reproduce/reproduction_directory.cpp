@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/reproduce/reproduction_directory.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/hash.hpp"
+#include "tofsmith/io/read_file.hpp"
+#include "tofsmith/version.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Everything that determines a reproduction, but for the code itself.
+std::string key_of(const ReproduceOptions& options) {
+  std::string mesh;
+  if (options.mesh) {
+    mesh = options.mesh_name;
+    for (const Eigen::Vector3d& v : options.mesh->vertices)
+      mesh += fmt::format(" {} {} {}", v.x(), v.y(), v.z());
+  }
+  return fmt::format("{} {} seed {} mesh {:016x}", TOFSMITH_VERSION,
+                     options.fast ? "coarse" : "full", options.seed, fnv1a_64(mesh));
+}
+
+Json as_json(const std::vector<CheckedStatement>& findings) {
+  Json list = Json::array();
+  for (const CheckedStatement& finding : findings)
+    list.push_back({{"verdict", name_of(finding.verdict)},
+                    {"statement", finding.statement},
+                    {"measured", finding.measured},
+                    {"why", finding.why}});
+  return list;
+}
+
+Verdict verdict_of(const std::string& name) {
+  for (const Verdict verdict : {Verdict::holds, Verdict::in_part, Verdict::fails})
+    if (name == name_of(verdict)) return verdict;
+  reject("verdict", name, "must be holds, holds in part or does not hold");
+}
+
+std::vector<CheckedStatement> findings_of(const Json& document) {
+  std::vector<CheckedStatement> findings;
+  for (const Json& entry : document.at("findings"))
+    findings.push_back({verdict_of(entry.at("verdict").get<std::string>()),
+                        entry.at("statement").get<std::string>(),
+                        entry.at("measured").get<std::string>(),
+                        entry.at("why").get<std::string>()});
+  return findings;
+}
+
+Page index_page(const ReproductionDirectory& directory, const ReproduceOptions& options) {
+  Page page{.title = "The paper, reproduced",
+            .subtitle =
+                "Gutierrez-Barragan et al., Practical Coding Function Design for "
+                "Time-of-Flight Imaging, CVPR 2019: its figures and statements, with our "
+                "numbers beside its words",
+            .footer = fmt::format("tofsmith {}, seed {}{}", TOFSMITH_VERSION, options.seed,
+                                  options.fast ? ", coarse (--fast)" : "")};
+  std::array<int, 3> count{};
+  for (const PaperItem& item : paper_items()) {
+    const auto findings = directory.finished(item, options);
+    if (!findings) continue;
+    for (const CheckedStatement& finding : *findings)
+      ++count[static_cast<std::size_t>(finding.verdict)];
+    page.sections.push_back(
+        {fmt::format("{}: {}", item.name, item.title),
+         {LinkList{{{"Figures, settings and data", item.name + "/index.html", ""}}},
+          CheckedStatementList{*findings}}});
+  }
+  const auto tile = [&](Verdict verdict) {
+    return KeyValue{std::string(name_of(verdict)),
+                    fmt::format("{}", count[static_cast<std::size_t>(verdict)])};
+  };
+  page.sections.insert(
+      page.sections.begin(),
+      {"Statements",
+       {KeyNumbers{{tile(Verdict::holds), tile(Verdict::in_part), tile(Verdict::fails)}}}});
+  return page;
+}
+
+}  // namespace
+
+std::optional<std::vector<CheckedStatement>> ReproductionDirectory::finished(
+    const PaperItem& item, const ReproduceOptions& options) const {
+  const std::filesystem::path file = path_ / item.name / "findings.json";
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  try {
+    const Json document = Json::parse(read_text_file(file));
+    if (document.at("key") != key_of(options)) return std::nullopt;
+    return findings_of(document);
+  } catch (const std::exception&) {
+    return std::nullopt;  // damaged: made again
+  }
+}
+
+void ReproductionDirectory::write(const PaperItem& item, const Reproduction& reproduction,
+                                  const ReproduceOptions& options) const {
+  const std::filesystem::path directory = path_ / item.name;
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) throw IoError(directory.string(), "cannot create directory: " + error.message());
+  // What is there is out of date: without its findings it counts as unfinished.
+  std::filesystem::remove(directory / "findings.json", error);
+  if (!reproduction.arrays.empty())
+    write_npz(directory / "data.npz", reproduction.arrays, OutputPolicy::overwrite);
+  for (const auto& [name, content] : reproduction.files)
+    write_file_atomically(directory / name, content, OutputPolicy::overwrite);
+  write_file_atomically(directory / "index.html",
+                        render(reproduction_page(item, reproduction, options)),
+                        OutputPolicy::overwrite);
+  const Json document = {{"tofsmith", TOFSMITH_VERSION},
+                         {"key", key_of(options)},
+                         {"name", item.name},
+                         {"title", item.title},
+                         {"findings", as_json(reproduction.findings)}};
+  write_file_atomically(directory / "findings.json", document.dump(1) + "\n",
+                        OutputPolicy::overwrite);
+}
+
+void ReproductionDirectory::write_index(const ReproduceOptions& options) const {
+  write_file_atomically(path_ / "index.html", render(index_page(*this, options)),
+                        OutputPolicy::overwrite);
+}
+
+}  // namespace tofsmith
