@@ -61,8 +61,9 @@ void run(const ReproduceArguments& arguments, const Session& session) {
       findings = reproduction.findings;
     }
     done += item.share;
-    lines.push_back(
-        fmt::format("{}: {}{}", item.name, item.title, kept ? " (finished before)" : ""));
+    lines.push_back(fmt::format("{}: {}: {}{}", item.name, item.title,
+                                name_of(overall_verdict(*findings)),
+                                kept ? " (finished before)" : ""));
     nlohmann::ordered_json statements = nlohmann::ordered_json::array();
     for (const CheckedStatement& finding : *findings) {
       lines.push_back(fmt::format("  {}: {}\n    {}", name_of(finding.verdict), finding.statement,

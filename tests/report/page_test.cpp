@@ -21,6 +21,7 @@ using testing::Not;
 std::string render_blocks(std::vector<Block> blocks) {
   std::string page = render({.title = "Page", .sections = {{"Section", std::move(blocks)}}});
   const auto plotly = page.find(resources::plotly_js());
+  if (plotly == std::string::npos) return page;
   return page.erase(plotly, resources::plotly_js().size());
 }
 
@@ -102,6 +103,30 @@ TEST(Page, RefusesWhatDoesNotFit) {
   EXPECT_THROW(render_blocks({Paragraph{"[[nothing]]"}}), std::invalid_argument);
   EXPECT_THROW(render_blocks({Table{.columns = {{"a"}, {"b"}}, .rows = {{"1", "2"}, {"1"}}}}),
                std::invalid_argument);
+}
+
+TEST(Page, WithoutFiguresHoldsNoScript) {
+  const std::string page = render({.title = "t", .sections = {{"s", {Paragraph{"words"}}}}});
+  EXPECT_EQ(count(page, "<script"), 0);
+}
+
+TEST(Page, SaysEveryVerdictInWords) {
+  const std::string page =
+      render_blocks({CheckedStatementList{{{Verdict::holds, "a < b", "1 `x`", ""},
+                                           {Verdict::in_part, "second", "2", "because"},
+                                           {Verdict::fails, "third", "3", ""}}}});
+  EXPECT_THAT(page, HasSubstr("<li class=\"holds\"><p class=\"verdict\">holds</p>"));
+  EXPECT_THAT(page, HasSubstr("<p class=\"statement\">a &lt; b</p>"));
+  EXPECT_THAT(page, HasSubstr("<p class=\"measured\">1 <code>x</code></p>"));
+  EXPECT_THAT(page, HasSubstr("<p class=\"verdict\">holds in part</p>"));
+  EXPECT_THAT(page, HasSubstr("<p class=\"verdict\">does not hold</p>"));
+  EXPECT_EQ(count(page, "<p class=\"why\">because</p>"), 1);
+}
+
+TEST(Page, LinksStayRelativeWhateverTheyAreCalled) {
+  const std::string page =
+      render_blocks({LinkList{{{"a & b", "javascript:alert(1)/\"x\".html", "note"}}}});
+  EXPECT_THAT(page, HasSubstr("<a href=\"javascript%3Aalert%281%29/%22x%22.html\">a &amp; b</a>"));
 }
 
 TEST(Page, StressesTheHighlightedRowAlone) {
