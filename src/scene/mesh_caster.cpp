@@ -40,8 +40,7 @@ Item* new_buffer(RTCDevice device, RTCGeometry geometry, RTCBufferType type, RTC
 }  // namespace
 
 EmbreeDevice new_embree_device() {
-  // No configuration file of the directory or the user shall change results.
-  EmbreeDevice device(rtcNewDevice("ignore_config_files=1"));
+  EmbreeDevice device(rtcNewDevice(nullptr));
   throw_on_error(device.get(), "new device");
   return device;
 }
