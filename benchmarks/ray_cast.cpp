@@ -12,10 +12,10 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <map>
 #include <utility>
 #include <vector>
 
+#include "generated_meshes.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/scene/ray_cast.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
@@ -25,39 +25,8 @@ namespace {
 using tofsmith::PinholeView;
 using tofsmith::TriangleMesh;
 
-TriangleMesh icosahedron() {
-  const double g = 0.5 * (1 + std::sqrt(5.0));
-  TriangleMesh mesh;
-  mesh.vertices = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                   {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  for (auto& vertex : mesh.vertices) vertex.normalize();
-  mesh.triangles = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
-                    {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                    {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
-                    {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
-  return mesh;
-}
-
-// Every triangle in four, new vertices on the unit sphere.
-TriangleMesh subdivided(const TriangleMesh& coarse) {
-  TriangleMesh fine;
-  fine.vertices = coarse.vertices;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
-  const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-    const auto [found, is_new] = middles.try_emplace(
-        std::minmax(a, b), static_cast<std::uint32_t>(fine.vertices.size()));
-    if (is_new) fine.vertices.push_back((fine.vertices[a] + fine.vertices[b]).normalized());
-    return found->second;
-  };
-  for (const auto& [a, b, c] : coarse.triangles) {
-    const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-    fine.triangles.insert(fine.triangles.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
-  }
-  return fine;
-}
-
 tofsmith::Mesh bumpy_ball() {
-  TriangleMesh mesh = subdivided(subdivided(subdivided(icosahedron())));
+  TriangleMesh mesh = tofsmith::tessellated_sphere(3);
   for (auto& v : mesh.vertices)
     v *= 1 + 0.08 * std::sin(7 * v.x()) * std::sin(6 * v.y()) * std::sin(5 * v.z());
   tofsmith::Mesh placed;
@@ -91,10 +60,9 @@ class EmbreeAlone {
       const Eigen::Vector3f at = (mesh.mesh_to_world * own).cast<float>();
       *vertex++ = {at.x(), at.y(), at.z()};
     }
-    auto* triangle = static_cast<std::array<std::uint32_t, 3>*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                sizeof(std::array<std::uint32_t, 3>),
-                                mesh.triangles.triangles.size()));
+    auto* triangle = static_cast<std::array<std::uint32_t, 3>*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(std::array<std::uint32_t, 3>),
+        mesh.triangles.triangles.size()));
     std::copy(mesh.triangles.triangles.begin(), mesh.triangles.triangles.end(), triangle);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene_, geometry);
@@ -158,9 +126,9 @@ int main() {
     alone = std::min(alone, best_seconds(1, [&] { hits = embree.hits(); }));
     ours = std::min(ours, best_seconds(1, [&] {
                       const auto image = caster.see(view);
-                      seen = static_cast<std::size_t>(std::count_if(
-                          image.shape.pixels.begin(), image.shape.pixels.end(),
-                          [](std::int32_t shape) { return shape >= 0; }));
+                      seen = static_cast<std::size_t>(
+                          std::count_if(image.shape.pixels.begin(), image.shape.pixels.end(),
+                                        [](std::int32_t shape) { return shape >= 0; }));
                     }));
   }
   const double build = best_seconds(5, [&] { tofsmith::RayCaster again(shapes); });

@@ -40,10 +40,10 @@ StagedScene books(int width, int height) {
                      book(0.00, 1.4, pattern(Pattern::stripes, 0.70, 0.50, 0.06)),
                      book(0.34, 1.6, pattern(Pattern::checker, 0.90, 0.60, 0.06)),
                      wall_at(3.2, uniform(0.75)),
-                     Box{.centre = {0.0, table_y_m + 0.02, 1.45},
-                         .size_m = {1.6, 0.04, 0.9},
+                     Box{.centre = {0.0, table_y_m + 0.02, 1.2},
+                         .size_m = {2.6, 0.04, 1.6},
                          .texture = uniform(0.45)}},
-          .view = PinholeView::centred(width, height, 44 * degrees)};
+          .view = PinholeView::centred(width, height, 42 * degrees)};
 }
 
 /// Panels of a volleyball: six groups of three strips, one group around each half-axis.
@@ -55,8 +55,8 @@ double panel_albedo(const Eigen::Vector3d& direction) {
   const double across = direction[(axis + 1) % 3] / largest;  // [-1, 1]
   const double along = direction[(axis + 2) % 3] / largest;
   const double strip = 1.5 * (across + 1);  // [0, 3]
-  const bool on_seam = std::abs(strip - std::round(strip)) < 1.5 * seam_width ||
-                       1 - std::abs(along) < seam_width;
+  const bool on_seam =
+      std::abs(strip - std::round(strip)) < 1.5 * seam_width || 1 - std::abs(along) < seam_width;
   return on_seam ? seam_albedo : strips[static_cast<std::size_t>(std::min(2.0, strip))];
 }
 
@@ -77,20 +77,19 @@ Texture volleyball(double radius_m) {
       double latitude_rad = -std::numbers::pi * (row + 0.5) / image.height;
       if (latitude_rad < -0.5 * std::numbers::pi) latitude_rad += std::numbers::pi;
       const double equator = std::cos(latitude_rad);
-      image(row, column) = static_cast<float>(
-          panel_albedo(turn * Eigen::Vector3d(equator * std::sin(longitude_rad),
-                                              std::sin(latitude_rad),
-                                              equator * std::cos(longitude_rad))));
+      image(row, column) = static_cast<float>(panel_albedo(
+          turn * Eigen::Vector3d(equator * std::sin(longitude_rad), std::sin(latitude_rad),
+                                 equator * std::cos(longitude_rad))));
     }
   return texture;
 }
 
 StagedScene ball(int width, int height) {
   constexpr double radius_m = 0.20;
-  return {.shapes = {Sphere{.centre = {0, 0, 1}, .radius_m = radius_m,
-                            .texture = volleyball(radius_m)},
-                     wall_at(2.5, uniform(0.60))},
-          .view = PinholeView::centred(width, height, 38 * degrees)};
+  return {
+      .shapes = {Sphere{.centre = {0, 0, 1}, .radius_m = radius_m, .texture = volleyball(radius_m)},
+                 wall_at(2.5, uniform(0.60))},
+      .view = PinholeView::centred(width, height, 38 * degrees)};
 }
 
 StagedScene wall(int width, int height) {
@@ -101,12 +100,12 @@ StagedScene wall(int width, int height) {
 StagedScene hand(int width, int height) {
   // The hand's y axis points up, the camera's down; the palm leans back and turns a little.
   Eigen::Isometry3d hand_to_world = Eigen::Isometry3d::Identity();
-  hand_to_world.translate(Eigen::Vector3d(0.010, 0.085, 0.50));
+  hand_to_world.translate(Eigen::Vector3d(0.012, 0.075, 0.50));
   hand_to_world.rotate(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));
-  hand_to_world.rotate(Eigen::AngleAxisd(14 * degrees, Eigen::Vector3d::UnitY()));
-  hand_to_world.rotate(Eigen::AngleAxisd(-10 * degrees, Eigen::Vector3d::UnitX()));
+  hand_to_world.rotate(Eigen::AngleAxisd(8 * degrees, Eigen::Vector3d::UnitY()));
+  hand_to_world.rotate(Eigen::AngleAxisd(-8 * degrees, Eigen::Vector3d::UnitX()));
   return {.shapes = open_hand(hand_to_world, uniform(0.60)),
-          .view = PinholeView::centred(width, height, 38 * degrees)};
+          .view = PinholeView::centred(width, height, 36 * degrees)};
 }
 
 struct Entry {

@@ -16,7 +16,7 @@ namespace tofsmith {
 
 struct RayCaster::Prepared {
   std::vector<Shape> shapes;
-  EmbreeDevice device;  ///< none without meshes
+  EmbreeDevice device;                                    ///< none without meshes
   std::vector<std::unique_ptr<const MeshCaster>> meshes;  ///< one per shape; null for other shapes
 
   void trace(std::span<const Ray> rays, std::span<NearestHit> nearest) const {

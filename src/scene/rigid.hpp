@@ -16,8 +16,7 @@ inline void require_rigid(const Eigen::Isometry3d& pose, std::string_view field)
   const Eigen::Vector3d shift = pose.translation();
   const std::string name(field);
   require(shift.allFinite(), name + ".translation", shift.transpose(), "must be finite");
-  const double skew =
-      (turn.transpose() * turn - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  const double skew = (turn.transpose() * turn - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   require(skew < 1e-6, name + ".rotation", skew,
           "must have orthonormal columns (deviation shown)");  // false for NaN, too
   require(turn.determinant() > 0.0, name + ".rotation", turn.determinant(),
