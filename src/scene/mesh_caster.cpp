@@ -99,8 +99,9 @@ Hit MeshCaster::hit_facet(const Facet& facet, const Ray& ray, double share_b,
   double distance_m = -facet.normal.dot(from_corner) / facet.normal.dot(ray.direction);
   Eigen::Vector3d on_plane = from_corner + distance_m * ray.direction;
   double weight_b = facet.gradient_b.dot(on_plane), weight_c = facet.gradient_c.dot(on_plane);
-  const double outside = std::min({weight_b, weight_c, 1 - weight_b - weight_c});
-  const bool grazed = !(outside >= -single_precision);
+  // True for NaN, too: a plane seen exactly edge-on.
+  const bool grazed = !(weight_b >= -single_precision && weight_c >= -single_precision &&
+                        weight_b + weight_c <= 1 + single_precision);
   if (grazed) weight_b = share_b, weight_c = share_c;
   weight_b = std::clamp(weight_b, 0.0, 1.0);
   weight_c = std::clamp(weight_c, 0.0, 1 - weight_b);

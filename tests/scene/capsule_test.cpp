@@ -16,7 +16,7 @@ Ray random_ray(std::uint64_t item) {
   RandomStream random(17, item);
   const Eigen::Vector3d origin(random.normal(), random.normal(), random.normal());
   const Eigen::Vector3d direction(random.normal(), random.normal(), random.normal());
-  return {3.0 * origin, direction.normalized()};
+  return {1.5 * origin, direction.normalized()};
 }
 
 const Capsule oblique{.start = {0.4, -0.9, 0.2}, .end = {-0.5, 1.1, 0.8}, .radius_m = 0.7};
