@@ -26,10 +26,7 @@ int first_at_least(const Scores& scores, double least) {
 }  // namespace
 
 BinMatcher::BinMatcher(const DecodingTable& table, const AmbientProjection& projection)
-    : directions_(projection), basis_(projection.basis), gain_e_per_raw_(table.gain_e_per_raw) {
-  for (const double dark_e : table.dark_electrons)
-    dark_raw_.push_back(table.black_level + dark_e / table.gain_e_per_raw);
-}
+    : directions_(projection), basis_(projection.basis), scale_(table) {}
 
 /// The float search proposes a block and double arithmetic chooses in it. Where the proposal is not
 /// proven, double arithmetic chooses among all.
