@@ -10,8 +10,6 @@ namespace tofsmith {
 
 namespace {
 constexpr int width = pixels_per_tile;
-/// Below this share of what is measured, what is left of it is rounding.
-constexpr double nothing = 1e-12;
 
 /// Index of the first score that is at least `least`, or their number. Free of branches, which
 /// nobody could predict.
@@ -65,7 +63,7 @@ void BinMatcher::normalize(const double* size, Tile& tile) const {
     for (int i = 0; i < width; ++i) scale[i] += tile.unit[j * width + i] * tile.unit[j * width + i];
   for (int i = 0; i < width; ++i) {
     const double length = std::sqrt(scale[i]);
-    const bool is_seen = length > nothing * size[i];  // false for NaN
+    const bool is_seen = length > nothing_left * size[i];  // false for NaN
     tile.length[i] = is_seen ? length : 0.0 * size[i];
     scale[i] = is_seen ? 1.0 / length : 0.0;
   }

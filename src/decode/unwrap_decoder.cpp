@@ -81,6 +81,7 @@ struct UnwrapDecoder::Plan {
   bool read(const float* raw, PerMeasurement& electrons) const;
   PerFrequency phases_of(const PerMeasurement& electrons) const;
   double bin_of(const Wraps& wraps) const;
+  void project(const PerMeasurement& electrons, PerMeasurement& plane) const;
   void decode_pixel(const float* raw, std::size_t at, DepthImage& image) const;
   double deviation(const PerFrequency& factor, const PixelDecoding& pixel,
                    const PerMeasurement& variance_e2) const;
@@ -156,15 +157,27 @@ double UnwrapDecoder::Plan::bin_of(const Wraps& wraps) const {
   return wrap(wraps.depth * table.samples(), table.samples());
 }
 
+/// What is left without ambient light, in the plane of the code's curve; 0 if that is rounding.
+void UnwrapDecoder::Plan::project(const PerMeasurement& electrons, PerMeasurement& plane) const {
+  plane.fill(0.0);
+  double size = 0.0, length2 = 0.0;
+  for (Eigen::Index k = 0; k < basis.rows(); ++k) {
+    const double y = electrons[static_cast<std::size_t>(k)];
+    size += std::abs(y);
+    for (Eigen::Index j = 0; j < basis.cols(); ++j)
+      plane[static_cast<std::size_t>(j)] += basis(k, j) * y;
+  }
+  for (const double value : plane) length2 += value * value;
+  if (std::sqrt(length2) <= nothing_left * size) plane.fill(0.0);
+}
+
 void UnwrapDecoder::Plan::decode_pixel(const float* raw, std::size_t at, DepthImage& image) const {
-  PerMeasurement electrons, variance_e2, plane{};
+  PerMeasurement electrons, variance_e2, plane;
   if (!read(raw, electrons)) return;  // the image starts as invalid
   const PerFrequency phase = phases_of(electrons);
   const Wraps wraps = unwrapper.nearest(phase.data());
 
-  for (Eigen::Index k = 0; k < basis.rows(); ++k)
-    for (Eigen::Index j = 0; j < basis.cols(); ++j)
-      plane[static_cast<std::size_t>(j)] += basis(k, j) * electrons[static_cast<std::size_t>(k)];
+  project(electrons, plane);
   PixelDecoding pixel{.depth_bin = bin_of(wraps)};
   pixel.estimate = model.estimate(electrons.data(), plane.data(), Position::at(pixel.depth_bin),
                                   variance_e2.data());
