@@ -132,12 +132,12 @@ TEST(UnwrapDecoder, ConfidentPixelsAreRightAsOftenAsTheySay) {
     const double error_m = std::abs(circular_difference(static_cast<double>(image.depth_m(0, i)),
                                                         truth_m, setup.camera.range_m()));
     const float confidence = image.confidence(0, i);
-    if (confidence > 0.999f) ++sure, sure_wrong += error_m > far_m;
+    if (confidence > 0.95f) ++sure, sure_wrong += error_m > far_m;
     if (confidence < 0.8f) ++unsure, unsure_wrong += error_m > far_m;
   }
   EXPECT_GT(sure, 1000);
   EXPECT_GT(unsure, 1000);
-  EXPECT_LE(sure_wrong, 0.01 * sure);
+  EXPECT_LE(sure_wrong, 0.02 * sure);
   EXPECT_GE(unsure_wrong, 0.15 * unsure);
 }
 

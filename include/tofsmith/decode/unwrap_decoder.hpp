@@ -12,7 +12,10 @@
 
 namespace tofsmith {
 
-/// How much the depth of each frequency counts.
+/// How much the depth of each frequency counts. Measured on multifrequency-k5 (S = 1e5, A = 1e2
+/// e/s; circular mean depth error): without band limit both are within 2 % of ZNCC (7.9 against
+/// 7.8 mm); at 10 f0, where a quarter of the amplitude of 7 f0 is left, ZNCC has 25.7 mm,
+/// variance 26.2 and frequency 33.2; at 5 f0, where next to nothing is, 44.9, 44.9 and 351 mm.
 enum class UnwrapWeights {
   variance,   ///< by the inverse variance of its depth, through the camera's transfer function
   frequency,  ///< by f^2, as if all phases were equally noisy: the classical choice
