@@ -56,7 +56,8 @@ class Commands(CommandLineTest):
     def test_evaluate_keeps_its_contract(self):
         document = self.do_json("evaluate", "sinusoid-k4", "square-k4", *FAST, "--seed", "7")
         self.assertEqual(list(document), ["tofsmith", "seed", "trials", "outlier_threshold_m",
-                                          "camera", "codes"])
+                                          "camera", "method", "codes"])
+        self.assertEqual(document["method"], "zncc")
         self.assertEqual((document["seed"], document["trials"]), (7, 1000))
         self.assertEqual([c["name"] for c in document["codes"]], ["sinusoid-k4", "square-k4"])
         mean = {"geometric_mean_m", "geometric_mean_se_m", "mean_m", "mean_se_m"}
@@ -98,6 +99,30 @@ class Commands(CommandLineTest):
         self.assertEqual((code["taps"], code["exposures"], code["measurements"]), (2, 4, 4))
         separate = self.do_json("evaluate", "sinusoid-k4", *FAST, "--set", "sensor.taps=2")
         self.assertEqual(separate["codes"][0]["measurements"], 8)
+
+    def test_sinusoids_are_unwrapped(self):
+        codes = ("sinusoid-k4", "multifrequency-k5")
+        zncc = self.do_json("evaluate", *codes, *FAST)
+        unwrap = self.do_json("evaluate", *codes, *FAST, "--method", "unwrap")
+        self.assertEqual((unwrap["method"], unwrap["unwrap_weights"]), ("unwrap", "variance"))
+        errors = [[code["circular"]["geometric_mean_m"] for code in document["codes"]]
+                  for document in (zncc, unwrap)]
+        self.assertAlmostEqual(errors[0][0], errors[1][0], 4)
+        self.assertNotEqual(errors[0][1], errors[1][1])
+        classical = self.do_json("evaluate", *codes, *FAST, "--method", "unwrap",
+                                 "--unwrap-weights", "frequency")["codes"][1]
+        self.assertGreater(classical["circular"]["geometric_mean_m"], 1.1 * errors[1][1])
+        self.assertIn("decoded by unwrap",
+                      self.do("evaluate", "sinusoid-k4", *FAST, "--method", "unwrap"))
+
+        truth = self.small_scene()
+        for settings in ((), ("--set", "sensor.taps=2"),
+                         ("--set", "sensor.taps=2", "--set", "sensor.readout=difference")):
+            self.simulate(*settings, "--force", code="multifrequency-k5")
+            document = self.decode(*settings, "--force", "--method", "unwrap",
+                                   code="multifrequency-k5")
+            self.assertEqual(document["method"], "unwrap")
+            self.assertLess(np.abs(np.load(self.path("depth.npy")) - truth).max(), 0.05)
 
     def test_threads_do_not_change_figures(self):
         one, two = (self.do("evaluate", "hamiltonian-k4", *FAST, "--best-rotation", "--json",

@@ -39,6 +39,7 @@ class Refusals(CommandLineTest):
                 (["evaluate", "sinusoid-k4", "--trials", ""], ["--trials"]),
                 (["evaluate", "sinusoid-k4", "-o", "x.xls"], ["x.xls", "expected .csv"]),
                 (["evaluate", "sinusoid-k4", "--threads", "-1"], ["--threads"]),
+                (["evaluate", "sinusoid-k4", "--method", "magic"], ["magic", "unwrap"]),
                 (["design", "a", "b"], ["'b'"]),
                 (["design", "--method", "magic"], ["magic", "factorize"]),
                 (["design", "--exposures", "7"], ["7"]),
@@ -54,6 +55,11 @@ class Refusals(CommandLineTest):
 
     def test_names(self):
         self.refuse(["evaluate", "hamiltonan-k3"], "did you mean hamiltonian-k3?")
+        self.refuse(["evaluate", "square-k4", "--method", "unwrap"], "measurement 0",
+                    "outside harmonic 1", "sinusoids only")
+        self.refuse(["evaluate", "multifrequency-2x3-4x3", "--method", "unwrap"],
+                    "frequencies = 2, 4", "repeats after 4.997")
+        self.refuse(["evaluate", "hamiltonian-k7"], "multiple of 126", "--set samples=252")
         self.refuse(["evaluate", "nothing-like-it"], "no such file", "codes")
         self.refuse(["evaluate", ""], "empty name")
         self.refuse(["evaluate", "sinusoid-k4", "--camera", "paper-10"], "did you mean paper-10f0?")
