@@ -20,17 +20,6 @@ Image<float> wrapped_depth_m(const SceneImage& scene, const Camera& camera) {
   return wrapped;
 }
 
-double share_beyond_range(const SceneImage& scene, const Camera& camera) {
-  const double range_m = camera.range_m();
-  std::int64_t returns = 0, beyond = 0;
-  for (const float depth : scene.depth_m.pixels) {
-    if (!std::isfinite(depth)) continue;
-    ++returns;
-    beyond += static_cast<double>(depth) >= range_m;
-  }
-  return returns > 0 ? static_cast<double>(beyond) / static_cast<double>(returns) : 0.0;
-}
-
 Image<float> depth_difference_m(const Image<float>& decoded_m, const SceneImage& scene,
                                 const Camera& camera, DepthErrorKind kind) {
   require(decoded_m.height == scene.height() && decoded_m.width == scene.width(),

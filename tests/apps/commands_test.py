@@ -155,6 +155,49 @@ class Commands(CommandLineTest):
         error = np.abs(np.load(self.path("radial.npy")) - np.load(self.path("truth.npy")))
         self.assertLess(np.nanmedian(error), 0.01)
 
+    def test_scenes_are_listed(self):
+        self.assertIn("table-top", self.do("scene").split())
+        self.assertIn("table-top", self.do_json("scene")["scenes"])
+
+    def test_a_scene_file_gives_every_picture(self):
+        self.write("s.toml", "[view]\nwidth_px = 41\nheight_px = 31\n[[sphere]]\n"
+                   "centre_m = [0, 0, 20]\nradius_m = 8\nalbedo = 0.25\n")
+        document = self.do_json("scene", "s.toml", "-o", "out", "--camera", "paper-10f0")
+        self.assertAlmostEqual(document["nearest_m"], 12, 5)
+        self.assertEqual(document["beyond_range_share"], 1)
+        self.assertGreater(document["no_return_share"], 0.1)
+        depth = np.load(self.path("out/depth.npy"))
+        self.assertEqual(depth.shape, (31, 41))
+        np.testing.assert_array_equal(np.load(self.path("out/beyond_range.npy")) == 1,
+                                      np.isfinite(depth))
+        self.assertEqual(np.load(self.path("out/albedo.npy"))[15, 20], 0.25)
+        self.assertTrue((np.nan_to_num(np.load(self.path("out/z.npy"))) <=
+                         np.nan_to_num(depth)).all())
+        self.assertTrue(self.bytes_of("out/preview.png").startswith(b"\x89PNG"))
+        self.assertIn("wraps", self.do("scene", "s.toml"))
+        self.do("scene", "s.toml", "-o", "depth.npy")
+        np.testing.assert_array_equal(np.load(self.path("depth.npy")), depth)
+
+    def test_a_mesh_is_a_scene(self):
+        self.write("m.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n")
+        document = self.do_json("simulate", "m.obj", "--scale-m", "0.5", "--width", "40",
+                                "--height", "30", "--code", "sinusoid-k4", "-o", "raw.npy",
+                                "--truth", "depth.npy")
+        self.assertEqual((document["height"], document["width"]), (30, 40))
+        self.assertEqual(document["beyond_range_share"], 0)
+        depth = np.load(self.path("depth.npy"))
+        self.assertEqual(np.isfinite(depth).sum(axis=1).max(), 32)  # 80 % of the width
+
+    def test_ambient_light_of_each_pixel(self):
+        np.save(self.path("dark.npy"), np.full((8, 8), np.nan, np.float32))
+        scale = np.ones((8, 8), np.float32)
+        scale[:, 4:] = 3
+        np.save(self.path("ambient.npy"), scale)
+        self.do("simulate", "dark.npy", "--ambient-image", "ambient.npy", "--code", "sinusoid-k4",
+                "--ambient", "1e7", "-o", "raw.npy")
+        raw = np.load(self.path("raw.npy"))
+        self.assertAlmostEqual(raw[:, 4:].mean() / raw[:, :4].mean(), 3, 1)
+
     def test_decode_writes_every_format(self):
         self.small_scene()
         self.simulate()
@@ -222,7 +265,8 @@ class Commands(CommandLineTest):
 
     def test_help_and_version(self):
         self.assertRegex(self.do("--version"), r"^tofsmith \d+\.\d+\.\d+\n$")
-        for command in ("demo", "codes", "design", "evaluate", "simulate", "decode", "report"):
+        for command in ("demo", "codes", "design", "evaluate", "scene", "simulate", "decode",
+                        "report"):
             self.assertIn(command, self.do("--help"))
             self.assertIn("--json", self.do(command, "--help") + self.do("--help"))
         code, out, error = self.run_tool()

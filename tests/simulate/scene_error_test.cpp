@@ -65,14 +65,6 @@ TEST(SceneError, OfNothingIsZero) {
   EXPECT_EQ(blind.decoded_share, 0.0);
 }
 
-TEST(SceneError, ShareBeyondTheRangeCountsWhatWraps) {
-  const auto range_m = static_cast<float>(camera().range_m());
-  const SceneImage scene = scene_of({1.0f, range_m - 0.1f, range_m + 0.1f, 5 * range_m, nan_m});
-  EXPECT_DOUBLE_EQ(share_beyond_range(scene, camera()), 0.5);
-  EXPECT_DOUBLE_EQ(share_beyond_range(scene_of({nan_m}), camera()), 0.0);
-  EXPECT_DOUBLE_EQ(share_beyond_range(scene_of({1.0f}), camera()), 0.0);
-}
-
 TEST(SceneError, RefusesImagesOfAnotherSize) {
   EXPECT_THROW(
       scene_error(image_of({1.0f, 2.0f}), scene_of({1.0f}), camera(), DepthErrorKind::circular),

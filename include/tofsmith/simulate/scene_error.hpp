@@ -23,11 +23,6 @@ struct SceneError {
 /// True distance as the camera can see it: wrapped into the range; NaN = no return.
 Image<float> wrapped_depth_m(const SceneImage& scene, const Camera& camera);
 
-/// How much of what returns stands at or beyond the camera's unambiguous range, where its depth
-/// wraps and only the remainder can be decoded: share of the pixels with a return, [0, 1]; 0 if
-/// nothing returns.
-double share_beyond_range(const SceneImage& scene, const Camera& camera);
-
 /// decoded - true [m], the linear or the circular difference; NaN where either is unknown.
 /// @throws std::invalid_argument if the sizes differ
 Image<float> depth_difference_m(const Image<float>& decoded_m, const SceneImage& scene,
