@@ -17,6 +17,8 @@ namespace tofsmith {
 std::span<const PaperItem> paper_items() {
   static const std::vector<PaperItem> items = {
       {"fig5", "Impulse responses and their band limits", reproduce_fig5, 0.1},
+      {"fig9", "A single pixel on the bench", reproduce_fig9, 8},
+      {"table1", "The bench's parameters", reproduce_table1, 5},
   };
   return items;
 }

@@ -101,8 +101,10 @@ bool is_inside(const Shape& shape, const Eigen::Vector3d& point) {
 
 void require_camera_outside(std::span<const Shape> shapes, const Eigen::Vector3d& camera) {
   for (std::size_t i = 0; i < shapes.size(); ++i)
-    require(!is_inside(shapes[i], camera), "camera position", camera.transpose(),
-            fmt::format("must not be inside shape {}, a {}: move it out (walls around it are planes)", i, kind_of(shapes[i])));
+    require(
+        !is_inside(shapes[i], camera), "camera position", camera.transpose(),
+        fmt::format("must not be inside shape {}, a {}: move it out (walls around it are planes)",
+                    i, kind_of(shapes[i])));
 }
 
 void require_something_in_view(const SceneImage& image) {
