@@ -28,6 +28,15 @@ void mix_taps(Columns& values, int taps, double contrast) {
   }
 }
 
+/// Whether ambient light up to `most_e_per_s` stays within a small part of its noise everywhere.
+bool ambient_cancels(const ForwardModel& model, double most_e_per_s) {
+  constexpr double share_of_noise = 0.05;
+  const Eigen::VectorXd light_e = most_e_per_s * model.exposure_s();
+  const Eigen::ArrayXd leak_e = light_e.cwiseProduct(model.ambient_gain()).array().abs();
+  const Eigen::ArrayXd variance_e2 = model.variance_e2({}, most_e_per_s).array();
+  return (leak_e <= share_of_noise * variance_e2.sqrt()).all();
+}
+
 Eigen::MatrixXd readout_matrix(int tap_values, Readout readout) {
   if (readout == Readout::separate) return Eigen::MatrixXd::Identity(tap_values, tap_values);
   Eigen::MatrixXd differences = Eigen::MatrixXd::Zero(tap_values / 2, tap_values);
@@ -73,6 +82,10 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
   exposure_s_.resize(measurements());
   for (int i = 0; i < measurements(); ++i)
     exposure_s_[i] = tap_exposure_s_[i * tap_values / measurements()];
+  const std::vector<double>& ambient = camera.operating.ambient_e_per_s;
+  if (camera.sensor.readout == Readout::difference &&
+      ambient_cancels(*this, *std::max_element(ambient.begin(), ambient.end())))
+    ambient_gain_.setZero();
 }
 
 Eigen::VectorXd ForwardModel::tap_correlation(double depth_bin) const {

@@ -202,6 +202,18 @@ TEST(Prototype, IsABipolarMixer) {
   }
 }
 
+TEST(Prototype, AmbientThatHardlyLeaksIsNoUnknown) {
+  // Rounded amplitudes leave duties off 1/2 by 1e-6; a square on odd points would by 1e-2.
+  Camera camera = built_in_camera("prototype");
+  const CodeSet sinusoid = build_family("sinusoid-k3", camera);
+  EXPECT_TRUE(ForwardModel(sinusoid, camera).ambient_gain().isZero(0.0));
+  camera.operating.ambient_e_per_s = {1e3, 1e15};
+  EXPECT_FALSE(ForwardModel(sinusoid, camera).ambient_gain().isZero(0.0));
+  camera = built_in_camera("prototype");
+  const ForwardModel unequal(build_family("hamiltonian-k5", camera), camera);
+  EXPECT_FALSE(unequal.ambient_gain().isZero(0.0));
+}
+
 TEST(Prototype, FiltersSpanThePapersSignals) {
   const Camera camera = built_in_camera("prototype");
   const std::vector<double> expected = {1e3, 1e4, 1e5, 1e6};

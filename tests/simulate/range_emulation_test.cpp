@@ -9,6 +9,7 @@
 #include "tofsmith/camera/played_code.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
 namespace {
@@ -92,6 +93,17 @@ TEST(RangeEmulation, AnyDecoderMayEstimate) {
       emulate_range(build_family("sinusoid-k3", camera), camera, options);
   for (const EmulatedDepth& depth : emulation.depths)
     EXPECT_NEAR(depth.linear_mde_m.value, depth.true_m, 1e-12);
+}
+
+TEST(Prototype, RoundedAmplitudesCostNoMeasurement) {
+  Camera camera = built_in_camera("prototype");
+  camera.operating = {{1e5}, {1e3}};
+  const DepthErrorReport error =
+      evaluate(build_family("sinusoid-k3", camera), camera, {.trials = 4000});
+  const PointDepthError& point = error.points.front();
+  EXPECT_NEAR(point.circular_mde_m.value, point.cramer_rao_mae_m,
+              0.05 * point.cramer_rao_mae_m + 4 * point.circular_mde_m.standard_error);
+  EXPECT_LT(point.circular_mde_m.value, 0.1);
 }
 
 TEST(RangeEmulation, RefusesNonsense) {

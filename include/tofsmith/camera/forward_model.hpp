@@ -40,7 +40,10 @@ class ForwardModel {
   /// The same for the tap values, (points, E x taps).
   Eigen::MatrixXd tap_correlation_table(int points) const;
 
-  /// kappa_i (K): mean gain seen by ambient light.
+  /// kappa_i (K): mean gain seen by ambient light, as an estimator has to reckon with it. 0 for all
+  /// differences of buckets if the brightest operating ambient leaves in none of them more than 5 %
+  /// of its noise, as where a generator rounds duties of 1/2: holding such a leak to be unknown
+  /// would cost a measurement, ignoring it costs next to nothing. expected_electrons() keep it.
   const Eigen::VectorXd& ambient_gain() const { return ambient_gain_; }
   /// kappa of the tap values (E x taps).
   const Eigen::VectorXd& tap_ambient_gain() const { return tap_ambient_gain_; }
