@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "design/bounded_least_squares.hpp"
 #include "tofsmith/core/periodic.hpp"
 
 namespace tofsmith {
@@ -16,6 +17,7 @@ constexpr double smallest_rms = 1e-4;  // keeps the majorizer's weight positive 
 /// One convex step; returns the best x for this kernel, or `current` where the solver fails.
 Eigen::VectorXd fit(CirculantTvSolver& solver, const CirculantTvProblem& problem,
                     const Eigen::VectorXd& current) {
+  if (problem.total_variation_weight == 0.0) return least_squares_within_bounds(problem, current);
   const CirculantTvResult result = solver.solve(problem);
   if (result.is_usable()) return result.x;
   const CirculantTvResult careful = solve_circulant_tv(problem);

@@ -22,6 +22,8 @@ struct AlternationResult {
 ///
 /// The residual's norm is not squared; rms <= rms^2 / (2 c) + c / 2 with c the current rms turns
 /// each step into 1/2 |A x - b|^2 + lambda N c TV(x), which does not raise the true objective.
+/// @param total_variation_weight  lambda >= 0; 0 leaves total variation out and shows what it is
+///        for: each step then goes on from the last waveforms, of which much stays undetermined
 AlternationResult alternate(const PairModel& model, SampledPair start,
                             double total_variation_weight, const FactorizeOptions& options,
                             CirculantTvSolver& solver);

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "report/waveform_series.hpp"
+
+#include "tofsmith/camera/played_waveform.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr int curve_points = 480;  // of a drawn period
+
+/// A waveform by its steps, not on a grid.
+Series stepped(const std::string& name, const Waveform& waveform, double period_ns,
+               const LineStyle& style) {
+  const StepFunction steps = waveform.steps();
+  Series series{.name = name, .period = period_ns, .mark = Mark::steps, .style = style};
+  for (std::size_t i = 0; i < steps.values.size(); ++i) {
+    series.x.push_back(steps.breakpoints[i] * period_ns);
+    series.y.push_back(steps.values[i]);
+  }
+  return series;
+}
+
+}  // namespace
+
+std::vector<double> axis_values(int points, double end) {
+  std::vector<double> values(static_cast<std::size_t>(points));
+  for (int j = 0; j < points; ++j) values[static_cast<std::size_t>(j)] = end * j / points;
+  return values;
+}
+
+std::vector<Series> arm_series(const Waveform& told, const Waveform& played,
+                               const ImpulseResponse& response, double fundamental_frequency_hz,
+                               const LineStyle& style) {
+  const double period_ns = 1e9 / fundamental_frequency_hz;
+  LineStyle faint = style;
+  faint.width_px = 1.0;
+  std::vector<Series> series;
+  if (!(told == played)) series.push_back(stepped("told", told, period_ns, reference_style()));
+  if (response.kind == ImpulseResponse::Kind::none) {
+    series.push_back(stepped("played", played, period_ns, style));
+    return series;
+  }
+  series.push_back(stepped("played", played, period_ns, faint));
+  series.push_back(
+      {.name = "after the impulse response",
+       .x = axis_values(curve_points, period_ns),
+       .y = to_values(played_waveform(played, response, fundamental_frequency_hz, curve_points)),
+       .period = period_ns,
+       .style = style});
+  return series;
+}
+
+}  // namespace tofsmith

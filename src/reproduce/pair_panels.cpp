@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "reproduce/pair_panels.hpp"
+
+#include <algorithm>
+
+#include "design/pair_model.hpp"
+#include "report/waveform_series.hpp"
+#include "reproduce/data_tables.hpp"
+#include "tofsmith/camera/correlation.hpp"
+#include "tofsmith/camera/played_waveform.hpp"
+#include "tofsmith/code/families.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr int curve_points = 480;    // of a drawn period
+constexpr int kept_harmonics = 480;  // a Hann window leaves nothing beyond
+
+}  // namespace
+
+Eigen::VectorXd correlation_table(const WaveformPair& pair, const Camera& camera, int points) {
+  const CorrelationFunction chi =
+      camera.band_limited()
+          ? CorrelationFunction(pair.demodulation, pair.modulation, camera.transfer(kept_harmonics))
+          : CorrelationFunction(pair.demodulation, pair.modulation);
+  return chi.table(points);
+}
+
+double residual_rms(const WaveformPair& pair, const CorrelationTarget& target,
+                    const Camera& camera) {
+  return PairModel(target, camera).residual_rms(pair);
+}
+
+WaveformPair centred(const WaveformPair& pair) {
+  if (!pair.modulation.is_binary() || !pair.demodulation.is_binary()) return pair;
+  const auto& on = pair.modulation.on_intervals();
+  if (on.empty()) return pair;
+  const auto longest = std::max_element(
+      on.begin(), on.end(),
+      [](const OnInterval& a, const OnInterval& b) { return a.fall - a.rise < b.fall - b.rise; });
+  const double delay = 0.5 - 0.5 * (longest->rise + longest->fall);
+  return {pair.modulation.delayed(delay), pair.demodulation.delayed(delay)};
+}
+
+std::vector<PanelColumn> pair_columns() {
+  return {{.title = "Modulation",
+           .x = {.label = "time", .unit = "ns"},
+           .y = {.label = "power / average", .from_zero = true}},
+          {.title = "Demodulation",
+           .x = {.label = "time", .unit = "ns"},
+           .y = {.label = "gain", .from_zero = true}},
+          {.title = "Correlation",
+           .x = {.label = "depth", .unit = "m"},
+           .y = {.label = "chi", .from_zero = true}}};
+}
+
+std::vector<Series> correlation_series(const Eigen::VectorXd& correlation,
+                                       const Eigen::VectorXd& target, double range_m,
+                                       const LineStyle& style) {
+  return {{.name = "correlation function",
+           .x = axis_values(static_cast<int>(correlation.size()), range_m),
+           .y = to_values(correlation),
+           .period = range_m,
+           .style = style},
+          {.name = "target",
+           .x = axis_values(static_cast<int>(target.size()), range_m),
+           .y = to_values(target),
+           .period = range_m,
+           .style = reference_style()}};
+}
+
+PanelRow pair_row(std::string title, const WaveformPair& pair, const Camera& camera,
+                  const Eigen::VectorXd& target, const LineStyle& style) {
+  const double f0_hz = camera.fundamental_frequency_hz;
+  return {.title = std::move(title),
+          .panels = {arm_series(pair.modulation, pair.modulation, camera.light.impulse_response,
+                                f0_hz, style),
+                     arm_series(pair.demodulation, pair.demodulation,
+                                camera.sensor.impulse_response, f0_hz, style),
+                     correlation_series(correlation_table(pair, camera, curve_points), target,
+                                        camera.range_m(), style)}};
+}
+
+void add_pair_arrays(Reproduction& result, const std::string& prefix, const WaveformPair& pair,
+                     const Camera& camera, const Eigen::VectorXd& target) {
+  const int samples = camera.samples;
+  const auto add = [&](const std::string& name, const Eigen::VectorXd& values) {
+    result.arrays[prefix + name] = npy_of(to_values(values));
+  };
+  add("_modulation", pair.modulation.cell_averages(samples));
+  add("_demodulation", pair.demodulation.cell_averages(samples));
+  add("_correlation", correlation_table(pair, camera, samples));
+  add("_target", target);
+  if (!camera.band_limited()) return;
+  const double f0_hz = camera.fundamental_frequency_hz;
+  add("_modulation_played",
+      played_waveform(pair.modulation, camera.light.impulse_response, f0_hz, samples));
+  add("_demodulation_played",
+      played_waveform(pair.demodulation, camera.sensor.impulse_response, f0_hz, samples));
+}
+
+TargetSet ideal_targets(std::string_view family, const Camera& camera) {
+  return targets_of(make_family(family, {.samples = camera.samples}));
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/design/factorize.hpp"
+#include "tofsmith/report/small_multiples.hpp"
+#include "tofsmith/reproduce/reproduction.hpp"
+
+namespace tofsmith {
+
+/// The correlation function of a pair on a camera, at `points` equal steps of depth.
+Eigen::VectorXd correlation_table(const WaveformPair& pair, const Camera& camera, int points);
+
+/// rms over depth between the pair's correlation function on `camera` and the target.
+double residual_rms(const WaveformPair& pair, const CorrelationTarget& target,
+                    const Camera& camera);
+
+/// The same pair, both waveforms moved in time so that the middle of the longest pulse comes at
+/// half the period: drawings of different pairs can be compared. Sampled pairs stay.
+WaveformPair centred(const WaveformPair& pair);
+
+/// Columns of figures whose rows are pairs: modulation, demodulation, correlation.
+std::vector<PanelColumn> pair_columns();
+
+/// One row: what the arms are told and what leaves them, and the correlation function over the
+/// target, which is grey and dotted.
+PanelRow pair_row(std::string title, const WaveformPair& pair, const Camera& camera,
+                  const Eigen::VectorXd& target, const LineStyle& style);
+
+/// Correlation function and target as curves over depth.
+std::vector<Series> correlation_series(const Eigen::VectorXd& correlation,
+                                       const Eigen::VectorXd& target, double range_m,
+                                       const LineStyle& style);
+
+/// Adds PREFIX_modulation, _demodulation (N, averages over cells, as told), _correlation and
+/// _target (N) to the data; with an impulse response also _modulation_played, _demodulation_played.
+void add_pair_arrays(Reproduction& result, const std::string& prefix, const WaveformPair& pair,
+                     const Camera& camera, const Eigen::VectorXd& target);
+
+/// The ideal correlation functions of a family without limits, on the camera's samples.
+TargetSet ideal_targets(std::string_view family, const Camera& camera);
+
+}  // namespace tofsmith
