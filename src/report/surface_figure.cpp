@@ -101,7 +101,7 @@ Figure surface_figure(FigureText text, const std::vector<Surface>& surfaces,
                          {"aspectratio", {{"x", 1.15}, {"y", 1.15}, {"z", 0.85}}},
                          {"camera",
                           {{"eye", {{"x", 1.25}, {"y", -1.45}, {"z", 0.55}}},
-                           {"center", {{"x", 0}, {"y", 0}, {"z", -0.08}}}}},
+                           {"center", {{"x", 0}, {"y", 0}, {"z", -0.22}}}}},
                          {"xaxis", plotly::axis(axes[0], x)},
                          {"yaxis", plotly::axis(axes[1], y)},
                          {"zaxis", plotly::axis(axes[2], heights)}}}};

@@ -43,6 +43,24 @@ double relative_error(const Estimate& e) { return e.standard_error / e.value; }
 
 }  // namespace
 
+SurfacePrecision surface_precision(const ReproduceContext& context) {
+  if (!context.options.fast) return {.seed = context.options.seed};
+  return {.standard_error = 0.1,
+          .named_standard_error = 0.1,
+          .first_trials = 16000,
+          .most_trials = 16000,
+          .rotation_trials = 4000,
+          .seed = context.options.seed};
+}
+
+Camera with_light_levels(Camera camera, const ReproduceContext& context) {
+  if (context.options.fast) {
+    camera.operating.signal_e_per_s = {std::pow(10.0, 3.5), 1e4, 1e5};
+    camera.operating.ambient_e_per_s = {1e2, 1e4, 1e5};
+  }
+  return camera;
+}
+
 std::vector<NamedLevel> named_levels() {
   return {{"lo", {std::pow(10.0, 3.5), 1e4}}, {"mid", {1e4, 1e4}}, {"hi", {1e5, 1e4}}};
 }
@@ -70,12 +88,12 @@ ErrorSurface measure_surface(const Contender& contender, const Camera& camera,
       best_rotation(contender.code, camera, options, part_of(progress, 0.0, 0.1)).rotation_bin;
   const CodeSet code = contender.code.rotated(surface.rotation_bin);
 
-  // 2. A first look tells how many trials every light level needs.
+  // 2. A first look, which tells how many trials every light level needs.
   options.trials = precision.first_trials;
   options.seed = precision.seed + 2;
   const DepthErrorReport look = evaluate(code, camera, options, part_of(progress, 0.1, 0.15));
 
-  // 3. Measure each light level by itself, until it is exact enough.
+  // 3. Where that is not exact enough, the level is measured by itself.
   const auto rows = static_cast<Eigen::Index>(surface.ambient_e_per_s.size());
   const auto columns = static_cast<Eigen::Index>(surface.signal_e_per_s.size());
   for (auto* values :
@@ -85,17 +103,18 @@ ErrorSurface measure_surface(const Contender& contender, const Camera& camera,
   for (std::size_t p = 0; p < look.points.size(); ++p) {
     report(progress, 0.15 + 0.85 * static_cast<double>(p) / static_cast<double>(look.points.size()),
            contender.name);
-    const OperatingPoint point = look.points[p].point;
+    PointDepthError error = look.points[p];
     Camera at_point = camera;
-    at_point.operating.signal_e_per_s = {point.signal_e_per_s};
-    at_point.operating.ambient_e_per_s = {point.ambient_e_per_s};
-    const double wanted = wanted_standard_error(point, precision);
+    at_point.operating.signal_e_per_s = {error.point.signal_e_per_s};
+    at_point.operating.ambient_e_per_s = {error.point.ambient_e_per_s};
+    const double wanted = wanted_standard_error(error.point, precision);
+    const std::int64_t foreseen =
+        foreseen_trials(error.circular_mde_m.value, camera.range_m(), wanted, precision);
     options.seed = precision.seed + 3 + p;
-    options.trials =
-        foreseen_trials(look.points[p].circular_mde_m.value, camera.range_m(), wanted, precision);
-    PointDepthError error = evaluate(code, at_point, options).points.front();
-    while (relative_error(error.linear_mde_m) > wanted && options.trials < precision.most_trials) {
-      options.trials = std::min(2 * options.trials, precision.most_trials);
+    options.trials = precision.first_trials;
+    while (options.trials < precision.most_trials &&
+           (options.trials < foreseen || relative_error(error.linear_mde_m) > wanted)) {
+      options.trials = std::min(std::max(foreseen, 2 * options.trials), precision.most_trials);
       error = evaluate(code, at_point, options).points.front();
     }
     surface.trials += options.trials;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tofsmith/reproduce/context.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
@@ -27,6 +28,11 @@ struct SurfacePrecision {
   std::int64_t rotation_trials = 20000;   ///< per light level, to find the best origin
   std::uint64_t seed = 1;
 };
+
+/// What figures use: 2 % everywhere, 10 % with --fast.
+SurfacePrecision surface_precision(const ReproduceContext& context);
+/// The paper's light levels; 3 x 3 of them with --fast.
+Camera with_light_levels(Camera camera, const ReproduceContext& context);
 
 /// A light level the text speaks of.
 struct NamedLevel {

@@ -8,6 +8,7 @@
 
 #include "report/level_text.hpp"
 #include "reproduce/code_styles.hpp"
+#include "reproduce/data_tables.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/report/heat_map_figure.hpp"
 #include "tofsmith/report/small_multiples.hpp"
@@ -114,20 +115,40 @@ Table geometric_mean_table(const std::string& id, const std::string& caption,
               .caption = caption,
               .columns = {{"code"}, {"linear (mm)", true}, {"circular (mm)", true}}};
   for (const NamedLevel& level : named_levels())
-    table.columns.push_back({fmt::format("{}, linear (mm)", level.name), true});
+    table.columns.push_back({fmt::format("{} (mm)", level.name), true});
   double least = 1e300;
   for (const ErrorSurface& surface : group.surfaces) {
     std::vector<std::string> cells = {surface.name, estimate_mm(surface.linear_geometric_mean_m),
                                       estimate_mm(surface.circular_geometric_mean_m)};
     for (const NamedLevel& level : named_levels())
       cells.push_back(estimate_mm(surface.linear_at(level.point)));
-    if (surface.linear_geometric_mean_m.value < least) {
+    const bool competes = !surface.name.ends_with("-ideal");
+    if (competes && surface.linear_geometric_mean_m.value < least) {
       least = surface.linear_geometric_mean_m.value;
       table.highlighted_row = static_cast<int>(table.rows.size());
     }
     table.rows.push_back(std::move(cells));
   }
   return table;
+}
+
+void add_arrays(NpzArrays& arrays, const std::string& prefix, const ErrorSurfaceGroup& group) {
+  const ErrorSurface& grid = group.surfaces.front();
+  arrays["signal_e_per_s"] = npy_of(grid.signal_e_per_s);
+  arrays["ambient_e_per_s"] = npy_of(grid.ambient_e_per_s);
+  const auto add = [&](const char* name, Eigen::MatrixXd ErrorSurface::*values) {
+    std::vector<double> all;
+    for (const ErrorSurface& surface : group.surfaces)
+      for (Eigen::Index row = 0; row < (surface.*values).rows(); ++row)
+        for (Eigen::Index column = 0; column < (surface.*values).cols(); ++column)
+          all.push_back((surface.*values)(row, column));
+    arrays[prefix + name] = NpyArray::of<double>(
+        {group.surfaces.size(), grid.ambient_e_per_s.size(), grid.signal_e_per_s.size()}, all);
+  };
+  add("_linear_mde_m", &ErrorSurface::linear_m);
+  add("_linear_se_m", &ErrorSurface::linear_se_m);
+  add("_circular_mde_m", &ErrorSurface::circular_m);
+  add("_circular_se_m", &ErrorSurface::circular_se_m);
 }
 
 std::string surfaces_csv(const std::vector<ErrorSurfaceGroup>& groups) {

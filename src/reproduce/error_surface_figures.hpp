@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reproduce/error_surface.hpp"
+#include "tofsmith/io/npz.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/report/page.hpp"
 
@@ -42,6 +43,10 @@ Figure error_by_signal(FigureText text, const std::vector<ErrorSurfaceGroup>& gr
 /// Geometric means, linear | circular, and the linear error at the named levels, of every code.
 Table geometric_mean_table(const std::string& id, const std::string& caption,
                            const ErrorSurfaceGroup& group);
+
+/// Adds PREFIX_linear_mde_m and the like, each (codes, ambient, signal), and both light axes. Codes
+/// are in the order of surfaces_csv().
+void add_arrays(NpzArrays& arrays, const std::string& prefix, const ErrorSurfaceGroup& group);
 
 /// Every value of every surface: columns light level, errors, standard errors.
 std::string surfaces_csv(const std::vector<ErrorSurfaceGroup>& groups);

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "reproduce/data_tables.hpp"
 #include "reproduce/error_surface_figures.hpp"
 #include "reproduce/fig4_findings.hpp"
 #include "reproduce/figures.hpp"
@@ -24,14 +23,6 @@ const std::string dual_frequency = "multifrequency-1x2-7x2";
 const std::string single_frequency = "sinusoid-k2";
 const std::string one_tap = "hamiltonian-k4-one-tap";
 
-Camera with_grid(Camera camera, const ReproduceContext& context) {
-  if (context.options.fast) {
-    camera.operating.signal_e_per_s = {std::pow(10.0, 3.5), 1e4, 1e5};
-    camera.operating.ambient_e_per_s = {1e2, 1e4, 1e5};
-  }
-  return camera;
-}
-
 std::vector<Contender> contenders(const Camera& camera, const ReproduceContext& context) {
   std::vector<Contender> list;
   for (const int exposures : {3, 4, 5, 6}) {
@@ -43,35 +34,25 @@ std::vector<Contender> contenders(const Camera& camera, const ReproduceContext& 
   return list;
 }
 
-SurfacePrecision precision(const ReproduceContext& context) {
-  SurfacePrecision precision{.seed = context.options.seed};
-  if (context.options.fast) {
-    precision.standard_error = precision.named_standard_error = 0.1;
-    precision.first_trials = 2000;
-    precision.most_trials = 40000;
-    precision.rotation_trials = 4000;
-  }
-  return precision;
-}
-
 ErrorSurfaceGroup measure(double f_max_in_f0, const ReproduceContext& context,
                           const Progress& progress) {
-  const Camera camera = with_grid(two_bucket_camera(peak_factor, f_max_in_f0), context);
+  const Camera camera = with_light_levels(two_bucket_camera(peak_factor, f_max_in_f0), context);
   ErrorSurfaceGroup group{fmt::format("p = {:g}, {:g} f0", peak_factor, f_max_in_f0), {}};
   const std::vector<Contender> list =
       contenders(two_bucket_camera(peak_factor, f_max_in_f0), context);
   const double steps = static_cast<double>(list.size()) + 1.0;
   double done = 0.0;
   for (const Contender& contender : list) {
-    group.surfaces.push_back(measure_surface(contender, camera, precision(context),
+    group.surfaces.push_back(measure_surface(contender, camera, surface_precision(context),
                                              part_of(progress, done / steps, (done + 1) / steps)));
     done += 1.0;
   }
   // The same light and time with one tap: what the second bucket adds.
   const Camera single = paper_camera(peak_factor, f_max_in_f0);
-  group.surfaces.push_back(measure_surface(
-      {one_tap, context.shelf.redesigned(4, single, context.options)}, with_grid(single, context),
-      precision(context), part_of(progress, done / steps, 1.0)));
+  group.surfaces.push_back(
+      measure_surface({one_tap, context.shelf.redesigned(4, single, context.options)},
+                      with_light_levels(single, context), surface_precision(context),
+                      part_of(progress, done / steps, 1.0)));
   return group;
 }
 
@@ -161,13 +142,13 @@ Reproduction reproduce_fig8(const ReproduceContext& context, const Progress& pro
       {"Side by side",
        {error_by_signal({.id = "slices",
                          .title = "Mean depth error by signal",
-                         .caption = "Cuts through the surfaces at ambient light 10^4 e/s; bars are "
+                         .caption = "Cuts through the surfaces at ambient light 10k e/s; bars are "
                                     "two standard errors."},
                         panels, names)}});
   std::vector<RatioMap> ratios;
   for (const std::string& baseline : {dual_frequency, single_frequency})
     for (const ErrorSurfaceGroup& panel : panels)
-      ratios.push_back({fmt::format("{} / hamiltonian-k4, {}", baseline, panel.title),
+      ratios.push_back({fmt::format("{}, {}", baseline, panel.title),
                         panel.of(baseline).linear_m.cwiseQuotient(panel.of(paper_code).linear_m)});
   result.sections.back().blocks.push_back(
       ratio_heat_maps({.id = "ratios",
@@ -191,21 +172,14 @@ Reproduction reproduce_fig8(const ReproduceContext& context, const Progress& pro
                           panels[i], 4),
           geometric_mean_table("means-" + id,
                                "Geometric means over all light levels, and the linear error at "
-                               "three of them: S = 10^3.5 (lo), 10^4 (mid) and 10^5 e/s (hi), A = "
-                               "10^4 e/s. ± is one standard error. The best linear mean is marked.",
+                               "three of them: S = 3.16k (lo), 10k (mid) and 100k e/s (hi), A = "
+                               "10k e/s. ± is one standard error. The best linear mean is marked.",
                                panels[i])}});
   }
 
   // 4. The numbers.
   for (std::size_t i = 0; i < panels.size(); ++i)
-    for (const ErrorSurface& surface : panels[i].surfaces) {
-      const std::string name = fmt::format("{:g}f0_{}", limits_in_f0[i], surface.name);
-      result.arrays[name + "_linear_m"] = npy_of(surface.linear_m);
-      result.arrays[name + "_linear_se_m"] = npy_of(surface.linear_se_m);
-      result.arrays[name + "_circular_m"] = npy_of(surface.circular_m);
-    }
-  result.arrays["signal_e_per_s"] = npy_of(panels.front().surfaces.front().signal_e_per_s);
-  result.arrays["ambient_e_per_s"] = npy_of(panels.front().surfaces.front().ambient_e_per_s);
+    add_arrays(result.arrays, fmt::format("{:g}f0", limits_in_f0[i]), panels[i]);
   result.files["surfaces.csv"] = surfaces_csv(panels);
   return result;
 }
