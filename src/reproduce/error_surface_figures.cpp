@@ -52,7 +52,7 @@ std::vector<Series> slices(const ErrorSurfaceGroup& group, const std::vector<std
 }
 
 std::string estimate_mm(const Estimate& e) {
-  return fmt::format("{:.1f} ± {:.1f}", 1e3 * e.value, 1e3 * e.standard_error);
+  return fmt::format("{:.1f} ± {:.1g}", 1e3 * e.value, 1e3 * e.standard_error);
 }
 
 }  // namespace
@@ -75,15 +75,15 @@ Figure surfaces_3d(FigureText text, const ErrorSurfaceGroup& group,
                          Axis{.label = "mean depth error", .unit = "mm", .logarithmic = true}});
 }
 
-Figure error_heat_maps(FigureText text, const ErrorSurfaceGroup& group, int columns) {
+Figure error_heat_maps(FigureText text, const ErrorSurfaceGroup& group,
+                       const std::vector<std::string>& names) {
   std::vector<HeatMap> maps;
-  for (const ErrorSurface& surface : group.surfaces)
-    maps.push_back({surface.name, 1e3 * surface.linear_m});
+  for (const std::string& name : names) maps.push_back({name, 1e3 * group.of(name).linear_m});
   const ErrorSurface& grid = group.surfaces.front();
   return heat_map_figure(
       std::move(text), maps, signal_ticks(grid), ambient_ticks(grid),
       {.label = "mean depth error", .unit = "mm", .map = ColourMap::cividis, .logarithmic = true},
-      {.columns = columns});
+      {.columns = 3});
 }
 
 Figure ratio_heat_maps(FigureText text, const std::vector<RatioMap>& maps, const ErrorSurface& grid,

@@ -26,7 +26,8 @@ Figure surfaces_3d(FigureText text, const ErrorSurfaceGroup& group,
                    const std::vector<std::string>& names);
 
 /// Linear errors as heat maps [mm], one panel per code, one colour scale.
-Figure error_heat_maps(FigureText text, const ErrorSurfaceGroup& group, int columns);
+Figure error_heat_maps(FigureText text, const ErrorSurfaceGroup& group,
+                       const std::vector<std::string>& names);
 
 /// Ratios over the same grid: beyond 1 red, below blue, as logarithms to base 2.
 struct RatioMap {

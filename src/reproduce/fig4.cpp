@@ -15,6 +15,11 @@ namespace {
 
 Section panel_section(const Limits& limits, const ErrorSurfaceGroup& group) {
   const std::string id = limits.id;
+  std::vector<std::string> mapped;
+  for (const ErrorSurface& surface : group.surfaces)
+    if (!surface.name.ends_with("-ideal")) mapped.push_back(surface.name);
+  for (const char* ideal : {"hamiltonian-k4-ideal", "hamiltonian-k5-ideal"})
+    mapped.push_back(ideal);
   return {
       fmt::format("Fig. 4{}: {}", limits.id, limits.title),
       {surfaces_3d(
@@ -31,7 +36,7 @@ Section panel_section(const Limits& limits, const ErrorSurfaceGroup& group) {
                         .caption = "Linear mean depth error (mm) of all codes, each at its best "
                                    "origin of depth. The ideal codes are those of a camera "
                                    "without limits."},
-                       group, 4),
+                       group, mapped),
        geometric_mean_table(
            "means-" + id,
            "Geometric means over all light levels, and the linear error at three of them: "

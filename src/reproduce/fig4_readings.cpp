@@ -54,7 +54,10 @@ std::vector<Contender> ideal_contenders() {
 /// light levels.
 SurfacePrecision precision_for(bool drawn, const ReproduceContext& context) {
   SurfacePrecision precision = surface_precision(context);
-  if (drawn) return precision;
+  if (drawn) {
+    if (!context.options.fast) precision.rotation_trials = 100000;
+    return precision;
+  }
   precision.standard_error = std::max(0.06, precision.standard_error);
   if (context.options.fast)
     precision.first_trials = precision.most_trials = precision.rotation_trials = 2000;

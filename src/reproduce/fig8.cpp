@@ -169,7 +169,7 @@ Reproduction reproduce_fig8(const ReproduceContext& context, const Progress& pro
                            .title = "The values",
                            .caption = "Linear mean depth error (mm), each code at its best origin "
                                       "of depth."},
-                          panels[i], 4),
+                          panels[i], names),
           geometric_mean_table("means-" + id,
                                "Geometric means over all light levels, and the linear error at "
                                "three of them: S = 3.16k (lo), 10k (mid) and 100k e/s (hi), A = "
