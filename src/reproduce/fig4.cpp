@@ -7,6 +7,7 @@
 
 #include "reproduce/fig4_findings.hpp"
 #include "reproduce/fig4_readings.hpp"
+#include "reproduce/fig4_unwrapping.hpp"
 #include "reproduce/figures.hpp"
 
 namespace tofsmith {
@@ -78,7 +79,7 @@ Section comparison_section(const std::vector<ErrorSurfaceGroup>& panels) {
 Reproduction reproduce_fig4(const ReproduceContext& context, const Progress& progress) {
   // 1. Every code on every camera under every reading.
   std::vector<ReadingResult> results;
-  constexpr std::array<double, 5> share = {0.0, 0.4, 0.6, 0.8, 1.0};
+  constexpr std::array<double, 5> share = {0.0, 0.38, 0.57, 0.76, 0.95};
   for (std::size_t r = 0; r < all_readings.size(); ++r)
     results.push_back(
         measure_reading(all_readings[r], context, part_of(progress, share[r], share[r + 1])));
@@ -110,6 +111,7 @@ Reproduction reproduce_fig4(const ReproduceContext& context, const Progress& pro
   for (std::size_t l = 0; l < drawn_limits; ++l)
     result.sections.push_back(panel_section(all_limits[l], panels[l]));
   result.sections.push_back(comparison_section(panels));
+  add_unwrapping(result, context, part_of(progress, 0.95, 1.0));
   result.sections.push_back(stronger_baselines_section(results.front()));
   result.sections.push_back(readings_section(results));
 

@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "reproduce/data_tables.hpp"
 #include "reproduce/figures.hpp"
@@ -15,20 +18,17 @@ namespace tofsmith {
 namespace {
 
 /// What the generators cost a code: its depth error with them over that without.
-double cost_of_generators(const std::string& family, Camera camera, std::int64_t trials,
-                          std::uint64_t seed) {
-  const CodeSet code = build_family(family, camera);
-  const EvaluateOptions options{.trials = trials, .seed = seed};
+double cost_of_generators(const CodeSet& code, Camera camera, const EvaluateOptions& options) {
   const double with = evaluate(code, camera, options).circular.geometric_mean_m.value;
   camera.light.generator.reset();
   camera.sensor.generator.reset();
   return with / evaluate(code, camera, options).circular.geometric_mean_m.value;
 }
 
-/// Farthest that the generators move a switching time of a family [s].
-double largest_edge_move_s(const std::string& family, const Camera& camera) {
+/// Farthest that the generators move a switching time of a code [s].
+double largest_edge_move_s(const CodeSet& code, const Camera& camera) {
   double largest = 0.0;
-  for (const GeneratorReport& one : generator_report(build_family(family, camera), camera))
+  for (const GeneratorReport& one : generator_report(code, camera))
     largest = std::max(largest, one.largest_edge_move_s.value_or(0.0));
   return largest;
 }
@@ -83,30 +83,43 @@ Reproduction reproduce_table1(const ReproduceContext& context, const Progress& p
                    "and the circular depth error (geometric mean over the camera's light levels) "
                    "over that of ideal generators.",
                .columns = {{"Code"}, {"Edge moved by [ns]", true}, {"Depth error", true}}};
-  double worst_cost = 0.0;
-  const std::vector<std::string> families = {"sinusoid-k4",       "square-k4",
-                                             "multifrequency-k5", "hamiltonian-k3",
-                                             "hamiltonian-k4",    "hamiltonian-k5"};
-  for (const std::string& family : families) {
-    report(progress, static_cast<double>(played.rows.size()) / static_cast<double>(families.size()),
-           "table1: " + family);
-    const double cost =
-        cost_of_generators(family, camera, context.pick(40000, 2000), context.options.seed);
-    worst_cost = std::max(worst_cost, cost);
-    played.rows.push_back({family, fmt::format("{:.3g}", largest_edge_move_s(family, camera) * 1e9),
+  std::vector<CodeSet> codes;
+  for (const char* family : {"sinusoid-k4", "square-k4", "multifrequency-k5", "hamiltonian-k3",
+                             "hamiltonian-k4", "hamiltonian-k5"})
+    codes.push_back(build_family(family, camera));
+  for (const int exposures : {4, 5})
+    codes.push_back(context.shelf.redesigned(exposures, camera, context.options));
+  std::vector<std::string> spoiled;
+  double worst_of_others = 1.0;
+  for (const CodeSet& code : codes) {
+    report(progress, static_cast<double>(played.rows.size()) / static_cast<double>(codes.size()),
+           "table1: " + code.name());
+    const double cost = cost_of_generators(
+        code, camera, {.trials = context.pick(40000, 2000), .seed = context.options.seed});
+    if (cost > 1.1)
+      spoiled.push_back(fmt::format("{} by {:.0f} %", code.name(), 100 * (cost - 1)));
+    else
+      worst_of_others = std::max(worst_of_others, cost);
+    played.rows.push_back({code.name(),
+                           fmt::format("{:.3g}", largest_edge_move_s(code, camera) * 1e9),
                            fmt::format("x {:.3f}", cost)});
   }
 
   result.findings = {
-      {worst_cost < 1.1   ? Verdict::holds
-       : worst_cost < 1.5 ? Verdict::in_part
-                          : Verdict::fails,
+      {spoiled.empty()                 ? Verdict::holds
+       : spoiled.size() < codes.size() ? Verdict::in_part
+                                       : Verdict::fails,
        "The codes can be played on existing hardware: generators of 150 MHz, 500 MS/s and 14 bits.",
-       fmt::format(
-           "At f0 = 5 MHz a period has {} points. The generators raise no code's depth error "
-           "by more than {:.1f} %.",
-           camera.light.generator->points_per_period(camera.fundamental_frequency_hz),
-           std::max(0.0, 100.0 * (worst_cost - 1.0))),
+       fmt::format("At f0 = 5 MHz a period has {} points. They raise the depth error of {}; of all "
+                   "other codes by {:.1f} % at most.",
+                   camera.light.generator->points_per_period(camera.fundamental_frequency_hz),
+                   spoiled.empty() ? "no code by more than 10 %"
+                                   : fmt::format("{}", fmt::join(spoiled, ", ")),
+                   100 * (worst_of_others - 1)),
+       "Switching times move to whole points of 2 ns. Where duties of 1/2 become 0.51, ambient "
+       "light "
+       "no longer cancels and costs a measurement: 90 points per period (450 MS/s) would hold the "
+       "codes of K = 3 and 5 exactly. "
        "Source power in mW has no electrons of its own: one stated number, 1e6 e/s per mW at O.D. "
        "0, "
        "puts O.D. 1, 2 and 3 on S = 1e5, 1e4 and 1e3 e/s. p = 15, the generators and the filters "
