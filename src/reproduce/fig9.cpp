@@ -166,7 +166,7 @@ Reproduction reproduce_fig9(const ReproduceContext& context, const Progress& pro
                      rows[other][2], rows[other][0] / rows[0][0], rows[other][1] / rows[0][1],
                      rows[other][2] / rows[0][2]),
          "The bench is emulated: absolute figures depend on the signal at O.D. 0, which is ours "
-         "(1e6 e/s); behind O.D. 3 every code is near guessing (25 % of the range)."});
+         "(1e6 e/s)."});
   }
 
   std::vector<Block> blocks = {error_by_filter(all), table};
