@@ -8,8 +8,9 @@
 #include <numeric>
 
 #include "commands.hpp"
+#include "fresh_directory.hpp"
 #include "terminal_progress.hpp"
-#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/reproduce/reproduction_directory.hpp"
 
 namespace tofsmith::apps {
@@ -19,6 +20,7 @@ namespace {
 struct ReproduceArguments {
   std::vector<std::string> names;
   ReproduceOptions options;
+  std::string mesh;
   std::string output = "tofsmith-reproduce";
 };
 
@@ -35,10 +37,16 @@ std::vector<PaperItem> chosen_items(const std::vector<std::string>& names) {
   return items;
 }
 
-void run(const ReproduceArguments& arguments, const Session& session) {
+void run(ReproduceArguments& arguments, const Session& session) {
   const std::vector<PaperItem> items = chosen_items(arguments.names);
+  if (!arguments.mesh.empty()) {
+    arguments.options.mesh = read_mesh(arguments.mesh);
+    arguments.options.mesh_name = std::filesystem::path(arguments.mesh).filename().string();
+  }
   const ReproductionDirectory directory(arguments.output);
+  const FreshDirectory cleanup(directory.path());
   apps::create_directories(directory.path());
+  if (!session.force) directory.require_ours();
   CodeShelf shelf(directory.shelf());
   const ReproduceContext context{arguments.options, shelf};
   const Progress progress = terminal_progress("tofsmith reproduce");
@@ -99,6 +107,8 @@ void add_reproduce_command(CLI::App& app, Session& session) {
                     "coarse: seconds instead of minutes, larger errors");
   command->add_option("--seed", arguments->options.seed, "seed of every random choice")
       ->capture_default_str();
+  command->add_option("--mesh", arguments->mesh,
+                      "for fig7, instead of the modelled hand (.obj .ply .stl, of any size)");
   command
       ->add_option("-o,--output", arguments->output,
                    "directory; figures that are finished there are not made again (--force does)")

@@ -87,6 +87,17 @@ Page index_page(const ReproductionDirectory& directory, const ReproduceOptions& 
 
 }  // namespace
 
+void ReproductionDirectory::require_ours() const {
+  std::vector<std::filesystem::path> pages = {path_ / "index.html"};
+  for (const PaperItem& item : paper_items()) pages.push_back(path_ / item.name / "index.html");
+  for (const std::filesystem::path& page : pages)
+    if (std::filesystem::exists(page) &&
+        read_text_file(page).find(R"(<meta name="generator" content="tofsmith">)") ==
+            std::string::npos)
+      throw IoError(page.string(),
+                    "is no page of tofsmith's and would be replaced; use --force, or another -o");
+}
+
 std::optional<std::vector<CheckedStatement>> ReproductionDirectory::finished(
     const PaperItem& item, const ReproduceOptions& options) const {
   const std::filesystem::path file = path_ / item.name / "findings.json";

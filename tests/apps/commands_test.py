@@ -53,6 +53,23 @@ class Commands(CommandLineTest):
             direct = self.do_json("evaluate", "hamiltonian-k3", *FAST)["codes"][0]
             self.assertAlmostEqual(again["circular"]["mean_m"], direct["circular"]["mean_m"], 6)
 
+    def test_reproduce_writes_pages_and_resumes(self):
+        document = self.do_json("reproduce", "fig5", "--fast", "-o", "r")
+        self.assertEqual((document["fast"], document["seed"]), (True, 1))
+        item, = document["items"]
+        self.assertEqual(item["name"], "fig5")
+        for finding in item["findings"]:
+            self.assertEqual(list(finding), ["verdict", "statement", "measured", "why"])
+            self.assertEqual(finding["verdict"], "holds")
+        for name in ("r/index.html", "r/fig5/index.html", "r/fig5/data.npz",
+                     "r/fig5/findings.json"):
+            self.assertIn(name, self.files())
+        before = os.stat(self.path("r/fig5/index.html")).st_mtime_ns
+        self.assertIn("finished before", self.do("reproduce", "fig5", "--fast", "-o", "r"))
+        self.assertEqual(os.stat(self.path("r/fig5/index.html")).st_mtime_ns, before)
+        self.do("reproduce", "fig5", "--fast", "--force", "-o", "r")
+        self.assertNotEqual(os.stat(self.path("r/fig5/index.html")).st_mtime_ns, before)
+
     def test_evaluate_keeps_its_contract(self):
         document = self.do_json("evaluate", "sinusoid-k4", "square-k4", *FAST, "--seed", "7")
         self.assertEqual(list(document), ["tofsmith", "seed", "trials", "outlier_threshold_m",

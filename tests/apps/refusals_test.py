@@ -4,6 +4,7 @@
 and leaves no file behind."""
 
 import json
+import os
 import unittest
 
 import numpy as np
@@ -49,6 +50,9 @@ class Refusals(CommandLineTest):
                   "r.npy"], ["--image a.png"]),
                 (["simulate", "table-top", "--code", "sinusoid-k4", "--frames", "0", "-o",
                   "r.npy"], ["--frames"]),
+                (["reproduce"], ["FIGURE"]),
+                (["reproduce", "fig99"], ["fig99", "must be all or one of fig2"]),
+                (["reproduce", "fgi5"], ["did you mean fig5?"]),
                 (["report"], ["DIR"])):
             self.refuse(arguments, *words, code=2)
             self.refuse([*arguments, "--json"], *words, code=2)
@@ -187,6 +191,15 @@ class Refusals(CommandLineTest):
         refuse("no such file", name="absent.npy")
         self.refuse(["decode", "good.npy", "--code", "hamiltonian-k3", "--frame", "1", "-o",
                      "d.npy"], "--frame 1", "1 frame", code=2)
+
+    def test_reproduce(self):
+        self.refuse(["reproduce", "fig5", "--mesh", "none.obj", "-o", "r"], "none.obj")
+        os.mkdir(self.path("r"))
+        self.write("r/index.html", "<html>mine</html>")
+        self.refuse(["reproduce", "fig5", "-o", "r"], "r/index.html", "--force")
+        self.assertEqual(self.bytes_of("r/index.html"), b"<html>mine</html>")
+        self.write("file", "")
+        self.refuse(["reproduce", "fig5", "-o", "file"], "file")
 
     def test_scenes(self):
         np.save(self.path("depth.npy"), np.ones((4, 5), np.float32))

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "temporary_directory.hpp"
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/io/read_file.hpp"
 
 namespace tofsmith {
@@ -65,6 +66,15 @@ TEST_F(ReproductionFiles, CountAsUnfinishedWhenDamaged) {
     write_file_atomically(file, content.substr(0, length), OutputPolicy::overwrite);
     EXPECT_FALSE(directory_.finished(item, {})) << length;
   }
+}
+
+TEST_F(ReproductionFiles, LeaveThePagesOfOthersAlone) {
+  directory_.write(item, sample(), {});
+  directory_.write_index({});
+  EXPECT_NO_THROW(directory_.require_ours());
+  write_file_atomically(directory_.path() / "index.html", "<html>mine</html>",
+                        OutputPolicy::overwrite);
+  EXPECT_THROW(directory_.require_ours(), IoError);
 }
 
 TEST_F(ReproductionFiles, IndexListsWhatIsFinishedAndCountsItsVerdicts) {
