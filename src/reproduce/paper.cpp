@@ -16,9 +16,9 @@ namespace tofsmith {
 
 std::span<const PaperItem> paper_items() {
   static const std::vector<PaperItem> items = {
-      {"fig4", "Mean depth error over signal and ambient light", reproduce_fig4, 150},
+      {"fig4", "Mean depth error over signal and ambient light", reproduce_fig4, 110},
       {"fig5", "Impulse responses and their band limits", reproduce_fig5, 0.1},
-      {"fig8", "Two-bucket cameras", reproduce_fig8, 30},
+      {"fig8", "Two-bucket cameras", reproduce_fig8, 45},
   };
   return items;
 }
