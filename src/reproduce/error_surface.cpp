@@ -132,12 +132,6 @@ ErrorSurface measure_surface(const Contender& contender, const Camera& camera,
   return surface;
 }
 
-Eigen::MatrixXd least_linear_m(const std::vector<const ErrorSurface*>& surfaces) {
-  Eigen::MatrixXd least = surfaces.front()->linear_m;
-  for (const ErrorSurface* surface : surfaces) least = least.cwiseMin(surface->linear_m);
-  return least;
-}
-
 double geometric_mean(const Eigen::MatrixXd& values) {
   return std::exp(values.array().log().mean());
 }

@@ -65,9 +65,6 @@ struct ErrorSurface {
 ErrorSurface measure_surface(const Contender& contender, const Camera& camera,
                              const SurfacePrecision& precision, const Progress& progress = {});
 
-/// Element by element, the least linear error of the surfaces.
-Eigen::MatrixXd least_linear_m(const std::vector<const ErrorSurface*>& surfaces);
-
 /// exp(mean(log values)).
 double geometric_mean(const Eigen::MatrixXd& values);
 

@@ -52,7 +52,9 @@ std::vector<Series> slices(const ErrorSurfaceGroup& group, const std::vector<std
 }
 
 std::string estimate_mm(const Estimate& e) {
-  return fmt::format("{:.1f} ± {:.1g}", 1e3 * e.value, 1e3 * e.standard_error);
+  const double doubt = 1e3 * e.standard_error;
+  return doubt < 1.0 ? fmt::format("{:.1f} ± {:.1g}", 1e3 * e.value, doubt)
+                     : fmt::format("{:.0f} ± {:.0f}", 1e3 * e.value, doubt);
 }
 
 }  // namespace

@@ -183,13 +183,12 @@ CheckedStatement degrades_at_low(const std::vector<ErrorSurfaceGroup>& panels) {
                                                       : Verdict::fails,
       .statement = "Multi-frequency degrades rapidly at low signal levels.",
       .measured =
-          "From the highest to the lowest signal its error goes from less than the sinusoid's to "
-          "more, or stays above: " +
+          "Its error over the sinusoid's, at the highest and at the lowest signal: " +
           per_panel(panels,
                     [](const ErrorSurfaceGroup& panel) {
                       const ErrorSurface& multi = panel.of("multifrequency-k5");
                       const ErrorSurface& sinusoid = panel.of("sinusoid-k4");
-                      return fmt::format("{:.2f} to {:.2f} times",
+                      return fmt::format("{:.2f} and {:.2f}",
                                          at_highest(multi) / at_highest(sinusoid),
                                          at_lowest(multi) / at_lowest(sinusoid));
                     }) +
