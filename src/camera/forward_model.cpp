@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tofsmith/core/error.hpp"
+#include "tofsmith/camera/played_code.hpp"
 
 namespace tofsmith {
 
@@ -56,11 +56,12 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
 
   const Eigen::VectorXcd transfer =
       camera.band_limited() ? camera.transfer(harmonics_kept(code.samples())) : Eigen::VectorXcd();
+  const PlayedCode played = played_code(code, camera);
   Eigen::RowVectorXd gain(tap_values);
   tap_exposure_s_.resize(tap_values);
   for (int i = 0; i < tap_values; ++i) {
-    const Waveform& d = code.demodulation(i);
-    const Waveform& m = code.modulation_of(i);
+    const Waveform& d = played.demodulation[static_cast<std::size_t>(i)];
+    const Waveform& m = played.modulation[static_cast<std::size_t>(code.exposure_of(i))];
     functions_.push_back(camera.band_limited() ? CorrelationFunction(d, m, transfer)
                                                : CorrelationFunction(d, m));
     gain[i] = d.mean();

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/camera/played_code.hpp"
 #include "tofsmith/camera/played_waveform.hpp"
 #include "tofsmith/code/coding_curve.hpp"
 #include "tofsmith/core/units.hpp"
@@ -24,9 +25,9 @@ std::vector<double> axis_values(int points, double end) {
   return values;
 }
 
-/// A waveform as told to the generator: its switching times as steps, not a grid's.
-Series told(const std::string& name, const Waveform& waveform, double period_ns,
-            const LineStyle& style) {
+/// A waveform by its steps, not on a grid.
+Series stepped(const std::string& name, const Waveform& waveform, double period_ns,
+               const LineStyle& style) {
   const StepFunction steps = waveform.steps();
   Series series{.name = name, .period = period_ns, .mark = Mark::steps, .style = style};
   for (std::size_t i = 0; i < steps.values.size(); ++i) {
@@ -36,19 +37,26 @@ Series told(const std::string& name, const Waveform& waveform, double period_ns,
   return series;
 }
 
-std::vector<Series> arm_series(const Waveform& waveform, const ImpulseResponse& response,
-                               double frequency_hz, const LineStyle& style) {
+/// As told, where the generator changes it; as played; and as the impulse response leaves it.
+std::vector<Series> arm_series(const Waveform& told, const Waveform& played,
+                               const ImpulseResponse& response, double frequency_hz,
+                               const LineStyle& style) {
   const double period_ns = 1e9 / frequency_hz;
   LineStyle faint = style;
   faint.width_px = 1.0;
-  if (response.kind == ImpulseResponse::Kind::none)
-    return {told("played", waveform, period_ns, style)};
-  Series smooth{.name = "after the impulse response",
-                .x = axis_values(curve_points, period_ns),
-                .y = to_values(played_waveform(waveform, response, frequency_hz, curve_points)),
-                .period = period_ns,
-                .style = style};
-  return {told("played", waveform, period_ns, faint), smooth};
+  std::vector<Series> series;
+  if (!(told == played)) series.push_back(stepped("told", told, period_ns, reference_style()));
+  if (response.kind == ImpulseResponse::Kind::none) {
+    series.push_back(stepped("played", played, period_ns, style));
+    return series;
+  }
+  series.push_back(stepped("played", played, period_ns, faint));
+  series.push_back({.name = "after the impulse response",
+                    .x = axis_values(curve_points, period_ns),
+                    .y = to_values(played_waveform(played, response, frequency_hz, curve_points)),
+                    .period = period_ns,
+                    .style = style});
+  return series;
 }
 
 std::string response_text(const ImpulseResponse& response) {
@@ -71,6 +79,13 @@ std::string response_text(const ImpulseResponse& response) {
 
 std::string arm_text(bool binary) { return binary ? "switches on and off" : "analog"; }
 
+std::string generator_text(const std::optional<Generator>& generator, double frequency_hz) {
+  if (!generator) return "";
+  return fmt::format("; generator: {:.4g} MS/s, {} bits, {} points per period",
+                     generator->sample_rate_hz / 1e6, generator->amplitude_bits,
+                     generator->points_per_period(frequency_hz));
+}
+
 }  // namespace
 
 std::string figure_id(const std::string& prefix, const std::string& name) {
@@ -90,6 +105,7 @@ Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camer
                   correlation = colours.style("correlation");
   const double frequency_hz = camera.fundamental_frequency_hz;
   const ForwardModel model(code, camera);
+  const PlayedCode played = played_code(code, camera);
   const Eigen::MatrixXd table = model.tap_correlation_table(curve_points);
   const double range_m = camera.range_m();
 
@@ -110,8 +126,11 @@ Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camer
     rows.push_back(
         {.title = fmt::format("{}", i + 1),
          .panels = {
-             arm_series(code.modulation_of(i), camera.light.impulse_response, frequency_hz, light),
-             arm_series(code.demodulation(i), camera.sensor.impulse_response, frequency_hz, sensor),
+             arm_series(code.modulation_of(i),
+                        played.modulation[static_cast<std::size_t>(code.exposure_of(i))],
+                        camera.light.impulse_response, frequency_hz, light),
+             arm_series(code.demodulation(i), played.demodulation[static_cast<std::size_t>(i)],
+                        camera.sensor.impulse_response, frequency_hz, sensor),
              std::move(correlations)}});
   }
   return small_multiples(std::move(text),
@@ -160,10 +179,12 @@ KeyValueList camera_description(const Camera& camera) {
   add("samples per period", fmt::format("{}", camera.samples));
   add("peak over average power", fmt::format("{:.4g}", camera.light.peak_factor));
   add("light source", arm_text(camera.light.binary) +
-                          "; response: " + response_text(camera.light.impulse_response));
+                          "; response: " + response_text(camera.light.impulse_response) +
+                          generator_text(camera.light.generator, camera.fundamental_frequency_hz));
   add("sensor", fmt::format("{} tap{}, {}; response: {}", camera.sensor.taps,
                             camera.sensor.taps > 1 ? "s" : "", arm_text(camera.sensor.binary),
-                            response_text(camera.sensor.impulse_response)));
+                            response_text(camera.sensor.impulse_response)) +
+                    generator_text(camera.sensor.generator, camera.fundamental_frequency_hz));
   add("noise", fmt::format("{} electrons, read noise {:.4g} e",
                            camera.sensor.noise == NoiseModel::poisson ? "Poisson" : "Gaussian",
                            camera.sensor.read_noise_e));

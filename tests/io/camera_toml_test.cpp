@@ -60,6 +60,8 @@ Camera every_field_set() {
   camera.light.binary = false;
   camera.light.impulse_response.kind = Kind::lowpass;
   camera.light.impulse_response.cutoff_hz = 1e8;
+  camera.light.generator = Generator{.sample_rate_hz = 5.5e8, .amplitude_bits = 10};
+  camera.sensor.generator = Generator{};
   camera.sensor.taps = 2;
   camera.sensor.binary = false;
   camera.sensor.impulse_response.kind = Kind::file;
@@ -218,6 +220,28 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"light.impulse_response = { kind = \"file\", samples = [1, 2] }",
                 "c.toml:2:26: found no light.impulse_response.time_step_s; expected a line such "
                 "as `time_step_s = 1e-9`"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Generators, CameraTomlRefuses,
+    testing::Values(
+        BadLine{"light.generator = { sample_rate_hz = 39e6 }",
+                "c.toml:2:38: light.generator.sample_rate_hz = 3.9e+07; must give 2 .. 1048576 "
+                "points per period at fundamental_frequency_hz = 20000000"},
+        BadLine{"sensor.generator = { sample_rate_hz = -1 }",
+                "c.toml:2:39: sensor.generator.sample_rate_hz = -1; must be finite and > 0"},
+        BadLine{"sensor.generator.amplitude_bits = 0",
+                "c.toml:2:35: sensor.generator.amplitude_bits = 0; must be in [1, 24]"},
+        BadLine{"light.generator.amplitude_bit = 8",
+                "c.toml:2:1: unknown key light.generator.amplitude_bit; did you mean "
+                "light.generator.amplitude_bits?"}));
+
+TEST(CameraToml, AGeneratorThatIsNamedHasThePrototypesLimits) {
+  const Camera camera = parse_camera_toml(with_line("light.generator = {}"));
+  ASSERT_TRUE(camera.light.generator.has_value());
+  EXPECT_EQ(camera.light.generator->sample_rate_hz, 500e6);
+  EXPECT_EQ(camera.light.generator->amplitude_bits, 14);
+  EXPECT_FALSE(camera.sensor.generator.has_value());
+}
 
 TEST(CameraToml, SaysWhereTextThatIsNoTomlBreaksOff) {
   EXPECT_THAT(refusal("fundamental_frequency_hz = 15e6\n\n[light\n"), HasSubstr("c.toml:3:7: "));

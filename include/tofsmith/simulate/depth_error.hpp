@@ -92,7 +92,8 @@ struct BestRotation {
 /// rotation but those that put the origin between the two, where it costs the range less that. So
 /// one run of trials gives the error at all N rotations. (Every rotation is judged by the same
 /// trials and the least is taken: its own figure is a little low; evaluate the rotated code for an
-/// honest one.)
+/// honest one. A camera's generator rounds switching times, so on one this holds for rotations by
+/// whole points only.)
 /// @param options  as for evaluate
 BestRotation best_rotation(const CodeSet& code, const Camera& camera,
                            const EvaluateOptions& options = {}, const Progress& progress = {});
