@@ -17,6 +17,9 @@ namespace tofsmith {
 std::span<const PaperItem> paper_items() {
   static const std::vector<PaperItem> items = {
       {"fig5", "Impulse responses and their band limits", reproduce_fig5, 0.1},
+      {"fig7", "A hand under loose and tight limits", reproduce_fig7, 8},
+      {"fig10", "Scenes scanned by the prototype", reproduce_fig10, 30},
+      {"fig11", "A wall scanned by the prototype", reproduce_fig11, 10},
   };
   return items;
 }
