@@ -125,23 +125,26 @@ Section scene_section(const SceneScans& scans, std::size_t codes) {
   return section;
 }
 
-Table error_table(const std::vector<SceneScans>& all) {
+Table error_table(const std::vector<SceneScans>& all, std::size_t codes) {
   Table table{.id = "scan-errors",
-              .caption = "Errors by object; outliers are estimates off by more than 30 cm.",
-              .columns = {{"object"},
-                          {"O.D."},
-                          {"code"},
-                          {"mean (mm)", true},
-                          {"median (mm)", true},
-                          {"outliers (%)", true}}};
+              .caption =
+                  "Mean error by object and filter [mm], and in brackets the share of "
+                  "outliers: estimates off by more than 30 cm.",
+              .columns = {{"object"}, {"O.D."}}};
+  for (std::size_t c = 0; c < codes; ++c)
+    table.columns.push_back({short_name(all[0].scans[c].code), true});
   for (const SceneScans& scans : all)
     for (std::size_t o = 0; o < scans.scene.objects.size(); ++o)
-      for (const ObjectScan& scan : scans.scans)
-        table.rows.push_back({scans.scene.objects[o].name,
-                              fmt::format("{:g}", scan.optical_density), scan.code,
-                              fmt::format("{:.1f}", 1e3 * scan.errors[o].mean_m),
-                              fmt::format("{:.1f}", 1e3 * scan.errors[o].median_m),
-                              fmt::format("{:.2f}", 100 * scan.errors[o].outlier_rate)});
+      for (std::size_t first = 0; first < scans.scans.size(); first += codes) {
+        std::vector<std::string> row = {scans.scene.objects[o].name,
+                                        fmt::format("{:g}", scans.scans[first].optical_density)};
+        for (std::size_t c = 0; c < codes; ++c) {
+          const ObjectError& error = scans.scans[first + c].errors[o];
+          row.push_back(
+              fmt::format("{:.1f} ({:.1f} %)", 1e3 * error.mean_m, 100 * error.outlier_rate));
+        }
+        table.rows.push_back(std::move(row));
+      }
   return table;
 }
 
@@ -150,11 +153,7 @@ Table fit_table(const std::vector<SceneScans>& all) {
               .caption =
                   "The surfaces fitted to each code's mean depths without filter, beside "
                   "the truth that an emulation knows.",
-              .columns = {{"object"},
-                          {"code"},
-                          {"rms about the surface (mm)", true},
-                          {"surface less truth (mm)", true},
-                          {"radius (mm)", true}}};
+              .columns = {{"object"}, {"code"}, {"rms", true}, {"offset", true}, {"radius", true}}};
   for (const SceneScans& scans : all)
     for (const ReferenceFit& fit : scans.fits)
       table.rows.push_back({fit.object, fit.code, fmt::format("{:.2f}", 1e3 * fit.rms_m),
@@ -167,12 +166,10 @@ void keep_data(Reproduction& result, const std::vector<SceneScans>& all) {
   std::vector<std::string> names;
   std::vector<std::vector<double>> rows;
   for (const SceneScans& scans : all) {
-    result.arrays["true_depth_m_" + scans.scene.name] = npy_of(scans.scene.truth.depth_m);
+    std::vector<Image<float>> depths, errors;
     for (const ObjectScan& scan : scans.scans) {
-      const std::string key =
-          fmt::format("{}_od{:g}_{}", scans.scene.name, scan.optical_density, scan.code);
-      result.arrays["depth_m_" + key] = npy_of(scan.estimate_m);
-      result.arrays["mean_error_m_" + key] = npy_of(scan.mean_error_m);
+      depths.push_back(scan.estimate_m);
+      errors.push_back(scan.mean_error_m);
       for (std::size_t o = 0; o < scan.errors.size(); ++o) {
         names.push_back(fmt::format("{},{},{:g}", scans.scene.objects[o].name, scan.code,
                                     scan.optical_density));
@@ -180,6 +177,11 @@ void keep_data(Reproduction& result, const std::vector<SceneScans>& all) {
             {scan.errors[o].mean_m, scan.errors[o].median_m, scan.errors[o].outlier_rate});
       }
     }
+    const NpyShape axes = {PrototypeBench::optical_densities().size(),
+                           depths.size() / PrototypeBench::optical_densities().size()};
+    result.arrays["true_depth_m_" + scans.scene.name] = stack({}, {scans.scene.truth.depth_m});
+    result.arrays["depth_m_" + scans.scene.name] = stack(axes, depths);
+    result.arrays["mean_error_m_" + scans.scene.name] = stack(axes, errors);
   }
   result.files["errors.csv"] =
       csv_text("object,code,optical_density", names, {"mean_m", "median_m", "outlier_rate"}, rows);
@@ -218,7 +220,10 @@ Reproduction reproduce_fig10(const ReproduceContext& context, const Progress& pr
       "own, without a filter.",
       width, height, estimates))};
   for (const SceneScans& scans : all) result.sections.push_back(scene_section(scans, codes));
-  result.sections.push_back({"All errors", {error_table(all), fit_table(all)}});
+  result.sections.push_back({"All errors",
+                             {error_table(all, codes), fit_table(all),
+                              Paragraph{"In `data.npz`, maps are (filter, code, row, column): "
+                                        "one estimate of depth, and the mean error of all."}}});
   keep_data(result, all);
   report(progress, 1.0, "scenes scanned");
   return result;

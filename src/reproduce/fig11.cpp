@@ -226,30 +226,35 @@ Reproduction reproduce_fig11(const ReproduceContext& context, const Progress& pr
       "An error is the distance of an estimate from the wall's mean depth, the mean of all "
       "estimates that the same code makes behind O.D. 1.",
       width, height, estimates))};
-  Section errors{"Errors behind each filter", {error_table(scans), deviation_figure(scans, codes)}};
+  Section section{"Errors behind each filter",
+                  {error_table(scans), deviation_figure(scans, codes)}};
   for (std::size_t first = 0; first < scans.size(); first += codes) {
     std::vector<const WallScan*> behind;
     for (std::size_t c = 0; c < codes; ++c) behind.push_back(&scans[first + c]);
-    errors.blocks.push_back(histogram_figure(behind, scans[first].optical_density));
+    section.blocks.push_back(histogram_figure(behind, scans[first].optical_density));
   }
   std::vector<const WallScan*> behind_two;
   for (const WallScan& scan : scans)
     if (scan.optical_density == 2.0) behind_two.push_back(&scan);
-  errors.blocks.push_back(profile_figure(behind_two, staged.view, 2.0));
-  result.sections.push_back(std::move(errors));
+  section.blocks.push_back(profile_figure(behind_two, staged.view, 2.0));
+  section.blocks.push_back(
+      Paragraph{"In `data.npz`, `error_m` is (filter, code, estimate, row, column) in the order of "
+                "[[wall-errors]]."});
+  result.sections.push_back(std::move(section));
 
   std::vector<std::string> names;
   std::vector<std::vector<double>> rows;
+  std::vector<float> errors_m;
   for (const WallScan& scan : scans) {
     names.push_back(fmt::format("{},{:g}", scan.code, scan.optical_density));
     rows.push_back(
         {scan.mean_m, scan.deviation_m, scan.mean_error_m, scan.median_error_m, scan.outlier_rate});
-    const std::vector<float> error(scan.error_m.begin(), scan.error_m.end());
-    result.arrays[fmt::format("error_m_{}_od{:g}", scan.code, scan.optical_density)] =
-        NpyArray::of<float>({static_cast<std::size_t>(estimates), static_cast<std::size_t>(height),
-                             static_cast<std::size_t>(width)},
-                            error);
+    errors_m.insert(errors_m.end(), scan.error_m.begin(), scan.error_m.end());
   }
+  result.arrays["error_m"] =
+      NpyArray::of<float>({count / codes, codes, static_cast<std::size_t>(estimates),
+                           static_cast<std::size_t>(height), static_cast<std::size_t>(width)},
+                          errors_m);
   result.files["errors.csv"] = csv_text(
       "code,optical_density", names,
       {"mean_m", "standard_deviation_m", "mean_error_m", "median_error_m", "outlier_rate"}, rows);

@@ -17,10 +17,14 @@ std::string short_name(std::string_view code) {
   return std::string(code);
 }
 
-NpyArray npy_of(const Image<float>& image) {
-  return NpyArray::of<float>(
-      {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width)},
-      image.pixels);
+NpyArray stack(const NpyShape& axes, const std::vector<Image<float>>& images) {
+  std::vector<float> values;
+  for (const Image<float>& image : images)
+    values.insert(values.end(), image.pixels.begin(), image.pixels.end());
+  NpyShape shape = axes;
+  shape.push_back(static_cast<std::size_t>(images.front().height));
+  shape.push_back(static_cast<std::size_t>(images.front().width));
+  return NpyArray::of<float>(shape, values);
 }
 
 Image<float> where_known(Image<float> image, const Image<float>& known) {

@@ -19,8 +19,9 @@ namespace tofsmith {
 /// A code's name over a small picture: "redesigned K=4", "sinusoid", "multi-frequency".
 std::string short_name(std::string_view code);
 
-/// An image (H, W), for an NPZ file.
-NpyArray npy_of(const Image<float>& image);
+/// Images of one size (.., H, W), for an NPZ file.
+/// @param axes  what the images stand for, slowest first; its product is their number
+NpyArray stack(const NpyShape& axes, const std::vector<Image<float>>& images);
 
 /// The image where `known` is finite, NaN elsewhere.
 Image<float> where_known(Image<float> image, const Image<float>& known);
