@@ -24,11 +24,20 @@ Reproduction reproduce_fig5(const ReproduceContext& context, const Progress& pro
 /// Fig. 6: two K = 5 codes at 10 f0, inputs binary, outputs smooth.
 Reproduction reproduce_fig6(const ReproduceContext& context, const Progress& progress);
 
+/// Fig. 7: a hand, decoded under loose and tight limits in high and low light.
+Reproduction reproduce_fig7(const ReproduceContext& context, const Progress& progress);
+
 /// Fig. 8: depth error of two-bucket cameras.
 Reproduction reproduce_fig8(const ReproduceContext& context, const Progress& progress);
 
 /// Fig. 9: depth error of a single pixel on the bench, its depth range emulated by delays.
 Reproduction reproduce_fig9(const ReproduceContext& context, const Progress& progress);
+
+/// Fig. 10: books and a volleyball, scanned by the prototype behind three filters.
+Reproduction reproduce_fig10(const ReproduceContext& context, const Progress& progress);
+
+/// Fig. 11: a flat wall, scanned by the prototype, against its mean depth.
+Reproduction reproduce_fig11(const ReproduceContext& context, const Progress& progress);
 
 /// Table 1: the bench's parameters, and what its generators make of the codes.
 Reproduction reproduce_table1(const ReproduceContext& context, const Progress& progress);

@@ -21,8 +21,11 @@ std::span<const PaperItem> paper_items() {
       {"fig4", "Mean depth error over signal and ambient light", reproduce_fig4, 110},
       {"fig5", "Impulse responses and their band limits", reproduce_fig5, 0.1},
       {"fig6", "Two K = 5 codes at 10 f0", reproduce_fig6, 1},
+      {"fig7", "A hand under loose and tight limits", reproduce_fig7, 8},
       {"fig8", "Two-bucket cameras", reproduce_fig8, 45},
       {"fig9", "A single pixel on the bench", reproduce_fig9, 8},
+      {"fig10", "Scenes scanned by the prototype", reproduce_fig10, 30},
+      {"fig11", "A wall scanned by the prototype", reproduce_fig11, 10},
       {"table1", "The bench's parameters", reproduce_table1, 5},
       {"text", "Statements in the text", reproduce_text, 60},
   };
