@@ -48,6 +48,7 @@ OrderResult factorize_order(int order, const ReproduceContext& context, const Pr
   FactorizeOptions options;
   options.seed = context.options.seed;
   options.random_starts = context.pick(30, 12);
+  options.refined = context.pick(16, 3);
   options.keep_naive = false;  // the search must find the answer by itself
   const Camera first = paper_camera(peaks[0], 0);
   OrderResult result{.order = order,
@@ -195,8 +196,10 @@ Figure correlations_of(const OrderResult& one) {
   return small_multiples(
       {.id = fmt::format("k{}", one.order),
        .title = fmt::format("K = {}: correlation functions of all codes", one.order),
-       .caption = "Each row is a code. Slow targets survive a low peak; fast ones lose their "
-                  "contrast first."},
+       .caption =
+           "Each row is a code. As the peak falls the flat tops shrink, those of fast targets "
+           "first, until square meets square: at p = 2 each is a wave of triangles with the "
+           "target's own number of periods, or near it."},
       columns, rows);
 }
 

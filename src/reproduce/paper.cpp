@@ -17,10 +17,10 @@ namespace tofsmith {
 std::span<const PaperItem> paper_items() {
   static const std::vector<PaperItem> items = {
       {"fig2", "From a target to functions that can be played", reproduce_fig2, 2},
-      {"fig3", "Hamiltonian codes at falling peak power", reproduce_fig3, 10},
+      {"fig3", "Hamiltonian codes at falling peak power", reproduce_fig3, 9},
       {"fig5", "Impulse responses and their band limits", reproduce_fig5, 0.1},
-      {"fig6", "Two K = 5 codes at 10 f0", reproduce_fig6, 1},
-      {"text", "Statements in the text", reproduce_text, 60},
+      {"fig6", "Two K = 5 codes at 10 f0", reproduce_fig6, 0.5},
+      {"text", "Statements in the text", reproduce_text, 10},
   };
   return items;
 }

@@ -140,13 +140,14 @@ void add_convergence(Reproduction& result, const ReproduceContext& context,
 
   std::vector<Series> bars;
   std::vector<double> iterations;
-  for (int n = 1; n <= 30; ++n) iterations.push_back(n);
+  for (int n = 0; n <= 30; ++n) iterations.push_back(n);
   for (const std::size_t i : {std::size_t{0}, rules.size()}) {
     Series curve{.name = i == 0 ? "no limit" : "band limit",
                  .x = iterations,
                  .mark = Mark::steps,
                  .style = series[i].style};
-    for (std::size_t n = 0; n < iterations.size(); ++n)
+    curve.y.push_back(0.0);  // none needs none
+    for (std::size_t n = 0; n + 1 < iterations.size(); ++n)
       curve.y.push_back(series[i].y[n] - (n > 0 ? series[i].y[n - 1] : 0.0));
     // A step is drawn to the right of its x: centred on the number it counts.
     for (double& x : curve.x) x -= 0.5;
