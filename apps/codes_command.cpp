@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "tap_arguments.hpp"
 #include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/camera/generator_report.hpp"
 #include "tofsmith/code/coding_curve.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/io/code_file.hpp"
@@ -50,6 +51,39 @@ std::string strip(const Waveform& waveform) {
   return text;
 }
 
+/// What the camera's generators make of the code: rows of a table, and the same as JSON.
+std::vector<std::vector<std::string>> generator_rows(const CodeSet& code, const Camera& camera,
+                                                     nlohmann::ordered_json& document) {
+  std::vector<std::vector<std::string>> rows{{"generator", "points", "clock (MHz)", "duty told",
+                                              "played", "mean told", "played", "edge move (ns)",
+                                              "rms change"}};
+  for (const GeneratorReport& r : generator_report(code, camera)) {
+    const bool light = r.arm == Arm::light;
+    document.push_back({{"arm", light ? "light" : "sensor"},
+                        {"index", r.index},
+                        {"points_per_period", r.points_per_period},
+                        {"clock_hz", r.clock_hz},
+                        {"duty_told", r.duty_told},
+                        {"duty_played", r.duty_played},
+                        {"mean_told", r.mean_told},
+                        {"mean_played", r.mean_played},
+                        {"peak_told", r.peak_told},
+                        {"peak_played", r.peak_played},
+                        {"edges_told", r.edges_told},
+                        {"edges_played", r.edges_played},
+                        {"rms_difference", r.rms_difference}});
+    if (r.largest_edge_move_s) document.back()["largest_edge_move_s"] = *r.largest_edge_move_s;
+    rows.push_back(
+        {fmt::format("{}{}", light ? "m" : "d", r.index + 1),
+         fmt::format("{}", r.points_per_period), fmt::format("{:.4g}", r.clock_hz / 1e6),
+         fmt::format("{:.4f}", r.duty_told), fmt::format("{:.4f}", r.duty_played),
+         fmt::format("{:.4f}", r.mean_told), fmt::format("{:.4f}", r.mean_played),
+         r.largest_edge_move_s ? fmt::format("{:.3f}", *r.largest_edge_move_s * 1e9) : "-",
+         fmt::format("{:.4g}", r.rms_difference)});
+  }
+  return rows;
+}
+
 void show(const Session& session, const CodeSet& code, const Camera& camera) {
   const ForwardModel model(code, camera);
   const Eigen::MatrixXd table = model.correlation_table(8 * code.samples());
@@ -78,6 +112,9 @@ void show(const Session& session, const CodeSet& code, const Camera& camera) {
                     fmt::format("{:.4f}", d.mean()), fmt::format("{}", d.edges())});
     strips += fmt::format("  m{:<2} |{}|\n  d{:<2} |{}|\n", i + 1, strip(m), i + 1, strip(d));
   }
+  nlohmann::ordered_json generators = nlohmann::ordered_json::array();
+  const auto generator_table = generator_rows(code, camera, generators);
+  if (!generators.empty()) document["generators"] = generators;
   session.print_json(document);
   session.say(fmt::format(
       "{} on {}: {} measurements, {} exposures, N = {}, peak {:.3g}\n"
@@ -85,6 +122,9 @@ void show(const Session& session, const CodeSet& code, const Camera& camera) {
       code.name(), camera.name, code.measurements(), code.exposures(), code.samples(), code.peak(),
       coding_curve_length(table), coding_curve_rank(table), harmonics_used(table), text_table(rows),
       strips));
+  if (!generators.empty())
+    session.say("What the generators really play, ahead of the arms' responses:\n" +
+                text_table(generator_table));
 }
 
 void write(const Session& session, const CodeSet& code, const Camera& camera,

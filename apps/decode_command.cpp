@@ -6,11 +6,12 @@
 
 #include "commands.hpp"
 #include "depth_output.hpp"
+#include "method_arguments.hpp"
 #include "scene_source.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/raw_frames_file.hpp"
 
@@ -22,7 +23,7 @@ struct DecodeArguments {
   std::string raw, code, output;
   CameraArguments camera;
   TapArguments taps;
-  std::string method = "zncc";
+  MethodArguments method;
   std::vector<std::string> planes = plane_names();
   DecodeOptions options;
   int frame = -1;
@@ -42,8 +43,11 @@ std::filesystem::path frame_path(const std::filesystem::path& path, int frame, i
 void run(const DecodeArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
   const CodeSet code = load_code(arguments.code, camera, arguments.taps.file_options());
-  const Decoder decoder(make_decoding_table(ForwardModel(code, camera), camera), arguments.options);
-  const RawFrames raw = read_raw_frames(arguments.raw, decoder.measurements());
+  const ForwardModel model(code, camera);
+  const AnyDecoder decoder =
+      make_decoder(arguments.method.method(), make_decoding_table(model, camera), arguments.options,
+                   arguments.method.unwrap_weights());
+  const RawFrames raw = read_raw_frames(arguments.raw, model.measurements());
   if (arguments.frame >= raw.frames)
     throw UsageError(fmt::format("--frame {}: {} holds {} frame{}, counted from 0", arguments.frame,
                                  arguments.raw, raw.frames, raw.frames == 1 ? "" : "s"));
@@ -57,8 +61,9 @@ void run(const DecodeArguments& arguments, const Session& session) {
   std::string lines;
   for (int frame = first; frame < last; ++frame) {
     const double count = last - first;
-    DepthImage image = decoder.decode(
-        raw, frame, part_of(progress, (frame - first) / count, (frame - first + 1) / count));
+    const Progress part = part_of(progress, (frame - first) / count, (frame - first + 1) / count);
+    DepthImage image =
+        std::visit([&](const auto& d) { return d.decode(raw, frame, part); }, decoder);
     const std::filesystem::path path = frame_path(arguments.output, frame, last - first);
     const bool as_z = arguments.kind == "z" && path.extension() != ".ply";
     if (as_z) image.depth_m = z_from_radial(image.depth_m, view);
@@ -74,6 +79,7 @@ void run(const DecodeArguments& arguments, const Session& session) {
   report(progress, 1.0, "done");
   session.print_json({{"code", code.name()},
                       {"camera", camera.name},
+                      {"method", name_of(arguments.method.method())},
                       {"height", raw.height},
                       {"width", raw.width},
                       {"measurements", raw.measurements},
@@ -93,9 +99,7 @@ void add_decode_command(CLI::App& app, Session& session) {
       ->required();
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);
-  command->add_option("--method", arguments->method, "decoder")
-      ->check(CLI::IsMember({"zncc"}))
-      ->capture_default_str();
+  arguments->method.add_to(*command);
   command
       ->add_option("--outputs", arguments->planes,
                    "planes to write: depth,signal,ambient,confidence,deviation,status")

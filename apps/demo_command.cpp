@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 
 struct DemoArguments {
   CameraArguments camera;
-  SceneSource scene{.depth = "table-top"};
+  SceneSource scene{.scene = "table-top"};
   std::uint64_t seed = 1;
   int trials = 20000;
   std::string output = "tofsmith-demo";
@@ -120,6 +120,9 @@ void print_summary(const Session& session, const fs::path& directory, const Came
                           capture.decodings[i].code, scene_gain(capture, i));
     session.say(line);
   }
+  if (const std::string remark = beyond_range_remark(scene_extent(scene.truth, camera));
+      !remark.empty())
+    session.say(remark);
   session.say(fmt::format("codes: {}, waveforms: {}", (directory / "codes").string(),
                           (directory / "waveforms").string()));
   session.say(fmt::format("depth: {} (.npz .exr .pfm .png), point cloud: {}",
@@ -176,14 +179,8 @@ void add_demo_command(CLI::App& app, Session& session) {
   arguments->camera.add_to(*command);
   command->add_option("-o,--output", arguments->output, "directory for everything")
       ->capture_default_str();
-  command->add_option("--depth", arguments->scene.depth,
-                      "depth image instead of the built-in table-top scene");
-  command->add_option("--image", arguments->scene.image, "albedo image of that scene");
-  command
-      ->add_option("--kind", arguments->scene.kind,
-                   "what the depth image holds: z along the axis, or radial distance")
-      ->check(CLI::IsMember({"z", "radial"}))
-      ->capture_default_str();
+  command->add_option("--depth", arguments->scene.scene, scene_help)->capture_default_str();
+  arguments->scene.add_to(*command);
   command->add_option("--seed", arguments->seed, "seed of every random choice")
       ->capture_default_str();
   command->add_option("--trials", arguments->trials, "trials per operating point")

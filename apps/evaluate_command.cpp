@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "method_arguments.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/code_file.hpp"
@@ -17,6 +18,7 @@ struct EvaluateArguments {
   std::vector<std::string> codes;
   CameraArguments camera;
   EvaluateOptions options;
+  MethodArguments method;
   bool on_bins = false;
   bool best_rotation = false;
   TapArguments taps;
@@ -69,9 +71,11 @@ void print(const Session& session, const Camera& camera, const std::vector<Evalu
   }
   session.say(text_table(rows));
   session.say(fmt::format(
-      "{} trials per operating point, seed {}, N = {}, true depths {}; +- is one standard error",
+      "{} trials per operating point, seed {}, N = {}, true depths {}, decoded by {}; +- is one "
+      "standard error",
       codes.empty() ? options.trials : codes.front().error.trials, options.seed, camera.samples,
-      options.depth == DepthSampling::bins ? "on bins" : "anywhere in the range"));
+      options.depth == DepthSampling::bins ? "on bins" : "anywhere in the range",
+      name_of(options.method)));
 }
 
 /// Where to write, looked at before the long work.
@@ -126,6 +130,8 @@ void write(const std::filesystem::path& path, const Session& session, const Came
 void run(EvaluateArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
   if (arguments.on_bins) arguments.options.depth = DepthSampling::bins;
+  arguments.options.method = arguments.method.method();
+  arguments.options.unwrap_weights = arguments.method.unwrap_weights();
   arguments.options.validate();
   check_output(arguments.output, session);
   std::vector<CodeSet> codes;
@@ -151,6 +157,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
       ->capture_default_str();
   command->add_option("--seed", arguments->options.seed, "seed of all trials")
       ->capture_default_str();
+  arguments->method.add_to(*command);
   command
       ->add_option("--outlier-threshold", arguments->options.outlier_threshold_m,
                    "circular errors beyond this many metres are outliers")

@@ -3,6 +3,7 @@
 #include "scene_source.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <numbers>
@@ -10,15 +11,120 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/albedo_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
-#include "tofsmith/scene/table_top.hpp"
+#include "tofsmith/io/mesh_file.hpp"
+#include "tofsmith/io/scene_toml.hpp"
+#include "tofsmith/scene/built_in_scenes.hpp"
+#include "tofsmith/scene/check_view.hpp"
+#include "tofsmith/scene/framed_mesh.hpp"
+#include "tofsmith/scene/ray_cast.hpp"
 
 namespace tofsmith::apps {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr double default_view_rad = std::numbers::pi / 3;
+constexpr int default_width = 320, default_height = 240;
+
+enum class SceneKind { built_in, scene_file, mesh, depth_image };
+
+SceneKind kind_of(const std::string& scene) {
+  const std::vector<std::string> names = built_in_scene_names();
+  if (std::ranges::find(names, scene) != names.end()) return SceneKind::built_in;
+  std::error_code ignored;
+  if (!fs::exists(scene, ignored) && !fs::path(scene).has_extension()) {
+    const std::string near = nearest_word(scene, names);
+    throw IoError(scene.empty() ? "scene" : scene,
+                  fmt::format("there is no such file and no built-in scene of that name ({}){}",
+                              fmt::join(names, ", "),
+                              near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  }
+  if (fs::path(scene).extension() == ".toml") return SceneKind::scene_file;
+  return is_mesh_file(scene) ? SceneKind::mesh : SceneKind::depth_image;
+}
+
+void refuse(bool given, std::string_view option, std::string_view why) {
+  if (given) throw UsageError(fmt::format("{}: {}", option, why));
+}
+
+void check_options(const SceneSource& source, SceneKind kind) {
+  if (kind != SceneKind::depth_image)
+    refuse(!source.image.empty(), "--image " + source.image,
+           fmt::format("{} has its own albedo; give a depth image too", source.scene));
+  if (kind != SceneKind::mesh)
+    refuse(source.scale_m.has_value(), "--scale-m",
+           "only a mesh has units of its own; in a scene file every [[mesh]] has its scale_m");
+  if (kind == SceneKind::scene_file || kind == SceneKind::depth_image)
+    for (const auto& [option, value] :
+         {std::pair("--width", source.width), std::pair("--height", source.height)})
+      refuse(value.has_value(), option,
+             kind == SceneKind::depth_image ? "a depth image has its own size"
+                                            : "a scene file says its size in [view]");
+}
+
+StagedScene staged_scene(const SceneSource& source, SceneKind kind) {
+  if (kind == SceneKind::scene_file) return read_scene_toml(source.scene);
+  const int width = source.width.value_or(default_width);
+  const int height = source.height.value_or(default_height);
+  if (kind == SceneKind::built_in) return built_in_scene(source.scene, width, height);
+  return framed_mesh(read_mesh(source.scene), source.scale_m.value_or(1.0), width, height);
+}
+
+/// A picture that goes with a scene must have its size.
+void require_size(const Image<float>& picture, const std::string& file, const SceneImage& scene,
+                  const std::string& scene_file) {
+  if (picture.height == scene.height() && picture.width == scene.width()) return;
+  throw IoError(file,
+                fmt::format("is {} x {} pixels; expected {} x {}, the size of {}", picture.height,
+                            picture.width, scene.height(), scene.width(), scene_file));
+}
+
+Transfer transfer_of(const SceneSource& source) {
+  return source.linear_image ? Transfer::linear : Transfer::srgb;
+}
+
+LoadedScene depth_image(const SceneSource& source, const Camera& camera) {
+  const Image<float> depth_m = read_depth(source.scene);
+  LoadedScene scene{fs::path(source.scene).stem().string(),
+                    SceneImage(depth_m.height, depth_m.width),
+                    view_of(camera, depth_m.width, depth_m.height)};
+  scene.image.depth_m = source.kind == "z" ? radial_from_z(depth_m, scene.view) : depth_m;
+  if (!source.image.empty()) {
+    Image<float> picture = read_albedo(source.image, transfer_of(source));
+    require_size(picture, source.image, scene.image, source.scene);
+    scene.image.albedo = albedo_of_picture(std::move(picture), source.image, scene.image.depth_m);
+  }
+  return scene;
+}
+
+LoadedScene load(const SceneSource& source, SceneKind kind, const Camera& camera) {
+  if (kind == SceneKind::depth_image) return depth_image(source, camera);
+  const StagedScene staged = staged_scene(source, kind);
+  SceneImage image = ray_cast(staged.shapes, staged.view, staged.camera_to_world);
+  check_view(staged, image);
+  return {kind == SceneKind::built_in ? source.scene : fs::path(source.scene).stem().string(),
+          std::move(image), staged.view};
+}
 
 }  // namespace
+
+void SceneSource::add_to(CLI::App& command) {
+  command.add_option("--image", image, "albedo of a depth image (.png .npy .exr .pfm)");
+  command.add_option("--ambient-image", ambient_image,
+                     "ambient light of each pixel, relative to --ambient (.png .npy .exr .pfm)");
+  command.add_flag("--linear-image", linear_image, "PNG images hold linear light, not sRGB");
+  command
+      .add_option("--kind", kind, "what a depth image holds: z along the axis, or radial distance")
+      ->check(CLI::IsMember({"z", "radial"}))
+      ->capture_default_str();
+  command.add_option("--width", width, "columns of a built-in scene or a mesh (320)")
+      ->check(CLI::Range(1, 16384));
+  command.add_option("--height", height, "rows of a built-in scene or a mesh (240)")
+      ->check(CLI::Range(1, 16384));
+  command.add_option("--scale-m", scale_m, "metres per unit of a mesh (1)")
+      ->check(CLI::PositiveNumber);
+}
 
 PinholeView view_of(const Camera& camera, int width, int height) {
   if (!camera.lens) return PinholeView::centred(width, height, default_view_rad);
@@ -31,34 +137,27 @@ PinholeView view_of(const Camera& camera, int width, int height) {
 }
 
 LoadedScene load_scene(const SceneSource& source, const Camera& camera) {
-  if (source.depth == "table-top") {
-    if (!source.image.empty())
-      throw UsageError(fmt::format(
-          "--image {}: the built-in table-top scene has its own albedo; give a depth image too",
-          source.image));
-    StagedScene staged = table_top_scene(source.width, source.height);
-    return {"table-top", table_top_image(source.width, source.height), staged.view};
+  const SceneKind kind = kind_of(source.scene);
+  check_options(source, kind);
+  try {
+    LoadedScene scene = load(source, kind, camera);
+    if (!source.ambient_image.empty()) {
+      scene.image.ambient_scale = read_ambient_scale(source.ambient_image, transfer_of(source));
+      require_size(scene.image.ambient_scale, source.ambient_image, scene.image, source.scene);
+    }
+    scene.image.validate();
+    return scene;
+  } catch (const std::invalid_argument& error) {  // what files hold, not what was typed
+    throw IoError(source.scene, error.what());
   }
-  const Image<float> depth_m = read_depth(source.depth);
-  LoadedScene scene{std::filesystem::path(source.depth).stem().string(),
-                    SceneImage(depth_m.height, depth_m.width),
-                    view_of(camera, depth_m.width, depth_m.height)};
-  scene.image.depth_m = source.kind == "z" ? radial_from_z(depth_m, scene.view) : depth_m;
-  if (!source.image.empty()) {
-    scene.image.albedo =
-        read_albedo(source.image, source.linear_image ? Transfer::linear : Transfer::srgb);
-    if (scene.image.albedo.height != depth_m.height || scene.image.albedo.width != depth_m.width)
-      throw IoError(source.image, fmt::format("is {} x {} pixels; expected {} x {}, the size of {}",
-                                              scene.image.albedo.height, scene.image.albedo.width,
-                                              depth_m.height, depth_m.width, source.depth));
-    // Radiance of a render can exceed 1; as albedo it is scaled down as a whole.
-    const float brightest =
-        *std::max_element(scene.image.albedo.pixels.begin(), scene.image.albedo.pixels.end());
-    if (brightest > 1.0f)
-      for (float& value : scene.image.albedo.pixels) value /= brightest;
-  }
-  scene.image.validate();
-  return scene;
+}
+
+std::string beyond_range_remark(const SceneExtent& extent) {
+  if (extent.beyond_range == 0) return "";
+  return fmt::format(
+      "{} pixels ({:.3g} % of those with a depth) lie beyond the camera's "
+      "unambiguous range of {}: their depth wraps",
+      extent.beyond_range, 100.0 * extent.beyond_range_share(), length_text(extent.range_m));
 }
 
 }  // namespace tofsmith::apps

@@ -2,20 +2,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "session.hpp"
 #include "tofsmith/scene/pinhole.hpp"
 #include "tofsmith/scene/scene_image.hpp"
+#include "tofsmith/simulate/scene_extent.hpp"
 
 namespace tofsmith::apps {
 
 /// What a command is told about the scene it shall capture.
 struct SceneSource {
-  std::string depth;              ///< a depth image, or "table-top"
-  std::string image;              ///< albedo image; empty: albedo 1
-  std::string kind = "z";         ///< of the depth image: "z" or "radial"
-  bool linear_image = false;      ///< a PNG holds linear light, not sRGB
-  int width = 320, height = 240;  ///< of the built-in scene
+  std::string scene;          ///< a built-in scene, a scene file (.toml), a mesh, or a depth image
+  std::string image;          ///< albedo of a depth image; empty: albedo 1
+  std::string ambient_image;  ///< ambient light of each pixel; empty: the same everywhere
+  std::string kind = "z";     ///< of a depth image: "z" or "radial"
+  bool linear_image = false;  ///< PNG images hold linear light, not sRGB
+  std::optional<int> width, height;  ///< of built-in scenes and meshes; 320 x 240
+  std::optional<double> scale_m;     ///< metres per unit of a mesh; 1
+
+  /// Adds all options but the scene itself to a subcommand.
+  void add_to(CLI::App& command);
 };
+
+/// What the scene's argument may be, for help texts.
+inline constexpr const char* scene_help =
+    "built-in scene (see `tofsmith scene`), scene file (.toml), mesh (.obj .ply .stl), or depth "
+    "image (.npy .npz .exr .pfm, .png in mm)";
 
 /// A scene and the pinhole it is seen through.
 struct LoadedScene {
@@ -27,9 +40,12 @@ struct LoadedScene {
 /// How an image of this size is seen: through the camera's lens, or 60 degrees wide without one.
 PinholeView view_of(const Camera& camera, int width, int height);
 
-/// Loads a depth image with its albedo, or the built-in scene. z-depth becomes radial distance
-/// through the camera's lens (without one: a view 60 degrees wide).
-/// @throws IoError, std::invalid_argument; UsageError for an albedo image without a depth image
+/// Loads a depth image with its albedo, or casts the rays of a scene. z-depth becomes radial
+/// distance through the camera's lens (without one: a view 60 degrees wide).
+/// @throws IoError, std::invalid_argument; UsageError for options that do not go with the scene
 LoadedScene load_scene(const SceneSource& source, const Camera& camera);
+
+/// "12.5 % of the depths lie beyond the unambiguous range of 9.99 m and wrap"; "" if none do.
+std::string beyond_range_remark(const SceneExtent& extent);
 
 }  // namespace tofsmith::apps

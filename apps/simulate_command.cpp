@@ -41,6 +41,7 @@ void run(SimulateArguments& arguments, const Session& session) {
   write_raw_frames(arguments.output, raw, session.output_policy());
   if (!arguments.truth.empty())
     write_depth(arguments.truth, scene.image.depth_m, session.output_policy());
+  const SceneExtent extent = scene_extent(scene.image, camera);
   session.print_json({{"scene", scene.name},
                       {"code", code.name()},
                       {"camera", camera.name},
@@ -51,6 +52,8 @@ void run(SimulateArguments& arguments, const Session& session) {
                       {"signal_e_per_s", arguments.options.signal_e_per_s},
                       {"ambient_e_per_s", arguments.options.ambient_e_per_s},
                       {"seed", arguments.options.seed},
+                      {"range_m", extent.range_m},
+                      {"beyond_range_share", extent.beyond_range_share()},
                       {"output", arguments.output}});
   session.say(fmt::format(
       "wrote {}: {} frame{} of {} x {} pixels, {} measurements of {} (S = {:.4g} e/s at {:.3g} m, "
@@ -59,6 +62,7 @@ void run(SimulateArguments& arguments, const Session& session) {
       raw.measurements, code.name(), arguments.options.signal_e_per_s,
       arguments.options.reference_distance_m, arguments.options.ambient_e_per_s,
       arguments.options.seed));
+  if (extent.beyond_range > 0) session.say(beyond_range_remark(extent));
 }
 
 }  // namespace
@@ -66,18 +70,8 @@ void run(SimulateArguments& arguments, const Session& session) {
 void add_simulate_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<SimulateArguments>();
   CLI::App* command = app.add_subcommand("simulate", "raw measurements of a scene");
-  command
-      ->add_option("SCENE", arguments->scene.depth,
-                   "depth image (.npy .npz .exr .pfm .png in mm), or table-top")
-      ->required();
-  command->add_option("--image", arguments->scene.image, "albedo image (.png .npy .exr .pfm)");
-  command->add_flag("--linear-image", arguments->scene.linear_image,
-                    "the PNG holds linear light, not sRGB");
-  command
-      ->add_option("--kind", arguments->scene.kind,
-                   "what the depth image holds: z along the axis, or radial distance")
-      ->check(CLI::IsMember({"z", "radial"}))
-      ->capture_default_str();
+  command->add_option("SCENE", arguments->scene.scene, scene_help)->required();
+  arguments->scene.add_to(*command);
   command->add_option("--code", arguments->code, "a family or a code file")->required();
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tofsmith/camera/prototype.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
@@ -126,6 +127,8 @@ void Camera::validate() const {
   for (const double time_s : exposure_s.each_s) require_positive(time_s, "exposure_s");
   validate_light(light);
   validate_sensor(sensor);
+  if (light.generator) light.generator->validate("light.generator", fundamental_frequency_hz);
+  if (sensor.generator) sensor.generator->validate("sensor.generator", fundamental_frequency_hz);
   if (lens) {
     require_positive(lens->fx_px, "lens.fx_px");
     require_positive(lens->fy_px, "lens.fy_px");
@@ -182,10 +185,11 @@ OperatingRange paper_operating_range() {
 }
 
 std::vector<std::string> built_in_camera_names() {
-  return {"paper-30x", "paper-10f0", "paper-5f0"};
+  return {"paper-30x", "paper-10f0", "paper-5f0", "prototype"};
 }
 
 Camera built_in_camera(const std::string& name) {
+  if (name == "prototype") return prototype_camera();
   Camera camera;
   camera.name = name;
   camera.sensor.noise = NoiseModel::gaussian;  // as the paper simulates it

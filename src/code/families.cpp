@@ -57,10 +57,13 @@ std::optional<Builder> builder_for(std::string_view name) {
     return [k](const FamilyOptions& o) { return hamiltonian_code(*k, o); };
   if (const auto k = number_after(name, "gray-k"))
     return [k](const FamilyOptions& o) { return gray_code(*k, o); };
-  if (const auto q = number_after(name, "pulsed-multifrequency-k5-q"))
-    return [q](const FamilyOptions& o) { return pulsed_multi_frequency_code(*q, o); };
-  if (name == "pulsed-multifrequency-k5")
-    return [](const FamilyOptions& o) { return pulsed_multi_frequency_code(3, o); };
+  for (const int k : {4, 5}) {
+    const std::string pulsed = fmt::format("pulsed-multifrequency-k{}", k);
+    if (const auto q = number_after(name, pulsed + "-q"))
+      return [k, q](const FamilyOptions& o) { return pulsed_multi_frequency_code(k - 2, *q, o); };
+    if (name == pulsed)
+      return [k](const FamilyOptions& o) { return pulsed_multi_frequency_code(k - 2, 3, o); };
+  }
   if (name == "multifrequency-k5")
     return [](const FamilyOptions& o) {
       return multi_frequency_code({{1, 3}, {7, 2}}, o).renamed("multifrequency-k5");
@@ -87,6 +90,8 @@ std::vector<FamilyDescription> list_families() {
        "pulses and squares: 3 steps at f0, a quadrature pair at 3 f0"},
       {"pulsed-multifrequency-k5-qQ", "pulsed-multifrequency-k5-q5",
        "the same with the pair at Q f0"},
+      {"pulsed-multifrequency-k4", "pulsed-multifrequency-k4",
+       "quadrature pairs at f0 and 3 f0, for two buckets; -qQ as above"},
       {"gray-kK", "gray-k4", "binary-reflected Gray code of 2^K cells, K = 3 .. 10"},
       {"single-ramp-k3", "single-ramp-k3", "rising ramp, open gate, background"},
       {"double-ramp-k3", "double-ramp-k3", "rising ramp, falling ramp, background"},

@@ -26,19 +26,23 @@ CodeSet square_code(int phase_steps, const FamilyOptions& options) {
   return CodeSet::create(name, options.samples, 1, std::move(modulation), std::move(demodulation));
 }
 
-CodeSet pulsed_multi_frequency_code(int high_frequency, const FamilyOptions& options) {
+CodeSet pulsed_multi_frequency_code(int low_steps, int high_frequency,
+                                    const FamilyOptions& options) {
   options.validate();
+  require(low_steps == 2 || low_steps == 3, "low steps", low_steps, "must be 2 or 3");
   require(high_frequency >= 2, "high frequency", high_frequency, "must be >= 2");
-  const std::string name = high_frequency == 3
-                               ? "pulsed-multifrequency-k5"
-                               : fmt::format("pulsed-multifrequency-k5-q{}", high_frequency);
-  require_grid(name, std::lcm(6, 4 * high_frequency), options);
-  const double low_duty = std::max(1.0 / options.peak_factor, 1.0 / 6.0);
+  std::string name = fmt::format("pulsed-multifrequency-k{}", low_steps + 2);
+  if (high_frequency != 3) name += fmt::format("-q{}", high_frequency);
+  // Quadrature or thirds of a period, and pulses as short as the steps leave use for.
+  const double low_step = low_steps == 2 ? 1.0 / 4.0 : 1.0 / 3.0;
+  const double low_pulse = low_steps == 2 ? 1.0 / 4.0 : 1.0 / 6.0;
+  require_grid(name, std::lcm(low_steps == 2 ? 4 : 6, 4 * high_frequency), options);
+  const double low_duty = std::max(1.0 / options.peak_factor, low_pulse);
   const double high_duty = std::max(1.0 / options.peak_factor, 1.0 / 4.0);
   std::vector<Waveform> modulation, demodulation;
-  for (int step = 0; step < 3; ++step) {
+  for (int step = 0; step < low_steps; ++step) {
     modulation.push_back(pulse_train(1, low_duty));
-    demodulation.push_back(square_wave(1, step / 3.0));
+    demodulation.push_back(square_wave(1, step * low_step));
   }
   for (int step = 0; step < 2; ++step) {
     modulation.push_back(pulse_train(high_frequency, high_duty));

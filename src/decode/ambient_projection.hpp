@@ -11,6 +11,9 @@ namespace tofsmith {
 /// Most measurements of a pixel a decoder takes: bounds the work space it keeps on the stack.
 inline constexpr int max_measurements = 64;
 
+/// Below this share of what is measured, what is left of it without ambient light is rounding.
+inline constexpr double nothing_left = 1e-12;
+
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The part of a decoding table that ambient light cannot explain, in coordinates of the plane

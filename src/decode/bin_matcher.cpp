@@ -10,8 +10,6 @@ namespace tofsmith {
 
 namespace {
 constexpr int width = pixels_per_tile;
-/// Below this share of what is measured, what is left of it is rounding.
-constexpr double nothing = 1e-12;
 
 /// Index of the first score that is at least `least`, or their number. Free of branches, which
 /// nobody could predict.
@@ -26,10 +24,7 @@ int first_at_least(const Scores& scores, double least) {
 }  // namespace
 
 BinMatcher::BinMatcher(const DecodingTable& table, const AmbientProjection& projection)
-    : directions_(projection), basis_(projection.basis), gain_e_per_raw_(table.gain_e_per_raw) {
-  for (const double dark_e : table.dark_electrons)
-    dark_raw_.push_back(table.black_level + dark_e / table.gain_e_per_raw);
-}
+    : directions_(projection), basis_(projection.basis), scale_(table) {}
 
 /// The float search proposes a block and double arithmetic chooses in it. Where the proposal is not
 /// proven, double arithmetic chooses among all.
@@ -68,7 +63,7 @@ void BinMatcher::normalize(const double* size, Tile& tile) const {
     for (int i = 0; i < width; ++i) scale[i] += tile.unit[j * width + i] * tile.unit[j * width + i];
   for (int i = 0; i < width; ++i) {
     const double length = std::sqrt(scale[i]);
-    const bool is_seen = length > nothing * size[i];  // false for NaN
+    const bool is_seen = length > nothing_left * size[i];  // false for NaN
     tile.length[i] = is_seen ? length : 0.0 * size[i];
     scale[i] = is_seen ? 1.0 / length : 0.0;
   }

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "decode/block_search.hpp"
+#include "decode/raw_scale.hpp"
 
 namespace tofsmith {
 
@@ -27,9 +27,7 @@ class BinMatcher {
   const DirectionTable& directions() const { return directions_; }
 
   /// Electrons without dark ones of one raw number.
-  double electrons(float raw, int measurement) const {
-    return (raw - dark_raw_[static_cast<std::size_t>(measurement)]) * gain_e_per_raw_;
-  }
+  double electrons(float raw, int measurement) const { return scale_.electrons(raw, measurement); }
   /// @param raw  (pixels, K), pixels in 1 .. pixels_per_tile
   void match(const float* raw, int pixels, Tile& tile) const;
 
@@ -42,9 +40,8 @@ class BinMatcher {
   int choose(const Tile& tile, int pixel) const;
 
   DirectionTable directions_;
-  Eigen::MatrixXd basis_;         // V (K, rank)
-  std::vector<double> dark_raw_;  // raw number of every measurement without light
-  double gain_e_per_raw_;
+  Eigen::MatrixXd basis_;  // V (K, rank)
+  RawScale scale_;
 };
 
 }  // namespace tofsmith

@@ -6,13 +6,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "decode/bin_matcher.hpp"
 #include "decode/pixel_model.hpp"
+#include "decode/pixel_output.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
 
@@ -59,7 +58,6 @@ struct Decoder::Plan {
 
   void decode_pixel(const float* raw, const Tile& tile, int pixel, std::size_t at,
                     DepthImage& image) const;
-  PixelStatus status_of(const float* raw, const PixelEstimate& estimate, double confidence) const;
   double confidence(const Tile& tile, int pixel, const double* variance_e2) const;
 };
 
@@ -101,35 +99,18 @@ void Decoder::decode_depth_bins(const float* measurements, std::int64_t pixels,
 }
 
 DepthImage Decoder::decode(const RawFrames& raw, int frame, const Progress& progress) const {
-  require(raw.measurements == measurements(), "raw measurements", raw.measurements,
-          "must equal the code's " + std::to_string(measurements()));
-  require(frame >= 0 && frame < raw.frames, "frame", frame,
-          "must be in [0, " + std::to_string(raw.frames) + ")");
-  require(raw.height >= 0 && raw.width >= 0 &&
-              raw.values.size() == static_cast<std::size_t>(raw.frames) * raw.pixels_per_frame() *
-                                       static_cast<std::size_t>(raw.measurements),
-          "raw values", raw.values.size(), "must be frames x height x width x measurements");
-
-  constexpr std::int64_t block = 64 * pixels_per_tile, blocks_per_report = 64;
-  DepthImage image(raw.height, raw.width);
-  const float* pixels = raw.frame(frame);
-  const auto count = static_cast<std::int64_t>(raw.pixels_per_frame());
-  for (std::int64_t done = 0; done < count; done += block * blocks_per_report) {
-    report(progress, static_cast<double>(done) / static_cast<double>(count), "decoding");
-    const std::int64_t end = std::min(count, done + block * blocks_per_report);
-    parallel_for_blocks(end - done, block, [&](IndexRange range) {
-      const std::int64_t begin = done + range.begin;
-      const float* first_raw = pixels + begin * measurements();
-      for_each_tile(plan_->matcher, measurements(), first_raw, range.end - range.begin,
-                    [&](const Tile& tile, std::int64_t first) {
-                      for (int i = 0; i < tile.pixels; ++i)
-                        plan_->decode_pixel(first_raw + (first + i) * measurements(), tile, i,
-                                            static_cast<std::size_t>(begin + first + i), image);
-                    });
-    });
-  }
-  report(progress, 1.0, "decoding");
-  return image;
+  constexpr std::int64_t block_pixels = 64 * pixels_per_tile;
+  return decode_frame(
+      raw, frame, measurements(), block_pixels, progress,
+      [&](const float* first_raw, IndexRange block, DepthImage& image) {
+        for_each_tile(plan_->matcher, measurements(), first_raw, block.end - block.begin,
+                      [&](const Tile& tile, std::int64_t first) {
+                        for (int i = 0; i < tile.pixels; ++i)
+                          plan_->decode_pixel(first_raw + (first + i) * measurements(), tile, i,
+                                              static_cast<std::size_t>(block.begin + first + i),
+                                              image);
+                      });
+      });
 }
 
 void Decoder::Plan::decode_pixel(const float* raw, const Tile& tile, int pixel, std::size_t at,
@@ -141,35 +122,12 @@ void Decoder::Plan::decode_pixel(const float* raw, const Tile& tile, int pixel, 
     electrons[static_cast<std::size_t>(k)] = matcher.electrons(raw[k], k);
 
   const Position position = model.refine(plane.data(), tile.bin[pixel]);
-  const PixelEstimate estimate =
-      model.estimate(electrons.data(), plane.data(), position, variance_e2.data());
-  const double certainty =
-      estimate.signal_e_per_s > 0.0 ? confidence(tile, pixel, variance_e2.data()) : 0.0;
-  image.status.pixels[at] = status_of(raw, estimate, certainty);
-  if (!(estimate.signal_e_per_s > 0.0)) return;
-
-  const double bin_m = table.bin_m();
-  const auto depth_m = static_cast<float>(position.in_bins(table.samples()) * bin_m);
-  // Rounding to float can land on the end of the range, which is its beginning.
-  image.depth_m.pixels[at] = depth_m < static_cast<float>(table.range_m) ? depth_m : 0.0f;
-  image.signal_e_per_s.pixels[at] = static_cast<float>(estimate.signal_e_per_s);
-  image.ambient_e_per_s.pixels[at] = static_cast<float>(estimate.ambient_e_per_s);
-  image.confidence.pixels[at] = static_cast<float>(certainty);
-  image.predicted_standard_deviation_m.pixels[at] =
-      static_cast<float>(estimate.depth_standard_deviation_bin * bin_m);
-}
-
-PixelStatus Decoder::Plan::status_of(const float* raw, const PixelEstimate& estimate,
-                                     double confidence) const {
-  if (table.saturation_level)
-    for (int k = 0; k < model.measurements(); ++k)
-      if (raw[k] >= *table.saturation_level) return PixelStatus::saturated;
-  if (!(estimate.signal_e_per_s > 0.0)) return PixelStatus::no_return;
-  if (estimate.signal_e_per_s <
-      options.low_signal_sigma * estimate.signal_standard_deviation_e_per_s)
-    return PixelStatus::low_signal;
-  if (confidence < options.minimum_confidence) return PixelStatus::ambiguous;
-  return PixelStatus::ok;
+  PixelDecoding decoding{
+      position.in_bins(table.samples()),
+      model.estimate(electrons.data(), plane.data(), position, variance_e2.data())};
+  if (decoding.estimate.signal_e_per_s > 0.0)
+    decoding.confidence = confidence(tile, pixel, variance_e2.data());
+  store_pixel(table, options, raw, decoding, at, image);
 }
 
 /// Probability that the pixel's bin scores higher than the best one outside its main lobe, for
@@ -192,9 +150,7 @@ double Decoder::Plan::confidence(const Tile& tile, int pixel, const double* vari
     difference[static_cast<std::size_t>(j)] = d;
     lead_e += d * tile.unit[j * pixels_per_tile + pixel] * tile.length[pixel];
   }
-  const double noise_e = model.deviation_along(difference.data(), variance_e2);
-  if (noise_e == 0.0) return 1.0;
-  return 0.5 * std::erfc(-std::max(lead_e, 0.0) / noise_e * std::numbers::sqrt2 / 2);
+  return confidence_of(lead_e, model.deviation_along(difference.data(), variance_e2));
 }
 
 }  // namespace tofsmith

@@ -75,7 +75,7 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
           "must equal the camera's samples = " + std::to_string(camera.samples));
   DecodingTable table;
   table.correlation = model.correlation_table(model.samples());
-  table.ambient_gain = model.ambient_gain();
+  table.ambient_gain = unknown_ambient_gain(model, camera);
   table.exposure_s = model.exposure_s();
   table.dark_electrons = model.dark_electrons();
   table.constant_variance_e2 = model.constant_variance_e2();

@@ -14,6 +14,11 @@ struct Position {
   std::int32_t bin = 0;
   double fraction = 0.0;
 
+  /// Of a depth in [0, samples).
+  static Position at(double depth_bin) {
+    const auto bin = static_cast<std::int32_t>(depth_bin);
+    return {bin, depth_bin - bin};
+  }
   /// In [0, samples).
   double in_bins(int samples) const {
     const double position = bin + fraction;

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -71,6 +73,15 @@ Image<float> albedo_from_planes(const ExrPlanes& planes, const std::string& file
   return image;
 }
 
+void require_light(const Image<float>& picture, std::string_view file) {
+  for (int row = 0; row < picture.height; ++row)
+    for (int column = 0; column < picture.width; ++column)
+      if (const float value = picture(row, column); !(value >= 0.0f) || !std::isfinite(value))
+        throw IoError(file,
+                      fmt::format("row {}, column {}: found {}; expected a finite number >= 0", row,
+                                  column, value));
+}
+
 }  // namespace
 
 Image<float> read_albedo(const std::filesystem::path& path, Transfer png_transfer) {
@@ -81,6 +92,23 @@ Image<float> read_albedo(const std::filesystem::path& path, Transfer png_transfe
   if (extension == ".exr") return albedo_from_planes(read_exr(path), file);
   const PfmImage pfm = read_pfm(path);
   return luminance(pfm.height, pfm.width, pfm.channels, pfm.values);
+}
+
+Image<float> albedo_of_picture(Image<float> picture, std::string_view file,
+                               const Image<float>& depth_m) {
+  for (std::size_t i = 0; i < std::min(picture.size(), depth_m.size()); ++i)
+    if (std::isnan(depth_m.pixels[i]) && std::isnan(picture.pixels[i])) picture.pixels[i] = 0.0f;
+  require_light(picture, file);
+  const float brightest = *std::max_element(picture.pixels.begin(), picture.pixels.end());
+  if (brightest > 1.0f)
+    for (float& value : picture.pixels) value /= brightest;
+  return picture;
+}
+
+Image<float> read_ambient_scale(const std::filesystem::path& path, Transfer png_transfer) {
+  Image<float> picture = read_albedo(path, png_transfer);
+  require_light(picture, path.string());
+  return picture;
 }
 
 }  // namespace tofsmith

@@ -56,10 +56,17 @@ void visit_impulse_response(Table& table, Field<Table, ImpulseResponse>& respons
 }
 
 template <typename Table>
+void visit_generator(Table& table, Field<Table, Generator>& generator) {
+  table.value("sample_rate_hz", generator.sample_rate_hz);
+  table.value("amplitude_bits", generator.amplitude_bits);
+}
+
+template <typename Table>
 void visit_light(Table& table, Field<Table, LightSource>& light) {
   table.value("peak_factor", light.peak_factor);
   table.value("binary", light.binary);
   table.table("impulse_response", light.impulse_response, visit_impulse_response<Table>);
+  table.table("generator", light.generator, visit_generator<Table>);
 }
 
 template <typename Table>
@@ -67,6 +74,7 @@ void visit_sensor(Table& table, Field<Table, Sensor>& sensor) {
   table.value("taps", sensor.taps);
   table.value("binary", sensor.binary);
   table.table("impulse_response", sensor.impulse_response, visit_impulse_response<Table>);
+  table.table("generator", sensor.generator, visit_generator<Table>);
   table.value("read_noise_e", sensor.read_noise_e);
   table.choice("noise", sensor.noise, Choices<NoiseModel>(noise_models));
   table.value("dark_current_e_per_s", sensor.dark_current_e_per_s);

@@ -12,10 +12,15 @@
 
 namespace tofsmith {
 
-std::string known_extension(const std::filesystem::path& path,
-                            std::initializer_list<std::string_view> known) {
+std::string lower_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+std::string known_extension(const std::filesystem::path& path,
+                            std::initializer_list<std::string_view> known) {
+  const std::string extension = lower_extension(path);
   if (std::find(known.begin(), known.end(), extension) != known.end()) return extension;
   throw IoError(
       path.string(),

@@ -9,7 +9,10 @@
 
 namespace tofsmith {
 
-/// The extension in lower case, with its dot, when it is one of `known`.
+/// The extension in lower case, with its dot; "" without one.
+std::string lower_extension(const std::filesystem::path& path);
+
+/// The same, when it is one of `known`.
 /// @throws IoError that names the file and lists `known`
 std::string known_extension(const std::filesystem::path& path,
                             std::initializer_list<std::string_view> known);

@@ -41,16 +41,6 @@ std::string_view take_line(ByteCursor& cursor) {
   return line;
 }
 
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  while (!line.empty()) {
-    const std::size_t length = std::min(line.find(' '), line.size());
-    if (length > 0) words.push_back(line.substr(0, length));
-    line.remove_prefix(std::min(length + 1, line.size()));
-  }
-  return words;
-}
-
 using Words = std::vector<std::string_view>;
 
 bool is_ascii(const ByteCursor& cursor, std::size_t start, const Words& words) {
@@ -75,16 +65,38 @@ PlyProperty property(const ByteCursor& cursor, std::size_t start, const Words& w
   if (words.size() > 1 && words[1] == "list")
     cursor.fail_at(start, "found a list; expected points with one number per property");
   if (words.size() != 3) cursor.fail_at(start, "expected 'property', a type and a name");
-  const auto found = std::find_if(type_names.begin(), type_names.end(),
-                                  [&](const TypeName& known) { return known.name == words[1]; });
-  if (found == type_names.end())
+  const auto type = ply_type_of(words[1]);
+  if (!type)
     cursor.fail_at(start,
                    "expected one of the types char, uchar, short, ushort, int, uint, float, "
                    "double");
-  return {std::string(words[2]), found->type};
+  return {std::string(words[2]), *type};
 }
 
 }  // namespace
+
+std::optional<PlyType> ply_type_of(std::string_view word) {
+  const auto found = std::find_if(type_names.begin(), type_names.end(),
+                                  [&](const TypeName& known) { return known.name == word; });
+  if (found == type_names.end()) return std::nullopt;
+  return found->type;
+}
+
+std::vector<std::string_view> words_of_ply(std::string_view line) {
+  constexpr std::string_view blanks = " \t\r";
+  std::vector<std::string_view> words;
+  for (std::size_t start = 0;
+       (start = line.find_first_not_of(blanks, start)) != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_of(blanks, start), line.size());
+    words.push_back(line.substr(start, end - start));
+    start = end;
+  }
+  return words;
+}
+
+std::vector<std::string_view> words_of_ply_line(ByteCursor& cursor) {
+  return words_of_ply(take_line(cursor));
+}
 
 std::size_t ply_item_size(PlyType type) {
   switch (type) {
@@ -119,7 +131,7 @@ PlyHeader parse_ply_header(ByteCursor& cursor) {
   bool has_format = false, has_vertices = false;
   for (;;) {
     const std::size_t start = cursor.position();
-    const Words words = words_of(take_line(cursor));
+    const Words words = words_of_ply_line(cursor);
     const std::string_view key = words.empty() ? "" : words[0];
     if (key == "comment" || key == "obj_info") continue;
     if (key == "end_header") break;

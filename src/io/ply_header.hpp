@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/byte_cursor.hpp"
@@ -13,6 +15,13 @@ namespace tofsmith {
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
 std::size_t ply_item_size(PlyType type);
+/// The type that a word such as "uchar" or "float32" names.
+std::optional<PlyType> ply_type_of(std::string_view word);
+
+/// Words of a line, parted by blanks.
+std::vector<std::string_view> words_of_ply(std::string_view line);
+/// Words of the next header line.
+std::vector<std::string_view> words_of_ply_line(ByteCursor& cursor);
 
 struct PlyProperty {
   std::string name;

@@ -144,6 +144,9 @@ Json design_json(const Camera& camera, const DesignResult& result, const DesignO
 std::string evaluation_document(const Camera& camera, std::span<const EvaluatedCode> codes,
                                 const EvaluateOptions& options) {
   Json document = document_head(camera, options.seed, options.trials, options.outlier_threshold_m);
+  document["method"] = name_of(options.method);
+  if (options.method == DecodeMethod::unwrap)
+    document["unwrap_weights"] = name_of(options.unwrap_weights);
   document["codes"] = Json::array();
   for (const EvaluatedCode& code : codes)
     document["codes"].push_back(depth_error_json(code.error, code.rotation_bin));

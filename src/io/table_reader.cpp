@@ -108,6 +108,17 @@ void TableReader::value(std::string_view key, std::vector<double>& target) {
   target = number_list(full(key), *node->as_array());
 }
 
+void TableReader::value(std::string_view key, Eigen::Vector3d& target) {
+  constexpr std::string_view expected = "a list of three numbers";
+  const toml::node* node = find(key);
+  if (!node) return;
+  if (!node->is_array()) mistyped(full(key), *node, expected);
+  const std::vector<double> numbers = number_list(full(key), *node->as_array());
+  if (numbers.size() != 3)
+    fail(key, fmt::format("found {} numbers; expected {}", numbers.size(), expected));
+  target = {numbers[0], numbers[1], numbers[2]};
+}
+
 void TableReader::number_or_list(std::string_view key, double& number, std::vector<double>& list) {
   const toml::node* node = find(key);
   if (!node) return;
@@ -148,6 +159,22 @@ std::optional<TableReader> TableReader::enter(std::string_view key) {
   if (!node) return std::nullopt;
   if (!node->is_table()) mistyped(full(key), *node, "a table");
   return TableReader(document_, places_, *node->as_table(), full(key) + ".");
+}
+
+std::vector<TableReader> TableReader::enter_each(std::string_view key) {
+  std::vector<TableReader> readers;
+  const toml::node* node = find(key);
+  if (!node) return readers;
+  const std::string expected = fmt::format("tables, each begun with [[{}]]", full(key));
+  if (!node->is_array()) mistyped(full(key), *node, expected);
+  const toml::array& list = *node->as_array();
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string name = fmt::format("{}[{}]", full(key), i);
+    if (!list.get(i)->is_table()) mistyped(name, *list.get(i), expected);
+    places_[name] = document_.place_of(list.get(i)->source());
+    readers.push_back(TableReader(document_, places_, *list.get(i)->as_table(), name + "."));
+  }
+  return readers;
 }
 
 TableReader& TableReader::required(std::string_view key, std::string_view example) {

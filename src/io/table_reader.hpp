@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -37,6 +38,8 @@ class TableReader {
   void value(std::string_view key, std::string& target);
   /// A list of numbers.
   void value(std::string_view key, std::vector<double>& target);
+  /// A list of exactly three numbers.
+  void value(std::string_view key, Eigen::Vector3d& target);
   template <typename Value>
   void value(std::string_view key, std::optional<Value>& target) {
     if (contains(key)) value(key, target.emplace());
@@ -68,6 +71,16 @@ class TableReader {
     if (contains(key)) table(key, target.emplace(), fields);
   }
 
+  /// Reads every table of a list of them, [[key]]: `fields(TableReader&)`. They are called key[0],
+  /// key[1] ..
+  template <typename Fields>
+  void tables(std::string_view key, Fields&& fields) {
+    for (TableReader& inner : enter_each(key)) {
+      fields(inner);
+      inner.finish();
+    }
+  }
+
   /// The next field must be there. @param example  a value to show the user
   TableReader& required(std::string_view key, std::string_view example);
   /// Refuses keys that mean something only under a condition that does not hold.
@@ -77,7 +90,7 @@ class TableReader {
   bool contains(std::string_view key);
   /// The path in `key`, from where it was written.
   std::filesystem::path resolve(std::string_view key, const std::string& path) const;
-  /// @throws IoError about the value of `key`
+  /// @throws IoError about the value of `key`, or about the table if the key is not there
   [[noreturn]] void fail(std::string_view key, std::string_view problem) const;
   /// Refuses keys that nobody asked for, with the nearest one that was.
   void finish() const;
@@ -87,6 +100,7 @@ class TableReader {
               std::string prefix);
   const toml::node* find(std::string_view key);
   std::optional<TableReader> enter(std::string_view key);
+  std::vector<TableReader> enter_each(std::string_view key);
   std::optional<std::size_t> index_of_word(std::string_view key,
                                            std::span<const std::string_view> words);
   double finite_number(const std::string& name, const toml::node& node,

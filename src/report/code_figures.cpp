@@ -6,6 +6,7 @@
 
 #include "report/waveform_series.hpp"
 #include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/camera/played_code.hpp"
 #include "tofsmith/code/coding_curve.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/report/small_multiples.hpp"
@@ -38,6 +39,13 @@ std::string response_text(const ImpulseResponse& response) {
 
 std::string arm_text(bool binary) { return binary ? "switches on and off" : "analog"; }
 
+std::string generator_text(const std::optional<Generator>& generator, double frequency_hz) {
+  if (!generator) return "";
+  return fmt::format("; generator: {:.4g} MS/s, {} bits, {} points per period",
+                     generator->sample_rate_hz / 1e6, generator->amplitude_bits,
+                     generator->points_per_period(frequency_hz));
+}
+
 }  // namespace
 
 std::string figure_id(const std::string& prefix, const std::string& name) {
@@ -57,6 +65,7 @@ Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camer
                   correlation = colours.style("correlation");
   const double frequency_hz = camera.fundamental_frequency_hz;
   const ForwardModel model(code, camera);
+  const PlayedCode played = played_code(code, camera);
   const Eigen::MatrixXd table = model.tap_correlation_table(curve_points);
   const double range_m = camera.range_m();
 
@@ -77,8 +86,11 @@ Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camer
     rows.push_back(
         {.title = fmt::format("{}", i + 1),
          .panels = {
-             arm_series(code.modulation_of(i), camera.light.impulse_response, frequency_hz, light),
-             arm_series(code.demodulation(i), camera.sensor.impulse_response, frequency_hz, sensor),
+             arm_series(code.modulation_of(i),
+                        played.modulation[static_cast<std::size_t>(code.exposure_of(i))],
+                        camera.light.impulse_response, frequency_hz, light),
+             arm_series(code.demodulation(i), played.demodulation[static_cast<std::size_t>(i)],
+                        camera.sensor.impulse_response, frequency_hz, sensor),
              std::move(correlations)}});
   }
   return small_multiples(std::move(text),
@@ -127,10 +139,12 @@ KeyValueList camera_description(const Camera& camera) {
   add("samples per period", fmt::format("{}", camera.samples));
   add("peak over average power", fmt::format("{:.4g}", camera.light.peak_factor));
   add("light source", arm_text(camera.light.binary) +
-                          "; response: " + response_text(camera.light.impulse_response));
+                          "; response: " + response_text(camera.light.impulse_response) +
+                          generator_text(camera.light.generator, camera.fundamental_frequency_hz));
   add("sensor", fmt::format("{} tap{}, {}; response: {}", camera.sensor.taps,
                             camera.sensor.taps > 1 ? "s" : "", arm_text(camera.sensor.binary),
-                            response_text(camera.sensor.impulse_response)));
+                            response_text(camera.sensor.impulse_response)) +
+                    generator_text(camera.sensor.generator, camera.fundamental_frequency_hz));
   add("noise", fmt::format("{} electrons, read noise {:.4g} e",
                            camera.sensor.noise == NoiseModel::poisson ? "Poisson" : "Gaussian",
                            camera.sensor.read_noise_e));

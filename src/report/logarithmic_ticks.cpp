@@ -10,12 +10,15 @@
 namespace tofsmith::plotly {
 namespace {
 
-std::vector<Tick> evenly_spaced(const ValueRange& range) {
-  constexpr int count = 5;
+/// Within a factor of 5: multiples of 1, 2 or 5 times a power of ten, about five of them.
+std::vector<Tick> round_multiples(const ValueRange& range) {
+  const double width = range.high - range.low;
+  double step = std::pow(10.0, std::floor(std::log10(width)) - 1.0);
+  for (const double factor : {2.0, 2.5, 2.0, 2.0, 2.5})
+    if (width / step > 6.0) step *= factor;
   std::vector<Tick> ticks;
-  for (int i = 0; i < count; ++i) {
-    const double value = range.low * std::pow(range.high / range.low, i / (count - 1.0));
-    const std::string text = fmt::format("{:.3g}", value);
+  for (double i = std::ceil(range.low / step - 1e-6); i * step <= range.high + 1e-6 * step; ++i) {
+    const std::string text = fmt::format("{:.6g}", i * step);
     ticks.push_back({std::strtod(text.c_str(), nullptr), text});
   }
   return ticks;
@@ -30,7 +33,7 @@ std::string power_text(int digit, int exponent) {
 
 std::vector<Tick> logarithmic_ticks(const ValueRange& range) {
   const double decades = std::log10(range.high / range.low);
-  if (decades < 1) return evenly_spaced(range);
+  if (decades < 0.7) return round_multiples(range);
   const bool is_plain = range.low >= 0.99e-3 && range.high <= 1.01e3;
   const int first = static_cast<int>(std::floor(std::log10(range.low)));
   const int last = static_cast<int>(std::ceil(std::log10(range.high)));

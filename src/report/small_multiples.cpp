@@ -17,6 +17,7 @@ using plotly::Json;
 
 constexpr double column_gap = 0.1;  // share of the width, between columns
 constexpr double row_height_px = 96;
+constexpr double single_row_height_px = 240;
 constexpr double legend_lift_px = 24;  // the legend stands above the column titles
 
 /// [low, high] of panel `index` of `count` along one direction, `gap` between neighbours.
@@ -113,11 +114,11 @@ Figure small_multiples(FigureText text, const std::vector<PanelColumn>& columns,
   }
   layout["annotations"] = std::move(titles);
   layout["showlegend"] = names.size() > 1;
-  layout["legend"] = {{"y", plotly::number(1 + legend_lift_px / (row_height_px * row_count))}};
+  const double rows_px = row_count == 1 ? single_row_height_px : row_height_px * row_count;
+  layout["legend"] = {{"y", plotly::number(1 + legend_lift_px / rows_px)}};
   layout["margin"] = {{"r", 28}};
-  return plotly::figure(
-      std::move(text), data, layout,
-      {.fixed_px = 130 + row_height_px * row_count, .min_width_px = 210.0 * column_count});
+  return plotly::figure(std::move(text), data, layout,
+                        {.fixed_px = 130 + rows_px, .min_width_px = 210.0 * column_count});
 }
 
 }  // namespace tofsmith

@@ -10,9 +10,11 @@ namespace {
 
 constexpr int curve_points = 480;  // of a drawn period
 
-Series told(const Waveform& waveform, double period_ns, const LineStyle& style) {
+/// A waveform by its steps, not on a grid.
+Series stepped(const std::string& name, const Waveform& waveform, double period_ns,
+               const LineStyle& style) {
   const StepFunction steps = waveform.steps();
-  Series series{.name = "played", .period = period_ns, .mark = Mark::steps, .style = style};
+  Series series{.name = name, .period = period_ns, .mark = Mark::steps, .style = style};
   for (std::size_t i = 0; i < steps.values.size(); ++i) {
     series.x.push_back(steps.breakpoints[i] * period_ns);
     series.y.push_back(steps.values[i]);
@@ -28,19 +30,26 @@ std::vector<double> axis_values(int points, double end) {
   return values;
 }
 
-std::vector<Series> arm_series(const Waveform& waveform, const ImpulseResponse& response,
-                               double fundamental_frequency_hz, const LineStyle& style) {
+std::vector<Series> arm_series(const Waveform& told, const Waveform& played,
+                               const ImpulseResponse& response, double fundamental_frequency_hz,
+                               const LineStyle& style) {
   const double period_ns = 1e9 / fundamental_frequency_hz;
   LineStyle faint = style;
   faint.width_px = 1.0;
-  if (response.kind == ImpulseResponse::Kind::none) return {told(waveform, period_ns, style)};
-  Series smooth{
-      .name = "after the impulse response",
-      .x = axis_values(curve_points, period_ns),
-      .y = to_values(played_waveform(waveform, response, fundamental_frequency_hz, curve_points)),
-      .period = period_ns,
-      .style = style};
-  return {told(waveform, period_ns, faint), smooth};
+  std::vector<Series> series;
+  if (!(told == played)) series.push_back(stepped("told", told, period_ns, reference_style()));
+  if (response.kind == ImpulseResponse::Kind::none) {
+    series.push_back(stepped("played", played, period_ns, style));
+    return series;
+  }
+  series.push_back(stepped("played", played, period_ns, faint));
+  series.push_back(
+      {.name = "after the impulse response",
+       .x = axis_values(curve_points, period_ns),
+       .y = to_values(played_waveform(played, response, fundamental_frequency_hz, curve_points)),
+       .period = period_ns,
+       .style = style});
+  return series;
 }
 
 }  // namespace tofsmith

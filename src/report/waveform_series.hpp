@@ -13,10 +13,11 @@ namespace tofsmith {
 /// `points` equal steps over [0, end), end point left out: the x of a drawn period.
 std::vector<double> axis_values(int points, double end);
 
-/// A waveform over one period [ns]: as told to the generator, by its switching times and not on a
-/// grid ("played"); with an impulse response thin, and in full width what leaves the arm ("after
-/// the impulse response").
-std::vector<Series> arm_series(const Waveform& waveform, const ImpulseResponse& response,
-                               double fundamental_frequency_hz, const LineStyle& style);
+/// A waveform over one period [ns], by its switching times and not on a grid: "told" (dotted, only
+/// where a generator changes it), "played", and, thick over a thin "played", what an impulse
+/// response leaves of it ("after the impulse response").
+std::vector<Series> arm_series(const Waveform& told, const Waveform& played,
+                               const ImpulseResponse& response, double fundamental_frequency_hz,
+                               const LineStyle& style);
 
 }  // namespace tofsmith

@@ -10,8 +10,9 @@ namespace tofsmith {
 
 /// How a code is drawn in every figure of the paper: the family gives the colour (safe for any
 /// colour vision), the variant the dash: ideal codes dashed, naive ones dotted, all else solid.
-/// Codes: hamiltonian-k3 .. k8, sinusoid, square, multifrequency, pulsed-multifrequency, each with
-/// whatever follows, such as "hamiltonian-k4-redesigned" or "hamiltonian-k4-ideal".
+/// One-tap codes beside two-bucket ones are dash-dotted. Codes: hamiltonian-k3 .. k8, sinusoid,
+/// square, multifrequency, pulsed-multifrequency, each with whatever follows, such as
+/// "hamiltonian-k4-redesigned" or "hamiltonian-k4-ideal".
 LineStyle style_of_code(std::string_view code);
 
 }  // namespace tofsmith

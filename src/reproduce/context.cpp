@@ -20,8 +20,10 @@ DesignOptions design_options(int exposures, const ReproduceOptions& options) {
   design.baselines = {};
   design.best_rotation = true;
   design.seed = design.factorize.seed = options.seed;
-  design.search_trials = options.fast ? 100 : 600;
-  design.trials = options.fast ? 1000 : 4000;
+  // Wraps at the origin make the linear error noisy: with 600 trials per light level the choice of
+  // pairs and of the origin came out up to 7 % worse than with these.
+  design.search_trials = options.fast ? 100 : 4000;
+  design.trials = options.fast ? 1000 : 20000;
   if (options.fast) {
     design.factorize.random_starts = 4;
     design.factorize.refined = 4;

@@ -77,8 +77,10 @@ PanelRow pair_row(std::string title, const WaveformPair& pair, const Camera& cam
                   const Eigen::VectorXd& target, const LineStyle& style) {
   const double f0_hz = camera.fundamental_frequency_hz;
   return {.title = std::move(title),
-          .panels = {arm_series(pair.modulation, camera.light.impulse_response, f0_hz, style),
-                     arm_series(pair.demodulation, camera.sensor.impulse_response, f0_hz, style),
+          .panels = {arm_series(pair.modulation, pair.modulation, camera.light.impulse_response,
+                                f0_hz, style),
+                     arm_series(pair.demodulation, pair.demodulation,
+                                camera.sensor.impulse_response, f0_hz, style),
                      correlation_series(correlation_table(pair, camera, curve_points), target,
                                         camera.range_m(), style)}};
 }

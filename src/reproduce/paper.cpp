@@ -18,9 +18,13 @@ std::span<const PaperItem> paper_items() {
   static const std::vector<PaperItem> items = {
       {"fig2", "From a target to functions that can be played", reproduce_fig2, 2},
       {"fig3", "Hamiltonian codes at falling peak power", reproduce_fig3, 9},
+      {"fig4", "Mean depth error over signal and ambient light", reproduce_fig4, 150},
       {"fig5", "Impulse responses and their band limits", reproduce_fig5, 0.1},
       {"fig6", "Two K = 5 codes at 10 f0", reproduce_fig6, 0.5},
-      {"text", "Statements in the text", reproduce_text, 10},
+      {"fig8", "Two-bucket cameras", reproduce_fig8, 30},
+      {"fig9", "A single pixel on the bench", reproduce_fig9, 8},
+      {"table1", "The bench's parameters", reproduce_table1, 5},
+      {"text", "Statements in the text", reproduce_text, 12},
   };
   return items;
 }

@@ -54,6 +54,7 @@ std::optional<Hit> hit_triangle(const Mesh& mesh, std::size_t triangle, const Ra
 }
 
 double mesh_albedo(const Mesh& mesh, std::size_t triangle, const Eigen::Vector3d& weights) {
+  if (mesh.texture.pattern == Texture::Pattern::uniform) return mesh.texture.albedo;
   const auto& corner = mesh.triangles.triangles[triangle];
   const auto& uv = mesh.triangles.texture_coordinates;
   if (mesh.texture.pattern == Texture::Pattern::image && !uv.empty()) {

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "scene/rigid.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -53,6 +54,12 @@ void validate_shape(const Mesh& mesh) {
   mesh.triangles.validate();
   require(std::isfinite(mesh.scale_m) && mesh.scale_m > 0.0, "mesh.scale_m", mesh.scale_m,
           "must be finite and > 0");
+  require_rigid(mesh.mesh_to_world, "mesh.mesh_to_world");
+  double reach_m = mesh.mesh_to_world.translation().norm();
+  for (const Eigen::Vector3d& vertex : mesh.triangles.vertices)
+    reach_m = std::max(reach_m, mesh.scale_m * vertex.norm());
+  require(reach_m <= 1e12, "mesh.vertices", reach_m,
+          "must stand within 1e12 m of the world's origin (distance shown)");
 }
 
 void validate_shape(const Capsule& capsule) {

@@ -91,7 +91,7 @@ CramerRaoBound::CramerRaoBound(const ForwardModel& model, const Camera& camera,
   middles_and_slopes(tap_table * readout.transpose(), signal_, signal_slope_);
   middles_and_slopes(tap_table * sums.transpose(), shot_signal_, shot_signal_slope_);
   const Eigen::VectorXd tap_ambient = model.tap_exposure_s().cwiseProduct(model.tap_ambient_gain());
-  ambient_ = readout * tap_ambient;
+  ambient_ = model.exposure_s().cwiseProduct(unknown_ambient_gain(model, camera));
   shot_ambient_ = sums * tap_ambient;
   // What differences of buckets leave of ambient light is rounding, not a direction to take out.
   ambient_ = (ambient_.array().abs() > 1e-9 * shot_ambient_.array()).select(ambient_, 0.0);

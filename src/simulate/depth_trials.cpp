@@ -24,13 +24,15 @@ EvaluateOptions with_even_trials(EvaluateOptions options) {
 DepthTrials::DepthTrials(const ForwardModel& model, const Camera& camera,
                          const EvaluateOptions& options)
     : options_(with_even_trials(options)),
+      samples_(model.samples()),
       uniform_albedo_(camera.operating.uniform_albedo),
       albedo_(camera.operating.albedo),
       dark_e_per_s_(camera.sensor.dark_current_e_per_s),
       points_(camera.operating.points()),
       correlation_(model),
       noise_(camera.sensor),
-      decoder_(make_decoding_table(model, camera)),
+      decoder_(make_decoder(options.method, make_decoding_table(model, camera), {},
+                            options.unwrap_weights)),
       exposure_s_(model.tap_exposure_s()),
       ambient_gain_(model.tap_ambient_gain()) {}
 
@@ -97,13 +99,15 @@ void DepthTrials::run_block(std::size_t point, IndexRange trials, std::vector<do
 
 void DepthTrials::decode(const std::vector<float>& raw, std::vector<double>& decoded_bin) const {
   const auto count = static_cast<std::int64_t>(decoded_bin.size());
-  if (options_.sub_bin) {
-    decoder_.decode_depth_bins(raw.data(), count, decoded_bin.data());
-    return;
-  }
-  std::vector<std::int32_t> bins(decoded_bin.size());
-  decoder_.decode_bins(raw.data(), count, bins.data());
-  std::copy(bins.begin(), bins.end(), decoded_bin.begin());
+  std::visit(
+      [&](const auto& decoder) {
+        if (options_.sub_bin)
+          return decoder.decode_depth_bins(raw.data(), count, decoded_bin.data());
+        std::vector<std::int32_t> bins(decoded_bin.size());
+        decoder.decode_bins(raw.data(), count, bins.data());
+        std::copy(bins.begin(), bins.end(), decoded_bin.begin());
+      },
+      decoder_);
 }
 
 }  // namespace tofsmith

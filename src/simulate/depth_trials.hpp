@@ -6,7 +6,7 @@
 #include <span>
 
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/simulate/fine_correlation.hpp"
 #include "tofsmith/simulate/noise.hpp"
@@ -25,7 +25,7 @@ class DepthTrials {
  public:
   DepthTrials(const ForwardModel& model, const Camera& camera, const EvaluateOptions& options);
 
-  int samples() const { return decoder_.samples(); }
+  int samples() const { return samples_; }
   std::int64_t trials() const { return options_.trials; }
   std::int64_t blocks() const;
   const std::vector<OperatingPoint>& points() const { return points_; }
@@ -41,13 +41,14 @@ class DepthTrials {
   void decode(const std::vector<float>& raw, std::vector<double>& decoded_bin) const;
 
   EvaluateOptions options_;
+  int samples_;
   bool uniform_albedo_;
   double albedo_;
   double dark_e_per_s_;
   std::vector<OperatingPoint> points_;
   FineCorrelation correlation_;
   PixelNoise noise_;
-  Decoder decoder_;
+  AnyDecoder decoder_;
   Eigen::VectorXd exposure_s_, ambient_gain_;  // of the tap values
 };
 

@@ -56,7 +56,8 @@ class Commands(CommandLineTest):
     def test_evaluate_keeps_its_contract(self):
         document = self.do_json("evaluate", "sinusoid-k4", "square-k4", *FAST, "--seed", "7")
         self.assertEqual(list(document), ["tofsmith", "seed", "trials", "outlier_threshold_m",
-                                          "camera", "codes"])
+                                          "camera", "method", "codes"])
+        self.assertEqual(document["method"], "zncc")
         self.assertEqual((document["seed"], document["trials"]), (7, 1000))
         self.assertEqual([c["name"] for c in document["codes"]], ["sinusoid-k4", "square-k4"])
         mean = {"geometric_mean_m", "geometric_mean_se_m", "mean_m", "mean_se_m"}
@@ -99,6 +100,30 @@ class Commands(CommandLineTest):
         separate = self.do_json("evaluate", "sinusoid-k4", *FAST, "--set", "sensor.taps=2")
         self.assertEqual(separate["codes"][0]["measurements"], 8)
 
+    def test_sinusoids_are_unwrapped(self):
+        codes = ("sinusoid-k4", "multifrequency-k5")
+        zncc = self.do_json("evaluate", *codes, *FAST)
+        unwrap = self.do_json("evaluate", *codes, *FAST, "--method", "unwrap")
+        self.assertEqual((unwrap["method"], unwrap["unwrap_weights"]), ("unwrap", "variance"))
+        errors = [[code["circular"]["geometric_mean_m"] for code in document["codes"]]
+                  for document in (zncc, unwrap)]
+        self.assertAlmostEqual(errors[0][0], errors[1][0], 4)
+        self.assertNotEqual(errors[0][1], errors[1][1])
+        classical = self.do_json("evaluate", *codes, *FAST, "--method", "unwrap",
+                                 "--unwrap-weights", "frequency")["codes"][1]
+        self.assertGreater(classical["circular"]["geometric_mean_m"], 1.1 * errors[1][1])
+        self.assertIn("decoded by unwrap",
+                      self.do("evaluate", "sinusoid-k4", *FAST, "--method", "unwrap"))
+
+        truth = self.small_scene()
+        for settings in ((), ("--set", "sensor.taps=2"),
+                         ("--set", "sensor.taps=2", "--set", "sensor.readout=difference")):
+            self.simulate(*settings, "--force", code="multifrequency-k5")
+            document = self.decode(*settings, "--force", "--method", "unwrap",
+                                   code="multifrequency-k5")
+            self.assertEqual(document["method"], "unwrap")
+            self.assertLess(np.abs(np.load(self.path("depth.npy")) - truth).max(), 0.05)
+
     def test_threads_do_not_change_figures(self):
         one, two = (self.do("evaluate", "hamiltonian-k4", *FAST, "--best-rotation", "--json",
                             "--threads", threads) for threads in "12")
@@ -129,6 +154,49 @@ class Commands(CommandLineTest):
                 "radial.npy")  # which takes z by default
         error = np.abs(np.load(self.path("radial.npy")) - np.load(self.path("truth.npy")))
         self.assertLess(np.nanmedian(error), 0.01)
+
+    def test_scenes_are_listed(self):
+        self.assertIn("table-top", self.do("scene").split())
+        self.assertIn("table-top", self.do_json("scene")["scenes"])
+
+    def test_a_scene_file_gives_every_picture(self):
+        self.write("s.toml", "[view]\nwidth_px = 41\nheight_px = 31\n[[sphere]]\n"
+                   "centre_m = [0, 0, 20]\nradius_m = 8\nalbedo = 0.25\n")
+        document = self.do_json("scene", "s.toml", "-o", "out", "--camera", "paper-10f0")
+        self.assertAlmostEqual(document["nearest_m"], 12, 5)
+        self.assertEqual(document["beyond_range_share"], 1)
+        self.assertGreater(document["no_return_share"], 0.1)
+        depth = np.load(self.path("out/depth.npy"))
+        self.assertEqual(depth.shape, (31, 41))
+        np.testing.assert_array_equal(np.load(self.path("out/beyond_range.npy")) == 1,
+                                      np.isfinite(depth))
+        self.assertEqual(np.load(self.path("out/albedo.npy"))[15, 20], 0.25)
+        self.assertTrue((np.nan_to_num(np.load(self.path("out/z.npy"))) <=
+                         np.nan_to_num(depth)).all())
+        self.assertTrue(self.bytes_of("out/preview.png").startswith(b"\x89PNG"))
+        self.assertIn("wraps", self.do("scene", "s.toml"))
+        self.do("scene", "s.toml", "-o", "depth.npy")
+        np.testing.assert_array_equal(np.load(self.path("depth.npy")), depth)
+
+    def test_a_mesh_is_a_scene(self):
+        self.write("m.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n")
+        document = self.do_json("simulate", "m.obj", "--scale-m", "0.5", "--width", "40",
+                                "--height", "30", "--code", "sinusoid-k4", "-o", "raw.npy",
+                                "--truth", "depth.npy")
+        self.assertEqual((document["height"], document["width"]), (30, 40))
+        self.assertEqual(document["beyond_range_share"], 0)
+        depth = np.load(self.path("depth.npy"))
+        self.assertEqual(np.isfinite(depth).sum(axis=1).max(), 32)  # 80 % of the width
+
+    def test_ambient_light_of_each_pixel(self):
+        np.save(self.path("dark.npy"), np.full((8, 8), np.nan, np.float32))
+        scale = np.ones((8, 8), np.float32)
+        scale[:, 4:] = 3
+        np.save(self.path("ambient.npy"), scale)
+        self.do("simulate", "dark.npy", "--ambient-image", "ambient.npy", "--code", "sinusoid-k4",
+                "--ambient", "1e7", "-o", "raw.npy")
+        raw = np.load(self.path("raw.npy"))
+        self.assertAlmostEqual(raw[:, 4:].mean() / raw[:, :4].mean(), 3, 1)
 
     def test_decode_writes_every_format(self):
         self.small_scene()
@@ -197,7 +265,8 @@ class Commands(CommandLineTest):
 
     def test_help_and_version(self):
         self.assertRegex(self.do("--version"), r"^tofsmith \d+\.\d+\.\d+\n$")
-        for command in ("demo", "codes", "design", "evaluate", "simulate", "decode", "report"):
+        for command in ("demo", "codes", "design", "evaluate", "scene", "simulate", "decode",
+                        "report"):
             self.assertIn(command, self.do("--help"))
             self.assertIn("--json", self.do(command, "--help") + self.do("--help"))
         code, out, error = self.run_tool()

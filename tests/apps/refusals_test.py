@@ -39,6 +39,7 @@ class Refusals(CommandLineTest):
                 (["evaluate", "sinusoid-k4", "--trials", ""], ["--trials"]),
                 (["evaluate", "sinusoid-k4", "-o", "x.xls"], ["x.xls", "expected .csv"]),
                 (["evaluate", "sinusoid-k4", "--threads", "-1"], ["--threads"]),
+                (["evaluate", "sinusoid-k4", "--method", "magic"], ["magic", "unwrap"]),
                 (["design", "a", "b"], ["'b'"]),
                 (["design", "--method", "magic"], ["magic", "factorize"]),
                 (["design", "--exposures", "7"], ["7"]),
@@ -54,6 +55,11 @@ class Refusals(CommandLineTest):
 
     def test_names(self):
         self.refuse(["evaluate", "hamiltonan-k3"], "did you mean hamiltonian-k3?")
+        self.refuse(["evaluate", "square-k4", "--method", "unwrap"], "measurement 0",
+                    "outside harmonic 1", "sinusoids only")
+        self.refuse(["evaluate", "multifrequency-2x3-4x3", "--method", "unwrap"],
+                    "frequencies = 2, 4", "repeats after 4.997")
+        self.refuse(["evaluate", "hamiltonian-k7"], "multiple of 126", "--set samples=252")
         self.refuse(["evaluate", "nothing-like-it"], "no such file", "codes")
         self.refuse(["evaluate", ""], "empty name")
         self.refuse(["evaluate", "sinusoid-k4", "--camera", "paper-10"], "did you mean paper-10f0?")
@@ -196,6 +202,59 @@ class Refusals(CommandLineTest):
         self.refuse(simulate("absent.npy"), "absent.npy")
         self.refuse(simulate("depth.npy", "--signal", "nan"), "signal_e_per_s", "nan")
         self.refuse(simulate("depth.npy", "--ambient", "-1"), "ambient_e_per_s", "-1")
+
+    def test_scene_files(self):
+        scene = lambda *words: ["scene", *words, "-o", "out"]
+        ball = "[[sphere]]\ncentre_m = [0, 0, 2]\nradius_m = "
+        for text, words in (
+                ("", ["found no shapes"]),
+                ("[[sphere", ["s.toml:1:"]),
+                (ball + "0", ["s.toml:3:12", "> 0"]),
+                (ball + "1\nalbedo = -0.5", ["s.toml:4:10", "-0.5", "[0, 1]"]),
+                (ball + "1\ntexture = { image = 'absent.png' }", ["s.toml:4", "absent.png"]),
+                (ball + "1\n[[mesh]]\nfile = 'absent.obj'", ["s.toml:5", "absent.obj"]),
+                ("[[plane]]\npoint_m = [0, 0, 1]\nnormal = [0, 0, 0]", ["s.toml:3", "direction"]),
+                (ball + "1\nraduis_m = 1", ["s.toml:4", "did you mean sphere[0].radius_m?"])):
+            self.write("s.toml", text)
+            self.refuse(scene("s.toml"), *words)
+        self.refuse(scene("tabel-top"), "did you mean table-top?")
+        self.refuse(scene(""), "-o needs a SCENE", code=2)
+        self.refuse(["scene", "-o", "out"], "-o needs a SCENE", code=2)
+        self.write("s.toml", ball + "0.5")
+        self.refuse(scene("s.toml", "--width", "64"), "--width", "[view]", code=2)
+        self.refuse(scene("table-top", "--scale-m", "2"), "--scale-m", "mesh", code=2)
+        self.refuse(scene("table-top", "--width", "0"), "--width", code=2)
+
+    def test_meshes(self):
+        corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
+        for name, text, words in (
+                ("m.obj", "", ["empty"]),
+                ("m.obj", corners, ["no faces"]),
+                ("m.obj", corners + "f 1 2 4", ["m.obj:4", "index 4", "1 .. 3"]),
+                ("m.obj", corners.replace("1", "nan", 1) + "f 1 2 3", ["m.obj:2", "'nan'"]),
+                ("m.ply", "ply\nformat ascii 1.0\nelement vertex 999999999\n", ["999999999"]),
+                ("m.stl", b"\0" * 84, ["m.stl"]),
+                ("m.stl", b"\0" * 80 + b"\xff" * 4, ["84 bytes", "expected"])):
+            self.write(name, text)
+            self.refuse(["scene", name, "-o", "out"], name, *words)
+
+    def test_pictures_of_scenes(self):
+        depth = np.ones((4, 5), np.float32)
+        depth[0, 0] = np.nan
+        np.save(self.path("depth.npy"), depth)
+        simulate = lambda *more: ["simulate", "depth.npy", "--code", "sinusoid-k4", "-o", "raw.npy",
+                                  *more]
+        for option in ("--image", "--ambient-image"):
+            for value in (-1.0, np.nan, np.inf):
+                picture = np.ones((4, 5), np.float32)
+                picture[2, 3] = value
+                np.save(self.path("p.npy"), picture)
+                self.refuse(simulate(option, "p.npy"), "p.npy: row 2, column 3", ">= 0")
+            np.save(self.path("p.npy"), np.ones((5, 5), np.float32))
+            self.refuse(simulate(option, "p.npy"), "p.npy", "5 x 5", "4 x 5", "depth.npy")
+            self.refuse(simulate(option, "absent.png"), "absent.png")
+        np.save(self.path("depth.npy"), -depth)
+        self.refuse(simulate(), "depth.npy", "-1", "> 0")
 
     def test_outputs(self):
         np.save(self.path("raw.npy"), np.ones((4, 5, 3), np.float32))

@@ -94,7 +94,8 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, Family,
                                          "hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5",
                                          "hamiltonian-k6", "multifrequency-k5",
                                          "multifrequency-1x4-5x4", "pulsed-multifrequency-k5",
-                                         "pulsed-multifrequency-k5-q5", "gray-k3", "gray-k4",
+                                         "pulsed-multifrequency-k5-q5", "pulsed-multifrequency-k4",
+                                         "pulsed-multifrequency-k4-q5", "gray-k3", "gray-k4",
                                          "single-ramp-k3", "double-ramp-k3"));
 
 TEST(Families, EveryListedExampleCanBeBuilt) {

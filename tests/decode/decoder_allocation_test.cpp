@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "decode_setup.hpp"
+#include "unwrap_setup.hpp"
 
 namespace {
 std::atomic<std::int64_t> allocations{0};
@@ -47,6 +47,24 @@ TEST(Decoder, AllocatesNothingInBatches) {
   EXPECT_EQ(
       allocations_of([&] { setup.decoder.decode_depth_bins(raw.data(), 3000, positions.data()); }),
       0);
+}
+
+TEST(UnwrapDecoder, AllocatesNothing) {
+  const UnwrapSetup setup("multifrequency-k5", camera_with("paper-10f0"));
+  const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 1e3, 1e4, 4000, 1);
+  std::vector<std::int32_t> bins(4000);
+  std::vector<double> positions(4000);
+  const auto batch = [&] {
+    setup.decoder.decode_depth_bins(raw.data(), 4000, positions.data());
+    setup.decoder.decode_bins(raw.data(), 4000, bins.data());
+  };
+  EXPECT_EQ(allocations_of(batch), 0);
+  const auto of_frame = [&](int pixels) {
+    const RawFrames frame = frame_of({raw.begin(), raw.begin() + 5 * pixels}, 5);
+    return allocations_of([&] { setup.decoder.decode(frame); });
+  };
+  of_frame(64);  // the first use of threads allocates
+  EXPECT_LE(of_frame(4000), of_frame(400) + 2);
 }
 
 TEST(Decoder, AllocatesNothingPerPixelInFrames) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tofsmith/io/camera_toml.hpp"
+#include "tofsmith/io/scene_toml.hpp"
 
 namespace {
 
@@ -26,11 +27,23 @@ TEST(Readme, ShowsTheProgramThatTheConsumerProjectRuns) {
   EXPECT_NE(read("README.md").find("```cpp\n" + program + "```"), std::string::npos);
 }
 
-TEST(Readme, ShowsACameraThatCanBeRead) {
+/// The first TOML example below a heading.
+std::string toml_below(const std::string& heading) {
   const std::string readme = read("README.md");
-  const std::size_t begin = readme.find("```toml\n") + 8;
-  const std::string toml = readme.substr(begin, readme.find("```", begin) - begin);
+  const std::size_t section = readme.find("\n## " + heading + "\n");
+  if (section == std::string::npos) return "no such heading";
+  const std::size_t begin = readme.find("```toml\n", section) + 8;
+  return readme.substr(begin, readme.find("```", begin) - begin);
+}
+
+TEST(Readme, ShowsACameraThatCanBeRead) {
+  const std::string toml = toml_below("Your camera");
   EXPECT_DOUBLE_EQ(tofsmith::parse_camera_toml(toml, "README.md").light.peak_factor, 15.0);
+}
+
+TEST(Readme, ShowsASceneThatCanBeRead) {
+  const std::string toml = toml_below("Your scene");
+  EXPECT_EQ(tofsmith::parse_scene_toml(toml, "README.md").shapes.size(), 4u);
 }
 
 }  // namespace

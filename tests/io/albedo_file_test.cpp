@@ -5,10 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "damaged_files.hpp"
 #include "temporary_directory.hpp"
 #include "tofsmith/io/colour.hpp"
 #include "tofsmith/io/exr.hpp"
+#include "tofsmith/io/float_image_file.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/pfm.hpp"
 #include "tofsmith/io/png.hpp"
@@ -92,6 +95,39 @@ TEST(AlbedoFile, RefusesWhatIsNoPicture) {
   EXPECT_THAT(refusal(directory / "a.npy"), HasSubstr("0 x 2 pixels"));
   write_exr(directory / "a.exr", {{"R", Image<float>(1, 1)}, {"G", Image<float>(1, 1)}}, overwrite);
   EXPECT_THAT(refusal(directory / "a.exr"), HasSubstr("found the channels G, R"));
+}
+
+TEST(AlbedoOfPicture, IsScaledDownAsAWholeIfBrighterThanOne) {
+  Image<float> picture(1, 2, 2.0f);
+  picture(0, 1) = 4.0f;
+  EXPECT_EQ(albedo_of_picture(picture, "a.npy").pixels, (std::vector<float>{0.5f, 1.0f}));
+  picture(0, 1) = 0.25f;
+  picture(0, 0) = 1.0f;
+  EXPECT_EQ(albedo_of_picture(picture, "a.npy").pixels, picture.pixels);
+}
+
+TEST(AlbedoOfPicture, MayBeUnknownWhereNothingReturns) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  Image<float> picture(1, 2, 0.5f), depth_m(1, 2, 1.0f);
+  picture(0, 1) = nan;
+  EXPECT_EQ(io_error_of([&] { albedo_of_picture(picture, "a.npy", depth_m); }),
+            "a.npy: row 0, column 1: found nan; expected a finite number >= 0");
+  depth_m(0, 1) = nan;
+  EXPECT_EQ(albedo_of_picture(picture, "a.npy", depth_m).pixels, (std::vector<float>{0.5f, 0.0f}));
+  picture(0, 0) = -0.5f;
+  EXPECT_EQ(io_error_of([&] { albedo_of_picture(picture, "a.npy", depth_m); }),
+            "a.npy: row 0, column 0: found -0.5; expected a finite number >= 0");
+}
+
+TEST(AmbientScale, IsFiniteAndNeverNegative) {
+  const TemporaryDirectory directory;
+  Image<float> picture(1, 2, 3.0f);
+  write_float_image(directory / "a.npy", picture, "a", OutputPolicy::overwrite);
+  EXPECT_EQ(read_ambient_scale(directory / "a.npy").pixels, picture.pixels);
+  picture(0, 1) = -1.0f;
+  write_float_image(directory / "a.npy", picture, "a", OutputPolicy::overwrite);
+  EXPECT_THAT(io_error_of([&] { read_ambient_scale(directory / "a.npy"); }),
+              testing::EndsWith("a.npy: row 0, column 1: found -1; expected a finite number >= 0"));
 }
 
 }  // namespace

@@ -60,6 +60,8 @@ Camera every_field_set() {
   camera.light.binary = false;
   camera.light.impulse_response.kind = Kind::lowpass;
   camera.light.impulse_response.cutoff_hz = 1e8;
+  camera.light.generator = Generator{.sample_rate_hz = 5.5e8, .amplitude_bits = 10};
+  camera.sensor.generator = Generator{};
   camera.sensor.taps = 2;
   camera.sensor.binary = false;
   camera.sensor.impulse_response.kind = Kind::file;

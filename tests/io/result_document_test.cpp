@@ -36,8 +36,9 @@ TEST(EvaluationDocument, HasExactlyTheKeysOfTheContract) {
       {evaluate(build_family("sinusoid-k4", camera), camera, options), 7}};
   codes[0].error.points[0].cramer_rao_mae_m = std::numeric_limits<double>::infinity();
   const json document = json::parse(evaluation_document(camera, codes, options));
-  EXPECT_EQ(keys_of(document),
-            (Keys{"tofsmith", "seed", "trials", "outlier_threshold_m", "camera", "codes"}));
+  EXPECT_EQ(keys_of(document), (Keys{"tofsmith", "seed", "trials", "outlier_threshold_m", "camera",
+                                     "method", "codes"}));
+  EXPECT_EQ(document["method"], "zncc");
   EXPECT_EQ(document["seed"], 18446744073709551615ull);
   EXPECT_EQ(document["trials"], 1000);
   EXPECT_EQ(document["camera"]["light"]["peak_factor"], camera.light.peak_factor);
@@ -53,6 +54,14 @@ TEST(EvaluationDocument, HasExactlyTheKeysOfTheContract) {
   EXPECT_EQ(keys_of(code["points"][0]), point_keys);
   EXPECT_TRUE(code["points"][0]["cramer_rao_mae_m"].is_null()) << "JSON has no infinity";
   EXPECT_EQ(code["points"][1]["linear_mde_m"], codes[0].error.points[1].linear_mde_m.value);
+}
+
+TEST(EvaluationDocument, NamesTheDecoder) {
+  const EvaluateOptions options{.method = DecodeMethod::unwrap,
+                                .unwrap_weights = UnwrapWeights::frequency};
+  const json document = json::parse(evaluation_document(small_camera("paper-5f0"), {}, options));
+  EXPECT_EQ(document["method"], "unwrap");
+  EXPECT_EQ(document["unwrap_weights"], "frequency");
 }
 
 TEST(DesignDocument, AddsTheBestAndHowEachDesignedCodeCompares) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tofsmith/camera/generator.hpp"
 #include "tofsmith/camera/impulse_response.hpp"
 #include "tofsmith/code/code_set.hpp"
 
@@ -35,6 +36,7 @@ struct LightSource {
   double peak_factor = 15.0;  ///< p = P_max / P_ave, >= 1
   bool binary = true;         ///< a design for it may only switch on and off
   ImpulseResponse impulse_response;
+  std::optional<Generator> generator;  ///< plays the modulation; none: any waveform, exactly
 
   friend bool operator==(const LightSource&, const LightSource&) = default;
 };
@@ -44,6 +46,7 @@ struct Sensor {
   int taps = 1;        ///< values read out of one exposure; 2 = two-bucket; n = exclusive taps
   bool binary = true;  ///< a design for it may only switch on and off
   ImpulseResponse impulse_response;
+  std::optional<Generator> generator;      ///< plays the demodulation; none: any waveform, exactly
   double read_noise_e = 20.0;              ///< standard deviation per readout [e], >= 0
   NoiseModel noise = NoiseModel::poisson;  ///< how noise is drawn
   double dark_current_e_per_s = 0.0;       ///< per tap [e/s], >= 0
@@ -137,7 +140,7 @@ void require_fits(const CodeSet& code, const Camera& camera);
 /// @throws std::invalid_argument for an unknown family or one the camera cannot play
 CodeSet build_family(std::string_view name, const Camera& camera);
 
-/// Cameras that need no file: paper-30x, paper-10f0, paper-5f0.
+/// Cameras that need no file: paper-30x, paper-10f0, paper-5f0, prototype (prototype.hpp).
 std::vector<std::string> built_in_camera_names();
 /// @throws std::invalid_argument for an unknown name, with the nearest known one
 Camera built_in_camera(const std::string& name);

@@ -22,8 +22,8 @@ std::vector<FamilyDescription> list_families();
 
 /// Builds a family from its name: `sinusoid-k4`, `square-k4`, `hamiltonian-k3` .. `k10`,
 /// `multifrequency-k5` (3 steps at f0 and 2 at 7 f0), `multifrequency-1x3-7x2` (any list of
-/// frequency x steps), `pulsed-multifrequency-k5` (high frequency 3) or `..-q2` .. `..-q8`,
-/// `gray-k3` .. `k10`, `single-ramp-k3`, `double-ramp-k3`.
+/// frequency x steps), `pulsed-multifrequency-k5` and `-k4` (high frequency 3) or `..-q2` ..
+/// `..-q8`, `gray-k3` .. `k10`, `single-ramp-k3`, `double-ramp-k3`.
 /// @throws std::invalid_argument for a name that is no family's, with the nearest one that is
 CodeSet make_family(std::string_view name, const FamilyOptions& options);
 

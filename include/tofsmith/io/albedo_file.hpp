@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "tofsmith/core/array.hpp"
 
@@ -19,5 +20,20 @@ enum class Transfer { srgb, linear };
 /// @param png_transfer  PNG files rarely say; photographs are sRGB, measured albedo may be linear
 /// @throws IoError if the extension is another, or the file is not such an image
 Image<float> read_albedo(const std::filesystem::path& path, Transfer png_transfer = Transfer::srgb);
+
+/// Albedo in [0, 1] from what a picture holds. Radiance of a render can exceed 1; then the picture
+/// is scaled down as a whole.
+/// @param file  what errors call it
+/// @param depth_m  where nothing returns (NaN) albedo may be unknown (NaN) too, and becomes 0;
+/// empty
+///                 or of the picture's size
+/// @throws IoError naming the first pixel that is negative or not finite
+Image<float> albedo_of_picture(Image<float> picture, std::string_view file,
+                               const Image<float>& depth_m = {});
+
+/// Ambient light of every pixel relative to the scene's, of the same files as read_albedo().
+/// @throws IoError as read_albedo(), or naming the first pixel that is negative or not finite
+Image<float> read_ambient_scale(const std::filesystem::path& path,
+                                Transfer png_transfer = Transfer::srgb);
 
 }  // namespace tofsmith

@@ -17,7 +17,7 @@ struct EvaluatedCode {
 };
 
 /// What `tofsmith evaluate --json` prints: version, seed, trials, the camera with its defaults
-/// filled in, and one entry per code with its depth errors and bounds.
+/// filled in, the decoder, and one entry per code with its depth errors and bounds.
 std::string evaluation_document(const Camera& camera, std::span<const EvaluatedCode> codes,
                                 const EvaluateOptions& options);
 

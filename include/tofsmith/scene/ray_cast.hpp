@@ -12,13 +12,14 @@
 
 namespace tofsmith {
 
-/// The nearest of all intersections.
+/// The nearest of all intersections, each in closed form, a mesh triangle by triangle: a reference.
+/// RayCaster is the fast way.
 std::optional<Hit> nearest_hit(std::span<const Shape> shapes, const Ray& ray);
 
-/// What a pinhole camera sees: through the centre of every pixel, the nearest surface. Rays that
-/// meet nothing return nothing (NaN).
+/// What a pinhole camera sees: the image of RayCaster::see. Build a RayCaster for several views of
+/// one scene, or to learn which shape is seen where.
 /// @param camera_to_world  where the camera stands and looks; identity: the view's own axes
-/// @throws std::invalid_argument if the view or a shape is invalid
+/// @throws std::invalid_argument if the view, the pose or a shape is invalid
 SceneImage ray_cast(std::span<const Shape> shapes, const PinholeView& view,
                     const Eigen::Isometry3d& camera_to_world = Eigen::Isometry3d::Identity());
 

@@ -9,6 +9,7 @@
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/statistics.hpp"
+#include "tofsmith/decode/decode_method.hpp"
 
 namespace tofsmith {
 
@@ -27,6 +28,8 @@ struct EvaluateOptions {
   DepthSampling depth = DepthSampling::uniform;
   /// Clip electrons of every tap to [0, T (S + A)], as the simulator of the paper's authors does.
   bool clip_to_open_sensor = false;
+  DecodeMethod method = DecodeMethod::zncc;
+  UnwrapWeights unwrap_weights = UnwrapWeights::variance;  ///< of DecodeMethod::unwrap
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
@@ -73,8 +76,8 @@ struct DepthErrorReport {
 /// tap after the other. Codes are so compared on the same depths and the same noise. Standard
 /// errors come from the differences of trials in neighbouring slices; they hold for the sliced
 /// depths (and err on the large side).
-/// @throws std::invalid_argument if the camera or the options are invalid or the code does not fit;
-///         Interrupted if progress says so
+/// @throws std::invalid_argument if the camera or the options are invalid, the code does not fit or
+///         the method cannot decode it; Interrupted if progress says so
 /// @note same bits for any number of threads
 DepthErrorReport evaluate(const CodeSet& code, const Camera& camera,
                           const EvaluateOptions& options = {}, const Progress& progress = {});
@@ -92,7 +95,8 @@ struct BestRotation {
 /// rotation but those that put the origin between the two, where it costs the range less that. So
 /// one run of trials gives the error at all N rotations. (Every rotation is judged by the same
 /// trials and the least is taken: its own figure is a little low; evaluate the rotated code for an
-/// honest one.)
+/// honest one. A camera's generator rounds switching times, so on one this holds for rotations by
+/// whole points only.)
 /// @param options  as for evaluate
 BestRotation best_rotation(const CodeSet& code, const Camera& camera,
                            const EvaluateOptions& options = {}, const Progress& progress = {});

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "tofsmith/decode/decode_method.hpp"
+
+namespace tofsmith::apps {
+
+/// Which decoder turns measurements into depth: `--method`, `--unwrap-weights`.
+class MethodArguments {
+ public:
+  void add_to(CLI::App& command) {
+    command
+        .add_option("--method", method_,
+                    "decoder: zncc for any code, unwrap for sinusoids of one or more frequencies")
+        ->check(CLI::IsMember({"zncc", "unwrap"}))
+        ->capture_default_str();
+    command
+        .add_option("--unwrap-weights", weights_,
+                    "how unwrapping weighs frequencies: by the variance of their depth on this "
+                    "camera, or by f^2, as is classical")
+        ->check(CLI::IsMember({"variance", "frequency"}))
+        ->capture_default_str();
+  }
+  DecodeMethod method() const { return parse_decode_method(method_); }
+  UnwrapWeights unwrap_weights() const { return parse_unwrap_weights(weights_); }
+
+ private:
+  std::string method_ = "zncc";
+  std::string weights_ = "variance";
+};
+
+}  // namespace tofsmith::apps

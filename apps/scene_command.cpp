@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "fresh_directory.hpp"
+#include "scene_preview.hpp"
+#include "scene_source.hpp"
+#include "tofsmith/io/depth_file.hpp"
+#include "tofsmith/io/float_image_file.hpp"
+#include "tofsmith/io/npy.hpp"
+#include "tofsmith/scene/built_in_scenes.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SceneArguments {
+  SceneSource scene;
+  CameraArguments camera;
+  std::string output;
+};
+
+void list_scenes(const Session& session) {
+  const std::vector<std::string> names = built_in_scene_names();
+  session.print_json({{"scenes", names}});
+  session.say(fmt::format("{}", fmt::join(names, "\n")));
+}
+
+void write_directory(const fs::path& directory, const LoadedScene& scene, const Camera& camera,
+                     const Session& session) {
+  const OutputPolicy policy = session.output_policy();
+  const FreshDirectory cleanup(directory);
+  apps::create_directories(directory);
+  for (const char* name :
+       {"depth.npy", "z.npy", "albedo.npy", "cosine.npy", "beyond_range.npy", "preview.png"})
+    session.check_output(directory / name);
+  const SceneImage& image = scene.image;
+  write_float_image(directory / "depth.npy", image.depth_m, "depth", policy);
+  write_float_image(directory / "z.npy", z_from_radial(image.depth_m, scene.view), "z", policy);
+  write_float_image(directory / "albedo.npy", image.albedo, "albedo", policy);
+  write_float_image(directory / "cosine.npy", image.cosine, "cosine", policy);
+  const NpyShape shape{static_cast<std::size_t>(image.height()),
+                       static_cast<std::size_t>(image.width())};
+  write_npy(directory / "beyond_range.npy",
+            NpyArray::of<std::uint8_t>(shape, beyond_range(image, camera).pixels), policy);
+  write_png(directory / "preview.png", scene_preview(image), policy);
+}
+
+void print(const LoadedScene& scene, const Camera& camera, const std::string& output,
+           const Session& session) {
+  const SceneExtent extent = scene_extent(scene.image, camera);
+  const auto distance = [&](double metres) -> nlohmann::ordered_json {
+    if (extent.returns == 0) return nullptr;
+    return metres;
+  };
+  session.print_json({{"scene", scene.name},
+                      {"height", scene.image.height()},
+                      {"width", scene.image.width()},
+                      {"nearest_m", distance(extent.nearest_m)},
+                      {"median_m", distance(extent.median_m)},
+                      {"farthest_m", distance(extent.farthest_m)},
+                      {"no_return_share", extent.no_return_share()},
+                      {"camera", camera.name},
+                      {"range_m", extent.range_m},
+                      {"beyond_range_share", extent.beyond_range_share()},
+                      {"output", output}});
+  session.say(fmt::format("{}: {} x {} pixels, {:.3g} % without return", scene.name,
+                          scene.image.height(), scene.image.width(),
+                          100.0 * extent.no_return_share()));
+  if (extent.returns > 0)
+    session.say(fmt::format("distance: nearest {}, median {}, farthest {}",
+                            length_text(extent.nearest_m), length_text(extent.median_m),
+                            length_text(extent.farthest_m)));
+  if (extent.beyond_range > 0)
+    session.say(fmt::format("{}: {}", camera.name, beyond_range_remark(extent)));
+  if (!output.empty()) session.say(fmt::format("wrote {}", output));
+}
+
+void run(const SceneArguments& arguments, const Session& session) {
+  const std::string& output = arguments.output;
+  if (arguments.scene.scene.empty()) {
+    if (!output.empty())
+      throw UsageError("-o needs a SCENE; `tofsmith scene` lists those built in");
+    return list_scenes(session);
+  }
+  const Camera camera = arguments.camera.load();
+  const bool is_file = fs::path(output).has_extension() && !fs::is_directory(output);
+  if (is_file) session.check_output(output);
+  const LoadedScene scene = load_scene(arguments.scene, camera);
+  if (is_file)
+    write_depth(output, scene.image.depth_m, session.output_policy());
+  else if (!output.empty())
+    write_directory(output, scene, camera, session);
+  print(scene, camera, output, session);
+}
+
+}  // namespace
+
+void add_scene_command(CLI::App& app, Session& session) {
+  auto arguments = std::make_shared<SceneArguments>();
+  CLI::App* command = app.add_subcommand("scene", "look at a scene, or list those built in");
+  command->add_option("SCENE", arguments->scene.scene, scene_help);
+  arguments->scene.add_to(*command);
+  arguments->camera.add_to(*command);
+  command->add_option("-o,--output", arguments->output,
+                      "directory for depth, z-depth, albedo, cosine, what is beyond the range, and "
+                      "a preview; or one file for the radial distance (.npy .npz .exr .pfm .png)");
+  command->callback([arguments, &session] { run(*arguments, session); });
+}
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+
+namespace tofsmith {
+
+/// The waveforms of a code as the arms of a camera are driven, ahead of their impulse responses.
+struct PlayedCode {
+  std::vector<Waveform> modulation;    ///< one per exposure, mean at most 1
+  std::vector<Waveform> demodulation;  ///< one per tap value
+};
+
+/// What the camera's generators make of a code; as told, where an arm has none.
+///   - Rounding may lengthen the pulses of a modulation. The source's average power is fixed: above
+///     a mean of 1 the whole waveform is scaled down. Below, it is left as it is, since the peak
+///     may be at its limit: the light is then less than told.
+///   - A sensor of two taps without drain has one generator, which plays the first tap; the second
+///     is what the first leaves, 1 - d.
+/// @throws std::invalid_argument if a modulation has no pulse that the generator can play
+PlayedCode played_code(const CodeSet& code, const Camera& camera);
+
+/// Whether the second tap of every exposure is what the first leaves.
+bool taps_share_a_generator(const CodeSet& code, const Camera& camera);
+
+}  // namespace tofsmith

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "tofsmith/scene/staged_scene.hpp"
+
+namespace tofsmith {
+
+/// Reads a scene from TOML: shapes, and the pinhole camera that sees them. The world's axes are
+/// x to the right, y down and z forward [m]; so are the camera's own.
+///
+///   [view]      width_px, height_px (320 x 240); horizontal_angle_deg (60), or fx_px with fy_px
+///               (= fx_px), cx_px and cy_px (the middle)
+///   [camera]    position_m (the origin); look_at_m, or rotation_deg
+///   [[plane]]   point_m, normal
+///   [[box]]     centre_m, size_m, rotation_deg
+///   [[sphere]]  centre_m, radius_m
+///   [[capsule]] start_m, end_m, radius_m
+///   [[mesh]]    file (see read_mesh()), scale_m (1; metres per unit), position_m, rotation_deg
+///
+/// rotation_deg = [x, y, z] turns about the world's x axis first, then y, then z, by the right-hand
+/// rule. Every shape takes albedo (0.5), or texture, one of
+///
+///   { pattern = "checker", albedo = 0.8, other_albedo = 0.2, period_m = 0.1 }, or "stripes"
+///   { image = "cover.png", linear = false, albedo = 1, period_m = 0.1 }   see read_albedo();
+///         scaled as a whole if brighter than 1; albedo multiplies it, period_m is its width
+///
+/// Files are named from where the scene stands.
+/// @param source_name  path of the file, or what errors shall call it
+/// @param settings  keys that replace those of the file, such as "view.width_px=640"
+/// @throws IoError "file:line:column: .." for what is no TOML, unknown keys (with the nearest
+///         known one), wrong types, missing and contradictory keys, values out of range, and
+///         meshes and images that cannot be read; or if there is no shape
+StagedScene parse_scene_toml(std::string_view text, std::string_view source_name = "scene.toml",
+                             std::span<const std::string> settings = {});
+/// @throws IoError as parse_scene_toml(), or if the file cannot be read
+StagedScene read_scene_toml(const std::filesystem::path& path,
+                            std::span<const std::string> settings = {});
+
+}  // namespace tofsmith

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tofsmith/scene/staged_scene.hpp"
+
+namespace tofsmith {
+
+/// Names that built_in_scene knows.
+std::vector<std::string> built_in_scene_names();
+
+/// A scene that needs no files. All but `table-top` are seen along z from the origin.
+///
+/// | name      | shapes, by index                                                               |
+/// |-----------|--------------------------------------------------------------------------------|
+/// | table-top | the demo's, see table_top.hpp: table, wall, three books, ball                  |
+/// | books     | 0 to 2 upright books, front covers at z = 1.2, 1.4, 1.6 m, the first (leftmost) |
+/// |           | dark; 3 a wall at 3.2 m; 4 the table they stand on                             |
+/// | ball      | 0 a volleyball of radius 20 cm, centre at 1 m; 1 a wall at 2.5 m               |
+/// | wall      | 0 a wall at 0.5 m that faces the camera                                        |
+/// | hand      | capsules only: an open right hand, palm to the camera, 19 cm from the wrist to |
+/// |           | the tip of the middle finger, about 0.5 m away, with its forearm; no background |
+///
+/// @param width, height  resolution of the pinhole camera, > 0
+/// @throws std::invalid_argument for an unknown name, with the nearest known one
+/// @see Gutierrez-Barragan et al., CVPR 2019, Figs. 7, 10 and 11; sizes the paper does not give are
+///      ours
+StagedScene built_in_scene(std::string_view name, int width = 320, int height = 240);
+
+}  // namespace tofsmith

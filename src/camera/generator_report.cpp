@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/camera/generator_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tofsmith/camera/played_code.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// A step function by the ends of its steps in (0, 1]; those of the library begin at 0.
+class Steps {
+ public:
+  explicit Steps(const Waveform& waveform) : function_(waveform.steps()) {}
+  double end() const {
+    return next_ + 1 < function_.breakpoints.size() ? function_.breakpoints[next_ + 1] : 1.0;
+  }
+  double value() const { return function_.values[next_]; }
+  void advance_to(double position) {
+    while (next_ + 1 < function_.breakpoints.size() && end() <= position) ++next_;
+  }
+
+ private:
+  StepFunction function_;
+  std::size_t next_ = 0;
+};
+
+double rms_difference(const Waveform& a, const Waveform& b) {
+  Steps steps_a(a), steps_b(b);
+  double sum = 0.0;
+  for (double position = 0.0; position < 1.0;) {
+    const double end = std::min(steps_a.end(), steps_b.end());
+    const double difference = steps_a.value() - steps_b.value();
+    sum += difference * difference * (end - position);
+    position = end;
+    steps_a.advance_to(position);
+    steps_b.advance_to(position);
+  }
+  return std::sqrt(sum);
+}
+
+double largest_edge_move_periods(const Waveform& told, int points) {
+  double largest = 0.0;
+  for (const OnInterval& on : told.on_intervals())
+    for (const double edge : {on.rise, on.fall})
+      largest = std::max(largest, std::abs(nearest_point(edge, points) / points - edge));
+  return largest;
+}
+
+GeneratorReport compare(Arm arm, int index, const Waveform& told, const Waveform& played,
+                        const Generator& generator, double frequency_hz) {
+  GeneratorReport report{.arm = arm, .index = index};
+  report.points_per_period = generator.points_per_period(frequency_hz);
+  report.clock_hz = report.points_per_period * frequency_hz;
+  report.duty_told = told.duty();
+  report.duty_played = played.duty();
+  report.mean_told = told.mean();
+  report.mean_played = played.mean();
+  report.peak_told = told.peak();
+  report.peak_played = played.peak();
+  report.edges_told = told.edges();
+  report.edges_played = played.edges();
+  if (told.is_binary())
+    report.largest_edge_move_s =
+        largest_edge_move_periods(told, report.points_per_period) / frequency_hz;
+  report.rms_difference = rms_difference(told, played);
+  return report;
+}
+
+}  // namespace
+
+std::vector<GeneratorReport> generator_report(const CodeSet& code, const Camera& camera) {
+  camera.validate();
+  require_fits(code, camera);
+  const PlayedCode played = played_code(code, camera);
+  const double frequency_hz = camera.fundamental_frequency_hz;
+  std::vector<GeneratorReport> reports;
+  for (int e = 0; camera.light.generator && e < code.exposures(); ++e)
+    reports.push_back(compare(Arm::light, e, code.modulation(e),
+                              played.modulation[static_cast<std::size_t>(e)],
+                              *camera.light.generator, frequency_hz));
+  const int step = taps_share_a_generator(code, camera) ? 2 : 1;
+  for (int i = 0; camera.sensor.generator && i < code.measurements(); i += step)
+    reports.push_back(compare(Arm::sensor, i, code.demodulation(i),
+                              played.demodulation[static_cast<std::size_t>(i)],
+                              *camera.sensor.generator, frequency_hz));
+  return reports;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/decode/decode_method.hpp"
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+std::string_view name_of(DecodeMethod method) {
+  return method == DecodeMethod::zncc ? "zncc" : "unwrap";
+}
+
+DecodeMethod parse_decode_method(std::string_view name) {
+  for (const DecodeMethod method : all_decode_methods)
+    if (name == name_of(method)) return method;
+  reject("method", name, "must be zncc or unwrap");
+}
+
+AnyDecoder make_decoder(DecodeMethod method, DecodingTable table, const DecodeOptions& doubt,
+                        UnwrapWeights unwrap_weights) {
+  if (method == DecodeMethod::zncc) return Decoder(std::move(table), doubt);
+  return UnwrapDecoder(std::move(table), {.doubt = doubt, .weights = unwrap_weights});
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace tofsmith {
+
+/// Most frequencies a code can have: two measurements each.
+inline constexpr int max_frequencies = 32;
+
+/// One choice of wraps: a candidate depth for each frequency.
+struct Wraps {
+  double distance = 0.0;                          ///< sum of w_f (z_f - z)^2
+  double depth = 0.0;                             ///< z, the weighted mean [periods], any real
+  std::array<double, max_frequencies> candidate;  ///< z_f = (phase_f + wraps_f) / f [periods]
+};
+
+/// Depth from phases that wrap: the candidates, one per frequency, that lie closest together.
+class PhaseUnwrapper {
+ public:
+  /// @param frequencies  in multiples of f0
+  /// @param weights      w_f > 0, one each; only their ratios count
+  PhaseUnwrapper(std::vector<int> frequencies, std::vector<double> weights);
+
+  int count() const { return static_cast<int>(frequencies_.size()); }
+  int highest() const { return highest_; }
+  double weight(int j) const { return weights_[static_cast<std::size_t>(j)]; }
+  double whole_weight() const { return whole_weight_; }
+
+  /// The choice of least weighted distance, of all there are.
+  /// @param phase  (count) [periods of the frequency]
+  Wraps nearest(const double* phase) const;
+  /// The best choice whose depth is more than half a wrap of the highest frequency from `best`.
+  std::optional<Wraps> rival(const double* phase, const Wraps& best) const;
+
+ private:
+  template <typename Use>
+  void for_each_choice(const double* phase, const Use& use) const;
+
+  std::vector<int> frequencies_;
+  std::vector<double> weights_;
+  double whole_weight_ = 0.0;
+  int highest_ = 0;
+};
+
+}  // namespace tofsmith

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/scene/built_in_scenes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "scene/hand.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/scene/table_top.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+using Pattern = Texture::Pattern;
+
+constexpr double degrees = std::numbers::pi / 180;
+
+Texture uniform(double albedo) { return {.albedo = albedo}; }
+Texture pattern(Pattern kind, double albedo, double other_albedo, double period_m) {
+  return {.pattern = kind, .albedo = albedo, .other_albedo = other_albedo, .period_m = period_m};
+}
+
+Shape wall_at(double z_m, const Texture& texture) {
+  return Plane{.point = {0, 0, z_m}, .normal = {0, 0, -1}, .texture = texture};
+}
+
+StagedScene books(int width, int height) {
+  constexpr double table_y_m = 0.22;
+  const auto book = [](double x_m, double front_z_m, const Texture& cover) {
+    const Eigen::Vector3d size_m(0.24, 0.34, 0.04);  // width, height, thickness
+    return Box{.centre = {x_m, table_y_m - 0.5 * size_m.y(), front_z_m + 0.5 * size_m.z()},
+               .size_m = size_m,
+               .texture = cover};
+  };
+  return {.shapes = {book(-0.30, 1.2, uniform(0.10)),
+                     book(0.00, 1.4, pattern(Pattern::stripes, 0.70, 0.50, 0.06)),
+                     book(0.34, 1.6, pattern(Pattern::checker, 0.90, 0.60, 0.06)),
+                     wall_at(3.2, uniform(0.75)),
+                     Box{.centre = {0.0, table_y_m + 0.02, 1.2},
+                         .size_m = {2.6, 0.04, 1.6},
+                         .texture = uniform(0.45)}},
+          .view = PinholeView::centred(width, height, 42 * degrees)};
+}
+
+/// Panels of a volleyball: six groups of three strips, one group around each half-axis.
+double panel_albedo(const Eigen::Vector3d& direction) {
+  constexpr std::array<double, 3> strips = {0.85, 0.45, 0.70};
+  constexpr double seam_albedo = 0.20, seam_width = 0.035;
+  Eigen::Index axis = 0;
+  const double largest = direction.cwiseAbs().maxCoeff(&axis);
+  const double across = direction[(axis + 1) % 3] / largest;  // [-1, 1]
+  const double along = direction[(axis + 2) % 3] / largest;
+  const double strip = 1.5 * (across + 1);  // [0, 3]
+  const bool on_seam =
+      std::abs(strip - std::round(strip)) < 1.5 * seam_width || 1 - std::abs(along) < seam_width;
+  return on_seam ? seam_albedo : strips[static_cast<std::size_t>(std::min(2.0, strip))];
+}
+
+Texture volleyball(double radius_m) {
+  Texture texture{.pattern = Pattern::image,
+                  .albedo = 1.0,
+                  .period_m = 2 * std::numbers::pi * radius_m,
+                  .image = Image<float>(512, 1024)};
+  Image<float>& image = texture.image;
+  // Turned, so that a corner of the panels shows.
+  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(25 * degrees, Eigen::Vector3d::UnitX()) *
+                                Eigen::AngleAxisd(35 * degrees, Eigen::Vector3d::UnitY()))
+                                   .toRotationMatrix();
+  for (int row = 0; row < image.height; ++row)
+    for (int column = 0; column < image.width; ++column) {
+      // Rows run against the second coordinate, the latitude; the image repeats.
+      const double longitude_rad = 2 * std::numbers::pi * (column + 0.5) / image.width;
+      double latitude_rad = -std::numbers::pi * (row + 0.5) / image.height;
+      if (latitude_rad < -0.5 * std::numbers::pi) latitude_rad += std::numbers::pi;
+      const double equator = std::cos(latitude_rad);
+      image(row, column) = static_cast<float>(panel_albedo(
+          turn * Eigen::Vector3d(equator * std::sin(longitude_rad), std::sin(latitude_rad),
+                                 equator * std::cos(longitude_rad))));
+    }
+  return texture;
+}
+
+StagedScene ball(int width, int height) {
+  constexpr double radius_m = 0.20;
+  return {
+      .shapes = {Sphere{.centre = {0, 0, 1}, .radius_m = radius_m, .texture = volleyball(radius_m)},
+                 wall_at(2.5, uniform(0.60))},
+      .view = PinholeView::centred(width, height, 38 * degrees)};
+}
+
+StagedScene wall(int width, int height) {
+  return {.shapes = {wall_at(0.5, uniform(0.80))},
+          .view = PinholeView::centred(width, height, 40 * degrees)};
+}
+
+StagedScene hand(int width, int height) {
+  // The hand's y axis points up, the camera's down; the palm leans back and turns a little.
+  Eigen::Isometry3d hand_to_world = Eigen::Isometry3d::Identity();
+  hand_to_world.translate(Eigen::Vector3d(0.012, 0.075, 0.50));
+  hand_to_world.rotate(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));
+  hand_to_world.rotate(Eigen::AngleAxisd(8 * degrees, Eigen::Vector3d::UnitY()));
+  hand_to_world.rotate(Eigen::AngleAxisd(-8 * degrees, Eigen::Vector3d::UnitX()));
+  return {.shapes = open_hand(hand_to_world, uniform(0.60)),
+          .view = PinholeView::centred(width, height, 36 * degrees)};
+}
+
+struct Entry {
+  std::string_view name;
+  StagedScene (*stage)(int width, int height);
+};
+constexpr std::array<Entry, 5> entries = {{{"table-top", table_top_scene},
+                                           {"books", books},
+                                           {"ball", ball},
+                                           {"wall", wall},
+                                           {"hand", hand}}};
+
+}  // namespace
+
+std::vector<std::string> built_in_scene_names() {
+  std::vector<std::string> names;
+  for (const Entry& entry : entries) names.emplace_back(entry.name);
+  return names;
+}
+
+StagedScene built_in_scene(std::string_view name, int width, int height) {
+  for (const Entry& entry : entries)
+    if (entry.name == name) return entry.stage(width, height);
+  const std::vector<std::string> names = built_in_scene_names();
+  std::string rule = "must be one of";
+  for (const std::string& known : names) rule += " " + known;
+  const std::string meant = nearest_word(name, names);
+  if (!meant.empty()) rule += "; did you mean " + meant + "?";
+  reject("scene", name, rule);
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/scene/framed_mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+StagedScene framed_mesh(TriangleMesh triangles, double scale_m, int width, int height) {
+  constexpr double filled = 0.8;
+  require(std::isfinite(scale_m) && scale_m > 0.0, "scale_m", scale_m, "must be finite and > 0");
+  triangles.validate();
+  StagedScene scene;
+  scene.view = PinholeView::centred(width, height, std::numbers::pi / 3);
+
+  // Its y axis goes up, the world's down; turned about x, it still shows its front.
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& vertex : triangles.vertices) box.extend(vertex);
+  const Eigen::Matrix3d turn = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
+
+  // Every vertex asks for a distance from which it is in the middle part of the image; none comes
+  // to stand at the camera or behind it.
+  const double half_width = 0.5 * filled * width / scene.view.fx_px;
+  const double half_height = 0.5 * filled * height / scene.view.fy_px;
+  const double half_diagonal_m = 0.5 * scale_m * box.diagonal().norm();
+  require(half_diagonal_m > 0.0, "mesh", "a single point", "must have an extent");
+  double distance_m = 0.0;
+  for (const Eigen::Vector3d& vertex : triangles.vertices) {
+    const Eigen::Vector3d at = scale_m * (turn * (vertex - box.center()));
+    const double wanted =
+        std::max(std::abs(at.x()) / half_width, std::abs(at.y()) / half_height) - at.z();
+    distance_m = std::max({distance_m, wanted, 0.01 * half_diagonal_m - at.z()});
+  }
+  const Eigen::Vector3d centre(0.0, 0.0, distance_m);
+
+  Mesh mesh{.triangles = std::move(triangles), .scale_m = scale_m};
+  mesh.mesh_to_world.linear() = turn;
+  mesh.mesh_to_world.translation() = centre - scale_m * (turn * box.center());
+  scene.shapes.emplace_back(std::move(mesh));
+  return scene;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/random.hpp"
+#include "tofsmith/simulate/fine_correlation.hpp"
+#include "tofsmith/simulate/noise.hpp"
+
+namespace tofsmith {
+
+/// Expected electrons, noise and read-out of one pixel at a time.
+class PixelCapture {
+ public:
+  PixelCapture(const ForwardModel& model, const Camera& camera);
+
+  int measurements() const { return noise_.measurements(correlation_.tap_values()); }
+  int tap_values() const { return correlation_.tap_values(); }
+
+  /// @param depth_m  wraps at the range; NaN = nothing returns, and signal_e_per_s is 0
+  /// @param work  (tap values), overwritten
+  /// @param raw   (measurements), overwritten
+  void operator()(double depth_m, double signal_e_per_s, double ambient_e_per_s,
+                  RandomStream& random, std::vector<double>& work, float* raw) const;
+
+ private:
+  double range_m_, bin_m_;
+  double dark_e_per_s_;
+  FineCorrelation correlation_;
+  PixelNoise noise_;
+  Eigen::VectorXd exposure_s_, ambient_gain_;  // of the tap values
+};
+
+}  // namespace tofsmith

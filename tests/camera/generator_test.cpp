@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/camera/generator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/camera/generator_report.hpp"
+#include "tofsmith/camera/played_code.hpp"
+#include "tofsmith/camera/prototype.hpp"
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/core/random.hpp"
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+namespace {
+
+constexpr double frequency_hz = 5e6;
+
+Generator generator_of(int points, int bits = 14) { return {points * frequency_hz, bits}; }
+
+double value_at(const Waveform& waveform, double t) {
+  if (!waveform.is_binary())
+    return waveform
+        .samples()[static_cast<Eigen::Index>(t * static_cast<double>(waveform.samples().size()))];
+  for (const OnInterval& on : waveform.on_intervals())
+    if ((t >= on.rise && t < on.fall) || t + 1.0 < on.fall) return waveform.level();
+  return 0.0;
+}
+
+/// Anything from no pulse to always on, pulses that touch, and one across the end of the period.
+Waveform random_binary(RandomStream& random) {
+  std::vector<double> times(2 * (random() % 12));
+  for (double& time : times) time = random.uniform();
+  std::sort(times.begin(), times.end());
+  std::vector<OnInterval> on;
+  for (std::size_t i = 0; i + 1 < times.size(); i += 2) on.push_back({times[i], times[i + 1]});
+  const Waveform waveform = Waveform::binary(std::move(on), 0.5 + random.uniform());
+  return random() % 2 == 0 ? waveform : waveform.delayed(random.uniform());
+}
+
+TEST(Generator, PlaysTheValueAtTheMiddleOfEveryPoint) {
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    RandomStream random(21, i);
+    const Waveform told = random_binary(random);
+    const int points = 2 + static_cast<int>(random() % 30);
+    const Waveform played = generated(told, generator_of(points), frequency_hz);
+    ASSERT_TRUE(played.is_binary());
+    for (int j = 0; j < points; ++j) {
+      const double middle = (j + 0.5) / points;
+      EXPECT_EQ(value_at(played, middle), value_at(told, middle)) << "case " << i;
+      EXPECT_EQ(value_at(played, (j + 0.01) / points), value_at(played, (j + 0.99) / points));
+    }
+  }
+}
+
+TEST(Generator, ABinaryWaveformOnItsPointsDoesNotChange) {
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    RandomStream random(22, i);
+    Eigen::VectorXd samples(100);
+    for (double& sample : samples) sample = random() % 2;
+    const Waveform told = Waveform::binary_from_samples(samples, 3.0);
+    EXPECT_EQ(generated(told, generator_of(100), frequency_hz), told);
+    EXPECT_EQ(generated(told, generator_of(300), frequency_hz), told);
+  }
+}
+
+TEST(Generator, MovesSwitchingTimesByAtMostHalfAPointAndTiesAlike) {
+  const Waveform told = Waveform::binary({{0.125, 0.375}, {0.625, 0.875}});
+  const Waveform played = generated(told, generator_of(100), frequency_hz);
+  ASSERT_EQ(played.on_intervals().size(), 2u);
+  EXPECT_DOUBLE_EQ(played.on_intervals()[0].rise, 0.12);
+  EXPECT_DOUBLE_EQ(played.on_intervals()[0].fall, 0.37);
+  EXPECT_DOUBLE_EQ(played.on_intervals()[1].rise, 0.62);
+  EXPECT_DOUBLE_EQ(played.on_intervals()[1].fall, 0.87);
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    RandomStream random(23, i);
+    const double t = random.uniform();
+    EXPECT_LE(std::abs(nearest_point(t, 100) - 100 * t), 0.5 + 1e-9);
+  }
+}
+
+TEST(Generator, RoundsAmplitudesByAtMostHalfAStep) {
+  RandomStream random(24, 0);
+  Eigen::VectorXd samples(60);
+  for (double& sample : samples) sample = 0.8 * random.uniform();
+  const Waveform told = Waveform::sampled(samples);
+  for (const int bits : {1, 3, 8, 14}) {
+    const double step = told.peak() / (std::exp2(bits) - 1);
+    const Waveform played = generated(told, generator_of(60, bits), frequency_hz);
+    EXPECT_LE((played.samples() - samples).cwiseAbs().maxCoeff(), step / 2 + 1e-12) << bits;
+    EXPECT_EQ(played.peak(), told.peak());
+    for (const double value : played.samples())
+      EXPECT_NEAR(value / step, std::round(value / step), 1e-6);
+  }
+}
+
+TEST(Generator, TakesAsManyWholePointsAsTheRateAllows) {
+  EXPECT_EQ(Generator{}.points_per_period(5e6), 100);
+  EXPECT_EQ(Generator{}.points_per_period(15e6), 33);
+  for (const int n : {3, 7, 33, 49, 100, 999}) EXPECT_EQ(generator_of(n).points_per_period(5e6), n);
+}
+
+TEST(Generator, RefusesWhatItCannotPlay) {
+  const Waveform pulse = rectangular_pulse(0.5);
+  EXPECT_THROW(generated(pulse, {9e6, 14}, 5e6), std::invalid_argument);
+  EXPECT_THROW(generated(pulse, {500e6, 0}, 5e6), std::invalid_argument);
+  EXPECT_THROW(generated(pulse, {500e6, 25}, 5e6), std::invalid_argument);
+  EXPECT_THROW(generated(pulse, {std::nan(""), 14}, 5e6), std::invalid_argument);
+  EXPECT_THROW(generated(Waveform::sampled(Eigen::Vector2d(-0.5, 1)), {}, 5e6),
+               std::invalid_argument);
+  Camera camera = built_in_camera("paper-10f0");
+  camera.light.generator = Generator{.sample_rate_hz = 20e6};
+  EXPECT_THROW(camera.validate(), std::invalid_argument);
+  // A pulse of 1/30 of a period may fall between points of 1/5.
+  camera = built_in_camera("paper-30x");
+  camera.light.generator = Generator{.sample_rate_hz = 5 * 15e6};
+  const CodeSet code = build_family("hamiltonian-k5", camera);
+  EXPECT_THROW(played_code(code, camera), std::invalid_argument);
+}
+
+TEST(PlayedCode, KeepsTheAveragePowerThePeakAndTheComplement) {
+  const Camera camera = built_in_camera("prototype");
+  for (const char* name : {"hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5", "sinusoid-k4",
+                           "square-k3", "multifrequency-k5", "pulsed-multifrequency-k5"}) {
+    const CodeSet code = build_family(name, camera);
+    const PlayedCode played = played_code(code, camera);
+    for (const Waveform& m : played.modulation) {
+      EXPECT_LE(m.mean(), 1 + 1e-12) << name;
+      EXPECT_GT(m.mean(), 0.85) << name;
+      EXPECT_LE(m.peak(), camera.light.peak_factor * (1 + 1e-12)) << name;
+    }
+    for (std::size_t i = 0; i < played.demodulation.size(); i += 2)
+      EXPECT_LT((played.demodulation[i].cell_averages(100) +
+                 played.demodulation[i + 1].cell_averages(100) - Eigen::VectorXd::Ones(100))
+                    .cwiseAbs()
+                    .maxCoeff(),
+                1e-12)
+          << name;
+  }
+}
+
+TEST(PlayedCode, IsWhatTheForwardModelCorrelates) {
+  const Camera camera = built_in_camera("prototype");
+  for (const char* name : {"hamiltonian-k4", "sinusoid-k3"}) {
+    const CodeSet code = build_family(name, camera);
+    const PlayedCode played = played_code(code, camera);
+    const ForwardModel model(code, camera);
+    const Eigen::MatrixXd table = model.tap_correlation_table(90);
+    const Eigen::VectorXcd transfer = camera.transfer(2400);
+    for (int i = 0; i < code.measurements(); ++i) {
+      const Waveform& d = played.demodulation[static_cast<std::size_t>(i)];
+      const Waveform& m = played.modulation[static_cast<std::size_t>(code.exposure_of(i))];
+      EXPECT_LT((CorrelationFunction(d, m, transfer).table(90) - table.col(i)).norm(), 1e-12);
+      EXPECT_NEAR(model.tap_ambient_gain()[i], d.mean(), 1e-15);
+    }
+  }
+}
+
+TEST(GeneratorReport, SaysWhatTheLimitsChange) {
+  const Camera camera = built_in_camera("prototype");
+  const CodeSet code = build_family("hamiltonian-k4", camera);
+  const std::vector<GeneratorReport> reports = generator_report(code, camera);
+  ASSERT_EQ(reports.size(), 8u);  // 4 exposures on each arm; second taps need no generator
+  const PlayedCode played = played_code(code, camera);
+  for (const GeneratorReport& r : reports) {
+    const bool light = r.arm == Arm::light;
+    const auto index = static_cast<std::size_t>(r.index);
+    const Waveform& told = light ? code.modulation(r.index) : code.demodulation(r.index);
+    const Waveform& really = light ? played.modulation[index] : played.demodulation[index];
+    EXPECT_EQ(r.points_per_period, 100);
+    EXPECT_DOUBLE_EQ(r.clock_hz, 500e6);
+    EXPECT_DOUBLE_EQ(r.duty_told, told.duty());
+    EXPECT_DOUBLE_EQ(r.mean_played, really.mean());
+    EXPECT_LE(*r.largest_edge_move_s, 0.5 / r.clock_hz + 1e-15);
+    const Eigen::VectorXd difference = really.cell_averages(6000) - told.cell_averages(6000);
+    EXPECT_NEAR(r.rms_difference, std::sqrt(difference.squaredNorm() / 6000), 1e-9);
+  }
+  EXPECT_TRUE(generator_report(build_family("sinusoid-k3", built_in_camera("paper-5f0")),
+                               built_in_camera("paper-5f0"))
+                  .empty());
+}
+
+TEST(Prototype, IsABipolarMixer) {
+  const Camera camera = built_in_camera("prototype");
+  EXPECT_NEAR(camera.range_m(), 29.979, 1e-3);
+  const CodeSet code = build_family("hamiltonian-k4", camera);
+  const ForwardModel model(code, camera);
+  ASSERT_EQ(model.measurements(), 4);
+  const PlayedCode played = played_code(code, camera);
+  const Eigen::VectorXcd transfer = camera.transfer(2400);
+  for (int i = 0; i < 4; ++i) {
+    // (2 d - 1) behind both arms: 2 chi - mean m.
+    const auto tap = static_cast<std::size_t>(2 * i), exposure = static_cast<std::size_t>(i);
+    const CorrelationFunction chi(played.demodulation[tap], played.modulation[exposure], transfer);
+    EXPECT_NEAR(model.correlation(77.7)[i],
+                2 * chi(77.7 / 300) - played.modulation[exposure].mean(), 1e-9);
+    EXPECT_NEAR(model.constant_variance_e2()[i], 400.0, 1e-9);
+  }
+}
+
+TEST(Prototype, AmbientThatHardlyLeaksIsNoUnknown) {
+  // Rounded amplitudes leave duties off 1/2 by 1e-6; a square on odd points would by 1e-2.
+  Camera camera = built_in_camera("prototype");
+  const CodeSet sinusoid = build_family("sinusoid-k3", camera);
+  EXPECT_TRUE(unknown_ambient_gain(ForwardModel(sinusoid, camera), camera).isZero(0.0));
+  camera.operating.ambient_e_per_s = {1e3, 1e15};
+  EXPECT_FALSE(unknown_ambient_gain(ForwardModel(sinusoid, camera), camera).isZero(0.0));
+  camera = built_in_camera("prototype");
+  const ForwardModel unequal(build_family("hamiltonian-k5", camera), camera);
+  EXPECT_FALSE(unequal.ambient_gain().isZero(0.0));
+}
+
+TEST(Prototype, FiltersSpanThePapersSignals) {
+  const Camera camera = built_in_camera("prototype");
+  const std::vector<double> expected = {1e3, 1e4, 1e5, 1e6};
+  ASSERT_EQ(camera.operating.signal_e_per_s.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    EXPECT_NEAR(camera.operating.signal_e_per_s[i], expected[i], 1e-9 * expected[i]);
+  const OperatingPoint behind = attenuated({1e6, 1e4}, 2.0);
+  EXPECT_NEAR(behind.signal_e_per_s, 1e4, 1e-9);
+  EXPECT_EQ(behind.ambient_e_per_s, 1e4) << "the filter sits at the source";
+  EXPECT_THROW(attenuated({1e6, 1e4}, -1.0), std::invalid_argument);
+  for (const PrototypeSetting& setting : prototype_settings())
+    EXPECT_NO_THROW(prototype_camera(setting).validate()) << setting.name;
+  EXPECT_EQ(prototype_camera(prototype_settings().front()), camera);
+  EXPECT_THROW(prototype_camera({.optical_densities = {}}), std::invalid_argument);
+  EXPECT_THROW(prototype_camera({.average_source_power_mw = 0}), std::invalid_argument);
+  EXPECT_THROW(prototype_camera({.peak_factor = 0.5}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tofsmith

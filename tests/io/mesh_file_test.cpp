@@ -1,0 +1,246 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/mesh_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+#include <fstream>
+
+#include "damaged_files.hpp"
+#include "temporary_directory.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TriangleMesh parse(std::string_view text, std::string_view file) {
+  return parse_mesh(bytes_of(text), file);
+}
+
+std::string refusal(std::string_view text, std::string_view file) {
+  return io_error_of([&] { parse(text, file); });
+}
+
+template <typename Value>
+std::string raw(Value value) {
+  std::string bytes(sizeof(Value), '\0');
+  std::memcpy(bytes.data(), &value, sizeof(Value));
+  return bytes;
+}
+
+// A unit square in two triangles: four vertices once joined.
+const std::string obj_square =
+    "# a square\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\n"
+    "f 1/1/1 2/2/1 3/3/1\nf -4/-4/-1 -2/-2/-1 -1/-1/-1\n";
+
+std::string ply_header(const std::string& format, int vertices = 4) {
+  return "ply\nformat " + format + " 1.0\ncomment a square\nelement vertex " +
+         std::to_string(vertices) +
+         "\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n"
+         "property list uchar int vertex_indices\nend_header\n";
+}
+const std::string ply_rows = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
+const std::string ply_square = ply_header("ascii") + ply_rows;
+
+std::string ply_binary_square() {
+  std::string text = ply_header("binary_little_endian");
+  for (const int f : {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) text += raw(static_cast<float>(f));
+  for (const int i : {0, 1, 2}) text += (i == 0 ? "\3" : "") + raw(i);
+  for (const int i : {0, 2, 3}) text += (i == 0 ? "\3" : "") + raw(i);
+  return text;
+}
+
+const std::string stl_square =
+    "solid square\n"
+    "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\n"
+    "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\n"
+    "endsolid square\n";
+
+std::string stl_binary_square() {
+  std::string text(80, ' ');
+  text += raw(std::uint32_t{2});
+  for (const auto& corners : {std::array<float, 9>{0, 0, 0, 1, 0, 0, 1, 1, 0},
+                              std::array<float, 9>{0, 0, 0, 1, 1, 0, 0, 1, 0}}) {
+    for (const float f : {0.0f, 0.0f, 1.0f}) text += raw(f);
+    for (const float f : corners) text += raw(f);
+    text += std::string(2, '\0');
+  }
+  return text;
+}
+
+/// Corners of every triangle, whatever the order of the vertices.
+std::vector<Eigen::Vector3d> corners(const TriangleMesh& mesh) {
+  std::vector<Eigen::Vector3d> points;
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t index : triangle) points.push_back(mesh.vertices[index]);
+  return points;
+}
+
+TEST(MeshFile, EveryFormatHoldsTheSameSquare) {
+  const TriangleMesh square = parse(obj_square, "a.obj");
+  EXPECT_EQ(square.vertices.size(), 4u);
+  EXPECT_EQ(square.triangles.size(), 2u);
+  EXPECT_EQ(corners(square)[4], Eigen::Vector3d(1, 1, 0));
+  for (const auto& [text, file] :
+       {std::pair(ply_square, "a.ply"), std::pair(ply_binary_square(), "b.PLY"),
+        std::pair(stl_square, "a.stl"), std::pair(stl_binary_square(), "b.stl")}) {
+    const TriangleMesh mesh = parse(text, file);
+    EXPECT_EQ(mesh.vertices.size(), 4u) << file;
+    EXPECT_EQ(corners(mesh), corners(square)) << file;
+    EXPECT_TRUE(mesh.texture_coordinates.empty()) << file;
+  }
+}
+
+TEST(MeshFile, TextureCoordinatesStayWithTheirVertices) {
+  const TriangleMesh mesh = parse(obj_square, "a.obj");
+  ASSERT_EQ(mesh.texture_coordinates.size(), mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    EXPECT_EQ(mesh.texture_coordinates[i], mesh.vertices[i].head<2>());
+}
+
+TEST(MeshFile, TextureCoordinatesOfSomeFacesOnlyAreLeftOut) {
+  const TriangleMesh mesh = parse(
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\no a\nf 1/1 2/1 3/1\no b\nf 1 3 4\n", "a.obj");
+  EXPECT_EQ(mesh.triangles.size(), 2u);
+  EXPECT_TRUE(mesh.texture_coordinates.empty());
+}
+
+TEST(MeshFile, PolygonsAreCutAndGroupsGathered) {
+  const TriangleMesh mesh = parse(
+      "o a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 \\\n3 4\no b\nv 5 0 0\nf 1 2 5\n", "a.obj");
+  EXPECT_EQ(mesh.triangles.size(), 3u);
+  EXPECT_EQ(mesh.vertices.size(), 5u);
+}
+
+TEST(MeshFile, TinyMeshesKeepTheirVertices) {
+  const TriangleMesh mesh = parse("v 0 0 0\nv 1e-9 0 0\nv 0 1e-9 0\nf 1 2 3\n", "a.obj");
+  EXPECT_EQ(mesh.vertices.size(), 3u);
+}
+
+TEST(MeshFile, NoOtherFileIsNeeded) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "a.obj") << "mtllib /etc/passwd\nusemtl skin\n" << obj_square;
+  EXPECT_EQ(read_mesh(directory / "a.obj").triangles.size(), 2u);
+}
+
+struct BadMesh {
+  const char* file;
+  std::string text;
+  const char* message;
+};
+
+class MeshFileRefuses : public testing::TestWithParam<BadMesh> {};
+
+TEST_P(MeshFileRefuses, WithPlaceAndWhatWasExpected) {
+  const std::string message = refusal(GetParam().text, GetParam().file);
+  EXPECT_THAT(message, StartsWith(GetParam().file));
+  EXPECT_THAT(message, HasSubstr(GetParam().message));
+}
+
+const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    Obj, MeshFileRefuses,
+    testing::Values(
+        BadMesh{"a.obj", "", "empty file"},
+        BadMesh{"a.obj", three, "found no faces; expected triangles or polygons"},
+        BadMesh{"a.obj", "hello, this is a text and no mesh at all\n", "a.obj"},
+        BadMesh{"a.obj", three + "f 1 2 4\n", "a.obj:4: found the vertex index 4; expected 1 .. 3"},
+        BadMesh{"a.obj", three + "f 0 1 2\n", "a.obj:4: found the vertex index 0"},
+        BadMesh{"a.obj", three + "f -1 -2 -4\n", "a.obj:4: found the vertex index -4"},
+        BadMesh{"a.obj", three + "f 1 2 9999999999999999999999\n", "a.obj:4: found '9999"},
+        BadMesh{"a.obj", three + "vt 0 0\nf 1/1 2/1 3/7\n",
+                "a.obj:5: found the texture coordinate index 7; expected 1 .. 1"},
+        BadMesh{"a.obj", three + "f 1//1 2//1 3//1\n", "a.obj:4: found the normal index 1"},
+        BadMesh{"a.obj", three + "f 1 2\n", "a.obj:4: found a face of 2 corners"},
+        BadMesh{"a.obj", three + "f a b c\n", "a.obj:4: found 'a' in a face"},
+        BadMesh{"a.obj", three + "f 1x 2 3\n", "a.obj:4: found '1x' in a face"},
+        BadMesh{"a.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+                "a.obj:1: found the coordinate 'nan'; expected a finite number"},
+        BadMesh{"a.obj", "v 0 0 0\nv 1 -inf 0\nv 0 1 0\nf 1 2 3\n", "a.obj:2: found the coord"},
+        BadMesh{"a.obj", "v 0 0 0\nv 1 1e99 0\nv 0 1 0\nf 1 2 3\n", "a.obj:2: found the coord"},
+        BadMesh{"a.obj", "v 0 0 0\nv 1 x 0\nv 0 1 0\nf 1 2 3\n", "a.obj:2: found the coord"},
+        BadMesh{"a.obj", "v 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\n",
+                "a.obj:1: found a vertex of 2 numbers"},
+        BadMesh{"a.fbx", three, "found the extension '.fbx'; expected one of .obj, .ply, .stl"},
+        BadMesh{"mesh", three, "found no extension; expected one of .obj, .ply, .stl"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Ply, MeshFileRefuses,
+    testing::Values(
+        BadMesh{"a.ply", "", "empty file"}, BadMesh{"a.ply", "plx\n", "byte 0: expected 'ply'"},
+        BadMesh{"a.ply", ply_header("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 4\n",
+                "face 1: found the vertex index 4; expected 0 .. 3"},
+        BadMesh{"a.ply", ply_header("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 -1\n",
+                "face 1: found the vertex index -1"},
+        BadMesh{"a.ply", ply_header("ascii") + "0 0 0\nnan 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n",
+                "vertex 1: found (nan, 0, 0); expected finite numbers"},
+        BadMesh{"a.ply", ply_header("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n",
+                "the file ends here; expected face"},
+        BadMesh{"a.ply", ply_header("ascii") + "0 0 0\n1 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n",
+                "found 2 values for one vertex; expected 3"},
+        BadMesh{"a.ply", ply_header("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n0\n",
+                "face 1: found 0 corners; expected 3 or more"},
+        BadMesh{"a.ply", ply_header("ascii", 400000000) + ply_rows, "400000000 rows announced"},
+        BadMesh{"a.ply", ply_header("ascii", 3) + ply_rows, "a.ply: byte "},
+        BadMesh{"a.ply", ply_square + "3 0 1 2\n", "8 bytes more than the header announces"},
+        BadMesh{"a.ply", ply_header("binary_little_endian") + ply_rows, "a.ply: byte "},
+        BadMesh{"a.ply",
+                "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                "property float z\nend_header\n0 0 0\n",
+                "found no faces"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Stl, MeshFileRefuses,
+    testing::Values(
+        BadMesh{"a.stl", "", "empty file"}, BadMesh{"a.stl", "solid a\nendsolid a\n", "a.stl"},
+        BadMesh{"a.stl", "nothing", "found 7 bytes; expected 'solid' or a header of 84 bytes"},
+        BadMesh{"a.stl", stl_square.substr(0, stl_square.find("endsolid")),
+                "the file ends here; expected endsolid"},
+        BadMesh{"a.stl", stl_binary_square() + "x",
+                "found 185 bytes; expected 184 for the 2 triangles announced"},
+        BadMesh{"a.stl",
+                "solid a\nfacet normal 0 0 1\nouter loop\nvertex nan 0 0\nvertex 1 0 0\n"
+                "vertex 1 1 0\nendloop\nendfacet\nendsolid a\n",
+                "found (nan, 0, 0)"}));
+
+FileParser parser_for(const char* file) {
+  return [file](std::span<const std::byte> bytes) { parse_mesh(bytes, file); };
+}
+
+TEST(MeshFile, TruncatedBinaryFilesAreRefused) {
+  expect_truncations_refused(bytes_of(ply_binary_square()), parser_for("a.ply"));
+  expect_truncations_refused(bytes_of(stl_binary_square()), parser_for("a.stl"));
+}
+
+TEST(MeshFile, DamagedFilesAreReadOrRefused) {
+  EXPECT_GT(expect_damage_read_or_refused(bytes_of(obj_square), 1500, 1, parser_for("a.obj")), 100);
+  EXPECT_GT(expect_damage_read_or_refused(bytes_of(ply_square), 1500, 2, parser_for("a.ply")), 100);
+  EXPECT_GT(
+      expect_damage_read_or_refused(bytes_of(ply_binary_square()), 1500, 3, parser_for("a.ply")),
+      100);
+  EXPECT_GT(expect_damage_read_or_refused(bytes_of(stl_square), 1500, 4, parser_for("a.stl")), 100);
+  EXPECT_GT(
+      expect_damage_read_or_refused(bytes_of(stl_binary_square()), 1500, 5, parser_for("a.stl")),
+      100);
+}
+
+TEST(MeshFile, EveryBeginningOfATextIsReadOrRefused) {
+  for (const auto& [text, file] : {std::pair(obj_square, "a.obj"), std::pair(ply_square, "a.ply"),
+                                   std::pair(stl_square, "a.stl")})
+    for (std::size_t length = 0; length < text.size(); ++length) {
+      try {
+        parse(text.substr(0, length), file);
+      } catch (const IoError& error) {
+        EXPECT_THAT(error.what(), StartsWith(file));
+      }
+    }
+}
+
+}  // namespace
+}  // namespace tofsmith

@@ -1,0 +1,241 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/scene_toml.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <numbers>
+
+#include "damaged_files.hpp"
+#include "temporary_directory.hpp"
+#include "tofsmith/io/float_image_file.hpp"
+#include "tofsmith/scene/ray_cast.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr std::string_view every_shape = R"([view]
+width_px = 64
+height_px = 48
+horizontal_angle_deg = 90
+
+[camera]
+position_m = [0, -1, 0]
+rotation_deg = [0, 90, 0]
+
+[[plane]]
+point_m = [0, 0, 4]
+normal = [0, 0, -2]
+albedo = 0.25
+
+[[box]]
+centre_m = [1, 0, 3]
+size_m = [0.1, 0.2, 0.3]
+rotation_deg = [0, 0, 90]
+texture = { pattern = "checker", albedo = 0.8, other_albedo = 0.2, period_m = 0.05 }
+
+[[sphere]]
+centre_m = [0, 0, 3]
+radius_m = 0.2
+
+[[sphere]]
+centre_m = [0, 1, 3]
+radius_m = 0.3
+
+[[capsule]]
+start_m = [0, 0, 3]
+end_m = [0, 1, 3]
+radius_m = 0.05
+)";
+
+template <typename S>
+const S& first(const StagedScene& scene) {
+  for (const Shape& shape : scene.shapes)
+    if (const S* found = std::get_if<S>(&shape)) return *found;
+  throw std::runtime_error("no such shape");
+}
+
+TEST(SceneToml, ReadsEveryShape) {
+  const StagedScene scene = parse_scene_toml(every_shape);
+  ASSERT_EQ(scene.shapes.size(), 5u);
+  EXPECT_EQ(scene.view.width, 64);
+  EXPECT_NEAR(scene.view.fx_px, 32.0, 1e-12);
+  EXPECT_EQ(first<Plane>(scene).texture.albedo, 0.25);
+  EXPECT_EQ(first<Plane>(scene).point, Eigen::Vector3d(0, 0, 4));
+  const Box& box = first<Box>(scene);
+  EXPECT_TRUE((box.rotation * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitY(), 1e-12));
+  EXPECT_EQ(box.texture.pattern, Texture::Pattern::checker);
+  EXPECT_EQ(box.texture.other_albedo, 0.2);
+  EXPECT_EQ(first<Sphere>(scene).radius_m, 0.2);
+  EXPECT_EQ(first<Capsule>(scene).end, Eigen::Vector3d(0, 1, 3));
+  EXPECT_EQ(scene.camera_to_world.translation(), Eigen::Vector3d(0, -1, 0));
+  EXPECT_TRUE((scene.camera_to_world.linear() * Eigen::Vector3d::UnitZ())
+                  .isApprox(Eigen::Vector3d::UnitX(), 1e-12))
+      << "the camera looks to the right";
+}
+
+TEST(SceneToml, ThePointLookedAtIsInTheMiddle) {
+  const StagedScene scene = parse_scene_toml(
+      "[view]\nwidth_px = 65\nheight_px = 49\n[camera]\nposition_m = [1, -2, 0]\n"
+      "look_at_m = [0, 0, 3]\n[[sphere]]\ncentre_m = [0, 0, 3]\nradius_m = 0.5\n");
+  const SceneImage image = ray_cast(scene.shapes, scene.view, scene.camera_to_world);
+  EXPECT_NEAR(image.depth_m(24, 32), std::sqrt(14.0) - 0.5, 1e-5);
+  EXPECT_NEAR(scene.camera_to_world.linear().determinant(), 1.0, 1e-12);
+  EXPECT_NEAR(scene.camera_to_world.linear()(1, 0), 0.0, 1e-12) << "rows are level";
+  EXPECT_GT(scene.camera_to_world.linear()(1, 1), 0.0) << "down stays down";
+}
+
+TEST(SceneToml, AFocalLengthGoesWithTheMiddle) {
+  const StagedScene scene = parse_scene_toml(
+      "[view]\nwidth_px = 64\nheight_px = 48\nfx_px = 50\ncy_px = 20\n[[sphere]]\ncentre_m = "
+      "[0, 0, 3]\nradius_m = 0.5\n");
+  EXPECT_EQ(scene.view.fy_px, 50.0);
+  EXPECT_EQ(scene.view.cx_px, 31.5);
+  EXPECT_EQ(scene.view.cy_px, 20.0);
+}
+
+TEST(SceneToml, SettingsReplaceKeys) {
+  const std::vector<std::string> settings = {"view.width_px=10"};
+  EXPECT_EQ(parse_scene_toml(every_shape, "s.toml", settings).view.width, 10);
+}
+
+TEST(SceneToml, FilesAreFoundBesideTheScene) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "t.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  Image<float> cover(2, 2, 2.0f);
+  cover(0, 0) = 0.5f;
+  write_float_image(directory / "cover.npy", cover, "cover", OutputPolicy::refuse_existing);
+  std::ofstream(directory / "s.toml")
+      << "[[mesh]]\nfile = \"t.obj\"\nscale_m = 0.5\nposition_m = [0, 0, 2]\n"
+         "rotation_deg = [0, 180, 0]\ntexture = { image = \"cover.npy\", period_m = 0.3 }\n";
+  const StagedScene scene = read_scene_toml(directory / "s.toml");
+  const Mesh& mesh = first<Mesh>(scene);
+  EXPECT_EQ(mesh.scale_m, 0.5);
+  EXPECT_TRUE((mesh.mesh_to_world * Eigen::Vector3d(1, 0, 0)).isApprox(Eigen::Vector3d(-1, 0, 2)));
+  EXPECT_EQ(mesh.texture.image(0, 0), 0.25f) << "scaled to at most 1";
+  EXPECT_EQ(mesh.texture.albedo, 1.0);
+}
+
+struct BadScene {
+  const char* text;
+  const char* message;
+};
+
+class SceneTomlRefuses : public testing::TestWithParam<BadScene> {};
+
+TEST_P(SceneTomlRefuses, WithPlaceAndWhatWasExpected) {
+  const std::string message = io_error_of([] { parse_scene_toml(GetParam().text, "s.toml"); });
+  EXPECT_THAT(message, StartsWith(GetParam().message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, SceneTomlRefuses,
+    testing::Values(
+        BadScene{"", "s.toml: found no shapes; expected [[plane]]"},
+        BadScene{"[[sphere]]\nradius_m = 1",
+                 "s.toml:1:1: found no sphere[0].centre_m; expected a line such as "
+                 "`centre_m = [0, 0, 2]`"},
+        BadScene{"[[sphere]]\ncentre_m = [0, 0, 2]\nradius_m = 0",
+                 "s.toml:3:12: sphere[0].radius_m: found 0; expected a number > 0"},
+        BadScene{"[[sphere]]\ncentre_m = [0, 0, 2]\nradius_m = 1\n[[sphere]]\ncentre_m = [0, 2]",
+                 "s.toml:5:12: sphere[1].centre_m: found 2 numbers; expected a list of three"},
+        BadScene{"[[sphere]]\ncentre_m = [0, 0, nan]\nradius_m = 1",
+                 "s.toml:2:19: sphere[0].centre_m[2]: found nan; expected a finite number"},
+        BadScene{"[[sphere]]\ncenter_m = [0, 0, 2]\nradius_m = 1",
+                 "s.toml:1:1: found no sphere[0].centre_m"},
+        BadScene{"[[sphere]]\ncentre_m = [0, 0, 2]\nradius_m = 1\nradius_mm = 5",
+                 "s.toml:4:1: unknown key sphere[0].radius_mm; did you mean sphere[0].radius_m?"},
+        BadScene{"[[shpere]]\ncentre_m = [0, 0, 2]",
+                 "s.toml:1:3: unknown key shpere; did you "
+                 "mean sphere?"},
+        BadScene{"[sphere]\ncentre_m = [0, 0, 2]",
+                 "s.toml:1:1: sphere: found a table; expected tables, each begun with [[sphere]]"},
+        BadScene{"sphere = [1]", "s.toml:1:11: sphere[0]: found 1; expected tables"},
+        BadScene{"[[plane]]\npoint_m = [0, 0, 2]\nnormal = [0, 0, 0]",
+                 "s.toml:3:10: plane[0].normal: has no length; expected a direction"},
+        BadScene{"[[box]]\ncentre_m = [0, 0, 2]\nsize_m = [1, -1, 1]",
+                 "s.toml:3:10: box[0].size_m: found -1; expected edges > 0"},
+        BadScene{"[[capsule]]\nstart_m = [0, 0, 2]\nend_m = [0, 0, 2]\nradius_m = -1",
+                 "s.toml:4:12: capsule[0].radius_m: found -1; expected a number > 0"},
+        BadScene{"[[mesh]]\nfile = \"absent.obj\"",
+                 "s.toml:2:8: mesh[0].file: absent.obj: there is no such file"},
+        BadScene{"[[mesh]]\nfile = \"hand.fbx\"",
+                 "s.toml:2:8: mesh[0].file: hand.fbx: found the extension '.fbx'"}));
+
+constexpr std::string_view ball = "[[sphere]]\ncentre_m = [0, 0, 2]\nradius_m = 1\n";
+
+class SceneTomlRefusesBesideABall : public testing::TestWithParam<BadScene> {};
+
+TEST_P(SceneTomlRefusesBesideABall, WithPlaceAndWhatWasExpected) {
+  const std::string text = std::string(ball) + GetParam().text;
+  EXPECT_THAT(io_error_of([&] { parse_scene_toml(text, "s.toml"); }),
+              StartsWith(GetParam().message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Textures, SceneTomlRefusesBesideABall,
+    testing::Values(
+        BadScene{"albedo = -0.1",
+                 "s.toml:4:10: sphere[0].albedo: found -0.1; expected a number in [0, 1]"},
+        BadScene{"albedo = 1.5", "s.toml:4:10: sphere[0].albedo: found 1.5"},
+        BadScene{"albedo = 0.5\ntexture = { pattern = \"uniform\" }",
+                 "s.toml:4:10: sphere[0].albedo: has a meaning only with no texture beside it"},
+        BadScene{"texture = { pattern = \"cheker\" }",
+                 "s.toml:4:23: sphere[0].texture.pattern: found \"cheker\"; expected one of "
+                 "\"uniform\", \"checker\", \"stripes\"; did you mean \"checker\"?"},
+        BadScene{"texture = { pattern = \"stripes\" }",
+                 "s.toml:4:11: found no sphere[0].texture.other_albedo"},
+        BadScene{"texture = { pattern = \"stripes\", other_albedo = -1 }",
+                 "s.toml:4:49: sphere[0].texture.other_albedo: found -1"},
+        BadScene{"texture = { pattern = \"stripes\", other_albedo = 1, period_m = 0 }",
+                 "s.toml:4:63: sphere[0].texture.period_m: found 0; expected a number > 0"},
+        BadScene{"texture = { image = \"absent.png\" }",
+                 "s.toml:4:21: sphere[0].texture.image: absent.png: there is no such file"},
+        BadScene{"texture = { image = \"a.png\", pattern = \"checker\" }",
+                 "s.toml:4:40: sphere[0].texture.pattern: has a meaning only with"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Views, SceneTomlRefusesBesideABall,
+    testing::Values(
+        BadScene{"[view]\nwidth_px = 0", "s.toml:5:12: view.width_px: found 0; expected 1 .. "},
+        BadScene{"[view]\nwidth_px = 60000\nheight_px = 60000", "s.toml:6:13: view.height_px: "},
+        BadScene{"[view]\nhorizontal_angle_deg = 180",
+                 "s.toml:5:24: view.horizontal_angle_deg: found 180; expected more than 0 and"},
+        BadScene{"[view]\nfx_px = 5\nhorizontal_angle_deg = 18",
+                 "s.toml:6:24: view.horizontal_angle_deg: has a meaning only with no fx_px"},
+        BadScene{"[view]\ncx_px = 5", "s.toml:5:9: view.cx_px: has a meaning only with fx_px"},
+        BadScene{"[camera]\nposition_m = [1, 2, 3]\nlook_at_m = [1, 2, 3]",
+                 "s.toml:6:13: camera.look_at_m: is where the camera stands"},
+        BadScene{"[camera]\nlook_at_m = [0, 1, 0]",
+                 "s.toml:5:13: camera.look_at_m: is straight above or below"},
+        BadScene{"[camera]\nlook_at_m = [0, 1, 1]\nrotation_deg = [0, 0, 0]",
+                 "s.toml:6:16: camera.rotation_deg: has a meaning only with no look_at_m"}));
+
+TEST(SceneToml, DamagedTexturesAreNamedWithTheirPixel) {
+  const TemporaryDirectory directory;
+  Image<float> cover(2, 3, 0.5f);
+  cover(1, 2) = -0.25f;
+  write_float_image(directory / "c.npy", cover, "cover", OutputPolicy::refuse_existing);
+  const std::string path = (directory / "s.toml").string();
+  std::ofstream(path) << ball << "texture = { image = \"c.npy\" }\n";
+  const std::string message = io_error_of([&] { read_scene_toml(path); });
+  EXPECT_THAT(message, StartsWith(path + ":4:21: sphere[0].texture.image: "));
+  EXPECT_THAT(message, HasSubstr("row 1, column 2: found -0.25; expected a finite number >= 0"));
+}
+
+TEST(SceneToml, DamagedFilesAreReadOrRefused) {
+  const auto parse = [](std::span<const std::byte> bytes) {
+    parse_scene_toml({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "s.toml");
+  };
+  EXPECT_GT(expect_damage_read_or_refused(bytes_of(every_shape), 2000, 1, parse), 500);
+}
+
+}  // namespace
+}  // namespace tofsmith

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "report/logarithmic_ticks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tofsmith::plotly {
+namespace {
+
+TEST(LogarithmicTicks, AreRoundFewAndInsideWhateverTheRange) {
+  for (double low = 1.1e-4; low < 2e4; low *= 3.7) {
+    for (const double ratio : {1.05, 1.3, 2.0, 5.0, 9.9, 30.0, 1e4}) {
+      const std::vector<Tick> ticks = logarithmic_ticks({low, low * ratio});
+      EXPECT_GE(ticks.size(), 2u) << low << " " << ratio;
+      EXPECT_LE(ticks.size(), 9u) << low << " " << ratio;
+      for (const Tick& tick : ticks) {
+        EXPECT_GE(tick.value, low * 0.99) << ratio;
+        EXPECT_LE(tick.value, low * ratio * 1.01) << ratio;
+      }
+    }
+  }
+}
+
+TEST(LogarithmicTicks, AreOneTwoAndFiveTimesPowersOfTen) {
+  const std::vector<Tick> ticks = logarithmic_ticks({0.0091, 0.083});
+  ASSERT_EQ(ticks.size(), 3u);
+  EXPECT_EQ(ticks[0].text, "0.01");
+  EXPECT_EQ(ticks[1].text, "0.02");
+  EXPECT_EQ(ticks[2].text, "0.05");
+}
+
+TEST(LogarithmicTicks, WithinAFactorOfFiveAreMultiplesOfOneStep) {
+  const std::vector<Tick> ticks = logarithmic_ticks({0.031, 0.083});
+  ASSERT_EQ(ticks.size(), 5u);
+  for (std::size_t i = 0; i < ticks.size(); ++i)
+    EXPECT_DOUBLE_EQ(ticks[i].value, 0.01 * (static_cast<double>(i) + 4));
+}
+
+}  // namespace
+}  // namespace tofsmith::plotly
