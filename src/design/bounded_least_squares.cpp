@@ -12,8 +12,8 @@ namespace tofsmith {
 
 Eigen::VectorXd least_squares_within_bounds(const CirculantTvProblem& problem,
                                             const Eigen::VectorXd& start) {
-  constexpr int most_steps = 2000;
-  constexpr double still = 1e-9;  // largest move of a sample, in units of the upper bound
+  constexpr int most_steps = 500;
+  constexpr double still = 1e-7;  // largest move of a sample, in units of the upper bound
   const PeriodicTransform transform(problem.samples());
   Eigen::VectorXcd kernel, target, half;
   transform.forward(problem.kernel, kernel);

@@ -73,9 +73,11 @@ Reproduction reproduce_fig2(const ReproduceContext& context, const Progress& pro
   const double free_residual = residual_rms(free, target, unlimited);
   const double input_residual = residual_rms(input, target, limited);
   const double variation = std::sqrt((chi.array() - chi.mean()).square().mean());
-  add_pair_arrays(result, "trivial", trivial, unlimited, chi);
-  add_pair_arrays(result, "designed", free, unlimited, chi);
-  add_pair_arrays(result, "designed_10f0", input, limited, chi);
+  PairArrays pairs;
+  pairs.add(trivial, unlimited, chi);
+  pairs.add(free, unlimited, chi);
+  pairs.add(input, limited, chi);
+  pairs.store(result, "pairs");
 
   // 4. What the paper says of them.
   result.findings = {
@@ -99,10 +101,10 @@ Reproduction reproduce_fig2(const ReproduceContext& context, const Progress& pro
            ? Verdict::holds
            : Verdict::fails,
        "The designed functions keep the limits and approach the same target.",
-       fmt::format("Peak {:.3g}, residual {:.4f} rms without a band limit; peak {:.3g}, residual "
+       fmt::format("Peak {:.3g}, residual {} rms without a band limit; peak {:.3g}, residual "
                    "{:.4f} rms ({:.0f} % of the target's variation) at {:g} f0. Both binary: {}.",
-                   free.modulation.peak(), free_residual, input.modulation.peak(), input_residual,
-                   100 * input_residual / variation, f_max_in_f0,
+                   free.modulation.peak(), rms_text(free_residual), input.modulation.peak(),
+                   input_residual, 100 * input_residual / variation, f_max_in_f0,
                    input.modulation.is_binary() && input.demodulation.is_binary() ? "yes" : "no"),
        ""}};
   result.sections = {
@@ -112,7 +114,9 @@ Reproduction reproduce_fig2(const ReproduceContext& context, const Progress& pro
              .title = "Trivial factorization",
              .caption = fmt::format(
                  "K = 4, code 3. An impulse of height N = {} reads the demodulation out point by "
-                 "point: the correlation function is the target, but no light source plays it.",
+                 "point (it stands at time 0, the end of the period as well): the correlation "
+                 "function is "
+                 "the target, but no light source plays it.",
                  chi.size())},
             pair_columns(), {pair_row("trivial", trivial, unlimited, chi, style)}),
         small_multiples(
@@ -126,7 +130,8 @@ Reproduction reproduce_fig2(const ReproduceContext& context, const Progress& pro
                  peak_factor, f_max_in_f0)},
             pair_columns(),
             {pair_row("no limit", free, unlimited, chi, style),
-             pair_row(fmt::format("{:g} f0", f_max_in_f0), input, limited, chi, style)})}}};
+             pair_row(fmt::format("{:g} f0", f_max_in_f0), input, limited, chi, style)}),
+        Paragraph{"Rows of `pairs_*` in the data: trivial, no limit, 10 f0."}}}};
 
   // 5. The ablation of Sec. 5.1.
   report(progress, 0.5, "fig2: without total variation");

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "reproduce/code_styles.hpp"
 #include "reproduce/data_tables.hpp"
@@ -18,15 +19,18 @@ namespace tofsmith {
 namespace {
 
 const std::vector<double> peaks = {30, 15, 6, 5, 4, 3, 2};
+const std::vector<double> peaks_between = {25, 20, 12, 10, 8};  // for the line over peak
 const std::vector<int> orders = {3, 4, 5};
 constexpr double zero_rms = 1e-6;
 
-/// All codes of one K at every peak: solutions[code][peak].
+/// All codes of one K: solutions[code][peak] at the paper's peaks, residuals at others.
 struct OrderResult {
   int order = 0;
   TargetSet targets;
   std::vector<std::vector<PairCandidate>> solutions;
-  double variation_rms = 0.0;  // of code 1's target about its mean
+  std::vector<double> between;                         // peaks
+  std::vector<std::vector<double>> residuals_between;  // [code][peak]
+  double variation_rms = 0.0;                          // of code 1's target about its mean
 
   std::string family() const { return fmt::format("hamiltonian-k{}", order); }
   double residual(std::size_t code, std::size_t peak) const {
@@ -44,22 +48,29 @@ OrderResult factorize_order(int order, const ReproduceContext& context, const Pr
   FactorizeOptions options;
   options.seed = context.options.seed;
   options.random_starts = context.pick(30, 12);
+  options.refined = context.pick(16, 3);
   options.keep_naive = false;  // the search must find the answer by itself
   const Camera first = paper_camera(peaks[0], 0);
   OrderResult result{.order = order,
                      .targets = ideal_targets(fmt::format("hamiltonian-k{}", order), first)};
-  result.solutions.resize(result.targets.measurements.size());
-  for (std::size_t code = 0; code < result.solutions.size(); ++code)
+  result.between = context.pick(peaks_between, {12.0});
+  for (const CorrelationTarget& target : result.targets.measurements) {
+    const auto codes = static_cast<double>(result.targets.measurements.size());
+    report(progress, static_cast<double>(result.solutions.size()) / codes,
+           fmt::format("fig3: K = {}", order));
+    std::vector<PairCandidate> solutions;
     for (const double peak : peaks) {
-      report(progress, static_cast<double>(code) / static_cast<double>(result.solutions.size()),
-             fmt::format("fig3: K = {}", order));
-      const Factorization found =
-          factorize(result.targets.measurements[code], paper_camera(peak, 0), options);
-      PairCandidate best = found.best();
-      best.pair = centred(best.pair);
-      if (code == 0) result.variation_rms = found.target_variation_rms;
-      result.solutions[code].push_back(std::move(best));
+      const Factorization found = factorize(target, paper_camera(peak, 0), options);
+      solutions.push_back(found.best());
+      solutions.back().pair = centred(found.best().pair);
+      if (result.solutions.empty()) result.variation_rms = found.target_variation_rms;
     }
+    result.solutions.push_back(std::move(solutions));
+    std::vector<double> residuals;
+    for (const double peak : result.between)
+      residuals.push_back(factorize(target, paper_camera(peak, 0), options).best().residual_rms);
+    result.residuals_between.push_back(std::move(residuals));
+  }
   return result;
 }
 
@@ -131,6 +142,11 @@ CheckedStatement statement_on_supplement(const std::vector<OrderResult>& all) {
       holds = holds && zero == (peaks[p] >= length);
       residuals.push_back(zero ? "0" : fmt::format("{:.3f}", one.worst_residual(p)));
     }
+    for (std::size_t p = 0; p < one.between.size(); ++p) {
+      double worst = 0.0;
+      for (const auto& residuals : one.residuals_between) worst = std::max(worst, residuals[p]);
+      holds = holds && (worst < zero_rms) == (one.between[p] >= length);
+    }
     if (one.order > 3)
       lines.push_back(
           fmt::format("K = {} (L = {}): {}", one.order, length, fmt::join(residuals, ", ")));
@@ -180,8 +196,10 @@ Figure correlations_of(const OrderResult& one) {
   return small_multiples(
       {.id = fmt::format("k{}", one.order),
        .title = fmt::format("K = {}: correlation functions of all codes", one.order),
-       .caption = "Each row is a code. Slow targets survive a low peak; fast ones lose their "
-                  "contrast first."},
+       .caption =
+           "Each row is a code. As the peak falls the flat tops shrink, those of fast targets "
+           "first, until square meets square: at p = 2 each is a wave of triangles with the "
+           "target's own number of periods, or near it."},
       columns, rows);
 }
 
@@ -195,14 +213,18 @@ Figure residual_figure(const std::vector<OrderResult>& all) {
                    .mark = Mark::line_and_markers,
                    .style = style_of_code(one.family())};
       curve.style.dash = dashes[code];
-      for (std::size_t p = 0; p < peaks.size(); ++p) {
-        curve.x.push_back(peaks[p]);
-        curve.y.push_back(one.residual(code, p));
+      std::map<double, double> by_peak;
+      for (std::size_t p = 0; p < peaks.size(); ++p) by_peak[peaks[p]] = one.residual(code, p);
+      for (std::size_t p = 0; p < one.between.size(); ++p)
+        by_peak[one.between[p]] = one.residuals_between[code][p];
+      for (const auto& [peak, residual] : by_peak) {
+        curve.x.push_back(peak);
+        curve.y.push_back(residual);
       }
       // The codes of one K that are each other's shifts and mirrors lie on one line.
       const bool drawn = std::ranges::any_of(series, [&](const Series& other) {
         if (other.style.colour != curve.style.colour) return false;
-        for (std::size_t p = 0; p < peaks.size(); ++p)
+        for (std::size_t p = 0; p < curve.y.size(); ++p)
           if (std::abs(other.y[p] - curve.y[p]) > 2e-3) return false;
         return true;
       });
@@ -226,15 +248,13 @@ Table residual_table(const std::vector<OrderResult>& all) {
   for (const OrderResult& one : all)
     for (std::size_t code = 0; code < one.solutions.size(); ++code) {
       std::vector<std::string> row = {fmt::format("K = {}, code {}", one.order, code + 1)};
-      for (std::size_t p = 0; p < peaks.size(); ++p)
-        row.push_back(
-            one.residual(code, p) < zero_rms ? "0" : fmt::format("{:.4f}", one.residual(code, p)));
+      for (std::size_t p = 0; p < peaks.size(); ++p) row.push_back(rms_text(one.residual(code, p)));
       table.rows.push_back(std::move(row));
     }
   return table;
 }
 
-/// Residuals as CSV and NPZ (code, peak), and the waveforms of K = 3, code 1.
+/// Residuals as CSV and NPZ (code, peak), and the waveforms of K = 3, code 1 (peak, N).
 void add_data(Reproduction& result, const std::vector<OrderResult>& all) {
   std::vector<std::vector<double>> rows;
   for (const OrderResult& one : all) {
@@ -252,9 +272,11 @@ void add_data(Reproduction& result, const std::vector<OrderResult>& all) {
   }
   result.arrays["peaks"] = npy_of(peaks);
   const OrderResult& k3 = all.front();
+  PairArrays pairs;
   for (std::size_t p = 0; p < peaks.size(); ++p)
-    add_pair_arrays(result, fmt::format("k3_p{:g}", peaks[p]), k3.solutions[0][p].pair,
-                    paper_camera(peaks[p], 0), k3.targets.measurements[0].samples);
+    pairs.add(k3.solutions[0][p].pair, paper_camera(peaks[p], 0),
+              k3.targets.measurements[0].samples);
+  pairs.store(result, "k3_code1");
   result.files["residuals.csv"] = csv_text(
       {"K", "code", "p", "residual_rms", "modulation_peak", "modulation_duty", "demodulation_duty"},
       rows);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reproduce/pair_panels.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "design/pair_model.hpp"
@@ -83,22 +85,31 @@ PanelRow pair_row(std::string title, const WaveformPair& pair, const Camera& cam
                                         camera.range_m(), style)}};
 }
 
-void add_pair_arrays(Reproduction& result, const std::string& prefix, const WaveformPair& pair,
-                     const Camera& camera, const Eigen::VectorXd& target) {
+void PairArrays::add(const WaveformPair& pair, const Camera& camera,
+                     const Eigen::VectorXd& target) {
   const int samples = camera.samples;
-  const auto add = [&](const std::string& name, const Eigen::VectorXd& values) {
-    result.arrays[prefix + name] = npy_of(to_values(values));
-  };
-  add("_modulation", pair.modulation.cell_averages(samples));
-  add("_demodulation", pair.demodulation.cell_averages(samples));
-  add("_correlation", correlation_table(pair, camera, samples));
-  add("_target", target);
-  if (!camera.band_limited()) return;
   const double f0_hz = camera.fundamental_frequency_hz;
-  add("_modulation_played",
+  rows_["modulation"].push_back(pair.modulation.cell_averages(samples));
+  rows_["demodulation"].push_back(pair.demodulation.cell_averages(samples));
+  rows_["modulation_played"].push_back(
       played_waveform(pair.modulation, camera.light.impulse_response, f0_hz, samples));
-  add("_demodulation_played",
+  rows_["demodulation_played"].push_back(
       played_waveform(pair.demodulation, camera.sensor.impulse_response, f0_hz, samples));
+  rows_["correlation"].push_back(correlation_table(pair, camera, samples));
+  rows_["target"].push_back(target);
+}
+
+void PairArrays::store(Reproduction& result, const std::string& prefix) const {
+  for (const auto& [name, rows] : rows_) {
+    Eigen::MatrixXd matrix(std::ssize(rows), rows.front().size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      matrix.row(static_cast<Eigen::Index>(i)) = rows[i].transpose();
+    result.arrays[prefix + "_" + name] = npy_of(matrix);
+  }
+}
+
+std::string rms_text(double residual_rms) {
+  return residual_rms < 1e-6 ? "0" : fmt::format("{:.4f}", residual_rms);
 }
 
 TargetSet ideal_targets(std::string_view family, const Camera& camera) {

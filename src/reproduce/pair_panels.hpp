@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,10 +39,21 @@ std::vector<Series> correlation_series(const Eigen::VectorXd& correlation,
                                        const Eigen::VectorXd& target, double range_m,
                                        const LineStyle& style);
 
-/// Adds PREFIX_modulation, _demodulation (N, averages over cells, as told), _correlation and
-/// _target (N) to the data; with an impulse response also _modulation_played, _demodulation_played.
-void add_pair_arrays(Reproduction& result, const std::string& prefix, const WaveformPair& pair,
-                     const Camera& camera, const Eigen::VectorXd& target);
+/// Waveforms and correlation functions of several pairs, collected for an NPZ file.
+class PairArrays {
+ public:
+  /// Adds a row.
+  void add(const WaveformPair& pair, const Camera& camera, const Eigen::VectorXd& target);
+  /// Stores PREFIX_modulation, _demodulation (rows, N; averages over cells, as told),
+  /// _modulation_played, _demodulation_played (what leaves the arms), _correlation and _target.
+  void store(Reproduction& result, const std::string& prefix) const;
+
+ private:
+  std::map<std::string, std::vector<Eigen::VectorXd>> rows_;
+};
+
+/// A residual for reading: "0" where it is rounding.
+std::string rms_text(double residual_rms);
 
 /// The ideal correlation functions of a family without limits, on the camera's samples.
 TargetSet ideal_targets(std::string_view family, const Camera& camera);

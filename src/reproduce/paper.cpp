@@ -27,7 +27,7 @@ std::span<const PaperItem> paper_items() {
       {"fig10", "Scenes scanned by the prototype", reproduce_fig10, 30},
       {"fig11", "A wall scanned by the prototype", reproduce_fig11, 10},
       {"table1", "The bench's parameters", reproduce_table1, 5},
-      {"text", "Statements in the text", reproduce_text, 60},
+      {"text", "Statements in the text", reproduce_text, 12},
   };
   return items;
 }
