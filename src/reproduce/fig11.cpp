@@ -10,11 +10,11 @@
 #include "reproduce/figures.hpp"
 #include "reproduce/prototype_bench.hpp"
 #include "tofsmith/core/statistics.hpp"
+#include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/report/line_figure.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 #include "tofsmith/simulate/capture.hpp"
-#include "tofsmith/simulate/depth_estimator.hpp"
 
 namespace tofsmith {
 
@@ -58,8 +58,8 @@ WallScan scan(const SceneImage& wall, const PinholeView& view, const CodeSet& co
                                  .seed = seed,
                                  .frames = estimates});
   std::vector<double> depth_bin(static_cast<std::size_t>(estimates) * raw.pixels_per_frame());
-  correlation_estimator(ForwardModel(code, camera), camera)(
-      raw.values.data(), static_cast<std::int64_t>(depth_bin.size()), depth_bin.data());
+  Decoder(make_decoding_table(ForwardModel(code, camera), camera))
+      .decode_depth_bins(raw.values.data(), std::ssize(depth_bin), depth_bin.data());
 
   WallScan result{.code = code.name(), .optical_density = optical_density};
   RunningStatistics mean;
