@@ -151,8 +151,8 @@ Table error_table(const std::vector<SceneScans>& all, std::size_t codes) {
 Table fit_table(const std::vector<SceneScans>& all) {
   Table table{.id = "fits",
               .caption =
-                  "The surfaces fitted to each code's mean depths without filter, beside "
-                  "the truth that an emulation knows.",
+                  "The surfaces fitted to each code's mean depths without filter [mm]: rms "
+                  "of the points about them, and how far they lie behind the truth.",
               .columns = {{"object"}, {"code"}, {"rms", true}, {"offset", true}, {"radius", true}}};
   for (const SceneScans& scans : all)
     for (const ReferenceFit& fit : scans.fits)

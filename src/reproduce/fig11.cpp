@@ -59,8 +59,7 @@ WallScan scan(const SceneImage& wall, const PinholeView& view, const CodeSet& co
                                  .frames = estimates});
   std::vector<double> depth_bin(static_cast<std::size_t>(estimates) * raw.pixels_per_frame());
   Decoder(make_decoding_table(ForwardModel(code, camera), camera))
-      .decode_depth_bins(raw.values.data(), static_cast<std::int64_t>(depth_bin.size()),
-                         depth_bin.data());
+      .decode_depth_bins(raw.values.data(), std::ssize(depth_bin), depth_bin.data());
 
   WallScan result{.code = code.name(), .optical_density = optical_density};
   RunningStatistics mean;
