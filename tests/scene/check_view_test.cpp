@@ -35,11 +35,12 @@ Mesh mesh_of(TriangleMesh triangles) {
 TEST(CheckView, NamesTheSolidThatHoldsTheCamera) {
   const Shape wall = Plane{.point = {0, 0, 4}};
   const std::string rule = "camera position = 0 0 0; must not be inside shape ";
+  const std::string advice = ": move it out (walls around it are planes)";
   EXPECT_EQ(refusal(scene_of({wall})), "accepted");
-  EXPECT_EQ(refusal(scene_of({wall, Box{}})), rule + "1, a box");
-  EXPECT_EQ(refusal(scene_of({Sphere{}, wall})), rule + "0, a sphere");
-  EXPECT_EQ(refusal(scene_of({wall, wall, Capsule{}})), rule + "2, a capsule");
-  EXPECT_EQ(refusal(scene_of({wall, mesh_of(unit_cube())})), rule + "1, a mesh");
+  EXPECT_EQ(refusal(scene_of({wall, Box{}})), rule + "1, a box" + advice);
+  EXPECT_EQ(refusal(scene_of({Sphere{}, wall})), rule + "0, a sphere" + advice);
+  EXPECT_EQ(refusal(scene_of({wall, wall, Capsule{}})), rule + "2, a capsule" + advice);
+  EXPECT_EQ(refusal(scene_of({wall, mesh_of(unit_cube())})), rule + "1, a mesh" + advice);
   StagedScene elsewhere = scene_of({wall, Box{}, mesh_of(unit_cube())});
   elsewhere.camera_to_world.translation().x() = 0.6;
   EXPECT_EQ(refusal(elsewhere), "accepted");
