@@ -54,6 +54,14 @@ void run(const DecodeArguments& arguments, const Session& session) {
   const int first = std::max(0, arguments.frame);
   const int last = arguments.frame < 0 ? raw.frames : arguments.frame + 1;
   const PinholeView view = view_of(camera, raw.width, raw.height);
+  const std::string extension = std::filesystem::path(arguments.output).extension().string();
+  const bool depth_only = extension == ".npy" || extension == ".pfm" || extension == ".png";
+  if (depth_only && arguments.planes != plane_names() &&
+      arguments.planes != std::vector<std::string>{"depth"})
+    throw UsageError(
+        fmt::format("--outputs: a {} file holds depth only; .npz, .exr and .ply hold "
+                    "other planes",
+                    extension));
   for (int frame = first; frame < last; ++frame)
     check_decoded_output(frame_path(arguments.output, frame, last - first), session);
   const Progress progress = terminal_progress("decoding");
@@ -85,6 +93,8 @@ void run(const DecodeArguments& arguments, const Session& session) {
                       {"measurements", raw.measurements},
                       {"frames", std::move(outputs)}});
   lines.pop_back();
+  if (!camera.lens && (extension == ".ply" || arguments.kind == "z"))
+    lines += "\nthe camera has no [lens]: its view was taken to be 60 degrees wide";
   session.say(lines);
 }
 

@@ -40,13 +40,15 @@ std::vector<PaperItem> chosen_items(const std::vector<std::string>& names) {
 void run(ReproduceArguments& arguments, const Session& session) {
   const std::vector<PaperItem> items = chosen_items(arguments.names);
   if (!arguments.mesh.empty()) {
+    if (std::ranges::none_of(items, [](const PaperItem& item) { return item.name == "fig7"; }))
+      throw UsageError("--mesh: only fig7 shows a mesh");
     arguments.options.mesh = read_mesh(arguments.mesh);
     arguments.options.mesh_name = std::filesystem::path(arguments.mesh).filename().string();
   }
   const ReproductionDirectory directory(arguments.output);
   const FreshDirectory cleanup(directory.path());
   apps::create_directories(directory.path());
-  if (!session.force) directory.require_ours();
+  if (!session.force) directory.require_ours(arguments.options);
   CodeShelf shelf(directory.shelf());
   const ReproduceContext context{arguments.options, shelf};
   const Progress progress = terminal_progress("tofsmith reproduce");

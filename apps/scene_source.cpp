@@ -136,6 +136,11 @@ PinholeView view_of(const Camera& camera, int width, int height) {
           height};
 }
 
+std::string lens_setting(const PinholeView& view) {
+  return fmt::format("lens={{ fx_px = {:.6g}, fy_px = {:.6g}, cx_px = {:.6g}, cy_px = {:.6g} }}",
+                     view.fx_px, view.fy_px, view.cx_px, view.cy_px);
+}
+
 LoadedScene load_scene(const SceneSource& source, const Camera& camera) {
   const SceneKind kind = kind_of(source.scene);
   check_options(source, kind);

@@ -37,6 +37,9 @@ struct LoadedScene {
   PinholeView view;
 };
 
+/// The lens of a view as a setting, to decode what was captured through it: "lens={ fx_px = .. }".
+std::string lens_setting(const PinholeView& view);
+
 /// How an image of this size is seen: through the camera's lens, or 60 degrees wide without one.
 PinholeView view_of(const Camera& camera, int width, int height);
 

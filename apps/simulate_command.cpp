@@ -54,6 +54,11 @@ void run(SimulateArguments& arguments, const Session& session) {
                       {"seed", arguments.options.seed},
                       {"range_m", extent.range_m},
                       {"beyond_range_share", extent.beyond_range_share()},
+                      {"lens",
+                       {{"fx_px", scene.view.fx_px},
+                        {"fy_px", scene.view.fy_px},
+                        {"cx_px", scene.view.cx_px},
+                        {"cy_px", scene.view.cy_px}}},
                       {"output", arguments.output}});
   session.say(fmt::format(
       "wrote {}: {} frame{} of {} x {} pixels, {} measurements of {} (S = {:.4g} e/s at {:.3g} m, "
@@ -63,6 +68,10 @@ void run(SimulateArguments& arguments, const Session& session) {
       arguments.options.reference_distance_m, arguments.options.ambient_e_per_s,
       arguments.options.seed));
   if (extent.beyond_range > 0) session.say(beyond_range_remark(extent));
+  if (!(lens_setting(scene.view) ==
+        lens_setting(view_of(camera, scene.image.width(), scene.image.height()))))
+    session.say(fmt::format("to decode it as points or z-depth, say how it was seen: --set '{}'",
+                            lens_setting(scene.view)));
 }
 
 }  // namespace

@@ -110,13 +110,16 @@ Figure small_multiples(FigureText text, const std::vector<PanelColumn>& columns,
     const PanelColumn& column = columns[static_cast<std::size_t>(c)];
     const auto [left, right] = panel_domain(c, column_count, column_gap);
     titles.push_back(plotly::panel_title(column.title, (left + right) / 2, 1));
-    titles.push_back(turned_title(axis_title(column.y.label, column.y.unit), left, 0.5, -90, -30));
+    titles.push_back(turned_title(axis_title(column.y.label, column.y.unit), left, 0.5, -90,
+                                  column.y.logarithmic ? -46 : -30));
   }
   layout["annotations"] = std::move(titles);
   layout["showlegend"] = names.size() > 1;
   const double rows_px = row_count == 1 ? single_row_height_px : row_height_px * row_count;
   layout["legend"] = {{"y", plotly::number(1 + legend_lift_px / rows_px)}};
   layout["margin"] = {{"r", 28}};
+  // Logarithmic ticks are longer.
+  if (columns.front().y.logarithmic) layout["margin"]["l"] = 76;
   return plotly::figure(std::move(text), data, layout,
                         {.fixed_px = 130 + rows_px, .min_width_px = 210.0 * column_count});
 }

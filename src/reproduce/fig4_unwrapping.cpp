@@ -142,7 +142,7 @@ void add_unwrapping(Reproduction& result, const ReproduceContext& context,
                           {"correlation", true},
                           {"unwrapping, f²", true},
                           {"unwrapping, variance", true},
-                          {"at high signal", true}}};
+                          {"correlation / f² / variance, high signal", true}}};
   for (const Decoded& one : all) {
     const auto mean_mm = [](const DepthErrorReport& r) {
       return fmt::format("{:.1f}", 1e3 * r.circular.geometric_mean_m.value);

@@ -110,12 +110,13 @@ Reproduction reproduce_fig5(const ReproduceContext&, const Progress&) {
        ""}};
   result.sections = {
       {"The window and its transfer function",
-       {line_figure({.id = "response",
-                     .title = "Impulse responses",
-                     .caption = "Hann windows of three band limits over one period of f0 = 15 MHz. "
-                                "Their sum is 1: mean power and duty stay."},
-                    in_time, {.label = "time", .unit = "ns", .range = ValueRange{-16, 16}},
-                    {.label = "response", .unit = fmt::format("per sample, N = {}", samples)}),
+       {line_figure(
+            {.id = "response",
+             .title = "Impulse responses",
+             .caption = "Hann windows of three band limits; a period of f0 = 15 MHz lasts 66.7 ns. "
+                        "Their sum is 1: mean power and duty stay."},
+            in_time, {.label = "time", .unit = "ns", .range = ValueRange{-16, 16}},
+            {.label = "response", .unit = fmt::format("per sample, N = {}", samples)}),
         line_figure(
             {.id = "transfer",
              .title = "Transfer functions",

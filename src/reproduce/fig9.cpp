@@ -68,7 +68,7 @@ Figure error_by_filter(const std::vector<Measured>& all) {
        .title = "Depth error of a single pixel",
        .caption = "Mean circular depth error in percent of the 29.98 m range, over all "
                   "emulated depths and estimates, behind each neutral density filter "
-                  "(10, 100 and 1000 times less light)."},
+                  "(10, 100 and 1000 times less light), with standard errors."},
       filters, series, {.label = "mean depth error", .unit = "% of range", .logarithmic = true});
 }
 

@@ -50,8 +50,8 @@ Page reproduction_page(const PaperItem& item, const Reproduction& reproduction,
   Page page{.title = item.title,
             .subtitle =
                 fmt::format("{} of Gutierrez-Barragan et al., Practical Coding Function Design for "
-                            "Time-of-Flight Imaging, CVPR 2019, reproduced",
-                            item.name),
+                            "Time-of-Flight Imaging, CVPR 2019, reproduced{}",
+                            item.name, options.fast ? ". Coarse (--fast): few trials" : ""),
             .footer = fmt::format("tofsmith {}, seed {}{}", TOFSMITH_VERSION, options.seed,
                                   options.fast ? ", coarse (--fast)" : "")};
   if (!reproduction.findings.empty())

@@ -17,16 +17,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Everything that determines a reproduction, but for the code itself.
-std::string key_of(const ReproduceOptions& options) {
+/// The options that determine a reproduction.
+std::string options_text(const ReproduceOptions& options) {
   std::string mesh;
   if (options.mesh) {
     mesh = options.mesh_name;
     for (const Eigen::Vector3d& v : options.mesh->vertices)
       mesh += fmt::format(" {} {} {}", v.x(), v.y(), v.z());
   }
-  return fmt::format("{} {} seed {} mesh {:016x}", TOFSMITH_VERSION,
-                     options.fast ? "coarse" : "full", options.seed, fnv1a_64(mesh));
+  return fmt::format("{}, seed {}{}", options.fast ? "coarse (--fast)" : "full", options.seed,
+                     mesh.empty() ? "" : fmt::format(", mesh {:016x}", fnv1a_64(mesh)));
 }
 
 Json as_json(const std::vector<CheckedStatement>& findings) {
@@ -87,7 +87,22 @@ Page index_page(const ReproductionDirectory& directory, const ReproduceOptions& 
 
 }  // namespace
 
-void ReproductionDirectory::require_ours() const {
+void ReproductionDirectory::require_ours(const ReproduceOptions& options) const {
+  for (const PaperItem& item : paper_items()) {
+    const std::filesystem::path file = path_ / item.name / "findings.json";
+    if (!std::filesystem::exists(file)) continue;
+    const Json document = Json::parse(read_text_file(file), nullptr, false);
+    if (document.is_discarded() || !document.contains("options") ||
+        document.value("tofsmith", "") != TOFSMITH_VERSION)
+      continue;  // damaged or of another version: made again
+    const std::string made_with = document.value("options", "");
+    if (made_with != options_text(options))
+      throw IoError(file.string(),
+                    fmt::format("was made with other options ({}; now {}); use --force to replace "
+                                "it, or another -o",
+                                made_with, options_text(options)));
+  }
+
   std::vector<std::filesystem::path> pages = {path_ / "index.html"};
   for (const PaperItem& item : paper_items()) pages.push_back(path_ / item.name / "index.html");
   for (const std::filesystem::path& page : pages)
@@ -104,7 +119,9 @@ std::optional<std::vector<CheckedStatement>> ReproductionDirectory::finished(
   if (!std::filesystem::exists(file)) return std::nullopt;
   try {
     const Json document = Json::parse(read_text_file(file));
-    if (document.at("key") != key_of(options)) return std::nullopt;
+    if (document.at("tofsmith") != TOFSMITH_VERSION ||
+        document.at("options") != options_text(options))
+      return std::nullopt;
     return findings_of(document);
   } catch (const std::exception&) {
     return std::nullopt;  // damaged: made again
@@ -127,7 +144,7 @@ void ReproductionDirectory::write(const PaperItem& item, const Reproduction& rep
                         render(reproduction_page(item, reproduction, options)),
                         OutputPolicy::overwrite);
   const Json document = {{"tofsmith", TOFSMITH_VERSION},
-                         {"key", key_of(options)},
+                         {"options", options_text(options)},
                          {"name", item.name},
                          {"title", item.title},
                          {"findings", as_json(reproduction.findings)}};

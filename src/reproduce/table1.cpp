@@ -45,13 +45,13 @@ Reproduction reproduce_table1(const ReproduceContext& context, const Progress& p
                        "at O.D. 0 per mW.",
                    .columns = {{"Camera"},
                                {"p", true},
-                               {"P_ave [mW]", true},
-                               {"P_max [mW]", true},
-                               {"f_max [MHz]", true},
-                               {"S at O.D. 0 [e/s]", true},
-                               {"at O.D. 1", true},
-                               {"at O.D. 2", true},
-                               {"at O.D. 3", true}}};
+                               {"P_ave (mW)", true},
+                               {"P_max (mW)", true},
+                               {"f_max (MHz)", true},
+                               {"S, O.D. 0 (e/s)", true},
+                               {"O.D. 1", true},
+                               {"O.D. 2", true},
+                               {"O.D. 3", true}}};
   std::vector<std::string> names;
   std::vector<std::vector<double>> rows;
   for (const PrototypeSetting& setting : prototype_settings()) {
@@ -66,7 +66,7 @@ Reproduction reproduce_table1(const ReproduceContext& context, const Progress& p
       rows.back().push_back(attenuated(unfiltered, density).signal_e_per_s);
     parameters.rows.push_back({setting.name});
     for (const double value : rows.back())
-      parameters.rows.back().push_back(fmt::format("{:.4g}", value));
+      parameters.rows.back().push_back(fmt::format("{:g}", value));
     result.files[setting.name + ".toml"] = camera_to_toml(camera);
   }
   result.files["parameters.csv"] = csv_text(
@@ -82,7 +82,7 @@ Reproduction reproduce_table1(const ReproduceContext& context, const Progress& p
                    "What 500 MS/s and 14 bits change: the farthest that a switching time moves, "
                    "and the circular depth error (geometric mean over the camera's light levels) "
                    "over that of ideal generators.",
-               .columns = {{"Code"}, {"Edge moved by [ns]", true}, {"Depth error", true}}};
+               .columns = {{"Code"}, {"Edge moved by (ns)", true}, {"Depth error", true}}};
   std::vector<CodeSet> codes;
   for (const char* family : {"sinusoid-k4", "square-k4", "multifrequency-k5", "hamiltonian-k3",
                              "hamiltonian-k4", "hamiltonian-k5"})

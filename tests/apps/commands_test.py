@@ -67,6 +67,7 @@ class Commands(CommandLineTest):
         before = os.stat(self.path("r/fig5/index.html")).st_mtime_ns
         self.assertIn("finished before", self.do("reproduce", "fig5", "--fast", "-o", "r"))
         self.assertEqual(os.stat(self.path("r/fig5/index.html")).st_mtime_ns, before)
+        self.refuse(["reproduce", "fig5", "-o", "r"], "r/fig5/findings.json", "coarse", "--force")
         self.do("reproduce", "fig5", "--fast", "--force", "-o", "r")
         self.assertNotEqual(os.stat(self.path("r/fig5/index.html")).st_mtime_ns, before)
 

@@ -53,6 +53,7 @@ class Refusals(CommandLineTest):
                 (["reproduce"], ["FIGURE"]),
                 (["reproduce", "fig99"], ["fig99", "must be all or one of fig2"]),
                 (["reproduce", "fgi5"], ["did you mean fig5?"]),
+                (["reproduce", "fig5", "--mesh", "cow.obj"], ["--mesh", "fig7"]),
                 (["report"], ["DIR"])):
             self.refuse(arguments, *words, code=2)
             self.refuse([*arguments, "--json"], *words, code=2)
@@ -193,7 +194,7 @@ class Refusals(CommandLineTest):
                      "d.npy"], "--frame 1", "1 frame", code=2)
 
     def test_reproduce(self):
-        self.refuse(["reproduce", "fig5", "--mesh", "none.obj", "-o", "r"], "none.obj")
+        self.refuse(["reproduce", "fig7", "--mesh", "none.obj", "-o", "r"], "none.obj")
         os.mkdir(self.path("r"))
         self.write("r/index.html", "<html>mine</html>")
         self.refuse(["reproduce", "fig5", "-o", "r"], "r/index.html", "--force")

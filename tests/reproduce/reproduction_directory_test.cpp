@@ -71,10 +71,12 @@ TEST_F(ReproductionFiles, CountAsUnfinishedWhenDamaged) {
 TEST_F(ReproductionFiles, LeaveThePagesOfOthersAlone) {
   directory_.write(item, sample(), {});
   directory_.write_index({});
-  EXPECT_NO_THROW(directory_.require_ours());
+  EXPECT_NO_THROW(directory_.require_ours({}));
+  EXPECT_THROW(directory_.require_ours({.fast = true}), IoError);
+  EXPECT_THROW(directory_.require_ours({.seed = 2}), IoError);
   write_file_atomically(directory_.path() / "index.html", "<html>mine</html>",
                         OutputPolicy::overwrite);
-  EXPECT_THROW(directory_.require_ours(), IoError);
+  EXPECT_THROW(directory_.require_ours({}), IoError);
 }
 
 TEST_F(ReproductionFiles, IndexListsWhatIsFinishedAndCountsItsVerdicts) {

@@ -25,9 +25,10 @@ class ReproductionDirectory {
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path shelf() const { return path_ / "codes"; }
 
-  /// Refuses a directory whose pages were made by something else, before they would be replaced.
-  /// @throws IoError naming the page
-  void require_ours() const;
+  /// Refuses a directory whose pages were made by something else, or with other options, before
+  /// they would be replaced. What another version made may be.
+  /// @throws IoError naming the file
+  void require_ours(const ReproduceOptions& options) const;
 
   /// The findings of an item that was finished with the same options by this version; none if it
   /// was not, or its file is damaged.
