@@ -20,7 +20,7 @@ std::string lower_extension(const std::filesystem::path& path) {
 
 std::string known_extension(const std::filesystem::path& path,
                             std::initializer_list<std::string_view> known) {
-  const std::string extension = lower_extension(path);
+  std::string extension = lower_extension(path);
   if (std::find(known.begin(), known.end(), extension) != known.end()) return extension;
   throw IoError(
       path.string(),

@@ -112,7 +112,7 @@ class ObjCheck {
                        (result.ptr == corner.data() + corner.size() || *result.ptr == '/');
     if (!whole)
       fail(fmt::format("found '{}' in a face; expected indices such as 7, 7/3 or 7/3/1", corner));
-    if (index == 0 || index > all || -index > so_far)
+    if (index == 0 || index > all || index < -so_far)
       fail(fmt::format("found the {} index {}; expected 1 .. {}", what, index, all));
     corner.remove_prefix(static_cast<std::size_t>(result.ptr - corner.data()));
   }

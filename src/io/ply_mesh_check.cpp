@@ -84,6 +84,9 @@ class HeaderReader {
   Element element(const std::vector<std::string_view>& words) const {
     if (words.size() != 3) fail("expected 'element', a name and a count");
     Element element{std::string(words[1]), 0, {}};
+    for (const Element& other : header_.elements)
+      if (other.name == element.name)
+        fail(fmt::format("found a second element '{}'; expected each once", element.name));
     const char* end = words[2].data() + words[2].size();
     const auto result = std::from_chars(words[2].data(), end, element.rows);
     if (result.ec != std::errc() || result.ptr != end) fail("expected a count, an integer >= 0");

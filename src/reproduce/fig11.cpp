@@ -133,7 +133,9 @@ Figure profile_figure(const std::vector<const WallScan*>& scans, const PinholeVi
     Series one{.name = scan->code, .style = style_of_code(scan->code)};
     for (int column = 0; column < view.width; ++column) {
       one.x.push_back(1e3 * wall_z_m * (column - view.cx_px) / view.fx_px);
-      one.y.push_back(1e3 * scan->error_m[static_cast<std::size_t>(row * view.width + column)]);
+      one.y.push_back(
+          1e3 * scan->error_m[static_cast<std::size_t>(row) * static_cast<std::size_t>(view.width) +
+                              static_cast<std::size_t>(column)]);
     }
     series.push_back(std::move(one));
   }

@@ -97,7 +97,8 @@ Reproduction reproduce_fig2(const ReproduceContext& context, const Progress& pro
        "The peak grows with N: in continuous time it has no bound. The demodulation is not binary "
        "either."},
       {std::max(free.modulation.peak(), input.modulation.peak()) <= peak_factor + 1e-9 &&
-               free_residual < clipped_residual
+               free_residual < clipped_residual && input_residual < 0.25 * variation &&
+               input.modulation.is_binary() && input.demodulation.is_binary()
            ? Verdict::holds
            : Verdict::fails,
        "The designed functions keep the limits and approach the same target.",

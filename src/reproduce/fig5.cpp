@@ -23,16 +23,18 @@ ImpulseResponse hann(double f_max_in_f0) {
   return response;
 }
 
-/// The response in time, from its harmonics: what a sampled period of it looks like. Sum 1.
-std::vector<double> sampled_response(const ImpulseResponse& response, int samples) {
-  std::vector<double> values(static_cast<std::size_t>(samples));
+/// A Hann window of width 1.444 / f_max, sampled over a period and scaled to sum 1.
+std::vector<double> sampled_window(double f_max_in_f0, int samples) {
+  const double width = 1.444 / f_max_in_f0;  // periods
+  std::vector<double> values(static_cast<std::size_t>(samples), 0.0);
+  double sum = 0.0;
   for (int n = 0; n < samples; ++n) {
-    double sum = 1.0;
-    for (int k = 1; k < samples / 2; ++k)
-      sum += 2.0 * response.transfer(k * f0_hz).real() *
-             std::cos(2.0 * std::numbers::pi * k * (n - samples / 2) / samples);
-    values[static_cast<std::size_t>(n)] = sum / samples;
+    const double t = static_cast<double>(n) / samples - 0.5;
+    if (std::abs(t) >= 0.5 * width) continue;
+    sum += values[static_cast<std::size_t>(n)] =
+        0.5 * (1.0 + std::cos(2.0 * std::numbers::pi * t / width));
   }
+  for (double& value : values) value /= sum;
   return values;
 }
 
@@ -52,13 +54,13 @@ double measured_f_max_hz(const ImpulseResponse& response) {
   return high;
 }
 
-/// Transform of the sampled response at a harmonic of f0, as a check of the closed form.
+/// Transform of the sampled window at a harmonic of f0: independent of the closed form.
 double sampled_transfer(const std::vector<double>& response, int harmonic) {
   double sum = 0.0;
   const auto samples = static_cast<double>(response.size());
   for (std::size_t n = 0; n < response.size(); ++n)
-    sum += response[n] * std::cos(2.0 * std::numbers::pi * harmonic *
-                                  (static_cast<double>(n) - samples / 2) / samples);
+    sum += response[n] *
+           std::cos(2.0 * std::numbers::pi * harmonic * (static_cast<double>(n) / samples - 0.5));
   return sum;
 }
 
@@ -77,9 +79,10 @@ Reproduction reproduce_fig5(const ReproduceContext&, const Progress&) {
     const LineStyle style{colours[in_time.size()]};
 
     // 1. The window in time.
-    const std::vector<double> values = sampled_response(response, samples);
+    const std::vector<double> values = sampled_window(limit, samples);
     Series time{.name = name, .y = values, .style = style};
-    for (int n = 0; n < samples; ++n) time.x.push_back((n - samples / 2) / (f0_hz * samples) * 1e9);
+    for (int n = 0; n < samples; ++n)
+      time.x.push_back((static_cast<double>(n) / samples - 0.5) / f0_hz * 1e9);
     in_time.push_back(time);
 
     // 2. Its transfer function, and where that is 1/5.

@@ -10,6 +10,7 @@
 #include "reproduce/data_tables.hpp"
 #include "reproduce/figures.hpp"
 #include "reproduce/scene_views.hpp"
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/report/image_figure.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/scene/check_view.hpp"
@@ -40,6 +41,7 @@ const std::vector<std::string> baselines = {"sinusoid-k4", "multifrequency-k5"};
 StagedScene in_place_of_the_hand(const TriangleMesh& mesh, int width, int height) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
+  require(box.sizes().maxCoeff() > 0.0, "mesh", "a single point", "must have an extent");
   Mesh placed{.triangles = mesh,
               .scale_m = hand_m / box.sizes().maxCoeff(),
               .texture = {.albedo = skin_albedo}};

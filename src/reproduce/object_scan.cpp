@@ -65,8 +65,9 @@ ScannedScene scanned_books(int width, int height) {
   const std::vector<std::pair<std::string, double>> fronts = {
       {"dark book", 1.2}, {"middle book", 1.4}, {"right book", 1.6}, {"wall", 3.2}};
   for (int i = 0; i < std::ssize(fronts); ++i) {
-    const auto& [name, front_m] = fronts[static_cast<std::size_t>(i)];
-    scene.objects.push_back({name, false, region_of(seen, i, [&](int row, int column) {
+    const std::pair<std::string, double>& front = fronts[static_cast<std::size_t>(i)];
+    const double front_m = front.second;
+    scene.objects.push_back({front.first, false, region_of(seen, i, [&](int row, int column) {
                                return std::abs(z_m(row, column) - front_m) < 1e-3;
                              })});
   }

@@ -104,7 +104,7 @@ void PairArrays::store(Reproduction& result, const std::string& prefix) const {
     Eigen::MatrixXd matrix(std::ssize(rows), rows.front().size());
     for (std::size_t i = 0; i < rows.size(); ++i)
       matrix.row(static_cast<Eigen::Index>(i)) = rows[i].transpose();
-    result.arrays[prefix + "_" + name] = npy_of(matrix);
+    result.arrays[fmt::format("{}_{}", prefix, name)] = npy_of(matrix);
   }
 }
 

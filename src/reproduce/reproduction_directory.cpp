@@ -17,16 +17,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The options that determine a reproduction.
-std::string options_text(const ReproduceOptions& options) {
+/// The options that determine an item.
+std::string options_text(const PaperItem& item, const ReproduceOptions& options) {
   std::string mesh;
-  if (options.mesh) {
-    mesh = options.mesh_name;
+  if (item.shows_mesh && options.mesh) {
+    std::string content = options.mesh_name;
     for (const Eigen::Vector3d& v : options.mesh->vertices)
-      mesh += fmt::format(" {} {} {}", v.x(), v.y(), v.z());
+      content += fmt::format(" {} {} {}", v.x(), v.y(), v.z());
+    for (const auto& triangle : options.mesh->triangles)
+      content += fmt::format(" {} {} {}", triangle[0], triangle[1], triangle[2]);
+    mesh = fmt::format(", mesh {} {:016x}", options.mesh_name, fnv1a_64(content));
   }
   return fmt::format("{}, seed {}{}", options.fast ? "coarse (--fast)" : "full", options.seed,
-                     mesh.empty() ? "" : fmt::format(", mesh {:016x}", fnv1a_64(mesh)));
+                     mesh);
 }
 
 Json as_json(const std::vector<CheckedStatement>& findings) {
@@ -96,11 +99,11 @@ void ReproductionDirectory::require_ours(const ReproduceOptions& options) const 
         document.value("tofsmith", "") != TOFSMITH_VERSION)
       continue;  // damaged or of another version: made again
     const std::string made_with = document.value("options", "");
-    if (made_with != options_text(options))
+    if (made_with != options_text(item, options))
       throw IoError(file.string(),
                     fmt::format("was made with other options ({}; now {}); use --force to replace "
                                 "it, or another -o",
-                                made_with, options_text(options)));
+                                made_with, options_text(item, options)));
   }
 
   std::vector<std::filesystem::path> pages = {path_ / "index.html"};
@@ -120,7 +123,7 @@ std::optional<std::vector<CheckedStatement>> ReproductionDirectory::finished(
   try {
     const Json document = Json::parse(read_text_file(file));
     if (document.at("tofsmith") != TOFSMITH_VERSION ||
-        document.at("options") != options_text(options))
+        document.at("options") != options_text(item, options))
       return std::nullopt;
     return findings_of(document);
   } catch (const std::exception&) {
@@ -144,7 +147,7 @@ void ReproductionDirectory::write(const PaperItem& item, const Reproduction& rep
                         render(reproduction_page(item, reproduction, options)),
                         OutputPolicy::overwrite);
   const Json document = {{"tofsmith", TOFSMITH_VERSION},
-                         {"options", options_text(options)},
+                         {"options", options_text(item, options)},
                          {"name", item.name},
                          {"title", item.title},
                          {"findings", as_json(reproduction.findings)}};

@@ -75,11 +75,14 @@ void add_kept_bounds(Reproduction& result, const ReproduceContext& context,
       excess = std::max({excess, -b.modulation_low, b.modulation_high - camera.light.peak_factor,
                          -b.demodulation_low, b.demodulation_high - 1.0});
       change_of_mean = std::max(change_of_mean, b.largest_change_of_mean);
-      table.rows.push_back({camera.name, code.name(), fmt::format("{:.3f}", code.peak()),
-                            fmt::format("{:.4f}", std::abs(b.modulation_low)),
-                            fmt::format("{:.4f}", b.modulation_high),
-                            fmt::format("{:.4f}", std::abs(b.demodulation_low)),
-                            fmt::format("{:.4f}", b.demodulation_high)});
+      table.rows.push_back(
+          {camera.name, code.name(), fmt::format("{:.3f}", code.peak()),
+           fmt::format("{:.4f}", b.modulation_low > -5e-5 ? std::max(0.0, b.modulation_low)
+                                                          : b.modulation_low),
+           fmt::format("{:.4f}", b.modulation_high),
+           fmt::format("{:.4f}", b.demodulation_low > -5e-5 ? std::max(0.0, b.demodulation_low)
+                                                            : b.demodulation_low),
+           fmt::format("{:.4f}", b.demodulation_high)});
       row_names.push_back(fmt::format("{} {}", camera.name, code.name()));
       rows.push_back({code.peak(), b.modulation_low, b.modulation_high, b.demodulation_low,
                       b.demodulation_high, b.largest_change_of_mean});

@@ -129,8 +129,9 @@ void add_convergence(Reproduction& result, const ReproduceContext& context,
                      claim.cameras),
          fmt::format("{} random starts on all targets of K = 3, 4, 5. {}; {}; {}.", starts,
                      lines[0], lines[1], lines[2]),
-         within
-             ? ""
+         within ? ""
+         : !below
+             ? "Many starts need more."
              : "Ours mostly needs fewer. The solvers differ: each of our convex steps is solved "
                "to its optimum, the norm is not squared but majorized, and a start ends at once "
                "when its projection hits the target. The paper does not state its stopping "

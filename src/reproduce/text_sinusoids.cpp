@@ -87,7 +87,8 @@ void add_sinusoids_of_any_k(Reproduction& result, const ReproduceContext& contex
   }
 
   const Curve &quiet = curves[0], &noisy = curves[1], &dim_quiet = curves[2], &dim = curves[3];
-  const bool equal_without = Curve::spread(quiet.mde_m) < 1.02;
+  const bool equal_without =
+      Curve::spread(quiet.mde_m) < 1.03 && Curve::spread(dim_quiet.mde_m) < 1.03;
   const bool equal_with = Curve::spread(noisy.mde_m) < 1.02 && Curve::spread(dim.mde_m) < 1.02;
   const auto percent = [](const std::vector<double>& values) {
     return 100 * (Curve::spread(values) - 1);

@@ -156,6 +156,8 @@ SurfaceFit<Surface> fit(const Points& given, std::size_t minimal, Through&& thro
     Points near;
     for (std::size_t i = 0; i < points.size(); ++i)
       if (distances[i] <= limit) near.push_back(points[i]);
+    require(near.size() >= minimal, "trim_sigma", options.trim_sigma,
+            "must be larger: it leaves out nearly every point");
     if (near == kept) break;
     kept = std::move(near);
     const std::optional<Surface> next = through(kept);

@@ -22,7 +22,8 @@ double Texture::at(double first_m, double second_m) const {
 
 double Texture::image_at(double u, double v) const {
   const auto pixel = [](double position, int count) {
-    return std::min(count - 1, static_cast<int>((position - std::floor(position)) * count));
+    const double share = position - std::floor(position);
+    return share >= 0.0 ? std::min(count - 1, static_cast<int>(share * count)) : 0;  // 0 for NaN
   };
   return albedo * image(pixel(-v, image.height), pixel(u, image.width));
 }

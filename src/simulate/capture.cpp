@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulate/scene_capture.hpp"
+#include "simulate/row_capture.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 
@@ -33,7 +33,7 @@ double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,
 
 RawFrames capture(const SceneImage& scene, const CodeSet& code, const Camera& camera,
                   const CaptureOptions& options, const Progress& progress) {
-  const SceneCapture source(scene, ForwardModel(code, camera), camera, options);
+  const RowCapture source(scene, ForwardModel(code, camera), camera, options);
 
   RawFrames raw;
   raw.frames = options.frames;

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "simulate/scene_capture.hpp"
+#include "simulate/row_capture.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/statistics.hpp"
@@ -44,7 +44,7 @@ RepeatedDepth repeated_depth(const SceneImage& scene, const CodeSet& code, const
                              const Progress& progress) {
   options.validate();
   const ForwardModel model(code, camera);
-  const SceneCapture source(scene, model, camera, capture);
+  const RowCapture source(scene, model, camera, capture);
   const AnyDecoder decoder = make_decoder(options.method, make_decoding_table(model, camera));
   const Image<float> reference_m = reference_of(scene, camera, options);
   const int height = scene.height(), width = scene.width();

@@ -153,6 +153,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadMesh{"a.obj", three + "f 1 2 4\n", "a.obj:4: found the vertex index 4; expected 1 .. 3"},
         BadMesh{"a.obj", three + "f 0 1 2\n", "a.obj:4: found the vertex index 0"},
         BadMesh{"a.obj", three + "f -1 -2 -4\n", "a.obj:4: found the vertex index -4"},
+        BadMesh{"a.obj", three + "f -9223372036854775808 1 2\n",
+                "a.obj:4: found the vertex index -9223372036854775808"},
         BadMesh{"a.obj", three + "f 1 2 9999999999999999999999\n", "a.obj:4: found '9999"},
         BadMesh{"a.obj", three + "vt 0 0\nf 1/1 2/1 3/7\n",
                 "a.obj:5: found the texture coordinate index 7; expected 1 .. 1"},
@@ -188,6 +190,11 @@ INSTANTIATE_TEST_SUITE_P(
                 "face 1: found 0 corners; expected 3 or more"},
         BadMesh{"a.ply", ply_header("ascii", 400000000) + ply_rows, "400000000 rows announced"},
         BadMesh{"a.ply", ply_header("ascii", 3) + ply_rows, "a.ply: byte "},
+        BadMesh{"a.ply",
+                "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                "element vertex 9\nproperty float x\nend_header\n",
+                "found a second element 'vertex'; expected each once"},
         BadMesh{"a.ply", ply_square + "3 0 1 2\n", "8 bytes more than the header announces"},
         BadMesh{"a.ply", ply_header("binary_little_endian") + ply_rows, "a.ply: byte "},
         BadMesh{"a.ply",

@@ -42,8 +42,20 @@ TEST_F(ReproductionFiles, AreFinishedForTheSameOptionsOnly) {
   EXPECT_EQ(findings->back().statement, "second");
   EXPECT_FALSE(directory_.finished(item, {.fast = true}));
   EXPECT_FALSE(directory_.finished(item, {.seed = 2}));
-  EXPECT_FALSE(directory_.finished(
-      item, {.mesh = TriangleMesh{.vertices = {{0, 0, 0}}}, .mesh_name = "cow.obj"}));
+}
+
+TEST_F(ReproductionFiles, DependOnTheMeshOnlyWhereItIsShown) {
+  const ReproduceOptions cow{.mesh = TriangleMesh{.vertices = {{0, 0, 0}}}, .mesh_name = "cow.obj"};
+  ReproduceOptions other = cow;
+  other.mesh->triangles = {{0, 0, 0}};
+  PaperItem shows = item;
+  shows.shows_mesh = true;
+  directory_.write(item, sample(), {});
+  EXPECT_TRUE(directory_.finished(item, cow));
+  EXPECT_FALSE(directory_.finished(shows, cow));
+  directory_.write(shows, sample(), cow);
+  EXPECT_TRUE(directory_.finished(shows, cow));
+  EXPECT_FALSE(directory_.finished(shows, other));
 }
 
 TEST_F(ReproductionFiles, HoldWhatTheFigureGave) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <sstream>
 
 #include "reproduce/figures.hpp"
 #include "reproduce/object_scan.hpp"
@@ -111,6 +112,25 @@ TEST(Fig11, RedesignedCodesScatterLess) {
   const Reproduction& wall = figure("fig11");
   ASSERT_EQ(wall.findings.size(), 1u);
   EXPECT_EQ(wall.findings[0].verdict, Verdict::holds) << wall.findings[0].measured;
+}
+
+TEST(Fig11, MeanDepthBehindTheFirstFilterIsTheWalls) {
+  std::istringstream table(figure("fig11").files.at("errors.csv"));
+  std::string line;
+  std::getline(table, line);
+  ASSERT_NE(line.find("mean_m"), std::string::npos) << line;
+  const auto column = std::count(
+      line.begin(), line.begin() + static_cast<std::ptrdiff_t>(line.find("mean_m")), ',');
+  int codes = 0;
+  while (std::getline(table, line)) {
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    if (cells.at(1) != "1") continue;
+    EXPECT_NEAR(std::stod(cells.at(static_cast<std::size_t>(column))), 0.5, 0.005) << line;
+    ++codes;
+  }
+  EXPECT_EQ(codes, 4);
 }
 
 TEST(Fig11, ErrorsAverageToNothingWhereThereIsMostLight) {

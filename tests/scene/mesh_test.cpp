@@ -77,6 +77,14 @@ TEST(Texture, ImageStandsUprightUToTheRightVUp) {
   EXPECT_FLOAT_EQ(static_cast<float>(texture.image_at(1.25, -0.25)), 0.1f) << "repeats";
 }
 
+TEST(Texture, PlacesBeyondAnyNumberReadSomePixel) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const double place : {infinity, -infinity, std::nan(""), 1e308, -1e308}) {
+    const double albedo = four_fields().image_at(place, place);
+    EXPECT_TRUE(albedo > 0.0 && albedo < 0.5) << place;
+  }
+}
+
 TEST(Mesh, LaysTheTextureOverItsCoordinates) {
   // A quad before the camera, its texture upright: v runs up, that is against y.
   Mesh quad;

@@ -16,7 +16,8 @@ struct PaperItem {
   std::string name;   ///< "fig3", "table1", "text"
   std::string title;  ///< what it shows, in a few words
   Reproduction (*reproduce)(const ReproduceContext&, const Progress&);
-  double share = 1.0;  ///< of the whole work, relative: for progress
+  double share = 1.0;       ///< of the whole work, relative: for progress
+  bool shows_mesh = false;  ///< depends on ReproduceOptions::mesh
 };
 
 /// All of them, in the paper's order.

@@ -8,11 +8,11 @@
 namespace tofsmith {
 
 /// A scene in front of a camera, captured row by row. The scene must outlive it.
-class SceneCapture {
+class RowCapture {
  public:
   /// @throws std::invalid_argument if scene or options are invalid
-  SceneCapture(const SceneImage& scene, const ForwardModel& model, const Camera& camera,
-               const CaptureOptions& options);
+  RowCapture(const SceneImage& scene, const ForwardModel& model, const Camera& camera,
+             const CaptureOptions& options);
 
   int measurements() const { return pixel_.measurements(); }
   /// Raw measurements of one row of one frame, (W, K).

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/scene_capture.hpp"
+#include "simulate/row_capture.hpp"
 
 namespace tofsmith {
 
-SceneCapture::SceneCapture(const SceneImage& scene, const ForwardModel& model, const Camera& camera,
-                           const CaptureOptions& options)
+RowCapture::RowCapture(const SceneImage& scene, const ForwardModel& model, const Camera& camera,
+                       const CaptureOptions& options)
     : scene_(scene), options_(options), pixel_(model, camera) {
   scene.validate();
   options.validate();
 }
 
-void SceneCapture::row(int frame, int row, float* raw) const {
+void RowCapture::row(int frame, int row, float* raw) const {
   std::vector<double> work(static_cast<std::size_t>(pixel_.tap_values()));
   const int width = scene_.width();
   for (int column = 0; column < width; ++column, raw += measurements()) {
