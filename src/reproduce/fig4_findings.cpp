@@ -71,7 +71,7 @@ CheckedStatement beats_both(const std::vector<ErrorSurfaceGroup>& panels) {
       one = sum(one, here);
     }
     finding.measured +=
-        fmt::format("{}: better than both at {} of {} light levels, even at {}, worse at {}{}. ",
+        fmt::format("{}: better than both at {} of {} light levels, tied at {}, worse at {}{}. ",
                     name.substr(0, 14), one.better, one.levels(), one.even, one.worse,
                     where.empty() ? "" : " (" + where + ")");
     all = sum(all, one);
@@ -79,7 +79,7 @@ CheckedStatement beats_both(const std::vector<ErrorSurfaceGroup>& panels) {
   for (const ErrorSurfaceGroup& panel : panels)
     of_best = sum(of_best, compare(best_redesigned(panel), better_baseline(panel)));
   finding.measured += fmt::format(
-      "The best of them on each camera: {} of {}, even at {}, worse at {}; the better baseline's "
+      "The best of them on each camera: {} of {}, tied at {}, worse at {}; the better baseline's "
       "error is {:.2f} to {:.2f} times its ({:.2f} on average).",
       of_best.better, of_best.levels(), of_best.even, of_best.worse, of_best.least, of_best.most,
       of_best.mean);

@@ -66,7 +66,7 @@ CheckedStatement beats(const std::vector<ErrorSurfaceGroup>& panels, const std::
   for (const ErrorSurfaceGroup& panel : panels) {
     const Comparison one = compare(panel.of(paper_code), panel.of(baseline));
     finding.measured += fmt::format(
-        "{}{}: better at {} of {} light levels, even at {}, worse at {}; {} has {:.2f} to {:.2f} "
+        "{}{}: better at {} of {} light levels, tied at {}, worse at {}; {} has {:.2f} to {:.2f} "
         "times its error, {:.2f} on average",
         finding.measured.empty() ? "" : ". ", panel.title, one.better, one.levels(), one.even,
         one.worse, baseline, one.least, one.most, one.mean);

@@ -41,14 +41,14 @@ Reproduction reproduce_table1(const ReproduceContext& context, const Progress& p
   // 1. The parameters of the bench, one camera file per line.
   Table parameters{.id = "parameters",
                    .caption =
-                       "The emulated bench. P_ave becomes electrons by one number, the signal "
+                       "The emulated bench; p = P_max / P_ave. P_ave becomes electrons by one "
+                       "number, the signal "
                        "at O.D. 0 per mW.",
                    .columns = {{"Camera"},
                                {"p", true},
                                {"P_ave (mW)", true},
-                               {"P_max (mW)", true},
                                {"f_max (MHz)", true},
-                               {"S, O.D. 0 (e/s)", true},
+                               {"S (e/s): O.D. 0", true},
                                {"O.D. 1", true},
                                {"O.D. 2", true},
                                {"O.D. 3", true}}};
@@ -65,8 +65,9 @@ Reproduction reproduce_table1(const ReproduceContext& context, const Progress& p
     for (const double density : {1.0, 2.0, 3.0})
       rows.back().push_back(attenuated(unfiltered, density).signal_e_per_s);
     parameters.rows.push_back({setting.name});
-    for (const double value : rows.back())
-      parameters.rows.back().push_back(fmt::format("{:g}", value));
+    for (std::size_t c = 0; c < rows.back().size(); ++c)
+      if (c != 2)  // the peak power is p times the average: in the file only
+        parameters.rows.back().push_back(fmt::format("{:g}", rows.back()[c]));
     result.files[setting.name + ".toml"] = camera_to_toml(camera);
   }
   result.files["parameters.csv"] = csv_text(
