@@ -13,17 +13,20 @@ namespace tofsmith::apps {
 class MethodArguments {
  public:
   void add_to(CLI::App& command) {
-    command
-        .add_option("--method", method_,
-                    "decoder: zncc for any code, unwrap for sinusoids of one or more frequencies")
-        ->check(CLI::IsMember({"zncc", "unwrap"}))
-        ->capture_default_str();
+    CLI::Option* method =
+        command
+            .add_option(
+                "--method", method_,
+                "decoder: zncc for any code, unwrap for sinusoids of one or more frequencies")
+            ->check(CLI::IsMember({"zncc", "unwrap"}))
+            ->capture_default_str();
     command
         .add_option("--unwrap-weights", weights_,
                     "how unwrapping weighs frequencies: by the variance of their depth on this "
                     "camera, or by f^2, as is classical")
         ->check(CLI::IsMember({"variance", "frequency"}))
-        ->capture_default_str();
+        ->capture_default_str()
+        ->needs(method);
   }
   DecodeMethod method() const { return parse_decode_method(method_); }
   UnwrapWeights unwrap_weights() const { return parse_unwrap_weights(weights_); }
