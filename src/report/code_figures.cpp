@@ -93,17 +93,7 @@ Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camer
                         camera.sensor.impulse_response, frequency_hz, sensor),
              std::move(correlations)}});
   }
-  return small_multiples(std::move(text),
-                         {{.title = "Modulation",
-                           .x = {.label = "time", .unit = "ns"},
-                           .y = {.label = "power / average", .from_zero = true}},
-                          {.title = "Demodulation",
-                           .x = {.label = "time", .unit = "ns"},
-                           .y = {.label = "gain", .from_zero = true}},
-                          {.title = "Correlation",
-                           .x = {.label = "depth", .unit = "m"},
-                           .y = {.label = "chi", .from_zero = true}}},
-                         rows);
+  return small_multiples(std::move(text), waveform_columns(), rows);
 }
 
 Figure coding_curve_figure(FigureText text, const std::vector<CodeSet>& codes,

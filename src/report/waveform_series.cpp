@@ -52,4 +52,16 @@ std::vector<Series> arm_series(const Waveform& told, const Waveform& played,
   return series;
 }
 
+std::vector<PanelColumn> waveform_columns() {
+  return {{.title = "Modulation",
+           .x = {.label = "time", .unit = "ns"},
+           .y = {.label = "power / average", .from_zero = true}},
+          {.title = "Demodulation",
+           .x = {.label = "time", .unit = "ns"},
+           .y = {.label = "gain", .from_zero = true}},
+          {.title = "Correlation",
+           .x = {.label = "depth", .unit = "m"},
+           .y = {.label = "chi", .from_zero = true}}};
+}
+
 }  // namespace tofsmith

@@ -7,6 +7,7 @@
 #include "tofsmith/camera/impulse_response.hpp"
 #include "tofsmith/code/waveform.hpp"
 #include "tofsmith/report/line_figure.hpp"
+#include "tofsmith/report/small_multiples.hpp"
 
 namespace tofsmith {
 
@@ -19,5 +20,8 @@ std::vector<double> axis_values(int points, double end);
 std::vector<Series> arm_series(const Waveform& told, const Waveform& played,
                                const ImpulseResponse& response, double fundamental_frequency_hz,
                                const LineStyle& style);
+
+/// The columns of a grid of pairs: modulation, demodulation, correlation function.
+std::vector<PanelColumn> waveform_columns();
 
 }  // namespace tofsmith

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include "reproduce/ablation.hpp"
+#include "report/waveform_series.hpp"
 
 #include <fmt/format.h>
 
@@ -215,7 +216,7 @@ void add_total_variation_ablation(Reproduction& result, const ReproduceContext& 
                         "with it, and its binary projection, from the same random waveforms. All "
                         "three correlation functions lie on the target; only the waveforms "
                         "differ. [[variants]] has the figures."},
-            pair_columns(), panels),
+            waveform_columns(), panels),
         table,
         Paragraph{"Rows of `ablation_*` in the data: without TV, with TV, reprojected; first "
                   "K = 3, then K = 4."}}});

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/waveform_series.hpp"
 #include "reproduce/ablation.hpp"
 #include "reproduce/code_styles.hpp"
 #include "reproduce/figures.hpp"
@@ -119,7 +120,7 @@ Reproduction reproduce_fig2(const ReproduceContext& context, const Progress& pro
                  "function is "
                  "the target, but no light source plays it.",
                  chi.size())},
-            pair_columns(), {pair_row("trivial", trivial, unlimited, chi, style)}),
+            waveform_columns(), {pair_row("trivial", trivial, unlimited, chi, style)}),
         small_multiples(
             {.id = "designed",
              .title = "Designed functions",
@@ -129,7 +130,7 @@ Reproduction reproduce_fig2(const ReproduceContext& context, const Progress& pro
                  "the smoothed output that leaves them. Sharp corners of the target are lost "
                  "where the band ends.",
                  peak_factor, f_max_in_f0)},
-            pair_columns(),
+            waveform_columns(),
             {pair_row("no limit", free, unlimited, chi, style),
              pair_row(fmt::format("{:g} f0", f_max_in_f0), input, limited, chi, style)}),
         Paragraph{"Rows of `pairs_*` in the data: trivial, no limit, 10 f0."}}}};

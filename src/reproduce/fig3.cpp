@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "report/waveform_series.hpp"
 #include "reproduce/code_styles.hpp"
 #include "reproduce/data_tables.hpp"
 #include "reproduce/figures.hpp"
@@ -172,7 +173,7 @@ Figure waveforms_of_k3(const OrderResult& k3) {
        .caption = "From p = 30 down to 6 nothing changes: a pulse of height 6 gives the target "
                   "exactly. Below, the pulse widens and the flanks of the correlation function "
                   "lean, until square meets square at p = 2."},
-      pair_columns(), rows);
+      waveform_columns(), rows);
 }
 
 Figure correlations_of(const OrderResult& one) {

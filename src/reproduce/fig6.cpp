@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/waveform_series.hpp"
 #include "reproduce/code_styles.hpp"
 #include "reproduce/data_tables.hpp"
 #include "reproduce/figures.hpp"
@@ -166,7 +167,7 @@ Reproduction reproduce_fig6(const ReproduceContext& context, const Progress& pro
                         "10 f0. Thin: what the arms are told, binary. Thick: what leaves them, "
                         "smooth. The correlation function follows its target, with rounded "
                         "corners."},
-            pair_columns(), panels),
+            waveform_columns(), panels),
         table}}};
   result.files["codes.csv"] =
       csv_text({"code", "residual_rms", "share_of_variation", "coefficient", "contrast",

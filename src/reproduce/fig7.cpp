@@ -14,6 +14,7 @@
 #include "tofsmith/report/image_figure.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/scene/check_view.hpp"
+#include "tofsmith/scene/framed_mesh.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 #include "tofsmith/simulate/range_emulation.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
@@ -42,13 +43,8 @@ StagedScene in_place_of_the_hand(const TriangleMesh& mesh, int width, int height
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
   require(box.sizes().maxCoeff() > 0.0, "mesh", "a single point", "must have an extent");
-  Mesh placed{.triangles = mesh,
-              .scale_m = hand_m / box.sizes().maxCoeff(),
-              .texture = {.albedo = skin_albedo}};
-  // Its y axis points up and its z axis at the viewer, the camera's down and away.
-  placed.mesh_to_world.translate(Eigen::Vector3d(0, 0, distance_m));
-  placed.mesh_to_world.rotate(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX()));
-  placed.mesh_to_world.translate(-placed.scale_m * box.center());
+  Mesh placed = upright_mesh(mesh, hand_m / box.sizes().maxCoeff(), {0, 0, distance_m});
+  placed.texture.albedo = skin_albedo;
   return {.shapes = {std::move(placed)},
           .view = PinholeView::centred(width, height, 36 * std::numbers::pi / 180)};
 }

@@ -46,18 +46,6 @@ WaveformPair centred(const WaveformPair& pair) {
   return {pair.modulation.delayed(delay), pair.demodulation.delayed(delay)};
 }
 
-std::vector<PanelColumn> pair_columns() {
-  return {{.title = "Modulation",
-           .x = {.label = "time", .unit = "ns"},
-           .y = {.label = "power / average", .from_zero = true}},
-          {.title = "Demodulation",
-           .x = {.label = "time", .unit = "ns"},
-           .y = {.label = "gain", .from_zero = true}},
-          {.title = "Correlation",
-           .x = {.label = "depth", .unit = "m"},
-           .y = {.label = "chi", .from_zero = true}}};
-}
-
 std::vector<Series> correlation_series(const Eigen::VectorXd& correlation,
                                        const Eigen::VectorXd& target, double range_m,
                                        const LineStyle& style) {

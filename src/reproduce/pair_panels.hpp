@@ -26,9 +26,6 @@ double residual_rms(const WaveformPair& pair, const CorrelationTarget& target,
 /// half the period: drawings of different pairs can be compared. Sampled pairs stay.
 WaveformPair centred(const WaveformPair& pair);
 
-/// Columns of figures whose rows are pairs: modulation, demodulation, correlation.
-std::vector<PanelColumn> pair_columns();
-
 /// One row: what the arms are told and what leaves them, and the correlation function over the
 /// target, which is grey and dotted.
 PanelRow pair_row(std::string title, const WaveformPair& pair, const Camera& camera,

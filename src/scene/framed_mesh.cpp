@@ -5,10 +5,33 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
+
+namespace {
+
+/// Its y axis goes up, the world's down; turned about x, it still shows its front.
+const Eigen::Matrix3d turn = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
+
+Eigen::AlignedBox3d box_of(const TriangleMesh& triangles) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& vertex : triangles.vertices) box.extend(vertex);
+  require(box.diagonal().norm() > 0.0, "mesh", "a single point", "must have an extent");
+  return box;
+}
+
+}  // namespace
+
+Mesh upright_mesh(TriangleMesh triangles, double scale_m, const Eigen::Vector3d& centre_m) {
+  const Eigen::Vector3d middle = box_of(triangles).center();
+  Mesh mesh{.triangles = std::move(triangles), .scale_m = scale_m};
+  mesh.mesh_to_world.linear() = turn;
+  mesh.mesh_to_world.translation() = centre_m - scale_m * (turn * middle);
+  return mesh;
+}
 
 StagedScene framed_mesh(TriangleMesh triangles, double scale_m, int width, int height) {
   constexpr double filled = 0.8;
@@ -17,10 +40,7 @@ StagedScene framed_mesh(TriangleMesh triangles, double scale_m, int width, int h
   StagedScene scene;
   scene.view = PinholeView::centred(width, height, std::numbers::pi / 3);
 
-  // Its y axis goes up, the world's down; turned about x, it still shows its front.
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& vertex : triangles.vertices) box.extend(vertex);
-  const Eigen::Matrix3d turn = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
+  const Eigen::AlignedBox3d box = box_of(triangles);
 
   // Every vertex asks for a distance from which it is in the middle part of the image; none comes
   // to stand at the camera or behind it.
@@ -35,12 +55,7 @@ StagedScene framed_mesh(TriangleMesh triangles, double scale_m, int width, int h
         std::max(std::abs(at.x()) / half_width, std::abs(at.y()) / half_height) - at.z();
     distance_m = std::max({distance_m, wanted, 0.01 * half_diagonal_m - at.z()});
   }
-  const Eigen::Vector3d centre(0.0, 0.0, distance_m);
-
-  Mesh mesh{.triangles = std::move(triangles), .scale_m = scale_m};
-  mesh.mesh_to_world.linear() = turn;
-  mesh.mesh_to_world.translation() = centre - scale_m * (turn * box.center());
-  scene.shapes.emplace_back(std::move(mesh));
+  scene.shapes.emplace_back(upright_mesh(std::move(triangles), scale_m, {0.0, 0.0, distance_m}));
   return scene;
 }
 

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "figure_checks.hpp"
 #include "reproduce/error_surface.hpp"
 #include "reproduce/fig4_findings.hpp"
 #include "reproduce/figures.hpp"
@@ -18,26 +19,16 @@ namespace {
 
 using testing::HasSubstr;
 
+using test::verdict_on;
+
 /// Each figure is made once, coarsely.
-Reproduction made(Reproduction (*reproduce)(const ReproduceContext&, const Progress&)) {
-  CodeShelf shelf;
-  return reproduce({.options = {.fast = true}, .shelf = shelf}, {});
-}
 const Reproduction& fig4() {
-  static const Reproduction result = made(reproduce_fig4);
+  static const Reproduction result = test::coarsely("fig4");
   return result;
 }
 const Reproduction& fig8() {
-  static const Reproduction result = made(reproduce_fig8);
+  static const Reproduction result = test::coarsely("fig8");
   return result;
-}
-
-Verdict verdict_on(const Reproduction& reproduction, const std::string& words) {
-  const auto found = std::ranges::find_if(reproduction.findings, [&](const CheckedStatement& f) {
-    return f.statement.find(words) != std::string::npos;
-  });
-  if (found == reproduction.findings.end()) throw std::invalid_argument(words);
-  return found->verdict;
 }
 
 /// Geometric mean over the light levels of code `c` of an array (codes, ambient, signal).

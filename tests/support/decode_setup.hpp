@@ -14,12 +14,13 @@
 namespace tofsmith {
 
 /// A code on a camera, with the decoder that belongs to it.
-struct DecodeSetup {
+template <typename AnyDecoder, typename Options>
+struct DecoderSetup {
   Camera camera;
   ForwardModel model;
-  Decoder decoder;
+  AnyDecoder decoder;
 
-  DecodeSetup(const std::string& code, const Camera& camera_, const DecodeOptions& options = {})
+  DecoderSetup(const std::string& code, const Camera& camera_, const Options& options = {})
       : camera(camera_),
         model(build_family(code, camera), camera),
         decoder(make_decoding_table(model, camera), options) {}
@@ -32,6 +33,8 @@ struct DecodeSetup {
       raw.push_back(static_cast<float>(e));
   }
 };
+
+using DecodeSetup = DecoderSetup<Decoder, DecodeOptions>;
 
 inline Camera camera_with(const std::string& name, int taps = 1,
                           Readout readout = Readout::separate) {
@@ -73,7 +76,8 @@ inline std::vector<std::int32_t> bins_of(const Decoder& decoder, const std::vect
   return bins;
 }
 
-inline std::vector<double> depth_bins_of(const Decoder& decoder, const std::vector<float>& raw) {
+template <typename AnyDecoder>
+std::vector<double> depth_bins_of(const AnyDecoder& decoder, const std::vector<float>& raw) {
   std::vector<double> bins(raw.size() / static_cast<std::size_t>(decoder.measurements()));
   decoder.decode_depth_bins(raw.data(), static_cast<std::int64_t>(bins.size()), bins.data());
   return bins;
