@@ -57,7 +57,7 @@ struct Decoder::Plan {
   BinMatcher matcher;
 
   void decode_pixel(const float* raw, const Tile& tile, int pixel, std::size_t at,
-                    DepthImage& image) const;
+                    const DecodedView& into) const;
   double confidence(const Tile& tile, int pixel, const double* variance_e2) const;
 };
 
@@ -98,24 +98,29 @@ void Decoder::decode_depth_bins(const float* measurements, std::int64_t pixels,
                 });
 }
 
+void Decoder::decode(const RawView& raw, const DecodedView& decoded,
+                     const Progress& progress) const {
+  decode_frame(raw, decoded, measurements(), progress,
+               [&](const float* values, std::int64_t pixels, const DecodedView& block) {
+                 for_each_tile(plan_->matcher, measurements(), values, pixels,
+                               [&](const Tile& tile, std::int64_t first) {
+                                 for (int i = 0; i < tile.pixels; ++i)
+                                   plan_->decode_pixel(values + (first + i) * measurements(), tile,
+                                                       i, static_cast<std::size_t>(first + i),
+                                                       block);
+                               });
+               });
+}
+
 DepthImage Decoder::decode(const RawFrames& raw, int frame, const Progress& progress) const {
-  constexpr std::int64_t block_pixels = 64 * pixels_per_tile;
-  return decode_frame(
-      raw, frame, measurements(), block_pixels, progress,
-      [&](const float* first_raw, IndexRange block, DepthImage& image) {
-        for_each_tile(plan_->matcher, measurements(), first_raw, block.end - block.begin,
-                      [&](const Tile& tile, std::int64_t first) {
-                        for (int i = 0; i < tile.pixels; ++i)
-                          plan_->decode_pixel(first_raw + (first + i) * measurements(), tile, i,
-                                              static_cast<std::size_t>(block.begin + first + i),
-                                              image);
-                      });
-      });
+  return decoded_image(raw, frame, [&](const RawView& view, const DecodedView& decoded) {
+    decode(view, decoded, progress);
+  });
 }
 
 void Decoder::Plan::decode_pixel(const float* raw, const Tile& tile, int pixel, std::size_t at,
-                                 DepthImage& image) const {
-  if (tile.bin[pixel] < 0) return;  // the image starts as invalid
+                                 const DecodedView& into) const {
+  if (tile.bin[pixel] < 0) return store_invalid(at, into);
   std::array<double, max_measurements> plane, electrons, variance_e2;
   plane_vector(tile, pixel, model.rank(), plane.data());
   for (int k = 0; k < model.measurements(); ++k)
@@ -127,7 +132,7 @@ void Decoder::Plan::decode_pixel(const float* raw, const Tile& tile, int pixel, 
       model.estimate(electrons.data(), plane.data(), position, variance_e2.data())};
   if (decoding.estimate.signal_e_per_s > 0.0)
     decoding.confidence = confidence(tile, pixel, variance_e2.data());
-  store_pixel(table, options, raw, decoding, at, image);
+  store_pixel(table, options, raw, decoding, at, into);
 }
 
 /// Probability that the pixel's bin scores higher than the best one outside its main lobe, for

@@ -4,13 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <vector>
 
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
 
 namespace {
+
+constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
 
 PixelStatus status_of(const DecodingTable& table, const DecodeOptions& options, const float* raw,
                       const PixelDecoding& pixel) {
@@ -29,19 +34,32 @@ PixelStatus status_of(const DecodingTable& table, const DecodeOptions& options, 
 }  // namespace
 
 void store_pixel(const DecodingTable& table, const DecodeOptions& options, const float* raw,
-                 const PixelDecoding& pixel, std::size_t at, DepthImage& image) {
-  image.status.pixels[at] = status_of(table, options, raw, pixel);
-  if (!(pixel.estimate.signal_e_per_s > 0.0)) return;
-
-  const double bin_m = table.bin_m();
-  const auto depth_m = static_cast<float>(pixel.depth_bin * bin_m);
+                 const PixelDecoding& pixel, std::size_t at, const DecodedView& decoded) {
+  const PixelEstimate& estimate = pixel.estimate;
+  const bool has_depth = estimate.signal_e_per_s > 0.0;
+  const auto store = [&](float* plane, double value) {
+    if (plane) plane[at] = has_depth ? static_cast<float>(value) : no_value;
+  };
   // Rounding to float can land on the end of the range, which is its beginning.
-  image.depth_m.pixels[at] = depth_m < static_cast<float>(table.range_m) ? depth_m : 0.0f;
-  image.signal_e_per_s.pixels[at] = static_cast<float>(pixel.estimate.signal_e_per_s);
-  image.ambient_e_per_s.pixels[at] = static_cast<float>(pixel.estimate.ambient_e_per_s);
-  image.confidence.pixels[at] = static_cast<float>(pixel.confidence);
-  image.predicted_standard_deviation_m.pixels[at] =
-      static_cast<float>(pixel.estimate.depth_standard_deviation_bin * bin_m);
+  const bool at_end =
+      static_cast<float>(pixel.depth_bin * table.bin_m()) >= static_cast<float>(table.range_m);
+  if (decoded.bin)
+    decoded.bin[at] = static_cast<std::int32_t>(std::lround(pixel.depth_bin)) % table.samples();
+  store(decoded.depth_m, at_end ? 0.0 : pixel.depth_bin * table.bin_m());
+  store(decoded.signal_e_per_s, estimate.signal_e_per_s);
+  store(decoded.ambient_e_per_s, estimate.ambient_e_per_s);
+  store(decoded.confidence, pixel.confidence);
+  store(decoded.predicted_standard_deviation_m,
+        estimate.depth_standard_deviation_bin * table.bin_m());
+  if (decoded.status) decoded.status[at] = status_of(table, options, raw, pixel);
+}
+
+void store_invalid(std::size_t at, const DecodedView& decoded) {
+  if (decoded.bin) decoded.bin[at] = -1;
+  for (float* plane : {decoded.depth_m, decoded.signal_e_per_s, decoded.ambient_e_per_s,
+                       decoded.confidence, decoded.predicted_standard_deviation_m})
+    if (plane) plane[at] = no_value;
+  if (decoded.status) decoded.status[at] = PixelStatus::invalid;
 }
 
 double confidence_of(double lead, double deviation) {
@@ -49,33 +67,27 @@ double confidence_of(double lead, double deviation) {
   return 0.5 * std::erfc(-std::max(lead, 0.0) / deviation * std::numbers::sqrt2 / 2);
 }
 
-DepthImage decode_frame(const RawFrames& raw, int frame, int measurements,
-                        std::int64_t block_pixels, const Progress& progress,
-                        const std::function<void(const float* raw, IndexRange pixels,
-                                                 DepthImage& image)>& decode_block) {
+void decode_frame(const RawView& raw, const DecodedView& decoded, int measurements,
+                  const Progress& progress,
+                  const std::function<void(const float* raw, std::int64_t pixels,
+                                           const DecodedView& decoded)>& decode_block) {
   require(raw.measurements == measurements, "raw measurements", raw.measurements,
           "must equal the code's " + std::to_string(measurements));
-  require(frame >= 0 && frame < raw.frames, "frame", frame,
-          "must be in [0, " + std::to_string(raw.frames) + ")");
-  require(raw.height >= 0 && raw.width >= 0 &&
-              raw.values.size() == static_cast<std::size_t>(raw.frames) * raw.pixels_per_frame() *
-                                       static_cast<std::size_t>(raw.measurements),
-          "raw values", raw.values.size(), "must be frames x height x width x measurements");
-
-  const std::int64_t blocks_per_report = 64;
-  DepthImage image(raw.height, raw.width);
-  const float* pixels = raw.frame(frame);
-  const auto count = static_cast<std::int64_t>(raw.pixels_per_frame());
+  require(raw.height >= 0 && raw.width >= 0, "raw height and width",
+          std::min(raw.height, raw.width), "must be >= 0");
+  constexpr std::int64_t block_pixels = 4096, blocks_per_report = 64;
+  const std::int64_t count = raw.pixels();
   for (std::int64_t done = 0; done < count; done += block_pixels * blocks_per_report) {
     report(progress, static_cast<double>(done) / static_cast<double>(count), "decoding");
     const std::int64_t end = std::min(count, done + block_pixels * blocks_per_report);
     parallel_for_blocks(end - done, block_pixels, [&](IndexRange range) {
-      const IndexRange block{done + range.begin, done + range.end};
-      decode_block(pixels + block.begin * measurements, block, image);
+      const std::int64_t first = done + range.begin, pixels = range.end - range.begin;
+      std::vector<float> values(static_cast<std::size_t>(pixels * measurements));
+      copy_pixels(raw, first, pixels, values.data());
+      decode_block(values.data(), pixels, decoded.from(static_cast<std::size_t>(first)));
     });
   }
   report(progress, 1.0, "decoding");
-  return image;
 }
 
 }  // namespace tofsmith

@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "decode/pixel_model.hpp"
-#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/progress.hpp"
+#include "tofsmith/core/raw_view.hpp"
 #include "tofsmith/decode/decoder.hpp"
 
 namespace tofsmith {
@@ -18,22 +18,32 @@ struct PixelDecoding {
   double confidence = 0.0;  ///< that no far-off depth is the true one
 };
 
-/// Writes one pixel, with its status, into an image that starts as invalid: what every decoder does
-/// in the same way.
+/// Writes one pixel, with its status: what every decoder does in the same way.
+/// @param raw  (K) raw numbers
+/// @param at   index of the pixel in the view
 void store_pixel(const DecodingTable& table, const DecodeOptions& options, const float* raw,
-                 const PixelDecoding& pixel, std::size_t at, DepthImage& image);
+                 const PixelDecoding& pixel, std::size_t at, const DecodedView& decoded);
+/// Writes a pixel with a measurement that is no number.
+void store_invalid(std::size_t at, const DecodedView& decoded);
 
 /// Normal probability that a lead is not noise of this deviation.
 double confidence_of(double lead, double deviation);
 
 /// Decodes one frame on all threads, with progress.
-/// @param block_pixels  pixels of a block, at most
-/// @param decode_block  is given the raw numbers of a block's first pixel, the block as indices of
-///                      pixels, and the image to store them in
-/// @throws std::invalid_argument if the shape does not fit; Interrupted if progress says so
-DepthImage decode_frame(const RawFrames& raw, int frame, int measurements,
-                        std::int64_t block_pixels, const Progress& progress,
-                        const std::function<void(const float* raw, IndexRange pixels,
-                                                 DepthImage& image)>& decode_block);
+/// @param decode_block  is given raw numbers (pixels, K), their number, and where to store them
+/// @throws std::invalid_argument if the measurements are not as many; Interrupted if progress says
+void decode_frame(const RawView& raw, const DecodedView& decoded, int measurements,
+                  const Progress& progress,
+                  const std::function<void(const float* raw, std::int64_t pixels,
+                                           const DecodedView& decoded)>& decode_block);
+
+/// A new image, filled by `decode(view, planes)` from one frame of several.
+template <typename Decode>
+DepthImage decoded_image(const RawFrames& raw, int frame, const Decode& decode) {
+  const RawView view = view_of_frame(raw, frame);
+  DepthImage image(raw.height, raw.width);
+  decode(view, DecodedView::of(image));
+  return image;
+}
 
 }  // namespace tofsmith

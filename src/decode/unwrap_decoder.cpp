@@ -82,7 +82,7 @@ struct UnwrapDecoder::Plan {
   PerFrequency phases_of(const PerMeasurement& electrons) const;
   double bin_of(const Wraps& wraps) const;
   void project(const PerMeasurement& electrons, PerMeasurement& plane) const;
-  void decode_pixel(const float* raw, std::size_t at, DepthImage& image) const;
+  void decode_pixel(const float* raw, std::size_t at, const DecodedView& decoded) const;
   double deviation(const PerFrequency& factor, const PixelDecoding& pixel,
                    const PerMeasurement& variance_e2) const;
   double confidence(const PerFrequency& phase, const Wraps& best, const PixelDecoding& pixel,
@@ -124,14 +124,20 @@ void UnwrapDecoder::decode_bins(const float* measurements, std::int64_t pixels,
   }
 }
 
+void UnwrapDecoder::decode(const RawView& raw, const DecodedView& decoded,
+                           const Progress& progress) const {
+  decode_frame(raw, decoded, measurements(), progress,
+               [&](const float* values, std::int64_t pixels, const DecodedView& block) {
+                 for (std::int64_t i = 0; i < pixels; ++i)
+                   plan_->decode_pixel(values + i * measurements(), static_cast<std::size_t>(i),
+                                       block);
+               });
+}
+
 DepthImage UnwrapDecoder::decode(const RawFrames& raw, int frame, const Progress& progress) const {
-  constexpr std::int64_t block_pixels = 4096;
-  return decode_frame(raw, frame, measurements(), block_pixels, progress,
-                      [&](const float* first_raw, IndexRange block, DepthImage& image) {
-                        for (std::int64_t i = block.begin; i < block.end; ++i)
-                          plan_->decode_pixel(first_raw + (i - block.begin) * measurements(),
-                                              static_cast<std::size_t>(i), image);
-                      });
+  return decoded_image(raw, frame, [&](const RawView& view, const DecodedView& decoded) {
+    decode(view, decoded, progress);
+  });
 }
 
 /// False where a measurement is NaN or infinite.
@@ -171,9 +177,10 @@ void UnwrapDecoder::Plan::project(const PerMeasurement& electrons, PerMeasuremen
   if (std::sqrt(length2) <= nothing_left * size) plane.fill(0.0);
 }
 
-void UnwrapDecoder::Plan::decode_pixel(const float* raw, std::size_t at, DepthImage& image) const {
+void UnwrapDecoder::Plan::decode_pixel(const float* raw, std::size_t at,
+                                       const DecodedView& decoded) const {
   PerMeasurement electrons, variance_e2, plane;
-  if (!read(raw, electrons)) return;  // the image starts as invalid
+  if (!read(raw, electrons)) return store_invalid(at, decoded);
   const PerFrequency phase = phases_of(electrons);
   const Wraps wraps = unwrapper.nearest(phase.data());
 
@@ -187,7 +194,7 @@ void UnwrapDecoder::Plan::decode_pixel(const float* raw, std::size_t at, DepthIm
     pixel.estimate.depth_standard_deviation_bin = deviation(share, pixel, variance_e2);
     pixel.confidence = confidence(phase, wraps, pixel, variance_e2);
   }
-  store_pixel(table, options.doubt, raw, pixel, at, image);
+  store_pixel(table, options.doubt, raw, pixel, at, decoded);
 }
 
 /// Standard deviation of sum_f factor_f z_f, z_f the depth of one frequency [periods]: an electron

@@ -6,8 +6,9 @@
 #include <memory>
 
 #include "tofsmith/core/progress.hpp"
+#include "tofsmith/core/raw_view.hpp"
+#include "tofsmith/decode/decoded_view.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
-#include "tofsmith/decode/depth_image.hpp"
 
 namespace tofsmith {
 
@@ -47,17 +48,20 @@ class Decoder {
   /// Dimension of what is left of the measurements without ambient light, 2 .. K.
   int rank() const;
 
-  /// Decodes one frame on all threads.
+  /// Decodes one frame on all threads into the caller's planes, so that a stream of frames needs no
+  /// memory of its own.
   ///   signal and ambient: least squares of y' on x(z_hat) and a;
   ///   predicted standard deviation: noise of the measurements at the estimate (mu_i + constant
   ///     variance), carried through the least squares over (z, S, A) that z_hat solves;
   ///   confidence: normal probability that the best score beats, beyond noise, the best score
   ///     outside the main lobe, which is the run of bins around the best along which the code's own
   ///     score falls (1 if nothing is outside).
-  /// @param raw       electrons or counts, (F, H, W, K), K as in the table
-  /// @param frame     in [0, F)
+  /// @param raw      electrons or counts, with as many measurements as the table
+  /// @param decoded  planes of the same height and width
   /// @throws std::invalid_argument if the shape does not fit; Interrupted if progress says so
   /// @note deterministic for any number of threads
+  void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
+  /// The same for frame `frame` of several (F, H, W, K), into a new image.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
   /// Positions in [0, N), refined between bins, of many pixels: the decoder inside a Monte Carlo

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tofsmith/core/progress.hpp"
+#include "tofsmith/core/raw_view.hpp"
 #include "tofsmith/decode/decoder.hpp"
 
 namespace tofsmith {
@@ -70,10 +71,12 @@ class UnwrapDecoder {
   /// w_f of each frequency, scaled to sum 1.
   const std::vector<double>& weights() const;
 
-  /// Decodes one frame on all threads; as Decoder::decode, but for
+  /// Decodes one frame on all threads into the caller's planes; as Decoder::decode, but for
   ///   predicted standard deviation: noise at the estimate, carried through phases and weights;
   ///   confidence: normal probability that the chosen wraps beat, beyond noise, the best ones whose
   ///     depth is more than half a wrap of the highest frequency away (1 if there are none).
+  void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
+  /// The same for frame `frame` of several (F, H, W, K), into a new image.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
   /// Positions in [0, N) of many pixels; see Decoder::decode_depth_bins.
