@@ -2,46 +2,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
+#include <optional>
+#include <variant>
 
-#include "decode/block_search.hpp"
-#include "decode/raw_scale.hpp"
+#include "decode/cell_search.hpp"
+#include "decode/circle_search.hpp"
+#include "decode/exact_projection.hpp"
+#include "decode/tile_projection.hpp"
 
 namespace tofsmith {
 
-/// A tile of pixels, from raw numbers to bins. Its vectors are what is left of a pixel without
-/// ambient light, q = V^T P y', as length and unit vector.
-struct Tile {
-  int pixels = 0;
-  double length[pixels_per_tile];                        ///< |q| [e]
-  double unit[max_measurements * pixels_per_tile];       ///< [rank][pixels_per_tile]
-  float unit_float[max_measurements * pixels_per_tile];  ///< the same, rounded
-  std::int32_t bin[pixels_per_tile];                     ///< -1 for an invalid pixel
-};
-
-/// The bins whose directions match pixels best, exactly as double arithmetic finds them.
+/// The bins whose directions match pixels best, exactly as double arithmetic finds them: single
+/// precision proves most of them, double arithmetic decides the others.
 class BinMatcher {
  public:
   BinMatcher(const DecodingTable& table, const AmbientProjection& projection);
+  BinMatcher(const BinMatcher&) = delete;
+  BinMatcher& operator=(const BinMatcher&) = delete;
 
   const DirectionTable& directions() const { return directions_; }
+  const ExactProjection& exact() const { return exact_; }
 
-  /// Electrons without dark ones of one raw number.
-  double electrons(float raw, int measurement) const { return scale_.electrons(raw, measurement); }
-  /// @param raw  (pixels, K), pixels in 1 .. pixels_per_tile
-  void match(const float* raw, int pixels, Tile& tile) const;
+  /// Fills a tile with the pixels of a view from pixel `first` on; bins are -1 where a raw number
+  /// is none.
+  /// @param pixels    1 .. pixels_per_tile
+  /// @param keep_raw  whether `raw` of the tile is filled too
+  void match(const RawView& view, std::int64_t first, int pixels, bool keep_raw,
+             PixelTile& tile) const;
+  /// Completes `rival` of a matched tile.
+  void find_rivals(PixelTile& tile) const;
 
  private:
-  using BlockScores = Eigen::Array<double, rows_per_block, 1>;
-  void project(const float* raw, Tile& tile) const;
-  void normalize(const double* size, Tile& tile) const;
-  BlockScores scores(const Tile& tile, int pixel, int block) const;
-  int choose_in(const Tile& tile, int pixel, int block) const;
-  int choose(const Tile& tile, int pixel) const;
+  bool search(PixelTile& tile) const;
+  std::int32_t decide(const RawView& view, std::int64_t pixel) const;
+  std::int32_t choose(const double* unit) const;
 
   DirectionTable directions_;
-  Eigen::MatrixXd basis_;  // V (K, rank)
-  RawScale scale_;
+  DistinctDirections distinct_;
+  TileProjection projection_;
+  ExactProjection exact_;
+  std::variant<std::monostate, CircleSearch, CellSearch> search_;
 };
 
 }  // namespace tofsmith

@@ -4,6 +4,11 @@
 
 namespace tofsmith {
 
+bool DecodedView::wants_bins_only() const {
+  return bin && !depth_m && !signal_e_per_s && !ambient_e_per_s && !confidence &&
+         !predicted_standard_deviation_m && !status;
+}
+
 DecodedView DecodedView::of(DepthImage& image) {
   return {.depth_m = image.depth_m.pixels.data(),
           .signal_e_per_s = image.signal_e_per_s.pixels.data(),

@@ -17,22 +17,25 @@ namespace tofsmith {
 
 namespace {
 
-/// Calls use(tile, first pixel) for all pixels, tile by tile.
+/// Calls use(tile, first pixel) for pixels [begin, end) of a view, tile by tile.
 template <typename Use>
-void for_each_tile(const BinMatcher& matcher, int measurements, const float* raw,
-                   std::int64_t pixels, const Use& use) {
-  Tile tile;
-  for (std::int64_t first = 0; first < pixels; first += pixels_per_tile) {
-    const auto count = static_cast<int>(std::min<std::int64_t>(pixels - first, pixels_per_tile));
-    matcher.match(raw + first * measurements, count, tile);
+void for_each_tile(const BinMatcher& matcher, const RawView& raw, IndexRange pixels, bool keep_raw,
+                   const Use& use) {
+  PixelTile tile;
+  for (std::int64_t first = pixels.begin; first < pixels.end; first += pixels_per_tile) {
+    const auto count =
+        static_cast<int>(std::min<std::int64_t>(pixels.end - first, pixels_per_tile));
+    matcher.match(raw, first, count, keep_raw, tile);
+    if (keep_raw) matcher.find_rivals(tile);
     use(std::as_const(tile), first);
   }
 }
 
-/// P y' of one pixel in the plane, out of a tile.
-void plane_vector(const Tile& tile, int pixel, int rank, double* plane) {
-  for (int j = 0; j < rank; ++j)
-    plane[j] = tile.unit[j * pixels_per_tile + pixel] * tile.length[pixel];
+/// Many pixels side by side, as a view of one row each.
+RawView column_of(const float* measurements, std::int64_t pixels, int count) {
+  constexpr std::int64_t longest = std::numeric_limits<int>::max();
+  require(pixels >= 0 && pixels <= longest, "pixels", pixels, "must be in [0, 2^31)");
+  return RawView::interleaved(measurements, 1, static_cast<int>(pixels), count);
 }
 
 }  // namespace
@@ -56,9 +59,8 @@ struct Decoder::Plan {
   PixelModel model;
   BinMatcher matcher;
 
-  void decode_pixel(const float* raw, const Tile& tile, int pixel, std::size_t at,
+  void decode_pixel(const PixelTile& tile, int pixel, std::size_t at,
                     const DecodedView& into) const;
-  double confidence(const Tile& tile, int pixel, const double* variance_e2) const;
 };
 
 Decoder::Decoder(DecodingTable table, const DecodeOptions& options) {
@@ -76,8 +78,8 @@ const DecodeOptions& Decoder::options() const { return plan_->options; }
 int Decoder::rank() const { return plan_->model.rank(); }
 
 void Decoder::decode_bins(const float* measurements, std::int64_t pixels, std::int32_t* bin) const {
-  for_each_tile(plan_->matcher, this->measurements(), measurements, pixels,
-                [&](const Tile& tile, std::int64_t first) {
+  for_each_tile(plan_->matcher, column_of(measurements, pixels, this->measurements()), {0, pixels},
+                false, [&](const PixelTile& tile, std::int64_t first) {
                   std::copy_n(tile.bin, tile.pixels, bin + first);
                 });
 }
@@ -85,31 +87,40 @@ void Decoder::decode_bins(const float* measurements, std::int64_t pixels, std::i
 void Decoder::decode_depth_bins(const float* measurements, std::int64_t pixels,
                                 double* depth_bin) const {
   const int rank = this->rank();
-  for_each_tile(plan_->matcher, this->measurements(), measurements, pixels,
-                [&](const Tile& tile, std::int64_t first) {
-                  std::array<double, max_measurements> plane;
+  for_each_tile(plan_->matcher, column_of(measurements, pixels, this->measurements()), {0, pixels},
+                true, [&](const PixelTile& tile, std::int64_t first) {
+                  std::array<double, max_measurements> raw;
+                  PlaneVector plane;
                   for (int i = 0; i < tile.pixels; ++i) {
                     double& position = depth_bin[first + i];
                     position = std::numeric_limits<double>::quiet_NaN();
                     if (tile.bin[i] < 0) continue;
-                    plane_vector(tile, i, rank, plane.data());
-                    position = plan_->model.refine(plane.data(), tile.bin[i]).in_bins(samples());
+                    for (int k = 0; k < this->measurements(); ++k)
+                      raw[static_cast<std::size_t>(k)] = tile.raw[k * pixels_per_tile + i];
+                    plan_->matcher.exact().project(raw.data(), plane);
+                    for (int j = 0; j < rank; ++j)
+                      plane.unit[static_cast<std::size_t>(j)] *= plane.length;
+                    position =
+                        plan_->model.refine(plane.unit.data(), tile.bin[i]).in_bins(samples());
                   }
                 });
 }
 
 void Decoder::decode(const RawView& raw, const DecodedView& decoded,
                      const Progress& progress) const {
-  decode_frame(raw, decoded, measurements(), progress,
-               [&](const float* values, std::int64_t pixels, const DecodedView& block) {
-                 for_each_tile(plan_->matcher, measurements(), values, pixels,
-                               [&](const Tile& tile, std::int64_t first) {
-                                 for (int i = 0; i < tile.pixels; ++i)
-                                   plan_->decode_pixel(values + (first + i) * measurements(), tile,
-                                                       i, static_cast<std::size_t>(first + i),
-                                                       block);
-                               });
-               });
+  const bool is_bin_enough = decoded.wants_bins_only();
+  for_each_block(raw, measurements(), progress, [&](IndexRange block) {
+    for_each_tile(plan_->matcher, raw, block, !is_bin_enough,
+                  [&](const PixelTile& tile, std::int64_t first) {
+                    const auto at = static_cast<std::size_t>(first);
+                    if (is_bin_enough) {
+                      std::copy_n(tile.bin, tile.pixels, decoded.bin + at);
+                      return;
+                    }
+                    for (int i = 0; i < tile.pixels; ++i)
+                      plan_->decode_pixel(tile, i, at + static_cast<std::size_t>(i), decoded);
+                  });
+  });
 }
 
 DepthImage Decoder::decode(const RawFrames& raw, int frame, const Progress& progress) const {
@@ -118,44 +129,42 @@ DepthImage Decoder::decode(const RawFrames& raw, int frame, const Progress& prog
   });
 }
 
-void Decoder::Plan::decode_pixel(const float* raw, const Tile& tile, int pixel, std::size_t at,
+void Decoder::Plan::decode_pixel(const PixelTile& tile, int pixel, std::size_t at,
                                  const DecodedView& into) const {
   if (tile.bin[pixel] < 0) return store_invalid(at, into);
-  std::array<double, max_measurements> plane, electrons, variance_e2;
-  plane_vector(tile, pixel, model.rank(), plane.data());
-  for (int k = 0; k < model.measurements(); ++k)
-    electrons[static_cast<std::size_t>(k)] = matcher.electrons(raw[k], k);
+  const int k_count = model.measurements(), r = model.rank();
+  std::array<float, max_measurements> raw;
+  std::array<double, max_measurements> raw_double, electrons, variance_e2, difference;
+  for (int k = 0; k < k_count; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    raw[i] = tile.raw[k * pixels_per_tile + pixel];
+    raw_double[i] = raw[i];
+    electrons[i] = matcher.exact().electrons(raw[i], k);
+  }
+  PlaneVector plane;
+  matcher.exact().project(raw_double.data(), plane);
+  for (int j = 0; j < r; ++j) plane.unit[static_cast<std::size_t>(j)] *= plane.length;
 
-  const Position position = model.refine(plane.data(), tile.bin[pixel]);
+  const Position position = model.refine(plane.unit.data(), tile.bin[pixel]);
   PixelDecoding decoding{
       position.in_bins(table.samples()),
-      model.estimate(electrons.data(), plane.data(), position, variance_e2.data())};
-  if (decoding.estimate.signal_e_per_s > 0.0)
-    decoding.confidence = confidence(tile, pixel, variance_e2.data());
-  store_pixel(table, options, raw, decoding, at, into);
-}
-
-/// Probability that the pixel's bin scores higher than the best one outside its main lobe, for
-/// normal noise on the difference of the two scores.
-double Decoder::Plan::confidence(const Tile& tile, int pixel, const double* variance_e2) const {
-  const DirectionTable& directions = matcher.directions();
-  const std::int32_t bin = tile.bin[pixel], samples = directions.samples();
-  const Lobe lobe = directions.main_lobe(bin);
-  if (lobe.end - lobe.begin >= samples) return 1.0;
-
-  std::array<float, max_measurements> components;
-  for (int j = 0; j < directions.rank(); ++j)
-    components[static_cast<std::size_t>(j)] = tile.unit_float[j * pixels_per_tile + pixel];
-  const std::int32_t rival =
-      best_bin_within(directions, components.data(), lobe.end, lobe.begin + samples);
-  std::array<double, max_measurements> difference;
-  double lead_e = 0.0;
-  for (int j = 0; j < directions.rank(); ++j) {
-    const double d = directions.direction(bin, j) - directions.direction(rival, j);
-    difference[static_cast<std::size_t>(j)] = d;
-    lead_e += d * tile.unit[j * pixels_per_tile + pixel] * tile.length[pixel];
+      model.estimate(electrons.data(), plane.unit.data(), position, variance_e2.data())};
+  if (decoding.estimate.signal_e_per_s > 0.0) {
+    decoding.confidence = 1.0;
+    const std::int32_t rival = tile.rival[pixel];
+    if (rival >= 0) {
+      double lead_e = 0.0;
+      for (int j = 0; j < r; ++j) {
+        const auto i = static_cast<std::size_t>(j);
+        difference[i] = matcher.directions().direction(tile.bin[pixel], j) -
+                        matcher.directions().direction(rival, j);
+        lead_e += difference[i] * plane.unit[i];
+      }
+      decoding.confidence =
+          confidence_of(lead_e, model.deviation_along(difference.data(), variance_e2.data()));
+    }
   }
-  return confidence_of(lead_e, model.deviation_along(difference.data(), variance_e2));
+  store_pixel(table, options, raw.data(), decoding, at, into);
 }
 
 }  // namespace tofsmith

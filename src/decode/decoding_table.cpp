@@ -8,7 +8,7 @@
 #include <numeric>
 #include <string>
 
-#include "decode/ambient_projection.hpp"
+#include "decode/distinct_directions.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -116,32 +116,12 @@ DecodingTable make_decoding_table(const Eigen::MatrixXd& correlation, double ran
 std::vector<AmbiguousDepths> ambiguous_depths(const DecodingTable& table) {
   table.validate();
   constexpr double equal = 1e-9;  // distance of unit vectors that only rounding tells apart
-  RowMajorMatrix direction = AmbientProjection(table).curve;
-  std::vector<int> order;
-  for (int n = 0; n < direction.rows(); ++n) {
-    if (direction.row(n).isZero(0.0)) continue;
-    direction.row(n).normalize();
-    order.push_back(n);
-  }
-
-  // Equal directions have equal keys: sorted by key they are neighbours.
-  Eigen::VectorXd weights(direction.cols());
-  for (Eigen::Index j = 0; j < weights.size(); ++j) weights[j] = std::cos(1.0 + double(j));
-  const Eigen::VectorXd key = direction * weights.normalized();
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return key[a] < key[b]; });
-
-  std::vector<int> lowest(static_cast<std::size_t>(direction.rows()));
-  std::iota(lowest.begin(), lowest.end(), 0);
-  for (auto a = order.begin(); a != order.end(); ++a) {
-    for (auto b = a + 1; b != order.end() && key[*b] - key[*a] <= equal; ++b) {
-      if ((direction.row(*a) - direction.row(*b)).norm() > equal) continue;
-      auto& of_higher = lowest[static_cast<std::size_t>(std::max(*a, *b))];
-      of_higher = std::min({of_higher, *a, *b});
-    }
-  }
+  RowMajorMatrix unit = AmbientProjection(table).curve;
+  for (Eigen::Index n = 0; n < unit.rows(); ++n) unit.row(n).normalize();  // zeros stay
+  const std::vector<std::int32_t> lowest = lowest_alike(unit, equal);
 
   std::vector<AmbiguousDepths> found;
-  for (int n = 0; n < direction.rows(); ++n) {
+  for (int n = 0; n < table.samples(); ++n) {
     const int first = lowest[static_cast<std::size_t>(n)];
     if (first < n) found.push_back({first, n, first * table.bin_m(), n * table.bin_m()});
   }

@@ -67,27 +67,34 @@ double confidence_of(double lead, double deviation) {
   return 0.5 * std::erfc(-std::max(lead, 0.0) / deviation * std::numbers::sqrt2 / 2);
 }
 
-void decode_frame(const RawView& raw, const DecodedView& decoded, int measurements,
-                  const Progress& progress,
-                  const std::function<void(const float* raw, std::int64_t pixels,
-                                           const DecodedView& decoded)>& decode_block) {
+void for_each_block(const RawView& raw, int measurements, const Progress& progress,
+                    const std::function<void(IndexRange pixels)>& work) {
   require(raw.measurements == measurements, "raw measurements", raw.measurements,
           "must equal the code's " + std::to_string(measurements));
   require(raw.height >= 0 && raw.width >= 0, "raw height and width",
           std::min(raw.height, raw.width), "must be >= 0");
-  constexpr std::int64_t block_pixels = 4096, blocks_per_report = 64;
+  constexpr std::int64_t block_pixels = 16384, blocks_per_report = 64;
   const std::int64_t count = raw.pixels();
   for (std::int64_t done = 0; done < count; done += block_pixels * blocks_per_report) {
     report(progress, static_cast<double>(done) / static_cast<double>(count), "decoding");
     const std::int64_t end = std::min(count, done + block_pixels * blocks_per_report);
     parallel_for_blocks(end - done, block_pixels, [&](IndexRange range) {
-      const std::int64_t first = done + range.begin, pixels = range.end - range.begin;
-      std::vector<float> values(static_cast<std::size_t>(pixels * measurements));
-      copy_pixels(raw, first, pixels, values.data());
-      decode_block(values.data(), pixels, decoded.from(static_cast<std::size_t>(first)));
+      work({done + range.begin, done + range.end});
     });
   }
   report(progress, 1.0, "decoding");
+}
+
+void decode_frame(const RawView& raw, const DecodedView& decoded, int measurements,
+                  const Progress& progress,
+                  const std::function<void(const float* raw, std::int64_t pixels,
+                                           const DecodedView& decoded)>& decode_block) {
+  for_each_block(raw, measurements, progress, [&](IndexRange block) {
+    const std::int64_t pixels = block.end - block.begin;
+    std::vector<float> values(static_cast<std::size_t>(pixels * measurements));
+    copy_pixels(raw, block.begin, pixels, values.data());
+    decode_block(values.data(), pixels, decoded.from(static_cast<std::size_t>(block.begin)));
+  });
 }
 
 }  // namespace tofsmith

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "decode/pixel_model.hpp"
+#include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/raw_view.hpp"
 #include "tofsmith/decode/decoder.hpp"
@@ -29,9 +30,13 @@ void store_invalid(std::size_t at, const DecodedView& decoded);
 /// Normal probability that a lead is not noise of this deviation.
 double confidence_of(double lead, double deviation);
 
-/// Decodes one frame on all threads, with progress.
-/// @param decode_block  is given raw numbers (pixels, K), their number, and where to store them
-/// @throws std::invalid_argument if the measurements are not as many; Interrupted if progress says
+/// Calls `work` for blocks of the pixels of a frame, on all threads, with progress.
+/// @throws std::invalid_argument if the frame's measurements are not as many; Interrupted if
+///         progress says so
+void for_each_block(const RawView& raw, int measurements, const Progress& progress,
+                    const std::function<void(IndexRange pixels)>& work);
+
+/// The same with the raw numbers of a block, (pixels, K), their number, and where to store them.
 void decode_frame(const RawView& raw, const DecodedView& decoded, int measurements,
                   const Progress& progress,
                   const std::function<void(const float* raw, std::int64_t pixels,

@@ -16,7 +16,7 @@ class RawScale {
       dark_raw_.push_back(table.black_level + dark_e / table.gain_e_per_raw);
   }
 
-  double electrons(float raw, int measurement) const {
+  double electrons(double raw, int measurement) const {
     return (raw - dark_raw_[static_cast<std::size_t>(measurement)]) * gain_e_per_raw_;
   }
 

@@ -20,6 +20,7 @@ struct DecodedView {
   float* predicted_standard_deviation_m = nullptr;  ///< [m]
   PixelStatus* status = nullptr;
 
+  bool wants_bins_only() const;
   /// All planes of an image; no bins.
   static DecodedView of(DepthImage& image);
   /// The same planes from a later pixel on.

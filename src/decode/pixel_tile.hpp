@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "decode/ambient_projection.hpp"
+
+namespace tofsmith {
+
+/// Pixels that are decoded together; a multiple of any vector length.
+inline constexpr int pixels_per_tile = 256;
+
+/// A tile of pixels between the stages of a decoder, pixel next to pixel.
+struct PixelTile {
+  int pixels = 0;
+  /// Raw numbers, [K][pixels_per_tile].
+  alignas(64) float raw[max_measurements * pixels_per_tile];
+  /// What is left without ambient light, q = V^T y' [e], [rank][pixels_per_tile].
+  alignas(64) float plane[max_measurements * pixels_per_tile];
+  /// Bound on the distance of `plane` from exact arithmetic [e]; NaN or infinite where a raw number
+  /// is.
+  alignas(64) float error[pixels_per_tile];
+  /// Best bin, in [0, N); -1 where not (yet) known.
+  alignas(64) std::int32_t bin[pixels_per_tile];
+  /// Bin of the best score outside the main lobe, for the vector of the pixel or one near it; -1
+  /// where there is none.
+  alignas(64) std::int32_t rival[pixels_per_tile];
+};
+
+}  // namespace tofsmith

@@ -1,0 +1,277 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "decode/tile_projection.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "decode/raw_scale.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "decode/tile_projection.cpp"
+#include <hwy/foreach_target.h>
+// Highway asks for its own header after foreach_target.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace tofsmith {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, 16>;
+using Vector = hn::Vec<Floats>;
+constexpr int tile_pixels = pixels_per_tile;
+
+/// One vector of pixels; loads measurement k by `load(k)`.
+template <int Rank, typename Load>
+HWY_INLINE void project_vector(const ProjectionView& view, const Load& load, int pixel,
+                               PixelTile& tile) {
+  const Floats d;
+  Vector q[Rank];
+  for (int j = 0; j < Rank; ++j) q[j] = hn::Set(d, view.offset[j]);
+  auto error = hn::Set(d, view.error_of_offset);
+  const auto reference = view.reference < 0 ? hn::Zero(d) : load(view.reference);
+  error = hn::MulAdd(hn::Abs(reference), hn::Set(d, view.error_of_reference), error);
+  for (int k = 0; k < view.measurements; ++k) {
+    if (k == view.reference) continue;
+    const auto difference = hn::NegMulAdd(reference, hn::Set(d, view.ratio[k]), load(k));
+    error = hn::MulAdd(hn::Abs(difference), hn::Set(d, view.error_of_difference[k]), error);
+    for (int j = 0; j < Rank; ++j)
+      q[j] = hn::MulAdd(difference, hn::Set(d, view.weight[j * view.measurements + k]), q[j]);
+  }
+  for (int j = 0; j < Rank; ++j) hn::Store(q[j], d, tile.plane + j * tile_pixels + pixel);
+  hn::Store(error, d, tile.error + pixel);
+}
+
+/// Any rank, component by component.
+HWY_INLINE void project_any_rank(const ProjectionView& view, PixelTile& tile, int pixel) {
+  const Floats d;
+  const auto load = [&](int k) { return hn::Load(d, tile.raw + k * tile_pixels + pixel); };
+  const auto reference = view.reference < 0 ? hn::Zero(d) : load(view.reference);
+  auto error = hn::MulAdd(hn::Abs(reference), hn::Set(d, view.error_of_reference),
+                          hn::Set(d, view.error_of_offset));
+  for (int j = 0; j < view.rank; ++j)
+    hn::Store(hn::Set(d, view.offset[j]), d, tile.plane + j * tile_pixels + pixel);
+  for (int k = 0; k < view.measurements; ++k) {
+    if (k == view.reference) continue;
+    const auto difference = hn::NegMulAdd(reference, hn::Set(d, view.ratio[k]), load(k));
+    error = hn::MulAdd(hn::Abs(difference), hn::Set(d, view.error_of_difference[k]), error);
+    for (int j = 0; j < view.rank; ++j) {
+      float* const q = tile.plane + j * tile_pixels + pixel;
+      const auto weight = hn::Set(d, view.weight[j * view.measurements + k]);
+      hn::Store(hn::MulAdd(difference, weight, hn::Load(d, q)), d, q);
+    }
+  }
+  hn::Store(error, d, tile.error + pixel);
+}
+
+/// The measurements of a vector of pixels that stand side by side, K = 3 or 4.
+template <int Measurements>
+HWY_INLINE void load_interleaved(const float* raw, Vector* measured) {
+  const Floats d;
+  if (Measurements == 3)
+    hn::LoadInterleaved3(d, raw, measured[0], measured[1], measured[2]);
+  else
+    hn::LoadInterleaved4(d, raw, measured[0], measured[1], measured[2], measured[3]);
+}
+
+template <int Rank, int Measurements>
+HWY_INLINE void project_interleaved(const ProjectionView& view, const float* raw, int vectors,
+                                    bool keep_raw, PixelTile& tile) {
+  const Floats d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  for (int i = 0; i < vectors * lanes; i += lanes) {
+    Vector measured[4];
+    load_interleaved<Measurements>(raw + i * Measurements, measured);
+    if (keep_raw)
+      for (int k = 0; k < Measurements; ++k)
+        hn::Store(measured[k], d, tile.raw + k * tile_pixels + i);
+    project_vector<Rank>(
+        view, [&](int k) { return measured[k]; }, i, tile);
+  }
+}
+
+template <int Rank>
+HWY_INLINE void project_planes(const ProjectionView& view, const float* raw, std::ptrdiff_t stride,
+                               int from, int to, PixelTile& tile) {
+  const Floats d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  for (int i = from; i < to; i += lanes)
+    project_vector<Rank>(
+        view, [&](int k) { return hn::LoadU(d, raw + k * stride + i); }, i, tile);
+}
+
+template <int Rank>
+void project_rank(const ProjectionView& view, const TileSource& source, int pixels, bool keep_raw,
+                  PixelTile& tile) {
+  const auto lanes = static_cast<int>(hn::Lanes(Floats()));
+  const int k_count = view.measurements;
+  int done = 0;
+  if (source.data && source.pixel_stride == k_count && (k_count == 3 || k_count == 4)) {
+    // Whole vectors are read where they are; what is left goes through the tile.
+    const int vectors = pixels / lanes;
+    if (k_count == 3)
+      project_interleaved<Rank, 3>(view, source.data, vectors, keep_raw, tile);
+    else
+      project_interleaved<Rank, 4>(view, source.data, vectors, keep_raw, tile);
+    done = vectors * lanes;
+  } else if (source.data && source.pixel_stride == 1 && !keep_raw) {
+    done = pixels / lanes * lanes;
+    project_planes<Rank>(view, source.data, source.measurement_stride, 0, done, tile);
+  }
+  const int padded = (pixels + 15) / 16 * 16;
+  if (done == padded) return;
+  if (source.data)
+    for (int k = 0; k < k_count; ++k)
+      for (int i = done; i < pixels; ++i)
+        tile.raw[k * tile_pixels + i] =
+            source.data[i * source.pixel_stride + k * source.measurement_stride];
+  for (int k = 0; k < k_count; ++k)
+    std::fill(tile.raw + k * tile_pixels + pixels, tile.raw + k * tile_pixels + padded, 0.0f);
+  project_planes<Rank>(view, tile.raw, tile_pixels, done, padded, tile);
+}
+
+/// @param source  without data where the raw numbers stand in the tile already
+void project_tile(const ProjectionView& view, const TileSource& source, int pixels, bool keep_raw,
+                  PixelTile& tile) {
+  switch (view.rank) {
+    case 2:
+      return project_rank<2>(view, source, pixels, keep_raw, tile);
+    case 3:
+      return project_rank<3>(view, source, pixels, keep_raw, tile);
+    case 4:
+      return project_rank<4>(view, source, pixels, keep_raw, tile);
+    default:
+      break;
+  }
+  const auto lanes = static_cast<int>(hn::Lanes(Floats()));
+  const int padded = (pixels + 15) / 16 * 16;
+  for (int k = 0; k < view.measurements; ++k) {
+    float* const raw = tile.raw + k * tile_pixels;
+    if (source.data)
+      for (int i = 0; i < pixels; ++i)
+        raw[i] = source.data[i * source.pixel_stride + k * source.measurement_stride];
+    std::fill(raw + pixels, raw + padded, 0.0f);
+  }
+  for (int i = 0; i < padded; i += lanes) project_any_rank(view, tile, i);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tofsmith
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tofsmith {
+
+HWY_EXPORT(project_tile);
+
+namespace {
+
+constexpr double unit_roundoff = 0.5 * std::numeric_limits<float>::epsilon();
+constexpr double safety = 1.02;  // for terms of higher order
+
+/// Where vector code can read a tile; without data where it cannot.
+TileSource source_of(const RawView& view, std::int64_t first, int pixels) {
+  const auto* data = std::get_if<const float*>(&view.data);
+  if (!data || view.width == 0) return {};
+  const std::int64_t row = first / view.width, column = first % view.width;
+  const bool in_one_run =
+      view.row_stride == view.width * view.column_stride || column + pixels <= view.width;
+  const bool is_interleaved =
+      view.measurement_stride == 1 && view.column_stride == view.measurements;
+  const bool is_planar = view.column_stride == 1;
+  if (!in_one_run || !(is_interleaved || is_planar)) return {};
+  return {*data + row * view.row_stride + column * view.column_stride, view.column_stride,
+          view.measurement_stride};
+}
+
+/// Copies a tile of any layout and type into its place.
+void gather_tile(const RawView& view, std::int64_t first, int pixels, PixelTile& tile) {
+  std::visit(
+      [&](const auto* data) {
+        std::int64_t row = first / view.width, column = first % view.width;
+        for (int done = 0; done < pixels; ++row, column = 0) {
+          const int run =
+              static_cast<int>(std::min<std::int64_t>(pixels - done, view.width - column));
+          const auto* from = data + row * view.row_stride + column * view.column_stride;
+          for (int k = 0; k < view.measurements; ++k) {
+            float* const to = tile.raw + k * pixels_per_tile + done;
+            const auto* number = from + k * view.measurement_stride;
+            for (int i = 0; i < run; ++i)
+              to[i] = static_cast<float>(number[i * view.column_stride]);
+          }
+          done += run;
+        }
+      },
+      view.data);
+}
+
+}  // namespace
+
+TileProjection::TileProjection(const DecodingTable& table, const AmbientProjection& projection) {
+  const int k_count = table.measurements(), rank = projection.rank();
+  const RawScale scale(table);
+  // In raw numbers: electrons = gain (raw - zero), and ambient light a / gain.
+  Eigen::VectorXd gain(k_count), zero(k_count);
+  for (int k = 0; k < k_count; ++k) {
+    gain[k] = scale.electrons(1.0, k) - scale.electrons(0.0, k);
+    zero[k] = -scale.electrons(0.0, k) / gain[k];
+  }
+  const Eigen::MatrixXd weight = projection.basis.transpose() * gain.asDiagonal();
+  const Eigen::VectorXd offset = -weight * zero;
+  const Eigen::VectorXd ambient = projection.ambient.cwiseQuotient(gain);
+  Eigen::Index reference = -1;
+  if (ambient.cwiseAbs().maxCoeff(&reference) == 0.0) reference = -1;
+
+  double error_of_reference = 0.0;
+  for (int k = 0; k < k_count; ++k) {
+    const double ratio = reference < 0 ? 0.0 : ambient[k] / ambient[reference];
+    const bool is_one = std::abs(ratio - 1.0) < 1e-13;
+    const double length = weight.col(k).norm();
+    ratio_.push_back(is_one ? 1.0f : static_cast<float>(ratio));
+    // Rounded weights, and K products and sums; the difference is rounded once more.
+    error_of_difference_.push_back(
+        static_cast<float>((k_count + 3) * unit_roundoff * safety * length));
+    error_of_rounding_.push_back(
+        static_cast<float>(2 * unit_roundoff * safety * length * (1.0 + std::abs(ratio))));
+    if (k != reference)
+      error_of_reference +=
+          safety * length * (is_one ? std::abs(ratio - 1.0) : 2 * unit_roundoff * std::abs(ratio));
+  }
+  for (int j = 0; j < rank; ++j) {
+    offset_.push_back(static_cast<float>(offset[j]));
+    for (int k = 0; k < k_count; ++k) weight_.push_back(static_cast<float>(weight(j, k)));
+  }
+  // So small that it only matters where products underflow.
+  constexpr double smallest = 1e-35;
+  view_ = {.measurements = k_count,
+           .rank = rank,
+           .reference = static_cast<int>(reference),
+           .ratio = ratio_.data(),
+           .weight = weight_.data(),
+           .offset = offset_.data(),
+           .error_of_difference = error_of_difference_.data(),
+           .error_of_reference = static_cast<float>(error_of_reference),
+           .error_of_offset = static_cast<float>(
+               (k_count + 2) * unit_roundoff * safety * offset.norm() + smallest)};
+}
+
+void TileProjection::project(const RawView& view, std::int64_t first, int pixels, bool keep_raw,
+                             PixelTile& tile) const {
+  tile.pixels = pixels;
+  const TileSource source = source_of(view, first, pixels);
+  if (!source.data) gather_tile(view, first, pixels, tile);
+  HWY_DYNAMIC_DISPATCH(project_tile)(view_, source, pixels, keep_raw, tile);
+  if (std::holds_alternative<const double*>(view.data)) add_error_of_rounded_doubles(tile);
+}
+
+void TileProjection::add_error_of_rounded_doubles(PixelTile& tile) const {
+  for (int k = 0; k < view_.measurements; ++k)
+    for (int i = 0; i < tile.pixels; ++i)
+      tile.error[i] += error_of_rounding_[static_cast<std::size_t>(k)] *
+                       std::abs(tile.raw[k * pixels_per_tile + i]);
+}
+
+}  // namespace tofsmith
+#endif
