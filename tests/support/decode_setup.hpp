@@ -45,10 +45,8 @@ inline Camera camera_with(const std::string& name, int taps = 1,
 }
 
 /// Noisy raw numbers (pixels, K) at random depths, from the chords of the decoder's table.
-/// @param truth_bin  if given, receives the depths
 inline std::vector<float> noisy_pixels(const DecodingTable& table, double signal, double ambient,
-                                       int pixels, std::uint64_t seed,
-                                       std::vector<double>* truth_bin = nullptr) {
+                                       int pixels, std::uint64_t seed) {
   const int k_count = table.measurements();
   const auto& shot = table.shot_correlation.size() > 0 ? table.shot_correlation : table.correlation;
   const auto& kappa =
@@ -60,7 +58,6 @@ inline std::vector<float> noisy_pixels(const DecodingTable& table, double signal
   RandomStream random(seed, 0);
   for (int i = 0; i < pixels; ++i) {
     const double depth_bin = table.samples() * random.uniform();
-    if (truth_bin) truth_bin->push_back(depth_bin);
     const int from = static_cast<int>(depth_bin), to = (from + 1) % table.samples();
     const double t = depth_bin - from;
     for (int k = 0; k < k_count; ++k) {
