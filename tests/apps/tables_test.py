@@ -105,6 +105,8 @@ class Tables(CommandLineTest):
         notes = self.decode("t.npy")[1]
         self.assertIn("60 of 120 bins look like a nearer one", notes[0])
         self.assertIn("4.997 m as 0 m", notes[0])
+        text = self.do("evaluate", "multifrequency-2x3-4x3", "--trials", "100")
+        self.assertIn("multifrequency-2x3-4x3: 120 of 240 bins look like a nearer one", text)
 
     def test_tables_that_tell_no_depth_apart(self):
         self.frame()
