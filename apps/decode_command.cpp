@@ -6,13 +6,14 @@
 
 #include "commands.hpp"
 #include "depth_output.hpp"
+#include "map_arguments.hpp"
 #include "method_arguments.hpp"
 #include "scene_source.hpp"
+#include "table_arguments.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decode_method.hpp"
-#include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/raw_frames_file.hpp"
 
 namespace tofsmith::apps {
@@ -23,6 +24,8 @@ struct DecodeArguments {
   std::string raw, code, output;
   CameraArguments camera;
   TapArguments taps;
+  TableArguments table;
+  MapArguments maps;
   MethodArguments method;
   std::vector<std::string> planes = plane_names();
   DecodeOptions options;
@@ -42,12 +45,11 @@ std::filesystem::path frame_path(const std::filesystem::path& path, int frame, i
 
 void run(const DecodeArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
-  const CodeSet code = load_code(arguments.code, camera, arguments.taps.file_options());
-  const ForwardModel model(code, camera);
-  const AnyDecoder decoder =
-      make_decoder(arguments.method.method(), make_decoding_table(model, camera), arguments.options,
-                   arguments.method.unwrap_weights());
-  const RawFrames raw = read_raw_frames(arguments.raw, model.measurements());
+  const DecodingSource source = arguments.table.load(arguments.code, camera, arguments.taps);
+  const AnyDecoder decoder = make_decoder(arguments.method.method(), source.table,
+                                          arguments.options, arguments.method.unwrap_weights());
+  const RawFrames raw = read_raw_frames(arguments.raw, source.table.measurements());
+  const PixelMaps maps = arguments.maps.load(raw.height, raw.width);
   if (arguments.frame >= raw.frames)
     throw UsageError(fmt::format("--frame {}: {} holds {} frame{}, counted from 0", arguments.frame,
                                  arguments.raw, raw.frames, raw.frames == 1 ? "" : "s"));
@@ -72,6 +74,7 @@ void run(const DecodeArguments& arguments, const Session& session) {
     const Progress part = part_of(progress, (frame - first) / count, (frame - first + 1) / count);
     DepthImage image =
         std::visit([&](const auto& d) { return d.decode(raw, frame, part); }, decoder);
+    apply(maps, source.table.range_m, DecodedView::of(image), 0, image.status.size());
     const std::filesystem::path path = frame_path(arguments.output, frame, last - first);
     const bool as_z = arguments.kind == "z" && path.extension() != ".ply";
     if (as_z) image.depth_m = z_from_radial(image.depth_m, view);
@@ -85,13 +88,15 @@ void run(const DecodeArguments& arguments, const Session& session) {
                          status_summary(image));
   }
   report(progress, 1.0, "done");
-  session.print_json({{"code", code.name()},
+  session.print_json({{"code", source.name},
                       {"camera", camera.name},
                       {"method", name_of(arguments.method.method())},
                       {"height", raw.height},
                       {"width", raw.width},
                       {"measurements", raw.measurements},
-                      {"frames", std::move(outputs)}});
+                      {"frames", std::move(outputs)},
+                      {"notes", source.notes}});
+  for (const std::string& note : source.notes) lines += note + "\n";
   lines.pop_back();
   if (!camera.lens && (extension == ".ply" || arguments.kind == "z"))
     lines += "\nthe camera has no [lens]: its view was taken to be 60 degrees wide";
@@ -105,10 +110,15 @@ void add_decode_command(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("decode", "depth from raw measurements");
   command->add_option("RAW", arguments->raw, "raw frames (.npy .npz): (H,W,K) or (F,H,W,K)")
       ->required();
-  command->add_option("--code", arguments->code, "the code that was played: a family or a file")
+  command
+      ->add_option(
+          "--code", arguments->code,
+          "the code that was played: a family or a file; or a measured table (.npz .npy .csv)")
       ->required();
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);
+  arguments->table.add_to(*command);
+  arguments->maps.add_to(*command);
   arguments->method.add_to(*command);
   command
       ->add_option("--outputs", arguments->planes,

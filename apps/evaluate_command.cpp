@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "method_arguments.hpp"
+#include "table_arguments.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/code_file.hpp"
@@ -141,6 +142,9 @@ void run(EvaluateArguments& arguments, const Session& session) {
   if (!arguments.output.empty())
     write(arguments.output, session, camera, codes, evaluated, arguments.options);
   print(session, camera, evaluated, arguments.options);
+  for (const CodeSet& code : codes)
+    if (const auto note = ambiguity_note(make_decoding_table(ForwardModel(code, camera), camera)))
+      session.say(fmt::format("{}: {}", code.name(), *note));
 }
 
 }  // namespace

@@ -28,6 +28,8 @@ void mix_taps(Columns& values, int taps, double contrast) {
   }
 }
 
+}  // namespace
+
 Eigen::MatrixXd readout_matrix(int tap_values, Readout readout) {
   if (readout == Readout::separate) return Eigen::MatrixXd::Identity(tap_values, tap_values);
   Eigen::MatrixXd differences = Eigen::MatrixXd::Zero(tap_values / 2, tap_values);
@@ -38,21 +40,21 @@ Eigen::MatrixXd readout_matrix(int tap_values, Readout readout) {
   return differences;
 }
 
-}  // namespace
+double constant_variance_e2_of(const Sensor& sensor) {
+  const double step_e = sensor.gain_e_per_dn.value_or(0.0);
+  return sensor.read_noise_e * sensor.read_noise_e + step_e * step_e / 12.0;
+}
 
 ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
     : samples_(code.samples()),
       taps_(code.taps()),
       contrast_(camera.sensor.modulation_contrast),
-      dark_current_e_per_s_(camera.sensor.dark_current_e_per_s) {
+      dark_current_e_per_s_(camera.sensor.dark_current_e_per_s),
+      tap_constant_variance_e2_(constant_variance_e2_of(camera.sensor)) {
   camera.validate();
   require_fits(code, camera);
   const int tap_values = code.measurements();
   readout_ = readout_matrix(tap_values, camera.sensor.readout);
-
-  const double step_e = camera.sensor.gain_e_per_dn.value_or(0.0);
-  tap_constant_variance_e2_ =
-      camera.sensor.read_noise_e * camera.sensor.read_noise_e + step_e * step_e / 12.0;
 
   const Eigen::VectorXcd transfer =
       camera.band_limited() ? camera.transfer(harmonics_kept(code.samples())) : Eigen::VectorXcd();

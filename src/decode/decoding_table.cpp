@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 
 #include "decode/distinct_directions.hpp"
+#include "decode/saturation_level.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -55,9 +55,10 @@ void DecodingTable::validate() const {
     require_list(shot_ambient_gain, "shot_ambient_gain", 0.0, *this);
   if (shot_dark_electrons.size() > 0)
     require_list(shot_dark_electrons, "shot_dark_electrons", 0.0, *this);
-  require(std::isfinite(black_level), "black_level", black_level, "must be finite");
-  require(std::isfinite(gain_e_per_raw) && gain_e_per_raw > 0.0, "gain_e_per_raw", gain_e_per_raw,
-          "must be finite and > 0");
+  require_list(black_level, "black_level", any, *this);
+  require_list(gain_e_per_raw, "gain_e_per_raw", 0.0, *this);
+  require(gain_e_per_raw.minCoeff() > 0.0, "gain_e_per_raw", gain_e_per_raw.minCoeff(),
+          "must be > 0");
   if (saturation_level)
     require(!std::isnan(*saturation_level), "saturation_level", *saturation_level,
             "must be a number");
@@ -82,7 +83,9 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
   table.range_m = camera.range_m();
 
   const Sensor& sensor = camera.sensor;
-  table.gain_e_per_raw = sensor.gain_e_per_dn.value_or(1.0);
+  const double gain_e_per_raw = sensor.gain_e_per_dn.value_or(1.0);
+  table.gain_e_per_raw = Eigen::VectorXd::Constant(table.measurements(), gain_e_per_raw);
+  table.black_level = Eigen::VectorXd::Zero(table.measurements());
   if (sensor.readout == Readout::difference) {
     const Eigen::MatrixXd sums = model.readout().cwiseAbs();
     table.shot_correlation = model.tap_correlation_table(model.samples()) * sums.transpose();
@@ -90,14 +93,8 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
     table.shot_dark_electrons = sums * (sensor.dark_current_e_per_s * model.tap_exposure_s());
     return table;
   }
-  table.black_level = sensor.black_level_dn.value_or(0.0);
-  double level = std::numeric_limits<double>::infinity();
-  if (sensor.full_well_e) {
-    level = *sensor.full_well_e / table.gain_e_per_raw + table.black_level;
-    if (sensor.adc_bits) level = std::floor(level);
-  }
-  if (sensor.adc_bits) level = std::min(level, std::exp2(*sensor.adc_bits) - 1.0);
-  if (std::isfinite(level)) table.saturation_level = static_cast<float>(level);
+  table.black_level.setConstant(sensor.black_level_dn.value_or(0.0));
+  table.saturation_level = saturation_level_of(sensor);
   return table;
 }
 
@@ -109,6 +106,8 @@ DecodingTable make_decoding_table(const Eigen::MatrixXd& correlation, double ran
   table.exposure_s = Eigen::VectorXd::Ones(measurements);
   table.dark_electrons = Eigen::VectorXd::Zero(measurements);
   table.constant_variance_e2 = Eigen::VectorXd::Zero(measurements);
+  table.black_level = Eigen::VectorXd::Zero(measurements);
+  table.gain_e_per_raw = Eigen::VectorXd::Ones(measurements);
   table.range_m = range_m;
   return table;
 }

@@ -11,18 +11,25 @@ namespace tofsmith {
 /// From raw numbers to electrons without dark ones.
 class RawScale {
  public:
-  explicit RawScale(const DecodingTable& table) : gain_e_per_raw_(table.gain_e_per_raw) {
-    for (const double dark_e : table.dark_electrons)
-      dark_raw_.push_back(table.black_level + dark_e / table.gain_e_per_raw);
+  explicit RawScale(const DecodingTable& table) {
+    for (int k = 0; k < table.measurements(); ++k) {
+      const double gain_e_per_raw = table.gain_e_per_raw[k];
+      lines_.push_back(
+          {table.black_level[k] + table.dark_electrons[k] / gain_e_per_raw, gain_e_per_raw});
+    }
   }
 
   double electrons(double raw, int measurement) const {
-    return (raw - dark_raw_[static_cast<std::size_t>(measurement)]) * gain_e_per_raw_;
+    const Line& line = lines_[static_cast<std::size_t>(measurement)];
+    return (raw - line.dark_raw) * line.gain_e_per_raw;
   }
 
  private:
-  std::vector<double> dark_raw_;  // raw number of every measurement without light
-  double gain_e_per_raw_;
+  struct Line {
+    double dark_raw;  // raw number without light
+    double gain_e_per_raw;
+  };
+  std::vector<Line> lines_;  // of every measurement
 };
 
 }  // namespace tofsmith

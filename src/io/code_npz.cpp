@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "io/array_matrix.hpp"
+#include "io/tap_columns.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/periodic.hpp"
 #include "tofsmith/io/npz.hpp"
@@ -57,24 +58,6 @@ void limit(NamedMatrix& matrix, double highest, std::string_view expected) {
                       fmt::format("found {}; expected {}", value, expected));
       value = std::clamp(value, 0.0, highest);
     }
-}
-
-/// Column of measurement exposure x taps + tap.
-Eigen::Index column_of(int exposure, int tap, int exposures, int taps,
-                       std::optional<TapOrder> order) {
-  return order == TapOrder::blocked ? tap * exposures + exposure : exposure * taps + tap;
-}
-
-int exposures_of(Eigen::Index columns, const TapLayout& layout, std::string_view file) {
-  require(layout.taps >= 1, "taps", layout.taps, "must be >= 1");
-  if (columns % layout.taps != 0)
-    throw IoError(file, fmt::format("found {} columns; expected a multiple of taps = {}", columns,
-                                    layout.taps));
-  if (layout.taps > 1 && !layout.order)
-    throw IoError(file, fmt::format("does not say in which order its columns hold {} taps; "
-                                    "expected the tap order, blocked or interleaved, beside it",
-                                    layout.taps));
-  return static_cast<int>(columns) / layout.taps;
 }
 
 Waveform waveform_of(const Eigen::VectorXd& samples) {

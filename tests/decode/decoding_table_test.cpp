@@ -49,8 +49,8 @@ TEST(DecodingTable, NamesWhatIsWrong) {
             "shot_correlation = 2 x 4; must have the shape of correlation, 240 x 4");
   EXPECT_EQ(complaint([](DecodingTable& t) { t.range_m = 0.0; }),
             "range_m = 0; must be finite and > 0");
-  EXPECT_EQ(complaint([](DecodingTable& t) { t.gain_e_per_raw = -2.0; }),
-            "gain_e_per_raw = -2; must be finite and > 0");
+  EXPECT_EQ(complaint([](DecodingTable& t) { t.gain_e_per_raw[2] = -2.0; }),
+            "gain_e_per_raw = -2; must not be negative");
 }
 
 TEST(DecodingTable, NeedsDepthToShowInTwoDimensions) {

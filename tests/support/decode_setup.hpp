@@ -44,13 +44,15 @@ inline Camera camera_with(const std::string& name, int taps = 1,
   return camera;
 }
 
-/// Noisy electrons (pixels, K) at random depths, from the chords of the decoder's table.
+/// Noisy raw numbers (pixels, K) at random depths, from the chords of the decoder's table.
 inline std::vector<float> noisy_pixels(const DecodingTable& table, double signal, double ambient,
                                        int pixels, std::uint64_t seed) {
   const int k_count = table.measurements();
   const auto& shot = table.shot_correlation.size() > 0 ? table.shot_correlation : table.correlation;
   const auto& kappa =
       table.shot_ambient_gain.size() > 0 ? table.shot_ambient_gain : table.ambient_gain;
+  const auto& shot_dark =
+      table.shot_dark_electrons.size() > 0 ? table.shot_dark_electrons : table.dark_electrons;
   std::vector<float> raw;
   raw.reserve(static_cast<std::size_t>(pixels * k_count));
   RandomStream random(seed, 0);
@@ -63,8 +65,10 @@ inline std::vector<float> noisy_pixels(const DecodingTable& table, double signal
       const double shot_chi = (1 - t) * shot(from, k) + t * shot(to, k);
       const double mean = table.exposure_s[k] * (signal * chi + ambient * table.ambient_gain[k]);
       const double variance = table.exposure_s[k] * (signal * shot_chi + ambient * kappa[k]) +
-                              table.constant_variance_e2[k];
-      raw.push_back(static_cast<float>(mean + std::sqrt(variance) * random.normal()));
+                              shot_dark[k] + table.constant_variance_e2[k];
+      const double electrons =
+          mean + table.dark_electrons[k] + std::sqrt(variance) * random.normal();
+      raw.push_back(static_cast<float>(electrons / table.gain_e_per_raw[k] + table.black_level[k]));
     }
   }
   return raw;

@@ -32,7 +32,7 @@ class ReferenceDecoder {
   Eigen::VectorXd difference(const float* raw) const {
     Eigen::VectorXd y(table_.measurements());
     for (int k = 0; k < y.size(); ++k)
-      y[k] = (raw[k] - table_.black_level) * table_.gain_e_per_raw - table_.dark_electrons[k];
+      y[k] = (raw[k] - table_.black_level[k]) * table_.gain_e_per_raw[k] - table_.dark_electrons[k];
     const Eigen::VectorXd left = without_ambient(y);
     return left.norm() > 1e-12 * y.lpNorm<1>() ? left : Eigen::VectorXd::Zero(y.size());
   }

@@ -78,6 +78,13 @@ class ForwardModel {
   Eigen::MatrixXd readout_;
 };
 
+/// What leaves the sensor as sums of tap values, (K, tap values): each by itself, or A - B of every
+/// two neighbours.
+Eigen::MatrixXd readout_matrix(int tap_values, Readout readout);
+
+/// Variance of one tap value that does not depend on light [e^2]: read noise and quantization.
+double constant_variance_e2_of(const Sensor& sensor);
+
 /// kappa (K) as an estimator on this camera has to reckon with it: 0 for all differences of buckets
 /// if the brightest operating ambient leaks into none of them by more than 5 % of its noise, as
 /// where a generator rounds duties of 1/2. To hold such a leak to be unknown would cost a whole

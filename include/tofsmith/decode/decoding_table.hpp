@@ -13,10 +13,11 @@ namespace tofsmith {
 /// Everything a decoder needs to know of a code on a camera. Measurements are what leaves the
 /// sensor (K of them: one per tap, or the differences of two-bucket pairs):
 ///   expected electrons  mu_i(z) = T_i (S chi_i(z) + A kappa_i) + dark_i
-///   electrons           = (raw - black_level) * gain_e_per_raw
+///   electrons           = (raw_i - black_level_i) * gain_e_per_raw_i
 ///   variance            = T_i (S shot_chi_i(z) + A shot_kappa_i) + shot_dark_i + constant_i
 /// The shot terms are those of the light collected; they differ from the expected values where
-/// buckets are subtracted. Left empty they are the same.
+/// buckets are subtracted. Left empty they are the same. Duties, exposures, gains and offsets may
+/// differ from measurement to measurement.
 struct DecodingTable {
   Eigen::MatrixXd correlation;     ///< chi, (N, K), row n at depth_bin = n
   Eigen::VectorXd ambient_gain;    ///< kappa (K)
@@ -28,8 +29,8 @@ struct DecodingTable {
   Eigen::VectorXd shot_dark_electrons;   ///< [e] (K), or empty: dark_electrons
   Eigen::VectorXd constant_variance_e2;  ///< of read-out and quantization [e^2] (K), each >= 0
 
-  double black_level = 0.0;     ///< raw number without light; 0 where raw numbers are electrons
-  double gain_e_per_raw = 1.0;  ///< electrons per raw number, > 0
+  Eigen::VectorXd black_level;            ///< raw number without light (K); 0 where it is electrons
+  Eigen::VectorXd gain_e_per_raw;         ///< electrons per raw number (K), each > 0
   std::optional<float> saturation_level;  ///< raw numbers from here on are clipped; none: no limit
   double range_m = 0.0;                   ///< depth of a whole period [m], > 0
 

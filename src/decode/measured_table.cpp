@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/decode/measured_table.hpp"
+
+#include <string>
+
+#include "decode/saturation_level.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+void require_one_each(const Eigen::VectorXd& list, const char* field, int columns) {
+  require(list.size() == 0 || list.size() == columns, field,
+          std::to_string(list.size()) + " entries",
+          "must have one for each of the " + std::to_string(columns) + " columns");
+}
+
+Eigen::VectorXd exposure_s_of(const MeasuredTable& measured, const ExposureTime& exposure) {
+  if (measured.exposure_s.size() > 0) return measured.exposure_s;
+  const int exposures = measured.columns() / measured.taps;
+  const auto given = static_cast<int>(exposure.each_s.size());
+  require(given == 0 || given == exposures, "exposure_s", std::to_string(given) + " entries",
+          "must be one number or one for each of the " + std::to_string(exposures) + " exposures");
+  Eigen::VectorXd exposure_s(measured.columns());
+  for (int i = 0; i < measured.columns(); ++i)
+    exposure_s[i] = exposure.of(i / measured.taps, exposures);
+  return exposure_s;
+}
+
+/// The light behind every column: what the shot noise comes from.
+Eigen::MatrixXd light_of(const Eigen::MatrixXd& correlation) {
+  constexpr double rounding = 1e-9;
+  Eigen::MatrixXd light = correlation;
+  for (Eigen::Index k = 0; k < light.cols(); ++k) {
+    const double largest = light.col(k).cwiseAbs().maxCoeff();
+    if (light.col(k).minCoeff() < -rounding * largest) light.col(k).setConstant(largest);
+  }
+  return light.cwiseMax(0.0);
+}
+
+/// Values that both taps of a pair share, by pair.
+Eigen::VectorXd of_pairs(const Eigen::VectorXd& values, const char* field) {
+  Eigen::VectorXd shared(values.size() / 2);
+  for (Eigen::Index i = 0; i < shared.size(); ++i) {
+    require(values[2 * i] == values[2 * i + 1], field, values[2 * i + 1],
+            "must be the same for both taps where their difference is read out");
+    shared[i] = values[2 * i];
+  }
+  return shared;
+}
+
+}  // namespace
+
+std::string_view name_of(MeasuredAmbient ambient) {
+  switch (ambient) {
+    case MeasuredAmbient::equal:
+      return "equal";
+    case MeasuredAmbient::mean:
+      return "mean";
+    case MeasuredAmbient::none:
+      return "none";
+  }
+  reject("MeasuredAmbient", std::to_string(static_cast<int>(ambient)), "must be in [0, 2]");
+}
+
+MeasuredAmbient parse_measured_ambient(std::string_view name) {
+  for (const auto ambient : {MeasuredAmbient::equal, MeasuredAmbient::mean, MeasuredAmbient::none})
+    if (name == name_of(ambient)) return ambient;
+  reject("ambient", name, "must be equal, mean or none");
+}
+
+Eigen::VectorXd ambient_gain_of(const Eigen::MatrixXd& correlation, MeasuredAmbient ambient) {
+  if (ambient == MeasuredAmbient::mean) return correlation.colwise().mean();
+  return Eigen::VectorXd::Constant(correlation.cols(),
+                                   ambient == MeasuredAmbient::none ? 0.0 : 1.0);
+}
+
+void MeasuredTable::validate() const {
+  require(columns() >= 1, "columns of the measured table", columns(), "must be >= 1");
+  require(taps >= 1 && columns() % taps == 0, "columns of the measured table", columns(),
+          "must be a multiple of taps = " + std::to_string(taps));
+  require_one_each(ambient_gain, "ambient_gain", columns());
+  require_one_each(exposure_s, "exposure_s", columns());
+  require_one_each(black_level, "black_level", columns());
+  require_one_each(gain_e_per_raw, "gain_e_per_raw", columns());
+}
+
+DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& camera) {
+  camera.validate();
+  measured.validate();
+  const Sensor& sensor = camera.sensor;
+  const int columns = measured.columns();
+  const bool subtracts = sensor.readout == Readout::difference;
+  require(!subtracts || measured.taps == 2, "taps of the measured table", measured.taps,
+          "must be 2 where the camera reads differences");
+  const Eigen::MatrixXd readout = readout_matrix(columns, sensor.readout);
+  const Eigen::MatrixXd sums = readout.cwiseAbs();
+
+  const Eigen::VectorXd exposure_s = exposure_s_of(measured, camera.exposure_s);
+  const Eigen::VectorXd ambient_gain =
+      measured.ambient_gain.size() > 0
+          ? measured.ambient_gain
+          : ambient_gain_of(measured.correlation, MeasuredAmbient::equal);
+  const Eigen::VectorXd gain_e_per_raw =
+      measured.gain_e_per_raw.size() > 0
+          ? measured.gain_e_per_raw
+          : Eigen::VectorXd::Constant(columns, sensor.gain_e_per_dn.value_or(1.0));
+  const Eigen::VectorXd black_level =
+      measured.black_level.size() > 0
+          ? measured.black_level
+          : Eigen::VectorXd::Constant(columns, sensor.black_level_dn.value_or(0.0));
+  const Eigen::VectorXd dark_e = sensor.dark_current_e_per_s * exposure_s;
+
+  DecodingTable table =
+      make_decoding_table(measured.correlation * readout.transpose(), camera.range_m());
+  table.ambient_gain = readout * ambient_gain;
+  table.exposure_s = subtracts ? of_pairs(exposure_s, "exposure_s") : exposure_s;
+  table.gain_e_per_raw = subtracts ? of_pairs(gain_e_per_raw, "gain_e_per_raw") : gain_e_per_raw;
+  table.black_level = readout * black_level;
+  table.dark_electrons = readout * dark_e;
+  table.shot_correlation = light_of(measured.correlation) * sums.transpose();
+  table.shot_ambient_gain = sums * ambient_gain.cwiseAbs();
+  table.shot_dark_electrons = sums * dark_e;
+  table.constant_variance_e2 = constant_variance_e2_of(sensor) * sums.rowwise().sum();
+  if (!subtracts) table.saturation_level = saturation_level_of(sensor);
+  return table;
+}
+
+}  // namespace tofsmith

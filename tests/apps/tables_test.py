@@ -1,0 +1,172 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Decoding with measured tables and with maps of each pixel."""
+
+import unittest
+
+import numpy as np
+
+from command_line import CommandLineTest
+
+RANGE_M = 299792458 / 2 / 15e6
+SAMPLES = 120
+
+
+class Tables(CommandLineTest):
+    def simulate(self, depth, raw, *more):
+        np.save(self.path("scene.npy"), depth.astype(np.float32))
+        self.do("simulate", "scene.npy", "--kind", "radial", "--code", "hamiltonian-k3",
+                "--no-falloff", "-o", raw, "--force", *more)
+        return np.load(self.path(raw))
+
+    def sweep(self, *more):
+        """Measures correlation functions as one does: a target at every delay. (N, K)"""
+        delays = RANGE_M * np.arange(SAMPLES) / SAMPLES
+        delays[0] = RANGE_M  # 0 would be no return
+        return self.simulate(delays[None, :], "sweep.npy", "--signal", "1e10", *more)[0]
+
+    def frame(self, *more):
+        """A ramp of distances and its raw frame raw.npy."""
+        truth = np.linspace(1.0, 4.0, 12 * 16).reshape(12, 16)
+        self.simulate(truth, "raw.npy", "--signal", "1e7", *more)
+        return truth
+
+    def decode(self, table, *more, output="depth.npy"):
+        document = self.do_json("decode", "raw.npy", "--code", table, "-o", output, "--force",
+                                *more)
+        return np.load(self.path(output)), document["notes"]
+
+    def test_a_sweep_decodes_as_the_code_does(self):
+        np.save(self.path("t.npy"), self.sweep())
+        truth = self.frame()
+        expected, notes = self.decode("hamiltonian-k3")
+        self.assertEqual(notes, [])
+        depth, notes = self.decode("t.npy")
+        self.assertEqual(notes, [])
+        self.assertLess(np.abs(depth - truth).max(), 0.02)
+        self.assertLess(np.abs(depth - expected).mean(), 0.003)
+        half, _ = self.decode("t.npy", "--range-m", str(RANGE_M / 2))
+        np.testing.assert_allclose(half, depth / 2, rtol=1e-5)
+
+    def test_quirks_are_told(self):
+        table = self.sweep()
+        self.frame()
+        np.save(self.path("t.npy"), table)
+        expected, _ = self.decode("t.npy")
+        np.savetxt(self.path("t.csv"), table, fmt="%.9g", delimiter=",")
+        np.testing.assert_allclose(self.decode("t.csv")[0], expected, atol=1e-5)
+        np.save(self.path("closed.npy"), np.vstack([table, table[:1]]).T)
+        depth, notes = self.decode("closed.npy")
+        np.testing.assert_array_equal(depth, expected)
+        self.assertIn("(3, 121) was taken as (K, N)", notes[0])
+        self.assertIn("repeats the first and was dropped: N = 120", notes[1])
+        text = self.do("decode", "raw.npy", "--code", "closed.npy", "-o", "d.npy")
+        self.assertIn("dropped", text)
+        kept, notes = self.decode("closed.npy", "--keep-end-point", "--table-axes", "kn")
+        self.assertGreater(np.abs(kept - expected).max(), 0.005)
+        self.assertEqual(len(notes), 1)
+        self.assertIn("1 of 121 bins", notes[0])  # the two ends look the same
+
+    def test_columns_may_differ_in_everything(self):
+        table, truth = self.sweep(), self.frame()
+        raw = np.load(self.path("raw.npy"))
+        gain, offset = np.array([0.5, 2, 4]), np.array([100, -30, 7])
+        np.save(self.path("raw.npy"), (raw / gain + offset).astype(np.float32))
+        np.savez(self.path("t.npz"), corrfs=table, ambient=[1.0, 1, 1], exposure_s=[0.1, 0.1, 0.1],
+                 gain_e_per_dn=gain, offset_dn=offset, made="today")
+        depth, notes = self.decode("t.npz")
+        self.assertLess(np.abs(depth - truth).max(), 0.02)
+        self.assertIn("not used: made", notes[0])
+
+    def test_pairs_of_taps(self):
+        buckets = ("--set", "sensor.taps=2")
+        table = self.sweep(*buckets)
+        np.save(self.path("t.npy"), table)
+        for more in ((), ("--set", "sensor.readout=difference")):
+            truth = self.frame(*buckets, *more)
+            depth, _ = self.decode("t.npy", *buckets, *more, "--tap-order", "interleaved")
+            self.assertLess(np.abs(depth - truth).max(), 0.02, more)
+        self.refuse(["decode", "raw.npy", "--code", "t.npy", *buckets, "-o", "d.npy"], "t.npy",
+                    "order")
+        np.save(self.path("pairs.npy"), table[:, 0::2] - table[:, 1::2])
+        depth, _ = self.decode("pairs.npy", "--ambient", "none")
+        self.assertLess(np.abs(depth - truth).max(), 0.02)
+
+    def test_unequal_duties_are_told(self):
+        np.save(self.path("t.npy"), self.sweep() * [1, 0.5, 0.8])
+        self.frame()
+        self.assertIn("--ambient mean", self.decode("t.npy")[1][0])
+        self.assertEqual(self.decode("t.npy", "--ambient", "mean")[1], [])
+
+    def test_equal_rows_are_told(self):
+        twice = np.tile(self.sweep()[::2], (2, 1))
+        np.save(self.path("t.npy"), twice)
+        self.frame()
+        notes = self.decode("t.npy")[1]
+        self.assertIn("60 of 120 bins look like a nearer one", notes[0])
+        self.assertIn("4.997 m as 0 m", notes[0])
+        text = self.do("evaluate", "multifrequency-2x3-4x3", "--trials", "100")
+        self.assertIn("multifrequency-2x3-4x3: 120 of 240 bins look like a nearer one", text)
+
+    def test_tables_that_tell_no_depth_apart(self):
+        self.frame()
+
+        def refuse(table, *words, options=()):
+            np.save(self.path("t.npy"), table)
+            self.refuse(["decode", "raw.npy", "--code", "t.npy", "-o", "d.npy", *options], "t.npy",
+                        *words)
+        wave = np.cos(2 * np.pi * np.arange(60) / 60)
+        refuse(np.stack([wave, wave, -wave], 1), "rank", ">= 2")
+        refuse(np.ones((60, 3)), "rank")
+        refuse(np.stack([wave, np.roll(wave, 15)], 1), "measurements = 2", ">= 3")
+        refuse(wave, "measurements = 1")
+        refuse(np.random.default_rng(1).random((10, 20)), "(N, K) or (K, N)", "nk or kn")
+        refuse(np.full((60, 3), np.nan), "t.npy[0, 0]", "nan")
+        refuse(np.random.default_rng(1).random((60, 3)), "exposure_s = 2 entries", "3 exposures",
+               options=("--set", "exposure_s=[0.1,0.2]"))
+        for option in (("--range-m", "3"), ("--ambient", "none"), ("--table-axes", "nk"),
+                       ("--keep-end-point",)):
+            self.refuse(["decode", "raw.npy", "--code", "hamiltonian-k3", "-o", "d.npy", *option],
+                        option[0], "measured table", code=2)
+
+    def test_maps_of_each_pixel(self):
+        self.frame()
+        planes = ("--outputs", "depth,signal,ambient,status")
+
+        def planes_of(*more):
+            self.do("decode", "raw.npy", "--code", "hamiltonian-k3", *planes, "-o", "d.npz",
+                    "--force", *more)
+            return np.load(self.path("d.npz"))
+        before = planes_of()
+        offset = np.linspace(0, 6, 192).reshape(12, 16).astype(np.float32)
+        gain = np.linspace(0.5, 2.0, 192).reshape(12, 16)
+        gain[3, 4] = np.nan
+        np.save(self.path("offset.npy"), offset)
+        np.savez(self.path("gain.npz"), gain=gain)
+        after = planes_of("--offset-map", "offset.npy", "--gain-map", "gain.npz")
+        dead = np.isnan(gain)
+        self.assertTrue(np.isnan(after["depth"][dead]).all())
+        self.assertEqual(list(after["status"][dead]), [1])
+        live = ~dead
+        wrapped = np.mod(before["depth"] - offset, RANGE_M)
+        np.testing.assert_allclose(after["depth"][live], wrapped[live], atol=1e-5)
+        np.testing.assert_allclose(after["signal"][live], (before["signal"] / gain)[live],
+                                   rtol=1e-5)
+        self.assertTrue((after["status"][live] == before["status"][live]).all())
+
+    def test_maps_that_do_not_fit(self):
+        self.frame()
+
+        def refuse(array, *words, option="--gain-map"):
+            np.save(self.path("m.npy"), np.asarray(array, np.float32))
+            self.refuse(["decode", "raw.npy", "--code", "hamiltonian-k3", option, "m.npy", "-o",
+                         "d.npy"], "m.npy", *words)
+        refuse(np.ones((16, 12)), "16 x 12", "12 x 16")
+        refuse(np.ones((16, 12)), "16 x 12", "12 x 16", option="--offset-map")
+        refuse(np.zeros((12, 16)), "gain[0, 0] = 0", "> 0")
+        refuse(np.full((12, 16), np.inf), "delay_offset_m[0, 0]", "inf", option="--offset-map")
+        refuse(np.ones(12), "(H, W)")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/decode/measured_table.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "decode_setup.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::HasSubstr;
+
+/// What a delay sweep with this code would find, tap by tap.
+MeasuredTable sweep_of(const ForwardModel& model, const Camera& camera) {
+  MeasuredTable measured;
+  measured.correlation = model.tap_correlation_table(model.samples());
+  measured.taps = camera.sensor.taps;
+  measured.ambient_gain = ambient_gain_of(measured.correlation, MeasuredAmbient::mean);
+  return measured;
+}
+
+TEST(MeasuredTable, ASweepOfACodeDecodesAsTheCodeDoes) {
+  for (const Readout readout : {Readout::separate, Readout::difference}) {
+    Camera camera = camera_with("paper-10f0", 2, readout);
+    camera.sensor.dark_current_e_per_s = 300.0;
+    camera.sensor.full_well_e = 50000.0;
+    camera.sensor.adc_bits = 12;
+    camera.sensor.gain_e_per_dn = 10.0;
+    camera.sensor.black_level_dn = 30.0;
+    camera.exposure_s.each_s = {0.05, 0.1, 0.15};
+    const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
+    const DecodingTable code = make_decoding_table(model, camera);
+    const DecodingTable table = make_decoding_table(sweep_of(model, camera), camera);
+    EXPECT_TRUE(table.correlation.isApprox(code.correlation, 1e-12));
+    EXPECT_LT((table.ambient_gain - code.ambient_gain).norm(), 1e-9);
+    EXPECT_EQ(table.exposure_s, code.exposure_s);
+    EXPECT_LT((table.dark_electrons - code.dark_electrons).norm(), 1e-9);
+    EXPECT_TRUE(table.constant_variance_e2.isApprox(code.constant_variance_e2, 1e-12));
+    EXPECT_EQ(table.gain_e_per_raw, code.gain_e_per_raw);
+    EXPECT_EQ(table.black_level, code.black_level);
+    EXPECT_EQ(table.saturation_level, code.saturation_level);
+    EXPECT_EQ(table.range_m, code.range_m);
+    const auto& light = readout == Readout::difference ? code.shot_correlation : code.correlation;
+    EXPECT_TRUE(table.shot_correlation.isApprox(light, 1e-9));
+    const std::vector<float> raw = noisy_pixels(code, 3e4, 1e4, 2000, 8);
+    EXPECT_EQ(bins_of(Decoder(table), raw), bins_of(Decoder(code), raw));
+  }
+}
+
+TEST(MeasuredTable, ConstantsAlongAmbientLightChangeNoDepth) {
+  const Camera camera = camera_with("paper-10f0");
+  const ForwardModel model(build_family("hamiltonian-k4", camera), camera);
+  const MeasuredTable measured = sweep_of(model, camera);
+  MeasuredTable zero_mean = measured;
+  zero_mean.correlation.array().rowwise() -= measured.correlation.colwise().mean().array();
+  const Decoder as_is(make_decoding_table(measured, camera));
+  const Decoder shifted(make_decoding_table(zero_mean, camera));
+  std::vector<float> raw = noisy_pixels(as_is.table(), 1e4, 1e4, 3000, 2);
+  for (float& value : raw) value = std::round(value);
+  EXPECT_EQ(bins_of(as_is, raw), bins_of(shifted, raw));
+}
+
+TEST(MeasuredTable, WhatTheFileSaysGoesBeforeTheCamera) {
+  const Camera camera = camera_with("paper-10f0");
+  MeasuredTable measured =
+      sweep_of(ForwardModel(build_family("hamiltonian-k3", camera), camera), camera);
+  measured.ambient_gain = Eigen::Vector3d(0.1, 0.2, 0.3);
+  measured.exposure_s = Eigen::Vector3d(1.0, 2.0, 3.0);
+  measured.black_level = Eigen::Vector3d(4.0, 5.0, 6.0);
+  measured.gain_e_per_raw = Eigen::Vector3d(7.0, 8.0, 9.0);
+  const DecodingTable table = make_decoding_table(measured, camera);
+  EXPECT_EQ(table.ambient_gain, measured.ambient_gain);
+  EXPECT_EQ(table.exposure_s, measured.exposure_s);
+  EXPECT_EQ(table.black_level, measured.black_level);
+  EXPECT_EQ(table.gain_e_per_raw, measured.gain_e_per_raw);
+}
+
+TEST(MeasuredTable, AmbientLightCancelsInDifferencesAndWhereToldSo) {
+  Camera camera = camera_with("paper-10f0", 2, Readout::difference);
+  MeasuredTable pairs{Eigen::MatrixXd::Random(40, 6), 2, {}, {}, {}, {}};
+  EXPECT_EQ(make_decoding_table(pairs, camera).ambient_gain, Eigen::VectorXd::Zero(3));
+
+  MeasuredTable circle{Eigen::MatrixXd(60, 2), 1, {}, {}, {}, {}};
+  for (int n = 0; n < 60; ++n)
+    circle.correlation.row(n) << std::cos(M_PI * n / 30), std::sin(M_PI * n / 30);
+  circle.ambient_gain = ambient_gain_of(circle.correlation, MeasuredAmbient::none);
+  const DecodingTable table = make_decoding_table(circle, camera_with("paper-10f0"));
+  EXPECT_EQ(bins_of(Decoder(table), {0.0f, 1.0f, -3.0f, 0.0f}),
+            (std::vector<std::int32_t>{15, 30}));
+}
+
+TEST(MeasuredTable, LightBehindColumnsThatGoBelowZeroIsTheirLargest) {
+  Eigen::MatrixXd correlation = Eigen::MatrixXd::Constant(10, 3, 0.25);
+  correlation(4, 1) = -2.0;
+  correlation(5, 2) = 0.5;
+  const MeasuredTable measured{correlation, 1, {}, {}, {}, {}};
+  const DecodingTable table = make_decoding_table(measured, camera_with("paper-10f0"));
+  EXPECT_EQ(table.shot_correlation.col(0), correlation.col(0));
+  EXPECT_EQ(table.shot_correlation.col(1), Eigen::VectorXd::Constant(10, 2.0));
+  EXPECT_EQ(table.shot_correlation.col(2), correlation.col(2));
+}
+
+std::string refusal(const std::function<void(MeasuredTable&, Camera&)>& change) {
+  Camera camera = camera_with("paper-10f0", 2, Readout::difference);
+  MeasuredTable measured{Eigen::MatrixXd::Random(40, 6), 2, {}, {}, {}, {}};
+  change(measured, camera);
+  try {
+    make_decoding_table(measured, camera).validate();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(MeasuredTable, NamesWhatIsWrong) {
+  EXPECT_EQ(refusal([](MeasuredTable&, Camera&) {}), "accepted");
+  EXPECT_EQ(refusal([](MeasuredTable& t, Camera&) { t.taps = 1; }),
+            "taps of the measured table = 1; must be 2 where the camera reads differences");
+  EXPECT_EQ(refusal([](MeasuredTable& t, Camera&) { t.taps = 4; }),
+            "columns of the measured table = 6; must be a multiple of taps = 4");
+  EXPECT_EQ(refusal([](MeasuredTable& t, Camera&) { t.ambient_gain.setOnes(3); }),
+            "ambient_gain = 3 entries; must have one for each of the 6 columns");
+  EXPECT_EQ(refusal([](MeasuredTable& t, Camera&) {
+              t.gain_e_per_raw.setOnes(6);
+              t.gain_e_per_raw[3] = 2.0;
+            }),
+            "gain_e_per_raw = 2; must be the same for both taps where their difference is read "
+            "out");
+  EXPECT_EQ(refusal([](MeasuredTable&, Camera& c) {
+              c.exposure_s.each_s = {0.1, 0.2};
+            }),
+            "exposure_s = 2 entries; must be one number or one for each of the 3 exposures");
+  EXPECT_THAT(
+      refusal([](MeasuredTable& t, Camera&) { t.correlation = Eigen::MatrixXd::Random(40, 2); }),
+      HasSubstr("measurements = 1; must be in [3, 64]"));
+  EXPECT_THAT(refusal([](MeasuredTable& t, Camera& c) {
+                c = camera_with("paper-10f0");
+                t.taps = 1;
+                t.correlation = Eigen::MatrixXd::Random(40, 2);
+              }),
+              HasSubstr("must be >= 3: signal, ambient light and depth are unknown"));
+  EXPECT_THAT(refusal([](MeasuredTable& t, Camera&) {
+                t.correlation = Eigen::VectorXd::Random(40) * Eigen::RowVectorXd::Random(6);
+              }),
+              HasSubstr("rank"));
+}
+
+TEST(MeasuredAmbient, IsOneOfThreeWords) {
+  for (const auto ambient : {MeasuredAmbient::equal, MeasuredAmbient::mean, MeasuredAmbient::none})
+    EXPECT_EQ(parse_measured_ambient(name_of(ambient)), ambient);
+  EXPECT_THROW(parse_measured_ambient("some"), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tofsmith

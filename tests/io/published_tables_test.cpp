@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// Tables that others measured and published decode; they are no part of this repository.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "decode_setup.hpp"
+#include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/measured_table_file.hpp"
+#include "tofsmith/simulate/table_depth_error.hpp"
+
+namespace tofsmith {
+namespace {
+
+const std::filesystem::path published =
+    std::filesystem::path(TOFSMITH_SOURCE_DIR) / "../shared/data";
+const std::filesystem::path kea = published / "kea_corrf_hamk3/keatof_2MHz_ham-k3_min.npy";
+
+/// A camera without limits of its own.
+Camera ideal_camera(int samples, int taps, Readout readout = Readout::separate) {
+  Camera camera = camera_with("paper-30x", taps, readout);
+  camera.samples = samples;
+  camera.light.peak_factor = 1000.0;
+  return camera;
+}
+
+/// How far each bin's measurements are from what ambient light explains (N).
+Eigen::VectorXd contrast_of(const DecodingTable& table) {
+  const Eigen::VectorXd a = table.exposure_s.cwiseProduct(table.ambient_gain);
+  Eigen::MatrixXd x = table.correlation * table.exposure_s.asDiagonal();
+  if (!a.isZero(0.0)) x -= x * a * a.transpose() / a.squaredNorm();
+  return x.rowwise().norm();
+}
+
+/// How many bins come back as another one, but for those that look like a lower bin, and those
+/// without contrast, which look like ambient light.
+int wrong_bins(const DecodingTable& table) {
+  std::vector<std::int32_t> expected(static_cast<std::size_t>(table.samples()));
+  std::iota(expected.begin(), expected.end(), 0);
+  for (const AmbiguousDepths& pair : ambiguous_depths(table))
+    expected[static_cast<std::size_t>(pair.second_bin)] = pair.first_bin;
+  const double signal = 1e6 / table.correlation.cwiseAbs().maxCoeff(), ambient = 1e6;
+  std::vector<float> raw;
+  for (int n = 0; n < table.samples(); ++n)
+    for (int k = 0; k < table.measurements(); ++k)
+      raw.push_back(static_cast<float>(table.exposure_s[k] * (signal * table.correlation(n, k) +
+                                                              ambient * table.ambient_gain[k])));
+  const std::vector<std::int32_t> found = bins_of(Decoder(table), raw);
+  const Eigen::VectorXd contrast = contrast_of(table);
+  int wrong = 0;
+  for (int n = 0; n < table.samples(); ++n) {
+    const auto at = static_cast<std::size_t>(n);
+    wrong += contrast[n] > 1e-6 * contrast.maxCoeff() && found[at] != expected[at];
+  }
+  return wrong;
+}
+
+/// Mean circular depth error [m] at a light that is the same for all tables: a tap's correlation
+/// function swings by 1e5 e/s, a difference of taps by twice that; A = 1e4 e/s.
+double error_m(const DecodingTable& table, Readout readout = Readout::separate) {
+  const Eigen::MatrixXd& chi = table.correlation;
+  const double swing = (chi.colwise().maxCoeff() - chi.colwise().minCoeff()).maxCoeff();
+  const double swing_e_per_s = readout == Readout::difference ? 2e5 : 1e5;
+  return table_depth_error_m(table, {swing_e_per_s / swing, 1e4}).value;
+}
+
+double ideal_hamiltonian_error_m(int exposures, int taps, Readout readout = Readout::separate) {
+  const Camera camera = ideal_camera(240, taps, readout);
+  const CodeSet code = build_family("hamiltonian-k" + std::to_string(exposures), camera);
+  return error_m(make_decoding_table(ForwardModel(code, camera), camera), readout);
+}
+
+TEST(PublishedTables, TheMeasuredHamiltonianTableDecodesItsOwnFrames) {
+  if (!std::filesystem::exists(kea)) GTEST_SKIP() << "no published table beside the source";
+  MeasuredTableFile file = read_measured_table(kea, {.layout = {2, TapOrder::interleaved}});
+  EXPECT_EQ(file.table.samples(), 1939);
+  EXPECT_EQ(file.table.columns(), 6);
+  EXPECT_EQ(file.notes.size(), 2u);             // turned, and the end point dropped
+  file.table.ambient_gain.setConstant(6, 0.5);  // each bucket is open for half of the period
+  for (const Readout readout : {Readout::separate, Readout::difference}) {
+    const Camera camera = ideal_camera(240, 2, readout);
+    const DecodingTable table = make_decoding_table(file.table, camera);
+    EXPECT_EQ(table.measurements(), readout == Readout::separate ? 6 : 3);
+    EXPECT_EQ(wrong_bins(table), 0);
+    const double measured = error_m(table, readout);
+    const double ideal = ideal_hamiltonian_error_m(3, 2, readout);
+    EXPECT_GT(measured, 0.8 * ideal);
+    EXPECT_LT(measured, 2.0 * ideal);
+    GTEST_LOG_(INFO) << table.measurements() << " measurements: " << 1e3 * measured
+                     << " mm, ideal code " << 1e3 * ideal << " mm";
+  }
+}
+
+TEST(PublishedTables, EveryCodeDecodesItsOwnFramesAsCodeAndAsTable) {
+  const std::filesystem::path directory = published / "itof_codes";
+  if (!std::filesystem::exists(directory)) GTEST_SKIP() << "no published codes beside the source";
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
+    if (entry.path().extension() != ".npz") continue;
+    const std::string name = entry.path().stem().string();
+    SCOPED_TRACE(name);
+    ++files;
+    const TapLayout layout = {name.find("complementary") == std::string::npos ? 1 : 2,
+                              TapOrder::blocked};
+    const CodeSet code = read_code(entry.path(), layout);
+    const Camera camera = ideal_camera(code.samples(), layout.taps);
+    const DecodingTable as_code = make_decoding_table(ForwardModel(code, camera), camera);
+    MeasuredTable measured =
+        read_measured_table(entry.path(), {.layout = layout, .keep_end_point = true}).table;
+    measured.ambient_gain = ambient_gain_of(measured.correlation, MeasuredAmbient::mean);
+    const DecodingTable as_table = make_decoding_table(measured, camera);
+
+    EXPECT_LT((as_table.correlation - as_code.correlation).cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_EQ(wrong_bins(as_code), 0);
+    EXPECT_EQ(wrong_bins(as_table), 0);
+    const double error = error_m(as_code);
+    EXPECT_NEAR(error_m(as_table), error, 0.02 * error);
+    if (name.find("hamilt") == std::string::npos) continue;
+    const double ideal = ideal_hamiltonian_error_m(code.exposures(), layout.taps);
+    // Their edges are rounded to few samples, so that neighbours look the same: that costs bins.
+    const std::size_t repeated = ambiguous_depths(as_code).size();
+    const double lost_m = static_cast<double>(repeated) / code.samples() * as_code.bin_m();
+    GTEST_LOG_(INFO) << name << ": " << 1e3 * error << " mm, ideal code " << 1e3 * ideal
+                     << " mm, repeated rows " << repeated;
+    EXPECT_GT(error, 0.8 * ideal);
+    EXPECT_LT(error, 2.0 * ideal + 2.0 * lost_m);
+  }
+  EXPECT_EQ(files, 13);
+}
+
+}  // namespace
+}  // namespace tofsmith
