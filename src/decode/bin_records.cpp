@@ -11,8 +11,6 @@ namespace {
 
 /// Chords whose ends differ in direction by less are one direction: the square of the sine.
 constexpr double parallel = 1e-14;
-/// Depth noise on a chord is taken this far from the best bin, half way to where another is best.
-constexpr double within_chord = 0.25;
 constexpr int floats_per_line = 16;  // of cache
 
 int rounded_up(int size, int multiple) { return (size + multiple - 1) / multiple * multiple; }
@@ -32,49 +30,58 @@ class RecordBuilder {
         ambient2_(projection.ambient.squaredNorm()),
         noise_(table) {}
 
-  void fill(std::int32_t n, float* record) const {
+  /// @param record  of the bin
+  /// @param chords  all chords
+  void fill(std::int32_t n, float* record, RecordTable& chords) const {
     const Eigen::VectorXd p = point(n);
     const double length2 = p.squaredNorm();
     if (length2 == 0.0) return;
+    const Eigen::VectorXd shot = noise_.per_signal.row(n);
+    store(p / length2, record + layout_.point());
+    store(noise_along(p / length2, shot), record + layout_.signal_noise());
+    store(shot, record + layout_.shot());
+    if (ambient2_ > 0.0) record[layout_.ambient()] = static_cast<float>(ambient_part(n));
+
     const std::int32_t samples = table_.samples();
     const std::int32_t before = (n + samples - 1) % samples, after = (n + 1) % samples;
-    const Eigen::VectorXd weight = p / length2;
-    store(weight, record + layout_.point());
-    fill_ambient(n, before, after, record + layout_.ambient());
-    store(noise_along(weight, noise_.per_signal.row(n)), record + layout_.signal_noise());
-    float* depth_noise = record + layout_.depth_noise();
-    fill_chord(n, before, record + layout_.left(), record + layout_.turn(), depth_noise);
-    store(depth_noise_at(p, 0.5 * (point(after) - point(before)), noise_.per_signal.row(n)),
-          depth_noise + 3);
-    fill_chord(n, after, record + layout_.right(), record + layout_.turn() + 1, depth_noise + 6);
-    store(noise_.per_signal.row(n), record + layout_.shot());
+    const std::int32_t at_bin = ChordLayout::first_row(n) + ChordLayout::at_bin;
+    store(depth_noise_at(p, 0.5 * (point(after) - point(before)), shot),
+          chords.row(at_bin) + ChordLayout::depth_noise);
+    fill_side(n, before, record + layout_.left(), record + layout_.turn());
+    fill_side(n, after, record + layout_.right(), record + layout_.turn() + 1);
+    for (int quarter = 0; quarter < ChordLayout::quarters; ++quarter) {
+      fill_chord(n, before, quarter, chords.row(at_bin - 1 - quarter));
+      fill_chord(n, after, quarter, chords.row(at_bin + 1 + quarter));
+    }
   }
 
  private:
   Eigen::VectorXd point(std::int32_t n) const { return projection_.curve.row(n); }
-
-  void fill_ambient(std::int32_t n, std::int32_t before, std::int32_t after, float* to) const {
-    if (ambient2_ == 0.0) return;
-    const auto part = [&](std::int32_t bin) {
-      return projection_.gated.row(bin).dot(projection_.ambient) / ambient2_;
-    };
-    store(Eigen::Vector3d(part(n), part(before) - part(n), part(after) - part(n)), to);
+  double ambient_part(std::int32_t n) const {
+    return projection_.gated.row(n).dot(projection_.ambient) / ambient2_;
   }
 
-  /// One side's `left` or `right`, `turn`, `reach` and depth noise.
-  void fill_chord(std::int32_t n, std::int32_t neighbour, float* across_to, float* turn,
-                  float* depth_noise) const {
+  /// One side's `left` or `right`, `turn` and `reach`.
+  void fill_side(std::int32_t n, std::int32_t neighbour, float* across_to, float* turn) const {
     const Eigen::VectorXd p = point(n), chord = point(neighbour) - p;
-    const double length2 = p.squaredNorm(), beta = p.dot(chord) / length2;
+    const double beta = p.dot(chord) / p.squaredNorm();
     const Eigen::VectorXd across = chord - beta * p;
     const double c = across.norm();
     if (c * c <= parallel * point(neighbour).squaredNorm()) return;
     store(across / c, across_to);
     turn[0] = static_cast<float>(beta / c);
     turn[2] = static_cast<float>(1.0 / c);
-    const Eigen::VectorXd shot = (1 - within_chord) * noise_.per_signal.row(n) +
-                                 within_chord * noise_.per_signal.row(neighbour);
-    store(depth_noise_at(p + within_chord * chord, chord, shot), depth_noise);
+  }
+
+  /// Depth noise is that in the middle of the quarter.
+  void fill_chord(std::int32_t n, std::int32_t neighbour, int quarter, float* fields) const {
+    const double t = (quarter + 0.5) / ChordLayout::quarters;
+    const Eigen::VectorXd p = point(n), chord = point(neighbour) - p;
+    const Eigen::VectorXd shot =
+        (1 - t) * noise_.per_signal.row(n) + t * noise_.per_signal.row(neighbour);
+    store(depth_noise_at(p + t * chord, chord, shot), fields + ChordLayout::depth_noise);
+    if (ambient2_ > 0.0)
+      fields[ChordLayout::ambient] = static_cast<float>(ambient_part(neighbour) - ambient_part(n));
   }
 
   /// dz = <d, noise> / (S |d|^2) with d the slope across p.
@@ -126,6 +133,7 @@ RecordTable::RecordTable(std::int32_t rows, int fields)
 BinRecords::BinRecords(const DecodingTable& table, const AmbientProjection& projection)
     : layout{projection.rank(), table.measurements()},
       records(table.samples(), layout.end()),
+      chords(ChordLayout::first_row(table.samples()), ChordLayout::fields),
       directions(table.samples(), layout.rank) {
   const RecordBuilder builder(table, projection);
   // As in the search, bins without contrast repeat the direction of the bin before, the first ones
@@ -137,7 +145,7 @@ BinRecords::BinRecords(const DecodingTable& table, const AmbientProjection& proj
     store(projection.curve.row(current).normalized(), directions.row(n));
   }
   for (std::int32_t n = 0; n < table.samples(); ++n) {
-    builder.fill(n, records.row(n));
+    builder.fill(n, records.row(n), chords);
     std::copy_n(directions.row(n), layout.rank, records.row(n) + layout.direction());
   }
 }

@@ -20,6 +20,10 @@ namespace tofsmith {
 
 /// Pixels whose records lie side by side in the work space.
 inline constexpr int pixels_per_chunk = 64;
+/// Keeps a noiseless table from dividing by zero [e^2].
+inline constexpr float least_variance_e2 = 1e-12f;
+/// Of so many deviations, squared, the normal probability is 1 in single precision.
+inline constexpr float sure_sigma2 = 36.0f;
 
 /// Which steps the wanted planes need.
 struct OutputSteps {
@@ -36,15 +40,19 @@ struct OutputChunk {
   const float* electrons = nullptr;  // as in the tile
   alignas(64) std::int32_t bin[pixels_per_chunk];
   alignas(64) std::int32_t rival[pixels_per_chunk];
-  alignas(64) float signal[pixels_per_chunk];  // > 0 where there is a depth
+  alignas(64) std::uint32_t start[pixels_per_chunk];        // of the bins' records
+  alignas(64) std::uint32_t rival_start[pixels_per_chunk];  // of the rivals' directions
+  alignas(64) float signal[pixels_per_chunk];               // > 0 where there is a depth
   alignas(64) float offset[pixels_per_chunk];  // of depth from the bin, in bins: in [-1, 1]
   alignas(64) float ambient[pixels_per_chunk];
   alignas(64) float signal_variance[pixels_per_chunk];
   alignas(64) float confidence[pixels_per_chunk];
+  alignas(64) float chord[ChordLayout::fields * pixels_per_chunk];
   alignas(64) float rival_direction[max_measurements * pixels_per_chunk];
   alignas(64) float record[max_record_fields * pixels_per_chunk];
 
   const float* field(int f) const { return record + f * pixels_per_chunk; }
+  const float* chord_field(int f) const { return chord + f * pixels_per_chunk; }
 };
 
 }  // namespace tofsmith
@@ -79,50 +87,67 @@ HWY_INLINE void store_some(Tag tag, Values values, T* to, int room) {
   std::memcpy(to, buffer, static_cast<std::size_t>(room) * sizeof(T));
 }
 
-#if HWY_TARGET == HWY_SCALAR
-/// Turns rows of a table, one per pixel, into rows of fields. Row numbers are those of a chunk.
-HWY_INLINE void gather_rows(const RecordTable& table, const std::int32_t* numbers, int pixels,
-                            int fields, float* rows) {
-  for (int i = 0; i < pixels; ++i)
-    for (int f = 0; f < fields; ++f) rows[f * pixels_per_chunk + i] = table.row(numbers[i])[f];
+#if HWY_TARGET == HWY_SCALAR || HWY_HAVE_SCALABLE
+/// Fields [begin, end) of a vector of pixels from their records at `start`, as rows of fields.
+/// `begin` is a multiple of four; up to three more fields are written.
+HWY_INLINE void gather(const float* table, const std::uint32_t* start, int begin, int end,
+                       float* rows) {
+  for (int i = 0; i < static_cast<int>(hn::Lanes(Floats())); ++i)
+    for (int f = begin; f < end; ++f) rows[f * pixels_per_chunk + i] = table[start[i] + f];
 }
 #else
-/// The same, four fields and a vector of pixels at a time.
-HWY_INLINE void gather_rows(const RecordTable& table, const std::int32_t* numbers, int pixels,
-                            int fields, float* rows) {
+/// Four fields of every fourth record, side by side.
+template <typename Tag>
+HWY_INLINE hn::Vec<Tag> load_blocks(Tag d, const float* table, const std::uint32_t* start) {
+  constexpr int lanes = static_cast<int>(hn::MaxLanes(Tag()));
+  if constexpr (lanes == 4) {
+    return hn::Load(d, table + start[0]);
+  } else if constexpr (lanes == 8) {
+    const hn::Half<Tag> half;
+    return hn::Combine(d, hn::Load(half, table + start[4]), hn::Load(half, table + start[0]));
+  } else {
+    // Masked loads of one block need no shuffle.
+    hn::Vec<Tag> blocks = hn::LoadDup128(d, table + start[0]);
+    for (int b = 4; b < lanes; b += 4)
+      blocks = hn::IfThenElse(hn::FirstN(d, static_cast<std::size_t>(b)), blocks,
+                              hn::LoadDup128(d, table + start[b]));
+    return blocks;
+  }
+}
+
+/// Fields [begin, end) of a vector of pixels from their records at `start`, as rows of fields.
+/// `begin` is a multiple of four; up to three more fields are written. Pixel 4 b + v goes to block
+/// b of part v, from where it need not leave block b.
+HWY_INLINE void gather(const float* table, const std::uint32_t* start, int begin, int end,
+                       float* rows) {
   const Floats d;
-  const hn::FixedTag<float, 4> block_tag;
   const hn::Repartition<std::uint64_t, Floats> pairs;
-  const int lanes = static_cast<int>(hn::Lanes(d)), quarter = lanes / 4;
-  alignas(64) float blocks[4 * pixels_per_chunk];
-  for (int f = 0; f < fields; f += 4) {
-    const float* source = table.row(0) + f;
-    for (int first = 0; first < pixels; first += lanes) {
-      // Pixel 4 b + v of a vector goes to block b of part v, from where it need not leave block b.
-      for (int v = 0; v < 4; ++v)
-        for (int b = 0; b < quarter; ++b) {
-          const std::ptrdiff_t number = numbers[first + 4 * b + v];
-          hn::Store(hn::Load(block_tag, source + number * table.stride()), block_tag,
-                    blocks + v * lanes + 4 * b);
-        }
-      const auto v0 = load(blocks, 0), v1 = load(blocks, lanes);
-      const auto v2 = load(blocks, 2 * lanes), v3 = load(blocks, 3 * lanes);
-      const auto low01 = hn::BitCast(pairs, hn::InterleaveLower(d, v0, v1));
-      const auto low23 = hn::BitCast(pairs, hn::InterleaveLower(d, v2, v3));
-      const auto high01 = hn::BitCast(pairs, hn::InterleaveUpper(d, v0, v1));
-      const auto high23 = hn::BitCast(pairs, hn::InterleaveUpper(d, v2, v3));
-      float* to = rows + f * pixels_per_chunk + first;
-      hn::StoreU(hn::BitCast(d, hn::InterleaveLower(pairs, low01, low23)), d, to);
-      hn::StoreU(hn::BitCast(d, hn::InterleaveUpper(pairs, low01, low23)), d,
-                 to + pixels_per_chunk);
-      hn::StoreU(hn::BitCast(d, hn::InterleaveLower(pairs, high01, high23)), d,
-                 to + 2 * pixels_per_chunk);
-      hn::StoreU(hn::BitCast(d, hn::InterleaveUpper(pairs, high01, high23)), d,
-                 to + 3 * pixels_per_chunk);
-    }
+  for (int f = begin; f < end; f += 4) {
+    const Vector v0 = load_blocks(d, table + f, start), v1 = load_blocks(d, table + f, start + 1);
+    const Vector v2 = load_blocks(d, table + f, start + 2);
+    const Vector v3 = load_blocks(d, table + f, start + 3);
+    const auto low01 = hn::BitCast(pairs, hn::InterleaveLower(d, v0, v1));
+    const auto low23 = hn::BitCast(pairs, hn::InterleaveLower(d, v2, v3));
+    const auto high01 = hn::BitCast(pairs, hn::InterleaveUpper(d, v0, v1));
+    const auto high23 = hn::BitCast(pairs, hn::InterleaveUpper(d, v2, v3));
+    float* row = rows + f * pixels_per_chunk;
+    hn::StoreU(hn::BitCast(d, hn::InterleaveLower(pairs, low01, low23)), d, row);
+    hn::StoreU(hn::BitCast(d, hn::InterleaveUpper(pairs, low01, low23)), d, row + pixels_per_chunk);
+    row += 2 * pixels_per_chunk;
+    hn::StoreU(hn::BitCast(d, hn::InterleaveLower(pairs, high01, high23)), d, row);
+    hn::StoreU(hn::BitCast(d, hn::InterleaveUpper(pairs, high01, high23)), d,
+               row + pixels_per_chunk);
   }
 }
 #endif
+
+/// Where the rows of a table with these numbers start; a chunk's further rows are row -1.
+HWY_INLINE void find_rows(const RecordTable& table, const std::int32_t* numbers, int pixels,
+                          std::uint32_t* start) {
+  const auto stride = static_cast<std::uint32_t>(table.stride());
+  for (int i = 0; i < pixels; ++i) start[i] = static_cast<std::uint32_t>(numbers[i] + 1) * stride;
+  std::fill(start + pixels, start + pixels_per_chunk, 0u);
+}
 
 /// <q, vector> with a vector of the record.
 HWY_INLINE Vector along(const OutputChunk& chunk, int rank, int field, int i) {
@@ -155,6 +180,29 @@ HWY_INLINE void refine(const RecordLayout& layout, int rank, OutputChunk& chunk)
     hn::StoreU(hn::IfThenElseZero(has_depth, inside), d, chunk.signal + i);
     hn::StoreU(hn::IfThenElseZero(has_depth, hn::IfThenElse(is_left, hn::Neg(t), t)), d,
                chunk.offset + i);
+  }
+}
+
+/// The quarters of chords where the best points lie.
+HWY_INLINE void find_chords(const RecordTable& chords, OutputChunk& chunk) {
+  const Floats d;
+  const Indices di;
+  const hn::RebindToUnsigned<Floats> du;
+  const auto last = hn::Set(di, ChordLayout::quarters - 1), one = hn::Set(di, 1);
+  const auto at_bin = hn::Set(di, ChordLayout::at_bin), blocks = hn::Set(di, ChordLayout::blocks);
+  alignas(64) std::uint32_t start[pixels_per_chunk];
+  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d))) {
+    const Vector offset = load(chunk.offset, i);
+    const auto is_left = hn::RebindMask(di, hn::Lt(offset, hn::Zero(d)));
+    const auto is_at_bin = hn::RebindMask(di, hn::Eq(offset, hn::Zero(d)));
+    const auto quarter =
+        hn::ConvertTo(di, hn::Mul(hn::Abs(offset), all(static_cast<float>(ChordLayout::quarters))));
+    const auto steps = hn::IfThenZeroElse(is_at_bin, hn::Add(hn::Min(quarter, last), one));
+    const auto block = hn::IfThenElse(is_left, hn::Sub(at_bin, steps), hn::Add(at_bin, steps));
+    const auto bin = hn::Add(hn::LoadU(di, chunk.bin + i), one);
+    const auto row = hn::Add(hn::Mul(bin, blocks), block);
+    hn::StoreU(hn::BitCast(du, hn::ShiftLeft<2>(row)), du, start + i);
+    gather(chords.data(), start + i, 0, ChordLayout::fields, chunk.chord + i);
   }
 }
 
@@ -211,12 +259,9 @@ HWY_INLINE void find_ambient(const Constants& c, const RecordLayout& layout, Out
     for (int k = 1; k < count; ++k)
       sum = product_plus(load(chunk.electrons + k * pixels_per_tile, i),
                          all(c.ambient_weight[static_cast<std::size_t>(k)]), sum);
-    const Vector offset = load(chunk.offset, i);
-    const Vector change =
-        hn::IfThenElse(hn::Lt(offset, hn::Zero(d)), load(chunk.field(layout.ambient() + 1), i),
-                       load(chunk.field(layout.ambient() + 2), i));
-    const Vector of_signal =
-        product_plus(hn::Abs(offset), change, load(chunk.field(layout.ambient()), i));
+    const Vector of_signal = product_plus(hn::Abs(load(chunk.offset, i)),
+                                          load(chunk.chord_field(ChordLayout::ambient), i),
+                                          load(chunk.field(layout.ambient()), i));
     hn::StoreU(hn::Sub(sum, hn::Mul(load(chunk.signal, i), of_signal)), d, chunk.ambient + i);
   }
 }
@@ -248,24 +293,14 @@ HWY_INLINE void find_signal_noise(const RecordLayout& layout, OutputChunk& chunk
         d, chunk.signal_variance + i);
 }
 
-/// A coefficient of depth noise: on the left chord, at the bin, or on the right chord.
-HWY_INLINE Vector on_side(const float* left, Vector offset, int i) {
-  const Vector zero = hn::Zero(Floats());
-  const Vector on_left = load(left, i), on_right = load(left + 6 * pixels_per_chunk, i);
-  return hn::IfThenElse(
-      hn::Lt(offset, zero), on_left,
-      hn::IfThenElse(hn::Gt(offset, zero), on_right, load(left + 3 * pixels_per_chunk, i)));
-}
-
-HWY_INLINE void write_depth_noise(const RecordLayout& layout, const OutputChunk& chunk,
-                                  float* standard_deviation_m) {
+HWY_INLINE void write_depth_noise(const OutputChunk& chunk, float* standard_deviation_m) {
   const Floats d;
-  const float* noise = chunk.field(layout.depth_noise());
+  const float* noise = chunk.chord_field(ChordLayout::depth_noise);
   for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d))) {
-    const Vector signal = load(chunk.signal, i), offset = load(chunk.offset, i);
-    const Vector variance = variance_of(signal, noisy_ambient(chunk, i), on_side(noise, offset, i),
-                                        on_side(noise + pixels_per_chunk, offset, i),
-                                        on_side(noise + 2 * pixels_per_chunk, offset, i));
+    const Vector signal = load(chunk.signal, i);
+    const Vector variance =
+        variance_of(signal, noisy_ambient(chunk, i), load(noise, i),
+                    load(noise + pixels_per_chunk, i), load(noise + 2 * pixels_per_chunk, i));
     const Vector deviation = hn::Div(hn::Sqrt(variance), signal);
     store_some(d, unless(hn::Gt(signal, hn::Zero(d)), deviation), standard_deviation_m + i,
                chunk.pixels - i);
@@ -284,39 +319,72 @@ HWY_INLINE Vector normal_probability(Vector z) {
   return hn::Sub(all(1.0f), hn::Div(all(0.5f), power));
 }
 
-/// Probability that the bin scores higher than its rival, for noise on the difference d of their
-/// directions: of the lead <d, q> with variance sum_k (V d)_k^2 v_k.
-HWY_INLINE void find_confidence(const Constants& c, const RecordLayout& layout, int rank,
-                                OutputChunk& chunk) {
-  constexpr float least_variance_e2 = 1e-12f;
+/// Difference d of the directions of bins and rivals, instead of the rivals'. Returns <d, q>, and
+/// in `square` |d|^2.
+HWY_INLINE Vector lead_of(const RecordLayout& layout, int rank, OutputChunk& chunk, int i,
+                          Vector& square) {
   const Floats d;
-  const Vector zero = hn::Zero(d);
-  float* const difference = chunk.rival_direction;
+  Vector lead = square = hn::Zero(d);
+  for (int j = 0; j < rank; ++j) {
+    float* const rival = chunk.rival_direction + j * pixels_per_chunk + i;
+    const Vector apart = hn::Sub(load(chunk.field(layout.direction() + j), i), load(rival, 0));
+    hn::StoreU(apart, d, rival);
+    lead = product_plus(apart, load(chunk.plane + j * pixels_per_tile, i), lead);
+    square = product_plus(apart, apart, square);
+  }
+  return lead;
+}
+
+/// Noise of the lead: sum_k (V d)_k^2 v_k.
+HWY_INLINE Vector lead_variance(const Constants& c, const RecordLayout& layout, int rank,
+                                const OutputChunk& chunk, int i) {
+  const Vector signal = load(chunk.signal, i), ambient = noisy_ambient(chunk, i);
+  Vector variance = hn::Zero(Floats());
+  for (int k = 0; k < layout.measurements; ++k) {
+    const float* const basis = c.basis.data() + k * rank;
+    Vector weight = hn::Zero(Floats());
+    for (int j = 0; j < rank; ++j)
+      weight = product_plus(load(chunk.rival_direction + j * pixels_per_chunk, i), all(basis[j]),
+                            weight);
+    const Vector without_signal =
+        product_plus(ambient, all(c.shot_ambient.data()[k]), all(c.floor_noise_e2.data()[k]));
+    const Vector noise =
+        product_plus(signal, load(chunk.field(layout.shot() + k), i), without_signal);
+    variance =
+        product_plus(hn::Mul(weight, weight), hn::Max(noise, all(least_variance_e2)), variance);
+  }
+  return variance;
+}
+
+/// Probability that the bin scores higher than its rival, for noise on the lead. Most leads are so
+/// many deviations of the most noise there can be that their probability is 1 as a float: the noise
+/// of others alone is computed.
+HWY_INLINE void find_confidence(const Constants& c, const BinRecords& records, int rank,
+                                OutputChunk& chunk) {
+  const Floats d;
+  const RecordLayout& layout = records.layout;
+  const Vector zero = hn::Zero(d), one = all(1.0f);
   for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d))) {
-    Vector lead = zero;
-    for (int j = 0; j < rank; ++j) {
-      float* const at = difference + j * pixels_per_chunk;
-      const Vector apart = hn::Sub(load(chunk.field(layout.direction() + j), i), load(at, i));
-      hn::StoreU(apart, d, at + i);
-      lead = product_plus(apart, load(chunk.plane + j * pixels_per_tile, i), lead);
-    }
-    const Vector signal = load(chunk.signal, i), ambient = noisy_ambient(chunk, i);
-    Vector variance = zero;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(layout.measurements); ++k) {
-      const float* const basis = &c.basis[k * static_cast<std::size_t>(rank)];
-      Vector weight = zero;
-      for (int j = 0; j < rank; ++j)
-        weight = product_plus(load(difference + j * pixels_per_chunk, i), all(basis[j]), weight);
-      const Vector noise = hn::Max(
-          all(least_variance_e2),
-          product_plus(signal, load(chunk.field(layout.shot() + static_cast<int>(k)), i),
-                       product_plus(ambient, all(c.shot_ambient[k]), all(c.floor_noise_e2[k]))));
-      variance = product_plus(hn::Mul(weight, weight), noise, variance);
-    }
-    const Vector probability = normal_probability(hn::Div(hn::Max(lead, zero), hn::Sqrt(variance)));
+    gather(records.directions.data(), chunk.rival_start + i, 0, rank, chunk.rival_direction + i);
+    Vector square;
+    const Vector lead = hn::Max(lead_of(layout, rank, chunk, i, square), zero);
+    const Vector most_noise = product_plus(
+        load(chunk.signal, i), all(c.most_shot),
+        product_plus(noisy_ambient(chunk, i), all(c.most_shot_ambient), all(c.most_floor_e2)));
+    const Mask is_sure =
+        hn::Ge(hn::Mul(lead, lead), hn::Mul(hn::Mul(square, all(sure_sigma2)), most_noise));
     const auto has_rival = hn::Gt(hn::LoadU(Indices(), chunk.rival + i), hn::Set(Indices(), -1));
-    const Mask is_doubted = hn::And(hn::RebindMask(d, has_rival), hn::Gt(variance, zero));
-    hn::StoreU(hn::IfThenElse(is_doubted, probability, all(1.0f)), d, chunk.confidence + i);
+    const Mask is_open = hn::And(hn::And(hn::RebindMask(d, has_rival), hn::Not(is_sure)),
+                                 hn::Gt(load(chunk.signal, i), zero));
+    Vector confidence = one;
+    if (!hn::AllFalse(d, is_open)) {
+      gather(records.records.data(), chunk.start + i, layout.shot(), layout.end(),
+             chunk.record + i);
+      const Vector deviation = hn::Sqrt(lead_variance(c, layout, rank, chunk, i));
+      confidence =
+          hn::IfThenElse(is_open, normal_probability(hn::Div(lead, deviation)), confidence);
+    }
+    hn::StoreU(confidence, d, chunk.confidence + i);
   }
 }
 
@@ -357,18 +425,23 @@ HWY_INLINE void write_chunk(const BinRecords& records, const Constants& c, const
                             const DecodedView& planes) {
   const RecordLayout& layout = records.layout;
   const int rank = Rank > 0 ? Rank : layout.rank;
-  gather_rows(records.records, chunk.bin, chunk.pixels, steps.fields, chunk.record);
+  find_rows(records.records, chunk.bin, chunk.pixels, chunk.start);
+  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(Floats())))
+    gather(records.records.data(), chunk.start + i, 0, steps.fields, chunk.record + i);
   refine(layout, rank, chunk);
   if (planes.depth_m) write_depth(c, chunk, planes.depth_m);
   if (planes.bin) write_bins(c, chunk, planes.bin);
   if (planes.signal_e_per_s) write_values(chunk, chunk.signal, planes.signal_e_per_s);
-  if (steps.ambient) find_ambient(c, layout, chunk);
+  if (steps.ambient) {
+    find_chords(records.chords, chunk);
+    find_ambient(c, layout, chunk);
+  }
   if (planes.ambient_e_per_s) write_ambient(c, chunk, planes.ambient_e_per_s);
   if (planes.predicted_standard_deviation_m)
-    write_depth_noise(layout, chunk, planes.predicted_standard_deviation_m);
+    write_depth_noise(chunk, planes.predicted_standard_deviation_m);
   if (steps.confidence) {
-    gather_rows(records.directions, chunk.rival, chunk.pixels, rank, chunk.rival_direction);
-    find_confidence(c, layout, rank, chunk);
+    find_rows(records.directions, chunk.rival, chunk.pixels, chunk.rival_start);
+    find_confidence(c, records, rank, chunk);
   }
   if (planes.confidence) write_values(chunk, chunk.confidence, planes.confidence);
   if (planes.status) {
@@ -456,6 +529,10 @@ OutputKernel::OutputKernel(const DecodingTable& table, const AmbientProjection& 
   constants_.basis.assign(basis.data(), basis.data() + basis.size());
   constants_.shot_ambient = in_floats(noise.per_ambient);
   constants_.floor_noise_e2 = in_floats(noise.without_light_e2);
+  constants_.most_shot = static_cast<float>(std::max(0.0, noise.per_signal.maxCoeff()));
+  constants_.most_shot_ambient = static_cast<float>(std::max(0.0, noise.per_ambient.maxCoeff()));
+  constants_.most_floor_e2 =
+      std::max(least_variance_e2, static_cast<float>(noise.without_light_e2.maxCoeff()));
   constants_.low_signal_sigma2 = static_cast<float>(std::min<double>(
       options.low_signal_sigma * options.low_signal_sigma, std::numeric_limits<float>::max()));
   constants_.minimum_confidence = static_cast<float>(options.minimum_confidence);
@@ -476,7 +553,7 @@ void OutputKernel::write(const MatchedTile& tile, const DecodedView& planes) con
   steps.confidence = needs_rivals(planes);
   steps.noise = steps.confidence || planes.predicted_standard_deviation_m || planes.status;
   steps.ambient = steps.noise || planes.ambient_e_per_s;
-  steps.fields = steps.confidence ? layout.end()
+  steps.fields = steps.confidence ? layout.end_of_directions()
                  : steps.noise    ? layout.end_of_noise()
                  : steps.ambient  ? layout.end_of_light()
                                   : layout.end_of_depth();

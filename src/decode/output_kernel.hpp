@@ -59,6 +59,9 @@ class OutputKernel {
     std::vector<float> basis;           // V (K, rank)
     std::vector<float> shot_ambient;    // variance per ambient light (K)
     std::vector<float> floor_noise_e2;  // variance without light (K)
+    float most_shot = 0.0f;             // the largest variance per signal
+    float most_shot_ambient = 0.0f;     // per ambient light
+    float most_floor_e2 = 0.0f;         // and without light
     float low_signal_sigma2 = 0.0f;
     float minimum_confidence = 0.0f;
   };
