@@ -66,8 +66,9 @@ HWY_INLINE void find_chords(const RecordTable& chords, OutputChunk& chunk) {
     const auto bin = hn::Add(hn::LoadU(di, chunk.bin + i), one);
     const auto row = hn::Add(hn::Mul(bin, blocks), block);
     hn::StoreU(hn::BitCast(du, hn::ShiftLeft<2>(row)), du, start + i);
-    gather(chords.data(), start + i, 0, ChordLayout::fields, chunk.chord + i);
   }
+  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d)))
+    gather(chords.data(), start + i, 0, ChordLayout::fields, chunk.chord + i);
 }
 
 HWY_INLINE void write_depth(const OutputConstants& c, const OutputChunk& chunk, float* depth_m) {
