@@ -70,7 +70,7 @@ TEST(OutputKernel, WritesNothingPastATile) {
   const DecodeSetup setup("hamiltonian-k3", camera_with("paper-30x"));
   const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 1e4, 1e4, pixels_per_tile, 4);
   const Outputs whole = Matched(setup.decoder.table(), raw).outputs();
-  for (const std::size_t pixels : {0, 1, 3, 15, 16, 17, 63, 64, 65, 200, 255}) {
+  for (const std::size_t pixels : {0, 1, 3, 15, 16, 17, 63, 64, 127, 128, 129, 255}) {
     const Matched part(setup.decoder.table(),
                        {raw.begin(), raw.begin() + 3 * static_cast<std::ptrdiff_t>(pixels)});
     for_each_target([&] {
