@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <hwy/aligned_allocator.h>
+
+#include <cstdint>
+
+#include "decode/ambient_projection.hpp"
+
+namespace tofsmith {
+
+/// Rows of floats, read in blocks of four. Row -1, all 0, stands for no bin.
+class RecordTable {
+ public:
+  RecordTable(std::int32_t rows, int fields);
+
+  int stride() const { return stride_; }
+  /// Row n starts at (n + 1) stride.
+  const float* data() const { return values_.get(); }
+  const float* row(std::int32_t n) const { return &values_[offset(n)]; }
+  float* row(std::int32_t n) { return &values_[offset(n)]; }
+
+ private:
+  std::size_t offset(std::int32_t n) const {
+    return static_cast<std::size_t>(n + 1) * static_cast<std::size_t>(stride_);
+  }
+  int stride_;  // in floats
+  hwy::AlignedFreeUniquePtr<float[]> values_;
+};
+
+/// Variance of the measurements: S per_signal + A per_ambient + without_light.
+struct MeasurementNoise {
+  explicit MeasurementNoise(const DecodingTable& table);
+
+  RowMajorMatrix per_signal;         ///< (N, K)
+  Eigen::VectorXd per_ambient;       ///< (K)
+  Eigen::VectorXd without_light_e2;  ///< (K)
+};
+
+/// Where the fields of a bin's record begin: who wants little of a pixel reads only the front. With
+/// p the curve at the bin, e the chord to a neighbour and w the unit vector across p in its
+/// direction: e = beta p + c w.
+struct RecordLayout {
+  int rank = 0;
+  int measurements = 0;
+
+  constexpr int point() const { return 0; }           ///< p / |p|^2 (rank)
+  constexpr int left() const { return rank; }         ///< w to the bin before (rank); 0: no chord
+  constexpr int right() const { return 2 * rank; }    ///< w to the next bin (rank)
+  constexpr int turn() const { return 3 * rank; }     ///< beta / c, left and right
+  constexpr int reach() const { return turn() + 2; }  ///< 1 / c, left and right
+  constexpr int end_of_depth() const { return reach() + 2; }
+
+  constexpr int ambient() const { return end_of_depth(); }  ///< <x, a> / |a|^2
+  constexpr int end_of_light() const { return ambient() + 1; }
+
+  /// Variance of the signal estimate: per signal, per ambient light, and without light.
+  constexpr int signal_noise() const { return end_of_light(); }
+  constexpr int end_of_noise() const { return signal_noise() + 3; }
+
+  constexpr int direction() const { return end_of_noise(); }  ///< p / |p| (rank)
+  constexpr int end_of_directions() const { return direction() + rank; }
+
+  /// Variance of the measurements per signal (K): begins a block.
+  constexpr int shot() const { return (end_of_directions() + 3) / 4 * 4; }
+  constexpr int end() const { return shot() + measurements; }
+};
+
+/// A bin's chords: blocks of four fields, from the last quarter of the left chord over the bin
+/// itself to the last quarter of the right one.
+struct ChordLayout {
+  static constexpr int quarters = 4;
+  static constexpr int at_bin = quarters;
+  static constexpr int blocks = 2 * quarters + 1;
+  /// Row of a table of chords where a bin's blocks begin; those of bin -1 are all 0.
+  static constexpr std::int32_t first_row(std::int32_t bin) { return blocks * (bin + 1) - 1; }
+
+  /// S^2 times the variance of depth [m^2], infinite where depth has no slope: per signal, per
+  /// ambient light, and without light.
+  static constexpr int depth_noise = 0;
+  static constexpr int ambient = 3;  ///< change of <x, a> / |a|^2 along the chord
+  static constexpr int fields = 4;
+};
+
+/// Most fields of a record, a multiple of a block's four.
+inline constexpr int max_record_fields =
+    (RecordLayout{max_measurements, max_measurements}.end() + 3) / 4 * 4;
+
+/// All that depends on the bin alone, in single precision, computed in double.
+struct BinRecords {
+  BinRecords(const DecodingTable& table, const AmbientProjection& projection);
+
+  RecordLayout layout;
+  RecordTable records;     ///< of every bin
+  RecordTable chords;      ///< of every bin
+  RecordTable directions;  ///< the records' field `direction` alone
+};
+
+}  // namespace tofsmith
