@@ -1,0 +1,256 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// Branch and bound over arcs against a plain search in double of all rows.
+#include "decode/arc_search.hpp"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "decode/block_search.hpp"
+#include "decode_setup.hpp"
+
+namespace tofsmith {
+namespace {
+
+using Curve = RowMajorMatrix;
+
+// Debug builds, slowed further by sanitizers, look at a sample.
+#ifdef NDEBUG
+constexpr int vectors_per_level = 4096;
+#else
+constexpr int vectors_per_level = 128;
+#endif
+
+DirectionTable directions_of(const Curve& curve) {
+  DecodingTable table;
+  table.correlation = curve;
+  table.ambient_gain = Eigen::VectorXd::Zero(curve.cols());
+  table.exposure_s = Eigen::VectorXd::Ones(curve.cols());
+  return DirectionTable(AmbientProjection(table));
+}
+
+/// The curve of a code of this many bins, without what ambient light explains.
+DirectionTable directions_of(const std::string& code, int code_samples, int samples) {
+  Camera camera = camera_with("paper-10f0");
+  camera.samples = code_samples;
+  const CodeSet set = build_family(code, camera).resampled(samples);
+  camera.samples = samples;
+  return DirectionTable(AmbientProjection(make_decoding_table(ForwardModel(set, camera), camera)));
+}
+
+Curve random_smooth_curve(int rank, int samples, std::uint64_t seed) {
+  RandomStream random(seed, 0);
+  Curve curve = Curve::Zero(samples, rank);
+  for (int j = 0; j < rank; ++j)
+    for (int harmonic = 1; harmonic <= (rank + 2) / 2; ++harmonic) {
+      const double cosine = random.normal() / harmonic, sine = random.normal() / harmonic;
+      for (int n = 0; n < samples; ++n) {
+        const double phase = 2.0 * std::numbers::pi * harmonic * n / samples;
+        curve(n, j) += cosine * std::cos(phase) + sine * std::sin(phase);
+      }
+    }
+  return curve;
+}
+
+/// Every direction `times` times in a row, in lengths that differ.
+Curve with_plateaus(const Curve& curve, int times) {
+  Curve repeated(curve.rows() * times, curve.cols());
+  for (Eigen::Index n = 0; n < repeated.rows(); ++n)
+    repeated.row(n) = curve.row(n / times) * (1.0 + static_cast<double>(n % times) / 3.0);
+  return repeated;
+}
+
+/// The whole curve twice, once around.
+Curve twice_around(const Curve& curve) {
+  Curve twice(2 * curve.rows(), curve.cols());
+  twice << curve, curve;
+  return twice;
+}
+
+/// Every fifth bin without contrast, the first ones too.
+Curve with_gaps(Curve curve) {
+  for (Eigen::Index n = 0; n < curve.rows(); n += 5) curve.row(n).setZero();
+  curve.topRows(3).setZero();
+  return curve;
+}
+
+/// Vectors near the curve in units of its directions, as doubles and rounded to float with scales
+/// of all sizes.
+struct Vectors {
+  int rank;
+  std::vector<double> exact;  // (count, rank)
+  std::vector<float> plane;   // [tile of 64][rank][64]
+  std::vector<float> error;
+
+  int count() const { return static_cast<int>(error.size()); }
+  const double* operator[](int i) const { return &exact[static_cast<std::size_t>(i * rank)]; }
+  const float* tile(int first) const { return &plane[static_cast<std::size_t>(first * rank)]; }
+};
+constexpr int tile_size = 64;
+
+/// @param deviation       noise of every component, beside directions of length 1
+/// @param relative_error  how far the float vectors are off, as a share of their length
+Vectors noisy_vectors(const DirectionTable& directions, double deviation, int count,
+                      std::uint64_t seed, double relative_error = 0.0) {
+  RandomStream random(seed, 1);
+  const int rank = directions.rank();
+  Vectors vectors{rank, {}, {}, {}};
+  vectors.plane.resize(static_cast<std::size_t>(count * rank));
+  for (int i = 0; i < count; ++i) {
+    const double scale = std::exp(5.0 * random.normal());
+    const auto row = static_cast<std::int32_t>(directions.samples() * random.uniform());
+    const double t = random.uniform();
+    Eigen::VectorXd q(rank), wrong(rank);
+    for (int j = 0; j < rank; ++j) {
+      q[j] = (1.0 - t) * directions.direction(row, j) +
+             t * directions.direction((row + 1) % directions.samples(), j) +
+             deviation * random.normal();
+      wrong[j] = random.normal();
+    }
+    q *= scale;
+    wrong *= relative_error * q.norm() / wrong.norm();
+    float* first = &vectors.plane[static_cast<std::size_t>(i / tile_size * tile_size * rank +
+                                                           i % tile_size)];
+    double square = 0.0;
+    for (int j = 0; j < rank; ++j) {
+      vectors.exact.push_back(q[j]);
+      first[j * tile_size] = static_cast<float>(q[j] + wrong[j]);
+      square += (q[j] - first[j * tile_size]) * (q[j] - first[j * tile_size]);
+    }
+    vectors.error.push_back(std::nextafter(static_cast<float>(std::sqrt(square)), 1e30f));
+  }
+  return vectors;
+}
+
+std::vector<std::int32_t> search_all(const ArcSearch& search, const Vectors& vectors) {
+  std::vector<std::int32_t> rows(static_cast<std::size_t>(vectors.count()));
+  for (int first = 0; first < vectors.count(); first += tile_size)
+    search.search(vectors.tile(first), tile_size, &vectors.error[static_cast<std::size_t>(first)],
+                  std::min(tile_size, vectors.count() - first),
+                  &rows[static_cast<std::size_t>(first)]);
+  return rows;
+}
+
+/// The definition: sums from the first component to the last, the lowest row that ties.
+std::int32_t lowest_best_row(const DirectionTable& directions, const double* q,
+                             std::vector<double>& score) {
+  const int samples = directions.samples();
+  score.resize(static_cast<std::size_t>(samples));
+  double length = 0.0;
+  for (int j = 0; j < directions.rank(); ++j) length += q[j] * q[j];
+  length = std::sqrt(length);
+  for (std::int32_t n = 0; n < samples; ++n) {
+    double sum = q[0] * directions.direction(n, 0);
+    for (int j = 1; j < directions.rank(); ++j) sum += q[j] * directions.direction(n, j);
+    score[static_cast<std::size_t>(n)] = sum;
+  }
+  const double least = *std::max_element(score.begin(), score.end()) - tie_tolerance * length;
+  return static_cast<std::int32_t>(
+      std::find_if(score.begin(), score.end(), [&](double s) { return s >= least; }) -
+      score.begin());
+}
+
+/// Unit vectors, as choose() takes them.
+std::vector<double> unit_of(const double* q, int rank) {
+  const Eigen::VectorXd unit = Eigen::Map<const Eigen::VectorXd>(q, rank).normalized();
+  return {unit.begin(), unit.end()};
+}
+
+/// Runs `body` once for every instruction set this machine offers.
+template <typename Body>
+void for_each_target(const Body& body) {
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    SCOPED_TRACE(hwy::TargetName(target));
+    body();
+  }
+  hwy::SetSupportedTargetsForTest(0);
+}
+
+/// @return share of vectors whose row was proven, on the instruction set that proves least
+double expect_agreement(const DirectionTable& directions, const Vectors& vectors) {
+  const ArcSearch search(directions);
+  std::vector<std::int32_t> expected, chosen;
+  std::vector<std::vector<double>> units;
+  std::vector<double> score;
+  for (int i = 0; i < vectors.count(); ++i) {
+    expected.push_back(lowest_best_row(directions, vectors[i], score));
+    units.push_back(unit_of(vectors[i], vectors.rank));
+    chosen.push_back(lowest_best_row(directions, units.back().data(), score));
+  }
+  std::size_t least_proven = expected.size();
+  for_each_target([&] {
+    const std::vector<std::int32_t> rows = search_all(search, vectors);
+    std::size_t proven = 0, wrong = 0, wrongly_chosen = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      proven += rows[i] >= 0;
+      wrong += rows[i] >= 0 && rows[i] != expected[i];
+      wrongly_chosen += search.choose(directions, units[i].data(), 1) != chosen[i];
+    }
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_EQ(wrongly_chosen, 0u);
+    least_proven = std::min(least_proven, proven);
+  });
+  return static_cast<double>(least_proven) / static_cast<double>(expected.size());
+}
+
+constexpr double noise_levels[] = {0.0, 0.02, 0.15, 0.6, 100.0};
+
+/// @return share proven at the middle level
+double expect_agreement_at_all_levels(const DirectionTable& directions, int count) {
+  double share = 0.0;
+  std::uint64_t seed = 1;
+  for (const double deviation : noise_levels) {
+    SCOPED_TRACE("deviation " + std::to_string(deviation));
+    const double proven = expect_agreement(
+        directions, noisy_vectors(directions, deviation, count, seed++));
+    if (deviation == 0.15) share = proven;
+  }
+  return share;
+}
+
+TEST(ArcSearch, AgreesOnSmoothCurvesOfAllRanksAndLengths) {
+  for (int rank = 2; rank <= 12; ++rank)
+    for (const int samples : {8, 17, 100, 241, 1000, 3000}) {
+      if (samples <= rank) continue;
+      SCOPED_TRACE(std::to_string(rank) + " x " + std::to_string(samples));
+      const DirectionTable directions =
+          directions_of(random_smooth_curve(rank, samples, static_cast<std::uint64_t>(rank)));
+      const double proven =
+          expect_agreement_at_all_levels(directions, vectors_per_level * 20 / (samples + 300));
+      EXPECT_GT(proven, 0.9);
+    }
+}
+
+struct CodeCase {
+  const char* code;
+  int code_samples;
+  int samples;
+  double least_proven;
+};
+
+class ArcSearchOfCode : public testing::TestWithParam<CodeCase> {};
+
+TEST_P(ArcSearchOfCode, AgreesAndProvesNearlyAll) {
+  const CodeCase& c = GetParam();
+  const DirectionTable directions = directions_of(c.code, c.code_samples, c.samples);
+  const double proven = expect_agreement_at_all_levels(directions, vectors_per_level);
+  EXPECT_GT(proven, c.least_proven);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Codes, ArcSearchOfCode,
+    testing::Values(CodeCase{"hamiltonian-k6", 240, 240, 0.99},
+                    CodeCase{"hamiltonian-k7", 252, 1000, 0.99},
+                    CodeCase{"hamiltonian-k8", 252, 1000, 0.99},
+                    CodeCase{"hamiltonian-k8", 252, 4100, 0.98},
+                    CodeCase{"multifrequency-1x3-2x3-3x3-4x3", 240, 1000, 0.99},
+                    CodeCase{"gray-k4", 240, 1000, 0.9}, CodeCase{"gray-k6", 240, 240, 0.9}));
+
+}  // namespace
+}  // namespace tofsmith
