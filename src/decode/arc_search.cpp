@@ -27,7 +27,7 @@ using IndexVector = hn::Vec<Indices>;
 
 constexpr float no_score = -std::numeric_limits<float>::infinity();
 constexpr float unit_roundoff = 0.5f * std::numeric_limits<float>::epsilon();
-constexpr int group_pixels = 16;   // whose steps are taken together, so that they overlap
+constexpr int group_pixels = 16;      // whose steps are taken together, so that they overlap
 constexpr int most_flat_blocks = 16;  // of arcs that are looked at one by one
 
 HWY_INLINE int lanes() { return static_cast<int>(hn::Lanes(Floats())); }
@@ -101,7 +101,8 @@ struct Within {
     const auto row = hn::Min(hn::Add(hn::Mul(hn::Iota(d, 0), hn::Set(d, step)), hn::Set(d, first)),
                              hn::Set(d, samples - 1));
     const auto least = hn::Set(d, begin), none = hn::Set(d, -1);
-    const auto position = hn::IfThenElse(hn::Lt(row, least), hn::Add(row, hn::Set(d, samples)), row);
+    const auto position =
+        hn::IfThenElse(hn::Lt(row, least), hn::Add(row, hn::Set(d, samples)), row);
     const auto in_time = hn::IfThenElse(hn::Lt(position, hn::Set(d, end)), position, none);
     return hn::IfThenElse(hn::Lt(position, least), none, in_time);
   }
@@ -147,15 +148,13 @@ HWY_INLINE Vector score_knots(const KnotLevel& level, int b, const Query& q, con
   for (int i = 0; i < block_lanes; i += lanes()) {
     const Vector part = scores<Rank>(q, level.block(b) + i);
     hn::Store(part, Floats(), score + i);
-    best = hn::Max(best, where(part, (b * arcs_per_block + i) * level.rows_per_arc(),
-                               level.rows_per_arc()));
+    best = hn::Max(
+        best, where(part, (b * arcs_per_block + i) * level.rows_per_arc(), level.rows_per_arc()));
   }
   return best;
 }
 
-HWY_INLINE bool is_flat(const ArcTable& table) {
-  return table.arcs().blocks() <= most_flat_blocks;
-}
+HWY_INLINE bool is_flat(const ArcTable& table) { return table.arcs().blocks() <= most_flat_blocks; }
 HWY_INLINE const KnotLevel& first_level(const ArcTable& table) {
   return is_flat(table) ? table.arcs() : table.bundles();
 }
@@ -209,8 +208,7 @@ HWY_INLINE void refine_walk(const ArcTable& table, const Query& q, float slack, 
   hn::Store(set(no_score), Floats(), most);
   BestKnot<Rank, Where> best{table, q, where, most};
   for_each_near(table, walk, best);
-  walk.threshold =
-      std::max(walk.threshold, threshold_of(largest(hn::Load(Floats(), most)), slack));
+  walk.threshold = std::max(walk.threshold, threshold_of(largest(hn::Load(Floats(), most)), slack));
 }
 
 template <typename Visit>
@@ -236,8 +234,7 @@ struct OfBundle {
   HWY_INLINE void operator()(std::int32_t bundle) {
     HWY_ALIGN float score[block_lanes];
     score_knots<Rank>(table.arcs(), bundle, q, Anywhere(), set(no_score), score);
-    std::uint32_t bits =
-        near_in_block<Rank>(table.arcs().block(bundle), score, q, threshold);
+    std::uint32_t bits = near_in_block<Rank>(table.arcs().block(bundle), score, q, threshold);
     for (; bits != 0; bits &= bits - 1)
       visit_arc(table, bundle * arcs_per_block + std::countr_zero(bits), visit);
   }
@@ -318,8 +315,7 @@ HWY_INLINE std::int32_t prove(const ArcTable& table, const Query& q, const Leade
   const auto lane = static_cast<std::size_t>(
       std::max<std::intptr_t>(0, hn::FindFirstTrue(d, hn::Eq(best, set(most)))));
   constexpr std::int32_t step = block_lanes / 2;
-  const std::int32_t w =
-      std::clamp((leaders.row[lane] - step / 2) / step, 0, table.windows() - 1);
+  const std::int32_t w = std::clamp((leaders.row[lane] - step / 2) / step, 0, table.windows() - 1);
 
   const auto row = hn::LoadU(Indices(), leaders.row);
   const auto is_below = hn::Lt(row, hn::Set(Indices(), w * step));
@@ -357,9 +353,7 @@ void search_rows(const ArcTable& table, const float* plane, int stride, const fl
       pixel[count] = i;
       q[count++] = {plane + i, stride, rank, length};
     }
-    const auto slack = [&](int k) {
-      return margins.prune * q[k].length + 2.0f * error[pixel[k]];
-    };
+    const auto slack = [&](int k) { return margins.prune * q[k].length + 2.0f * error[pixel[k]]; };
     for (int k = 0; k < count; ++k) start_walk<Rank>(table, q[k], slack(k), Anywhere(), walk[k]);
     for (int k = 0; k < count; ++k) refine_walk<Rank>(table, q[k], slack(k), Anywhere(), walk[k]);
     for (int k = 0; k < count; ++k) meet_near_rows<Rank>(table, q[k], walk[k], leaders[k]);
@@ -402,8 +396,7 @@ struct MeetPositions {
       score = within(score, first, 1);
       const auto here = within.positions(first, 1);
       const auto is_lower = hn::RebindMask(d, hn::Lt(here, position));
-      const auto leads =
-          hn::Or(hn::Gt(score, best), hn::And(hn::Eq(score, best), is_lower));
+      const auto leads = hn::Or(hn::Gt(score, best), hn::And(hn::Eq(score, best), is_lower));
       position = hn::IfThenElse(hn::RebindMask(Indices(), leads), here, position);
       best = hn::Max(best, score);
     }
@@ -466,8 +459,8 @@ struct MeetLowest {
   }
 };
 
-std::int32_t choose_row(const ArcTable& table, const DirectionTable& directions,
-                        const double* unit, int stride) {
+std::int32_t choose_row(const ArcTable& table, const DirectionTable& directions, const double* unit,
+                        int stride) {
   float components[max_measurements];
   for (int j = 0; j < table.rank(); ++j) components[j] = static_cast<float>(unit[j * stride]);
   const Query q{components, 1, table.rank(), 1.0f};

@@ -12,7 +12,8 @@ namespace tofsmith {
 /// are passed over where a bound proves that the best one is not there. For any rank.
 class ArcSearch {
  public:
-  explicit ArcSearch(const DirectionTable& directions) : table_(directions) {}
+  explicit ArcSearch(const DirectionTable& directions, std::int32_t blocks_per_arc = 1)
+      : table_(directions, blocks_per_arc) {}
 
   /// Rows with the highest scores, for vectors q of any length.
   /// @param plane   [rank][stride]: q of pixel i is plane[i], plane[stride + i], ..
@@ -26,8 +27,7 @@ class ArcSearch {
   /// Bin with the best score in [begin, end), begin >= 0, end <= 2 N, modulo N: the lowest position
   /// of those that tie. Products and sums are rounded one by one: best_bin_within() says the same.
   /// @param components  (rank): one unit vector
-  std::int32_t best_bin_within(const float* components, std::int32_t begin,
-                               std::int32_t end) const;
+  std::int32_t best_bin_within(const float* components, std::int32_t begin, std::int32_t end) const;
 
   /// The lowest row whose score is within tie_tolerance of the best, for scores that are sums of
   /// products in double, rounded one by one from the first component to the last.

@@ -96,28 +96,26 @@ std::vector<float> offsets_of_rows(const DirectionTable& directions) {
   return offset;
 }
 
-std::int32_t rows_per_arc(std::int32_t samples) {
+/// So that no more bundles are needed than a search keeps in mind.
+std::int32_t least_blocks_per_arc(std::int32_t samples) {
   constexpr std::int32_t most = most_bundle_blocks * arcs_per_block * arcs_per_block * block_lanes;
-  return (samples + most - 1) / most * block_lanes;
+  return (samples + most - 1) / most;
 }
 
-float rounded_up(double value) {
-  return std::nextafter(static_cast<float>(value), infinity);
-}
-float rounded_down(double value) {
-  return std::nextafter(static_cast<float>(value), -infinity);
-}
+float rounded_up(double value) { return std::nextafter(static_cast<float>(value), infinity); }
+float rounded_down(double value) { return std::nextafter(static_cast<float>(value), -infinity); }
 
 }  // namespace
 
 KnotLevel::KnotLevel(const DirectionTable& directions, std::int32_t rows_per_arc)
     : rows_per_arc_(rows_per_arc),
+      blocks_(0),
       lanes_per_block_(static_cast<std::size_t>(directions.rank()) + 5) {
   const int rank = directions.rank();
   const std::int32_t samples = directions.samples();
   const std::int32_t arcs = (samples + rows_per_arc - 1) / rows_per_arc;
-  const std::int32_t blocks = (arcs + arcs_per_block - 1) / arcs_per_block;
-  lanes_.resize(static_cast<std::size_t>(blocks) * lanes_per_block_);
+  blocks_ = (arcs + arcs_per_block - 1) / arcs_per_block;
+  lanes_.resize(static_cast<std::size_t>(blocks_) * lanes_per_block_);
 
   const auto row_of_knot = [&](std::int32_t knot) {
     return std::min(knot * rows_per_arc, samples - 1);
@@ -125,7 +123,7 @@ KnotLevel::KnotLevel(const DirectionTable& directions, std::int32_t rows_per_arc
   const auto block_of = [&](std::int32_t b) {
     return &lanes_[static_cast<std::size_t>(b) * lanes_per_block_];
   };
-  for (std::int32_t b = 0; b < blocks; ++b) {
+  for (std::int32_t b = 0; b < blocks_; ++b) {
     BlockLanes* const lanes = block_of(b);
     BlockLanes* const bounds = lanes + 1 + rank;
     for (int i = 0; i < block_lanes; ++i) {
@@ -151,11 +149,11 @@ KnotLevel::KnotLevel(const DirectionTable& directions, std::int32_t rows_per_arc
   }
 }
 
-ArcTable::ArcTable(const DirectionTable& directions)
+ArcTable::ArcTable(const DirectionTable& directions, std::int32_t blocks_per_arc)
     : samples_(directions.samples()),
       rank_(directions.rank()),
       lanes_per_block_(static_cast<std::size_t>(rank_) + 1),
-      arcs_(directions, rows_per_arc(samples_)),
+      arcs_(directions, std::max(blocks_per_arc, least_blocks_per_arc(samples_)) * block_lanes),
       bundles_(directions, arcs_.rows_per_arc() * arcs_per_block) {
   const std::vector<float> offset = offsets_of_rows(directions);
   fill_rows(directions, offset);

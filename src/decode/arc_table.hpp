@@ -30,7 +30,7 @@ class KnotLevel {
   KnotLevel(const DirectionTable& directions, std::int32_t rows_per_arc);
 
   std::int32_t rows_per_arc() const { return rows_per_arc_; }
-  int blocks() const { return static_cast<int>(lanes_.size() / lanes_per_block_); }
+  int blocks() const { return blocks_; }
 
   /// [1 + rank + 4][16]: an offset (0, or -infinity for no knot), the knots, and for the arc that
   /// starts at a knot, then for the one that ends there: 1 / growth and reach / growth, rounded so
@@ -41,6 +41,7 @@ class KnotLevel {
 
  private:
   std::int32_t rows_per_arc_;
+  int blocks_;
   std::size_t lanes_per_block_;
   std::vector<BlockLanes> lanes_;
 };
@@ -48,7 +49,8 @@ class KnotLevel {
 /// Unit directions of a code's curve, laid out for branch and bound over its arcs.
 class ArcTable {
  public:
-  explicit ArcTable(const DirectionTable& directions);
+  /// @param blocks_per_arc  of 16 rows, at least; more where the curve is very long
+  ArcTable(const DirectionTable& directions, std::int32_t blocks_per_arc);
 
   int samples() const { return samples_; }
   int rank() const { return rank_; }
