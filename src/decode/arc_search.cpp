@@ -153,6 +153,8 @@ struct MeetPositions {
   Vector best;
   IndexVector position;
   HWY_INLINE void operator()(std::int32_t block) {
+    const std::int32_t row = block * block_lanes;
+    if (!within.meets(row) && !within.meets(row + within.samples)) return;
     const Floats d;
     for (int i = 0; i < block_lanes; i += lanes()) {
       const float* directions = table.rows(block) + block_lanes + i;

@@ -98,6 +98,9 @@ struct Anywhere {
 /// Rows at the positions [begin, end), modulo N, count.
 struct Within {
   std::int32_t begin, end, samples;
+  HWY_INLINE bool meets(std::int32_t block_begin) const {
+    return block_begin < end && block_begin + block_lanes > begin;
+  }
   /// Positions of rows first, first + step, ..; those that do not count are -1.
   HWY_INLINE IndexVector positions(std::int32_t first, std::int32_t step) const {
     const Indices d;
