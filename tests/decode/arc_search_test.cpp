@@ -8,16 +8,14 @@
 
 #include <algorithm>
 #include <limits>
-#include <numbers>
 #include <string>
 
 #include "decode/block_search.hpp"
 #include "decode_setup.hpp"
+#include "generated_curves.hpp"
 
 namespace tofsmith {
 namespace {
-
-using Curve = RowMajorMatrix;
 
 // Debug builds, slowed further by sanitizers, look at a sample.
 #ifdef NDEBUG
@@ -41,42 +39,6 @@ DirectionTable directions_of(const std::string& code, int code_samples, int samp
   const CodeSet set = build_family(code, camera).resampled(samples);
   camera.samples = samples;
   return DirectionTable(AmbientProjection(make_decoding_table(ForwardModel(set, camera), camera)));
-}
-
-Curve random_smooth_curve(int rank, int samples, std::uint64_t seed) {
-  RandomStream random(seed, 0);
-  Curve curve = Curve::Zero(samples, rank);
-  for (int j = 0; j < rank; ++j)
-    for (int harmonic = 1; harmonic <= (rank + 2) / 2; ++harmonic) {
-      const double cosine = random.normal() / harmonic, sine = random.normal() / harmonic;
-      for (int n = 0; n < samples; ++n) {
-        const double phase = 2.0 * std::numbers::pi * harmonic * n / samples;
-        curve(n, j) += cosine * std::cos(phase) + sine * std::sin(phase);
-      }
-    }
-  return curve;
-}
-
-/// Every direction `times` times in a row, in lengths that differ.
-Curve with_plateaus(const Curve& curve, int times) {
-  Curve repeated(curve.rows() * times, curve.cols());
-  for (Eigen::Index n = 0; n < repeated.rows(); ++n)
-    repeated.row(n) = curve.row(n / times) * (1.0 + static_cast<double>(n % times) / 3.0);
-  return repeated;
-}
-
-/// The whole curve twice, once around.
-Curve twice_around(const Curve& curve) {
-  Curve twice(2 * curve.rows(), curve.cols());
-  twice << curve, curve;
-  return twice;
-}
-
-/// Every fifth bin without contrast, the first ones too.
-Curve with_gaps(Curve curve) {
-  for (Eigen::Index n = 0; n < curve.rows(); n += 5) curve.row(n).setZero();
-  curve.topRows(3).setZero();
-  return curve;
 }
 
 /// Vectors near the curve in units of its directions, as doubles and rounded to float with scales
