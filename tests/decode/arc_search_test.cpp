@@ -4,7 +4,6 @@
 #include "decode/arc_search.hpp"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <algorithm>
 #include <limits>
@@ -12,6 +11,7 @@
 
 #include "decode/block_search.hpp"
 #include "decode_setup.hpp"
+#include "each_target.hpp"
 #include "generated_curves.hpp"
 
 namespace tofsmith {
@@ -122,17 +122,6 @@ std::int32_t lowest_best_row(const DirectionTable& directions, const double* q,
 std::vector<double> unit_of(const double* q, int rank) {
   const Eigen::VectorXd unit = Eigen::Map<const Eigen::VectorXd>(q, rank).normalized();
   return {unit.begin(), unit.end()};
-}
-
-/// Runs `body(target)` once for every instruction set this machine offers.
-template <typename Body>
-void for_each_target(const Body& body) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    SCOPED_TRACE(hwy::TargetName(target));
-    body(target);
-  }
-  hwy::SetSupportedTargetsForTest(0);
 }
 
 /// @return share of vectors whose row was proven, on the vector instructions that prove least
