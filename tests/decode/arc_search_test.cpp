@@ -1,0 +1,347 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// Branch and bound over arcs against a plain search in double of all rows.
+#include "decode/arc_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "decode/block_search.hpp"
+#include "decode_setup.hpp"
+#include "each_target.hpp"
+#include "generated_curves.hpp"
+
+namespace tofsmith {
+namespace {
+
+// Debug builds, slowed further by sanitizers, look at a sample.
+#ifdef NDEBUG
+constexpr int vectors_per_level = 4096;
+#else
+constexpr int vectors_per_level = 128;
+#endif
+
+DirectionTable directions_of(const Curve& curve) {
+  DecodingTable table;
+  table.correlation = curve;
+  table.ambient_gain = Eigen::VectorXd::Zero(curve.cols());
+  table.exposure_s = Eigen::VectorXd::Ones(curve.cols());
+  return DirectionTable(AmbientProjection(table));
+}
+
+/// The curve of a code of this many bins, without what ambient light explains.
+DirectionTable directions_of(const std::string& code, int code_samples, int samples) {
+  Camera camera = camera_with("paper-10f0");
+  camera.samples = code_samples;
+  const CodeSet set = build_family(code, camera).resampled(samples);
+  camera.samples = samples;
+  return DirectionTable(AmbientProjection(make_decoding_table(ForwardModel(set, camera), camera)));
+}
+
+/// Vectors near the curve in units of its directions, as doubles and rounded to float with scales
+/// of all sizes.
+struct Vectors {
+  int rank;
+  std::vector<double> exact;  // (count, rank)
+  std::vector<float> plane;   // [tile of 64][rank][64]
+  std::vector<float> error;
+
+  int count() const { return static_cast<int>(error.size()); }
+  const double* operator[](int i) const { return &exact[static_cast<std::size_t>(i * rank)]; }
+  const float* tile(int first) const { return &plane[static_cast<std::size_t>(first * rank)]; }
+};
+constexpr int tile_size = 64;
+
+/// @param deviation       noise of every component, beside directions of length 1
+/// @param relative_error  how far the float vectors are off, as a share of their length
+Vectors noisy_vectors(const DirectionTable& directions, double deviation, int count,
+                      std::uint64_t seed, double relative_error = 0.0) {
+  RandomStream random(seed, 1);
+  const int rank = directions.rank();
+  Vectors vectors{rank, {}, {}, {}};
+  vectors.plane.resize(
+      static_cast<std::size_t>((count + tile_size - 1) / tile_size * tile_size * rank));
+  for (int i = 0; i < count; ++i) {
+    const double scale = std::exp(5.0 * random.normal());
+    const auto row = static_cast<std::int32_t>(directions.samples() * random.uniform());
+    const double t = random.uniform();
+    Eigen::VectorXd q(rank), wrong(rank);
+    for (int j = 0; j < rank; ++j) {
+      q[j] = (1.0 - t) * directions.direction(row, j) +
+             t * directions.direction((row + 1) % directions.samples(), j) +
+             deviation * random.normal();
+      wrong[j] = random.normal();
+    }
+    q *= scale;
+    wrong *= relative_error * q.norm() / wrong.norm();
+    float* first =
+        &vectors.plane[static_cast<std::size_t>(i / tile_size * tile_size * rank + i % tile_size)];
+    double square = 0.0;
+    for (int j = 0; j < rank; ++j) {
+      vectors.exact.push_back(q[j]);
+      first[j * tile_size] = static_cast<float>(q[j] + wrong[j]);
+      square += (q[j] - first[j * tile_size]) * (q[j] - first[j * tile_size]);
+    }
+    vectors.error.push_back(std::nextafter(static_cast<float>(std::sqrt(square)), 1e30f));
+  }
+  return vectors;
+}
+
+std::vector<std::int32_t> search_all(const ArcSearch& search, const Vectors& vectors) {
+  std::vector<std::int32_t> rows(static_cast<std::size_t>(vectors.count()));
+  for (int first = 0; first < vectors.count(); first += tile_size)
+    search.search(vectors.tile(first), tile_size, &vectors.error[static_cast<std::size_t>(first)],
+                  std::min(tile_size, vectors.count() - first),
+                  &rows[static_cast<std::size_t>(first)]);
+  return rows;
+}
+
+/// The definition: sums from the first component to the last, the lowest row that ties.
+std::int32_t lowest_best_row(const DirectionTable& directions, const double* q,
+                             std::vector<double>& score) {
+  const int samples = directions.samples();
+  score.resize(static_cast<std::size_t>(samples));
+  double length = 0.0;
+  for (int j = 0; j < directions.rank(); ++j) length += q[j] * q[j];
+  length = std::sqrt(length);
+  for (std::int32_t n = 0; n < samples; ++n) {
+    double sum = q[0] * directions.direction(n, 0);
+    for (int j = 1; j < directions.rank(); ++j) sum += q[j] * directions.direction(n, j);
+    score[static_cast<std::size_t>(n)] = sum;
+  }
+  const double least = *std::max_element(score.begin(), score.end()) - tie_tolerance * length;
+  return static_cast<std::int32_t>(
+      std::find_if(score.begin(), score.end(), [&](double s) { return s >= least; }) -
+      score.begin());
+}
+
+/// Unit vectors, as choose() takes them.
+std::vector<double> unit_of(const double* q, int rank) {
+  const Eigen::VectorXd unit = Eigen::Map<const Eigen::VectorXd>(q, rank).normalized();
+  return {unit.begin(), unit.end()};
+}
+
+/// @return share of vectors whose row was proven, on the vector instructions that prove least
+double expect_agreement(const DirectionTable& directions, const ArcSearch& search,
+                        const Vectors& vectors) {
+  std::vector<std::int32_t> expected, chosen;
+  std::vector<std::vector<double>> units;
+  std::vector<double> score;
+  for (int i = 0; i < vectors.count(); ++i) {
+    expected.push_back(lowest_best_row(directions, vectors[i], score));
+    units.push_back(unit_of(vectors[i], vectors.rank));
+    chosen.push_back(lowest_best_row(directions, units.back().data(), score));
+  }
+  std::size_t least_proven = expected.size();
+  for_each_target([&](std::int64_t target) {
+    const std::vector<std::int32_t> rows = search_all(search, vectors);
+    std::size_t proven = 0, wrong = 0, wrongly_chosen = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      proven += rows[i] >= 0;
+      wrong += rows[i] >= 0 && rows[i] != expected[i];
+      wrongly_chosen += search.choose(directions, units[i].data(), 1) != chosen[i];
+    }
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_EQ(wrongly_chosen, 0u);
+    if (target != HWY_SCALAR) least_proven = std::min(least_proven, proven);
+  });
+  return static_cast<double>(least_proven) / static_cast<double>(expected.size());
+}
+
+constexpr double noise_levels[] = {0.0, 0.02, 0.15, 0.6, 100.0};
+
+/// @return share proven at the middle level
+double expect_agreement_at_all_levels(const DirectionTable& directions, int count) {
+  const ArcSearch search(directions);
+  double share = 0.0;
+  std::uint64_t seed = 1;
+  for (const double deviation : noise_levels) {
+    SCOPED_TRACE("deviation " + std::to_string(deviation));
+    const double proven =
+        expect_agreement(directions, search, noisy_vectors(directions, deviation, count, seed++));
+    if (deviation == 0.15) share = proven;
+  }
+  return share;
+}
+
+TEST(ArcSearch, AgreesOnSmoothCurvesOfAllRanksAndLengths) {
+  for (int rank = 2; rank <= 12; ++rank)
+    for (const int samples : {8, 17, 100, 241, 1000, 3000}) {
+      if (samples <= rank) continue;
+      SCOPED_TRACE(std::to_string(rank) + " x " + std::to_string(samples));
+      const DirectionTable directions =
+          directions_of(random_smooth_curve(rank, samples, static_cast<std::uint64_t>(rank)));
+      const double proven =
+          expect_agreement_at_all_levels(directions, vectors_per_level * 20 / (samples + 300));
+      EXPECT_GT(proven, 0.9);
+    }
+}
+
+struct CodeCase {
+  const char* code;
+  int code_samples;
+  int samples;
+  double least_proven;
+};
+
+class ArcSearchOfCode : public testing::TestWithParam<CodeCase> {};
+
+TEST_P(ArcSearchOfCode, AgreesAndProvesNearlyAll) {
+  const CodeCase& c = GetParam();
+  const DirectionTable directions = directions_of(c.code, c.code_samples, c.samples);
+  const double proven = expect_agreement_at_all_levels(directions, vectors_per_level);
+  EXPECT_GT(proven, c.least_proven);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Codes, ArcSearchOfCode,
+    testing::Values(CodeCase{"hamiltonian-k6", 240, 240, 0.99},
+                    CodeCase{"hamiltonian-k7", 252, 1000, 0.99},
+                    CodeCase{"hamiltonian-k8", 252, 1000, 0.99},
+                    CodeCase{"hamiltonian-k8", 252, 4100, 0.98},
+                    CodeCase{"multifrequency-1x3-2x3-3x3-4x3", 240, 1000, 0.99},
+                    CodeCase{"gray-k4", 240, 1000, 0.9}, CodeCase{"gray-k6", 256, 256, 0.9}));
+
+TEST(ArcSearch, ProvesTheLowestOfEqualDirections) {
+  for (int rank = 2; rank <= 7; ++rank) {
+    SCOPED_TRACE(rank);
+    const Curve smooth = random_smooth_curve(rank, 120, static_cast<std::uint64_t>(rank));
+    for (const Curve& curve : {with_plateaus(smooth, 7), twice_around(smooth), with_gaps(smooth),
+                               twice_around(with_gaps(with_plateaus(smooth, 3)))}) {
+      const double proven =
+          expect_agreement_at_all_levels(directions_of(curve), vectors_per_level / 8);
+      EXPECT_GT(proven, 0.95);
+    }
+  }
+}
+
+TEST(ArcSearch, AgreesOnCurvesThatJump) {
+  for (int rank = 2; rank <= 9; ++rank) {
+    RandomStream random(static_cast<std::uint64_t>(rank), 3);
+    Curve curve(300, rank);
+    for (double& value : curve.reshaped()) value = random.normal();
+    const double proven =
+        expect_agreement_at_all_levels(directions_of(curve), vectors_per_level / 8);
+    EXPECT_GT(proven, 0.9);
+  }
+}
+
+TEST(ArcSearch, AgreesWithArcsOfSeveralBlocks) {
+  // As very long curves have them.
+  for (const int samples : {30, 1000, 8000}) {
+    const DirectionTable directions = directions_of(random_smooth_curve(5, samples, 5));
+    const ArcSearch search(directions, 3);
+    expect_agreement(directions, search, noisy_vectors(directions, 0.1, vectors_per_level / 8, 6));
+  }
+}
+
+TEST(ArcSearch, AgreesWhereVectorsAreUncertain) {
+  const DirectionTable directions = directions_of("hamiltonian-k8", 252, 1000);
+  const ArcSearch search(directions);
+  double last = 1.0;
+  for (const double error : {1e-7, 1e-5, 1e-3, 1e-1, 3.0}) {
+    const double proven = expect_agreement(
+        directions, search, noisy_vectors(directions, 0.05, vectors_per_level, 7, error));
+    EXPECT_LE(proven, last);
+    last = proven;
+  }
+  EXPECT_EQ(last, 0.0);
+}
+
+TEST(ArcSearch, AgreesOnTies) {
+  // Small whole numbers tie often, and exactly, on a curve that turns through the axes.
+  Curve curve = Curve::Zero(48, 3);
+  for (int n = 0; n < curve.rows(); ++n) {
+    const int axis = n / 8 % 3;
+    curve(n, axis) = n < 24 ? 1.0 : -1.0;
+    curve(n, (axis + 1) % 3) = n % 8 / 8.0 * (n < 16 || n >= 40 ? 1.0 : -1.0);
+  }
+  const DirectionTable directions = directions_of(curve);
+  Vectors vectors = noisy_vectors(directions, 1.0, 1331, 8);
+  for (int i = 0; i < vectors.count(); ++i)
+    for (int j = 0; j < directions.rank(); ++j) {
+      const int value = (j == 0 ? i / 121 : j == 1 ? i / 11 : i) % 11 - 5;
+      vectors.exact[static_cast<std::size_t>(i * vectors.rank + j)] = value;
+      vectors.plane[static_cast<std::size_t>(i / tile_size * tile_size * vectors.rank +
+                                             j * tile_size + i % tile_size)] =
+          static_cast<float>(value);
+    }
+  std::fill(vectors.error.begin(), vectors.error.end(), 0.0f);
+  const std::size_t zero = 1331 / 2;  // has no unit vector
+  vectors.exact[zero * 3] = 1.0;
+  vectors.plane[zero / tile_size * tile_size * 3 + zero % tile_size] = 1.0f;
+  expect_agreement(directions, ArcSearch(directions), vectors);
+}
+
+TEST(ArcSearch, ProvesNothingOfWhatIsUnknown) {
+  const DirectionTable directions = directions_of(random_smooth_curve(5, 500, 9));
+  const ArcSearch search(directions);
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  const Vectors known = noisy_vectors(directions, 0.0, tile_size, 10);
+  const auto expect_none = [&](const Vectors& vectors) {
+    for_each_target([&](std::int64_t) {
+      for (const std::int32_t row : search_all(search, vectors)) EXPECT_EQ(row, -1);
+    });
+  };
+  for (const float error : {infinity, nan}) {
+    Vectors vectors = known;
+    std::fill(vectors.error.begin(), vectors.error.end(), error);
+    expect_none(vectors);
+  }
+  for (const float factor : {0.0f, 1e-30f, 1e30f, infinity, nan}) {
+    Vectors vectors = known;
+    for (float& component : vectors.plane) component *= factor;
+    std::fill(vectors.error.begin(), vectors.error.end(), 0.0f);
+    expect_none(vectors);
+  }
+  const std::vector<double> zero(5, 0.0);
+  EXPECT_EQ(search.choose(directions, zero.data(), 1), 0);
+}
+
+TEST(ArcSearch, LeavesOtherRowsAloneAndTakesAnyStride) {
+  const DirectionTable directions = directions_of(random_smooth_curve(6, 500, 11));
+  const ArcSearch search(directions);
+  const Vectors vectors = noisy_vectors(directions, 0.1, tile_size, 12);
+  const std::vector<std::int32_t> expected = search_all(search, vectors);
+  constexpr int stride = 37, pixels = 21;
+  std::vector<float> plane(6 * stride);
+  for (int j = 0; j < 6; ++j)
+    std::copy_n(&vectors.plane[static_cast<std::size_t>(j * tile_size)], pixels,
+                &plane[static_cast<std::size_t>(j * stride)]);
+  std::vector<std::int32_t> rows(pixels + 1, 77);
+  search.search(plane.data(), stride, vectors.error.data(), pixels, rows.data());
+  EXPECT_TRUE(std::equal(rows.begin(), rows.end() - 1, expected.begin()));
+  EXPECT_EQ(rows.back(), 77);
+}
+
+TEST(ArcSearch, FindsTheSameRivalAsASearchOfAllBins) {
+  for (const auto& directions :
+       {directions_of("hamiltonian-k8", 252, 1000), directions_of("gray-k4", 240, 1000),
+        directions_of("hamiltonian-k8", 252, 5000),
+        directions_of(with_gaps(twice_around(random_smooth_curve(5, 40, 13)))),
+        directions_of(random_smooth_curve(2, 9, 14))}) {
+    const ArcSearch search(directions);
+    const Vectors vectors = noisy_vectors(directions, 0.2, vectors_per_level / 2, 15);
+    RandomStream random(16, 0);
+    const int samples = directions.samples();
+    for (int i = 0; i < vectors.count(); ++i) {
+      const std::vector<double> unit = unit_of(vectors[i], vectors.rank);
+      const std::vector<float> components(unit.begin(), unit.end());
+      const auto begin = static_cast<std::int32_t>(2 * samples * random.uniform());
+      const std::int32_t longest = std::min(samples, 2 * samples - begin);
+      const auto end = begin + 1 + static_cast<std::int32_t>((longest - 1) * random.uniform());
+      const std::int32_t expected = best_bin_within(directions, components.data(), begin, end);
+      for_each_target([&](std::int64_t) {
+        ASSERT_EQ(search.best_bin_within(components.data(), begin, end), expected)
+            << begin << " " << end;
+      });
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tofsmith
