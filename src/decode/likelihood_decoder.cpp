@@ -22,8 +22,8 @@ namespace {
 constexpr double cost_tie = 1e-9;
 /// Peaks are followed whose weighted squares are at most `squares_ratio` times those of the best
 /// peak plus `squares_lead`: weights come from one estimate for all.
-constexpr double squares_ratio = 2.0, squares_lead = 20.0;
-constexpr std::size_t most_peaks = 8;
+constexpr double squares_ratio = 2.0, squares_lead = 30.0;
+constexpr std::size_t most_peaks = 16;
 
 using PerMeasurement = std::array<double, max_measurements>;
 
@@ -85,7 +85,7 @@ struct LikelihoodDecoder::Plan {
   std::vector<double> work_space() const {
     return std::vector<double>(static_cast<std::size_t>(table.samples()));
   }
-  void estimate_weights(const double* electrons, PerMeasurement& weight) const;
+  bool estimate_weights(const double* electrons, Search& search) const;
   double squares_beside(const LikelihoodPixel& pixel, std::int32_t bin, const double* weight) const;
   Peaks peaks(const LikelihoodPixel& pixel, const PerMeasurement& weight,
               const std::vector<double>& fall) const;
@@ -164,16 +164,19 @@ double LikelihoodDecoder::Plan::decode_depth_bin(const float* raw,
 }
 
 /// Inverse variances of the measurements at the estimate of zero-mean normalized cross-correlation.
-/// Any depth that explains the pixel has nearly the same ones.
-void LikelihoodDecoder::Plan::estimate_weights(const double* electrons,
-                                               PerMeasurement& weight) const {
-  PerMeasurement plane;
+/// Any depth that explains the pixel has nearly the same ones. False if ambient light alone
+/// explains the pixel, which is then all there is.
+bool LikelihoodDecoder::Plan::estimate_weights(const double* electrons, Search& search) const {
+  PerMeasurement plane, variance_e2;
   correlation.project(electrons, plane.data());
   const std::int32_t bin = scores.best_correlation(plane.data());
-  correlation.estimate(electrons, plane.data(), correlation.refine(plane.data(), bin),
-                       weight.data());
+  const PixelEstimate estimate = correlation.estimate(
+      electrons, plane.data(), correlation.refine(plane.data(), bin), variance_e2.data());
   for (int k = 0; k < table.measurements(); ++k)
-    weight[static_cast<std::size_t>(k)] = 1.0 / weight[static_cast<std::size_t>(k)];
+    search.weight[static_cast<std::size_t>(k)] = 1.0 / variance_e2[static_cast<std::size_t>(k)];
+  search.best.light[2] = std::max(0.0, estimate.ambient_e_per_s);
+  return std::any_of(plane.begin(), plane.begin() + correlation.rank(),
+                     [](double value) { return value != 0.0; });
 }
 
 double LikelihoodDecoder::Plan::squares_beside(const LikelihoodPixel& pixel, std::int32_t bin,
@@ -203,7 +206,7 @@ Peaks LikelihoodDecoder::Plan::peaks(const LikelihoodPixel& pixel, const PerMeas
 Search LikelihoodDecoder::Plan::search(const LikelihoodPixel& pixel,
                                        std::vector<double>& fall) const {
   Search result;
-  estimate_weights(pixel.electrons, result.weight);
+  if (!estimate_weights(pixel.electrons, result)) return result;
   scores.weighted_fall(pixel.electrons, result.weight.data(), fall.data());
 
   const Peaks found = peaks(pixel, result.weight, fall);
@@ -219,6 +222,7 @@ Search LikelihoodDecoder::Plan::search(const LikelihoodPixel& pixel,
       result.best = fit;
     result.followed[result.count++] = fit;
   }
+  result.best = likelihood.fit_near(pixel, result.best, result.weight.data());
   return result;
 }
 

@@ -14,7 +14,7 @@ namespace {
 constexpr double least_share = 1e-4;
 /// Costs that differ by less, per unit where they are large, are one.
 double same_cost(double cost) { return 1e-10 * std::max(1.0, std::abs(cost)); }
-constexpr int most_steps = 30, most_halvings = 8, most_chords = 16;
+constexpr int most_steps = 30, most_halvings = 8, most_chords = 16, most_bins_apart = 3;
 
 }  // namespace
 
@@ -137,6 +137,20 @@ ChordFit LikelihoodModel::fit_around(const LikelihoodPixel& pixel, std::int32_t 
     const ChordFit beyond = fit(pixel, upwards ? next(best.bin) : previous(best.bin), weight);
     if (!(beyond.cost < best.cost - same_cost(best.cost))) break;
     best = beyond;
+  }
+  return best;
+}
+
+ChordFit LikelihoodModel::fit_near(const LikelihoodPixel& pixel, const ChordFit& found,
+                                   const double* weight) const {
+  ChordFit best = found;
+  std::int32_t below = found.bin, above = found.bin;
+  for (int distance = 1; distance <= most_bins_apart; ++distance) {
+    below = previous(below), above = next(above);
+    for (const std::int32_t bin : {below, above}) {
+      const ChordFit other = fit(pixel, bin, weight);
+      if (other.cost < best.cost - same_cost(best.cost)) best = other;
+    }
   }
   return best;
 }

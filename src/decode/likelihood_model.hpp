@@ -49,6 +49,10 @@ class LikelihoodModel {
   ChordFit fit(const LikelihoodPixel& pixel, std::int32_t bin, const double* weight) const;
   /// The least cost around a bin: on both chords beside it, and on from there while it falls.
   ChordFit fit_around(const LikelihoodPixel& pixel, std::int32_t bin, const double* weight) const;
+  /// The least cost on the chords up to three bins from a fit: the bends between chords leave
+  /// several least points in one lobe.
+  ChordFit fit_near(const LikelihoodPixel& pixel, const ChordFit& found,
+                    const double* weight) const;
 
   /// Light at a fit, and deviations by the Fisher information that means alone hold.
   PixelEstimate estimate(const LikelihoodPixel& pixel, const ChordFit& fit) const;
