@@ -10,6 +10,7 @@
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/report/design_report.hpp"
+#include "zncc_comparison.hpp"
 
 namespace tofsmith::apps {
 
@@ -35,17 +36,25 @@ std::string csv_field(const std::string& text) {
 }
 
 std::string points_csv(const std::vector<EvaluatedCode>& codes) {
-  std::string text =
+  const bool compared = is_compared_with_zncc(codes);
+  std::string text = fmt::format(
       "code,signal_e_per_s,ambient_e_per_s,linear_mde_m,linear_se_m,circular_mde_m,circular_se_m,"
-      "outlier_rate,cramer_rao_mae_m,receiver_bound_mae_m\n";
+      "outlier_rate,cramer_rao_mae_m,receiver_bound_mae_m{}\n",
+      compared ? ",zncc_linear_mde_m,zncc_circular_mde_m" : "");
   for (const EvaluatedCode& code : codes)
-    for (const PointDepthError& p : code.error.points)
+    for (std::size_t i = 0; i < code.error.points.size(); ++i) {
+      const PointDepthError& p = code.error.points[i];
       text +=
-          fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n",
+          fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}",
                       csv_field(code.error.code), p.point.signal_e_per_s, p.point.ambient_e_per_s,
                       p.linear_mde_m.value, p.linear_mde_m.standard_error, p.circular_mde_m.value,
                       p.circular_mde_m.standard_error, p.outlier_rate.value, p.cramer_rao_mae_m,
                       p.receiver_bound_mae_m);
+      if (compared)
+        text += fmt::format(",{:.9g},{:.9g}", code.zncc_error->points[i].linear_mde_m.value,
+                            code.zncc_error->points[i].circular_mde_m.value);
+      text += "\n";
+    }
   return text;
 }
 
@@ -55,22 +64,20 @@ void print(const Session& session, const Camera& camera, const std::vector<Evalu
   std::vector<std::vector<std::string>> rows{{"code", "K", "signal (e/s)", "ambient (e/s)",
                                               "linear (mm)", "circular (mm)", "outliers (%)",
                                               "Cramer-Rao (mm)", "receiver (mm)"}};
-  const auto estimate = [](const Estimate& e) {
-    return fmt::format("{:.4g} +- {:.2g}", 1e3 * e.value, 1e3 * e.standard_error);
-  };
   for (const EvaluatedCode& code : codes) {
     for (const PointDepthError& p : code.error.points)
       rows.push_back({code.error.code, fmt::format("{}", code.error.measurements),
                       fmt::format("{:.3g}", p.point.signal_e_per_s),
-                      fmt::format("{:.3g}", p.point.ambient_e_per_s), estimate(p.linear_mde_m),
-                      estimate(p.circular_mde_m), fmt::format("{:.2f}", 100 * p.outlier_rate.value),
+                      fmt::format("{:.3g}", p.point.ambient_e_per_s), in_mm(p.linear_mde_m),
+                      in_mm(p.circular_mde_m), fmt::format("{:.2f}", 100 * p.outlier_rate.value),
                       fmt::format("{:.4g}", 1e3 * p.cramer_rao_mae_m),
                       fmt::format("{:.4g}", 1e3 * p.receiver_bound_mae_m)});
     rows.push_back({code.error.code, "", "geometric", "mean",
-                    estimate(code.error.linear.geometric_mean_m),
-                    estimate(code.error.circular.geometric_mean_m), "", "", ""});
+                    in_mm(code.error.linear.geometric_mean_m),
+                    in_mm(code.error.circular.geometric_mean_m), "", "", ""});
   }
   session.say(text_table(rows));
+  if (is_compared_with_zncc(codes)) session.say(text_table(zncc_comparison_rows(codes)));
   session.say(fmt::format(
       "{} trials per operating point, seed {}, N = {}, true depths {}, decoded by {}; +- is one "
       "standard error",
@@ -89,7 +96,8 @@ void check_output(const std::filesystem::path& path, const Session& session) {
   session.check_output(path);
 }
 
-/// Depth error of each code, which is moved to its best origin first if that was asked for.
+/// Depth error of each code, which is moved to its best origin first if that was asked for; by zncc
+/// beside maximum likelihood, on the same depths and noise.
 std::vector<EvaluatedCode> evaluate_all(std::vector<CodeSet>& codes, const Camera& camera,
                                         const EvaluateArguments& arguments) {
   std::vector<EvaluatedCode> evaluated;
@@ -105,9 +113,18 @@ std::vector<EvaluatedCode> evaluate_all(std::vector<CodeSet>& codes, const Camer
                      .rotation_bin;
       codes[i] = codes[i].rotated(rotation);
     }
-    evaluated.push_back({evaluate(codes[i], camera, arguments.options,
-                                  part_of(progress, middle / count, (done + 1) / count)),
-                         rotation});
+    const bool is_compared = arguments.options.method == DecodeMethod::ml;
+    const double end = is_compared ? middle + 0.8 * (done + 1 - middle) : done + 1;
+    EvaluatedCode code{evaluate(codes[i], camera, arguments.options,
+                                part_of(progress, middle / count, end / count)),
+                       rotation};
+    if (is_compared) {
+      EvaluateOptions options = arguments.options;
+      options.method = DecodeMethod::zncc;
+      code.zncc_error =
+          evaluate(codes[i], camera, options, part_of(progress, end / count, (done + 1) / count));
+    }
+    evaluated.push_back(std::move(code));
   }
   return evaluated;
 }
@@ -123,7 +140,9 @@ void write(const std::filesystem::path& path, const Session& session, const Came
   } else {
     std::vector<DepthErrorReport> errors;
     for (const EvaluatedCode& code : evaluated) errors.push_back(code.error);
-    content = render(evaluation_report(camera, codes, errors, session.command_line));
+    Page page = evaluation_report(camera, codes, errors, session.command_line);
+    if (is_compared_with_zncc(evaluated)) page.sections.push_back(zncc_comparison(evaluated));
+    content = render(page);
   }
   write_file_atomically(path, content, session.output_policy());
 }

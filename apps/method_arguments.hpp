@@ -13,13 +13,13 @@ namespace tofsmith::apps {
 class MethodArguments {
  public:
   void add_to(CLI::App& command) {
-    CLI::Option* method =
-        command
-            .add_option(
-                "--method", method_,
-                "decoder: zncc for any code, unwrap for sinusoids of one or more frequencies")
-            ->check(CLI::IsMember({"zncc", "unwrap"}))
-            ->capture_default_str();
+    CLI::Option* method = command
+                              .add_option("--method", method_,
+                                          "decoder: zncc for any code, ml for any code by maximum "
+                                          "likelihood (slower), unwrap "
+                                          "for sinusoids of one or more frequencies")
+                              ->check(CLI::IsMember({"zncc", "ml", "unwrap"}))
+                              ->capture_default_str();
     command
         .add_option("--unwrap-weights", weights_,
                     "how unwrapping weighs frequencies: by the variance of their depth on this "

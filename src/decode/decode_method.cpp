@@ -2,23 +2,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/decode/decode_method.hpp"
 
+#include <string>
+
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 
 std::string_view name_of(DecodeMethod method) {
-  return method == DecodeMethod::zncc ? "zncc" : "unwrap";
+  switch (method) {
+    case DecodeMethod::zncc:
+      return "zncc";
+    case DecodeMethod::ml:
+      return "ml";
+    case DecodeMethod::unwrap:
+      return "unwrap";
+  }
+  reject("DecodeMethod", std::to_string(static_cast<int>(method)), "must be in [0, 2]");
 }
 
 DecodeMethod parse_decode_method(std::string_view name) {
   for (const DecodeMethod method : all_decode_methods)
     if (name == name_of(method)) return method;
-  reject("method", name, "must be zncc or unwrap");
+  reject("method", name, "must be zncc, ml or unwrap");
 }
 
 AnyDecoder make_decoder(DecodeMethod method, DecodingTable table, const DecodeOptions& doubt,
                         UnwrapWeights unwrap_weights) {
   if (method == DecodeMethod::zncc) return Decoder(std::move(table), doubt);
+  if (method == DecodeMethod::ml) return LikelihoodDecoder(std::move(table), doubt);
   return UnwrapDecoder(std::move(table), {.doubt = doubt, .weights = unwrap_weights});
 }
 

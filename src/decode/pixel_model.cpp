@@ -13,16 +13,6 @@ namespace {
 
 /// Chords whose ends differ in direction by less are one direction: the square of the sine.
 constexpr double parallel = 1e-14;
-/// Keeps a noiseless table from dividing by zero [e^2].
-constexpr double least_variance_e2 = 1e-12;
-
-const Eigen::MatrixXd& or_else(const Eigen::MatrixXd& given, const Eigen::MatrixXd& otherwise) {
-  return given.size() > 0 ? given : otherwise;
-}
-const Eigen::VectorXd& or_else(const Eigen::VectorXd& given, const Eigen::VectorXd& otherwise) {
-  return given.size() > 0 ? given : otherwise;
-}
-
 double dot(const double* a, const double* b, int size) {
   double sum = 0.0;
   for (int i = 0; i < size; ++i) sum += a[i] * b[i];
@@ -32,16 +22,22 @@ double dot(const double* a, const double* b, int size) {
 }  // namespace
 
 PixelModel::PixelModel(const DecodingTable& table, const AmbientProjection& projection)
-    : samples_(table.samples()), projection_(projection), basis_(projection.basis) {
-  const Eigen::VectorXd& t = table.exposure_s;
-  shot_gated_ = or_else(table.shot_correlation, table.correlation) * t.asDiagonal();
-  shot_ambient_ = or_else(table.shot_ambient_gain, table.ambient_gain).cwiseProduct(t);
-  floor_variance_e2_ =
-      or_else(table.shot_dark_electrons, table.dark_electrons) + table.constant_variance_e2;
+    : samples_(table.samples()), projection_(projection), basis_(projection.basis), noise_(table) {
   own_ = projection.curve.rowwise().squaredNorm();
   with_next_.resize(samples_);
   for (std::int32_t n = 0; n < samples_; ++n)
     with_next_[n] = projection.curve.row(n).dot(projection.curve.row(next(n)));
+}
+
+void PixelModel::project(const double* electrons, double* plane) const {
+  const int r = rank();
+  std::fill_n(plane, r, 0.0);
+  double size = 0.0;
+  for (int k = 0; k < measurements(); ++k) {
+    size += std::abs(electrons[k]);
+    for (int j = 0; j < r; ++j) plane[j] += basis_(k, j) * electrons[k];
+  }
+  if (std::sqrt(dot(plane, plane, r)) <= nothing_left * size) std::fill_n(plane, r, 0.0);
 }
 
 double PixelModel::along(const double* plane, std::int32_t bin) const {
@@ -105,12 +101,12 @@ PixelEstimate PixelModel::estimate(const double* electrons, const double* plane,
 
   const double signal = std::max(result.signal_e_per_s, 0.0);
   const double ambient = ambient2 > 0.0 ? std::max(result.ambient_e_per_s, 0.0) : 0.0;
-  const double* s0 = shot_gated_.row(from).data();
-  const double* s1 = shot_gated_.row(to).data();
+  const double* s0 = noise_.shot_gated.row(from).data();
+  const double* s1 = noise_.shot_gated.row(to).data();
   for (int k = 0; k < k_count; ++k)
-    variance_e2[k] =
-        std::max(least_variance_e2, signal * ((1 - t) * s0[k] + t * s1[k]) +
-                                        ambient * shot_ambient_[k] + floor_variance_e2_[k]);
+    variance_e2[k] = std::max(least_variance_e2, signal * ((1 - t) * s0[k] + t * s1[k]) +
+                                                     ambient * noise_.shot_ambient[k] +
+                                                     noise_.floor_variance_e2[k]);
 
   // dS = <p, noise> / |p|^2, and dz = <d, noise> / (S |d|^2) with d the slope across p.
   result.signal_standard_deviation_e_per_s = deviation_along(point.data(), variance_e2) / length2;

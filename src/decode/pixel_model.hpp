@@ -6,6 +6,7 @@
 
 #include "decode/ambient_projection.hpp"
 #include "decode/direction_table.hpp"
+#include "decode/expected_noise.hpp"
 
 namespace tofsmith {
 
@@ -42,6 +43,10 @@ class PixelModel {
   int measurements() const { return static_cast<int>(projection_.basis.rows()); }
   int rank() const { return projection_.rank(); }
 
+  /// What is left of electrons - dark (K) without ambient light, in the plane (rank); exactly 0
+  /// where that is rounding.
+  void project(const double* electrons, double* plane) const;
+
   /// Best point on the chords left and right of the best bin, for a vector in the plane (rank).
   ///   beta_j = <q, p_j>, Q_jk = <p_j, p_k>; u = Q11 b0 - Q01 b1, v = Q00 b1 - Q01 b0,
   ///   t* = v / (u + v) where both are > 0; else no point of the chord beats its better end.
@@ -69,12 +74,10 @@ class PixelModel {
 
   int samples_;
   AmbientProjection projection_;
-  RowMajorMatrix basis_;               // V, row by row
-  RowMajorMatrix shot_gated_;          // T o shot_chi (N, K)
-  Eigen::VectorXd shot_ambient_;       // T o shot_kappa (K)
-  Eigen::VectorXd floor_variance_e2_;  // without light (K)
-  Eigen::VectorXd own_;                // <p_j, p_j>
-  Eigen::VectorXd with_next_;          // <p_j, p_{j+1}>
+  RowMajorMatrix basis_;  // V, row by row
+  ExpectedNoise noise_;
+  Eigen::VectorXd own_;        // <p_j, p_j>
+  Eigen::VectorXd with_next_;  // <p_j, p_{j+1}>
 };
 
 }  // namespace tofsmith

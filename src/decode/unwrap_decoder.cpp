@@ -63,7 +63,6 @@ struct UnwrapDecoder::Plan {
         phases(table, options.largest_other_energy),
         weights(weights_of(phases, table.measurements(), options.weights)),
         unwrapper(phases.frequencies(), weights),
-        basis(projection.basis),
         model(table, projection) {}
 
   using PerMeasurement = std::array<double, max_measurements>;
@@ -75,13 +74,11 @@ struct UnwrapDecoder::Plan {
   PhaseModel phases;
   std::vector<double> weights;
   PhaseUnwrapper unwrapper;
-  RowMajorMatrix basis;  // V (K, rank)
   PixelModel model;
 
   bool read(const float* raw, PerMeasurement& electrons) const;
   PerFrequency phases_of(const PerMeasurement& electrons) const;
   double bin_of(const Wraps& wraps) const;
-  void project(const PerMeasurement& electrons, PerMeasurement& plane) const;
   void decode_pixel(const float* raw, std::size_t at, const DecodedView& decoded) const;
   double deviation(const PerFrequency& factor, const PixelDecoding& pixel,
                    const PerMeasurement& variance_e2) const;
@@ -163,20 +160,6 @@ double UnwrapDecoder::Plan::bin_of(const Wraps& wraps) const {
   return wrap(wraps.depth * table.samples(), table.samples());
 }
 
-/// What is left without ambient light, in the plane of the code's curve; 0 if that is rounding.
-void UnwrapDecoder::Plan::project(const PerMeasurement& electrons, PerMeasurement& plane) const {
-  plane.fill(0.0);
-  double size = 0.0, length2 = 0.0;
-  for (Eigen::Index k = 0; k < basis.rows(); ++k) {
-    const double y = electrons[static_cast<std::size_t>(k)];
-    size += std::abs(y);
-    for (Eigen::Index j = 0; j < basis.cols(); ++j)
-      plane[static_cast<std::size_t>(j)] += basis(k, j) * y;
-  }
-  for (const double value : plane) length2 += value * value;
-  if (std::sqrt(length2) <= nothing_left * size) plane.fill(0.0);
-}
-
 void UnwrapDecoder::Plan::decode_pixel(const float* raw, std::size_t at,
                                        const DecodedView& decoded) const {
   PerMeasurement electrons, variance_e2, plane;
@@ -184,7 +167,7 @@ void UnwrapDecoder::Plan::decode_pixel(const float* raw, std::size_t at,
   const PerFrequency phase = phases_of(electrons);
   const Wraps wraps = unwrapper.nearest(phase.data());
 
-  project(electrons, plane);
+  model.project(electrons.data(), plane.data());
   PixelDecoding pixel{.depth_bin = bin_of(wraps)};
   pixel.estimate = model.estimate(electrons.data(), plane.data(), Position::at(pixel.depth_bin),
                                   variance_e2.data());

@@ -42,6 +42,32 @@ PointDepthError point_from_json(const JsonReader& json) {
       .receiver_bound_mae_m = json.member("receiver_bound_mae_m").number_or_infinity()};
 }
 
+/// What `report` is compared with, and how many times as large its errors are.
+Json zncc_json(const DepthErrorReport& report, const DepthErrorReport& zncc) {
+  const auto over = [](const Estimate& error, const Estimate& other) {
+    return error.value / other.value;
+  };
+  Json entry = {
+      {"linear", mean_json(zncc.linear)},
+      {"circular", mean_json(zncc.circular)},
+      {"linear_ratio", over(report.linear.geometric_mean_m, zncc.linear.geometric_mean_m)},
+      {"circular_ratio", over(report.circular.geometric_mean_m, zncc.circular.geometric_mean_m)},
+      {"points", Json::array()}};
+  for (std::size_t i = 0; i < zncc.points.size(); ++i) {
+    const PointDepthError &p = report.points[i], &other = zncc.points[i];
+    entry["points"].push_back({{"signal_e_per_s", other.point.signal_e_per_s},
+                               {"ambient_e_per_s", other.point.ambient_e_per_s},
+                               {"linear_mde_m", other.linear_mde_m.value},
+                               {"linear_se_m", other.linear_mde_m.standard_error},
+                               {"circular_mde_m", other.circular_mde_m.value},
+                               {"circular_se_m", other.circular_mde_m.standard_error},
+                               {"outlier_rate", other.outlier_rate.value},
+                               {"linear_ratio", over(p.linear_mde_m, other.linear_mde_m)},
+                               {"circular_ratio", over(p.circular_mde_m, other.circular_mde_m)}});
+  }
+  return entry;
+}
+
 }  // namespace
 
 Json depth_error_json(const DepthErrorReport& report, int rotation_bin) {
@@ -148,8 +174,11 @@ std::string evaluation_document(const Camera& camera, std::span<const EvaluatedC
   if (options.method == DecodeMethod::unwrap)
     document["unwrap_weights"] = name_of(options.unwrap_weights);
   document["codes"] = Json::array();
-  for (const EvaluatedCode& code : codes)
-    document["codes"].push_back(depth_error_json(code.error, code.rotation_bin));
+  for (const EvaluatedCode& code : codes) {
+    Json entry = depth_error_json(code.error, code.rotation_bin);
+    if (code.zncc_error) entry["zncc"] = zncc_json(code.error, *code.zncc_error);
+    document["codes"].push_back(std::move(entry));
+  }
   return document.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -142,6 +142,30 @@ class Commands(CommandLineTest):
             self.assertEqual(document["method"], "unwrap")
             self.assertLess(np.abs(np.load(self.path("depth.npy")) - truth).max(), 0.05)
 
+    def test_maximum_likelihood_stands_beside_zncc(self):
+        light = (*FAST, "--set", "operating.signal_e_per_s=[1e5]", "--set",
+                 "operating.ambient_e_per_s=[1e2]")
+        zncc = self.do_json("evaluate", "hamiltonian-k5", *light)["codes"][0]
+        document = self.do_json("evaluate", "hamiltonian-k5", *light, "--method", "ml")
+        self.assertEqual(document["method"], "ml")
+        ml = document["codes"][0]
+        self.assertEqual(ml["zncc"]["circular"], zncc["circular"])
+        self.assertAlmostEqual(ml["zncc"]["circular_ratio"], ml["circular"]["geometric_mean_m"] /
+                               zncc["circular"]["geometric_mean_m"])
+        self.assertLess(ml["zncc"]["circular_ratio"], 1)
+        text = self.do("evaluate", "hamiltonian-k5", *light, "--method", "ml")
+        for words in ("decoded by ml", "ml / zncc", f"{ml['zncc']['circular_ratio']:.4f}"):
+            self.assertIn(words, text)
+        self.do("evaluate", "hamiltonian-k5", *light, "--method", "ml", "-o", "e.csv")
+        self.assertIn(b"zncc_circular_mde_m", self.bytes_of("e.csv").splitlines()[0])
+        self.do("evaluate", "hamiltonian-k5", *light, "--method", "ml", "-o", "e.html")
+        self.assertIn(b"ml / zncc", self.bytes_of("e.html"))
+
+        truth = self.small_scene()
+        self.simulate("--force")
+        self.assertEqual(self.decode("--force", "--method", "ml")["method"], "ml")
+        self.assertLess(np.abs(np.load(self.path("depth.npy")) - truth).max(), 0.05)
+
     def test_threads_do_not_change_figures(self):
         one, two = (self.do("evaluate", "hamiltonian-k4", *FAST, "--best-rotation", "--json",
                             "--threads", threads) for threads in "12")

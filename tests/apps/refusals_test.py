@@ -40,7 +40,7 @@ class Refusals(CommandLineTest):
                 (["evaluate", "sinusoid-k4", "--trials", ""], ["--trials"]),
                 (["evaluate", "sinusoid-k4", "-o", "x.xls"], ["x.xls", "expected .csv"]),
                 (["evaluate", "sinusoid-k4", "--threads", "-1"], ["--threads"]),
-                (["evaluate", "sinusoid-k4", "--method", "magic"], ["magic", "unwrap"]),
+                (["evaluate", "sinusoid-k4", "--method", "magic"], ["magic", "ml", "unwrap"]),
                 (["evaluate", "sinusoid-k4", "--unwrap-weights", "frequency"], ["--method"]),
                 (["design", "a", "b"], ["'b'"]),
                 (["design", "--method", "magic"], ["magic", "factorize"]),

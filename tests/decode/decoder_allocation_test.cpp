@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "likelihood_setup.hpp"
 #include "unwrap_setup.hpp"
 
 namespace {
@@ -59,6 +60,27 @@ TEST(UnwrapDecoder, AllocatesNothing) {
     setup.decoder.decode_bins(raw.data(), 4000, bins.data());
   };
   EXPECT_EQ(allocations_of(batch), 0);
+  const auto of_frame = [&](int pixels) {
+    const RawFrames frame = frame_of({raw.begin(), raw.begin() + 5 * pixels}, 5);
+    return allocations_of([&] { setup.decoder.decode(frame); });
+  };
+  of_frame(64);  // the first use of threads allocates
+  EXPECT_LE(of_frame(4000), of_frame(400) + 2);
+}
+
+TEST(LikelihoodDecoder, AllocatesNothingPerPixel) {
+  const LikelihoodSetup setup("hamiltonian-k5", camera_with("paper-10f0"));
+  const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 1e3, 1e4, 4000, 1);
+  std::vector<std::int32_t> bins(4000);
+  std::vector<double> positions(4000);
+  const auto of_batch = [&](int pixels) {
+    return allocations_of([&] {
+      setup.decoder.decode_depth_bins(raw.data(), pixels, positions.data());
+      setup.decoder.decode_bins(raw.data(), pixels, bins.data());
+    });
+  };
+  EXPECT_EQ(of_batch(1), 2);  // work space, once a call
+  EXPECT_EQ(of_batch(4000), 2);
   const auto of_frame = [&](int pixels) {
     const RawFrames frame = frame_of({raw.begin(), raw.begin() + 5 * pixels}, 5);
     return allocations_of([&] { setup.decoder.decode(frame); });

@@ -64,6 +64,35 @@ TEST(EvaluationDocument, NamesTheDecoder) {
   EXPECT_EQ(document["unwrap_weights"], "frequency");
 }
 
+TEST(EvaluationDocument, SetsWhatZnccMakesOfTheSameTrialsBesideMaximumLikelihood) {
+  const Camera camera = small_camera("paper-5f0");
+  const CodeSet code = build_family("sinusoid-k4", camera);
+  EvaluateOptions options{.trials = 1000, .method = DecodeMethod::ml};
+  EvaluatedCode evaluated{evaluate(code, camera, options)};
+  options.method = DecodeMethod::zncc;
+  evaluated.zncc_error = evaluate(code, camera, options);
+  options.method = DecodeMethod::ml;
+  const json document = json::parse(evaluation_document(camera, {&evaluated, 1}, options));
+  EXPECT_EQ(document["method"], "ml");
+  Keys expected = code_keys;
+  expected.insert("zncc");
+  const json& entry = document["codes"][0];
+  EXPECT_EQ(keys_of(entry), expected);
+  const json& zncc = entry["zncc"];
+  EXPECT_EQ(keys_of(zncc),
+            (Keys{"linear", "circular", "linear_ratio", "circular_ratio", "points"}));
+  EXPECT_EQ(keys_of(zncc["linear"]), mean_keys);
+  EXPECT_EQ(zncc["circular"]["geometric_mean_m"],
+            evaluated.zncc_error->circular.geometric_mean_m.value);
+  ASSERT_EQ(zncc["points"].size(), 2u);
+  EXPECT_EQ(keys_of(zncc["points"][0]), (Keys{"signal_e_per_s", "ambient_e_per_s", "linear_mde_m",
+                                              "linear_se_m", "circular_mde_m", "circular_se_m",
+                                              "outlier_rate", "linear_ratio", "circular_ratio"}));
+  const json &own = entry["points"][1], &other = zncc["points"][1];
+  EXPECT_DOUBLE_EQ(other["circular_ratio"].get<double>() * other["circular_mde_m"].get<double>(),
+                   own["circular_mde_m"].get<double>());
+}
+
 TEST(DesignDocument, AddsTheBestAndHowEachDesignedCodeCompares) {
   const Camera camera = small_camera("paper-5f0");
   const DesignOptions options = small_options();

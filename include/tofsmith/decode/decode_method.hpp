@@ -6,6 +6,7 @@
 #include <string_view>
 #include <variant>
 
+#include "tofsmith/decode/likelihood_decoder.hpp"
 #include "tofsmith/decode/unwrap_decoder.hpp"
 
 namespace tofsmith {
@@ -13,18 +14,20 @@ namespace tofsmith {
 /// The ways from measurements to depth.
 enum class DecodeMethod {
   zncc,    ///< Decoder: any code
+  ml,      ///< LikelihoodDecoder: any code
   unwrap,  ///< UnwrapDecoder: sinusoids of one or more frequencies
 };
 
-inline constexpr std::array all_decode_methods = {DecodeMethod::zncc, DecodeMethod::unwrap};
+inline constexpr std::array all_decode_methods = {DecodeMethod::zncc, DecodeMethod::ml,
+                                                  DecodeMethod::unwrap};
 
-/// "zncc", "unwrap".
+/// "zncc", "ml", "unwrap".
 std::string_view name_of(DecodeMethod method);
 /// @throws std::invalid_argument for any other word
 DecodeMethod parse_decode_method(std::string_view name);
 
 /// A decoder of any method: they share table(), decode(), decode_depth_bins() and decode_bins().
-using AnyDecoder = std::variant<Decoder, UnwrapDecoder>;
+using AnyDecoder = std::variant<Decoder, LikelihoodDecoder, UnwrapDecoder>;
 
 /// The decoder of a method, with its defaults but for what is given.
 /// @param unwrap_weights  of DecodeMethod::unwrap

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -14,10 +15,13 @@ namespace tofsmith {
 struct EvaluatedCode {
   DepthErrorReport error;
   int rotation_bin = 0;
+  /// Of DecodeMethod::ml: the error by zncc in the same trials, to compare with.
+  std::optional<DepthErrorReport> zncc_error;
 };
 
 /// What `tofsmith evaluate --json` prints: version, seed, trials, the camera with its defaults
-/// filled in, the decoder, and one entry per code with its depth errors and bounds.
+/// filled in, the decoder, and one entry per code with its depth errors and bounds. Beside what it
+/// is compared with stand the ratios of its errors to it.
 std::string evaluation_document(const Camera& camera, std::span<const EvaluatedCode> codes,
                                 const EvaluateOptions& options);
 

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "decode/ambient_projection.hpp"
+
+namespace tofsmith {
+
+/// Variance of measurements in light: of a measurement k at bin n it is
+///   S shot_gated(n, k) + A shot_ambient[k] + floor_variance_e2[k].
+struct ExpectedNoise {
+  explicit ExpectedNoise(const DecodingTable& table);
+
+  RowMajorMatrix shot_gated;          ///< T o shot_chi (N, K)
+  Eigen::VectorXd shot_ambient;       ///< T o shot_kappa (K)
+  Eigen::VectorXd floor_variance_e2;  ///< without light (K)
+};
+
+/// Keeps a noiseless table from dividing by zero [e^2].
+inline constexpr double least_variance_e2 = 1e-12;
+
+}  // namespace tofsmith

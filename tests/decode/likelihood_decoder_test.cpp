@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/decode/likelihood_decoder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "likelihood_setup.hpp"
+#include "reference_likelihood.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+namespace {
+
+struct Case {
+  const char* code;
+  const char* camera = "paper-10f0";
+  int taps = 1;
+  Readout readout = Readout::separate;
+  std::vector<double> exposure_s;
+};
+
+Camera camera_of(const Case& c) {
+  Camera camera = camera_with(c.camera, c.taps, c.readout);
+  camera.samples = std::string_view(c.code) == "gray-k4" ? 64 : 60;
+  camera.exposure_s.each_s = c.exposure_s;
+  return camera;
+}
+
+class LikelihoodOf : public testing::TestWithParam<Case> {};
+
+TEST_P(LikelihoodOf, IsNeverLessThanTheBestOfADenseGrid) {
+  const LikelihoodSetup setup(GetParam().code, camera_of(GetParam()));
+  const DecodingTable& table = setup.decoder.table();
+  const ReferenceLikelihood reference(table);
+#ifdef NDEBUG
+  const int pixels = 12;
+#else
+  const int pixels = 3;
+#endif
+  std::uint64_t seed = 1;
+  for (const OperatingPoint& point :
+       {OperatingPoint{1e3, 1e4}, OperatingPoint{3e3, 1e2}, OperatingPoint{1e4, 1e4},
+        OperatingPoint{1e5, 1e2}, OperatingPoint{1e6, 1e4}}) {
+    const std::vector<float> raw =
+        noisy_pixels(table, point.signal_e_per_s, point.ambient_e_per_s, pixels, seed++);
+    const DepthImage image = setup.decoder.decode(frame_of(raw, table.measurements()));
+    for (int i = 0; i < pixels; ++i) {
+      if (image.status(0, i) == PixelStatus::no_return) continue;
+      const Eigen::VectorXd y =
+          reference.electrons(&raw[static_cast<std::size_t>(i * table.measurements())]);
+      const double ambient = reference.sees_ambient() ? image.ambient_e_per_s(0, i) : 0.0;
+      const double found = reference.cost(y, image.depth_m(0, i) / table.bin_m(),
+                                          image.signal_e_per_s(0, i), ambient);
+      EXPECT_LE(found, reference.least_cost(y, 4) + 1e-3)
+          << "pixel " << i << " at " << point.signal_e_per_s << ", " << point.ambient_e_per_s;
+      EXPECT_GE(image.signal_e_per_s(0, i), 0.0f);
+      EXPECT_GE(ambient, 0.0);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Codes, LikelihoodOf,
+    testing::Values(
+        Case{"hamiltonian-k3"}, Case{"hamiltonian-k4"}, Case{"hamiltonian-k5"},
+        Case{"hamiltonian-k5", "paper-30x"}, Case{"sinusoid-k4", "paper-5f0"},
+        Case{"multifrequency-k5"}, Case{"gray-k4"},
+        Case{"single-ramp-k3", "paper-30x"},  // unequal duties
+        Case{"double-ramp-k3"}, Case{"hamiltonian-k4", "paper-10f0", 2},
+        Case{"hamiltonian-k5", "paper-10f0", 2, Readout::difference},
+        Case{"hamiltonian-k4", "paper-10f0", 1, Readout::separate, {0.01, 0.03, 0.08, 0.18}},
+        Case{"hamiltonian-k5", "paper-30x", 2, Readout::separate, {0.01, 0.02, 0.05, 0.08, 0.14}}));
+
+TEST(LikelihoodDecoder, RecoversDepthSignalAndAmbientWithoutNoise) {
+  for (const Case& c :
+       {Case{"hamiltonian-k3", "paper-30x"}, Case{"hamiltonian-k5", "paper-30x"},
+        Case{"multifrequency-k5", "paper-30x"}, Case{"hamiltonian-k4", "paper-30x", 2},
+        Case{"hamiltonian-k5", "paper-30x", 2, Readout::difference},
+        Case{"hamiltonian-k4", "paper-30x", 1, Readout::separate, {0.01, 0.03, 0.08, 0.18}}}) {
+    const LikelihoodSetup setup(c.code, camera_of(c));
+    std::vector<float> raw;
+    for (int i = 0; i < 240; ++i) setup.append_expected(raw, 1e6, 0.25 * i, 1e4);
+    const DepthImage image = setup.decoder.decode(frame_of(raw, setup.decoder.measurements()));
+    for (int i = 0; i < 240; ++i) {
+      const double at = image.depth_m(0, i) / setup.camera.bin_m();
+      EXPECT_LT(std::abs(circular_difference(at, 0.25 * i, 60.0)), 2e-3) << c.code;
+      EXPECT_NEAR(image.signal_e_per_s(0, i), 1e6, 300.0) << c.code;
+      if (c.readout == Readout::difference)
+        EXPECT_TRUE(std::isnan(image.ambient_e_per_s(0, i)));
+      else
+        EXPECT_NEAR(image.ambient_e_per_s(0, i), 1e4, 300.0) << c.code;
+    }
+  }
+}
+
+TEST(LikelihoodDecoder, TheLowerOfTwoEqualDepthsWins) {
+  // Twice the same period in one range.
+  const LikelihoodSetup setup("multifrequency-2x4", camera_with("paper-30x"));
+  const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 1e5, 1e4, 400, 3);
+  for (const double at : depth_bins_of(setup.decoder, raw)) EXPECT_LT(at, 120.0);
+}
+
+TEST(LikelihoodDecoder, PositionsBinsAndFramesAgreeHoweverPixelsAreGrouped) {
+  const LikelihoodSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 3e3, 1e4, 500, 5);
+  const std::vector<double> together = depth_bins_of(setup.decoder, raw);
+  std::vector<std::int32_t> bins(500);
+  setup.decoder.decode_bins(raw.data(), 500, bins.data());
+  const DepthImage image = setup.decoder.decode(frame_of(raw, 4));
+  for (std::size_t i = 0; i < 500; ++i) {
+    double alone = 0.0;
+    setup.decoder.decode_depth_bins(&raw[4 * i], 1, &alone);
+    EXPECT_EQ(alone, together[i]);
+    EXPECT_EQ(bins[i], std::lround(alone) % 240);
+    EXPECT_FLOAT_EQ(image.depth_m.pixels[i], static_cast<float>(alone * setup.camera.bin_m()));
+  }
+}
+
+TEST(LikelihoodDecoder, GivesTheSameBitsOnAnyNumberOfThreads) {
+  const LikelihoodSetup setup("hamiltonian-k5", camera_with("paper-10f0"));
+  const RawFrames frame = frame_of(noisy_pixels(setup.decoder.table(), 3e3, 1e4, 10007, 5), 5);
+  const auto decode_on = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return setup.decoder.decode(frame);
+  };
+  const DepthImage one = decode_on(1), many = decode_on(4);
+  for (const auto plane :
+       {&DepthImage::depth_m, &DepthImage::confidence, &DepthImage::predicted_standard_deviation_m})
+    EXPECT_EQ(std::memcmp((one.*plane).pixels.data(), (many.*plane).pixels.data(),
+                          (one.*plane).pixels.size() * sizeof(float)),
+              0);
+  EXPECT_EQ(one.status.pixels, many.status.pixels);
+}
+
+TEST(LikelihoodDecoder, RefusesWhatDoesNotFitAndStopsWhenAsked) {
+  const LikelihoodSetup setup("hamiltonian-k3", camera_with("paper-30x"));
+  EXPECT_THROW(setup.decoder.decode(frame_of(std::vector<float>(8, 1.0f), 4)),
+               std::invalid_argument);
+  EXPECT_THROW(setup.decoder.decode(frame_of(std::vector<float>(300, 1.0f), 3), 0,
+                                    [](double, std::string_view) { return false; }),
+               Interrupted);
+  EXPECT_THROW(LikelihoodDecoder(setup.decoder.table(), {.minimum_confidence = 2.0}),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tofsmith
