@@ -25,7 +25,8 @@ class Streaming(CommandLineTest):
         np.save(self.path("scene.npy"),
                 np.linspace(1, 4, 30 * 40).reshape(30, 40).astype(np.float32))
         self.do("simulate", "scene.npy", "--kind", "radial", "--code", "hamiltonian-k3",
-                "--signal", "1e5", "--no-falloff", "--frames", str(frames), "-o", "sim.npy")
+                "--signal", "1e5", "--no-falloff", "--frames", str(frames), "--force", "-o",
+                "sim.npy")
         raw = np.clip(np.load(self.path("sim.npy")), 0, 255 if dtype == "u1" else 65535)
         raw = raw.reshape(frames, 30, 40, 3).astype(dtype)
         np.save(self.path("raw.npy"), raw)
@@ -172,8 +173,8 @@ class Streaming(CommandLineTest):
 
     def test_what_cannot_be_bounded_is_refused(self):
         raw = self.record()
-        few = ("--memory-mb", "0.05")
-        self.refuse(self.arguments(*few, output="d.npz"), "d.npz", "30 x 40", "0.05 MB",
+        few = ("--memory-mb", "0.03")
+        self.refuse(self.arguments(*few, output="d.npz"), "d.npz", "30 x 40", "0.03 MB",
                     "--memory-mb", "--stack")
         np.save(self.path("fortran.npy"), np.asfortranarray(raw))
         self.refuse(self.arguments(*few, raw="fortran.npy"), "Fortran", ".npy in C order")
