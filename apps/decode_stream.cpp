@@ -85,9 +85,11 @@ int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target, do
                     "--stack every plane; --memory-mb allows more)",
                     target.view.height, target.view.width, 1e-6 * (whole + row),
                     1e-6 * memory_bytes));
-  const double height = target.view.height;
-  return row > 0.0 ? static_cast<int>(std::min(height, (memory_bytes - whole) / row))
-                   : target.view.height;
+  // Larger bands are no faster: new memory costs more than another call.
+  constexpr double comfortable_bytes = 32e6;
+  const double rows =
+      row > 0.0 ? std::min(memory_bytes - whole, comfortable_bytes) / row : target.view.height;
+  return std::clamp(static_cast<int>(rows), 1, target.view.height);
 }
 
 void decode_frames(const RawFramesReader& reader, int rows, const DecodeRows& decode_rows,
