@@ -2,19 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "depth_output.hpp"
+#include "decode_output.hpp"
+#include "decode_report.hpp"
+#include "decode_stream.hpp"
 #include "map_arguments.hpp"
 #include "method_arguments.hpp"
 #include "scene_source.hpp"
 #include "table_arguments.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
-#include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decode_method.hpp"
-#include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/io/raw_frames_reader.hpp"
 
 namespace tofsmith::apps {
 
@@ -27,20 +30,70 @@ struct DecodeArguments {
   TableArguments table;
   MapArguments maps;
   MethodArguments method;
-  std::vector<std::string> planes = plane_names();
+  std::vector<std::string> planes;  // empty: as many of the usual ones as the format holds
   DecodeOptions options;
   int frame = -1;
   std::string kind = "radial";
+  std::string layout = "interleaved";
+  bool stack = false;
+  double memory_mb = 256;
 };
 
-/// name.npz, frame 3 of 12 -> name-03.npz
-std::filesystem::path frame_path(const std::filesystem::path& path, int frame, int frames) {
-  if (frames == 1) return path;
-  const std::size_t digits = std::to_string(frames - 1).size();
-  std::filesystem::path numbered = path;
-  numbered.replace_filename(
-      fmt::format("{}-{:0{}}{}", path.stem().string(), frame, digits, path.extension().string()));
-  return numbered;
+void check_frame(const DecodeArguments& arguments, int frames) {
+  if (arguments.frame >= frames)
+    throw UsageError(fmt::format("--frame {}: {} holds {} frame{}, counted from 0", arguments.frame,
+                                 arguments.raw, frames, frames == 1 ? "" : "s"));
+}
+
+/// The planes to write; every plane once.
+std::vector<std::string> planes_to_write(const DecodeArguments& arguments) {
+  const std::string extension = std::filesystem::path(arguments.output).extension().string();
+  if (arguments.stack && extension != ".npy")
+    throw UsageError(
+        fmt::format("--stack: found the output {}; expected a .npy file", arguments.output));
+  const bool depth_only = extension == ".npy" || extension == ".pfm" || extension == ".png";
+  if (arguments.planes.empty())
+    return depth_only ? std::vector<std::string>{"depth"} : plane_names();
+  if (depth_only && !arguments.stack && arguments.planes != std::vector<std::string>{"depth"})
+    throw UsageError(
+        fmt::format("--outputs: a {} file holds depth only; .npz, .exr and .ply hold "
+                    "other planes, and .npy does with --stack",
+                    extension));
+  std::vector<std::string> planes;
+  for (const std::string& plane : arguments.planes)
+    if (std::ranges::find(planes, plane) == planes.end()) planes.push_back(plane);
+  return planes;
+}
+
+DecodeTarget target_of(const DecodeArguments& arguments, const Camera& camera,
+                       const RawFramesReader& reader) {
+  check_frame(arguments, reader.frames());
+  const std::filesystem::path path = arguments.output;
+  return {.path = path,
+          .stack = arguments.stack,
+          .planes = planes_to_write(arguments),
+          .count_statuses =
+              arguments.planes.empty() || std::ranges::count(arguments.planes, "status") > 0,
+          .as_z = arguments.kind == "z" && path.extension() != ".ply",
+          .first_frame = std::max(0, arguments.frame),
+          .frames = arguments.frame < 0 ? reader.frames() : 1,
+          .view = view_of(camera, reader.width(), reader.height())};
+}
+
+/// Decodes all frames; if it does not come to the end of several, says how far it came.
+DecodeSummary decode_all(const RawFramesReader& reader, int rows, const DecodeRows& decode_rows,
+                         DecodeOutput& output) {
+  const DecodeTarget& target = output.target();
+  DecodeSummary summary;
+  try {
+    decode_frames(reader, rows, decode_rows, output, terminal_progress("decoding"), summary);
+  } catch (...) {
+    if (target.frames > 1)
+      fmt::print(stderr, "tofsmith: decoded {} of {} frames{}\n", summary.frames.size(),
+                 target.frames, target.stack ? "; the stack is not written" : "");
+    throw;
+  }
+  return summary;
 }
 
 void run(const DecodeArguments& arguments, const Session& session) {
@@ -48,57 +101,36 @@ void run(const DecodeArguments& arguments, const Session& session) {
   const DecodingSource source = arguments.table.load(arguments.code, camera, arguments.taps);
   const AnyDecoder decoder = make_decoder(arguments.method.method(), source.table,
                                           arguments.options, arguments.method.unwrap_weights());
-  const RawFrames raw = read_raw_frames(arguments.raw, source.table.measurements());
-  const PixelMaps maps = arguments.maps.load(raw.height, raw.width);
-  if (arguments.frame >= raw.frames)
-    throw UsageError(fmt::format("--frame {}: {} holds {} frame{}, counted from 0", arguments.frame,
-                                 arguments.raw, raw.frames, raw.frames == 1 ? "" : "s"));
-  const int first = std::max(0, arguments.frame);
-  const int last = arguments.frame < 0 ? raw.frames : arguments.frame + 1;
-  const PinholeView view = view_of(camera, raw.width, raw.height);
-  const std::string extension = std::filesystem::path(arguments.output).extension().string();
-  const bool depth_only = extension == ".npy" || extension == ".pfm" || extension == ".png";
-  if (depth_only && arguments.planes != plane_names() &&
-      arguments.planes != std::vector<std::string>{"depth"})
-    throw UsageError(
-        fmt::format("--outputs: a {} file holds depth only; .npz, .exr and .ply hold "
-                    "other planes",
-                    extension));
-  for (int frame = first; frame < last; ++frame)
-    check_decoded_output(frame_path(arguments.output, frame, last - first), session);
-  const Progress progress = terminal_progress("decoding");
-  nlohmann::ordered_json outputs = nlohmann::ordered_json::array();
-  std::string lines;
-  for (int frame = first; frame < last; ++frame) {
-    const double count = last - first;
-    const Progress part = part_of(progress, (frame - first) / count, (frame - first + 1) / count);
-    DepthImage image =
-        std::visit([&](const auto& d) { return d.decode(raw, frame, part); }, decoder);
-    apply(maps, source.table.range_m, DecodedView::of(image), 0, image.status.size());
-    const std::filesystem::path path = frame_path(arguments.output, frame, last - first);
-    const bool as_z = arguments.kind == "z" && path.extension() != ".ply";
-    if (as_z) image.depth_m = z_from_radial(image.depth_m, view);
-    write_decoded(path, image, arguments.planes, view, session.output_policy());
-    outputs.push_back(
-        {{"frame", frame}, {"output", path.string()}, {"status", status_summary(image)}});
-    lines += fmt::format("wrote {} ({}): {}\n", path.string(),
-                         path.extension() == ".ply" ? "points"
-                         : as_z                     ? "z-depth"
-                                                    : "radial distance",
-                         status_summary(image));
-  }
-  report(progress, 1.0, "done");
-  session.print_json({{"code", source.name},
-                      {"camera", camera.name},
-                      {"method", name_of(arguments.method.method())},
-                      {"height", raw.height},
-                      {"width", raw.width},
-                      {"measurements", raw.measurements},
-                      {"frames", std::move(outputs)},
-                      {"notes", source.notes}});
-  for (const std::string& note : source.notes) lines += note + "\n";
-  lines.pop_back();
-  if (!camera.lens && (extension == ".ply" || arguments.kind == "z"))
+  const double memory_bytes = 1e6 * arguments.memory_mb;
+  const RawFramesReader reader(arguments.raw,
+                               {.measurements = source.table.measurements(),
+                                .layout = parse_raw_layout(arguments.layout),
+                                .largest_in_memory = static_cast<std::uint64_t>(memory_bytes)});
+  const PixelMaps maps = arguments.maps.load(reader.height(), reader.width());
+  const DecodeRows decode_rows = [&](const RawView& raw, int first_row, const DecodedView& decoded,
+                                     const Progress& progress) {
+    std::visit([&](const auto& d) { d.decode(raw, decoded, progress); }, decoder);
+    apply(maps, source.table.range_m, decoded,
+          static_cast<std::size_t>(first_row) * static_cast<std::size_t>(raw.width),
+          static_cast<std::size_t>(raw.pixels()));
+  };
+  DecodeOutput output(target_of(arguments, camera, reader), session);
+  const DecodeTarget& target = output.target();
+  const int rows = rows_at_a_time(reader, target, memory_bytes);
+  const DecodeSummary summary = decode_all(reader, rows, decode_rows, output);
+
+  nlohmann::ordered_json document = {{"code", source.name},
+                                     {"camera", camera.name},
+                                     {"method", name_of(arguments.method.method())},
+                                     {"height", reader.height()},
+                                     {"width", reader.width()},
+                                     {"measurements", reader.measurements()}};
+  if (session.json) add_decode_summary(target, summary, document);
+  document["notes"] = source.notes;
+  session.print_json(document);
+  std::string lines = decode_lines(target, summary);
+  for (const std::string& note : source.notes) lines += "\n" + note;
+  if (!camera.lens && (target.path.extension() == ".ply" || arguments.kind == "z"))
     lines += "\nthe camera has no [lens]: its view was taken to be 60 degrees wide";
   session.say(lines);
 }
@@ -111,6 +143,11 @@ void add_decode_command(CLI::App& app, Session& session) {
   command->add_option("RAW", arguments->raw, "raw frames (.npy .npz): (H,W,K) or (F,H,W,K)")
       ->required();
   command
+      ->add_option("--layout", arguments->layout,
+                   "how RAW runs: interleaved, or planar for (K,H,W) and (F,K,H,W); never guessed")
+      ->check(CLI::IsMember({"interleaved", "planar"}))
+      ->capture_default_str();
+  command
       ->add_option(
           "--code", arguments->code,
           "the code that was played: a family or a file; or a measured table (.npz .npy .csv)")
@@ -121,10 +158,12 @@ void add_decode_command(CLI::App& app, Session& session) {
   arguments->maps.add_to(*command);
   arguments->method.add_to(*command);
   command
-      ->add_option("--outputs", arguments->planes,
-                   "planes to write: depth,signal,ambient,confidence,deviation,status")
+      ->add_option(
+          "--outputs", arguments->planes,
+          "planes to write: depth,signal,ambient,confidence,deviation,status (by default as "
+          "many as OUTPUT holds), bin; others are not computed")
       ->delimiter(',')
-      ->check(CLI::IsMember(plane_names()));
+      ->check(CLI::IsMember(all_plane_names()));
   command
       ->add_option(
           "--kind", arguments->kind,
@@ -146,6 +185,15 @@ void add_decode_command(CLI::App& app, Session& session) {
       ->add_option("-o,--output", arguments->output,
                    "depth: .npy .npz .exr .pfm .png (16 bits, mm) .ply; several frames get numbers")
       ->required();
+  command->add_flag("--stack", arguments->stack,
+                    "all frames in one .npy, (F,H,W), written as they come; with --outputs each "
+                    "plane but depth in a file of its own, NAME-PLANE.npy");
+  command
+      ->add_option("--memory-mb", arguments->memory_mb,
+                   "memory for frames under way [MB]; larger frames go in bands of rows. The "
+                   "program itself takes some 50 MB more")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

@@ -79,7 +79,7 @@ void write_products(const fs::path& directory, const SceneResult& scene, const C
                                  .reference_distance_m = scene.reference_distance_m,
                                  .seed = seed});
   const Decoder decoder(make_decoding_table(ForwardModel(best, camera), camera));
-  const DepthImage image = decoder.decode(raw);
+  const DecodedPlanes image(decoder.decode(raw));
   write_raw_frames(directory / "raw.npy", raw, policy);
   for (const char* name : depth_files)
     write_decoded(directory / name, image, plane_names(), scene.view, policy);

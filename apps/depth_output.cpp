@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <utility>
 
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/depth_file.hpp"
@@ -19,54 +19,38 @@ namespace tofsmith::apps {
 
 namespace {
 
-Image<float> plane(const DepthImage& image, const std::string& name) {
-  if (name == "depth") return image.depth_m;
-  if (name == "signal") return image.signal_e_per_s;
-  if (name == "ambient") return image.ambient_e_per_s;
-  if (name == "confidence") return image.confidence;
-  if (name == "deviation") return image.predicted_standard_deviation_m;
-  Image<float> status(image.height(), image.width());
-  for (std::size_t i = 0; i < status.size(); ++i)
-    status.pixels[i] = static_cast<float>(image.status.pixels[i]);
-  return status;
-}
-
-NpyShape shape_of(const DepthImage& image) {
-  return {static_cast<std::size_t>(image.height()), static_cast<std::size_t>(image.width())};
-}
-
-NpzArrays arrays(const DepthImage& image, const std::vector<std::string>& planes) {
+NpzArrays arrays(const DecodedPlanes& decoded, const std::vector<std::string>& planes) {
   NpzArrays result;
   for (const std::string& name : planes) {
-    if (name == "status") {
-      std::vector<std::uint8_t> codes;
-      for (const PixelStatus s : image.status.pixels) codes.push_back(static_cast<std::uint8_t>(s));
-      result.emplace(name, NpyArray::of<std::uint8_t>(shape_of(image), codes));
-    } else {
-      const Image<float> values = plane(image, name);
-      result.emplace(name, NpyArray::of<float>(shape_of(image), values.pixels));
-    }
+    NpyArray array(type_of_plane(name), {static_cast<std::size_t>(decoded.height()),
+                                         static_cast<std::size_t>(decoded.width())});
+    std::ranges::copy(decoded.items(name, decoded.height()), array.bytes().begin());
+    result.emplace(name, std::move(array));
   }
   return result;
 }
 
-PointCloud cloud(const DepthImage& image, const std::vector<std::string>& planes,
+PointCloud cloud(const DecodedPlanes& decoded, const std::vector<std::string>& planes,
                  const PinholeView& view) {
   PointCloud result;
   std::vector<std::size_t> kept;
-  for (int row = 0; row < image.height(); ++row)
-    for (int column = 0; column < image.width(); ++column) {
-      const float depth_m = image.depth_m(row, column);
+  result.points_m.reserve(
+      decoded.depth_m().size());  // growing would take twice as much for a while
+  kept.reserve(decoded.depth_m().size());
+  for (int row = 0; row < decoded.height(); ++row)
+    for (int column = 0; column < decoded.width(); ++column) {
+      const float depth_m = decoded.depth_m()(row, column);
       if (!std::isfinite(depth_m)) continue;
       const Eigen::Vector3d point = view.ray(row, column) * static_cast<double>(depth_m);
       result.points_m.push_back({static_cast<float>(point.x()), static_cast<float>(point.y()),
                                  static_cast<float>(point.z())});
-      kept.push_back(static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width()) +
+      kept.push_back(static_cast<std::size_t>(row) * static_cast<std::size_t>(decoded.width()) +
                      static_cast<std::size_t>(column));
     }
   for (const std::string& name : planes) {
-    const Image<float> values = plane(image, name);
+    const Image<float> values = decoded.floats(name);
     PointScalar scalar{name, {}};
+    scalar.values.reserve(kept.size());
     for (const std::size_t i : kept) scalar.values.push_back(values.pixels[i]);
     result.scalars.push_back(std::move(scalar));
   }
@@ -75,25 +59,21 @@ PointCloud cloud(const DepthImage& image, const std::vector<std::string>& planes
 
 }  // namespace
 
-std::vector<std::string> plane_names() {
-  return {"depth", "signal", "ambient", "confidence", "deviation", "status"};
-}
-
-void write_decoded(const std::filesystem::path& path, const DepthImage& image,
+void write_decoded(const std::filesystem::path& path, const DecodedPlanes& decoded,
                    const std::vector<std::string>& planes, const PinholeView& view,
                    OutputPolicy policy) {
   const std::string extension = path.extension().string();
   if (extension == ".npz") {
-    write_npz(path, arrays(image, planes), policy);
+    write_npz(path, arrays(decoded, planes), policy);
   } else if (extension == ".ply") {
-    write_ply(path, cloud(image, planes, view), policy);
+    write_ply(path, cloud(decoded, planes, view), policy);
   } else if (extension == ".exr") {
     ExrPlanes channels;
     for (const std::string& name : planes)
-      channels[name == "depth" ? "Z" : name] = plane(image, name);
+      channels[name == "depth" ? "Z" : name] = decoded.floats(name);
     write_exr(path, channels, policy);
   } else {
-    write_depth(path, image.depth_m, policy);
+    write_depth(path, decoded.depth_m(), policy);
   }
 }
 
@@ -108,15 +88,15 @@ void check_decoded_output(const std::filesystem::path& path, const Session& sess
   session.check_output(path);
 }
 
-std::string status_summary(const DepthImage& image) {
-  std::map<PixelStatus, std::size_t> counts;
-  for (const PixelStatus s : image.status.pixels) ++counts[s];
-  std::string text;
-  for (const auto& [status, count] : counts)
-    text +=
-        fmt::format("{}{} {:.2f} %", text.empty() ? "" : ", ", name_of(status),
-                    100.0 * static_cast<double>(count) / static_cast<double>(image.status.size()));
-  return text;
+std::size_t writing_bytes_per_pixel(std::string_view extension,
+                                    const std::vector<std::string>& planes) {
+  const std::size_t held = bytes_per_pixel(planes), depth = sizeof(float);
+  if (extension == ".npz") return held;  // as arrays
+  // The list of kept pixels, and the points with their scalars twice: as lists and as a file.
+  if (extension == ".ply") return sizeof(std::size_t) + 2 * (3 + planes.size()) * sizeof(float);
+  // Channels of floats, and at worst the same again in the file.
+  if (extension == ".exr") return 2 * planes.size() * sizeof(float);
+  return 2 * depth;  // .pfm, .png: converted, and the file
 }
 
 }  // namespace tofsmith::apps

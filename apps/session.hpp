@@ -61,6 +61,9 @@ std::string length_text(double metres);
 /// "13.2 ms", "4.1 s".
 std::string time_text(double seconds);
 
+/// A rate to three digits, never as a power of ten: "8.53", "1204".
+std::string rate_text(double per_second);
+
 /// A table of text with a header, columns padded, numbers (all columns but the first) to the right.
 std::string text_table(const std::vector<std::vector<std::string>>& rows);
 

@@ -9,13 +9,15 @@ namespace tofsmith {
 
 BinMatcher::BinMatcher(const DecodingTable& table, const AmbientProjection& projection)
     : directions_(projection),
+      arcs_(directions_),
+      rivals_(directions_, arcs_),
       distinct_(directions_),
       projection_(table, projection),
       exact_(table, projection) {
   if (CircleSearch::serves(distinct_))
-    search_.emplace<CircleSearch>(distinct_, directions_);
+    search_.emplace<CircleSearch>(distinct_, rivals_);
   else if (CellTable::serves(distinct_))
-    search_.emplace<CellSearch>(distinct_, directions_);
+    search_.emplace<CellSearch>(distinct_, rivals_);
 }
 
 void BinMatcher::match(const RawView& view, std::int64_t first, int pixels, bool keep_raw,
@@ -23,29 +25,49 @@ void BinMatcher::match(const RawView& view, std::int64_t first, int pixels, bool
   projection_.project(view, first, pixels, keep_raw, tile);
   if (search(tile)) return;
   for (int i = 0; i < pixels; ++i)
-    if (tile.bin[i] < 0) tile.bin[i] = decide(view, first + i);
+    if (tile.bin[i] < 0) decide(view, first, i, tile);
 }
 
 /// @returns whether all bins are proven
 bool BinMatcher::search(PixelTile& tile) const {
   if (const auto* circle = std::get_if<CircleSearch>(&search_)) return circle->search(tile);
   if (const auto* cells = std::get_if<CellSearch>(&search_)) return cells->search(tile);
-  std::fill_n(tile.bin, tile.pixels, -1);
-  return false;
+  arcs_.search(tile.plane, pixels_per_tile, tile.error, tile.pixels, tile.bin);
+  bool all_proven = true;
+  for (int i = 0; i < tile.pixels; ++i) {
+    if (tile.bin[i] >= 0)
+      tile.bin[i] = directions_.bin_of_row(tile.bin[i]);
+    else
+      all_proven = false;
+  }
+  return all_proven;
 }
 
-/// Rivals that the search does not know with the bin.
 void BinMatcher::find_rivals(PixelTile& tile) const {
-  const auto* circle = std::get_if<CircleSearch>(&search_);
-  if (!circle) return;
-  for (int i = 0; i < tile.pixels; ++i)
-    tile.rival[i] = tile.bin[i] < 0 ? -1 : circle->rival(tile.bin[i]);
+  if (std::holds_alternative<CellSearch>(search_)) return;  // known with the bin
+  if (const auto* circle = std::get_if<CircleSearch>(&search_)) {
+    for (int i = 0; i < tile.pixels; ++i)
+      tile.rival[i] = tile.bin[i] < 0 ? -1 : circle->rival(tile.bin[i]);
+    return;
+  }
+  std::array<float, max_measurements> unit;
+  for (int i = 0; i < tile.pixels; ++i) {
+    float length2 = 0.0f;
+    for (int j = 0; j < directions_.rank(); ++j) {
+      const float q = tile.plane[j * pixels_per_tile + i];
+      length2 += q * q;
+    }
+    const float scale = length2 > 0.0f ? 1.0f / std::sqrt(length2) : 0.0f;
+    for (int j = 0; j < directions_.rank(); ++j)
+      unit[static_cast<std::size_t>(j)] = scale * tile.plane[j * pixels_per_tile + i];
+    tile.rival[i] = tile.bin[i] < 0 ? -1 : rivals_.rival(tile.bin[i], unit.data());
+  }
 }
 
 /// One pixel in double arithmetic.
-std::int32_t BinMatcher::decide(const RawView& view, std::int64_t pixel) const {
+void BinMatcher::decide(const RawView& view, std::int64_t first, int pixel, PixelTile& tile) const {
   std::array<double, max_measurements> raw;
-  const std::int64_t row = pixel / view.width, column = pixel % view.width;
+  const std::int64_t row = (first + pixel) / view.width, column = (first + pixel) % view.width;
   std::visit(
       [&](const auto* data) {
         const auto* numbers = data + row * view.row_stride + column * view.column_stride;
@@ -56,20 +78,18 @@ std::int32_t BinMatcher::decide(const RawView& view, std::int64_t pixel) const {
       view.data);
   PlaneVector vector;
   exact_.project(raw.data(), vector);
-  if (!std::isfinite(vector.length)) return -1;
-  return vector.length > 0.0 ? choose(vector.unit.data()) : distinct_.bin.front();
+  for (int j = 0; j < exact_.rank(); ++j)
+    tile.plane[j * pixels_per_tile + pixel] =
+        static_cast<float>(vector.unit[static_cast<std::size_t>(j)] * vector.length);
+  if (!std::isfinite(vector.length)) return;  // bin is -1
+  tile.bin[pixel] = vector.length > 0.0 ? choose(vector.unit.data()) : distinct_.bin.front();
 }
 
 /// The lowest bin whose score ties with the best.
 std::int32_t BinMatcher::choose(const double* unit) const {
   if (const auto* circle = std::get_if<CircleSearch>(&search_)) return circle->choose(unit);
   if (const auto* cells = std::get_if<CellSearch>(&search_)) return cells->choose(unit);
-  const Eigen::VectorXd score =
-      distinct_.unit * Eigen::Map<const Eigen::VectorXd>(unit, distinct_.rank());
-  const double least = score.maxCoeff() - tie_tolerance;
-  std::int32_t n = 0;
-  while (score[n] < least) ++n;
-  return distinct_.bin[static_cast<std::size_t>(n)];
+  return directions_.bin_of_row(arcs_.choose(directions_, unit, 1));
 }
 
 }  // namespace tofsmith

@@ -20,7 +20,6 @@ class BinMatcher {
   BinMatcher(const BinMatcher&) = delete;
   BinMatcher& operator=(const BinMatcher&) = delete;
 
-  const DirectionTable& directions() const { return directions_; }
   const ExactProjection& exact() const { return exact_; }
 
   /// Fills a tile with the pixels of a view from pixel `first` on; bins are -1 where a raw number
@@ -34,10 +33,12 @@ class BinMatcher {
 
  private:
   bool search(PixelTile& tile) const;
-  std::int32_t decide(const RawView& view, std::int64_t pixel) const;
+  void decide(const RawView& view, std::int64_t first, int pixel, PixelTile& tile) const;
   std::int32_t choose(const double* unit) const;
 
   DirectionTable directions_;
+  ArcSearch arcs_;
+  RivalSearch rivals_;
   DistinctDirections distinct_;
   TileProjection projection_;
   ExactProjection exact_;

@@ -24,9 +24,9 @@ CellBox CellBox::child(int part, int rank) const {
   return box;
 }
 
-CellBuilder::CellBuilder(const DistinctDirections& directions, const DirectionTable& table,
+CellBuilder::CellBuilder(const DistinctDirections& directions, const RivalSearch& rivals,
                          double fit_unit)
-    : directions_(&directions), table_(&table), rank_(directions.rank()), fit_unit_(fit_unit) {}
+    : directions_(&directions), rivals_(&rivals), rank_(directions.rank()), fit_unit_(fit_unit) {}
 
 double CellBuilder::score(const Vector& q, std::int32_t n) const {
   const double* u = unit(n);
@@ -250,21 +250,14 @@ double CellBuilder::slack(const Corners& corners, const CellRecord& run) const {
 
 /// The best bin outside the main lobe of the run's winner, for the centre of the box.
 std::int32_t CellBuilder::rival(const CellBox& box, const CellRecord& run) const {
-  const std::int32_t count = directions_->count(), samples = table_->samples();
-  const std::int32_t own =
-      directions_->bin[static_cast<std::size_t>((run.first + winner(box.centre, run)) % count)];
-  const Lobe lobe = table_->main_lobe(own);
-  std::int32_t found = -1;
-  double highest = 0.0;
-  for (std::int32_t n = 0; n < count; ++n) {
-    const std::int32_t bin = directions_->bin[static_cast<std::size_t>(n)];
-    if ((bin - lobe.begin + samples) % samples < lobe.end - lobe.begin) continue;
-    const double s = score(box.centre, n);
-    if (found >= 0 && s <= highest) continue;
-    highest = s;
-    found = bin;
-  }
-  return found;
+  const std::int32_t winner_bin = directions_->bin[static_cast<std::size_t>(
+      (run.first + winner(box.centre, run)) % directions_->count())];
+  double length2 = 0.0;
+  for (const double component : box.centre) length2 += component * component;
+  std::array<float, max_cell_rank> unit;
+  for (std::size_t j = 0; j < unit.size(); ++j)
+    unit[j] = static_cast<float>(box.centre[j] / std::sqrt(length2));
+  return rivals_->rival(winner_bin, unit.data());
 }
 
 }  // namespace tofsmith

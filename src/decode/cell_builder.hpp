@@ -25,7 +25,7 @@ struct CellBox {
 class CellBuilder {
  public:
   /// @param fit_unit  of the records' fits
-  CellBuilder(const DistinctDirections& directions, const DirectionTable& table, double fit_unit);
+  CellBuilder(const DistinctDirections& directions, const RivalSearch& rivals, double fit_unit);
 
   /// Those of `candidates` that can win somewhere in a box, ascending.
   std::vector<std::int32_t> winners(const CellBox& box,
@@ -59,7 +59,7 @@ class CellBuilder {
   std::int32_t rival(const CellBox& box, const CellRecord& run) const;
 
   const DistinctDirections* directions_;
-  const DirectionTable* table_;
+  const RivalSearch* rivals_;
   int rank_;
   double fit_unit_;
 };

@@ -420,8 +420,8 @@ std::vector<float> twice_around(const RowMajorMatrix& rows, std::int32_t begin) 
 
 }  // namespace
 
-CellSearch::CellSearch(const DistinctDirections& directions, const DirectionTable& table)
-    : table_(directions, table), bin_(directions.bin), unit_(directions.unit) {
+CellSearch::CellSearch(const DistinctDirections& directions, const RivalSearch& rivals)
+    : table_(directions, rivals), bin_(directions.bin), unit_(directions.unit) {
   const std::int32_t count = directions.count();
   RowMajorMatrix step(count, directions.rank());
   for (std::int32_t n = 0; n < count; ++n)
@@ -442,7 +442,7 @@ CellSearch::CellSearch(const DistinctDirections& directions, const DirectionTabl
            .count = count,
            .steps = steps_.data(),
            .units = units_.data(),
-           .bin = count == table.samples() ? nullptr : bin_.data(),
+           .bin = directions.bin.back() + 1 == count ? nullptr : bin_.data(),
            .rounding = static_cast<float>((directions.rank() + 2) * unit_roundoff * safety + tie)};
 }
 

@@ -31,7 +31,7 @@ struct CellSearchView {
 class CellSearch {
  public:
   /// @param directions  with CellTable::serves(directions)
-  CellSearch(const DistinctDirections& directions, const DirectionTable& table);
+  CellSearch(const DistinctDirections& directions, const RivalSearch& rivals);
 
   const CellTable& table() const { return table_; }
 

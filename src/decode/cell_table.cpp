@@ -73,11 +73,11 @@ bool CellTable::serves(const DistinctDirections& directions) {
          directions.bin.back() < CellRecord::no_rival && directions.count() <= max_cell_directions;
 }
 
-CellTable::CellTable(const DistinctDirections& directions, const DirectionTable& table)
+CellTable::CellTable(const DistinctDirections& directions, const RivalSearch& rivals)
     : rank_(directions.rank()),
       resolution_(resolution_for(rank_, directions.count())),
       fit_unit_(std::max(8.0, directions.count() / 8.0) / 32767) {
-  const CellBuilder builder(directions, table, fit_unit_);
+  const CellBuilder builder(directions, rivals, fit_unit_);
   std::vector<std::int32_t> all(static_cast<std::size_t>(directions.count()));
   std::iota(all.begin(), all.end(), 0);
 

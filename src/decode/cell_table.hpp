@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "decode/distinct_directions.hpp"
+#include "decode/rival_search.hpp"
 
 namespace tofsmith {
 
@@ -48,7 +49,7 @@ class CellTable {
  public:
   static bool serves(const DistinctDirections& directions);
   /// @param directions  with serves(directions)
-  CellTable(const DistinctDirections& directions, const DirectionTable& table);
+  CellTable(const DistinctDirections& directions, const RivalSearch& rivals);
 
   /// How far cells reach beyond their sides, in units of c.
   static constexpr double overlap = 2e-5;

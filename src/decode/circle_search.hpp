@@ -7,6 +7,7 @@
 
 #include "decode/distinct_directions.hpp"
 #include "decode/pixel_tile.hpp"
+#include "decode/rival_search.hpp"
 
 namespace tofsmith {
 
@@ -25,7 +26,7 @@ class CircleSearch {
  public:
   static bool serves(const DistinctDirections& directions);
   /// @param directions  with serves(directions)
-  CircleSearch(const DistinctDirections& directions, const DirectionTable& table);
+  CircleSearch(const DistinctDirections& directions, const RivalSearch& rivals);
 
   /// As CellSearch::search, without rivals.
   bool search(PixelTile& tile) const;

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "decode/bin_matcher.hpp"
+#include "decode/output_kernel.hpp"
 #include "decode/pixel_model.hpp"
 #include "decode/pixel_output.hpp"
 #include "tofsmith/core/error.hpp"
@@ -26,8 +26,7 @@ void for_each_tile(const BinMatcher& matcher, const RawView& raw, IndexRange pix
     const auto count =
         static_cast<int>(std::min<std::int64_t>(pixels.end - first, pixels_per_tile));
     matcher.match(raw, first, count, keep_raw, tile);
-    if (keep_raw) matcher.find_rivals(tile);
-    use(std::as_const(tile), first);
+    use(tile, first);
   }
 }
 
@@ -52,15 +51,16 @@ struct Decoder::Plan {
       : table(std::move(table_)),
         options(options_),
         model(table, projection),
-        matcher(table, projection) {}
+        matcher(table, projection),
+        outputs(table, projection, options) {}
 
   DecodingTable table;
   DecodeOptions options;
   PixelModel model;
   BinMatcher matcher;
+  OutputKernel outputs;
 
-  void decode_pixel(const PixelTile& tile, int pixel, std::size_t at,
-                    const DecodedView& into) const;
+  void write(PixelTile& tile, const DecodedView& planes) const;
 };
 
 Decoder::Decoder(DecodingTable table, const DecodeOptions& options) {
@@ -111,14 +111,12 @@ void Decoder::decode(const RawView& raw, const DecodedView& decoded,
   const bool is_bin_enough = decoded.wants_bins_only();
   for_each_block(raw, measurements(), progress, [&](IndexRange block) {
     for_each_tile(plan_->matcher, raw, block, !is_bin_enough,
-                  [&](const PixelTile& tile, std::int64_t first) {
-                    const auto at = static_cast<std::size_t>(first);
-                    if (is_bin_enough) {
-                      std::copy_n(tile.bin, tile.pixels, decoded.bin + at);
-                      return;
-                    }
-                    for (int i = 0; i < tile.pixels; ++i)
-                      plan_->decode_pixel(tile, i, at + static_cast<std::size_t>(i), decoded);
+                  [&](PixelTile& tile, std::int64_t first) {
+                    const DecodedView planes = decoded.from(static_cast<std::size_t>(first));
+                    if (is_bin_enough)
+                      std::copy_n(tile.bin, tile.pixels, planes.bin);
+                    else
+                      plan_->write(tile, planes);
                   });
   });
 }
@@ -129,42 +127,28 @@ DepthImage Decoder::decode(const RawFrames& raw, int frame, const Progress& prog
   });
 }
 
-void Decoder::Plan::decode_pixel(const PixelTile& tile, int pixel, std::size_t at,
-                                 const DecodedView& into) const {
-  if (tile.bin[pixel] < 0) return store_invalid(at, into);
-  const int k_count = model.measurements(), r = model.rank();
-  std::array<float, max_measurements> raw;
-  std::array<double, max_measurements> raw_double, electrons, variance_e2, difference;
-  for (int k = 0; k < k_count; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    raw[i] = tile.raw[k * pixels_per_tile + pixel];
-    raw_double[i] = raw[i];
-    electrons[i] = matcher.exact().electrons(raw[i], k);
-  }
-  PlaneVector plane;
-  matcher.exact().project(raw_double.data(), plane);
-  for (int j = 0; j < r; ++j) plane.unit[static_cast<std::size_t>(j)] *= plane.length;
-
-  const Position position = model.refine(plane.unit.data(), tile.bin[pixel]);
-  PixelDecoding decoding{
-      position.in_bins(table.samples()),
-      model.estimate(electrons.data(), plane.unit.data(), position, variance_e2.data())};
-  if (decoding.estimate.signal_e_per_s > 0.0) {
-    decoding.confidence = 1.0;
-    const std::int32_t rival = tile.rival[pixel];
-    if (rival >= 0) {
-      double lead_e = 0.0;
-      for (int j = 0; j < r; ++j) {
-        const auto i = static_cast<std::size_t>(j);
-        difference[i] = matcher.directions().direction(tile.bin[pixel], j) -
-                        matcher.directions().direction(rival, j);
-        lead_e += difference[i] * plane.unit[i];
+/// All wanted planes of a matched tile, whose raw numbers become electrons.
+void Decoder::Plan::write(PixelTile& tile, const DecodedView& planes) const {
+  std::array<std::uint8_t, pixels_per_tile> saturated{};
+  if (table.saturation_level && outputs.needs_saturation(planes))
+    for (int k = 0; k < model.measurements(); ++k)
+      for (int i = 0; i < tile.pixels; ++i)
+        if (tile.raw[k * pixels_per_tile + i] >= *table.saturation_level)
+          saturated[static_cast<std::size_t>(i)] = 1;
+  if (outputs.needs_rivals(planes)) matcher.find_rivals(tile);
+  if (outputs.needs_electrons(planes))
+    for (int k = 0; k < model.measurements(); ++k)
+      for (int i = 0; i < tile.pixels; ++i) {
+        float& value = tile.raw[k * pixels_per_tile + i];
+        value = static_cast<float>(matcher.exact().electrons(value, k));
       }
-      decoding.confidence =
-          confidence_of(lead_e, model.deviation_along(difference.data(), variance_e2.data()));
-    }
-  }
-  store_pixel(table, options, raw.data(), decoding, at, into);
+  outputs.write({.pixels = tile.pixels,
+                 .plane = tile.plane,
+                 .electrons = tile.raw,
+                 .bin = tile.bin,
+                 .rival = tile.rival,
+                 .saturated = saturated.data()},
+                planes);
 }
 
 }  // namespace tofsmith

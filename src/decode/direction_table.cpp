@@ -3,15 +3,12 @@
 #include "decode/direction_table.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
 
 namespace {
-
-constexpr std::size_t room_past_the_end = 64;  // the widest vector there is, in floats
 
 /// Bin whose direction row n holds: n itself, or where bin n has no contrast the nearest bin before
 /// it that has some (for the first bins: the nearest after).
@@ -35,7 +32,6 @@ DirectionTable::DirectionTable(const AmbientProjection& projection)
     : samples_(static_cast<int>(projection.curve.rows())),
       rank_(projection.rank()),
       stride_(static_cast<std::size_t>(rank_) * rows_per_block),
-      component_stride_(2 * static_cast<std::size_t>(samples_) + room_past_the_end),
       bin_of_row_(bins_of_rows(projection.curve)) {
   const RowMajorMatrix units = projection.curve.rowwise().normalized();
   directions_.resize(bin_of_row_.size() * static_cast<std::size_t>(rank_));
@@ -43,14 +39,6 @@ DirectionTable::DirectionTable(const AmbientProjection& projection)
     for (int j = 0; j < rank_; ++j)
       directions_[row / rows_per_block * stride_ + static_cast<std::size_t>(j) * rows_per_block +
                   row % rows_per_block] = units(bin_of_row_[row], j);
-  float_directions_.assign(directions_.begin(), directions_.end());
-
-  float_components_.resize(component_stride_ * static_cast<std::size_t>(rank_));
-  for (int j = 0; j < rank_; ++j)
-    for (std::int32_t n = 0; n < 2 * samples_; ++n)
-      float_components_[static_cast<std::size_t>(j) * component_stride_ +
-                        static_cast<std::size_t>(n)] =
-          static_cast<float>(direction(n % samples_, j));
 
   main_lobes_.resize(static_cast<std::size_t>(samples_));
   parallel_for_blocks(samples_, 256, [&](IndexRange bins) {
@@ -60,14 +48,6 @@ DirectionTable::DirectionTable(const AmbientProjection& projection)
       main_lobes_[static_cast<std::size_t>(n)] = {n - left, n + right + 1};
     }
   });
-}
-
-float DirectionTable::proof_margin() const {
-  // Rounding two unit vectors to float and summing rank products of theirs, fused or not, in any
-  // order, moves a score by at most (rank + 2) u |q| |d| to first order; two scores are compared.
-  constexpr double unit_roundoff = 0.5 * std::numeric_limits<float>::epsilon();
-  constexpr double higher_order = 1.01;
-  return static_cast<float>(2.0 * (rank_ + 2) * unit_roundoff * higher_order + 2 * tie_tolerance);
 }
 
 double DirectionTable::score_between(std::int32_t bin, std::int32_t other) const {

@@ -9,8 +9,7 @@
 
 namespace tofsmith {
 
-/// Rows whose scores are compared in one go; the float search names such a block, double arithmetic
-/// then chooses within it.
+/// Rows whose components stand side by side.
 inline constexpr int rows_per_block = 8;
 
 /// Scores of unit vectors this close tie.
@@ -40,20 +39,9 @@ class DirectionTable {
   }
   /// Directions of a block, [rank][rows_per_block].
   const double* block(int b) const { return &directions_[static_cast<std::size_t>(b) * stride_]; }
-  /// All blocks in single precision, [blocks][rank][rows_per_block].
-  const float* float_blocks() const { return float_directions_.data(); }
-  /// One component of the directions of all bins, twice around, followed by room to read past.
-  const float* float_component(int j) const {
-    return &float_components_[static_cast<std::size_t>(j) * component_stride_];
-  }
-  std::ptrdiff_t component_stride() const { return static_cast<std::ptrdiff_t>(component_stride_); }
   double direction(std::int32_t row, int j) const {
     return block(row / rows_per_block)[j * rows_per_block + row % rows_per_block];
   }
-
-  /// A float score that leads by more than this leads by more than tie_tolerance in exact
-  /// arithmetic.
-  float proof_margin() const;
 
   const Lobe& main_lobe(std::int32_t bin) const {
     return main_lobes_[static_cast<std::size_t>(bin)];
@@ -65,12 +53,9 @@ class DirectionTable {
 
   int samples_ = 0;
   int rank_ = 0;
-  std::size_t stride_ = 0;            // of a block
-  std::size_t component_stride_ = 0;  // of a component
+  std::size_t stride_ = 0;  // of a block
   std::vector<std::int32_t> bin_of_row_;
   std::vector<double> directions_;
-  std::vector<float> float_directions_;
-  std::vector<float> float_components_;
   std::vector<Lobe> main_lobes_;
 };
 

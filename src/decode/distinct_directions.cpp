@@ -7,8 +7,6 @@
 #include <limits>
 #include <numeric>
 
-#include "tofsmith/core/parallel.hpp"
-
 namespace tofsmith {
 
 std::vector<std::int32_t> lowest_alike(const RowMajorMatrix& unit, double tolerance) {
@@ -49,25 +47,6 @@ DistinctDirections::DistinctDirections(const DirectionTable& table) {
   shortest_step = std::numeric_limits<double>::infinity();
   for (std::int32_t n = 0; n < count(); ++n)
     shortest_step = std::min(shortest_step, (unit.row(next(n)) - unit.row(n)).norm());
-}
-
-std::vector<std::int32_t> DistinctDirections::rivals(const DirectionTable& table) const {
-  const std::int32_t samples = table.samples();
-  std::vector<std::int32_t> found(static_cast<std::size_t>(samples), -1);
-  parallel_for(count(), [&](std::int64_t own) {
-    const Lobe lobe = table.main_lobe(bin[static_cast<std::size_t>(own)]);
-    if (lobe.end - lobe.begin >= samples) return;
-    double highest = -std::numeric_limits<double>::infinity();
-    for (std::int32_t n = 0; n < count(); ++n) {
-      const std::int32_t other = bin[static_cast<std::size_t>(n)];
-      if ((other - lobe.begin + samples) % samples < lobe.end - lobe.begin) continue;
-      const double score = unit.row(own).dot(unit.row(n));
-      if (score <= highest) continue;
-      highest = score;
-      found[static_cast<std::size_t>(bin[static_cast<std::size_t>(own)])] = other;
-    }
-  });
-  return found;
 }
 
 }  // namespace tofsmith

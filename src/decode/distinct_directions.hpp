@@ -21,10 +21,6 @@ struct DistinctDirections {
   int rank() const { return static_cast<int>(unit.cols()); }
   std::int32_t next(std::int32_t n) const { return n + 1 < count() ? n + 1 : 0; }
 
-  /// For every bin the best one outside its main lobe, to its own direction; -1 where there is
-  /// none.
-  std::vector<std::int32_t> rivals(const DirectionTable& table) const;
-
   RowMajorMatrix unit;            ///< (M, rank), by increasing bin
   std::vector<std::int32_t> bin;  ///< (M)
   double shortest_step = 0.0;     ///< least distance between neighbours, the ends being neighbours

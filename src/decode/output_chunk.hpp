@@ -6,13 +6,12 @@
 #include <vector>
 
 #include "decode/bin_records.hpp"
+#include "decode/expected_noise.hpp"
 
 namespace tofsmith {
 
 /// Pixels whose records lie side by side in the work space.
 inline constexpr int pixels_per_chunk = 128;
-/// Keeps a noiseless table from dividing by zero [e^2].
-inline constexpr float least_variance_e2 = 1e-12f;
 /// Of so many deviations, squared, the normal probability is 1 in single precision.
 inline constexpr float sure_sigma2 = 36.0f;
 

@@ -136,7 +136,7 @@ OutputKernel::OutputKernel(const DecodingTable& table, const AmbientProjection& 
   constants_.most_shot = static_cast<float>(std::max(0.0, noise.per_signal.maxCoeff()));
   constants_.most_shot_ambient = static_cast<float>(std::max(0.0, noise.per_ambient.maxCoeff()));
   constants_.most_floor_e2 =
-      std::max(least_variance_e2, static_cast<float>(noise.without_light_e2.maxCoeff()));
+      static_cast<float>(std::max(least_variance_e2, noise.without_light_e2.maxCoeff()));
   constants_.low_signal_sigma2 = static_cast<float>(std::min<double>(
       options.low_signal_sigma * options.low_signal_sigma, std::numeric_limits<float>::max()));
   constants_.minimum_confidence = static_cast<float>(options.minimum_confidence);

@@ -94,8 +94,8 @@ HWY_INLINE Vector lead_variance(const OutputConstants& c, const RecordLayout& la
         product_plus(ambient, all(c.shot_ambient.data()[k]), all(c.floor_noise_e2.data()[k]));
     const Vector noise =
         product_plus(signal, load(chunk.field(layout.shot() + k), i), without_signal);
-    variance =
-        product_plus(hn::Mul(weight, weight), hn::Max(noise, all(least_variance_e2)), variance);
+    variance = product_plus(hn::Mul(weight, weight),
+                            hn::Max(noise, all(static_cast<float>(least_variance_e2))), variance);
   }
   return variance;
 }

@@ -66,9 +66,10 @@ void apply(const PixelMaps& maps, double range_m, const DecodedView& decoded, st
   if (maps.empty()) return;
   parallel_for_blocks(static_cast<std::int64_t>(count), 16384, [&](IndexRange range) {
     for (std::int64_t i = range.begin; i < range.end; ++i) {
-      const std::size_t at = first + static_cast<std::size_t>(i);
-      const float offset_m = maps.delay_offset_m.empty() ? 0.0f : maps.delay_offset_m.pixels[at];
-      const float gain = maps.gain.empty() ? 1.0f : maps.gain.pixels[at];
+      const auto at = static_cast<std::size_t>(i);
+      const float offset_m =
+          maps.delay_offset_m.empty() ? 0.0f : maps.delay_offset_m.pixels[first + at];
+      const float gain = maps.gain.empty() ? 1.0f : maps.gain.pixels[first + at];
       if (std::isnan(offset_m) || std::isnan(gain)) {
         store_invalid(at, decoded);
         continue;

@@ -23,12 +23,17 @@ Image<float> image_from_array(const NpyArray& array, std::string_view file) {
   return image;
 }
 
-NpyArray array_called_or_only(const NpzReader& archive, std::string_view name,
-                              std::string_view file) {
-  if (archive.contains(name)) return archive.read(name);
-  if (archive.names().size() == 1) return archive.read(archive.names()[0]);
+std::string name_called_or_only(const NpzReader& archive, std::string_view name,
+                                std::string_view file) {
+  if (archive.contains(name)) return std::string(name);
+  if (archive.names().size() == 1) return archive.names()[0];
   throw IoError(file, fmt::format("found the arrays {}; expected one called '{}', or only one",
                                   fmt::join(archive.names(), ", "), name));
+}
+
+NpyArray array_called_or_only(const NpzReader& archive, std::string_view name,
+                              std::string_view file) {
+  return archive.read(name_called_or_only(archive, name, file));
 }
 
 void require_floats(const NpyArray& array, std::string_view file) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "tofsmith/core/array.hpp"
@@ -15,6 +16,10 @@ namespace tofsmith {
 /// @throws IoError unless the array is float32 or float64 of shape (H, W)
 Image<float> image_from_array(const NpyArray& array, std::string_view file);
 
+/// `name` if an array is called so, else the name of the only one.
+/// @throws IoError if there is neither
+std::string name_called_or_only(const NpzReader& archive, std::string_view name,
+                                std::string_view file);
 /// The array called `name`, or the only one. @throws IoError if there is neither
 NpyArray array_called_or_only(const NpzReader& archive, std::string_view name,
                               std::string_view file);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "io/byte_order.hpp"
 #include "io/input_file.hpp"
@@ -69,6 +70,17 @@ NpyArray NpyReader::read_all() const {
   return array;
 }
 
+void NpyReader::read_items(std::size_t first, std::span<std::byte> into) const {
+  const NpyHeader& header = state_->header;
+  const std::size_t item = item_size(header.type), items = header.data_bytes / item;
+  require(into.size() % item == 0, "bytes to read", into.size(),
+          fmt::format("must be a multiple of {}", item));
+  require(first <= items && into.size() / item <= items - first, "first", first,
+          fmt::format("must leave {} items of {}", into.size() / item, items));
+  state_->file.read_at(header.data_offset + first * item, into);
+  if (header.foreign_byte_order) swap_byte_order(into, item);
+}
+
 NpyWriter::NpyWriter(const std::filesystem::path& path, NpyType type, NpyShape row_shape,
                      OutputPolicy policy)
     : file_(path, policy), type_(type), row_shape_(std::move(row_shape)) {
@@ -100,6 +112,34 @@ void NpyWriter::commit() {
   shape.insert(shape.begin(), rows_);
   const std::string header = serialize_npy_header(type_, shape);
   file_.write_at(0, std::as_bytes(std::span(header)));
+  file_.commit();
+}
+
+NpyItemWriter::NpyItemWriter(const std::filesystem::path& path, NpyType type, const NpyShape& shape,
+                             OutputPolicy policy)
+    : file_(path, policy), type_(type) {
+  const auto bytes = npy_byte_count(type, shape);
+  require(bytes.has_value(), "shape", describe_shape(shape), "must fit in a file");
+  missing_bytes_ = *bytes;
+  file_.write(serialize_npy_header(type, shape));
+}
+
+void NpyItemWriter::append(std::span<const std::byte> items) {
+  require(
+      items.size() <= missing_bytes_ && items.size() % item_size(type_) == 0, "bytes", items.size(),
+      fmt::format("must be whole items and at most the {} bytes that are missing", missing_bytes_));
+  if constexpr (host_is_little_endian) {
+    file_.write(items);
+  } else {
+    std::vector<std::byte> swapped(items.begin(), items.end());
+    swap_byte_order(swapped, item_size(type_));
+    file_.write(swapped);
+  }
+  missing_bytes_ -= items.size();
+}
+
+void NpyItemWriter::commit() {
+  require(missing_bytes_ == 0, "missing bytes", missing_bytes_, "must be 0 at the end");
   file_.commit();
 }
 

@@ -7,8 +7,13 @@
 #include <zip.h>
 
 #include <algorithm>
+#include <array>
+#include <list>
 #include <stdexcept>
+#include <utility>
 
+#include "io/byte_order.hpp"
+#include "io/npy_header.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -61,6 +66,7 @@ struct NpzReader::State {
   std::vector<std::uint64_t> sizes;
 
   void read_directory();
+  std::size_t index_of(std::string_view name) const;
   std::vector<std::byte> unpack(std::size_t index) const;
 };
 
@@ -86,6 +92,14 @@ void NpzReader::State::read_directory() {
     names.push_back(std::move(name));
     sizes.push_back(entry.size);
   }
+}
+
+std::size_t NpzReader::State::index_of(std::string_view name) const {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end())
+    throw IoError(file,
+                  fmt::format("there is no array '{}'; found {}", name, fmt::join(names, ", ")));
+  return static_cast<std::size_t>(found - names.begin());
 }
 
 std::vector<std::byte> NpzReader::State::unpack(std::size_t index) const {
@@ -139,12 +153,12 @@ bool NpzReader::contains(std::string_view name) const {
   return std::find(names().begin(), names().end(), name) != names().end();
 }
 
+std::uint64_t NpzReader::unpacked_bytes(std::string_view name) const {
+  return state_->sizes[state_->index_of(name)];
+}
+
 NpyArray NpzReader::read(std::string_view name) const {
-  const auto found = std::find(names().begin(), names().end(), name);
-  if (found == names().end())
-    throw IoError(state_->file,
-                  fmt::format("there is no array '{}'; found {}", name, fmt::join(names(), ", ")));
-  const auto content = state_->unpack(static_cast<std::size_t>(found - names().begin()));
+  const auto content = state_->unpack(state_->index_of(name));
   return parse_npy(content, fmt::format("{}: entry '{}'", state_->file, name));
 }
 
@@ -154,6 +168,59 @@ NpzArrays read_all(const NpzReader& reader) {
   NpzArrays arrays;
   for (const std::string& name : reader.names()) arrays.emplace(name, reader.read(name));
   return arrays;
+}
+
+/// The NPY file of an array in two pieces, so that its items need not be copied.
+struct Entries {
+  std::list<std::string> headers;
+  std::list<std::vector<std::byte>> swapped;  // items of machines that are big-endian
+
+  std::array<zip_buffer_fragment_t, 2> pieces(const NpyArray& array) {
+    std::string& header = headers.emplace_back(serialize_npy_header(array.type(), array.shape()));
+    std::span<const std::byte> items = array.bytes();
+    if constexpr (!host_is_little_endian) {
+      auto& copy = swapped.emplace_back(items.begin(), items.end());
+      swap_byte_order(copy, item_size(array.type()));
+      items = copy;
+    }
+    const auto bytes = [](const void* data) {  // libzip only reads them
+      return const_cast<zip_uint8_t*>(static_cast<const zip_uint8_t*>(data));
+    };
+    return {{{bytes(header.data()), header.size()}, {bytes(items.data()), items.size()}}};
+  }
+};
+
+/// Packs arrays into what an archive is opened on.
+void pack(const NpzArrays& arrays, NpzCompression compression, Source target,
+          std::string_view file) {
+  Archive archive = open_archive(std::move(target), ZIP_CREATE | ZIP_TRUNCATE, file);
+  const auto check = [&](bool good) {
+    if (!good) throw IoError(file, zip_strerror(archive.get()));
+  };
+  Entries entries;  // libzip reads them at zip_close
+  for (const auto& [name, array] : arrays) {
+    const auto pieces = entries.pieces(array);
+    zip_source_t* source =
+        zip_source_buffer_fragment(archive.get(), pieces.data(), pieces.size(), 0);
+    check(source != nullptr);
+    const zip_int64_t added =
+        zip_file_add(archive.get(), (name + std::string(suffix)).c_str(), source, ZIP_FL_ENC_UTF_8);
+    if (added < 0) zip_source_free(source);
+    check(added >= 0);
+    const auto index = static_cast<zip_uint64_t>(added);
+    constexpr zip_uint16_t first_of_january_1980 = (1 << 5) | 1;
+    check(zip_file_set_dostime(archive.get(), index, 0, first_of_january_1980, 0) == 0);
+    const bool deflate = compression == NpzCompression::deflated;
+    check(zip_set_file_compression(archive.get(), index, deflate ? ZIP_CM_DEFLATE : ZIP_CM_STORE,
+                                   0) == 0);
+  }
+  check(zip_close(archive.get()) == 0);
+  (void)archive.release();  // zip_close freed it
+}
+
+void check_names(const NpzArrays& arrays) {
+  require(!arrays.empty(), "arrays", "{}", "must have at least one");
+  require(!arrays.contains(""), "array name", "''", "must not be empty");
 }
 
 /// Copies the archive out of the source that libzip wrote it to.
@@ -176,42 +243,20 @@ NpzArrays parse_npz(std::span<const std::byte> content, std::string_view file) {
 NpzArrays read_npz(const std::filesystem::path& path) { return read_all(NpzReader(path)); }
 
 std::vector<std::byte> serialize_npz(const NpzArrays& arrays, NpzCompression compression) {
-  require(!arrays.empty(), "arrays", "{}", "must have at least one");
+  check_names(arrays);
   Source buffer(zip_source_buffer_create(nullptr, 0, 0, nullptr));
   if (!buffer) throw std::bad_alloc();
   zip_source_keep(buffer.get());  // one for the archive, one for reading the result
-  Archive archive = open_archive(Source(buffer.get()), ZIP_CREATE | ZIP_TRUNCATE, "NPZ archive");
-  const auto check = [&](bool good) {
-    if (!good) throw IoError("NPZ archive", zip_strerror(archive.get()));
-  };
-
-  std::vector<std::vector<std::byte>> contents;  // libzip reads them at zip_close
-  for (const auto& [name, array] : arrays) {
-    require(!name.empty(), "array name", "''", "must not be empty");
-    contents.push_back(serialize_npy(array));
-    zip_source_t* source =
-        zip_source_buffer(archive.get(), contents.back().data(), contents.back().size(), 0);
-    check(source != nullptr);
-    const zip_int64_t added =
-        zip_file_add(archive.get(), (name + std::string(suffix)).c_str(), source, ZIP_FL_ENC_UTF_8);
-    if (added < 0) zip_source_free(source);
-    check(added >= 0);
-    const auto index = static_cast<zip_uint64_t>(added);
-    constexpr zip_uint16_t first_of_january_1980 = (1 << 5) | 1;
-    check(zip_file_set_dostime(archive.get(), index, 0, first_of_january_1980, 0) == 0);
-    const bool deflate = compression == NpzCompression::deflated;
-    check(zip_set_file_compression(archive.get(), index, deflate ? ZIP_CM_DEFLATE : ZIP_CM_STORE,
-                                   0) == 0);
-  }
-  check(zip_close(archive.get()) == 0);
-  (void)archive.release();  // zip_close freed it
+  pack(arrays, compression, Source(buffer.get()), "NPZ archive");
   return written_bytes(buffer.get());
 }
 
 void write_npz(const std::filesystem::path& path, const NpzArrays& arrays, OutputPolicy policy,
                NpzCompression compression) {
   AtomicFile file(path, policy);  // before the work of packing, so that a bad path fails at once
-  file.write(serialize_npz(arrays, compression));
+  check_names(arrays);
+  Source target(zip_source_file_create(file.temporary_path().c_str(), 0, -1, nullptr));
+  pack(arrays, compression, std::move(target), path.string());
   file.commit();
 }
 

@@ -99,7 +99,7 @@ TEST(PixelMaps, PixelsMayComeInPartsAndPlanesMayBeMissing) {
   apply(maps, range_m, view, 0, 1);
   EXPECT_EQ(parts.depth_m.pixels[1], 5.0f);
   view.depth_m = nullptr;
-  apply(maps, range_m, view, 1, 3);
+  apply(maps, range_m, view.from(1), 1, 3);
   EXPECT_EQ(parts.signal_e_per_s.pixels[3], whole.signal_e_per_s.pixels[3]);
   EXPECT_EQ(parts.status.pixels, whole.status.pixels);
   EXPECT_EQ(parts.depth_m.pixels[3], 5.0f);

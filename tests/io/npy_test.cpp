@@ -7,11 +7,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "damaged_files.hpp"
 #include "temporary_directory.hpp"
 #include "tofsmith/io/npy_stream.hpp"
+#include "tofsmith/io/read_file.hpp"
 
 namespace tofsmith {
 namespace {
@@ -251,6 +253,27 @@ TEST(NpyReader, NoticesAFileThatShrinks) {
   EXPECT_THAT(io_error_of([&] { reader.read_rows(0, 10); }), HasSubstr("the file ends here"));
 }
 
+TEST(NpyReader, GivesAnyItemsInEitherByteOrder) {
+  const TemporaryDirectory directory;
+  for (const char order : {'<', '>'}) {
+    const std::string items =
+        order == '<' ? std::string("\1\0\2\0\3\0", 6) : std::string("\0\1\0\2\0\3", 6);
+    write_file_atomically(
+        directory / "a.npy",
+        npy_file(fmt::format("{{'descr': '{}u2', 'fortran_order': False, 'shape': (3,), }}", order),
+                 items),
+        OutputPolicy::overwrite);
+    const NpyReader reader(directory / "a.npy");
+    std::array<std::uint16_t, 2> values{};
+    reader.read_items(1, std::as_writable_bytes(std::span(values)));
+    EXPECT_THAT(values, ElementsAre(2, 3));
+    EXPECT_THROW(reader.read_items(2, std::as_writable_bytes(std::span(values))),
+                 std::invalid_argument);
+    EXPECT_THROW(reader.read_items(0, std::as_writable_bytes(std::span(values)).first(3)),
+                 std::invalid_argument);
+  }
+}
+
 TEST(NpyWriter, SliceBySliceGivesTheFileOfTheWholeArray) {
   const TemporaryDirectory directory;
   std::vector<std::int32_t> values(12 * 4);
@@ -265,6 +288,25 @@ TEST(NpyWriter, SliceBySliceGivesTheFileOfTheWholeArray) {
   EXPECT_EQ(writer.rows(), 12u);
   EXPECT_EQ(serialize_npy(read_npy(directory / "a.npy")),
             serialize_npy(NpyArray::of<std::int32_t>({12, 4}, values)));
+}
+
+TEST(NpyItemWriter, PiecesGiveTheFileOfTheWholeArray) {
+  const TemporaryDirectory directory;
+  std::vector<std::int32_t> values(2 * 3 * 4);
+  std::iota(values.begin(), values.end(), -5);
+  const auto bytes = std::as_bytes(std::span(values));
+  NpyItemWriter writer(directory / "a.npy", NpyType::int32, {2, 3, 4},
+                       OutputPolicy::refuse_existing);
+  writer.append(bytes.first(20));
+  EXPECT_THROW(writer.append(bytes.first(3)), std::invalid_argument);
+  EXPECT_THROW(writer.append(bytes.first(80)), std::invalid_argument);
+  EXPECT_THROW(writer.commit(), std::invalid_argument);
+  EXPECT_FALSE(std::filesystem::exists(directory / "a.npy"));
+  writer.append(bytes.subspan(20));
+  writer.commit();
+  write_npy(directory / "b.npy", NpyArray::of<std::int32_t>({2, 3, 4}, values),
+            OutputPolicy::refuse_existing);
+  EXPECT_EQ(read_binary_file(directory / "a.npy"), read_binary_file(directory / "b.npy"));
 }
 
 }  // namespace

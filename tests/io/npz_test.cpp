@@ -9,6 +9,7 @@
 
 #include "damaged_files.hpp"
 #include "temporary_directory.hpp"
+#include "tofsmith/io/read_file.hpp"
 
 namespace tofsmith {
 namespace {
@@ -55,6 +56,15 @@ TEST(Npz, TheSameArraysGiveTheSameBytesWithoutADate) {
   // Time and date of the first local header: midnight, 1980-01-01.
   EXPECT_THAT(std::vector(bytes.begin() + 10, bytes.begin() + 14),
               ElementsAre(std::byte{0}, std::byte{0}, std::byte{0x21}, std::byte{0}));
+}
+
+TEST_P(NpzPacking, TheFileHasTheBytesOfTheArchive) {
+  const TemporaryDirectory directory;
+  for (int time = 0; time < 2; ++time) {  // a new file, and one that is overwritten
+    write_npz(directory / "a.npz", two_arrays(), OutputPolicy::overwrite, GetParam());
+    EXPECT_EQ(read_binary_file(directory / "a.npz"), serialize_npz(two_arrays(), GetParam()));
+    EXPECT_EQ(directory.files(), 1);
+  }
 }
 
 TEST(Npz, DeflatingRepetitionMakesItSmaller) {

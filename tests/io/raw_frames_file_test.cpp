@@ -117,24 +117,5 @@ TEST(RawFramesFile, RefusesToWriteFramesThatAreNone) {
   EXPECT_EQ(directory.files(), 0);
 }
 
-TEST(RawFramesReader, FramesAreThoseOfTheWholeFile) {
-  const TemporaryDirectory directory;
-  for (const int frames : {1, 3}) {
-    const RawFrames raw = test_frames(frames);
-    write_raw_frames(directory / "a.npy", raw, overwrite);
-    const RawFramesReader reader(directory / "a.npy", 4);
-    EXPECT_EQ(reader.frames(), frames);
-    for (int f = 0; f < frames; ++f) {
-      const RawFrames frame = reader.read_frame(f);
-      EXPECT_EQ(frame.frames, 1);
-      ASSERT_EQ(frame.values.size(), 24u);
-      EXPECT_EQ(std::memcmp(frame.values.data(), raw.frame(f), 24 * sizeof(float)), 0);
-    }
-    EXPECT_THROW(reader.read_frame(frames), std::invalid_argument);
-    EXPECT_THROW(reader.read_frame(-1), std::invalid_argument);
-    EXPECT_THROW(RawFramesReader(directory / "a.npy", 3), IoError);
-  }
-}
-
 }  // namespace
 }  // namespace tofsmith

@@ -27,7 +27,7 @@ struct PixelMaps {
 /// which row of the table fits. Dead pixels become invalid, without depth.
 /// @param maps     valid for the frame
 /// @param range_m  of the decoding table [m]
-/// @param decoded  the planes of the whole frame
+/// @param decoded  planes whose first value is that of pixel `first`
 /// @throws std::invalid_argument if the pixels do not lie within a map
 void apply(const PixelMaps& maps, double range_m, const DecodedView& decoded, std::size_t first,
            std::size_t count);

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 
 #include "tofsmith/io/npy.hpp"
 
@@ -31,6 +33,11 @@ class NpyReader {
   NpyArray read_rows(std::size_t begin, std::size_t count) const;
   /// The whole array.
   NpyArray read_all() const;
+  /// Fills `into` with items from item `first` on, in the order in which the file has them and in
+  /// this machine's byte order: memory is the caller's.
+  /// @throws std::invalid_argument if there are not as many, or `into` ends within an item
+  /// @throws IoError if the file cannot be read or became shorter
+  void read_items(std::size_t first, std::span<std::byte> into) const;
 
  private:
   struct State;
@@ -58,6 +65,27 @@ class NpyWriter {
   NpyType type_;
   NpyShape row_shape_;
   std::size_t rows_ = 0;
+};
+
+/// Writes an NPY file of a known shape piece by piece, in pieces that need not end where an axis
+/// does. The file appears at commit(), as with AtomicFile.
+class NpyItemWriter {
+ public:
+  /// @throws IoError as AtomicFile does
+  NpyItemWriter(const std::filesystem::path& path, NpyType type, const NpyShape& shape,
+                OutputPolicy policy);
+
+  /// Appends whole items of this machine's byte order, in C order.
+  /// @throws std::invalid_argument if there are more than the shape has room for
+  void append(std::span<const std::byte> items);
+  /// Gives the file its name. Call it once, last.
+  /// @throws std::invalid_argument if items are missing
+  void commit();
+
+ private:
+  AtomicFile file_;
+  NpyType type_;
+  std::size_t missing_bytes_;
 };
 
 }  // namespace tofsmith

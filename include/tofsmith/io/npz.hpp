@@ -35,6 +35,9 @@ class NpzReader {
   /// Names of the arrays, without the ".npy" they carry inside, in the archive's order.
   const std::vector<std::string>& names() const;
   bool contains(std::string_view name) const;
+  /// What an array takes once unpacked, its header included [bytes].
+  /// @throws IoError if there is no such array
+  std::uint64_t unpacked_bytes(std::string_view name) const;
   /// @throws IoError if there is no such array (says which there are), it is damaged, or as
   ///         parse_npy()
   NpyArray read(std::string_view name) const;

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "decoded_planes.hpp"
+#include "session.hpp"
+#include "tofsmith/io/npy_stream.hpp"
+
+namespace tofsmith::apps {
+
+/// What becomes of decoded frames.
+struct DecodeTarget {
+  std::filesystem::path path;       ///< with several frames they get numbers, unless stacked
+  bool stack = false;               ///< all frames in one .npy per plane
+  std::vector<std::string> planes;  ///< to write, of all_plane_names()
+  bool count_statuses = true;       ///< though the status plane may not be written
+  bool as_z = false;                ///< depth along the axis instead of radial distance
+  int first_frame = 0;
+  int frames = 1;
+  PinholeView view;  ///< of all frames
+
+  /// File of a frame: name.npz, frame 3 of 12 -> name-03.npz.
+  std::filesystem::path frame_path(int frame) const;
+  /// File of a plane of the stack: depth in name.npy, others in name-PLANE.npy.
+  std::filesystem::path stack_path(const std::string& plane) const;
+  /// Every file that will be written.
+  std::vector<std::filesystem::path> paths() const;
+  /// Rows are written as they come; else a frame's planes stand in memory as a whole.
+  bool in_rows() const { return path.extension() == ".npy"; }
+  /// Planes that must be decoded: those written, what points are made of, what is counted.
+  std::vector<std::string> needed_planes() const;
+  /// What writing a frame takes for a while, beside its planes [bytes].
+  std::size_t writing_bytes() const;
+};
+
+/// Writes decoded frames, each file whole or not at all.
+class DecodeOutput {
+ public:
+  /// @throws IoError if a file could not be written
+  DecodeOutput(DecodeTarget target, const Session& session);
+
+  /// Takes the rows of a frame that follow those taken before.
+  /// @param planes  of exactly these rows, from its first row on, if target.in_rows(); else of the
+  ///                whole frame, complete once the last rows come
+  /// @throws IoError if a file cannot be written
+  void take(int frame, int first_row, int rows, const DecodedPlanes& planes);
+  /// Gives the stack its name. Call it once, last.
+  void finish();
+
+  const DecodeTarget& target() const { return target_; }
+
+ private:
+  void open_files(int frame);
+  void close_files();
+
+  DecodeTarget target_;
+  OutputPolicy policy_;
+  std::vector<std::unique_ptr<NpyItemWriter>> files_;  // .npy being written, one per plane
+};
+
+}  // namespace tofsmith::apps

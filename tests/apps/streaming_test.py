@@ -1,0 +1,270 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Decoding recordings of any size: every type and layout, bands of rows, stacks, bounded memory."""
+
+import os
+import pty
+import signal
+import subprocess
+import time
+import unittest
+
+import numpy as np
+
+import command_line
+from command_line import CommandLineTest
+
+PLANES = ("depth", "signal", "ambient", "confidence", "deviation", "status")
+BANDS = ("--memory-mb", "0.01")  # a few rows of the frames below at a time
+MEMORY_LIMIT_MB = 512
+
+
+class Streaming(CommandLineTest):
+    def record(self, frames=3, dtype="u2"):
+        """Frames of a ramp of distances, 30 x 40 pixels, as (F, H, W, K)."""
+        np.save(self.path("scene.npy"),
+                np.linspace(1, 4, 30 * 40).reshape(30, 40).astype(np.float32))
+        self.do("simulate", "scene.npy", "--kind", "radial", "--code", "hamiltonian-k3",
+                "--signal", "1e5", "--no-falloff", "--frames", str(frames), "--force", "-o",
+                "sim.npy")
+        raw = np.clip(np.load(self.path("sim.npy")), 0, 255 if dtype == "u1" else 65535)
+        raw = raw.reshape(frames, 30, 40, 3).astype(dtype)
+        np.save(self.path("raw.npy"), raw)
+        return raw
+
+    def arguments(self, *more, raw="raw.npy", output="d.npy"):
+        return ["decode", raw, "--code", "hamiltonian-k3", "-o", output, *more]
+
+    def decode(self, *more, **names):
+        return self.do_json(*self.arguments(*more, **names))
+
+    def sparse(self, name, shape, dtype, written=()):
+        """A large file that takes no room; `written` are (index, values) of its first axes."""
+        np.lib.format.open_memmap(self.path(name), "w+", dtype, shape)
+        array = np.load(self.path(name), mmap_mode="r+")
+        for index, values in written:
+            array[index] = values
+        del array
+        return name
+
+    def peak_mb(self, *arguments):
+        """Most memory that a command which succeeds had resident; at least what Python takes."""
+        process = self.start(*arguments)
+        out, error = process.stdout.read(), process.stderr.read()
+        process.stdout.close()
+        process.stderr.close()
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual((process.returncode, error), (0, b""), out)
+        return usage.ru_maxrss / 1000
+
+    def test_types_layouts_and_bands_give_the_same_planes(self):
+        for dtype in ("u1", "u2", "f4", "f8", ">u2"):
+            raw = self.record(dtype=dtype)
+            np.save(self.path("planar.npy"), np.moveaxis(raw, 3, 1).copy())
+            np.savez(self.path("planar.npz"), np.moveaxis(raw, 3, 1))
+            for frame in range(3):
+                np.save(self.path("one.npy"), raw[frame].astype("f4"))
+                self.decode("--force", raw="one.npy", output=f"plain-{frame}.npz")
+            for name, more in (("raw.npy", BANDS), ("planar.npy", ("--layout", "planar")),
+                               ("planar.npy", ("--layout", "planar", *BANDS)),
+                               ("planar.npz", ("--layout", "planar"))):
+                with self.subTest(dtype=dtype, name=name, more=more):
+                    self.decode("--force", "--stack", "--outputs", ",".join(PLANES + ("bin",)),
+                                *more, raw=name)
+                    for plane in PLANES:
+                        stack = np.load(self.path("d.npy" if plane == "depth" else
+                                                  f"d-{plane}.npy"))
+                        self.assertEqual(stack.shape, (3, 30, 40))
+                        for frame in range(3):
+                            np.testing.assert_array_equal(
+                                stack[frame], np.load(self.path(f"plain-{frame}.npz"))[plane])
+
+    def test_bands_give_the_same_files(self):
+        self.record()
+        for extension in ("npy", "npz", "exr", "pfm", "png", "ply"):
+            kind = () if extension == "ply" else ("--kind", "z")
+            # planes of a frame stand in memory as a whole, and bands of it are read
+            few = ("--memory-mb", {"npy": "0.01", "npz": "0.012", "ply": "0.055"}.get(extension,
+                                                                                       "0.017"))
+            self.decode(*kind, "--outputs", "depth", output="whole." + extension)
+            self.decode(*kind, "--outputs", "depth", *few, output="bands." + extension)
+            for frame in range(3):
+                self.assertEqual(self.bytes_of(f"whole-{frame}.{extension}"),
+                                 self.bytes_of(f"bands-{frame}.{extension}"), extension)
+
+    def test_bins_are_the_nearest_of_the_depths(self):
+        self.record()
+        self.decode("--frame", "1", "--outputs", "bin,depth", output="d.npz")
+        planes = np.load(self.path("d.npz"))
+        self.assertEqual(set(planes.files), {"bin", "depth"})
+        self.assertEqual(planes["bin"].dtype, np.int32)
+        bin_m = 299792458 / 2 / 15e6 / 240
+        np.testing.assert_array_equal(
+            planes["bin"], np.round(planes["depth"].astype("f8") / bin_m).astype(int) % 240)
+
+    def test_what_is_not_asked_for_is_not_there(self):
+        self.record()
+        document = self.decode("--outputs", "signal", "--stack")
+        self.assertNotIn("status", document)
+        self.assertEqual(document["stack"], {"signal": "d-signal.npy"})
+        self.assertNotIn("d.npy", self.files())
+        document = self.decode("--outputs", "signal,confidence", output="d.npz")
+        self.assertNotIn("status", document["frames"][0])
+        self.assertEqual(set(np.load(self.path("d-0.npz")).files), {"signal", "confidence"})
+
+    def test_one_frame_makes_a_stack_too(self):
+        self.record()
+        self.decode()
+        self.decode("--stack", "--frame", "2", output="s.npy")
+        stack = np.load(self.path("s.npy"))
+        np.testing.assert_array_equal(stack, np.load(self.path("d-2.npy"))[np.newaxis])
+
+    def test_the_document_counts_and_sums(self):
+        raw = self.record()
+        raw[1, :15, :, 0] = 0
+        raw[1, :15, :, 1:] = 0
+        np.save(self.path("raw.npy"), raw)
+        document = self.decode()
+        self.assertEqual((document["frame_count"], document["height"], document["width"]),
+                         (3, 30, 40))
+        self.assertEqual([f["frame"] for f in document["frames"]], [0, 1, 2])
+        self.assertEqual([f["output"] for f in document["frames"]],
+                         ["d-0.npy", "d-1.npy", "d-2.npy"])
+        for key in ("seconds", "frames_per_s", "megapixels_per_s"):
+            self.assertGreater(document[key], 0)
+
+        def share(text, status="no_return"):
+            return float(next((part.split()[1] for part in text.split(", ")
+                               if part.startswith(status)), 0))
+        shares = [share(f["status"]) for f in document["frames"]]
+        self.assertGreater(shares[1], 45)
+        self.assertAlmostEqual(share(document["status"]), sum(shares) / 3, 1)
+
+    def test_many_frames_are_told_in_few_lines(self):
+        raw = self.record(frames=2)
+        self.assertEqual(len(self.do(*self.arguments()).splitlines()), 3)
+        np.save(self.path("raw.npy"), np.repeat(raw, 15, axis=0))
+        lines = self.do(*self.arguments(output="m.npy")).splitlines()
+        self.assertEqual(len(lines), 5)
+        self.assertIn("m-00.npy", lines[0])
+        self.assertIn("27 more, to m-29.npy", lines[3])
+        self.assertRegex(lines[4], r"^30 frames of 30 x 40 in .* frames/s, .* Mpixel/s: ok ")
+
+    def test_memory_does_not_grow_with_the_file(self):
+        raw = self.record(frames=1)
+        # 6 GB, one frame of which holds anything
+        self.sparse("large.npy", (2000, 500, 1000, 3), "u2", [((1500, slice(30), slice(40)), raw[0])])
+        peak = self.peak_mb(*self.arguments("--frame", "1500", raw="large.npy"))
+        self.assertLess(peak, MEMORY_LIMIT_MB)
+        self.do(*self.arguments(output="plain.npy"))
+        np.testing.assert_array_equal(np.load(self.path("d.npy"))[:30, :40],
+                                      np.load(self.path("plain.npy")))
+
+    def test_memory_does_not_grow_with_the_frame(self):
+        self.sparse("large.npy", (3, 8000, 1000), "f8")
+        peak = self.peak_mb(*self.arguments("--layout", "planar", raw="large.npy"))
+        self.assertLess(peak, 150)  # the frame has 192 MB
+        self.assertEqual(np.load(self.path("d.npy")).shape, (8000, 1000))
+
+    def test_what_cannot_be_bounded_is_refused(self):
+        raw = self.record()
+        few = ("--memory-mb", "0.03")
+        self.refuse(self.arguments(*few, output="d.npz"), "d.npz", "30 x 40", "0.03 MB",
+                    "--memory-mb", "--stack")
+        np.save(self.path("fortran.npy"), np.asfortranarray(raw))
+        self.refuse(self.arguments(*few, raw="fortran.npy"), "Fortran", ".npy in C order")
+        np.savez(self.path("raw.npz"), raw=raw)
+        self.refuse(self.arguments(*few, raw="raw.npz"), "raw.npz", "save it as .npy")
+        self.refuse(self.arguments("--memory-mb", "0.000001"), "MB")
+        self.refuse(self.arguments("--memory-mb", "-1"), "--memory-mb", code=2)
+
+    def test_layouts_are_not_guessed(self):
+        raw = self.record()
+        np.save(self.path("planar.npy"), np.moveaxis(raw, 3, 1).copy())
+        self.refuse(self.arguments(raw="planar.npy"), "40 measurements", "--layout planar")
+        self.refuse(self.arguments("--layout", "planar"), "--layout interleaved")
+        self.refuse(self.arguments("--layout", "mixed"), "--layout", code=2)
+
+    def test_stacks_are_npy(self):
+        self.record()
+        self.refuse(self.arguments("--stack", output="d.npz"), "--stack", ".npy", code=2)
+        self.write("d-signal.npy", "old")
+        self.refuse(self.arguments("--stack", "--outputs", "depth,signal"), "d-signal.npy",
+                    "--force")
+        self.refuse(self.arguments("--outputs", "depth,signal"), "--outputs", "--stack", code=2)
+
+
+class Interrupts(CommandLineTest):
+    """A recording that is not finished soon: frames that are not there."""
+
+    def start_long(self, *more):
+        np.lib.format.open_memmap(self.path("raw.npy"), "w+", "u2", (3000, 600, 800, 3))
+        return self.start("decode", "raw.npy", "--code", "hamiltonian-k3", "-o", "d.npy", *more)
+
+    def wait_for(self, name):
+        for _ in range(600):
+            if os.path.exists(self.path(name)):
+                return
+            time.sleep(0.05)
+        self.fail(f"{name} did not appear")
+
+    def end(self, process, code):
+        out, error = process.communicate(timeout=60)
+        self.assertEqual((process.returncode, out), (code, b""), error)
+        self.assertFalse([name for name in self.files() if ".tofsmith" in name])
+        return error.decode()
+
+    def test_finished_frames_are_kept_and_counted(self):
+        process = self.start_long()
+        self.wait_for("d-0002.npy")
+        process.send_signal(signal.SIGINT)
+        error = self.end(process, 130)
+        self.assertIn("interrupted", error)
+        done = [name for name in self.files() if name.startswith("d-")]
+        self.assertIn(f"decoded {len(done)} of 3000 frames", error)
+        for name in done:
+            self.assertEqual(np.load(self.path(name)).shape, (600, 800))
+
+    def test_no_part_of_a_stack_is_left(self):
+        process = self.start_long("--stack")
+        while not [name for name in self.files() if ".tofsmith" in name]:
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        self.assertIn("the stack is not written", self.end(process, 130))
+        self.assertEqual(self.files(), ["raw.npy"])
+
+    def test_a_file_that_shrinks_ends_in_an_error(self):
+        process = self.start_long()
+        self.wait_for("d-0000.npy")
+        os.truncate(self.path("raw.npy"), 600 * 800 * 3 * 2)
+        error = self.end(process, 1)
+        self.assertIn("the file ends here", error)
+        self.assertIn("of 3000 frames", error)
+        self.assertIn("d-0000.npy", self.files())
+
+    def test_a_terminal_shows_rate_and_remaining_time(self):
+        controller, terminal = pty.openpty()
+        np.lib.format.open_memmap(self.path("raw.npy"), "w+", "u2", (3000, 600, 800, 3))
+        process = subprocess.Popen([command_line.TOOL, "decode", "raw.npy", "--code",
+                                    "hamiltonian-k3", "-o", "d.npy", "--stack"],
+                                   cwd=self.directory, stdout=subprocess.PIPE, stderr=terminal)
+        os.close(terminal)
+        drawn = b""
+        while b" left" not in drawn:
+            drawn += os.read(controller, 65536)
+        process.send_signal(signal.SIGINT)
+        try:
+            while block := os.read(controller, 65536):
+                drawn += block
+        except OSError:  # the terminal is gone
+            pass
+        process.communicate(timeout=60)
+        os.close(controller)
+        self.assertRegex(drawn.decode(), r"decoding +\d+ %  frame \d+ of 3000, [\d.]+ frames/s, "
+                                         r"[\d.]+ Mpixel/s, \d+ \w+ left")
+        self.assertIn(b"\r" + b" " * 79 + b"\rtofsmith: decoded", drawn)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,259 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/raw_frames_reader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <numeric>
+#include <type_traits>
+
+#include "damaged_files.hpp"
+#include "decode_setup.hpp"
+#include "temporary_directory.hpp"
+#include "tofsmith/io/raw_frames_file.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr auto overwrite = OutputPolicy::overwrite;
+constexpr std::size_t frames = 3, height = 7, width = 5, measurements = 4;
+
+template <typename Number>
+Number number_of(double value) {
+  if constexpr (std::is_integral_v<Number>)
+    return static_cast<Number>(std::fmod(std::abs(value), std::numeric_limits<Number>::max()));
+  else
+    return static_cast<Number>(value);
+}
+
+/// (F, H, W, K) numbers that noise and light make.
+template <typename Number>
+std::vector<Number> recording(const DecodeSetup& setup) {
+  const int pixels = static_cast<int>(frames * height * width);
+  std::vector<Number> numbers;
+  for (const float value : noisy_pixels(setup.decoder.table(), 700.0, 50.0, pixels, 3))
+    numbers.push_back(number_of<Number>(value));
+  return numbers;
+}
+
+/// (F, H, W, K) to (F, K, H, W).
+template <typename Number>
+std::vector<Number> planar(const std::vector<Number>& numbers) {
+  std::vector<Number> planes(numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const std::size_t k = i % measurements, pixel = i / measurements,
+                      place = pixel % (height * width), frame = pixel / (height * width);
+    planes[(frame * measurements + k) * height * width + place] = numbers[i];
+  }
+  return planes;
+}
+
+template <typename Number>
+class RawRows : public testing::Test {
+ protected:
+  void write(const std::string& name, RawLayout layout) {
+    const bool interleaved = layout == RawLayout::interleaved;
+    const NpyShape shape = interleaved ? NpyShape{frames, height, width, measurements}
+                                       : NpyShape{frames, measurements, height, width};
+    const auto array = NpyArray::of<Number>(shape, interleaved ? numbers_ : planar(numbers_));
+    if (name.ends_with(".npz"))
+      write_npz(directory_ / name, {{"raw", array}}, overwrite);
+    else
+      write_npy(directory_ / name, array, overwrite);
+  }
+
+  TemporaryDirectory directory_;
+  DecodeSetup setup_{"hamiltonian-k4", built_in_camera("paper-10f0")};
+  std::vector<Number> numbers_ = recording<Number>(setup_);
+};
+
+using Numbers = testing::Types<float, double, std::uint16_t, std::uint8_t>;
+TYPED_TEST_SUITE(RawRows, Numbers);
+
+struct Planes {
+  std::vector<float> depth_m = std::vector<float>(height * width);
+  std::vector<std::int32_t> bin = std::vector<std::int32_t>(height * width);
+  std::vector<PixelStatus> status = std::vector<PixelStatus>(height * width);
+  DecodedView view() {
+    return {.bin = bin.data(), .depth_m = depth_m.data(), .status = status.data()};
+  }
+};
+
+TYPED_TEST(RawRows, DecodeInBandsAsTheWholeFrameDoes) {
+  for (const RawLayout layout : {RawLayout::interleaved, RawLayout::planar})
+    for (const std::string name : {"raw.npy", "raw.npz"}) {
+      this->write(name, layout);
+      const RawFramesReader reader(this->directory_ / name,
+                                   {.measurements = int{measurements}, .layout = layout});
+      EXPECT_EQ(reader.type(), npy_type_of<TypeParam>);
+      EXPECT_EQ(reader.row_bytes(), width * measurements * sizeof(TypeParam));
+      std::vector<std::byte> buffer;
+      for (int frame = 0; frame < reader.frames(); ++frame) {
+        // the plain way: one frame of numbers side by side
+        const std::size_t values = height * width * measurements;
+        Planes whole;
+        this->setup_.decoder.decode(
+            RawView::interleaved(this->numbers_.data() + static_cast<std::size_t>(frame) * values,
+                                 height, width, measurements),
+            whole.view());
+        for (const int rows : {1, 2, 3, 7}) {
+          Planes banded;
+          for (int row = 0; row < reader.height(); row += rows)
+            this->setup_.decoder.decode(
+                reader.read_rows(frame, row, std::min(rows, reader.height() - row), buffer),
+                banded.view().from(static_cast<std::size_t>(row) * width));
+          EXPECT_EQ(banded.bin, whole.bin);
+          EXPECT_EQ(banded.status, whole.status);
+          EXPECT_EQ(std::memcmp(banded.depth_m.data(), whole.depth_m.data(),
+                                whole.depth_m.size() * sizeof(float)),
+                    0);
+        }
+      }
+    }
+}
+
+TYPED_TEST(RawRows, AreTheFilesOwnNumbers) {
+  for (const RawLayout layout : {RawLayout::interleaved, RawLayout::planar}) {
+    this->write("raw.npy", layout);
+    const RawFramesReader reader(this->directory_ / "raw.npy", {.layout = layout});
+    std::vector<std::byte> buffer;
+    const RawView view = reader.read_rows(1, 2, 4, buffer);
+    const auto* first = std::get<const TypeParam*>(view.data);
+    EXPECT_EQ(static_cast<const void*>(first), buffer.data());
+    for (std::size_t row = 0; row < 4; ++row)
+      for (std::size_t column = 0; column < width; ++column)
+        for (std::size_t k = 0; k < measurements; ++k)
+          EXPECT_EQ(first[static_cast<std::ptrdiff_t>(row) * view.row_stride +
+                          static_cast<std::ptrdiff_t>(column) * view.column_stride +
+                          static_cast<std::ptrdiff_t>(k) * view.measurement_stride],
+                    this->numbers_[((height + row + 2) * width + column) * measurements + k]);
+  }
+}
+
+RawFrames small_frames(int count) {
+  RawFrames raw{count, 2, 3, 4, {}};
+  raw.values.resize(static_cast<std::size_t>(count) * 24);
+  std::iota(raw.values.begin(), raw.values.end(), -2.5f);
+  raw.values[1] = std::numeric_limits<float>::quiet_NaN();
+  return raw;
+}
+
+TEST(RawFramesReader, FramesAreThoseOfTheWholeFile) {
+  const TemporaryDirectory directory;
+  for (const int count : {1, 3}) {
+    const RawFrames raw = small_frames(count);
+    write_raw_frames(directory / "a.npy", raw, overwrite);
+    const RawFramesReader reader(directory / "a.npy", {.measurements = 4});
+    EXPECT_EQ(reader.frames(), count);
+    for (int f = 0; f < count; ++f) {
+      const RawFrames frame = reader.read_frame(f);
+      EXPECT_EQ(frame.frames, 1);
+      ASSERT_EQ(frame.values.size(), 24u);
+      EXPECT_EQ(std::memcmp(frame.values.data(), raw.frame(f), 24 * sizeof(float)), 0);
+    }
+  }
+}
+
+TEST(RawFramesReader, RefusesFramesAndRowsThatAreNotThere) {
+  const TemporaryDirectory directory;
+  write_raw_frames(directory / "a.npy", small_frames(2), overwrite);
+  const RawFramesReader reader(directory / "a.npy");
+  std::vector<std::byte> buffer;
+  EXPECT_THROW(reader.read_rows(-1, 0, 1, buffer), std::invalid_argument);
+  EXPECT_THROW(reader.read_rows(2, 0, 1, buffer), std::invalid_argument);
+  EXPECT_THROW(reader.read_rows(0, -1, 1, buffer), std::invalid_argument);
+  EXPECT_THROW(reader.read_rows(0, 1, 2, buffer), std::invalid_argument);
+  EXPECT_THROW(reader.read_rows(0, 0, -1, buffer), std::invalid_argument);
+  EXPECT_EQ(reader.read_rows(0, 2, 0, buffer).height, 0);
+}
+
+TEST(RawFramesReader, SaysWhichLayoutWouldFit) {
+  const TemporaryDirectory directory;
+  const auto refusal = [&](const NpyShape& shape, RawLayout layout) {
+    write_npy(directory / "a.npy", NpyArray(NpyType::uint16, shape), overwrite);
+    return io_error_of(
+        [&] { RawFramesReader(directory / "a.npy", {.measurements = 4, .layout = layout}); });
+  };
+  EXPECT_THAT(refusal({3, 4, 6, 8}, RawLayout::interleaved),
+              AllOf(HasSubstr("found 8 measurements per pixel, shape (3, 4, 6, 8); expected 4"),
+                    HasSubstr("(F, K, H, W) it would fit: --layout planar")));
+  EXPECT_THAT(refusal({6, 8, 4}, RawLayout::planar), HasSubstr("--layout interleaved"));
+  EXPECT_THAT(refusal({6, 8, 5}, RawLayout::planar), testing::Not(HasSubstr("--layout")));
+  EXPECT_THAT(refusal({6, 8}, RawLayout::planar), HasSubstr("expected (K, H, W) or (F, K, H, W)"));
+}
+
+TEST(RawFramesReader, DoesNotGuessTheLayoutOfACube) {
+  const TemporaryDirectory directory;
+  std::vector<std::uint8_t> values(4 * 4 * 4);
+  std::iota(values.begin(), values.end(), std::uint8_t{0});
+  write_npy(directory / "a.npy", NpyArray::of<std::uint8_t>({4, 4, 4}, values), overwrite);
+  const RawFramesReader side_by_side(directory / "a.npy", {.measurements = 4}),
+      planes(directory / "a.npy", {.measurements = 4, .layout = RawLayout::planar});
+  EXPECT_EQ(side_by_side.read_frame(0).values[1], 1.0f);
+  EXPECT_EQ(planes.read_frame(0).values[1], 16.0f);
+}
+
+TEST(RawFramesReader, NoticesAFileThatShrinksAndIgnoresOneThatGrows) {
+  const TemporaryDirectory directory;
+  const RawFrames raw = small_frames(3);
+  write_raw_frames(directory / "a.npy", raw, overwrite);
+  const RawFramesReader reader(directory / "a.npy");
+  const auto bytes = std::filesystem::file_size(directory / "a.npy");
+  std::filesystem::resize_file(directory / "a.npy", bytes + 96);
+  EXPECT_EQ(reader.read_frame(2).values.back(), raw.values.back());
+  std::filesystem::resize_file(directory / "a.npy", bytes - 1);
+  EXPECT_EQ(reader.read_frame(1).values.back(), raw.frame(1)[23]);
+  EXPECT_THAT(io_error_of([&] { reader.read_frame(2); }), HasSubstr("the file ends here"));
+  EXPECT_THAT(io_error_of([&] { RawFramesReader(directory / "a.npy"); }),
+              HasSubstr("bytes of data"));
+}
+
+TEST(RawFramesReader, KeepsWithinTheMemoryItIsGiven) {
+  const TemporaryDirectory directory;
+  const NpyArray array(NpyType::float32, {100, 100, 4});  // 160 kB
+  write_npz(directory / "a.npz", {{"raw", array}}, overwrite);
+  const auto open = [&](std::uint64_t bytes) {
+    return RawFramesReader(directory / "a.npz", {.largest_in_memory = bytes}).bytes_in_memory();
+  };
+  EXPECT_EQ(open(400'000), 160'000u);
+  EXPECT_THAT(io_error_of([&] { open(300'000); }),
+              AllOf(HasSubstr("a.npz"), HasSubstr("save it as .npy")));
+}
+
+TEST(RawFramesReader, ReadsTheEndOfAFileLargerThanMemory) {
+  const TemporaryDirectory directory;
+  // 12 GB that are not there: 2000 frames of zeros but for the last number.
+  {
+    NpyItemWriter header(directory / "a.npy", NpyType::uint16, {0, 1000, 1000, 3}, overwrite);
+    header.commit();
+  }
+  const auto header_bytes = std::filesystem::file_size(directory / "a.npy");
+  std::fstream file(directory / "a.npy", std::ios::in | std::ios::out | std::ios::binary);
+  std::string text(header_bytes, ' ');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.replace(text.find("(0, "), 4, "(2000, ");
+  text.erase(text.find("), }") + 4, 3);  // of the padding
+  const std::uint64_t end = header_bytes + 2000ull * 1000 * 1000 * 3 * 2;
+  file.seekp(0);
+  file.write(text.data(), static_cast<std::streamsize>(text.size()));
+  file.seekp(static_cast<std::streamoff>(end - 2));
+  file.write("\x39\x30", 2);
+  file.close();
+
+  const RawFramesReader reader(directory / "a.npy", {.measurements = 3});
+  std::vector<std::byte> buffer;
+  const RawView view = reader.read_rows(1999, 999, 1, buffer);
+  EXPECT_EQ(buffer.size(), 6000u);
+  EXPECT_EQ(std::get<const std::uint16_t*>(view.data)[2999], 12345);
+}
+
+}  // namespace
+}  // namespace tofsmith
