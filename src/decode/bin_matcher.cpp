@@ -44,7 +44,10 @@ bool BinMatcher::search(PixelTile& tile) const {
 }
 
 void BinMatcher::find_rivals(PixelTile& tile) const {
-  if (std::holds_alternative<CellSearch>(search_)) return;  // known with the bin
+  if (std::holds_alternative<CellSearch>(search_)) {
+    for (int i = 0; i < tile.pixels; ++i) tile.rival[i] = CellRecord::rival_in(tile.rival[i]);
+    return;
+  }
   if (const auto* circle = std::get_if<CircleSearch>(&search_)) {
     for (int i = 0; i < tile.pixels; ++i)
       tile.rival[i] = tile.bin[i] < 0 ? -1 : circle->rival(tile.bin[i]);

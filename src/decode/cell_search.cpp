@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -41,7 +42,6 @@ struct Searches {
 struct Scratch {
   alignas(64) float place[3][tile];  // t_s in the cell
   alignas(64) std::int32_t cell[tile];
-  alignas(64) float margin[tile];
   alignas(64) std::uint32_t record[4 * tile];
   alignas(64) std::int32_t first[tile];
   alignas(64) std::int32_t last[tile];
@@ -50,6 +50,7 @@ struct Scratch {
   std::int32_t unproven[tile + 16];
   int lists;
   int unproven_count;
+  bool all_proven;
   Searches searches;
   std::int32_t result[most_searches + 16];
 };
@@ -57,8 +58,8 @@ struct Scratch {
 /// Added to a number of up to 22 bits it leaves the nearest whole one in the lowest bits.
 constexpr float to_whole = 0x1.8p23f;
 
-/// Cell, place in it and margin of every pixel. The margin of a pixel too uncertain for its cell is
-/// infinite.
+/// Cell and place in it of every pixel, and how much the place may be off; infinite where the pixel
+/// is too uncertain for its cell.
 template <int Rank>
 HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int padded,
                        Scratch& scratch) {
@@ -75,20 +76,17 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
   for (int i = 0; i < padded; i += lanes) {
     FloatVector q[Rank];
     for (int j = 0; j < Rank; ++j) q[j] = hn::Load(d, pixels.plane + j * tile + i);
-    auto largest = hn::Abs(q[0]), sum = largest, signed_largest = q[0];
+    auto largest = hn::Abs(q[0]), signed_largest = q[0];
     auto axis = hn::Zero(di);
     for (int j = 1; j < Rank; ++j) {
       const auto size = hn::Abs(q[j]);
       const auto leads = hn::Gt(size, largest);
-      sum = hn::Add(sum, size);
       largest = hn::Max(size, largest);
       signed_largest = hn::IfThenElse(leads, q[j], signed_largest);
       axis = hn::IfThenElse(hn::RebindMask(di, leads), hn::Set(di, j), axis);
     }
     const auto error = hn::Load(d, pixels.error + i);
     const auto is_sharp = hn::Lt(error, hn::Mul(hn::Set(d, reach), largest));
-    const auto margin = hn::MulAdd(sum, hn::Set(d, view.rounding), error);
-    hn::Store(hn::IfThenElse(is_sharp, margin, infinite), d, scratch.margin + i);
 
     auto reciprocal = hn::ApproximateReciprocal(largest);
     reciprocal = hn::Mul(reciprocal, hn::NegMulAdd(largest, reciprocal, hn::Set(d, 2.0f)));
@@ -138,22 +136,17 @@ HWY_INLINE void predict(const CellSearchView& view, int padded, PixelTile& pixel
   scratch.lists = scratch.unproven_count = 0;
   const auto unit = hn::Set(d, view.fit_unit), half = hn::Set(d, 0.5f),
              whole = hn::Set(d, to_whole);
-  const auto slack_unit = hn::Set(d, static_cast<float>(CellRecord::slack_unit));
+  const auto slack_unit = hn::Set(d, static_cast<float>(CellRecord::slack_unit)),
+             steepest = hn::Set(d, view.steepest_fit), no_border = hn::Set(d, 1e30f);
+  const auto count = hn::Set(di, view.count);
   for (int i = 0; i < padded; i += lanes) {
     hn::Vec<Words> w0, w1, w2, w3;
     hn::LoadInterleaved4(dw, scratch.record + 4 * i, w0, w1, w2, w3);
     const auto run = hn::BitCast(di, w0), fit01 = hn::BitCast(di, w1), fit23 = hn::BitCast(di, w2),
                beside = hn::BitCast(di, w3);
-    auto x = low_number(fit01);
-    const auto f1 = high_number(fit01), f2 = low_number(fit23);
-    auto size = hn::Add(hn::Abs(x), hn::Add(hn::Abs(f1), hn::Abs(f2)));
-    x = hn::MulAdd(f1, hn::Load(d, scratch.place[0] + i), x);
-    x = hn::MulAdd(f2, hn::Load(d, scratch.place[1] + i), x);
-    if (Rank == 4) {
-      const auto f3 = high_number(fit23);
-      size = hn::Add(size, hn::Abs(f3));
-      x = hn::MulAdd(f3, hn::Load(d, scratch.place[2] + i), x);
-    }
+    auto x = hn::MulAdd(high_number(fit01), hn::Load(d, scratch.place[0] + i), low_number(fit01));
+    x = hn::MulAdd(low_number(fit23), hn::Load(d, scratch.place[1] + i), x);
+    if (Rank == 4) x = hn::MulAdd(high_number(fit23), hn::Load(d, scratch.place[2] + i), x);
     x = hn::Mul(x, unit);
 
     const auto length = hn::ShiftRight<16>(run), first = low_half(run);
@@ -163,18 +156,18 @@ HWY_INLINE void predict(const CellSearchView& view, int padded, PixelTile& pixel
     const auto steps =
         hn::Min(hn::And(hn::BitCast(di, hn::Add(after, whole)), hn::Set(di, 0x7fff)), length);
     const auto at = hn::Add(first, steps);
-    hn::Store(at, di, pixels.bin + i);
-    hn::Store(low_half(beside), di, pixels.rival + i);
+    const auto once = hn::IfThenElse(hn::Lt(at, count), at, hn::Sub(at, count));
+    hn::Store(once, di, pixels.bin + i);
+    hn::Store(beside, di, pixels.rival + i);
 
-    // From the borders of its directions x must be further than it may be off.
+    // x must be further from the borders of its direction than it may be off.
     const auto slack = hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<16>(w3)));
     const auto doubt =
-        hn::MulAdd(hn::Mul(size, unit), hn::Load(d, scratch.slip + i), hn::Mul(slack, slack_unit));
+        hn::MulAdd(slack, slack_unit, hn::Mul(steepest, hn::Load(d, scratch.slip + i)));
     const auto place = hn::Sub(x, after);
-    const auto is_below = hn::Or(hn::Eq(after, last_after), hn::Gt(hn::Sub(half, place), doubt));
-    const auto is_above = hn::Or(hn::Eq(after, hn::Zero(d)), hn::Gt(hn::Add(half, place), doubt));
-    const auto is_sharp = hn::Lt(doubt, hn::Set(d, std::numeric_limits<float>::infinity()));
-    const auto is_proven = hn::RebindMask(di, hn::And(is_sharp, hn::And(is_below, is_above)));
+    const auto above = hn::IfThenElse(hn::Eq(after, last_after), no_border, hn::Sub(half, place));
+    const auto below = hn::IfThenElse(hn::Eq(after, hn::Zero(d)), no_border, hn::Add(half, place));
+    const auto is_proven = hn::RebindMask(di, hn::Gt(hn::Min(above, below), doubt));
     const auto is_list = hn::Lt(run, hn::Zero(di));
     const auto is_unproven = hn::AndNot(is_list, hn::Not(is_proven));
     const auto is_left = hn::Or(is_list, is_unproven);
@@ -223,14 +216,16 @@ void settle(const CellSearchView& view, const PixelTile& pixels, Scratch& scratc
       };
       const auto pixel = load(all.pixel), slot = load(all.slot), first = load(all.first),
                  last = load(all.last), at = load(all.at);
-      auto before = hn::Zero(d), after = hn::Zero(d);
+      auto before = hn::Zero(d), after = hn::Zero(d), size = hn::Zero(d);
       const auto row = hn::ShiftLeft<2>(at);
       for (int j = 0; j < Rank; ++j) {
         const auto q = hn::GatherIndex(d, pixels.plane + j * tile, pixel);
         before = hn::MulAdd(q, hn::GatherIndex(d, view.steps + j, row), before);
         after = hn::MulAdd(q, hn::GatherIndex(d, view.steps + row_floats + j, row), after);
+        size = hn::Add(size, hn::Abs(q));
       }
-      const auto margin = hn::GatherIndex(d, scratch.margin, pixel);
+      const auto margin =
+          hn::MulAdd(size, hn::Set(d, view.rounding), hn::GatherIndex(d, pixels.error, pixel));
       const Verdict verdict = judge(before, after, margin, first, last, at);
       const auto moves = hn::AndNot(verdict.unsure, hn::Or(verdict.up, verdict.down));
       const auto one = hn::Set(di, 1);
@@ -258,22 +253,34 @@ void settle(const CellSearchView& view, const PixelTile& pixels, Scratch& scratc
   }
 }
 
+/// Notes the direction of a pixel, twice around, or -1.
+HWY_INLINE void keep(const CellSearchView& view, std::int32_t pixel, std::int32_t n,
+                     PixelTile& pixels, Scratch& scratch) {
+  pixels.bin[pixel] = n < view.count ? n : n - view.count;
+  scratch.all_proven = scratch.all_proven && n >= 0;
+}
+
 /// Searches the runs of the pixels that their cells do not prove.
 template <int Rank>
 HWY_INLINE void search_runs(const CellSearchView& view, PixelTile& pixels, Scratch& scratch) {
   Searches& all = scratch.searches;
-  all.count = scratch.unproven_count;
-  for (int k = 0; k < all.count; ++k) {
-    const std::int32_t pixel = scratch.unproven[k];
-    all.pixel[k] = pixel;
-    all.slot[k] = k;
-    all.first[k] = scratch.first[pixel];
-    all.last[k] = scratch.last[pixel];
-    all.at[k] = pixels.bin[pixel];
+  all.count = 0;
+  for (int k = 0; k < scratch.unproven_count; ++k) {
+    const std::int32_t pixel = scratch.unproven[k], once = pixels.bin[pixel];
+    if (!(scratch.slip[pixel] < std::numeric_limits<float>::infinity())) {
+      scratch.result[k] = -1;
+      continue;
+    }
+    const int at = all.count++;
+    all.pixel[at] = pixel;
+    all.slot[at] = k;
+    all.first[at] = scratch.first[pixel];
+    all.last[at] = scratch.last[pixel];
+    all.at[at] = once < all.first[at] ? once + view.count : once;
   }
   settle<Rank>(view, pixels, scratch);
   for (int k = 0; k < scratch.unproven_count; ++k)
-    pixels.bin[scratch.unproven[k]] = scratch.result[k];
+    keep(view, scratch.unproven[k], scratch.result[k], pixels, scratch);
 }
 
 /// A run of a pixel that has several.
@@ -285,11 +292,13 @@ struct Entry {
 /// The best of the runs of one pixel, given the peak of each.
 template <int Rank>
 HWY_INLINE void choose_run(const CellSearchView& view, const Entry* entries, const std::int32_t* at,
-                           int count, const Scratch& scratch, PixelTile& pixels) {
+                           int count, Scratch& scratch, PixelTile& pixels) {
   const std::int32_t pixel = entries[0].pixel;
   float best = -std::numeric_limits<float>::infinity(), second = best;
   int leader = 0;
   bool is_sure = true;
+  float margin = pixels.error[pixel];
+  for (int j = 0; j < Rank; ++j) margin += view.rounding * std::abs(pixels.plane[j * tile + pixel]);
   for (int e = 0; e < count; ++e) {
     is_sure = is_sure && at[e] >= 0;
     const float* unit = view.units + row_floats * static_cast<std::ptrdiff_t>(std::max(at[e], 0));
@@ -303,8 +312,8 @@ HWY_INLINE void choose_run(const CellSearchView& view, const Entry* entries, con
       second = std::max(second, score);
     }
   }
-  is_sure = is_sure && best - second > 2.0f * scratch.margin[pixel];
-  pixels.bin[pixel] = is_sure ? at[leader] : -1;
+  is_sure = is_sure && best - second > 2.0f * margin;
+  keep(view, pixel, is_sure ? at[leader] : -1, pixels, scratch);
   pixels.rival[pixel] = entries[leader].record->rival;
 }
 
@@ -321,9 +330,8 @@ HWY_INLINE void search_lists(const CellSearchView& view, PixelTile& pixels, Scra
       const std::int32_t pixel = scratch.with_list[next];
       const CellRecord& cell = view.cells[scratch.cell[pixel]];
       const auto runs = static_cast<int>(cell.list_length());
-      if (runs > most_searches ||
-          !(scratch.margin[pixel] < std::numeric_limits<float>::infinity())) {
-        pixels.bin[pixel] = -1;
+      if (runs > most_searches || !(scratch.slip[pixel] < std::numeric_limits<float>::infinity())) {
+        keep(view, pixel, -1, pixels, scratch);
         continue;
       }
       if (filled + runs > most_searches) break;
@@ -355,29 +363,6 @@ HWY_INLINE void search_lists(const CellSearchView& view, PixelTile& pixels, Scra
   }
 }
 
-/// From directions, twice around, to bins. @returns whether all pixels have one
-HWY_INLINE bool name_bins(const CellSearchView& view, int padded, PixelTile& pixels) {
-  const Ints di;
-  const auto lanes = static_cast<int>(hn::Lanes(di));
-  const auto count = hn::Set(di, view.count), none = hn::Set(di, -1);
-  auto lowest = hn::Zero(di);
-  for (int i = 0; i < padded; i += lanes) {
-    auto n = hn::Load(di, pixels.bin + i);
-    n = hn::IfThenElse(hn::Lt(n, count), n, hn::Sub(n, count));
-    lowest = hn::Min(lowest, n);
-    if (view.bin) {
-      const auto is_unknown = hn::Lt(n, hn::Zero(di));
-      const auto bin = hn::GatherIndex(di, view.bin, hn::IfThenZeroElse(is_unknown, n));
-      n = hn::IfThenElse(is_unknown, none, bin);
-    }
-    hn::Store(n, di, pixels.bin + i);
-    const auto rival = hn::Load(di, pixels.rival + i);
-    const auto is_none = hn::Eq(rival, hn::Set(di, CellRecord::no_rival));
-    hn::Store(hn::IfThenElse(is_none, none, rival), di, pixels.rival + i);
-  }
-  return hn::AllTrue(di, hn::Eq(lowest, hn::Zero(di)));
-}
-
 /// @returns whether all pixels are proven
 template <int Rank>
 bool search_tile(const CellSearchView& view, PixelTile& pixels) {
@@ -386,9 +371,13 @@ bool search_tile(const CellSearchView& view, PixelTile& pixels) {
   Scratch scratch;
   locate<Rank>(view, pixels, padded, scratch);
   predict<Rank>(view, padded, pixels, scratch);
+  scratch.all_proven = true;
   if (scratch.unproven_count > 0) search_runs<Rank>(view, pixels, scratch);
   if (scratch.lists > 0) search_lists<Rank>(view, pixels, scratch);
-  return name_bins(view, padded, pixels);
+  if (view.bin)
+    for (int i = 0; i < pixels.pixels; ++i)
+      if (pixels.bin[i] >= 0) pixels.bin[i] = view.bin[pixels.bin[i]];
+  return scratch.all_proven;
 }
 
 bool search(const CellSearchView& view, PixelTile& pixels) {
@@ -443,6 +432,7 @@ CellSearch::CellSearch(const DistinctDirections& directions, const RivalSearch& 
            .steps = steps_.data(),
            .units = units_.data(),
            .bin = directions.bin.back() + 1 == count ? nullptr : bin_.data(),
+           .steepest_fit = static_cast<float>(table_.steepest_fit()),
            .rounding = static_cast<float>((directions.rank() + 2) * unit_roundoff * safety + tie)};
 }
 

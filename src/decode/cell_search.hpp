@@ -22,6 +22,7 @@ struct CellSearchView {
   const float* steps = nullptr;  ///< unit vector from n to n + 1 at [n + 1], n = -1 .. 2 M, each 4
   const float* units = nullptr;  ///< directions n = 0 .. 2 M, each 4
   const std::int32_t* bin = nullptr;  ///< of a direction; null where all bins are distinct
+  float steepest_fit = 0.0f;          ///< as of the table
   float rounding = 0.0f;              ///< of the sign of <q, step>, per sum of |q_j|
 };
 

@@ -96,16 +96,36 @@ CellTable::CellTable(const DistinctDirections& directions, const RivalSearch& ri
   std::size_t cell_count = static_cast<std::size_t>(faces);
   for (int s = 0; s + 1 < rank_; ++s) cell_count *= static_cast<std::size_t>(resolution_);
   cells_.resize(cell_count);
+  // Few cells have the steepest fits; without them one bound serves all.
+  std::vector<double> steep;
+  for (const auto& of_part : leaves)
+    for (const Leaf& leaf : of_part)
+      if (leaf.runs.size() == 1 && leaf.runs.front().slack != CellRecord::no_proof)
+        steep.push_back(steepness(leaf.runs.front()));
+  if (!steep.empty()) {
+    const auto high =
+        steep.begin() + static_cast<std::ptrdiff_t>(steep.size() - 1 - steep.size() / 100);
+    std::nth_element(steep.begin(), high, steep.end());
+    steepest_fit_ = *high;
+  }
   for (const auto& of_part : leaves)
     for (const Leaf& leaf : of_part) {
-      if (leaf.runs.size() == 1) {
-        cells_[leaf.cell] = leaf.runs.front();
+      const CellRecord& run = leaf.runs.front();
+      if (leaf.runs.size() == 1 && run.slack != CellRecord::no_proof &&
+          steepness(run) <= steepest_fit_) {
+        cells_[leaf.cell] = run;
         continue;
       }
       cells_[leaf.cell] = CellRecord::list(static_cast<std::uint32_t>(lists_.size()),
                                            static_cast<std::uint32_t>(leaf.runs.size()));
       lists_.insert(lists_.end(), leaf.runs.begin(), leaf.runs.end());
     }
+}
+
+double CellTable::steepness(const CellRecord& run) const {
+  double sum = 0.0;
+  for (const std::int16_t value : run.fit) sum += std::abs(fit_unit_ * value);
+  return sum;
 }
 
 std::span<const CellRecord> CellTable::runs(const double* unit) const {

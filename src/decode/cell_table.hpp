@@ -37,6 +37,11 @@ struct CellRecord {
   /// Of a list: index of its first record, and their number.
   std::uint32_t list_begin() const;
   std::uint32_t list_length() const { return length & (several - 1u); }
+  /// The rival in the record's last word; -1 where there is none.
+  static std::int32_t rival_in(std::int32_t word) {
+    const std::int32_t rival = word & 0xffff;
+    return rival == no_rival ? -1 : rival;
+  }
   static CellRecord list(std::uint32_t begin, std::uint32_t count);
 };
 static_assert(sizeof(CellRecord) == 16);
@@ -60,6 +65,8 @@ class CellTable {
   const CellRecord* lists() const { return lists_.data(); }
   /// Unit of CellRecord::fit, in directions.
   double fit_unit() const { return fit_unit_; }
+  /// No fit of a cell with one run is steeper: the sum of its sizes, in directions.
+  double steepest_fit() const { return steepest_fit_; }
   std::size_t bytes() const { return (cells_.size() + lists_.size()) * sizeof(CellRecord); }
 
   /// The runs of the cell of a unit vector.
@@ -69,6 +76,9 @@ class CellTable {
   int rank_;
   int resolution_;  // G, a power of two
   double fit_unit_;
+  double steepest_fit_ = 0.0;
+  double steepness(const CellRecord& run) const;
+
   std::vector<CellRecord> cells_;
   std::vector<CellRecord> lists_;
 };

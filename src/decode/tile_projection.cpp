@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "decode/raw_scale.hpp"
@@ -92,6 +93,27 @@ HWY_INLINE void project_interleaved(const ProjectionView& view, const float* raw
   }
 }
 
+/// Measurements side by side, K >= 4, to planes in the tile: whole vectors of pixels, four
+/// measurements at a time, of which the last four may overlap others. @returns pixels done
+HWY_INLINE int separate(const float* raw, int k_count, int pixels, PixelTile& tile) {
+  const Floats d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int done = pixels / lanes * lanes;
+  alignas(64) float four[4 * 16];
+  for (int i = 0; i < done; i += lanes)
+    for (int k = 0; k < k_count; k += 4) {
+      const int from = std::min(k, k_count - 4);
+      for (int lane = 0; lane < lanes; ++lane)
+        std::memcpy(four + 4 * lane, raw + static_cast<std::ptrdiff_t>(i + lane) * k_count + from,
+                    4 * sizeof(float));
+      Vector measured[4];
+      hn::LoadInterleaved4(d, four, measured[0], measured[1], measured[2], measured[3]);
+      for (int j = 0; j < 4; ++j)
+        hn::Store(measured[j], d, tile.raw + (from + j) * tile_pixels + i);
+    }
+  return done;
+}
+
 template <int Rank>
 HWY_INLINE void project_planes(const ProjectionView& view, const float* raw, std::ptrdiff_t stride,
                                int from, int to, PixelTile& tile) {
@@ -100,6 +122,20 @@ HWY_INLINE void project_planes(const ProjectionView& view, const float* raw, std
   for (int i = from; i < to; i += lanes)
     project_vector<Rank>(
         view, [&](int k) { return hn::LoadU(d, raw + k * stride + i); }, i, tile);
+}
+
+/// Raw numbers from pixel `from` on to planes in the tile, and zeros up to `padded`.
+HWY_INLINE void fill_planes(const TileSource& source, int k_count, int from, int pixels, int padded,
+                            PixelTile& tile) {
+  if (source.data && from == 0 && k_count >= 4 && source.pixel_stride == k_count)
+    from = separate(source.data, k_count, pixels, tile);
+  for (int k = 0; k < k_count; ++k) {
+    float* const raw = tile.raw + k * tile_pixels;
+    if (source.data)
+      for (int i = from; i < pixels; ++i)
+        raw[i] = source.data[i * source.pixel_stride + k * source.measurement_stride];
+    std::fill(raw + pixels, raw + padded, 0.0f);
+  }
 }
 
 template <int Rank>
@@ -122,13 +158,7 @@ void project_rank(const ProjectionView& view, const TileSource& source, int pixe
   }
   const int padded = (pixels + 15) / 16 * 16;
   if (done == padded) return;
-  if (source.data)
-    for (int k = 0; k < k_count; ++k)
-      for (int i = done; i < pixels; ++i)
-        tile.raw[k * tile_pixels + i] =
-            source.data[i * source.pixel_stride + k * source.measurement_stride];
-  for (int k = 0; k < k_count; ++k)
-    std::fill(tile.raw + k * tile_pixels + pixels, tile.raw + k * tile_pixels + padded, 0.0f);
+  fill_planes(source, k_count, done, pixels, padded, tile);
   project_planes<Rank>(view, tile.raw, tile_pixels, done, padded, tile);
 }
 
@@ -147,13 +177,7 @@ void project_tile(const ProjectionView& view, const TileSource& source, int pixe
   }
   const auto lanes = static_cast<int>(hn::Lanes(Floats()));
   const int padded = (pixels + 15) / 16 * 16;
-  for (int k = 0; k < view.measurements; ++k) {
-    float* const raw = tile.raw + k * tile_pixels;
-    if (source.data)
-      for (int i = 0; i < pixels; ++i)
-        raw[i] = source.data[i * source.pixel_stride + k * source.measurement_stride];
-    std::fill(raw + pixels, raw + padded, 0.0f);
-  }
+  fill_planes(source, view.measurements, 0, pixels, padded, tile);
   for (int i = 0; i < padded; i += lanes) project_any_rank(view, tile, i);
 }
 
