@@ -178,15 +178,20 @@ class Matched {
     for (int j = 0; j < u.size(); ++j) u[j] = directions_.direction(n, j);
     return u;
   }
+  /// The first of those that tie.
   std::int32_t best_bin(const Eigen::VectorXd& q, std::int32_t begin, std::int32_t end) const {
-    std::int32_t best = begin;
-    double score = -std::numeric_limits<double>::infinity();
+    const auto has_contrast = [this](std::int32_t bin) {
+      return !projection_.curve.row(bin).isZero(0.0);
+    };
+    double best = -std::numeric_limits<double>::infinity();
+    for (std::int32_t n = begin; n < end; ++n)
+      if (has_contrast(n % table_.samples()))
+        best = std::max(best, direction(n % table_.samples()).dot(q));
     for (std::int32_t n = begin; n < end; ++n) {
       const std::int32_t bin = n % table_.samples();
-      if (projection_.curve.row(bin).isZero(0.0)) continue;
-      if (direction(bin).dot(q) > score) best = bin, score = direction(bin).dot(q);
+      if (has_contrast(bin) && direction(bin).dot(q) >= best - tie_tolerance * q.norm()) return bin;
     }
-    return best;
+    return begin;
   }
 
   void match(std::size_t i) {
