@@ -3,6 +3,7 @@
 #include "decode/bin_matcher.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tofsmith {
@@ -20,10 +21,10 @@ BinMatcher::BinMatcher(const DecodingTable& table, const AmbientProjection& proj
     search_.emplace<CellSearch>(distinct_, rivals_);
 }
 
-void BinMatcher::match(const RawView& view, std::int64_t first, int pixels, bool keep_raw,
+void BinMatcher::match(const RawView& view, std::int64_t first, int pixels, bool for_outputs,
                        PixelTile& tile) const {
-  projection_.project(view, first, pixels, keep_raw, tile);
-  if (search(keep_raw, tile)) return;
+  projection_.project(view, first, pixels, for_outputs, tile);
+  if (search(for_outputs, tile)) return;
   for (int i = 0; i < pixels; ++i)
     if (tile.bin[i] < 0) decide(view, first, i, tile);
 }
@@ -36,10 +37,9 @@ bool BinMatcher::search(bool wants_rivals, PixelTile& tile) const {
   arcs_.search(tile.plane, pixels_per_tile, tile.error, tile.pixels, tile.bin);
   bool all_proven = true;
   for (int i = 0; i < tile.pixels; ++i) {
-    if (tile.bin[i] >= 0)
-      tile.bin[i] = directions_.bin_of_row(tile.bin[i]);
-    else
-      all_proven = false;
+    const bool is_proven = tile.bin[i] >= 0 && is_precise(tile, i);
+    tile.bin[i] = is_proven ? directions_.bin_of_row(tile.bin[i]) : -1;
+    all_proven = all_proven && is_proven;
   }
   return all_proven;
 }
@@ -68,6 +68,16 @@ void BinMatcher::find_rivals(PixelTile& tile) const {
   }
 }
 
+/// Whether single precision tells where a pixel is. No search proves the bin of one that is not.
+/// Which others are decided differs between processors, and must not show in `plane`.
+bool BinMatcher::is_precise(const PixelTile& tile, int pixel) const {
+  constexpr float share = 1e-5f;
+  float largest = 0.0f;
+  for (int j = 0; j < exact_.rank(); ++j)
+    largest = std::max(largest, std::abs(tile.plane[j * pixels_per_tile + pixel]));
+  return tile.error[pixel] < share * largest;
+}
+
 /// One pixel in double arithmetic.
 void BinMatcher::decide(const RawView& view, std::int64_t first, int pixel, PixelTile& tile) const {
   std::array<double, max_measurements> raw;
@@ -82,9 +92,10 @@ void BinMatcher::decide(const RawView& view, std::int64_t first, int pixel, Pixe
       view.data);
   PlaneVector vector;
   exact_.project(raw.data(), vector);
-  for (int j = 0; j < exact_.rank(); ++j)
-    tile.plane[j * pixels_per_tile + pixel] =
-        static_cast<float>(vector.unit[static_cast<std::size_t>(j)] * vector.length);
+  if (!is_precise(tile, pixel))
+    for (int j = 0; j < exact_.rank(); ++j)
+      tile.plane[j * pixels_per_tile + pixel] =
+          static_cast<float>(vector.unit[static_cast<std::size_t>(j)] * vector.length);
   if (!std::isfinite(vector.length)) return;  // bin is -1
   tile.bin[pixel] = vector.length > 0.0 ? choose(vector.unit.data()) : distinct_.bin.front();
 }

@@ -24,15 +24,16 @@ class BinMatcher {
 
   /// Fills a tile with the pixels of a view from pixel `first` on; bins are -1 where a raw number
   /// is none.
-  /// @param pixels    1 .. pixels_per_tile
-  /// @param keep_raw  whether `raw` of the tile is filled too
-  void match(const RawView& view, std::int64_t first, int pixels, bool keep_raw,
+  /// @param pixels       1 .. pixels_per_tile
+  /// @param for_outputs  as of TileProjection::project
+  void match(const RawView& view, std::int64_t first, int pixels, bool for_outputs,
              PixelTile& tile) const;
   /// Completes `rival` of a matched tile.
   void find_rivals(PixelTile& tile) const;
 
  private:
   bool search(bool wants_rivals, PixelTile& tile) const;
+  bool is_precise(const PixelTile& tile, int pixel) const;
   void decide(const RawView& view, std::int64_t first, int pixel, PixelTile& tile) const;
   std::int32_t choose(const double* unit) const;
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "decode/expected_noise.hpp"
+
 namespace tofsmith {
 
 namespace {
@@ -36,7 +38,7 @@ class RecordBuilder {
     const Eigen::VectorXd p = point(n);
     const double length2 = p.squaredNorm();
     if (length2 == 0.0) return;
-    const Eigen::VectorXd shot = noise_.per_signal.row(n);
+    const Eigen::VectorXd shot = noise_.shot_gated.row(n);
     store(p / length2, record + layout_.point());
     store(noise_along(p / length2, shot), record + layout_.signal_noise());
     store(shot, record + layout_.shot());
@@ -78,7 +80,7 @@ class RecordBuilder {
     const double t = (quarter + 0.5) / ChordLayout::quarters;
     const Eigen::VectorXd p = point(n), chord = point(neighbour) - p;
     const Eigen::VectorXd shot =
-        (1 - t) * noise_.per_signal.row(n) + t * noise_.per_signal.row(neighbour);
+        (1 - t) * noise_.shot_gated.row(n) + t * noise_.shot_gated.row(neighbour);
     store(depth_noise_at(p + t * chord, chord, shot), fields + ChordLayout::depth_noise);
     if (ambient2_ > 0.0)
       fields[ChordLayout::ambient] = static_cast<float>(ambient_part(neighbour) - ambient_part(n));
@@ -98,8 +100,8 @@ class RecordBuilder {
   Eigen::Vector3d noise_along(const Eigen::VectorXd& weight, const Eigen::VectorXd& shot) const {
     const Eigen::VectorXd squares = (projection_.basis * weight).cwiseAbs2();
     Eigen::Vector3d noise;
-    noise << squares.dot(shot), squares.dot(noise_.per_ambient),
-        squares.dot(noise_.without_light_e2);
+    noise << squares.dot(shot), squares.dot(noise_.shot_ambient),
+        squares.dot(noise_.floor_variance_e2);
     return noise;
   }
 
@@ -107,21 +109,10 @@ class RecordBuilder {
   const AmbientProjection& projection_;
   RecordLayout layout_;
   double ambient2_;  // |a|^2
-  MeasurementNoise noise_;
+  ExpectedNoise noise_;
 };
 
 }  // namespace
-
-MeasurementNoise::MeasurementNoise(const DecodingTable& table) {
-  const auto or_else = [](const auto& given, const auto& otherwise) {
-    return given.size() > 0 ? given : otherwise;
-  };
-  const Eigen::VectorXd& t = table.exposure_s;
-  per_signal = or_else(table.shot_correlation, table.correlation) * t.asDiagonal();
-  per_ambient = or_else(table.shot_ambient_gain, table.ambient_gain).cwiseProduct(t);
-  without_light_e2 =
-      or_else(table.shot_dark_electrons, table.dark_electrons) + table.constant_variance_e2;
-}
 
 RecordTable::RecordTable(std::int32_t rows, int fields)
     : stride_(fields <= floats_per_line ? rounded_up(fields, 4)

@@ -29,15 +29,6 @@ class RecordTable {
   hwy::AlignedFreeUniquePtr<float[]> values_;
 };
 
-/// Variance of the measurements: S per_signal + A per_ambient + without_light.
-struct MeasurementNoise {
-  explicit MeasurementNoise(const DecodingTable& table);
-
-  RowMajorMatrix per_signal;         ///< (N, K)
-  Eigen::VectorXd per_ambient;       ///< (K)
-  Eigen::VectorXd without_light_e2;  ///< (K)
-};
-
 /// Where the fields of a bin's record begin: who wants little of a pixel reads only the front. With
 /// p the curve at the bin, e the chord to a neighbour and w the unit vector across p in its
 /// direction: e = beta p + c w.

@@ -19,13 +19,13 @@ namespace {
 
 /// Calls use(tile, first pixel) for pixels [begin, end) of a view, tile by tile.
 template <typename Use>
-void for_each_tile(const BinMatcher& matcher, const RawView& raw, IndexRange pixels, bool keep_raw,
-                   const Use& use) {
+void for_each_tile(const BinMatcher& matcher, const RawView& raw, IndexRange pixels,
+                   bool for_outputs, const Use& use) {
   PixelTile tile;
   for (std::int64_t first = pixels.begin; first < pixels.end; first += pixels_per_tile) {
     const auto count =
         static_cast<int>(std::min<std::int64_t>(pixels.end - first, pixels_per_tile));
-    matcher.match(raw, first, count, keep_raw, tile);
+    matcher.match(raw, first, count, for_outputs, tile);
     use(tile, first);
   }
 }

@@ -33,7 +33,7 @@ HWY_INLINE void write_chunk(const BinRecords& records, const OutputConstants& c,
     gather(records.records.data(), chunk.start + i, 0, steps.fields, chunk.record + i);
   refine(layout, rank, chunk);
   if (planes.depth_m) write_depth(c, chunk, planes.depth_m);
-  if (planes.bin) write_bins(c, chunk, planes.bin);
+  if (planes.bin) std::copy_n(chunk.bin, chunk.pixels, planes.bin);
   if (planes.signal_e_per_s) write_values(chunk, chunk.signal, planes.signal_e_per_s);
   if (steps.ambient) {
     find_chords(records.chords, chunk);
@@ -120,7 +120,7 @@ OutputKernel::OutputKernel(const DecodingTable& table, const AmbientProjection& 
                            const DecodeOptions& options)
     : records_(table, projection) {
   const double bin_m = table.bin_m();
-  const MeasurementNoise noise(table);
+  const ExpectedNoise noise(table);
   const double ambient2 = projection.ambient.squaredNorm();
   constants_.samples = table.samples();
   constants_.bin_m = static_cast<float>(bin_m);
@@ -131,12 +131,12 @@ OutputKernel::OutputKernel(const DecodingTable& table, const AmbientProjection& 
   if (constants_.sees_ambient) constants_.ambient_weight = in_floats(projection.ambient / ambient2);
   const RowMajorMatrix basis = projection.basis;
   constants_.basis.assign(basis.data(), basis.data() + basis.size());
-  constants_.shot_ambient = in_floats(noise.per_ambient);
-  constants_.floor_noise_e2 = in_floats(noise.without_light_e2);
-  constants_.most_shot = static_cast<float>(std::max(0.0, noise.per_signal.maxCoeff()));
-  constants_.most_shot_ambient = static_cast<float>(std::max(0.0, noise.per_ambient.maxCoeff()));
+  constants_.shot_ambient = in_floats(noise.shot_ambient);
+  constants_.floor_noise_e2 = in_floats(noise.floor_variance_e2);
+  constants_.most_shot = static_cast<float>(std::max(0.0, noise.shot_gated.maxCoeff()));
+  constants_.most_shot_ambient = static_cast<float>(std::max(0.0, noise.shot_ambient.maxCoeff()));
   constants_.most_floor_e2 =
-      static_cast<float>(std::max(least_variance_e2, noise.without_light_e2.maxCoeff()));
+      static_cast<float>(std::max(least_variance_e2, noise.floor_variance_e2.maxCoeff()));
   constants_.low_signal_sigma2 = static_cast<float>(std::min<double>(
       options.low_signal_sigma * options.low_signal_sigma, std::numeric_limits<float>::max()));
   constants_.minimum_confidence = static_cast<float>(options.minimum_confidence);

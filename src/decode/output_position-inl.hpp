@@ -87,24 +87,6 @@ HWY_INLINE void write_depth(const OutputConstants& c, const OutputChunk& chunk, 
   }
 }
 
-HWY_INLINE void write_bins(const OutputConstants& c, const OutputChunk& chunk, std::int32_t* bins) {
-  const Floats d;
-  const Indices di;
-  const auto one = hn::Set(di, 1), end = hn::Set(di, c.samples);
-  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d))) {
-    const Vector offset = load(chunk.offset, i);
-    const auto bin = hn::LoadU(di, chunk.bin + i);
-    const auto is_up = hn::RebindMask(di, hn::Ge(offset, all(0.5f)));
-    const auto is_down = hn::RebindMask(di, hn::Lt(offset, all(-0.5f)));
-    auto nearest = hn::Add(bin, hn::IfThenElseZero(is_up, one));
-    nearest = hn::Sub(nearest, hn::IfThenElseZero(is_down, one));
-    nearest = hn::IfThenZeroElse(hn::Eq(nearest, end), nearest);
-    nearest = hn::IfThenElse(hn::Lt(nearest, hn::Zero(di)), hn::Sub(end, one), nearest);
-    nearest = hn::IfThenElse(hn::Lt(bin, hn::Zero(di)), bin, nearest);
-    store_some(di, nearest, bins + i, chunk.pixels - i);
-  }
-}
-
 /// Copies values, NaN where there is no depth.
 HWY_INLINE void write_values(const OutputChunk& chunk, const float* values, float* plane) {
   const Floats d;

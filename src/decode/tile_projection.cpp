@@ -23,44 +23,60 @@ using Floats = hn::CappedTag<float, 16>;
 using Vector = hn::Vec<Floats>;
 constexpr int tile_pixels = pixels_per_tile;
 
-/// One vector of pixels; loads measurement k by `load(k)`.
-template <int Rank, typename Load>
-HWY_INLINE void project_vector(const ProjectionView& view, const Load& load, int pixel,
-                               PixelTile& tile) {
+/// a b + c. Where outputs follow it is rounded twice, with and without fused instructions, so that
+/// they are the same on every processor; bins are proven either way.
+template <bool ForOutputs>
+HWY_INLINE Vector product_plus(Vector a, Vector b, Vector c) {
+  if constexpr (ForOutputs) return hn::Add(hn::Mul(a, b), c);
+  return hn::MulAdd(a, b, c);
+}
+template <bool ForOutputs>
+HWY_INLINE Vector minus_product(Vector a, Vector b, Vector c) {
+  if constexpr (ForOutputs) return hn::Sub(c, hn::Mul(a, b));
+  return hn::NegMulAdd(a, b, c);
+}
+
+/// One vector of pixels; loads measurement k by `load(k)`. `Count` 0 stands for any K.
+template <int Rank, bool ForOutputs, int Count, typename Load>
+HWY_INLINE void project_vector(const ProjectionView& view, const Load& load, Vector reference,
+                               int pixel, PixelTile& tile) {
   const Floats d;
+  const int count = Count > 0 ? Count : view.measurements;
   Vector q[Rank];
   for (int j = 0; j < Rank; ++j) q[j] = hn::Set(d, view.offset[j]);
-  auto error = hn::Set(d, view.error_of_offset);
-  const auto reference = view.reference < 0 ? hn::Zero(d) : load(view.reference);
-  error = hn::MulAdd(hn::Abs(reference), hn::Set(d, view.error_of_reference), error);
-  for (int k = 0; k < view.measurements; ++k) {
-    if (k == view.reference) continue;
-    const auto difference = hn::NegMulAdd(reference, hn::Set(d, view.ratio[k]), load(k));
-    error = hn::MulAdd(hn::Abs(difference), hn::Set(d, view.error_of_difference[k]), error);
+  auto error = product_plus<ForOutputs>(hn::Abs(reference), hn::Set(d, view.error_of_reference),
+                                        hn::Set(d, view.error_of_offset));
+  for (int k = 0; k < count; ++k) {
+    const auto difference =
+        minus_product<ForOutputs>(reference, hn::Set(d, view.ratio[k]), load(k));
+    error = product_plus<ForOutputs>(hn::Abs(difference), hn::Set(d, view.error_of_difference[k]),
+                                     error);
     for (int j = 0; j < Rank; ++j)
-      q[j] = hn::MulAdd(difference, hn::Set(d, view.weight[j * view.measurements + k]), q[j]);
+      q[j] = product_plus<ForOutputs>(difference, hn::Set(d, view.weight[j * count + k]), q[j]);
   }
   for (int j = 0; j < Rank; ++j) hn::Store(q[j], d, tile.plane + j * tile_pixels + pixel);
   hn::Store(error, d, tile.error + pixel);
 }
 
 /// Any rank, component by component.
+template <bool ForOutputs>
 HWY_INLINE void project_any_rank(const ProjectionView& view, PixelTile& tile, int pixel) {
   const Floats d;
   const auto load = [&](int k) { return hn::Load(d, tile.raw + k * tile_pixels + pixel); };
-  const auto reference = view.reference < 0 ? hn::Zero(d) : load(view.reference);
-  auto error = hn::MulAdd(hn::Abs(reference), hn::Set(d, view.error_of_reference),
-                          hn::Set(d, view.error_of_offset));
+  const auto reference = load(view.reference);
+  auto error = product_plus<ForOutputs>(hn::Abs(reference), hn::Set(d, view.error_of_reference),
+                                        hn::Set(d, view.error_of_offset));
   for (int j = 0; j < view.rank; ++j)
     hn::Store(hn::Set(d, view.offset[j]), d, tile.plane + j * tile_pixels + pixel);
   for (int k = 0; k < view.measurements; ++k) {
-    if (k == view.reference) continue;
-    const auto difference = hn::NegMulAdd(reference, hn::Set(d, view.ratio[k]), load(k));
-    error = hn::MulAdd(hn::Abs(difference), hn::Set(d, view.error_of_difference[k]), error);
+    const auto difference =
+        minus_product<ForOutputs>(reference, hn::Set(d, view.ratio[k]), load(k));
+    error = product_plus<ForOutputs>(hn::Abs(difference), hn::Set(d, view.error_of_difference[k]),
+                                     error);
     for (int j = 0; j < view.rank; ++j) {
       float* const q = tile.plane + j * tile_pixels + pixel;
       const auto weight = hn::Set(d, view.weight[j * view.measurements + k]);
-      hn::Store(hn::MulAdd(difference, weight, hn::Load(d, q)), d, q);
+      hn::Store(product_plus<ForOutputs>(difference, weight, hn::Load(d, q)), d, q);
     }
   }
   hn::Store(error, d, tile.error + pixel);
@@ -76,51 +92,53 @@ HWY_INLINE void load_interleaved(const float* raw, Vector* measured) {
     hn::LoadInterleaved4(d, raw, measured[0], measured[1], measured[2], measured[3]);
 }
 
-template <int Rank, int Measurements>
+template <int Rank, bool ForOutputs, int Measurements>
 HWY_INLINE void project_interleaved(const ProjectionView& view, const float* raw, int vectors,
-                                    bool keep_raw, PixelTile& tile) {
+                                    PixelTile& tile) {
   const Floats d;
   const auto lanes = static_cast<int>(hn::Lanes(d));
   for (int i = 0; i < vectors * lanes; i += lanes) {
     Vector measured[4];
     load_interleaved<Measurements>(raw + i * Measurements, measured);
-    if (keep_raw)
+    auto reference = measured[0];
+    for (int k = 1; k < Measurements; ++k)
+      if (view.reference == k) reference = measured[k];
+    if (ForOutputs)
       for (int k = 0; k < Measurements; ++k)
         hn::Store(measured[k], d, tile.raw + k * tile_pixels + i);
-    project_vector<Rank>(
-        view, [&](int k) { return measured[k]; }, i, tile);
+    project_vector<Rank, ForOutputs, Measurements>(
+        view, [&](int k) { return measured[k]; }, reference, i, tile);
   }
 }
 
 /// The same for any K, measurement by measurement.
-template <int Rank>
+template <int Rank, bool ForOutputs, int Count>
 HWY_INLINE void project_strided(const ProjectionView& view, const float* raw, int vectors,
-                                bool keep_raw, PixelTile& tile) {
+                                PixelTile& tile) {
   const Floats d;
   const hn::RebindToSigned<Floats> di;
   const auto lanes = static_cast<int>(hn::Lanes(d));
   const auto pixel = hn::Mul(hn::Iota(di, 0), hn::Set(di, view.measurements));
   for (int i = 0; i < vectors * lanes; i += lanes) {
     const float* const first = raw + static_cast<std::ptrdiff_t>(i) * view.measurements;
-    project_vector<Rank>(
-        view,
-        [&](int k) {
-          const auto measured = hn::GatherIndex(d, first + k, pixel);
-          if (keep_raw) hn::Store(measured, d, tile.raw + k * tile_pixels + i);
-          return measured;
-        },
-        i, tile);
+    const auto load = [&](int k) {
+      const auto measured = hn::GatherIndex(d, first + k, pixel);
+      if (ForOutputs) hn::Store(measured, d, tile.raw + k * tile_pixels + i);
+      return measured;
+    };
+    project_vector<Rank, ForOutputs, Count>(view, load, load(view.reference), i, tile);
   }
 }
 
-template <int Rank>
+template <int Rank, bool ForOutputs>
 HWY_INLINE void project_planes(const ProjectionView& view, const float* raw, std::ptrdiff_t stride,
                                int from, int to, PixelTile& tile) {
   const Floats d;
   const auto lanes = static_cast<int>(hn::Lanes(d));
-  for (int i = from; i < to; i += lanes)
-    project_vector<Rank>(
-        view, [&](int k) { return hn::LoadU(d, raw + k * stride + i); }, i, tile);
+  for (int i = from; i < to; i += lanes) {
+    const auto load = [&](int k) { return hn::LoadU(d, raw + k * stride + i); };
+    project_vector<Rank, ForOutputs, 0>(view, load, load(view.reference), i, tile);
+  }
 }
 
 /// Raw numbers from pixel `from` on to planes in the tile, and zeros up to `padded`.
@@ -135,8 +153,8 @@ HWY_INLINE void fill_planes(const TileSource& source, int k_count, int from, int
   }
 }
 
-template <int Rank>
-void project_rank(const ProjectionView& view, const TileSource& source, int pixels, bool keep_raw,
+template <int Rank, bool ForOutputs>
+void project_rank(const ProjectionView& view, const TileSource& source, int pixels,
                   PixelTile& tile) {
   const auto lanes = static_cast<int>(hn::Lanes(Floats()));
   const int k_count = view.measurements;
@@ -145,41 +163,52 @@ void project_rank(const ProjectionView& view, const TileSource& source, int pixe
     // Whole vectors are read where they are; what is left goes through the tile.
     const int vectors = pixels / lanes;
     if (k_count == 3)
-      project_interleaved<Rank, 3>(view, source.data, vectors, keep_raw, tile);
+      project_interleaved<Rank, ForOutputs, 3>(view, source.data, vectors, tile);
     else
-      project_interleaved<Rank, 4>(view, source.data, vectors, keep_raw, tile);
+      project_interleaved<Rank, ForOutputs, 4>(view, source.data, vectors, tile);
     done = vectors * lanes;
   } else if (source.data && source.pixel_stride == k_count) {
     const int vectors = pixels / lanes;
-    project_strided<Rank>(view, source.data, vectors, keep_raw, tile);
+    if (k_count == 5)
+      project_strided<Rank, ForOutputs, 5>(view, source.data, vectors, tile);
+    else if (k_count == 8)
+      project_strided<Rank, ForOutputs, 8>(view, source.data, vectors, tile);
+    else
+      project_strided<Rank, ForOutputs, 0>(view, source.data, vectors, tile);
     done = vectors * lanes;
-  } else if (source.data && source.pixel_stride == 1 && !keep_raw) {
+  } else if (source.data && source.pixel_stride == 1 && !ForOutputs) {
     done = pixels / lanes * lanes;
-    project_planes<Rank>(view, source.data, source.measurement_stride, 0, done, tile);
+    project_planes<Rank, ForOutputs>(view, source.data, source.measurement_stride, 0, done, tile);
   }
   const int padded = (pixels + 15) / 16 * 16;
   if (done == padded) return;
   fill_planes(source, k_count, done, pixels, padded, tile);
-  project_planes<Rank>(view, tile.raw, tile_pixels, done, padded, tile);
+  project_planes<Rank, ForOutputs>(view, tile.raw, tile_pixels, done, padded, tile);
 }
 
-/// @param source  without data where the raw numbers stand in the tile already
-void project_tile(const ProjectionView& view, const TileSource& source, int pixels, bool keep_raw,
-                  PixelTile& tile) {
+template <bool ForOutputs>
+void project(const ProjectionView& view, const TileSource& source, int pixels, PixelTile& tile) {
   switch (view.rank) {
     case 2:
-      return project_rank<2>(view, source, pixels, keep_raw, tile);
+      return project_rank<2, ForOutputs>(view, source, pixels, tile);
     case 3:
-      return project_rank<3>(view, source, pixels, keep_raw, tile);
+      return project_rank<3, ForOutputs>(view, source, pixels, tile);
     case 4:
-      return project_rank<4>(view, source, pixels, keep_raw, tile);
+      return project_rank<4, ForOutputs>(view, source, pixels, tile);
     default:
       break;
   }
   const auto lanes = static_cast<int>(hn::Lanes(Floats()));
   const int padded = (pixels + 15) / 16 * 16;
   fill_planes(source, view.measurements, 0, pixels, padded, tile);
-  for (int i = 0; i < padded; i += lanes) project_any_rank(view, tile, i);
+  for (int i = 0; i < padded; i += lanes) project_any_rank<ForOutputs>(view, tile, i);
+}
+
+/// @param source  without data where the raw numbers stand in the tile already
+void project_tile(const ProjectionView& view, const TileSource& source, int pixels,
+                  bool for_outputs, PixelTile& tile) {
+  if (for_outputs) return project<true>(view, source, pixels, tile);
+  project<false>(view, source, pixels, tile);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -211,8 +240,9 @@ TileSource source_of(const RawView& view, std::int64_t first, int pixels) {
           view.measurement_stride};
 }
 
-/// Copies a tile of any layout and type into its place.
-void gather_tile(const RawView& view, std::int64_t first, int pixels, PixelTile& tile) {
+/// Calls use(number, k, i) for number k of every pixel i of a tile of any layout and type.
+template <typename Use>
+void for_each_number(const RawView& view, std::int64_t first, int pixels, const Use& use) {
   std::visit(
       [&](const auto* data) {
         std::int64_t row = first / view.width, column = first % view.width;
@@ -221,15 +251,20 @@ void gather_tile(const RawView& view, std::int64_t first, int pixels, PixelTile&
               static_cast<int>(std::min<std::int64_t>(pixels - done, view.width - column));
           const auto* from = data + row * view.row_stride + column * view.column_stride;
           for (int k = 0; k < view.measurements; ++k) {
-            float* const to = tile.raw + k * pixels_per_tile + done;
             const auto* number = from + k * view.measurement_stride;
-            for (int i = 0; i < run; ++i)
-              to[i] = static_cast<float>(number[i * view.column_stride]);
+            for (int i = 0; i < run; ++i) use(number[i * view.column_stride], k, done + i);
           }
           done += run;
         }
       },
       view.data);
+}
+
+/// Copies a tile into its place.
+void gather_tile(const RawView& view, std::int64_t first, int pixels, PixelTile& tile) {
+  for_each_number(view, first, pixels, [&](auto number, int k, int i) {
+    tile.raw[k * pixels_per_tile + i] = static_cast<float>(number);
+  });
 }
 
 }  // namespace
@@ -243,26 +278,27 @@ TileProjection::TileProjection(const DecodingTable& table, const AmbientProjecti
     gain[k] = scale.electrons(1.0, k) - scale.electrons(0.0, k);
     zero[k] = -scale.electrons(0.0, k) / gain[k];
   }
-  const Eigen::MatrixXd weight = projection.basis.transpose() * gain.asDiagonal();
+  Eigen::MatrixXd weight = projection.basis.transpose() * gain.asDiagonal();
   const Eigen::VectorXd offset = -weight * zero;
   const Eigen::VectorXd ambient = projection.ambient.cwiseQuotient(gain);
-  Eigen::Index reference = -1;
-  if (ambient.cwiseAbs().maxCoeff(&reference) == 0.0) reference = -1;
+  Eigen::Index reference = 0;
+  const bool has_ambient = ambient.cwiseAbs().maxCoeff(&reference) > 0.0;
+  const Eigen::RowVectorXd error_per_raw = safety * weight.colwise().norm();
+  // Its own difference is nothing.
+  if (has_ambient) weight.col(reference).setZero();
 
   double error_of_reference = 0.0;
   for (int k = 0; k < k_count; ++k) {
-    const double ratio = reference < 0 ? 0.0 : ambient[k] / ambient[reference];
+    const double ratio = has_ambient ? ambient[k] / ambient[reference] : 0.0;
     const bool is_one = std::abs(ratio - 1.0) < 1e-13;
     const double length = weight.col(k).norm();
     ratio_.push_back(is_one ? 1.0f : static_cast<float>(ratio));
     // Rounded weights, and K products and sums; the difference is rounded once more.
     error_of_difference_.push_back(
         static_cast<float>((k_count + 3) * unit_roundoff * safety * length));
-    error_of_rounding_.push_back(
-        static_cast<float>(2 * unit_roundoff * safety * length * (1.0 + std::abs(ratio))));
-    if (k != reference)
-      error_of_reference +=
-          safety * length * (is_one ? std::abs(ratio - 1.0) : 2 * unit_roundoff * std::abs(ratio));
+    error_per_rounding_.push_back(error_per_raw[k]);
+    error_of_reference +=
+        safety * length * (is_one ? std::abs(ratio - 1.0) : 2 * unit_roundoff * std::abs(ratio));
   }
   for (int j = 0; j < rank; ++j) {
     offset_.push_back(static_cast<float>(offset[j]));
@@ -282,20 +318,18 @@ TileProjection::TileProjection(const DecodingTable& table, const AmbientProjecti
                (k_count + 2) * unit_roundoff * safety * offset.norm() + smallest)};
 }
 
-void TileProjection::project(const RawView& view, std::int64_t first, int pixels, bool keep_raw,
+void TileProjection::project(const RawView& view, std::int64_t first, int pixels, bool for_outputs,
                              PixelTile& tile) const {
   tile.pixels = pixels;
   const TileSource source = source_of(view, first, pixels);
   if (!source.data) gather_tile(view, first, pixels, tile);
-  HWY_DYNAMIC_DISPATCH(project_tile)(view_, source, pixels, keep_raw, tile);
-  if (std::holds_alternative<const double*>(view.data)) add_error_of_rounded_doubles(tile);
-}
-
-void TileProjection::add_error_of_rounded_doubles(PixelTile& tile) const {
-  for (int k = 0; k < view_.measurements; ++k)
-    for (int i = 0; i < tile.pixels; ++i)
-      tile.error[i] += error_of_rounding_[static_cast<std::size_t>(k)] *
-                       std::abs(tile.raw[k * pixels_per_tile + i]);
+  HWY_DYNAMIC_DISPATCH(project_tile)(view_, source, pixels, for_outputs, tile);
+  if (!std::holds_alternative<const double*>(view.data)) return;
+  for_each_number(view, first, pixels, [&](auto number, int k, int i) {
+    const double rounding = static_cast<double>(number) - tile.raw[k * pixels_per_tile + i];
+    tile.error[i] +=
+        static_cast<float>(error_per_rounding_[static_cast<std::size_t>(k)] * std::abs(rounding));
+  });
 }
 
 }  // namespace tofsmith

@@ -24,7 +24,7 @@ struct TileSource {
 struct ProjectionView {
   int measurements = 0;
   int rank = 0;
-  int reference = -1;             ///< measurement the others are compared with; -1: none
+  int reference = 0;              ///< measurement the others are compared with; its weight is 0
   const float* ratio = nullptr;   ///< (K)
   const float* weight = nullptr;  ///< (rank, K)
   const float* offset = nullptr;  ///< (rank)
@@ -39,16 +39,16 @@ class TileProjection {
   TileProjection(const DecodingTable& table, const AmbientProjection& projection);
 
   /// Fills plane and error of a tile, up to a multiple of 16 pixels.
-  /// @param first   pixel of the view with which the tile begins
-  /// @param pixels  1 .. pixels_per_tile
-  /// @param keep_raw  whether `raw` of the tile is filled too
-  void project(const RawView& view, std::int64_t first, int pixels, bool keep_raw,
+  /// @param first        pixel of the view with which the tile begins
+  /// @param pixels       1 .. pixels_per_tile
+  /// @param for_outputs  whether `raw` of the tile is filled too, and all of it the same on every
+  ///                     processor
+  void project(const RawView& view, std::int64_t first, int pixels, bool for_outputs,
                PixelTile& tile) const;
 
  private:
-  void add_error_of_rounded_doubles(PixelTile& tile) const;
-
-  std::vector<float> ratio_, weight_, offset_, error_of_difference_, error_of_rounding_;
+  std::vector<float> ratio_, weight_, offset_, error_of_difference_;
+  std::vector<double> error_per_rounding_;  // of a raw number (K)
   ProjectionView view_;
 };
 

@@ -2,25 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fast decoder against the plain reference, pixel by pixel.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include "decode_setup.hpp"
+#include "each_target.hpp"
 #include "reference_decoder.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 namespace {
-
-/// Runs `body` once for every instruction set this machine offers.
-template <typename Body>
-void for_each_target(const Body& body) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    SCOPED_TRACE(hwy::TargetName(target));
-    body();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-}
 
 /// @param every  only so many pixels are held against the golden section, which is slow
 void expect_agreement(const Decoder& decoder, const std::vector<float>& raw, std::size_t every) {
@@ -40,18 +29,6 @@ void expect_agreement(const Decoder& decoder, const std::vector<float>& raw, std
   }
 }
 
-std::vector<float> pixels_at_all_light_levels(const DecodingTable& table, int each) {
-  std::vector<float> raw;
-  std::uint64_t seed = 1;
-  for (const auto& [signal, ambient] :
-       {OperatingPoint{1e3, 1e5}, OperatingPoint{3e3, 1e3}, OperatingPoint{1e4, 1e4},
-        OperatingPoint{1e5, 1e2}, OperatingPoint{1e7, 1e5}}) {
-    const std::vector<float> more = noisy_pixels(table, signal, ambient, each, seed++);
-    raw.insert(raw.end(), more.begin(), more.end());
-  }
-  return raw;
-}
-
 // Debug builds, slowed further by sanitizers, look at a sample.
 #ifdef NDEBUG
 constexpr int pixels_per_level = 40000;
@@ -62,6 +39,7 @@ constexpr int pixels_per_level = 500;
 struct Case {
   const char* code;
   const char* camera;
+  int samples = 240;
   int taps = 1;
   Readout readout = Readout::separate;
 };
@@ -70,9 +48,15 @@ class DecoderOfCode : public testing::TestWithParam<Case> {};
 
 TEST_P(DecoderOfCode, AgreesWithTheReferenceOnEveryPixel) {
   const Case& c = GetParam();
-  const DecodeSetup setup(c.code, camera_with(c.camera, c.taps, c.readout));
-  expect_agreement(setup.decoder,
-                   pixels_at_all_light_levels(setup.decoder.table(), pixels_per_level), 997);
+  Camera camera = camera_with(c.camera, c.taps, c.readout);
+  camera.samples = c.samples;
+  const DecodeSetup setup(c.code, camera);
+  // The reference looks at all bins.
+  const int each = c.samples < 300 ? pixels_per_level : 1 + pixels_per_level * 60 / c.samples;
+  std::vector<float> raw = pixels_at_all_light_levels(setup.decoder.table(), each);
+  const std::vector<float> sunlit = noisy_pixels(setup.decoder.table(), 1e6, 1e8, each, 6);
+  raw.insert(raw.end(), sunlit.begin(), sunlit.end());
+  expect_agreement(setup.decoder, raw, 997);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -80,8 +64,20 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Case{"hamiltonian-k3", "paper-30x"}, Case{"hamiltonian-k4", "paper-10f0"},
                     Case{"hamiltonian-k5", "paper-30x"}, Case{"sinusoid-k4", "paper-5f0"},
                     Case{"gray-k4", "paper-30x"}, Case{"multifrequency-k5", "paper-10f0"},
-                    Case{"hamiltonian-k4", "paper-10f0", 2},
-                    Case{"hamiltonian-k5", "paper-10f0", 2, Readout::difference}));
+                    Case{"hamiltonian-k8", "paper-30x", 252},
+                    Case{"hamiltonian-k4", "paper-10f0", 240, 2},
+                    Case{"hamiltonian-k5", "paper-10f0", 240, 2, Readout::difference}));
+INSTANTIATE_TEST_SUITE_P(
+    FineGrids, DecoderOfCode,
+    testing::Values(
+        Case{"hamiltonian-k3", "paper-30x", 1020}, Case{"hamiltonian-k4", "paper-10f0", 1020},
+        Case{"hamiltonian-k5", "paper-30x", 1020}, Case{"gray-k4", "paper-30x", 1020},
+        Case{"multifrequency-k5", "paper-10f0", 1000}, Case{"hamiltonian-k8", "paper-30x", 1008},
+        Case{"hamiltonian-k4", "paper-10f0", 1020, 2}, Case{"hamiltonian-k3", "paper-10f0", 10020},
+        Case{"hamiltonian-k4", "paper-10f0", 10020}, Case{"hamiltonian-k5", "paper-10f0", 10020},
+        Case{"gray-k4", "paper-30x", 10020}, Case{"multifrequency-k5", "paper-10f0", 10000},
+        Case{"hamiltonian-k8", "paper-30x", 10080},
+        Case{"hamiltonian-k4", "paper-10f0", 10020, 2}));
 
 TEST(Decoder, SaysTheSameOnEveryInstructionSet) {
   const DecodeSetup setup("hamiltonian-k5", camera_with("paper-10f0", 2));
@@ -95,14 +91,6 @@ TEST(Decoder, SaysTheSameOnEveryInstructionSet) {
               expected.predicted_standard_deviation_m.pixels);
     EXPECT_EQ(image.status.pixels, expected.status.pixels);
   });
-}
-
-TEST(Decoder, AgreesWithTheReferenceOnFineGrids) {
-  Camera camera = camera_with("paper-10f0");
-  camera.samples = 3000;
-  const DecodeSetup setup("hamiltonian-k4", camera);
-  expect_agreement(setup.decoder,
-                   pixels_at_all_light_levels(setup.decoder.table(), pixels_per_level / 50), 397);
 }
 
 TEST(Decoder, AgreesWithTheReferenceAtAnyRank) {

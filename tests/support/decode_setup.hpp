@@ -74,6 +74,20 @@ inline std::vector<float> noisy_pixels(const DecodingTable& table, double signal
   return raw;
 }
 
+/// Noisy raw numbers from dim to bright, in ambient light a hundred times as strong as the signal
+/// and a thousand times weaker.
+inline std::vector<float> pixels_at_all_light_levels(const DecodingTable& table, int each) {
+  std::vector<float> raw;
+  std::uint64_t seed = 1;
+  for (const auto& [signal, ambient] :
+       {OperatingPoint{1e3, 1e5}, OperatingPoint{3e3, 1e3}, OperatingPoint{1e4, 1e4},
+        OperatingPoint{1e5, 1e2}, OperatingPoint{1e7, 1e5}}) {
+    const std::vector<float> more = noisy_pixels(table, signal, ambient, each, seed++);
+    raw.insert(raw.end(), more.begin(), more.end());
+  }
+  return raw;
+}
+
 inline std::vector<std::int32_t> bins_of(const Decoder& decoder, const std::vector<float>& raw) {
   std::vector<std::int32_t> bins(raw.size() / static_cast<std::size_t>(decoder.measurements()));
   decoder.decode_bins(raw.data(), static_cast<std::int64_t>(bins.size()), bins.data());

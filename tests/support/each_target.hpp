@@ -6,16 +6,20 @@
 #include <hwy/targets.h>
 
 #include <cstdint>
+#include <type_traits>
 
 namespace tofsmith {
 
-/// Runs `body(target)` once for every instruction set this machine offers.
+/// Runs `body(target)` or `body()` once for every instruction set this machine offers.
 template <typename Body>
 void for_each_target(const Body& body) {
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     hwy::SetSupportedTargetsForTest(target);
     SCOPED_TRACE(hwy::TargetName(target));
-    body(target);
+    if constexpr (std::is_invocable_v<Body, std::int64_t>)
+      body(target);
+    else
+      body();
   }
   hwy::SetSupportedTargetsForTest(0);
 }

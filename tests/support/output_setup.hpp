@@ -3,10 +3,10 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -16,21 +16,12 @@
 #include "decode/pixel_output.hpp"
 #include "decode/raw_scale.hpp"
 #include "decode_setup.hpp"
+#include "each_target.hpp"
+#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 
 inline constexpr auto tile_size = static_cast<std::size_t>(pixels_per_tile);
-
-/// Runs `body` once for every instruction set this machine offers.
-template <typename Body>
-void for_each_target(const Body& body) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    SCOPED_TRACE(hwy::TargetName(target));
-    body();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-}
 
 /// All planes of a row of pixels.
 struct Outputs {
@@ -43,9 +34,13 @@ struct Outputs {
         deviation_m(pixels, -7.0f),
         status(pixels, static_cast<PixelStatus>(77)) {}
 
-  DecodedView view() {
-    return {bin.data(),        depth_m.data(),     signal.data(), ambient.data(),
-            confidence.data(), deviation_m.data(), status.data()};
+  /// @param planes  bit p: whether plane p of the view is wanted
+  DecodedView view(unsigned planes = 127) {
+    const auto wanted = [planes](unsigned p, auto& plane) {
+      return planes >> p & 1u ? plane.data() : nullptr;
+    };
+    return {wanted(0, bin),        wanted(1, depth_m),     wanted(2, signal), wanted(3, ambient),
+            wanted(4, confidence), wanted(5, deviation_m), wanted(6, status)};
   }
 
   std::vector<std::int32_t> bin;
@@ -59,6 +54,31 @@ inline testing::AssertionResult same(const std::vector<float>& a, const std::vec
     if (std::memcmp(&a[i], &b[i], sizeof(float)) != 0)
       return testing::AssertionFailure() << a[i] << " != " << b[i] << " of pixel " << i;
   return testing::AssertionSuccess();
+}
+
+inline void expect_same(const Outputs& a, const Outputs& b) {
+  EXPECT_EQ(a.bin, b.bin);
+  EXPECT_TRUE(same(a.depth_m, b.depth_m));
+  EXPECT_TRUE(same(a.signal, b.signal));
+  EXPECT_TRUE(same(a.ambient, b.ambient));
+  EXPECT_TRUE(same(a.confidence, b.confidence));
+  EXPECT_TRUE(same(a.deviation_m, b.deviation_m));
+  EXPECT_EQ(a.status, b.status);
+}
+
+/// The wanted planes are those of `all`, and the others are as they were.
+inline void expect_only(const Outputs& some, const Outputs& all, unsigned planes) {
+  const Outputs none(all.bin.size());
+  const auto expected = [planes, &all, &none](unsigned p) -> const Outputs& {
+    return planes >> p & 1u ? all : none;
+  };
+  EXPECT_EQ(some.bin, expected(0).bin);
+  EXPECT_TRUE(same(some.depth_m, expected(1).depth_m));
+  EXPECT_TRUE(same(some.signal, expected(2).signal));
+  EXPECT_TRUE(same(some.ambient, expected(3).ambient));
+  EXPECT_TRUE(same(some.confidence, expected(4).confidence));
+  EXPECT_TRUE(same(some.deviation_m, expected(5).deviation_m));
+  EXPECT_EQ(some.status, expected(6).status);
 }
 
 /// A code's kernel, and pixels matched to bins in plain double arithmetic.
@@ -84,7 +104,11 @@ class Matched {
     for (std::size_t i = 0; i < pixels_; ++i) match(i);
   }
 
+  const DecodingTable& table() const { return table_; }
   std::size_t pixels() const { return pixels_; }
+  double brightest_e_per_s() const {
+    return *std::max_element(raw_.begin(), raw_.end()) / table_.exposure_s.minCoeff();
+  }
   const OutputKernel& kernel() const { return kernel_; }
 
   MatchedTile tile(std::size_t first) const {
@@ -106,7 +130,7 @@ class Matched {
     return result;
   }
 
-  /// The definition: PixelModel and store_pixel.
+  /// The definition: the best bin, PixelModel and store_pixel.
   Outputs expected() const {
     Outputs result(pixels_);
     for (std::size_t i = 0; i < pixels_; ++i) {
@@ -116,6 +140,7 @@ class Matched {
       }
       const PixelDecoding decoding = decoding_of(i);
       store_pixel(table_, options_, &raw_[i * k_count()], decoding, i, result.view());
+      result.bin[i] = bin_[i];  // the best one, which may not be the nearest
     }
     return result;
   }
@@ -199,16 +224,62 @@ class Matched {
   std::vector<std::uint8_t> saturated_;
 };
 
-inline std::vector<float> pixels_at_all_light_levels(const DecodingTable& table, int each) {
-  std::vector<float> raw;
-  std::uint64_t seed = 1;
-  for (const auto& [signal, ambient] :
-       {OperatingPoint{1e3, 1e5}, OperatingPoint{3e3, 1e3}, OperatingPoint{1e4, 1e4},
-        OperatingPoint{1e5, 1e2}, OperatingPoint{1e7, 1e5}}) {
-    const std::vector<float> more = noisy_pixels(table, signal, ambient, each, seed++);
-    raw.insert(raw.end(), more.begin(), more.end());
+/// Like depth_bin of the definition, on the circle, in bins.
+inline double off_bins(float depth_m, double depth_bin, const DecodingTable& table) {
+  return std::abs(circular_difference(depth_m / table.bin_m(), depth_bin, table.samples()));
+}
+
+inline void expect_near(const std::vector<float>& values, const std::vector<float>& expected,
+                        double share, double amount, const char* plane) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    ASSERT_EQ(std::isfinite(values[i]), std::isfinite(expected[i])) << plane << " of pixel " << i;
+    if (!std::isfinite(expected[i])) continue;
+    ASSERT_NEAR(values[i], expected[i], share * std::abs(expected[i]) + amount)
+        << plane << " of pixel " << i;
   }
-  return raw;
+}
+
+/// Noise is that of the middle of a quarter of a chord, and differs much within it only where a
+/// bright pixel's shot noise vanishes.
+inline void expect_similar(const std::vector<float>& deviations,
+                           const std::vector<float>& expected) {
+  expect_near(deviations, expected, 1.0, 0.0, "deviation");
+  double sum = 0.0;
+  int finite = 0, others = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    if (!std::isfinite(expected[i])) continue;
+    const double share = std::abs(deviations[i] / expected[i] - 1.0);
+    sum += share;
+    ++finite;
+    others += share > 0.1;
+  }
+  EXPECT_LE(sum, 0.01 * finite);
+  EXPECT_LE(others, 0.02 * finite);
+}
+
+/// All but confidence, whose rival may be another.
+inline void expect_definition(const Outputs& outputs, const Matched& matched) {
+  const DecodingTable& table = matched.table();
+  const Outputs expected = matched.expected();
+  const double float_error_bin = 1e-4 + 1.2e-7 * table.samples();
+  EXPECT_EQ(outputs.bin, expected.bin);
+  int other_status = 0;
+  for (std::size_t i = 0; i < matched.pixels(); ++i) {
+    other_status += outputs.status[i] != expected.status[i];
+    ASSERT_EQ(std::isnan(outputs.depth_m[i]), std::isnan(expected.depth_m[i])) << i;
+    if (std::isnan(expected.depth_m[i])) continue;
+    ASSERT_LE(off_bins(outputs.depth_m[i], matched.decoding_of(i).depth_bin, table),
+              float_error_bin)
+        << i;
+    ASSERT_GE(outputs.depth_m[i], 0.0f);
+    ASSERT_LT(outputs.depth_m[i], static_cast<float>(table.range_m));
+  }
+  // Noise at the best bin moves the thresholds a little.
+  EXPECT_LE(other_status, 5 + static_cast<int>(matched.pixels()) / 500);
+  const double brightest_e_per_s = matched.brightest_e_per_s();
+  expect_near(outputs.signal, expected.signal, 2e-6, 1e-6 * brightest_e_per_s, "signal");
+  expect_near(outputs.ambient, expected.ambient, 2e-6, 1e-6 * brightest_e_per_s, "ambient");
+  expect_similar(outputs.deviation_m, expected.deviation_m);
 }
 
 }  // namespace tofsmith

@@ -29,10 +29,12 @@ class ReferenceDecoder {
   }
 
   /// P y' of a pixel's raw numbers.
-  Eigen::VectorXd difference(const float* raw) const {
+  template <typename Number>
+  Eigen::VectorXd difference(const Number* raw) const {
     Eigen::VectorXd y(table_.measurements());
     for (int k = 0; k < y.size(); ++k)
-      y[k] = (raw[k] - table_.black_level[k]) * table_.gain_e_per_raw[k] - table_.dark_electrons[k];
+      y[k] = (static_cast<double>(raw[k]) - table_.black_level[k]) * table_.gain_e_per_raw[k] -
+             table_.dark_electrons[k];
     const Eigen::VectorXd left = without_ambient(y);
     return left.norm() > 1e-12 * y.lpNorm<1>() ? left : Eigen::VectorXd::Zero(y.size());
   }
@@ -42,7 +44,8 @@ class ReferenceDecoder {
                               : -std::numeric_limits<double>::infinity();
   }
 
-  int bin(const float* raw) const {
+  template <typename Number>
+  int bin(const Number* raw) const {
     const Eigen::VectorXd left = difference(raw);
     double best = -std::numeric_limits<double>::infinity();
     for (int n = 0; n < table_.samples(); ++n) best = std::max(best, score(left, n));

@@ -31,7 +31,7 @@ class ReferenceLikelihood {
   Eigen::VectorXd electrons(const float* raw) const {
     Eigen::VectorXd y(table_.measurements());
     for (int k = 0; k < y.size(); ++k)
-      y[k] = (raw[k] - table_.black_level) * table_.gain_e_per_raw - table_.dark_electrons[k];
+      y[k] = (raw[k] - table_.black_level[k]) * table_.gain_e_per_raw[k] - table_.dark_electrons[k];
     return y;
   }
 

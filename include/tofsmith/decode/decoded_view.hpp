@@ -12,7 +12,7 @@ namespace tofsmith {
 /// Where a decoder writes: planes of H x W values, row by row, in the caller's memory. A null plane
 /// is not wanted, and what only it needs is not computed. Owns nothing.
 struct DecodedView {
-  std::int32_t* bin = nullptr;       ///< nearest bin in [0, N); -1 where there is no depth at all
+  std::int32_t* bin = nullptr;       ///< as decode_bins of the decoder: in [0, N), or -1
   float* depth_m = nullptr;          ///< as the planes of DepthImage
   float* signal_e_per_s = nullptr;   ///< [e/s]
   float* ambient_e_per_s = nullptr;  ///< [e/s]

@@ -29,7 +29,8 @@ struct DecodeOptions {
 ///   z_hat = argmax_z <P y', P x(z)> / |P x(z)|
 /// over all bins with contrast; scores within 1e-11 |P y'| of the best tie, and the lowest bin
 /// wins. Then the best point on the chords to both neighbour bins. Every pixel gets exactly the bin
-/// of double arithmetic, whatever the processor and the number of threads.
+/// of double arithmetic, whatever the type of its raw numbers, the processor and the number of
+/// threads.
 ///
 /// Immutable and safe to use from many threads at once.
 /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 3; deviates: projects out ambient, not the mean
@@ -50,27 +51,41 @@ class Decoder {
 
   /// Decodes one frame on all threads into the caller's planes, so that a stream of frames needs no
   /// memory of its own.
+  ///   bin: the best one, as decode_bins gives it;
   ///   signal and ambient: least squares of y' on x(z_hat) and a;
   ///   predicted standard deviation: noise of the measurements at the estimate (mu_i + constant
-  ///     variance), carried through the least squares over (z, S, A) that z_hat solves;
-  ///   confidence: normal probability that the best score beats, beyond noise, the best score
-  ///     outside the main lobe, which is the run of bins around the best along which the code's own
-  ///     score falls (1 if nothing is outside).
+  ///     variance, averaged over a quarter of the chord), carried through the least squares over
+  ///     (z, S, A) that z_hat solves;
+  ///   confidence: normal probability that the best score beats, beyond noise at the best bin, the
+  ///     best score outside the main lobe, which is the run of bins around the best along which the
+  ///     code's own score falls (1 if nothing is outside). The bin that scores best there may be
+  ///     taken from a vector nearby;
+  ///   status: as PixelStatus says, low_signal by the noise at the best bin. What is left of a
+  ///   pixel
+  ///     without ambient light is nothing, and no_return, below 1e-12 of sum_i |y'_i|.
+  /// All but bins is computed in single precision: depth errs by about 1e-7 / (angle between
+  /// neighbour bins) of a bin, signal and ambient light by about 1e-6 of the brightest measurement.
+  /// Pixels that are invalid or have no return are NaN in all planes of floats; the bin is -1 for
+  /// invalid ones alone.
   /// @param raw      electrons or counts, with as many measurements as the table
-  /// @param decoded  planes of the same height and width
+  /// @param decoded  planes of the same height and width; only those that are not null are written,
+  ///                 and each has the same values whichever others are
   /// @throws std::invalid_argument if the shape does not fit; Interrupted if progress says so
-  /// @note deterministic for any number of threads
+  /// @note the same bits for any number of threads and any layout of the raw numbers; also on every
+  ///       processor, but for confidence, and with it the status ambiguous, where the rival near
+  ///       the border of a cell of the search may be that of either side
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
   /// The same for frame `frame` of several (F, H, W, K), into a new image.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
-  /// Positions in [0, N), refined between bins, of many pixels: the decoder inside a Monte Carlo
-  /// loop. No status: the best position is given even if its score is not positive.
+  /// Positions in [0, N), refined between bins in double, of many pixels: the decoder inside a
+  /// Monte Carlo loop. No status: the best position is given even if its score is not positive.
   /// @param measurements  raw numbers (pixels, K), measurements of a pixel side by side
   /// @param depth_bin     (pixels); NaN where a measurement is NaN or infinite
   /// @note single-threaded; allocates nothing
   void decode_depth_bins(const float* measurements, std::int64_t pixels, double* depth_bin) const;
-  /// The same without refinement: bins in [0, N), -1 where a measurement is NaN or infinite.
+  /// The same without refinement: the best bins in [0, N), which need not be the nearest to a
+  /// refined position; -1 where a measurement is NaN or infinite.
   void decode_bins(const float* measurements, std::int64_t pixels, std::int32_t* bin) const;
 
  private:
