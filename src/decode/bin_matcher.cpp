@@ -23,15 +23,16 @@ BinMatcher::BinMatcher(const DecodingTable& table, const AmbientProjection& proj
 void BinMatcher::match(const RawView& view, std::int64_t first, int pixels, bool keep_raw,
                        PixelTile& tile) const {
   projection_.project(view, first, pixels, keep_raw, tile);
-  if (search(tile)) return;
+  if (search(keep_raw, tile)) return;
   for (int i = 0; i < pixels; ++i)
     if (tile.bin[i] < 0) decide(view, first, i, tile);
 }
 
 /// @returns whether all bins are proven
-bool BinMatcher::search(PixelTile& tile) const {
+bool BinMatcher::search(bool wants_rivals, PixelTile& tile) const {
   if (const auto* circle = std::get_if<CircleSearch>(&search_)) return circle->search(tile);
-  if (const auto* cells = std::get_if<CellSearch>(&search_)) return cells->search(tile);
+  if (const auto* cells = std::get_if<CellSearch>(&search_))
+    return cells->search(wants_rivals, tile);
   arcs_.search(tile.plane, pixels_per_tile, tile.error, tile.pixels, tile.bin);
   bool all_proven = true;
   for (int i = 0; i < tile.pixels; ++i) {

@@ -32,7 +32,7 @@ class BinMatcher {
   void find_rivals(PixelTile& tile) const;
 
  private:
-  bool search(PixelTile& tile) const;
+  bool search(bool wants_rivals, PixelTile& tile) const;
   void decide(const RawView& view, std::int64_t first, int pixel, PixelTile& tile) const;
   std::int32_t choose(const double* unit) const;
 

@@ -13,7 +13,30 @@ namespace {
 constexpr double certain_loss = 1e-9;
 // What rounding makes of a straight run.
 constexpr double flat = 1e-13;
+// A lead that no tie can have.
+constexpr double clear_lead = 5 * tie_tolerance;
+
+/// Calls use(place) where a lead, known at the corners, passes `level` on an edge of the box.
+template <typename Scores, typename Places, typename Use>
+void for_each_crossing(const Scores& lead, const Places& place, int sides, double level,
+                       const Use& use) {
+  for (std::size_t from = 0; from < std::size_t{1} << sides; ++from)
+    for (int s = 0; s < sides; ++s) {
+      const std::size_t to = from | std::size_t{1} << s;
+      if (to == from) continue;
+      const double at_from = lead[from] - level, at_to = lead[to] - level;
+      if ((at_from > 0.0) == (at_to > 0.0)) continue;
+      const double t = at_from / (at_from - at_to);
+      use(((1 - t) * place[from] + t * place[to]).eval());
+    }
+}
 }  // namespace
+
+CellBox CellBox::face(int number) {
+  CellBox box{.axis = number / 2};
+  box.centre[static_cast<std::size_t>(number / 2)] = number % 2 != 0 ? -1.0 : 1.0;
+  return box;
+}
 
 CellBox CellBox::child(int part, int rank) const {
   CellBox box = *this;
@@ -26,223 +49,203 @@ CellBox CellBox::child(int part, int rank) const {
 
 CellBuilder::CellBuilder(const DistinctDirections& directions, const RivalSearch& rivals,
                          double fit_unit)
-    : directions_(&directions), rivals_(&rivals), rank_(directions.rank()), fit_unit_(fit_unit) {}
+    : directions_(&directions),
+      rivals_(&rivals),
+      rank_(directions.rank()),
+      corner_count_(1 << (directions.rank() - 1)),
+      count_(directions.count()),
+      fit_unit_(fit_unit) {}
 
-double CellBuilder::score(const Vector& q, std::int32_t n) const {
-  const double* u = unit(n);
-  double sum = 0.0;
-  for (int j = 0; j < rank_; ++j) sum += q[static_cast<std::size_t>(j)] * u[j];
-  return sum;
-}
-
-CellBuilder::Vector CellBuilder::corner(const CellBox& box, int part) const {
-  Vector q = box.centre;
-  for (int j = 0, s = 0; j < rank_; ++j)
-    if (j != box.axis)
-      q[static_cast<std::size_t>(j)] += (part >> s++ & 1) != 0 ? box.half : -box.half;
-  return q;
-}
-
-std::int32_t CellBuilder::best(const Vector& q, const std::vector<std::int32_t>& candidates) const {
-  std::int32_t found = candidates.front();
-  double highest = score(q, found);
-  for (const std::int32_t n : candidates) {
-    const double s = score(q, n);
-    if (s > highest) {
-      highest = s;
-      found = n;
+CellBuilder::Corners CellBuilder::corners_of(const CellBox& box) const {
+  CellBox reaching = box;
+  reaching.half += CellRecord::overlap;
+  const double t = reaching.half / box.half;
+  Corners corners;
+  for (int part = 0; part < corner_count_; ++part) {
+    const auto i = static_cast<std::size_t>(part);
+    corners.q[i] = reaching.centre;
+    corners.place[i].setZero();
+    corners.place[i][0] = 1.0;
+    for (int j = 0, s = 0; j < rank_; ++j) {
+      if (j == box.axis) continue;
+      const double side = (part >> s & 1) != 0 ? 1.0 : -1.0;
+      corners.q[i][static_cast<std::size_t>(j)] += side * reaching.half;
+      corners.place[i][++s] = side * t;
     }
   }
-  return found;
+  return corners;
 }
 
-/// Of <q, difference> over a box and its overlap.
-double CellBuilder::largest(const CellBox& box, const Vector& difference) const {
-  const double half = box.half + CellTable::overlap;
-  double sum = 0.0;
-  for (int j = 0; j < rank_; ++j) {
-    const double d = difference[static_cast<std::size_t>(j)];
-    sum += box.centre[static_cast<std::size_t>(j)] * d + (j != box.axis ? half * std::abs(d) : 0.0);
+CellBuilder::Scores CellBuilder::scores_at(const Corners& corners, std::int32_t n) const {
+  const double* u = directions_->unit.row(n).data();
+  Scores scores;
+  for (int i = 0; i < corner_count_; ++i) {
+    const auto& q = corners.q[static_cast<std::size_t>(i)];
+    double sum = 0.0;
+    for (int j = 0; j < rank_; ++j) sum += q[static_cast<std::size_t>(j)] * u[j];
+    scores[static_cast<std::size_t>(i)] = sum;
   }
-  return sum;
+  return scores;
 }
 
-std::vector<std::int32_t> CellBuilder::winners(const CellBox& box,
-                                               const std::vector<std::int32_t>& candidates) const {
-  std::vector<std::int32_t> rivals{best(box.centre, candidates)};
-  for (int part = 0; part < 1 << (rank_ - 1); ++part)
-    rivals.push_back(best(corner(box, part), candidates));
-  std::sort(rivals.begin(), rivals.end());
-  rivals.erase(std::unique(rivals.begin(), rivals.end()), rivals.end());
+void CellBuilder::winners(const CellBox& box, const std::vector<std::int32_t>& candidates,
+                          std::vector<std::int32_t>& kept) {
+  const Corners corners = corners_of(box);
+  scores_.clear();
+  for (const std::int32_t n : candidates) scores_.push_back(scores_at(corners, n));
 
-  std::vector<std::int32_t> kept;
-  for (const std::int32_t n : candidates) {
-    const bool loses = std::any_of(rivals.begin(), rivals.end(), [&](std::int32_t m) {
-      Vector difference{};
-      for (int j = 0; j < rank_; ++j)
-        difference[static_cast<std::size_t>(j)] = unit(n)[j] - unit(m)[j];
-      return largest(box, difference) < -certain_loss;
-    });
-    if (!loses) kept.push_back(n);
+  // The best at every corner, and in the middle, rule out most others.
+  const auto corner_count = static_cast<std::size_t>(corner_count_);
+  std::array<std::size_t, most_corners + 1> rivals{};
+  double best_sum = -1e300;
+  for (std::size_t k = 0; k < scores_.size(); ++k) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < corner_count; ++i) {
+      if (scores_[k][i] > scores_[rivals[i]][i]) rivals[i] = k;
+      sum += scores_[k][i];
+    }
+    if (sum <= best_sum) continue;
+    best_sum = sum;
+    rivals[corner_count] = k;
   }
-  return kept;
-}
-
-/// Whether no score of the box dips at n, below both neighbours' line.
-bool CellBuilder::has_one_peak_at(const CellBox& box, std::int32_t n) const {
-  const std::int32_t count = directions_->count();
-  const double* before = unit(n > 0 ? n - 1 : count - 1);
-  const double* after = unit(directions_->next(n));
-  Vector bend{};
-  for (int j = 0; j < rank_; ++j)
-    bend[static_cast<std::size_t>(j)] = after[j] - 2 * unit(n)[j] + before[j];
-  return largest(box, bend) <= flat;
-}
-
-std::vector<CellRecord> CellBuilder::runs(const CellBox& box,
-                                          const std::vector<std::int32_t>& winners) const {
-  constexpr std::int32_t bridged = 2;  // a step that skips one direction does not end a run
-  const std::int32_t count = directions_->count();
-  struct Run {
-    std::int32_t first, length;
+  const auto last = rivals.begin() + corner_count_ + 1;
+  const auto loses_to = [&](const Scores& own, const Scores& other) {
+    double largest = own[0] - other[0];
+    for (std::size_t i = 1; i < corner_count; ++i) largest = std::max(largest, own[i] - other[i]);
+    return largest < -certain_loss;
   };
-  std::vector<Run> whole;
-  for (const std::int32_t n : winners) {
-    if (!whole.empty() && n - (whole.back().first + whole.back().length) <= bridged)
-      whole.back().length = n - whole.back().first;
-    else
-      whole.push_back({n, 0});
-  }
-  Run& last = whole.back();
-  if (whole.size() > 1 && whole.front().first + count - (last.first + last.length) <= bridged) {
-    last.length = count + whole.front().first + whole.front().length - last.first;
-    whole.erase(whole.begin());
-  }
+  kept.clear();
+  for (std::size_t k = 0; k < scores_.size(); ++k)
+    if (std::none_of(rivals.begin(), last,
+                     [&](std::size_t m) { return m != k && loses_to(scores_[k], scores_[m]); }))
+      kept.push_back(candidates[k]);
+}
 
-  std::vector<CellRecord> found;
+double CellBuilder::closeness(const CellBox& box,
+                              const std::vector<std::int32_t>& candidates) const {
+  const Eigen::Map<const Eigen::VectorXd> centre(box.centre.data(), rank_);
+  double best = -1.0;
+  for (const std::int32_t n : candidates)
+    best = std::max(best, directions_->unit.row(n).dot(centre) / centre.norm());
+  return best;
+}
+
+void CellBuilder::runs(const CellBox& box, const std::vector<std::int32_t>& winners,
+                       std::vector<CellRecord>& found) {
+  constexpr std::int32_t bridged = 2;  // a step that skips one direction does not end a run
+  const Corners corners = corners_of(box);
+  found.clear();
+  const auto end_of_group = [&](std::size_t k) {
+    while (k + 1 < winners.size() && winners[k + 1] - winners[k] <= bridged) ++k;
+    return k;
+  };
+  // The last run may go on at the first direction.
+  const std::size_t front = end_of_group(0);
+  const bool goes_on =
+      front + 1 < winners.size() && winners.front() + count_ - winners.back() <= bridged;
+  for (std::size_t k = goes_on ? front + 1 : 0; k < winners.size();) {
+    const std::size_t end = end_of_group(k);
+    const bool is_last = end + 1 == winners.size();
+    split(box, corners, winners[k], goes_on && is_last ? winners[front] + count_ : winners[end],
+          found);
+    k = end + 1;
+  }
+}
+
+/// Cuts the directions first .. last, twice around, where the score may dip between its neighbours.
+void CellBuilder::split(const CellBox& box, const Corners& corners, std::int32_t first,
+                        std::int32_t last, std::vector<CellRecord>& found) {
+  const auto corner_count = static_cast<std::size_t>(corner_count_);
+  leads_.clear();
+  Scores own = scores_at(corners, around(first));
+  for (std::int32_t n = first; n < last; ++n) {
+    const Scores next = scores_at(corners, around(n + 1));
+    Scores lead{};
+    for (std::size_t i = 0; i < corner_count; ++i) lead[i] = next[i] - own[i];
+    leads_.push_back(lead);
+    own = next;
+  }
+  // fit() reads the leads of its run from the front.
+  const std::vector<Scores> all = leads_;
   const auto keep = [&](std::int32_t begin, std::int32_t end) {
     CellRecord run;
-    run.first = static_cast<std::uint16_t>(begin % count);
+    run.first = static_cast<std::uint16_t>(around(begin));
     run.length = static_cast<std::uint16_t>(end - begin);
-    fit(box, run);
+    leads_.assign(all.begin() + (begin - first), all.begin() + (end - first));
+    fit(corners, run);
     const std::int32_t bin = rival(box, run);
     if (bin >= 0) run.rival = static_cast<std::uint16_t>(bin);
     found.push_back(run);
   };
-  for (const Run& run : whole) {
-    std::int32_t begin = run.first;
-    const std::int32_t end = run.first + run.length;
-    for (std::int32_t n = begin + 1; n < end; ++n) {
-      if (n == begin || has_one_peak_at(box, n % count)) continue;
-      keep(begin, n);
-      begin = n + 1;
+  std::int32_t begin = first;
+  for (std::int32_t n = first + 1; n < last; ++n) {
+    const Scores& after = all[static_cast<std::size_t>(n - first)];
+    const Scores& before = all[static_cast<std::size_t>(n - first - 1)];
+    bool has_one_peak = n == begin;
+    if (!has_one_peak) {
+      has_one_peak = true;
+      for (std::size_t i = 0; i < corner_count; ++i)
+        has_one_peak = has_one_peak && after[i] - before[i] <= flat;
     }
-    keep(begin, end);
+    if (has_one_peak) continue;
+    keep(begin, n);
+    begin = n + 1;
   }
-  return found;
-}
-
-/// By how much direction n + 1 beats direction n.
-double CellBuilder::bias(const Vector& q, std::int32_t n) const {
-  const std::int32_t count = directions_->count();
-  return score(q, (n + 1) % count) - score(q, n % count);
-}
-
-/// The winner of a run, counted from its first direction.
-std::int32_t CellBuilder::winner(const Vector& q, const CellRecord& run) const {
-  std::int32_t at = 0;
-  while (at < run.length && bias(q, run.first + at) > 0.0) ++at;
-  return at;
-}
-
-CellBuilder::Corners CellBuilder::corners(const CellBox& box) const {
-  CellBox reaching = box;
-  reaching.half += CellTable::overlap;
-  const double t = reaching.half / box.half;
-  Corners found;
-  found.count = 1 << (rank_ - 1);
-  for (int part = 0; part < found.count; ++part) {
-    const auto i = static_cast<std::size_t>(part);
-    found.q[i] = corner(reaching, part);
-    found.place[i].setZero();
-    found.place[i][0] = 1.0;
-    for (int s = 0; s + 1 < rank_; ++s) found.place[i][s + 1] = (part >> s & 1) != 0 ? t : -t;
-  }
-  return found;
-}
-
-/// Calls use(place) where <q, u_(n+1) - u_n> passes `level` on an edge of the box.
-template <typename Use>
-void CellBuilder::for_each_crossing(const Corners& corners, std::int32_t n, double level,
-                                    const Use& use) const {
-  for (int part = 0; part < corners.count; ++part)
-    for (int s = 0; s + 1 < rank_; ++s) {
-      const int other = part | 1 << s;
-      if (other == part) continue;
-      const auto from = static_cast<std::size_t>(part), to = static_cast<std::size_t>(other);
-      const double at_from = bias(corners.q[from], n) - level,
-                   at_to = bias(corners.q[to], n) - level;
-      if ((at_from > 0.0) == (at_to > 0.0)) continue;
-      const double t = at_from / (at_from - at_to);
-      use(Place((1 - t) * corners.place[from] + t * corners.place[to]));
-    }
+  keep(begin, last);
 }
 
 /// Fits x to the borders of neighbours, where they cross the edges of the box: x = n + 1/2 there.
-void CellBuilder::fit(const CellBox& box, CellRecord& run) const {
+void CellBuilder::fit(const Corners& corners, CellRecord& run) const {
   if (run.length == 0) {
     run.slack = 0;
     return;
   }
   constexpr double weight_of_corner = 1e-4;  // corners only say which way x grows
-  const Corners corners = this->corners(box);
   Eigen::Matrix<double, max_cell_rank, max_cell_rank> normal;
   normal.setIdentity();
   normal *= 1e-9;
   Place right = Place::Zero();
   const auto add = [&](const Place& place, double value, double weight) {
-    normal += weight * place * place.transpose();
+    normal.noalias() += (weight * place) * place.transpose();
     right += weight * value * place;
   };
-  for (int i = 0; i < corners.count; ++i) {
-    const auto part = static_cast<std::size_t>(i);
-    add(corners.place[part], winner(corners.q[part], run), weight_of_corner);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(corner_count_); ++i) {
+    const auto winner = std::count_if(leads_.begin(), leads_.end(),
+                                      [i](const Scores& lead) { return lead[i] > 0.0; });
+    add(corners.place[i], static_cast<double>(winner), weight_of_corner);
   }
-  for (std::int32_t n = 0; n < run.length; ++n)
-    for_each_crossing(corners, run.first + n, 0.0,
-                      [&](const Place& place) { add(place, n + 0.5, 1.0); });
+  for (std::size_t n = 0; n < leads_.size(); ++n)
+    for_each_crossing(leads_[n], corners.place, rank_ - 1, 0.0,
+                      [&](const Place& place) { add(place, static_cast<double>(n) + 0.5, 1.0); });
 
   const Place solution = normal.ldlt().solve(right) / fit_unit_;
   if (!(solution.cwiseAbs().maxCoeff() < 32767.0)) return;  // without proof
   for (std::size_t s = 0; s < max_cell_rank; ++s)
     run.fit[s] = static_cast<std::int16_t>(std::lround(solution[static_cast<Eigen::Index>(s)]));
   const double units = std::ceil(slack(corners, run) / CellRecord::slack_unit) + 1;
-  if (units < CellRecord::no_proof) run.slack = static_cast<std::uint16_t>(units);
+  if (units < CellRecord::no_proof) run.slack = static_cast<std::int16_t>(units);
 }
 
 /// How far x gets from n + 1/2, at most, on the wrong side: where direction n + 1 does not clearly
 /// beat n, x must be below, and above where n does not clearly beat n + 1. Both are convex parts of
 /// the box, whose corners are the box's or lie on its edges.
 double CellBuilder::slack(const Corners& corners, const CellRecord& run) const {
-  constexpr double clear = 5 * tie_tolerance;
+  Place fit;
+  for (std::size_t s = 0; s < max_cell_rank; ++s)
+    fit[static_cast<Eigen::Index>(s)] = fit_unit_ * run.fit[s];
+  Scores x_at_corner{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(corner_count_); ++i)
+    x_at_corner[i] = fit.dot(corners.place[i]);
   double largest = 0.0;
-  const auto x_at = [&](const Place& place) {
-    double x = 0.0;
-    for (std::size_t s = 0; s < max_cell_rank; ++s)
-      x += fit_unit_ * run.fit[s] * place[static_cast<Eigen::Index>(s)];
-    return x;
-  };
-  for (std::int32_t n = 0; n < run.length; ++n) {
-    const double border = n + 0.5;
-    for (const double level : {-clear, clear})
-      for_each_crossing(corners, run.first + n, level, [&](const Place& place) {
-        largest = std::max(largest, std::abs(x_at(place) - border));
+  for (std::size_t n = 0; n < leads_.size(); ++n) {
+    const double border = static_cast<double>(n) + 0.5;
+    for (const double level : {-clear_lead, clear_lead})
+      for_each_crossing(leads_[n], corners.place, rank_ - 1, level, [&](const Place& place) {
+        largest = std::max(largest, std::abs(fit.dot(place) - border));
       });
-    for (int i = 0; i < corners.count; ++i) {
-      const auto part = static_cast<std::size_t>(i);
-      const double lead = bias(corners.q[part], run.first + n), x = x_at(corners.place[part]);
-      if (lead < clear) largest = std::max(largest, x - border);
-      if (lead > -clear) largest = std::max(largest, border - x);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(corner_count_); ++i) {
+      if (leads_[n][i] < clear_lead) largest = std::max(largest, x_at_corner[i] - border);
+      if (leads_[n][i] > -clear_lead) largest = std::max(largest, border - x_at_corner[i]);
     }
   }
   return largest;
@@ -250,14 +253,19 @@ double CellBuilder::slack(const Corners& corners, const CellRecord& run) const {
 
 /// The best bin outside the main lobe of the run's winner, for the centre of the box.
 std::int32_t CellBuilder::rival(const CellBox& box, const CellRecord& run) const {
-  const std::int32_t winner_bin = directions_->bin[static_cast<std::size_t>(
-      (run.first + winner(box.centre, run)) % directions_->count())];
-  double length2 = 0.0;
-  for (const double component : box.centre) length2 += component * component;
-  std::array<float, max_cell_rank> unit;
-  for (std::size_t j = 0; j < unit.size(); ++j)
-    unit[j] = static_cast<float>(box.centre[j] / std::sqrt(length2));
-  return rivals_->rival(winner_bin, unit.data());
+  const Eigen::Map<const Eigen::VectorXd> centre(box.centre.data(), rank_);
+  std::int32_t winner = 0;
+  double highest = -1e300;
+  for (std::int32_t i = 0; i <= run.length; ++i) {
+    const double score = directions_->unit.row(around(run.first + i)).dot(centre);
+    if (score <= highest) continue;
+    highest = score;
+    winner = around(run.first + i);
+  }
+  std::array<float, max_cell_rank> unit{};
+  for (int j = 0; j < rank_; ++j)
+    unit[static_cast<std::size_t>(j)] = static_cast<float>(centre[j] / centre.norm());
+  return rivals_->rival(directions_->bin[static_cast<std::size_t>(winner)], unit.data());
 }
 
 }  // namespace tofsmith

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "decode/cell_table.hpp"
+#include "decode/cell_record.hpp"
+#include "decode/distinct_directions.hpp"
+#include "decode/rival_search.hpp"
 
 namespace tofsmith {
 
@@ -16,52 +18,55 @@ struct CellBox {
   std::array<double, max_cell_rank> centre{};  ///< +-1 along the axis
   double half = 1.0;                           ///< of its sides
 
-  /// Half number `part` of 2^(rank - 1) halves each way.
+  /// The whole face 2 axis + (negative side).
+  static CellBox face(int number);
+  /// Number `part` of the 2^(rank - 1) boxes of half the side.
   CellBox child(int part, int rank) const;
 };
 
 /// Finds what can win in boxes, by proof: a score q.u_n - q.u_m is linear in q, so that its largest
-/// value over a box stands at a corner.
+/// value over a box stands at a corner. Boxes are taken with their overlap. Keeps work space: one
+/// builder per thread.
 class CellBuilder {
  public:
   /// @param fit_unit  of the records' fits
   CellBuilder(const DistinctDirections& directions, const RivalSearch& rivals, double fit_unit);
 
   /// Those of `candidates` that can win somewhere in a box, ascending.
-  std::vector<std::int32_t> winners(const CellBox& box,
-                                    const std::vector<std::int32_t>& candidates) const;
+  void winners(const CellBox& box, const std::vector<std::int32_t>& candidates,
+               std::vector<std::int32_t>& kept);
   /// The winners of a box as runs with one peak each.
-  std::vector<CellRecord> runs(const CellBox& box, const std::vector<std::int32_t>& winners) const;
+  void runs(const CellBox& box, const std::vector<std::int32_t>& winners,
+            std::vector<CellRecord>& found);
+  /// Score of the best of `candidates` at the centre of a box, of unit vectors.
+  double closeness(const CellBox& box, const std::vector<std::int32_t>& candidates) const;
 
  private:
-  using Vector = std::array<double, max_cell_rank>;
+  static constexpr int most_corners = 8;
+  using Scores = std::array<double, most_corners>;
   using Place = Eigen::Matrix<double, max_cell_rank, 1>;  // 1, t_1, t_2 ..
-  /// Of a box with its overlap.
   struct Corners {
-    int count = 0;
-    std::array<Vector, 8> q;
-    std::array<Place, 8> place;
+    std::array<std::array<double, max_cell_rank>, most_corners> q;
+    std::array<Place, most_corners> place;
   };
-  const double* unit(std::int32_t n) const { return directions_->unit.row(n).data(); }
-  double score(const Vector& q, std::int32_t n) const;
-  Vector corner(const CellBox& box, int part) const;
-  std::int32_t best(const Vector& q, const std::vector<std::int32_t>& candidates) const;
-  double largest(const CellBox& box, const Vector& difference) const;
-  bool has_one_peak_at(const CellBox& box, std::int32_t n) const;
-  Corners corners(const CellBox& box) const;
-  template <typename Use>
-  void for_each_crossing(const Corners& corners, std::int32_t n, double level,
-                         const Use& use) const;
-  double bias(const Vector& q, std::int32_t n) const;
-  std::int32_t winner(const Vector& q, const CellRecord& run) const;
-  void fit(const CellBox& box, CellRecord& run) const;
+
+  Corners corners_of(const CellBox& box) const;
+  Scores scores_at(const Corners& corners, std::int32_t n) const;
+  std::int32_t around(std::int32_t n) const { return n < count_ ? n : n - count_; }
+  void split(const CellBox& box, const Corners& corners, std::int32_t first, std::int32_t last,
+             std::vector<CellRecord>& found);
+  void fit(const Corners& corners, CellRecord& run) const;
   double slack(const Corners& corners, const CellRecord& run) const;
   std::int32_t rival(const CellBox& box, const CellRecord& run) const;
 
   const DistinctDirections* directions_;
   const RivalSearch* rivals_;
   int rank_;
+  int corner_count_;
+  std::int32_t count_;
   double fit_unit_;
+  std::vector<Scores> scores_;  // of candidates
+  std::vector<Scores> leads_;   // of n + 1 over n at the corners, along a run
 };
 
 }  // namespace tofsmith

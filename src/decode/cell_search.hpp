@@ -13,8 +13,9 @@ namespace tofsmith {
 /// What the search reads, as plain memory.
 struct CellSearchView {
   int rank = 0;
-  int resolution = 0;  ///< cells along a side of a face
-  int resolution_bits = 0;
+  int root_bits = 0;
+  int cut_bits = 0;
+  const std::int32_t* roots = nullptr;  ///< of rank 4; rank 3 has no cuts
   const CellRecord* cells = nullptr;
   const CellRecord* lists = nullptr;
   float fit_unit = 0.0f;
@@ -36,10 +37,11 @@ class CellSearch {
 
   const CellTable& table() const { return table_; }
 
-  /// Fills bin and rival of a tile from plane and error: bin is -1 where single precision does not
-  /// prove that it beats all others by more than tie_tolerance.
+  /// Fills bin of a tile from plane and error: -1 where single precision does not prove that it
+  /// beats all others by more than tie_tolerance.
+  /// @param wants_rivals  whether `rival` is filled too, with what CellRecord::rival_in() reads
   /// @returns whether all are proven
-  bool search(PixelTile& tile) const;
+  bool search(bool wants_rivals, PixelTile& tile) const;
   /// The lowest bin whose score ties with the best, in double arithmetic.
   /// @param unit  (rank) of length 1
   std::int32_t choose(const double* unit) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "decode/cell_builder.hpp"
@@ -13,43 +14,59 @@ namespace tofsmith {
 
 namespace {
 
-/// Cells along a side of a face. Finer cells hold fewer directions, until they leave the cache.
-int resolution_for(int rank, std::int32_t directions) {
-  if (rank == 3) return directions <= 600 ? 64 : directions <= 4000 ? 128 : 256;
-  return directions <= 4000 ? 16 : 32;
+/// Roots along a side of a face: 2^this. Finer ones hold fewer directions, until they leave the
+/// cache.
+int root_bits_for(int rank, std::int32_t directions) {
+  if (rank == 3) return directions <= 500 ? 6 : directions <= 4000 ? 7 : 8;
+  return 4;
 }
+int cut_bits_for(int rank, std::int32_t directions) {
+  if (rank == 3) return 0;
+  return directions <= 500 ? 1 : 2;
+}
+constexpr double cut_share = 0.125;  // of the roots
 
-/// What one part of a face holds, until the whole table is put together.
-struct Leaf {
-  std::size_t cell;
-  std::vector<CellRecord> runs;
+/// A root with its winners.
+struct Root {
+  CellBox box;
+  std::vector<std::int32_t> winners;
+  double closeness = 0.0;  // to the curve
 };
 
-/// Splits a box down to cells; `index` counts boxes of this size along each side.
-void split(const CellBuilder& builder, int rank, int resolution, int face, const CellBox& box,
-           int boxes, std::array<int, max_cell_rank> index,
-           const std::vector<std::int32_t>& candidates, std::vector<Leaf>& leaves) {
-  const std::vector<std::int32_t> winners = builder.winners(box, candidates);
-  if (boxes == resolution) {
-    auto cell = static_cast<std::size_t>(face);
-    for (int s = 0; s + 1 < rank; ++s)
-      cell = cell * static_cast<std::size_t>(resolution) +
-             static_cast<std::size_t>(index[static_cast<std::size_t>(s)]);
-    leaves.push_back({cell, builder.runs(box, winners)});
+/// Splits a box down to roots; `index` counts boxes of this size along each side.
+void split(CellBuilder& builder, int rank, int face, const CellBox& box, int levels,
+           std::array<std::size_t, max_cell_rank> index,
+           const std::vector<std::int32_t>& candidates, int root_bits, std::vector<Root>& roots) {
+  std::vector<std::int32_t> winners;
+  builder.winners(box, candidates, winners);
+  if (levels == 0) {
+    auto at = static_cast<std::size_t>(face);
+    for (int s = 0; s + 1 < rank; ++s) at = at << root_bits | index[static_cast<std::size_t>(s)];
+    Root& root = roots[at];
+    root.box = box;
+    root.closeness = builder.closeness(box, winners);
+    root.winners = std::move(winners);
     return;
   }
   for (int part = 0; part < 1 << (rank - 1); ++part) {
-    std::array<int, max_cell_rank> child{};
-    for (int s = 0; s + 1 < rank; ++s)
-      child[static_cast<std::size_t>(s)] = 2 * index[static_cast<std::size_t>(s)] + (part >> s & 1);
-    split(builder, rank, resolution, face, box.child(part, rank), 2 * boxes, child, winners,
-          leaves);
+    auto child = index;
+    for (int s = 0; s + 1 < rank; ++s) {
+      auto& i = child[static_cast<std::size_t>(s)];
+      i = i << 1 | static_cast<std::size_t>(part >> s & 1);
+    }
+    split(builder, rank, face, box.child(part, rank), levels - 1, child, winners, root_bits, roots);
   }
 }
 
-CellBox face_box(int face) {
-  CellBox box{.axis = face / 2};
-  box.centre[static_cast<std::size_t>(face / 2)] = face % 2 != 0 ? -1.0 : 1.0;
+/// The box of a cell of a cut root; `at` counts cells, the first coordinate being the slowest.
+CellBox cut_box(const CellBox& root, int rank, int cut_bits, std::size_t at) {
+  CellBox box = root;
+  for (int bit = cut_bits - 1; bit >= 0; --bit) {
+    int part = 0;
+    for (int s = 0; s + 1 < rank; ++s)
+      part |= static_cast<int>(at >> ((rank - 2 - s) * cut_bits + bit) & 1) << s;
+    box = box.child(part, rank);
+  }
   return box;
 }
 
@@ -75,51 +92,81 @@ bool CellTable::serves(const DistinctDirections& directions) {
 
 CellTable::CellTable(const DistinctDirections& directions, const RivalSearch& rivals)
     : rank_(directions.rank()),
-      resolution_(resolution_for(rank_, directions.count())),
+      root_bits_(root_bits_for(rank_, directions.count())),
+      cut_bits_(cut_bits_for(rank_, directions.count())),
       fit_unit_(std::max(8.0, directions.count() / 8.0) / 32767) {
-  const CellBuilder builder(directions, rivals, fit_unit_);
+  const int sides = rank_ - 1, faces = 2 * rank_, parts = 1 << sides;
+  std::vector<Root> roots(static_cast<std::size_t>(faces) << (sides * root_bits_));
   std::vector<std::int32_t> all(static_cast<std::size_t>(directions.count()));
   std::iota(all.begin(), all.end(), 0);
-
-  // Parts of faces are independent work.
-  const int parts = 1 << (rank_ - 1), faces = 2 * rank_;
-  std::vector<std::vector<Leaf>> leaves(static_cast<std::size_t>(faces * parts));
   parallel_for(faces * parts, [&](std::int64_t i) {
     const int face = static_cast<int>(i) / parts, part = static_cast<int>(i) % parts;
-    const CellBox whole = face_box(face);
-    std::array<int, max_cell_rank> index{};
-    for (int s = 0; s + 1 < rank_; ++s) index[static_cast<std::size_t>(s)] = part >> s & 1;
-    split(builder, rank_, resolution_, face, whole.child(part, rank_), 2, index, all,
-          leaves[static_cast<std::size_t>(i)]);
+    CellBuilder builder(directions, rivals, fit_unit_);
+    std::array<std::size_t, max_cell_rank> index{};
+    for (int s = 0; s < sides; ++s) index[static_cast<std::size_t>(s)] = part >> s & 1;
+    split(builder, rank_, face, CellBox::face(face).child(part, rank_), root_bits_ - 1, index, all,
+          root_bits_, roots);
   });
 
-  std::size_t cell_count = static_cast<std::size_t>(faces);
-  for (int s = 0; s + 1 < rank_; ++s) cell_count *= static_cast<std::size_t>(resolution_);
-  cells_.resize(cell_count);
+  // The roots closest to the curve are cut.
+  std::vector<double> closeness;
+  for (const Root& root : roots) closeness.push_back(root.closeness);
+  const auto cuts = static_cast<std::size_t>(cut_share * static_cast<double>(roots.size()));
+  std::nth_element(closeness.begin(), closeness.begin() + static_cast<std::ptrdiff_t>(cuts),
+                   closeness.end(), std::greater<>());
+  const double least = cut_bits_ > 0 ? closeness[cuts] : 2.0;
+  std::uint32_t cells = 0;
+  for (const Root& root : roots) {
+    const bool is_cut = root.closeness > least;
+    roots_.push_back(cells << 1 | (is_cut ? 1u : 0u));
+    cells += is_cut ? 1u << (sides * cut_bits_) : 1u;
+  }
+
+  std::vector<Runs> runs(cells);
+  parallel_for_blocks(static_cast<std::int64_t>(roots.size()), 64, [&](IndexRange block) {
+    CellBuilder builder(directions, rivals, fit_unit_);
+    std::vector<std::int32_t> winners;
+    for (auto i = static_cast<std::size_t>(block.begin); i < static_cast<std::size_t>(block.end);
+         ++i) {
+      const std::size_t first = roots_[i] >> 1;
+      if ((roots_[i] & 1u) == 0) {
+        builder.runs(roots[i].box, roots[i].winners, runs[first]);
+        continue;
+      }
+      for (std::size_t at = 0; at < std::size_t{1} << (sides * cut_bits_); ++at) {
+        const CellBox box = cut_box(roots[i].box, rank_, cut_bits_, at);
+        builder.winners(box, roots[i].winners, winners);
+        builder.runs(box, winners, runs[first + at]);
+      }
+    }
+  });
+  store(runs);
+}
+
+void CellTable::store(const std::vector<Runs>& runs) {
   // Few cells have the steepest fits; without them one bound serves all.
   std::vector<double> steep;
-  for (const auto& of_part : leaves)
-    for (const Leaf& leaf : of_part)
-      if (leaf.runs.size() == 1 && leaf.runs.front().slack != CellRecord::no_proof)
-        steep.push_back(steepness(leaf.runs.front()));
+  for (const Runs& of_cell : runs)
+    if (of_cell.size() == 1 && of_cell.front().slack != CellRecord::no_proof)
+      steep.push_back(steepness(of_cell.front()));
   if (!steep.empty()) {
     const auto high =
-        steep.begin() + static_cast<std::ptrdiff_t>(steep.size() - 1 - steep.size() / 100);
+        steep.begin() + static_cast<std::ptrdiff_t>(steep.size() - 1 - steep.size() / 1000);
     std::nth_element(steep.begin(), high, steep.end());
     steepest_fit_ = *high;
   }
-  for (const auto& of_part : leaves)
-    for (const Leaf& leaf : of_part) {
-      const CellRecord& run = leaf.runs.front();
-      if (leaf.runs.size() == 1 && run.slack != CellRecord::no_proof &&
-          steepness(run) <= steepest_fit_) {
-        cells_[leaf.cell] = run;
-        continue;
-      }
-      cells_[leaf.cell] = CellRecord::list(static_cast<std::uint32_t>(lists_.size()),
-                                           static_cast<std::uint32_t>(leaf.runs.size()));
-      lists_.insert(lists_.end(), leaf.runs.begin(), leaf.runs.end());
+  for (const Runs& of_cell : runs) {
+    const CellRecord& run = of_cell.front();
+    if (of_cell.size() == 1 && run.slack != CellRecord::no_proof &&
+        steepness(run) <= steepest_fit_) {
+      cells_.push_back(run);
+      if (rank_ == 3) cells_.back().fit[3] = run.slack;
+      continue;
     }
+    cells_.push_back(CellRecord::list(static_cast<std::uint32_t>(lists_.size()),
+                                      static_cast<std::uint32_t>(of_cell.size())));
+    lists_.insert(lists_.end(), of_cell.begin(), of_cell.end());
+  }
 }
 
 double CellTable::steepness(const CellRecord& run) const {
@@ -132,14 +179,19 @@ std::span<const CellRecord> CellTable::runs(const double* unit) const {
   int axis = 0;
   for (int j = 1; j < rank_; ++j)
     if (std::abs(unit[j]) > std::abs(unit[axis])) axis = j;
-  auto cell = static_cast<std::size_t>(2 * axis + (unit[axis] < 0.0 ? 1 : 0));
+  const int bits = root_bits_ + cut_bits_;
+  auto root = static_cast<std::size_t>(2 * axis + (unit[axis] < 0.0 ? 1 : 0));
+  std::size_t cut = 0;
   for (int j = 0; j < rank_; ++j) {
     if (j == axis) continue;
-    const double place = (unit[j] / std::abs(unit[axis]) + 1.0) * 0.5 * resolution_;
-    cell = cell * static_cast<std::size_t>(resolution_) +
-           static_cast<std::size_t>(std::clamp(static_cast<int>(place), 0, resolution_ - 1));
+    const double place = std::ldexp(unit[j] / std::abs(unit[axis]) + 1.0, bits - 1);
+    const auto fine =
+        static_cast<std::size_t>(std::clamp(static_cast<int>(place), 0, (1 << bits) - 1));
+    root = root << root_bits_ | fine >> cut_bits_;
+    cut = cut << cut_bits_ | (fine & ((std::size_t{1} << cut_bits_) - 1));
   }
-  const CellRecord& record = cells_[cell];
+  const std::uint32_t word = roots_[root];
+  const CellRecord& record = cells_[(word >> 1) + ((word & 1u) != 0 ? cut : 0)];
   if (!record.is_list()) return {&record, 1};
   return {&lists_[record.list_begin()], record.list_length()};
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "decode/raw_scale.hpp"
@@ -93,25 +92,25 @@ HWY_INLINE void project_interleaved(const ProjectionView& view, const float* raw
   }
 }
 
-/// Measurements side by side, K >= 4, to planes in the tile: whole vectors of pixels, four
-/// measurements at a time, of which the last four may overlap others. @returns pixels done
-HWY_INLINE int separate(const float* raw, int k_count, int pixels, PixelTile& tile) {
+/// The same for any K, measurement by measurement.
+template <int Rank>
+HWY_INLINE void project_strided(const ProjectionView& view, const float* raw, int vectors,
+                                bool keep_raw, PixelTile& tile) {
   const Floats d;
+  const hn::RebindToSigned<Floats> di;
   const auto lanes = static_cast<int>(hn::Lanes(d));
-  const int done = pixels / lanes * lanes;
-  alignas(64) float four[4 * 16];
-  for (int i = 0; i < done; i += lanes)
-    for (int k = 0; k < k_count; k += 4) {
-      const int from = std::min(k, k_count - 4);
-      for (int lane = 0; lane < lanes; ++lane)
-        std::memcpy(four + 4 * lane, raw + static_cast<std::ptrdiff_t>(i + lane) * k_count + from,
-                    4 * sizeof(float));
-      Vector measured[4];
-      hn::LoadInterleaved4(d, four, measured[0], measured[1], measured[2], measured[3]);
-      for (int j = 0; j < 4; ++j)
-        hn::Store(measured[j], d, tile.raw + (from + j) * tile_pixels + i);
-    }
-  return done;
+  const auto pixel = hn::Mul(hn::Iota(di, 0), hn::Set(di, view.measurements));
+  for (int i = 0; i < vectors * lanes; i += lanes) {
+    const float* const first = raw + static_cast<std::ptrdiff_t>(i) * view.measurements;
+    project_vector<Rank>(
+        view,
+        [&](int k) {
+          const auto measured = hn::GatherIndex(d, first + k, pixel);
+          if (keep_raw) hn::Store(measured, d, tile.raw + k * tile_pixels + i);
+          return measured;
+        },
+        i, tile);
+  }
 }
 
 template <int Rank>
@@ -127,8 +126,6 @@ HWY_INLINE void project_planes(const ProjectionView& view, const float* raw, std
 /// Raw numbers from pixel `from` on to planes in the tile, and zeros up to `padded`.
 HWY_INLINE void fill_planes(const TileSource& source, int k_count, int from, int pixels, int padded,
                             PixelTile& tile) {
-  if (source.data && from == 0 && k_count >= 4 && source.pixel_stride == k_count)
-    from = separate(source.data, k_count, pixels, tile);
   for (int k = 0; k < k_count; ++k) {
     float* const raw = tile.raw + k * tile_pixels;
     if (source.data)
@@ -151,6 +148,10 @@ void project_rank(const ProjectionView& view, const TileSource& source, int pixe
       project_interleaved<Rank, 3>(view, source.data, vectors, keep_raw, tile);
     else
       project_interleaved<Rank, 4>(view, source.data, vectors, keep_raw, tile);
+    done = vectors * lanes;
+  } else if (source.data && source.pixel_stride == k_count) {
+    const int vectors = pixels / lanes;
+    project_strided<Rank>(view, source.data, vectors, keep_raw, tile);
     done = vectors * lanes;
   } else if (source.data && source.pixel_stride == 1 && !keep_raw) {
     done = pixels / lanes * lanes;
