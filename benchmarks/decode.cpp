@@ -1,148 +1,159 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Decoding throughput on one thread, beside a plain search in double and the time it takes to read
-// raw numbers and write bins.
-#include <benchmark/benchmark.h>
+// Decoding throughput beside what bounds it from above and what others do, all in the same run and
+// in turns. Absolute speeds are those of the machine at that moment; the ratios are what counts.
+#include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <exception>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "decode_throughput.hpp"
+#include "in_turns.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/core/random.hpp"
-#include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/core/units.hpp"
 
 namespace {
 
 using namespace tofsmith;
+using namespace tofsmith::benchmarks;
 
-constexpr int side = 512;  // pixels of a frame, each way
-
-struct Work {
-  std::string code;
-  int taps;
-};
-const Work works[] = {
-    {"hamiltonian-k3", 1}, {"hamiltonian-k4", 1}, {"hamiltonian-k5", 1}, {"hamiltonian-k4", 2}};
-
-/// A noisy frame at the middle operating point, depths at random.
-struct Bench {
-  Decoder decoder;
-  RawFrames frame;
+struct Options {
+  std::vector<std::string> codes = {"k3", "k4", "k5", "two-bucket", "rank7"};
+  std::vector<int> samples = {240, 1000, 10000};
+  int rounds = 25;
+  bool quick = false;
 };
 
-Bench make_bench(const benchmark::State& state) {
-  const Work& work = works[state.range(0)];
-  Camera camera = built_in_camera("paper-10f0");
-  camera.samples = 240;
-  camera.sensor.taps = work.taps;
-  const CodeSet code = build_family(work.code, camera).resampled(static_cast<int>(state.range(1)));
-  camera.samples = code.samples();
-  const ForwardModel model(code, camera);
-  Bench bench{Decoder(make_decoding_table(model, camera)), {}};
-
-  const DecodingTable& table = bench.decoder.table();
-  bench.frame = {1, side, side, table.measurements(), {}};
-  RandomStream random(1, 0);
-  for (int i = 0; i < side * side; ++i) {
-    const auto n = static_cast<Eigen::Index>(table.samples() * random.uniform());
-    for (int k = 0; k < table.measurements(); ++k) {
-      const double mean =
-          table.exposure_s[k] * (1e4 * table.correlation(n, k) + 1e4 * table.ambient_gain[k]);
-      bench.frame.values.push_back(static_cast<float>(
-          mean + std::sqrt(mean + table.constant_variance_e2[k]) * random.normal()));
+void print_throughput(const Options& options, AskedFigures& asked) {
+  fmt::print(
+      "One core, {} x {} pixels, Mpixel/s. share: of the speed at which the same numbers are read\n"
+      "and as many bytes written, fastest against fastest (median: round by round). d S A: depth,\n"
+      "signal, ambient light; d c st: depth, confidence, status; all: these, bins and deviation.\n"
+      "brute: all bins in double, vectorized; k-d tree: nanoflann on the unit directions, float;\n"
+      "times: bins by the decoder against it.\n\n",
+      frame_width, frame_height);
+  DecodeThroughput::print_heading();
+  for (const std::string& code : options.codes)
+    for (const int samples : options.samples) {
+      const DecodeThroughput throughput(decode_code(code), samples);
+      for (const Scene scene : {Scene::planes, Scene::random})
+        for (const LightLevel& light : light_levels)
+          if (!options.quick || light.noise == "medium")
+            throughput.print(scene, light, options.rounds, asked);
     }
+}
+
+/// Seconds by the clock on the wall, one thread and more in turns.
+void print_cores(const std::string& code, int rounds, AskedFigures& asked) {
+  const DecodingTable table = decoding_table(decode_code(code), 1000);
+  const Decoder decoder(table);
+  const std::vector<float> raw = noisy_frame(table, Scene::planes, light_levels[1]);
+  const RawView view =
+      RawView::interleaved(raw.data(), frame_height, frame_width, table.measurements());
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  std::vector<int> thread_counts = {1};
+  if (cores >= 2) thread_counts.push_back(2);
+  if (cores > 2) thread_counts.push_back(cores);
+
+  for (const OutputSet set : {OutputSet::bin, OutputSet::all}) {
+    DecodedPlanes planes;
+    std::vector<Contender> contenders;
+    for (const int threads : thread_counts)
+      contenders.push_back({frame_pixels, [&, threads] {
+                              const ThreadLimit limit(threads);
+                              decoder.decode(view, view_of(set, planes));
+                            }});
+    const Turns turns(contenders, rounds, CLOCK_MONOTONIC);
+    const char* outputs = set == OutputSet::bin ? "bins" : "all outputs";
+    fmt::print("{:<11} N = 1000, planes, {:<12}", code, outputs);
+    for (std::size_t i = 0; i < thread_counts.size(); ++i)
+      fmt::print("{:>3} core{} {:>7.1f} Mpixel/s {:>7.0f} frames/s{:>6.2f} x  ", thread_counts[i],
+                 thread_counts[i] == 1 ? " " : "s", 1e-6 * turns.pixels_per_s(i),
+                 turns.pixels_per_s(i) / frame_pixels, turns.speed_over(i, 0));
+    fmt::print("\n");
+    if (cores >= 2)
+      asked.at_least(fmt::format("{}, {}: speed on 2 cores over 1", code, outputs),
+                     turns.speed_over(1, 0), 1.8);
+    if (code == "k4")
+      asked.at_least(fmt::format("{}, {}: VGA frames/s on 1 core", code, outputs),
+                     turns.pixels_per_s(0) / frame_pixels, 1000.0);
   }
-  return bench;
 }
 
-void report_pixels(benchmark::State& state) {
-  state.SetLabel(works[state.range(0)].code + (works[state.range(0)].taps == 2 ? " x 2" : ""));
-  state.counters["pixels"] =
-      benchmark::Counter(side * side, benchmark::Counter::kIsIterationInvariantRate);
-}
-
-void bins(benchmark::State& state) {
-  const Bench bench = make_bench(state);
-  std::vector<std::int32_t> found(side * side);
-  for (auto _ : state) {
-    bench.decoder.decode_bins(bench.frame.frame(0), side * side, found.data());
-    benchmark::ClobberMemory();
-  }
-  report_pixels(state);
-}
-
-void depth_bins(benchmark::State& state) {
-  const Bench bench = make_bench(state);
-  std::vector<double> found(side * side);
-  for (auto _ : state) {
-    bench.decoder.decode_depth_bins(bench.frame.frame(0), side * side, found.data());
-    benchmark::ClobberMemory();
-  }
-  report_pixels(state);
-}
-
-void depth_image(benchmark::State& state) {
-  const Bench bench = make_bench(state);
-  const ThreadLimit one(1);
-  for (auto _ : state) benchmark::DoNotOptimize(bench.decoder.decode(bench.frame));
-  report_pixels(state);
-}
-
-/// All correlations with the mean taken off, in double: what a script would do.
-void plain_search(benchmark::State& state) {
-  const Bench bench = make_bench(state);
-  const Eigen::MatrixXd& correlation = bench.decoder.table().correlation;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> units =
-      correlation.colwise() - correlation.rowwise().mean();
-  units.rowwise().normalize();
-  const auto k_count = units.cols();
-  std::vector<std::int32_t> found(side * side);
-  for (auto _ : state) {
-    for (int i = 0; i < side * side; ++i) {
-      const float* raw = bench.frame.frame(0) + i * k_count;
-      double best = -1e300;
-      for (Eigen::Index n = 0; n < units.rows(); ++n) {
-        double score = 0.0;
-        for (Eigen::Index k = 0; k < k_count; ++k) score += raw[k] * units(n, k);
-        if (score > best) {
-          best = score;
-          found[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(n);
-        }
+/// Depths decoded in single precision from pixels without noise.
+void print_depth_error(const std::string& code, AskedFigures& asked) {
+  const int samples = 240, pixels = 200000;
+  const ForwardModel model = forward_model(decode_code(code), samples);
+  const DecodingTable table = decoding_table(decode_code(code), samples);
+  const Decoder decoder(table);
+  const LightLevel light = light_levels[1];
+  for (const bool on_chords : {true, false}) {
+    FastRandom random(11);
+    std::vector<double> depth_bin;
+    std::vector<float> raw;
+    for (int i = 0; i < pixels; ++i) {
+      const double depth = depth_bin.emplace_back(random.uniform(0.0, samples));
+      if (on_chords) {
+        append_pixel(table, depth, light.signal_e_per_s, light.ambient_e_per_s, 0.0, random, raw);
+        continue;
       }
+      const Return from{light.signal_e_per_s, depth};
+      for (const double e : model.expected_electrons({&from, 1}, light.ambient_e_per_s))
+        raw.push_back(static_cast<float>(e));
     }
-    benchmark::ClobberMemory();
+    std::vector<float> depth_m(static_cast<std::size_t>(pixels));
+    decoder.decode(RawView::interleaved(raw.data(), 1, pixels, table.measurements()),
+                   {.depth_m = depth_m.data()});
+    double largest = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < depth_m.size(); ++i) {
+      const double error =
+          std::abs(circular_difference(depth_m[i] / table.bin_m(), depth_bin[i], samples));
+      largest = std::max(largest, error);
+      sum += error;
+    }
+    const char* where = on_chords ? "on the chords between bins" : "of the continuous code";
+    fmt::print("{:<11} N = {}, pixels {:<28} largest {:.2e} bin, mean {:.2e} bin\n", code, samples,
+               where, largest, sum / pixels);
+    if (on_chords)
+      asked.at_most(
+          fmt::format("{}, N = {}: largest depth error without noise [bin]", code, samples),
+          largest, 0.02);
   }
-  report_pixels(state);
 }
 
-/// The limit: reads every raw number and writes one number per pixel.
-void read_and_write(benchmark::State& state) {
-  const Bench bench = make_bench(state);
-  const auto k_count = bench.decoder.measurements();
-  std::vector<float> sums(side * side);
-  for (auto _ : state) {
-    const float* raw = bench.frame.frame(0);
-    for (float& sum : sums) {
-      sum = 0.0f;
-      for (int k = 0; k < k_count; ++k) sum += *raw++;
-    }
-    benchmark::ClobberMemory();
-  }
-  report_pixels(state);
+int run(const Options& options) {
+  AskedFigures asked;
+  print_throughput(options, asked);
+  fmt::print("\nBy the clock on the wall:\n");
+  for (const std::string& code : options.codes) print_cores(code, 8 * options.rounds, asked);
+  fmt::print("\nDepth between bins, in single precision, without noise:\n");
+  for (const std::string& code : options.codes) print_depth_error(code, asked);
+  asked.print();
+  return 0;
 }
-
-void sizes(benchmark::internal::Benchmark* b) {
-  b->ArgsProduct({{0, 1, 2, 3}, {240, 1000}})
-      ->ArgNames({"code", "N"})
-      ->Unit(benchmark::kMillisecond);
-}
-BENCHMARK(bins)->Apply(sizes);
-BENCHMARK(depth_bins)->Apply(sizes);
-BENCHMARK(depth_image)->Apply(sizes);
-BENCHMARK(plain_search)->Apply(sizes);
-BENCHMARK(read_and_write)->Apply(sizes);
 
 }  // namespace
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"Decoding throughput beside its limit and its peers"};
+  app.add_option("--code", options.codes, "k3, k4, k5, two-bucket, rank7; any number of them");
+  app.add_option("--samples", options.samples, "N; any number of them, multiples of 120");
+  app.add_option("--rounds", options.rounds, "turns of each contender")
+      ->check(CLI::Range(1, 100000));
+  app.add_flag("--quick", options.quick, "medium noise only, 5 turns");
+  CLI11_PARSE(app, argc, argv);
+  if (options.quick) options.rounds = std::min(options.rounds, 5);
+  try {
+    return run(options);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "benchmark_decode: {}\n", error.what());
+    return 1;
+  }
+}

@@ -30,7 +30,7 @@ packages_test=(
 )
 packages_benchmark=(
   "${packages_build[@]}"
-  libbenchmark-dev
+  libnanoflann-dev  # a peer of the decoder
 )
 # Format and lint, on top of the tests: what .ci/run needs.
 packages_check=(

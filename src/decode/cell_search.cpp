@@ -53,7 +53,7 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
   const auto lanes = static_cast<int>(hn::Lanes(d));
   const int bits = view.root_bits + view.cut_bits;
   const auto sides = static_cast<float>(1 << bits);
-  const auto half = hn::Set(d, 0.5f * sides), middle = hn::Set(d, to_whole + 0.5f * (sides - 1));
+  const auto half = hn::Set(d, 0.5f * sides), middle = hn::Set(d, to_whole + 0.5f * sides);
   const auto first_cell = hn::Set(d, to_whole), last_cell = hn::Set(d, to_whole + sides - 1);
   const auto fine_bits = hn::Set(di, (1 << bits) - 1),
              cut_mask = hn::Set(di, (1 << view.cut_bits) - 1);
@@ -91,8 +91,9 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
     for (int s = 0; s + 1 < Rank; ++s) {
       const auto is_before = hn::RebindMask(d, hn::Gt(axis, hn::Set(di, s)));
       const auto c = hn::Mul(hn::IfThenElse(is_before, q[s], q[s + 1]), scale);
-      const auto index = hn::Min(hn::Max(hn::Add(c, middle), first_cell), last_cell);
-      const auto within = hn::Sub(c, hn::Sub(index, middle));
+      const auto shifted = hn::Sub(c, hn::Set(d, 0.5f));
+      const auto index = hn::Min(hn::Max(hn::Add(shifted, middle), first_cell), last_cell);
+      const auto within = hn::Sub(shifted, hn::Sub(index, middle));
       fine_place[s] = hn::Add(within, within);
       // Also what is no number lands in a cell.
       const auto fine = hn::And(hn::BitCast(di, index), fine_bits);

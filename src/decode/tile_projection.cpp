@@ -36,25 +36,23 @@ HWY_INLINE Vector minus_product(Vector a, Vector b, Vector c) {
   return hn::NegMulAdd(a, b, c);
 }
 
-/// One vector of pixels; loads measurement k by `load(k)`.
-template <int Rank, bool ForOutputs, typename Load>
-HWY_INLINE void project_vector(const ProjectionView& view, const Load& load, int pixel,
-                               PixelTile& tile) {
+/// One vector of pixels; loads measurement k by `load(k)`. `Count` 0 stands for any K.
+template <int Rank, bool ForOutputs, int Count, typename Load>
+HWY_INLINE void project_vector(const ProjectionView& view, const Load& load, Vector reference,
+                               int pixel, PixelTile& tile) {
   const Floats d;
+  const int count = Count > 0 ? Count : view.measurements;
   Vector q[Rank];
   for (int j = 0; j < Rank; ++j) q[j] = hn::Set(d, view.offset[j]);
-  auto error = hn::Set(d, view.error_of_offset);
-  const auto reference = view.reference < 0 ? hn::Zero(d) : load(view.reference);
-  error = product_plus<ForOutputs>(hn::Abs(reference), hn::Set(d, view.error_of_reference), error);
-  for (int k = 0; k < view.measurements; ++k) {
-    if (k == view.reference) continue;
+  auto error = product_plus<ForOutputs>(hn::Abs(reference), hn::Set(d, view.error_of_reference),
+                                        hn::Set(d, view.error_of_offset));
+  for (int k = 0; k < count; ++k) {
     const auto difference =
         minus_product<ForOutputs>(reference, hn::Set(d, view.ratio[k]), load(k));
     error = product_plus<ForOutputs>(hn::Abs(difference), hn::Set(d, view.error_of_difference[k]),
                                      error);
     for (int j = 0; j < Rank; ++j)
-      q[j] = product_plus<ForOutputs>(difference,
-                                      hn::Set(d, view.weight[j * view.measurements + k]), q[j]);
+      q[j] = product_plus<ForOutputs>(difference, hn::Set(d, view.weight[j * count + k]), q[j]);
   }
   for (int j = 0; j < Rank; ++j) hn::Store(q[j], d, tile.plane + j * tile_pixels + pixel);
   hn::Store(error, d, tile.error + pixel);
@@ -65,13 +63,12 @@ template <bool ForOutputs>
 HWY_INLINE void project_any_rank(const ProjectionView& view, PixelTile& tile, int pixel) {
   const Floats d;
   const auto load = [&](int k) { return hn::Load(d, tile.raw + k * tile_pixels + pixel); };
-  const auto reference = view.reference < 0 ? hn::Zero(d) : load(view.reference);
+  const auto reference = load(view.reference);
   auto error = product_plus<ForOutputs>(hn::Abs(reference), hn::Set(d, view.error_of_reference),
                                         hn::Set(d, view.error_of_offset));
   for (int j = 0; j < view.rank; ++j)
     hn::Store(hn::Set(d, view.offset[j]), d, tile.plane + j * tile_pixels + pixel);
   for (int k = 0; k < view.measurements; ++k) {
-    if (k == view.reference) continue;
     const auto difference =
         minus_product<ForOutputs>(reference, hn::Set(d, view.ratio[k]), load(k));
     error = product_plus<ForOutputs>(hn::Abs(difference), hn::Set(d, view.error_of_difference[k]),
@@ -103,16 +100,19 @@ HWY_INLINE void project_interleaved(const ProjectionView& view, const float* raw
   for (int i = 0; i < vectors * lanes; i += lanes) {
     Vector measured[4];
     load_interleaved<Measurements>(raw + i * Measurements, measured);
+    auto reference = measured[0];
+    for (int k = 1; k < Measurements; ++k)
+      if (view.reference == k) reference = measured[k];
     if (ForOutputs)
       for (int k = 0; k < Measurements; ++k)
         hn::Store(measured[k], d, tile.raw + k * tile_pixels + i);
-    project_vector<Rank, ForOutputs>(
-        view, [&](int k) { return measured[k]; }, i, tile);
+    project_vector<Rank, ForOutputs, Measurements>(
+        view, [&](int k) { return measured[k]; }, reference, i, tile);
   }
 }
 
 /// The same for any K, measurement by measurement.
-template <int Rank, bool ForOutputs>
+template <int Rank, bool ForOutputs, int Count>
 HWY_INLINE void project_strided(const ProjectionView& view, const float* raw, int vectors,
                                 PixelTile& tile) {
   const Floats d;
@@ -121,14 +121,12 @@ HWY_INLINE void project_strided(const ProjectionView& view, const float* raw, in
   const auto pixel = hn::Mul(hn::Iota(di, 0), hn::Set(di, view.measurements));
   for (int i = 0; i < vectors * lanes; i += lanes) {
     const float* const first = raw + static_cast<std::ptrdiff_t>(i) * view.measurements;
-    project_vector<Rank, ForOutputs>(
-        view,
-        [&](int k) {
-          const auto measured = hn::GatherIndex(d, first + k, pixel);
-          if (ForOutputs) hn::Store(measured, d, tile.raw + k * tile_pixels + i);
-          return measured;
-        },
-        i, tile);
+    const auto load = [&](int k) {
+      const auto measured = hn::GatherIndex(d, first + k, pixel);
+      if (ForOutputs) hn::Store(measured, d, tile.raw + k * tile_pixels + i);
+      return measured;
+    };
+    project_vector<Rank, ForOutputs, Count>(view, load, load(view.reference), i, tile);
   }
 }
 
@@ -137,9 +135,10 @@ HWY_INLINE void project_planes(const ProjectionView& view, const float* raw, std
                                int from, int to, PixelTile& tile) {
   const Floats d;
   const auto lanes = static_cast<int>(hn::Lanes(d));
-  for (int i = from; i < to; i += lanes)
-    project_vector<Rank, ForOutputs>(
-        view, [&](int k) { return hn::LoadU(d, raw + k * stride + i); }, i, tile);
+  for (int i = from; i < to; i += lanes) {
+    const auto load = [&](int k) { return hn::LoadU(d, raw + k * stride + i); };
+    project_vector<Rank, ForOutputs, 0>(view, load, load(view.reference), i, tile);
+  }
 }
 
 /// Raw numbers from pixel `from` on to planes in the tile, and zeros up to `padded`.
@@ -170,7 +169,12 @@ void project_rank(const ProjectionView& view, const TileSource& source, int pixe
     done = vectors * lanes;
   } else if (source.data && source.pixel_stride == k_count) {
     const int vectors = pixels / lanes;
-    project_strided<Rank, ForOutputs>(view, source.data, vectors, tile);
+    if (k_count == 5)
+      project_strided<Rank, ForOutputs, 5>(view, source.data, vectors, tile);
+    else if (k_count == 8)
+      project_strided<Rank, ForOutputs, 8>(view, source.data, vectors, tile);
+    else
+      project_strided<Rank, ForOutputs, 0>(view, source.data, vectors, tile);
     done = vectors * lanes;
   } else if (source.data && source.pixel_stride == 1 && !ForOutputs) {
     done = pixels / lanes * lanes;
@@ -274,25 +278,27 @@ TileProjection::TileProjection(const DecodingTable& table, const AmbientProjecti
     gain[k] = scale.electrons(1.0, k) - scale.electrons(0.0, k);
     zero[k] = -scale.electrons(0.0, k) / gain[k];
   }
-  const Eigen::MatrixXd weight = projection.basis.transpose() * gain.asDiagonal();
+  Eigen::MatrixXd weight = projection.basis.transpose() * gain.asDiagonal();
   const Eigen::VectorXd offset = -weight * zero;
   const Eigen::VectorXd ambient = projection.ambient.cwiseQuotient(gain);
-  Eigen::Index reference = -1;
-  if (ambient.cwiseAbs().maxCoeff(&reference) == 0.0) reference = -1;
+  Eigen::Index reference = 0;
+  const bool has_ambient = ambient.cwiseAbs().maxCoeff(&reference) > 0.0;
+  const Eigen::RowVectorXd error_per_raw = safety * weight.colwise().norm();
+  // Its own difference is nothing.
+  if (has_ambient) weight.col(reference).setZero();
 
   double error_of_reference = 0.0;
   for (int k = 0; k < k_count; ++k) {
-    const double ratio = reference < 0 ? 0.0 : ambient[k] / ambient[reference];
+    const double ratio = has_ambient ? ambient[k] / ambient[reference] : 0.0;
     const bool is_one = std::abs(ratio - 1.0) < 1e-13;
     const double length = weight.col(k).norm();
     ratio_.push_back(is_one ? 1.0f : static_cast<float>(ratio));
     // Rounded weights, and K products and sums; the difference is rounded once more.
     error_of_difference_.push_back(
         static_cast<float>((k_count + 3) * unit_roundoff * safety * length));
-    error_per_rounding_.push_back(safety * length * (1.0 + std::abs(ratio)));
-    if (k != reference)
-      error_of_reference +=
-          safety * length * (is_one ? std::abs(ratio - 1.0) : 2 * unit_roundoff * std::abs(ratio));
+    error_per_rounding_.push_back(error_per_raw[k]);
+    error_of_reference +=
+        safety * length * (is_one ? std::abs(ratio - 1.0) : 2 * unit_roundoff * std::abs(ratio));
   }
   for (int j = 0; j < rank; ++j) {
     offset_.push_back(static_cast<float>(offset[j]));

@@ -24,7 +24,7 @@ struct TileSource {
 struct ProjectionView {
   int measurements = 0;
   int rank = 0;
-  int reference = -1;             ///< measurement the others are compared with; -1: none
+  int reference = 0;              ///< measurement the others are compared with; its weight is 0
   const float* ratio = nullptr;   ///< (K)
   const float* weight = nullptr;  ///< (rank, K)
   const float* offset = nullptr;  ///< (rank)

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "asked_figures.hpp"
+#include "decode_frame.hpp"
+#include "nearest_direction.hpp"
+
+namespace tofsmith::benchmarks {
+
+/// One code at one N, decoded by all there are.
+class DecodeThroughput {
+ public:
+  DecodeThroughput(const DecodeCode& code, int samples);
+
+  /// Prints one line for a frame, on one core, and adds what is asked of it.
+  void print(Scene scene, const LightLevel& light, int rounds, AskedFigures& asked) const;
+  static void print_heading();
+
+ private:
+  const DecodeCode& code_;
+  DecodingTable table_;
+  Decoder decoder_;
+  ReferenceCurve curve_;
+  std::unique_ptr<NearestDirection> peer_;
+};
+
+}  // namespace tofsmith::benchmarks

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "decode_frame.hpp"
+
+namespace tofsmith::benchmarks {
+
+/// What every decoder has to do: reads every raw number of a frame and writes every value of the
+/// planes in view, a few thousand pixels at a time, and nothing else.
+inline void read_and_write(const std::vector<float>& raw, int measurements,
+                           const DecodedView& planes) {
+  constexpr int block = 4096;
+  for (int first = 0; first < frame_pixels; first += block) {
+    const int count = std::min(block, frame_pixels - first);
+    const float* numbers = raw.data() + static_cast<std::ptrdiff_t>(first) * measurements;
+    std::uint32_t seen = 0;
+    for (int i = 0; i < count * measurements; ++i) {
+      std::uint32_t bits;
+      std::memcpy(&bits, numbers + i, sizeof bits);
+      seen |= bits;
+    }
+    const auto value = static_cast<std::int32_t>(seen >> 9);
+    const auto fill = [&](auto* plane, auto written) {
+      if (plane != nullptr) std::fill_n(plane + first, count, written);
+    };
+    fill(planes.bin, value);
+    for (float* plane : {planes.depth_m, planes.signal_e_per_s, planes.ambient_e_per_s,
+                         planes.confidence, planes.predicted_standard_deviation_m})
+      fill(plane, static_cast<float>(value));
+    fill(planes.status, static_cast<PixelStatus>(value & 1));
+    asm volatile("" ::: "memory");
+  }
+}
+
+}  // namespace tofsmith::benchmarks

@@ -1,0 +1,228 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "reference_bins.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tofsmith/core/error.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "reference_bins.cpp"
+#include <hwy/foreach_target.h>
+// Highway asks for its own header after foreach_target.
+#include <hwy/highway.h>
+
+#ifndef TOFSMITH_BENCHMARKS_RUNS
+#define TOFSMITH_BENCHMARKS_RUNS
+namespace tofsmith::benchmarks {
+inline constexpr int run_blocks = 2;        // blocks of rows in a run
+inline constexpr int group_blocks = 16;     // blocks of rows whose best scores are kept together
+inline constexpr int largest_groups = 128;  // hence N <= 16384
+inline constexpr int largest_run_blocks = 128;
+inline constexpr int pixels_at_once = 4;
+}  // namespace tofsmith::benchmarks
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace tofsmith::benchmarks {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Doubles = hn::CappedTag<double, reference_block>;
+using Vector = hn::Vec<Doubles>;
+
+HWY_INLINE int lanes() { return static_cast<int>(hn::Lanes(Doubles())); }
+
+/// Scores of the rows of a block from row i on.
+template <int Rank>
+HWY_INLINE Vector scores(const double* unit, const double* block, int i) {
+  const Doubles d;
+  Vector sum = hn::Mul(hn::Set(d, unit[0]), hn::LoadU(d, block + i));
+  for (int j = 1; j < Rank; ++j)
+    sum = hn::MulAdd(hn::Set(d, unit[j]), hn::LoadU(d, block + j * reference_block + i), sum);
+  return sum;
+}
+
+HWY_INLINE double largest(Vector v) { return hn::GetLane(hn::MaxOfLanes(Doubles(), v)); }
+
+/// The first row of a block whose score is at least `least`, or -1.
+template <int Rank>
+HWY_INLINE int first_row(const double* unit, const double* block, double least) {
+  const Doubles d;
+  for (int i = 0; i < reference_block; i += lanes()) {
+    const auto found =
+        hn::FindFirstTrue(d, hn::Ge(scores<Rank>(unit, block, i), hn::Set(d, least)));
+    if (found >= 0) return i + static_cast<int>(found);
+  }
+  return -1;
+}
+
+template <int Rank>
+void brute_force(const double* rows, int blocks, const ReferencePixel* pixels, int count,
+                 std::int32_t* bin) {
+  const Doubles d;
+  constexpr int stride = Rank * reference_block;
+  HWY_ALIGN double of_group[pixels_at_once][largest_groups][reference_block];
+  const int groups = (blocks + group_blocks - 1) / group_blocks;
+  double best[pixels_at_once];
+  for (double& value : best) value = -2.0;
+  for (int group = 0; group < groups; ++group) {
+    const int end = std::min((group + 1) * group_blocks, blocks);
+    Vector most[pixels_at_once] = {hn::Set(d, -2.0), hn::Set(d, -2.0), hn::Set(d, -2.0),
+                                   hn::Set(d, -2.0)};
+    for (int block = group * group_blocks; block < end; ++block)
+      for (int i = 0; i < reference_block; i += lanes())
+        for (int p = 0; p < pixels_at_once; ++p)
+          most[p] = hn::Max(most[p], scores<Rank>(pixels[std::min(p, count - 1)].unit.data(),
+                                                  rows + block * stride, i));
+    for (int p = 0; p < pixels_at_once; ++p) hn::Store(most[p], d, of_group[p][group]);
+  }
+  for (int p = 0; p < count; ++p) {
+    Vector most = hn::Set(d, -2.0);
+    for (int group = 0; group < groups; ++group)
+      most = hn::Max(most, hn::Load(d, of_group[p][group]));
+    const double least = largest(most) - reference_tie;
+    int group = 0;
+    while (largest(hn::Load(d, of_group[p][group])) < least) ++group;
+    int row = -1;
+    for (int block = group * group_blocks; row < 0; ++block) {
+      row = first_row<Rank>(pixels[p].unit.data(), rows + block * stride, least);
+      bin[p] = block * reference_block + row;
+    }
+  }
+}
+
+template <int Rank>
+std::int32_t branch_and_bound(const BranchAndBound::View& view, const double* unit) {
+  const Doubles d;
+  constexpr int stride = Rank * reference_block;
+  // A sine from a cosine near 1 has lost half of its digits; the slacks cover it.
+  const Vector one = hn::Set(d, 1.0), lost = hn::Set(d, 1e-14), slack = hn::Set(d, 1e-9);
+  HWY_ALIGN double highest[largest_run_blocks * reference_block];
+  Vector most = hn::Set(d, -2.0);
+  for (int block = 0; block < view.run_blocks; ++block)
+    for (int i = 0; i < reference_block; i += lanes()) {
+      const int run = block * reference_block + i;
+      const Vector c = scores<Rank>(unit, view.centre + block * stride, i);
+      const Vector cosine = hn::LoadU(d, view.cosine + run), sine = hn::LoadU(d, view.sine + run);
+      const Vector s = hn::Sqrt(hn::Add(hn::Max(hn::Zero(d), hn::NegMulAdd(c, c, one)), lost));
+      const Vector bound = hn::Add(hn::MulAdd(c, cosine, hn::Mul(s, sine)), slack);
+      hn::Store(hn::IfThenElse(hn::Ge(c, cosine), hn::Add(one, slack), bound), d, highest + run);
+      most = hn::Max(most, c);
+    }
+  double best = largest(most);  // a centre is a direction
+  int candidates[largest_run_blocks * reference_block], count = 0;
+  for (int run = 0; run < view.run_blocks * reference_block; ++run)
+    if (highest[run] >= best) candidates[count++] = run;
+
+  Vector reached = hn::Set(d, best);
+  const auto end_of = [&](int run) { return std::min((run + 1) * run_blocks, view.row_blocks); };
+  for (int k = 0; k < count; ++k)
+    for (int block = candidates[k] * run_blocks; block < end_of(candidates[k]); ++block)
+      for (int i = 0; i < reference_block; i += lanes())
+        reached = hn::Max(reached, scores<Rank>(unit, view.row + block * stride, i));
+  best = largest(reached);
+  for (int k = 0; k < count; ++k)
+    for (int block = candidates[k] * run_blocks; block < end_of(candidates[k]); ++block) {
+      const int row = first_row<Rank>(unit, view.row + block * stride, best - reference_tie);
+      if (row >= 0) return block * reference_block + row;
+    }
+  return -1;
+}
+
+void brute_force_of_rank(int rank, const double* rows, int blocks, const ReferencePixel* pixels,
+                         int count, std::int32_t* bin) {
+  switch (rank) {
+    case 2:
+      return brute_force<2>(rows, blocks, pixels, count, bin);
+    case 3:
+      return brute_force<3>(rows, blocks, pixels, count, bin);
+    case 4:
+      return brute_force<4>(rows, blocks, pixels, count, bin);
+    case 5:
+      return brute_force<5>(rows, blocks, pixels, count, bin);
+    case 6:
+      return brute_force<6>(rows, blocks, pixels, count, bin);
+    case 7:
+      return brute_force<7>(rows, blocks, pixels, count, bin);
+    default:
+      return brute_force<8>(rows, blocks, pixels, count, bin);
+  }
+}
+
+std::int32_t branch_and_bound_of_rank(const BranchAndBound::View& view, const double* unit) {
+  switch (view.rank) {
+    case 2:
+      return branch_and_bound<2>(view, unit);
+    case 3:
+      return branch_and_bound<3>(view, unit);
+    case 4:
+      return branch_and_bound<4>(view, unit);
+    case 5:
+      return branch_and_bound<5>(view, unit);
+    case 6:
+      return branch_and_bound<6>(view, unit);
+    case 7:
+      return branch_and_bound<7>(view, unit);
+    default:
+      return branch_and_bound<8>(view, unit);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tofsmith::benchmarks
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tofsmith::benchmarks {
+
+HWY_EXPORT(brute_force_of_rank);
+HWY_EXPORT(branch_and_bound_of_rank);
+
+void bins_by_brute_force(const ReferenceCurve& curve, const ReferencePixel* pixels, int count,
+                         std::int32_t* bin) {
+  require(curve.blocks() <= group_blocks * largest_groups, "samples", curve.samples(),
+          "must be at most 16384");
+  for (int first = 0; first < count; first += pixels_at_once)
+    HWY_DYNAMIC_DISPATCH(brute_force_of_rank)
+  (curve.rank(), curve.rows(), curve.blocks(), pixels + first,
+   std::min(count - first, pixels_at_once), bin + first);
+}
+
+BranchAndBound::BranchAndBound(const ReferenceCurve& curve) : curve_(&curve) {
+  const int rank = curve.rank(), run_rows = run_blocks * reference_block;
+  const int runs = (curve.samples() + run_rows - 1) / run_rows;
+  const int blocks = (runs + reference_block - 1) / reference_block;
+  require(blocks <= largest_run_blocks, "samples", curve.samples(), "must be at most 16384");
+  // Runs that fill the last block stand for the last one again, and have no rows.
+  const auto entries = static_cast<std::size_t>(blocks * reference_block);
+  centre_.resize(entries * static_cast<std::size_t>(rank));
+  cosine_.assign(entries, 1.0);
+  sine_.assign(entries, 0.0);
+  for (int entry = 0; entry < blocks * reference_block; ++entry) {
+    const int run = std::min(entry, runs - 1);
+    const int begin = run * run_rows, end = std::min(begin + run_rows, curve.samples());
+    const int middle = (begin + end) / 2;
+    ReferencePixel centre;
+    for (int j = 0; j < rank; ++j) {
+      const double component = curve.component(middle, j);
+      centre.unit[static_cast<std::size_t>(j)] = component;
+      centre_[static_cast<std::size_t>((entry / reference_block * rank + j) * reference_block +
+                                       entry % reference_block)] = component;
+    }
+    double& cosine = cosine_[static_cast<std::size_t>(entry)];
+    for (int row = begin; row < end; ++row) cosine = std::min(cosine, curve.score(centre, row));
+    sine_[static_cast<std::size_t>(entry)] = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  }
+  view_ = {rank,           blocks,       curve.blocks(), centre_.data(),
+           cosine_.data(), sine_.data(), curve.rows()};
+}
+
+std::int32_t BranchAndBound::bin(const ReferencePixel& pixel) const {
+  return HWY_DYNAMIC_DISPATCH(branch_and_bound_of_rank)(view_, pixel.unit.data());
+}
+
+}  // namespace tofsmith::benchmarks
+#endif

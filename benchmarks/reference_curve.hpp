@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "tofsmith/decode/decoding_table.hpp"
+
+namespace tofsmith::benchmarks {
+
+inline constexpr int reference_block = 8;  ///< rows whose components stand side by side
+inline constexpr int largest_rank = 8;
+inline constexpr double reference_tie = 1e-11;  ///< scores of unit vectors this close tie
+
+/// What ambient light does not explain of a pixel.
+struct ReferencePixel {
+  std::array<double, largest_rank> unit{};  ///< of length 1; zero if nothing is left
+  double rounding = 0.0;                    ///< by how much rounding may move a score of `unit`
+  bool is_number = false;                   ///< all raw numbers are finite
+};
+
+/// The decoder's definition in double: directions of the bins and of pixels, in coordinates of the
+/// space that the bins span once ambient light is taken off. Made apart from the library's tables.
+class ReferenceCurve {
+ public:
+  /// @throws std::invalid_argument for a table of another rank than 2 .. largest_rank, or with bins
+  ///         without contrast
+  explicit ReferenceCurve(const DecodingTable& table);
+
+  int samples() const { return samples_; }
+  int rank() const { return rank_; }
+  int measurements() const { return static_cast<int>(coordinates_.cols()); }
+  int blocks() const { return (samples_ + reference_block - 1) / reference_block; }
+  /// Directions [blocks][rank][reference_block]; the last row fills the last block.
+  const double* rows() const { return rows_.data(); }
+  double component(int row, int j) const {
+    return rows_[static_cast<std::size_t>((row / reference_block * rank_ + j) * reference_block +
+                                          row % reference_block)];
+  }
+  double score(const ReferencePixel& pixel, int row) const;
+  /// @param raw  (K)
+  ReferencePixel project(const float* raw) const;
+
+ private:
+  int samples_ = 0;
+  int rank_ = 0;
+  Eigen::VectorXd dark_raw_, gain_e_per_raw_;
+  Eigen::VectorXd ambient_;  // unit, or zero
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> coordinates_;  // (rank, K)
+  std::vector<double> rows_;
+};
+
+}  // namespace tofsmith::benchmarks
