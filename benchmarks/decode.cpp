@@ -49,13 +49,14 @@ void print_throughput(const Options& options, AskedFigures& asked) {
     }
 }
 
-/// Seconds by the clock on the wall, one thread and more in turns.
+/// One frame on one thread and on more, by the clock on the wall; beside them what the machine
+/// gives two threads at most: two halves of the pixels that know nothing of each other.
 void print_cores(const std::string& code, int rounds, AskedFigures& asked) {
   const DecodingTable table = decoding_table(decode_code(code), 1000);
   const Decoder decoder(table);
+  const int k_count = table.measurements();
   const std::vector<float> raw = noisy_frame(table, Scene::planes, light_levels[1]);
-  const RawView view =
-      RawView::interleaved(raw.data(), frame_height, frame_width, table.measurements());
+  const RawView view = RawView::interleaved(raw.data(), frame_height, frame_width, k_count);
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   std::vector<int> thread_counts = {1};
   if (cores >= 2) thread_counts.push_back(2);
@@ -69,20 +70,38 @@ void print_cores(const std::string& code, int rounds, AskedFigures& asked) {
                               const ThreadLimit limit(threads);
                               decoder.decode(view, view_of(set, planes));
                             }});
+    constexpr int half = frame_pixels / 2, repetitions = 4;  // starting threads takes time too
+    const auto decode_half = [&](int first) {
+      for (int i = 0; i < repetitions; ++i)
+        decoder.decode_bins(raw.data() + first * k_count, half, planes.bin.data() + first);
+    };
+    contenders.push_back({repetitions * frame_pixels, [&] {
+                            decode_half(0);
+                            decode_half(half);
+                          }});
+    contenders.push_back({repetitions * frame_pixels, [&] {
+                            std::thread other(decode_half, half);
+                            decode_half(0);
+                            other.join();
+                          }});
     const Turns turns(contenders, rounds, CLOCK_MONOTONIC);
+
     const char* outputs = set == OutputSet::bin ? "bins" : "all outputs";
-    fmt::print("{:<11} N = 1000, planes, {:<12}", code, outputs);
-    for (std::size_t i = 0; i < thread_counts.size(); ++i)
-      fmt::print("{:>3} core{} {:>7.1f} Mpixel/s {:>7.0f} frames/s{:>6.2f} x  ", thread_counts[i],
+    const std::size_t last = thread_counts.size() - 1;
+    fmt::print("{:<11} {:<11}", code, outputs);
+    for (std::size_t i = 0; i <= last; ++i)
+      fmt::print(" |{:>3} core{} {:>7.1f} Mpixel/s {:>6.0f} frames/s {:>5.2f} x", thread_counts[i],
                  thread_counts[i] == 1 ? " " : "s", 1e-6 * turns.pixels_per_s(i),
                  turns.pixels_per_s(i) / frame_pixels, turns.speed_over(i, 0));
-    fmt::print("\n");
+    const double machine = turns.speed_over(last + 2, last + 1);
+    fmt::print(" | two halves apart {:.2f} x\n", machine);
     if (cores >= 2)
-      asked.at_least(fmt::format("{}, {}: speed on 2 cores over 1", code, outputs),
-                     turns.speed_over(1, 0), 1.8);
-    if (code == "k4")
-      asked.at_least(fmt::format("{}, {}: VGA frames/s on 1 core", code, outputs),
-                     turns.pixels_per_s(0) / frame_pixels, 1000.0);
+      asked.at_least(
+          fmt::format("{}, {}: speed on 2 cores over 1 (machine: {:.2f})", code, outputs, machine),
+          turns.speed_over(1, 0), 1.8);
+    if (code == "k4" && set == OutputSet::bin)
+      asked.at_least(fmt::format("k4, bins: VGA frames/s on {} cores", thread_counts[last]),
+                     turns.pixels_per_s(last) / frame_pixels, 1000.0);
   }
 }
 
@@ -130,7 +149,7 @@ void print_depth_error(const std::string& code, AskedFigures& asked) {
 int run(const Options& options) {
   AskedFigures asked;
   print_throughput(options, asked);
-  fmt::print("\nBy the clock on the wall:\n");
+  fmt::print("\nBy the clock on the wall, N = 1000, planes, medium noise:\n");
   for (const std::string& code : options.codes) print_cores(code, 8 * options.rounds, asked);
   fmt::print("\nDepth between bins, in single precision, without noise:\n");
   for (const std::string& code : options.codes) print_depth_error(code, asked);
@@ -144,7 +163,7 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{"Decoding throughput beside its limit and its peers"};
   app.add_option("--code", options.codes, "k3, k4, k5, two-bucket, rank7; any number of them");
-  app.add_option("--samples", options.samples, "N; any number of them, multiples of 120");
+  app.add_option("--samples", options.samples, "N; any number of them");
   app.add_option("--rounds", options.rounds, "turns of each contender")
       ->check(CLI::Range(1, 100000));
   app.add_flag("--quick", options.quick, "medium noise only, 5 turns");

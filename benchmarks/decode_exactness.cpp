@@ -36,6 +36,9 @@ struct Options {
   std::uint64_t seed = 1;
 };
 
+/// N up to which the reference is branch and bound.
+constexpr int coarse_samples = 240;
+
 struct Counts {
   std::int64_t decoded = 0;
   std::int64_t mismatches = 0;
@@ -51,7 +54,7 @@ class Comparison {
         curve_(table_),
         branch_and_bound_(curve_),
         definition_(table_),
-        is_brute_(samples > 240) {}
+        is_brute_(samples > coarse_samples) {}
 
   static constexpr int block = 16 * pixels_per_kind;
   static constexpr int blocks = 16;
@@ -155,8 +158,9 @@ Counts compare_all_targets(const DecodeCode& code, int samples, const Options& o
   const double start = now_s();
   Comparison comparison(code, samples);
   const double of_each =
-      samples == 240 ? options.pixels / static_cast<double>(options.codes.size() * targets.size())
-                     : options.brute_force_pixels;
+      samples <= coarse_samples
+          ? options.pixels / static_cast<double>(options.codes.size() * targets.size())
+          : options.brute_force_pixels;
   const auto pixels = static_cast<std::int64_t>(std::ceil(of_each));
   std::vector<Counts> counts(targets.size());
   double reference_s = 0.0;
@@ -189,7 +193,7 @@ Counts compare_all_targets(const DecodeCode& code, int samples, const Options& o
   fmt::print(
       "    {:.0f} s, of which {:.0f} s are pixels and reference by {}; {} of its bins held "
       "against the definition\n",
-      now_s() - start, reference_s, samples == 240 ? "branch and bound" : "brute force",
+      now_s() - start, reference_s, samples <= coarse_samples ? "branch and bound" : "brute force",
       comparison.held_against_definition());
   std::fflush(stdout);
   return sum;
@@ -223,10 +227,11 @@ int main(int argc, char** argv) {
   bool is_quick = false;
   CLI::App app{"The decoder's bins against a double-precision reference on every instruction set"};
   app.add_option("--code", options.codes, "k3, k4, k5, two-bucket, rank7; any number of them");
-  app.add_option("--samples", options.samples, "N; any number of them, multiples of 120");
-  app.add_option("--pixels", options.pixels, "decoded at N = 240, over all codes and targets");
+  app.add_option("--samples", options.samples, "N; any number of them");
+  app.add_option("--pixels", options.pixels,
+                 "decoded at each N up to 240, over all codes and targets");
   app.add_option("--brute-force-pixels", options.brute_force_pixels,
-                 "of each code and target at other N");
+                 "of each code and target at finer N");
   app.add_option("--seed", options.seed, "of the pixels");
   app.add_flag("--quick", is_quick, "a thousandth of the pixels");
   CLI11_PARSE(app, argc, argv);

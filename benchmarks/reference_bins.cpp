@@ -191,7 +191,7 @@ void bins_by_brute_force(const ReferenceCurve& curve, const ReferencePixel* pixe
    std::min(count - first, pixels_at_once), bin + first);
 }
 
-BranchAndBound::BranchAndBound(const ReferenceCurve& curve) : curve_(&curve) {
+BranchAndBound::BranchAndBound(const ReferenceCurve& curve) {
   const int rank = curve.rank(), run_rows = run_blocks * reference_block;
   const int runs = (curve.samples() + run_rows - 1) / run_rows;
   const int blocks = (runs + reference_block - 1) / reference_block;

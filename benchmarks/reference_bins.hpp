@@ -19,6 +19,7 @@ void bins_by_brute_force(const ReferenceCurve& curve, const ReferencePixel* pixe
 /// thinkable score is behind is passed over.
 class BranchAndBound {
  public:
+  /// @param curve  outlives this and stays where it is
   explicit BranchAndBound(const ReferenceCurve& curve);
 
   std::int32_t bin(const ReferencePixel& pixel) const;
@@ -36,7 +37,6 @@ class BranchAndBound {
   };
 
  private:
-  const ReferenceCurve* curve_;
   std::vector<double> centre_, cosine_, sine_;
   View view_;
 };
