@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 
-#include "decode_setup.hpp"
+#include "directions_setup.hpp"
 #include "each_target.hpp"
 #include "generated_curves.hpp"
 
@@ -22,23 +22,6 @@ constexpr int vectors_per_level = 4096;
 #else
 constexpr int vectors_per_level = 128;
 #endif
-
-DirectionTable directions_of(const Curve& curve) {
-  DecodingTable table;
-  table.correlation = curve;
-  table.ambient_gain = Eigen::VectorXd::Zero(curve.cols());
-  table.exposure_s = Eigen::VectorXd::Ones(curve.cols());
-  return DirectionTable(AmbientProjection(table));
-}
-
-/// The curve of a code of this many bins, without what ambient light explains.
-DirectionTable directions_of(const std::string& code, int code_samples, int samples) {
-  Camera camera = camera_with("paper-10f0");
-  camera.samples = code_samples;
-  const CodeSet set = build_family(code, camera).resampled(samples);
-  camera.samples = samples;
-  return DirectionTable(AmbientProjection(make_decoding_table(ForwardModel(set, camera), camera)));
-}
 
 /// Vectors near the curve in units of its directions, as doubles and rounded to float with scales
 /// of all sizes.
