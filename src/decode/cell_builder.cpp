@@ -13,21 +13,18 @@ namespace {
 constexpr double certain_loss = 1e-9;
 // What rounding makes of a straight run.
 constexpr double flat = 1e-13;
+// Longer runs bend too much for a line to prove anything.
+constexpr std::int32_t longest_proven_run = 40;
 // A lead that no tie can have.
 constexpr double clear_lead = 5 * tie_tolerance;
 
-/// Calls use(place) where a lead, known at the corners, passes `level` on an edge of the box.
-template <typename Scores, typename Places, typename Use>
-void for_each_crossing(const Scores& lead, const Places& place, int sides, double level,
-                       const Use& use) {
+/// Calls use(from, to) for every edge of a box of so many sides, by the numbers of its corners.
+template <typename Use>
+void for_each_edge(int sides, const Use& use) {
   for (std::size_t from = 0; from < std::size_t{1} << sides; ++from)
     for (int s = 0; s < sides; ++s) {
       const std::size_t to = from | std::size_t{1} << s;
-      if (to == from) continue;
-      const double at_from = lead[from] - level, at_to = lead[to] - level;
-      if ((at_from > 0.0) == (at_to > 0.0)) continue;
-      const double t = at_from / (at_from - at_to);
-      use(((1 - t) * place[from] + t * place[to]).eval());
+      if (to != from) use(from, to);
     }
 }
 }  // namespace
@@ -57,21 +54,19 @@ CellBuilder::CellBuilder(const DistinctDirections& directions, const RivalSearch
       fit_unit_(fit_unit) {}
 
 CellBuilder::Corners CellBuilder::corners_of(const CellBox& box) const {
-  CellBox reaching = box;
-  reaching.half += CellRecord::overlap;
-  const double t = reaching.half / box.half;
+  const double half = box.half + CellRecord::overlap;
   Corners corners;
+  corners.axis = box.axis;
+  corners.side = 2 * half;
+  corners.lowest = box.centre;
+  for (int j = 0; j < rank_; ++j)
+    if (j != box.axis) corners.lowest[static_cast<std::size_t>(j)] -= half;
   for (int part = 0; part < corner_count_; ++part) {
-    const auto i = static_cast<std::size_t>(part);
-    corners.q[i] = reaching.centre;
-    corners.place[i].setZero();
-    corners.place[i][0] = 1.0;
-    for (int j = 0, s = 0; j < rank_; ++j) {
-      if (j == box.axis) continue;
-      const double side = (part >> s & 1) != 0 ? 1.0 : -1.0;
-      corners.q[i][static_cast<std::size_t>(j)] += side * reaching.half;
-      corners.place[i][++s] = side * t;
-    }
+    Place& place = corners.place[static_cast<std::size_t>(part)];
+    place.setZero();
+    place[0] = 1.0;
+    for (int s = 0; s + 1 < rank_; ++s)
+      place[s + 1] = ((part >> s & 1) != 0 ? half : -half) / box.half;
   }
   return corners;
 }
@@ -79,11 +74,15 @@ CellBuilder::Corners CellBuilder::corners_of(const CellBox& box) const {
 CellBuilder::Scores CellBuilder::scores_at(const Corners& corners, std::int32_t n) const {
   const double* u = directions_->unit.row(n).data();
   Scores scores;
-  for (int i = 0; i < corner_count_; ++i) {
-    const auto& q = corners.q[static_cast<std::size_t>(i)];
-    double sum = 0.0;
-    for (int j = 0; j < rank_; ++j) sum += q[static_cast<std::size_t>(j)] * u[j];
-    scores[static_cast<std::size_t>(i)] = sum;
+  scores[0] = 0.0;
+  for (int j = 0; j < rank_; ++j) scores[0] += corners.lowest[static_cast<std::size_t>(j)] * u[j];
+  // Every side doubles the corners that are known.
+  std::size_t known = 1;
+  for (int j = 0; j < rank_; ++j) {
+    if (j == corners.axis) continue;
+    const double step = corners.side * u[j];
+    for (std::size_t i = 0; i < known; ++i) scores[known + i] = scores[i] + step;
+    known *= 2;
   }
   return scores;
 }
@@ -94,25 +93,25 @@ void CellBuilder::winners(const CellBox& box, const std::vector<std::int32_t>& c
   scores_.clear();
   for (const std::int32_t n : candidates) scores_.push_back(scores_at(corners, n));
 
-  // The best at every corner, and in the middle, rule out most others.
+  // The best in the middle, and at every corner, rule out most others.
   const auto corner_count = static_cast<std::size_t>(corner_count_);
   std::array<std::size_t, most_corners + 1> rivals{};
   double best_sum = -1e300;
   for (std::size_t k = 0; k < scores_.size(); ++k) {
     double sum = 0.0;
     for (std::size_t i = 0; i < corner_count; ++i) {
-      if (scores_[k][i] > scores_[rivals[i]][i]) rivals[i] = k;
+      if (scores_[k][i] > scores_[rivals[i + 1]][i]) rivals[i + 1] = k;
       sum += scores_[k][i];
     }
     if (sum <= best_sum) continue;
     best_sum = sum;
-    rivals[corner_count] = k;
+    rivals[0] = k;
   }
   const auto last = rivals.begin() + corner_count_ + 1;
   const auto loses_to = [&](const Scores& own, const Scores& other) {
-    double largest = own[0] - other[0];
-    for (std::size_t i = 1; i < corner_count; ++i) largest = std::max(largest, own[i] - other[i]);
-    return largest < -certain_loss;
+    for (std::size_t i = 0; i < corner_count; ++i)
+      if (!(own[i] - other[i] < -certain_loss)) return false;
+    return true;
   };
   kept.clear();
   for (std::size_t k = 0; k < scores_.size(); ++k)
@@ -214,14 +213,23 @@ void CellBuilder::fit(const Corners& corners, CellRecord& run) const {
                                       [i](const Scores& lead) { return lead[i] > 0.0; });
     add(corners.place[i], static_cast<double>(winner), weight_of_corner);
   }
-  for (std::size_t n = 0; n < leads_.size(); ++n)
-    for_each_crossing(leads_[n], corners.place, rank_ - 1, 0.0,
-                      [&](const Place& place) { add(place, static_cast<double>(n) + 0.5, 1.0); });
+  const bool is_short = run.length <= longest_proven_run;
+  if (is_short)
+    for (std::size_t n = 0; n < leads_.size(); ++n) {
+      const Scores& lead = leads_[n];
+      for_each_edge(rank_ - 1, [&](std::size_t from, std::size_t to) {
+        if ((lead[from] > 0.0) == (lead[to] > 0.0)) return;
+        const double t = lead[from] / (lead[from] - lead[to]);
+        add((1 - t) * corners.place[from] + t * corners.place[to], static_cast<double>(n) + 0.5,
+            1.0);
+      });
+    }
 
   const Place solution = normal.ldlt().solve(right) / fit_unit_;
   if (!(solution.cwiseAbs().maxCoeff() < 32767.0)) return;  // without proof
   for (std::size_t s = 0; s < max_cell_rank; ++s)
     run.fit[s] = static_cast<std::int16_t>(std::lround(solution[static_cast<Eigen::Index>(s)]));
+  if (!is_short) return;
   const double units = std::ceil(slack(corners, run) / CellRecord::slack_unit) + 1;
   if (units < CellRecord::no_proof) run.slack = static_cast<std::int16_t>(units);
 }
@@ -239,14 +247,22 @@ double CellBuilder::slack(const Corners& corners, const CellRecord& run) const {
   double largest = 0.0;
   for (std::size_t n = 0; n < leads_.size(); ++n) {
     const double border = static_cast<double>(n) + 0.5;
-    for (const double level : {-clear_lead, clear_lead})
-      for_each_crossing(leads_[n], corners.place, rank_ - 1, level, [&](const Place& place) {
-        largest = std::max(largest, std::abs(fit.dot(place) - border));
-      });
+    const Scores& lead = leads_[n];
     for (std::size_t i = 0; i < static_cast<std::size_t>(corner_count_); ++i) {
-      if (leads_[n][i] < clear_lead) largest = std::max(largest, x_at_corner[i] - border);
-      if (leads_[n][i] > -clear_lead) largest = std::max(largest, border - x_at_corner[i]);
+      if (lead[i] < clear_lead) largest = std::max(largest, x_at_corner[i] - border);
+      if (lead[i] > -clear_lead) largest = std::max(largest, border - x_at_corner[i]);
     }
+    for_each_edge(rank_ - 1, [&](std::size_t from, std::size_t to) {
+      const double change = lead[to] - lead[from];
+      if (std::max(lead[from], lead[to]) < -clear_lead ||
+          std::min(lead[from], lead[to]) > clear_lead || change == 0.0)
+        return;
+      for (const double level : {-clear_lead, clear_lead}) {
+        const double t = std::clamp((level - lead[from]) / change, 0.0, 1.0);
+        const double x = x_at_corner[from] + t * (x_at_corner[to] - x_at_corner[from]);
+        largest = std::max(largest, std::abs(x - border));
+      }
+    });
   }
   return largest;
 }

@@ -46,7 +46,9 @@ class CellBuilder {
   using Scores = std::array<double, most_corners>;
   using Place = Eigen::Matrix<double, max_cell_rank, 1>;  // 1, t_1, t_2 ..
   struct Corners {
-    std::array<std::array<double, max_cell_rank>, most_corners> q;
+    int axis = 0;
+    double side = 0.0;
+    std::array<double, max_cell_rank> lowest{};  // the corner with the least coordinates
     std::array<Place, most_corners> place;
   };
 

@@ -24,7 +24,8 @@ int cut_bits_for(int rank, std::int32_t directions) {
   if (rank == 3) return 0;
   return directions <= 500 ? 1 : 2;
 }
-constexpr double cut_share = 0.125;  // of the roots
+/// Share of the roots that is cut: fewer of long curves, whose cells take longer to prove.
+double cut_share_for(std::int32_t directions) { return directions <= 4000 ? 0.125 : 0.04; }
 
 /// A root with its winners.
 struct Root {
@@ -32,6 +33,16 @@ struct Root {
   std::vector<std::int32_t> winners;
   double closeness = 0.0;  // to the curve
 };
+
+/// Index along each side of a half, from that of the whole box.
+std::array<std::size_t, max_cell_rank> child_index(std::array<std::size_t, max_cell_rank> index,
+                                                   int part, int rank) {
+  for (int s = 0; s + 1 < rank; ++s) {
+    auto& i = index[static_cast<std::size_t>(s)];
+    i = i << 1 | static_cast<std::size_t>(part >> s & 1);
+  }
+  return index;
+}
 
 /// Splits a box down to roots; `index` counts boxes of this size along each side.
 void split(CellBuilder& builder, int rank, int face, const CellBox& box, int levels,
@@ -49,25 +60,28 @@ void split(CellBuilder& builder, int rank, int face, const CellBox& box, int lev
     return;
   }
   for (int part = 0; part < 1 << (rank - 1); ++part) {
-    auto child = index;
-    for (int s = 0; s + 1 < rank; ++s) {
-      auto& i = child[static_cast<std::size_t>(s)];
-      i = i << 1 | static_cast<std::size_t>(part >> s & 1);
-    }
-    split(builder, rank, face, box.child(part, rank), levels - 1, child, winners, root_bits, roots);
+    split(builder, rank, face, box.child(part, rank), levels - 1, child_index(index, part, rank),
+          winners, root_bits, roots);
   }
 }
 
-/// The box of a cell of a cut root; `at` counts cells, the first coordinate being the slowest.
-CellBox cut_box(const CellBox& root, int rank, int cut_bits, std::size_t at) {
-  CellBox box = root;
-  for (int bit = cut_bits - 1; bit >= 0; --bit) {
-    int part = 0;
-    for (int s = 0; s + 1 < rank; ++s)
-      part |= static_cast<int>(at >> ((rank - 2 - s) * cut_bits + bit) & 1) << s;
-    box = box.child(part, rank);
+/// Cuts a box down to cells; `at` counts cells, the first coordinate being the slowest.
+void cut(CellBuilder& builder, int rank, const CellBox& box, int levels,
+         std::array<std::size_t, max_cell_rank> index, int cut_bits,
+         const std::vector<std::int32_t>& winners, std::vector<CellRecord>* cells) {
+  if (levels == 0) {
+    std::size_t at = 0;
+    for (int s = 0; s + 1 < rank; ++s) at = at << cut_bits | index[static_cast<std::size_t>(s)];
+    builder.runs(box, winners, cells[at]);
+    return;
   }
-  return box;
+  std::vector<std::int32_t> of_child;
+  for (int part = 0; part < 1 << (rank - 1); ++part) {
+    const CellBox child = box.child(part, rank);
+    builder.winners(child, winners, of_child);
+    cut(builder, rank, child, levels - 1, child_index(index, part, rank), cut_bits, of_child,
+        cells);
+  }
 }
 
 }  // namespace
@@ -111,7 +125,8 @@ CellTable::CellTable(const DistinctDirections& directions, const RivalSearch& ri
   // The roots closest to the curve are cut.
   std::vector<double> closeness;
   for (const Root& root : roots) closeness.push_back(root.closeness);
-  const auto cuts = static_cast<std::size_t>(cut_share * static_cast<double>(roots.size()));
+  const auto cuts = static_cast<std::size_t>(cut_share_for(directions.count()) *
+                                             static_cast<double>(roots.size()));
   std::nth_element(closeness.begin(), closeness.begin() + static_cast<std::ptrdiff_t>(cuts),
                    closeness.end(), std::greater<>());
   const double least = cut_bits_ > 0 ? closeness[cuts] : 2.0;
@@ -125,19 +140,11 @@ CellTable::CellTable(const DistinctDirections& directions, const RivalSearch& ri
   std::vector<Runs> runs(cells);
   parallel_for_blocks(static_cast<std::int64_t>(roots.size()), 64, [&](IndexRange block) {
     CellBuilder builder(directions, rivals, fit_unit_);
-    std::vector<std::int32_t> winners;
     for (auto i = static_cast<std::size_t>(block.begin); i < static_cast<std::size_t>(block.end);
          ++i) {
       const std::size_t first = roots_[i] >> 1;
-      if ((roots_[i] & 1u) == 0) {
-        builder.runs(roots[i].box, roots[i].winners, runs[first]);
-        continue;
-      }
-      for (std::size_t at = 0; at < std::size_t{1} << (sides * cut_bits_); ++at) {
-        const CellBox box = cut_box(roots[i].box, rank_, cut_bits_, at);
-        builder.winners(box, roots[i].winners, winners);
-        builder.runs(box, winners, runs[first + at]);
-      }
+      const int levels = (roots_[i] & 1u) != 0 ? cut_bits_ : 0;
+      cut(builder, rank_, roots[i].box, levels, {}, cut_bits_, roots[i].winners, &runs[first]);
     }
   });
   store(runs);
@@ -185,8 +192,7 @@ std::span<const CellRecord> CellTable::runs(const double* unit) const {
   for (int j = 0; j < rank_; ++j) {
     if (j == axis) continue;
     const double place = std::ldexp(unit[j] / std::abs(unit[axis]) + 1.0, bits - 1);
-    const auto fine =
-        static_cast<std::size_t>(std::clamp(static_cast<int>(place), 0, (1 << bits) - 1));
+    const auto fine = static_cast<std::size_t>(std::clamp(place, 0.0, std::ldexp(1.0, bits) - 1.0));
     root = root << root_bits_ | fine >> cut_bits_;
     cut = cut << cut_bits_ | (fine & ((std::size_t{1} << cut_bits_) - 1));
   }
