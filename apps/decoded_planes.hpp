@@ -19,7 +19,7 @@ namespace tofsmith::apps {
 /// Names of the planes that are written unless others are asked for: depth, signal, ambient,
 /// confidence, deviation, status.
 std::vector<std::string> plane_names();
-/// The same and bin, the nearest bin.
+/// The same and bin: of zncc the one that scores best, of others the nearest.
 std::vector<std::string> all_plane_names();
 
 /// Type of the items of a plane: status uint8, bin int32, others float32.

@@ -45,27 +45,31 @@ bool BinMatcher::search(bool wants_rivals, PixelTile& tile) const {
 }
 
 void BinMatcher::find_rivals(PixelTile& tile) const {
-  if (std::holds_alternative<CellSearch>(search_)) {
-    for (int i = 0; i < tile.pixels; ++i) tile.rival[i] = CellRecord::rival_in(tile.rival[i]);
-    return;
-  }
-  if (const auto* circle = std::get_if<CircleSearch>(&search_)) {
-    for (int i = 0; i < tile.pixels; ++i)
-      tile.rival[i] = tile.bin[i] < 0 ? -1 : circle->rival(tile.bin[i]);
-    return;
-  }
-  std::array<float, max_measurements> unit;
+  const auto* circle = std::get_if<CircleSearch>(&search_);
+  const bool has_cells = std::holds_alternative<CellSearch>(search_);
   for (int i = 0; i < tile.pixels; ++i) {
-    float length2 = 0.0f;
-    for (int j = 0; j < directions_.rank(); ++j) {
-      const float q = tile.plane[j * pixels_per_tile + i];
-      length2 += q * q;
-    }
-    const float scale = length2 > 0.0f ? 1.0f / std::sqrt(length2) : 0.0f;
-    for (int j = 0; j < directions_.rank(); ++j)
-      unit[static_cast<std::size_t>(j)] = scale * tile.plane[j * pixels_per_tile + i];
-    tile.rival[i] = tile.bin[i] < 0 ? -1 : rivals_.rival(tile.bin[i], unit.data());
+    std::int32_t& rival = tile.rival[i];
+    if (tile.bin[i] < 0)
+      rival = -1;
+    else if (circle)
+      rival = circle->rival(tile.bin[i]);
+    else if (!has_cells || !rivals_.is_rival(tile.bin[i], rival = CellRecord::rival_in(rival)))
+      rival = rival_of(tile, i);
   }
+}
+
+/// The rival of one pixel, for its own vector.
+std::int32_t BinMatcher::rival_of(const PixelTile& tile, int pixel) const {
+  std::array<float, max_measurements> unit;
+  float length2 = 0.0f;
+  for (int j = 0; j < directions_.rank(); ++j) {
+    const float q = tile.plane[j * pixels_per_tile + pixel];
+    unit[static_cast<std::size_t>(j)] = q;
+    length2 += q * q;
+  }
+  const float scale = length2 > 0.0f ? 1.0f / std::sqrt(length2) : 0.0f;
+  for (int j = 0; j < directions_.rank(); ++j) unit[static_cast<std::size_t>(j)] *= scale;
+  return rivals_.rival(tile.bin[pixel], unit.data());
 }
 
 /// Whether single precision tells where a pixel is. No search proves the bin of one that is not.

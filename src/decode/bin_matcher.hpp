@@ -28,7 +28,9 @@ class BinMatcher {
   /// @param for_outputs  as of TileProjection::project
   void match(const RawView& view, std::int64_t first, int pixels, bool for_outputs,
              PixelTile& tile) const;
-  /// Completes `rival` of a matched tile.
+  /// Completes `rival` of a matched tile: what the search found with the bin (rank 3 and 4: for the
+  /// centre of the cell; rank 2: for the bin's own direction) if it is outside the main lobe of the
+  /// pixel's bin, else the best for the pixel's own vector.
   void find_rivals(PixelTile& tile) const;
 
  private:
@@ -36,6 +38,7 @@ class BinMatcher {
   bool is_precise(const PixelTile& tile, int pixel) const;
   void decide(const RawView& view, std::int64_t first, int pixel, PixelTile& tile) const;
   std::int32_t choose(const double* unit) const;
+  std::int32_t rival_of(const PixelTile& tile, int pixel) const;
 
   DirectionTable directions_;
   ArcSearch arcs_;

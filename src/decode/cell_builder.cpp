@@ -11,8 +11,8 @@ namespace tofsmith {
 namespace {
 // In units of |q|, which is 1 to 2 on the cube: far above tie_tolerance and rounding.
 constexpr double certain_loss = 1e-9;
-// What rounding makes of a straight run.
-constexpr double flat = 1e-13;
+// What rounding may make of a straight run, in all: below any lead that proves something.
+constexpr double flat = 2e-12;
 // Longer runs bend too much for a line to prove anything.
 constexpr std::int32_t longest_proven_run = 40;
 // A lead that no tie can have.
@@ -177,18 +177,18 @@ void CellBuilder::split(const CellBox& box, const Corners& corners, std::int32_t
     found.push_back(run);
   };
   std::int32_t begin = first;
+  double dips = 0.0;  // of the run, in all
   for (std::int32_t n = first + 1; n < last; ++n) {
+    if (n == begin) continue;
     const Scores& after = all[static_cast<std::size_t>(n - first)];
     const Scores& before = all[static_cast<std::size_t>(n - first - 1)];
-    bool has_one_peak = n == begin;
-    if (!has_one_peak) {
-      has_one_peak = true;
-      for (std::size_t i = 0; i < corner_count; ++i)
-        has_one_peak = has_one_peak && after[i] - before[i] <= flat;
-    }
-    if (has_one_peak) continue;
+    double dip = 0.0;
+    for (std::size_t i = 0; i < corner_count; ++i) dip = std::max(dip, after[i] - before[i]);
+    dips += dip;
+    if (dips <= flat) continue;
     keep(begin, n);
     begin = n + 1;
+    dips = 0.0;
   }
   keep(begin, last);
 }

@@ -44,6 +44,17 @@ struct Scratch {
 /// Added to a number of up to 22 bits it leaves the nearest whole one in the lowest bits.
 constexpr float to_whole = 0x1.8p23f;
 
+/// 1 / v to 2^-22; elsewhere than on x86 approximations may be coarser.
+HWY_INLINE FloatVector reciprocal_of(FloatVector v) {
+  const Floats d;
+#if HWY_ARCH_X86
+  const auto near = hn::ApproximateReciprocal(v);
+  return hn::Mul(near, hn::NegMulAdd(v, near, hn::Set(d, 2.0f)));
+#else
+  return hn::Div(hn::Set(d, 1.0f), v);
+#endif
+}
+
 /// Cell and place in it of every pixel, and how much the place may be off; infinite where the pixel
 /// is too uncertain for its cell.
 template <int Rank>
@@ -63,7 +74,8 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
   const auto to_centre = hn::Sub(shrink, hn::Set(d, 1.0f));
   const auto infinite = hn::Set(d, std::numeric_limits<float>::infinity());
   const auto rounding_of_place = hn::Set(d, 1e-6f * (sides + 2));
-  constexpr float reach = 8e-6f;  // twice this and rounding is less than CellRecord::overlap
+  constexpr float farthest = 1e30f;  // beyond, reciprocals are lost
+  constexpr float reach = 8e-6f;     // twice this and rounding is less than CellRecord::overlap
   for (int i = 0; i < padded; i += lanes) {
     FloatVector q[Rank];
     for (int j = 0; j < Rank; ++j) q[j] = hn::Load(d, pixels.plane + j * tile + i);
@@ -77,11 +89,10 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
       axis = hn::IfThenElse(hn::RebindMask(di, leads), hn::Set(di, j), axis);
     }
     const auto error = hn::Load(d, pixels.error + i);
-    const auto has_cell = hn::Lt(error, hn::Mul(hn::Set(d, reach), largest));
+    const auto has_cell = hn::And(hn::Lt(error, hn::Mul(hn::Set(d, reach), largest)),
+                                  hn::Lt(largest, hn::Set(d, farthest)));
 
-    auto reciprocal = hn::ApproximateReciprocal(largest);
-    reciprocal = hn::Mul(reciprocal, hn::NegMulAdd(largest, reciprocal, hn::Set(d, 2.0f)));
-    const auto scale = hn::Mul(half, reciprocal);
+    const auto scale = hn::Mul(half, reciprocal_of(largest));
     // An error of q moves c by twice itself over the largest component, and t by G times that.
     const auto slip = hn::MulAdd(hn::Mul(error, scale), hn::Set(d, 4.1f), rounding_of_place);
     hn::Store(hn::IfThenElse(has_cell, slip, infinite), d, scratch.slip + i);

@@ -8,8 +8,8 @@
 namespace tofsmith {
 
 inline constexpr int max_cell_rank = 4;
-/// Directions a record can count.
-inline constexpr std::int32_t max_cell_directions = 32767;
+/// More directions take too long to prove; a record could count 32767.
+inline constexpr std::int32_t max_cell_directions = 16384;
 
 /// A run of neighbouring directions that may win in a cell of the sphere, among which the score has
 /// one peak; or, for a cell with several such runs or without a useful fit, where its records are.

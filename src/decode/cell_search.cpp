@@ -98,7 +98,7 @@ HWY_INLINE void search_runs(const CellSearchView& view, PixelTile& pixels, Scrat
 /// The best of the runs of one pixel; -1 where it is unsure.
 template <int Rank>
 HWY_INLINE std::int32_t search_list(const CellSearchView& view, std::int32_t pixel,
-                                    const Scratch& scratch, PixelTile& pixels) {
+                                    const Scratch& scratch, const PixelTile& pixels) {
   const CellRecord& cell = view.cells[scratch.cell[pixel]];
   const PixelVector<Rank> vector(view, pixels, pixel);
   float best = -std::numeric_limits<float>::infinity(), second = best;
@@ -119,7 +119,6 @@ HWY_INLINE std::int32_t search_list(const CellSearchView& view, std::int32_t pix
     if (score <= best) continue;
     best = score;
     leader = at;
-    pixels.rival[pixel] = run.rival;
   }
   return best - second > 2.0f * vector.margin ? leader : -1;
 }

@@ -3,6 +3,8 @@
 // The fast decoder against the plain reference, pixel by pixel.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "decode_setup.hpp"
 #include "each_target.hpp"
 #include "reference_decoder.hpp"
@@ -96,6 +98,17 @@ TEST(Decoder, AgreesWithTheReferenceAtAnyRank) {
     const DecodeSetup setup(code, camera_with("paper-30x"));
     expect_agreement(setup.decoder,
                      pixels_at_all_light_levels(setup.decoder.table(), pixels_per_level / 50), 397);
+  }
+}
+
+TEST(Decoder, AgreesWithTheReferenceOnHugeNumbers) {
+  for (const char* code :
+       {"hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5", "hamiltonian-k6"}) {
+    const DecodeSetup setup(code, camera_with("paper-30x"));
+    std::vector<float> raw = noisy_pixels(setup.decoder.table(), 1e4, 1e4, 500, 3);
+    for (std::size_t i = 0; i < raw.size(); ++i) raw[i] *= i % 2000 < 1000 ? 1e33f : 3e34f;
+    raw[0] = std::numeric_limits<float>::max();
+    expect_agreement(setup.decoder, raw, raw.size());
   }
 }
 

@@ -40,8 +40,8 @@ struct DecodingTable {
   double bin_m() const { return range_m / samples(); }
 
   /// Whether depths can be told apart at all: shapes agree, everything is finite, there are 3 to 64
-  /// measurements, and the correlation without what ambient light explains has rank >= 2 and at
-  /// least two different directions.
+  /// measurements (2 are enough where ambient light cancels), and the correlation without what
+  /// ambient light explains has rank >= 2 and at least two different directions.
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
