@@ -187,7 +187,7 @@ std::span<const CellRecord> CellTable::runs(const double* unit) const {
   for (int j = 1; j < rank_; ++j)
     if (std::abs(unit[j]) > std::abs(unit[axis])) axis = j;
   const int bits = root_bits_ + cut_bits_;
-  auto root = static_cast<std::size_t>(2 * axis + (unit[axis] < 0.0 ? 1 : 0));
+  std::size_t root = 2 * static_cast<std::size_t>(axis) + (unit[axis] < 0.0 ? 1 : 0);
   std::size_t cut = 0;
   for (int j = 0; j < rank_; ++j) {
     if (j == axis) continue;
