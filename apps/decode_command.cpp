@@ -98,7 +98,8 @@ DecodeSummary decode_all(const RawFramesReader& reader, int rows, const DecodeRo
 
 void run(const DecodeArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
-  const DecodingSource source = arguments.table.load(arguments.code, camera, arguments.taps);
+  const DecodingSource source = arguments.table.load(
+      arguments.code, camera, arguments.camera.is_default(), arguments.taps);
   const AnyDecoder decoder = make_decoder(arguments.method.method(), source.table,
                                           arguments.options, arguments.method.unwrap_weights());
   const double memory_bytes = 1e6 * arguments.memory_mb;
@@ -121,6 +122,8 @@ void run(const DecodeArguments& arguments, const Session& session) {
 
   nlohmann::ordered_json document = {{"code", source.name},
                                      {"camera", camera.name},
+                                     {"range_m", source.table.range_m},
+                                     {"range_source", source.range_source},
                                      {"method", name_of(arguments.method.method())},
                                      {"height", reader.height()},
                                      {"width", reader.width()},
@@ -129,6 +132,7 @@ void run(const DecodeArguments& arguments, const Session& session) {
   document["notes"] = source.notes;
   session.print_json(document);
   std::string lines = decode_lines(target, summary);
+  if (source.tell_range) lines += "\n" + source.range_line();
   for (const std::string& note : source.notes) lines += "\n" + note;
   if (!camera.lens && (target.path.extension() == ".ply" || arguments.kind == "z"))
     lines += "\nthe camera has no [lens]: its view was taken to be 60 degrees wide";

@@ -30,8 +30,8 @@ void Session::check_output(const std::filesystem::path& path) const {
 }
 
 void CameraArguments::add_to(CLI::App& command) {
-  command.add_option("--camera", name, "camera: a TOML file or a built-in name")
-      ->capture_default_str();
+  option = command.add_option("--camera", name, "camera: a TOML file or a built-in name")
+               ->capture_default_str();
   command
       .add_option("--set", settings,
                   "override a key of the camera, e.g. --set light.peak_factor=5 (repeatable)")

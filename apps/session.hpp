@@ -47,6 +47,10 @@ struct Session {
 struct CameraArguments {
   std::string name = "paper-10f0";
   std::vector<std::string> settings;
+  const CLI::Option* option = nullptr;  ///< `--camera`, if the subcommand has it
+
+  /// Whether nobody named a camera.
+  bool is_default() const { return option != nullptr && option->count() == 0; }
 
   /// Adds `--camera` and `--set` to a subcommand.
   void add_to(CLI::App& command);

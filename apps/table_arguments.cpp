@@ -58,10 +58,15 @@ void TableArguments::add_to(CLI::App& command) {
                    "keep a measured table's last sample though it equals the first");
 }
 
+std::string DecodingSource::range_line() const {
+  return fmt::format("range {:.4g} m ({})", table.range_m, range_source);
+}
+
 DecodingSource TableArguments::load(const std::string& code, const Camera& camera,
-                                    const TapArguments& taps) const {
+                                    bool default_camera, const TapArguments& taps) const {
   DecodingSource source;
-  if (names_measured_table(code)) {
+  const bool is_table = names_measured_table(code);
+  if (is_table) {
     source = load_measured(code, camera, taps);
   } else {
     const char* const of_tables = range_m_            ? "--range-m"
@@ -75,8 +80,18 @@ DecodingSource TableArguments::load(const std::string& code, const Camera& camer
           fmt::format("{} goes with a measured table; {} is a code, which the camera "
                       "says all of",
                       of_tables, code));
-    source = {played.name(), make_decoding_table(ForwardModel(played, camera), camera), {}};
+    source.name = played.name();
+    source.table = make_decoding_table(ForwardModel(played, camera), camera);
   }
+  if (range_m_)
+    source.range_source = "--range-m";
+  else if (default_camera)
+    source.range_source = fmt::format("of the default camera {}; {}", camera.name,
+                                      is_table ? "--range-m or --camera say otherwise"
+                                               : "--camera says otherwise");
+  else
+    source.range_source = fmt::format("of the camera {}", camera.name);
+  source.tell_range = is_table || default_camera;
   if (const auto note = ambiguity_note(source.table)) source.notes.push_back(*note);
   return source;
 }
@@ -93,8 +108,10 @@ DecodingSource TableArguments::load_measured(const std::string& path, const Came
   else if (measured.ambient_gain.size() == 0 && camera.sensor.readout == Readout::separate)
     if (const auto note = duty_note(path, measured)) notes.push_back(*note);
   try {
-    DecodingSource source{std::filesystem::path(path).stem().string(),
-                          make_decoding_table(measured, camera), std::move(notes)};
+    DecodingSource source;
+    source.name = std::filesystem::path(path).stem().string();
+    source.table = make_decoding_table(measured, camera);
+    source.notes = std::move(notes);
     if (range_m_) source.table.range_m = *range_m_;
     source.table.validate();
     return source;

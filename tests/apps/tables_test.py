@@ -48,6 +48,30 @@ class Tables(CommandLineTest):
         half, _ = self.decode("t.npy", "--range-m", str(RANGE_M / 2))
         np.testing.assert_allclose(half, depth / 2, rtol=1e-5)
 
+    def test_the_range_and_where_it_comes_from_are_told(self):
+        np.save(self.path("t.npy"), self.sweep())
+        self.frame()
+        self.write("c.toml", "fundamental_frequency_hz = 30e6\n")
+
+        def told(code, *more):
+            arguments = ["decode", "raw.npy", "--code", code, "-o", "d.npy", "--force", *more]
+            lines = [line for line in self.do(*arguments).splitlines() if "range" in line[:5]]
+            document = self.do_json(*arguments)
+            return lines, document["range_m"], document["range_source"]
+        line, range_m, source = told("t.npy")
+        self.assertEqual(line, ["range 9.993 m (of the default camera paper-10f0; --range-m or "
+                                "--camera say otherwise)"])
+        self.assertAlmostEqual(range_m, RANGE_M)
+        self.assertIn("default camera paper-10f0", source)
+        self.assertEqual(told("t.npy", "--range-m", "3"), (["range 3 m (--range-m)"], 3,
+                                                           "--range-m"))
+        line, range_m, _ = told("t.npy", "--camera", "c.toml")
+        self.assertEqual(line, ["range 4.997 m (of the camera c)"])
+        self.assertAlmostEqual(range_m, RANGE_M / 2)
+        self.assertEqual(told("hamiltonian-k3")[0], ["range 9.993 m (of the default camera "
+                                                     "paper-10f0; --camera says otherwise)"])
+        self.assertEqual(told("hamiltonian-k3", "--camera", "paper-10f0")[0], [])
+
     def test_quirks_are_told(self):
         table = self.sweep()
         self.frame()
