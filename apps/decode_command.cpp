@@ -80,6 +80,13 @@ DecodeTarget target_of(const DecodeArguments& arguments, const Camera& camera,
           .view = view_of(camera, reader.width(), reader.height())};
 }
 
+/// Not even --force may replace what is being read.
+void check_inputs_are_kept(const DecodeArguments& arguments, const DecodeTarget& target) {
+  const std::vector<std::string> inputs = {arguments.raw, arguments.code, arguments.camera.name,
+                                           arguments.maps.offset, arguments.maps.gain};
+  for (const std::filesystem::path& path : target.paths()) check_not_input(path, inputs);
+}
+
 /// Decodes all frames; if it does not come to the end of several, says how far it came.
 DecodeSummary decode_all(const RawFramesReader& reader, int rows, const DecodeRows& decode_rows,
                          DecodeOutput& output) {
@@ -89,8 +96,11 @@ DecodeSummary decode_all(const RawFramesReader& reader, int rows, const DecodeRo
     decode_frames(reader, rows, decode_rows, output, terminal_progress("decoding"), summary);
   } catch (...) {
     if (target.frames > 1)
-      fmt::print(stderr, "tofsmith: decoded {} of {} frames{}\n", summary.frames.size(),
-                 target.frames, target.stack ? "; the stack is not written" : "");
+      fmt::print(stderr, "tofsmith: decoded {} of {} frames; {}\n", summary.frames.size(),
+                 target.frames,
+                 target.stack             ? "with --stack nothing is kept unless all are decoded"
+                 : summary.frames.empty() ? "nothing is kept"
+                                          : "their files are kept");
     throw;
   }
   return summary;
@@ -98,8 +108,8 @@ DecodeSummary decode_all(const RawFramesReader& reader, int rows, const DecodeRo
 
 void run(const DecodeArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
-  const DecodingSource source = arguments.table.load(
-      arguments.code, camera, arguments.camera.is_default(), arguments.taps);
+  const DecodingSource source =
+      arguments.table.load(arguments.code, camera, arguments.camera.is_default(), arguments.taps);
   const AnyDecoder decoder = make_decoder(arguments.method.method(), source.table,
                                           arguments.options, arguments.method.unwrap_weights());
   const double memory_bytes = 1e6 * arguments.memory_mb;
@@ -115,8 +125,9 @@ void run(const DecodeArguments& arguments, const Session& session) {
           static_cast<std::size_t>(first_row) * static_cast<std::size_t>(raw.width),
           static_cast<std::size_t>(raw.pixels()));
   };
-  DecodeOutput output(target_of(arguments, camera, reader), session);
-  const DecodeTarget& target = output.target();
+  const DecodeTarget target = target_of(arguments, camera, reader);
+  check_inputs_are_kept(arguments, target);
+  DecodeOutput output(target, session);
   const int rows = rows_at_a_time(reader, target, memory_bytes);
   const DecodeSummary summary = decode_all(reader, rows, decode_rows, output);
 

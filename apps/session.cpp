@@ -78,6 +78,16 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
+void check_not_input(const std::filesystem::path& output, const std::vector<std::string>& inputs) {
+  std::error_code ignored;
+  for (const std::string& input : inputs)
+    if (std::filesystem::equivalent(output, input, ignored))
+      throw IoError(output.string(),
+                    fmt::format("is the input {} of this command; choose another name, which "
+                                "--force does not replace",
+                                input));
+}
+
 void create_directories(const std::filesystem::path& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);

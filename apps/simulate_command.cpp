@@ -31,6 +31,9 @@ void run(SimulateArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
   const CodeSet code = load_code(arguments.code, camera, arguments.taps.file_options());
   const LoadedScene scene = load_scene(arguments.scene, camera);
+  for (const std::string& output : {arguments.output, arguments.truth})
+    check_not_input(output, {arguments.scene.scene, arguments.scene.image,
+                             arguments.scene.ambient_image, arguments.code, arguments.camera.name});
   session.check_output(arguments.output);
   if (!arguments.truth.empty()) session.check_output(arguments.truth);
   const OperatingPoint middle = camera.operating.middle();

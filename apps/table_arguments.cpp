@@ -86,9 +86,9 @@ DecodingSource TableArguments::load(const std::string& code, const Camera& camer
   if (range_m_)
     source.range_source = "--range-m";
   else if (default_camera)
-    source.range_source = fmt::format("of the default camera {}; {}", camera.name,
-                                      is_table ? "--range-m or --camera say otherwise"
-                                               : "--camera says otherwise");
+    source.range_source =
+        fmt::format("of the default camera {}; {}", camera.name,
+                    is_table ? "--range-m or --camera say otherwise" : "--camera says otherwise");
   else
     source.range_source = fmt::format("of the camera {}", camera.name);
   source.tell_range = is_table || default_camera;

@@ -291,6 +291,21 @@ class Refusals(CommandLineTest):
         self.refuse(["evaluate", "sinusoid-k4", "--trials", "100000000", "-o", "e.csv"], "e.csv",
                     "--force")
 
+    def test_outputs_that_are_inputs(self):
+        np.save(self.path("raw.npy"), np.ones((4, 5, 3), np.float32))
+        np.save(self.path("map.npy"), np.ones((4, 5), np.float32))
+        np.save(self.path("t.npy"), np.random.default_rng(1).random((60, 3)))
+        os.symlink("raw.npy", self.path("link.npy"))
+        os.mkdir(self.path("d"))
+        for output in ("raw.npy", "d/../raw.npy", "link.npy", "map.npy", "t.npy"):
+            self.refuse(["decode", "raw.npy", "--code", "t.npy", "--gain-map", "map.npy", "-o",
+                         output, "--force"], output, "input", "choose another name")
+        self.refuse(["decode", "raw.npy", "--code", "t.npy", "--outputs", "depth,status",
+                     "--stack", "--offset-map", "map.npy", "-o", "map.npy", "--force"], "map.npy",
+                    "input")
+        self.refuse(["simulate", "map.npy", "--code", "sinusoid-k4", "-o", "map.npy", "--force"],
+                    "map.npy", "input")
+
     def test_designs(self):
         self.refuse(["report", "."], "design.json")
         self.write("design.json", "{}")

@@ -220,9 +220,9 @@ class Interrupts(CommandLineTest):
         self.wait_for("d-0002.npy")
         process.send_signal(signal.SIGINT)
         error = self.end(process, 130)
-        self.assertIn("interrupted", error)
+        self.assertTrue(error.endswith("tofsmith: interrupted\n"), error)
         done = [name for name in self.files() if name.startswith("d-")]
-        self.assertIn(f"decoded {len(done)} of 3000 frames", error)
+        self.assertIn(f"decoded {len(done)} of 3000 frames; their files are kept", error)
         for name in done:
             self.assertEqual(np.load(self.path(name)).shape, (600, 800))
 
@@ -231,7 +231,9 @@ class Interrupts(CommandLineTest):
         while not [name for name in self.files() if ".tofsmith" in name]:
             time.sleep(0.05)
         process.send_signal(signal.SIGINT)
-        self.assertIn("the stack is not written", self.end(process, 130))
+        error = self.end(process, 130)
+        self.assertIn("with --stack nothing is kept unless all are decoded", error)
+        self.assertTrue(error.endswith("tofsmith: interrupted\n"), error)
         self.assertEqual(self.files(), ["raw.npy"])
 
     def test_a_file_that_shrinks_ends_in_an_error(self):
