@@ -9,8 +9,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "number_checks.hpp"
+#include "played_code.hpp"
 #include "session.hpp"
-#include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/io/measured_table_file.hpp"
@@ -18,12 +19,6 @@
 namespace tofsmith::apps {
 
 namespace {
-
-bool names_measured_table(const std::string& code) {
-  std::error_code ignored;
-  return !is_family(code) && std::filesystem::is_regular_file(code, ignored) &&
-         is_measured_table(code);
-}
 
 /// Ambient light that is taken to be equal, though the columns look as if duties were not.
 std::optional<std::string> duty_note(const std::string& path, const MeasuredTable& measured) {
@@ -34,7 +29,8 @@ std::optional<std::string> duty_note(const std::string& path, const MeasuredTabl
   return fmt::format(
       "{}: ambient light was taken to add the same to every measurement, but the "
       "means of the columns differ; --ambient mean or none, or an array 'ambient', "
-      "says otherwise",
+      "says otherwise (or a dark offset was not subtracted: an array 'offset_dn' says "
+      "what raw numbers are without light)",
       path);
 }
 
@@ -44,7 +40,7 @@ void TableArguments::add_to(CLI::App& command) {
   command
       .add_option("--range-m", range_m_,
                   "depth of the period of a measured table in metres (the camera's)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number(1e6));
   command
       .add_option("--ambient", ambient_,
                   "what constant light adds to the columns of a measured table: as much to each "
@@ -74,7 +70,7 @@ DecodingSource TableArguments::load(const std::string& code, const Camera& camer
                                   : !axes_.empty()    ? "--table-axes"
                                   : keep_end_point_   ? "--keep-end-point"
                                                       : nullptr;
-    const CodeSet played = load_code(code, camera, taps.file_options());
+    const CodeSet played = load_played_code(code, camera, taps);
     if (of_tables)
       throw UsageError(
           fmt::format("{} goes with a measured table; {} is a code, which the camera "
