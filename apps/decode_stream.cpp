@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <thread>
 #include <utility>
 
 #include "read_ahead.hpp"
@@ -90,9 +91,10 @@ int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target, do
   constexpr double comfortable_bytes = 32e6;
   const double rows =
       row > 0.0 ? std::min(memory_bytes - whole, comfortable_bytes) / row : target.view.height;
-  constexpr int few_pixels = 1 << 17;
-  const int most = slowly ? std::clamp(few_pixels / target.view.width, 1, target.view.height)
-                          : target.view.height;
+  // Decoders split bands into blocks of 16384 pixels: one for every core.
+  const int few_rows = 16384 * static_cast<int>(std::max(1U, std::thread::hardware_concurrency())) /
+                       target.view.width;
+  const int most = slowly ? std::clamp(few_rows, 1, target.view.height) : target.view.height;
   return std::clamp(static_cast<int>(rows), 1, most);
 }
 

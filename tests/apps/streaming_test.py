@@ -194,7 +194,7 @@ class Streaming(CommandLineTest):
             more = ("--set", "sensor.adc_bits=12") if "gain" in setting else ()
             self.assertEqual(self.decode("--force", "--set", setting, *more)["notes"], [])
 
-    def test_progress_is_of_rows_by_ml_too(self):
+    def test_the_small_bands_of_ml_make_whole_frames(self):
         raw = np.full((3, 300, 600, 3), 1000, "u2")
         raw[..., 0] = 4000
         np.save(self.path("raw.npy"), raw)

@@ -160,7 +160,7 @@ TEST_F(MeasuredTableFileTest, PutsTheTapsOfAnExposureSideBySide) {
     EXPECT_DOUBLE_EQ(blocked.ambient_gain[i], 0.1 * source[i]);
   }
   EXPECT_THAT(refusal(functions, {.layout = {2, std::nullopt}}),
-              HasSubstr("expected the tap order"));
+              HasSubstr("expected --tap-order blocked"));
   EXPECT_THAT(refusal(functions, {.layout = {4, TapOrder::blocked}}),
               HasSubstr("multiple of taps"));
 }
