@@ -83,8 +83,8 @@ class Tables(CommandLineTest):
         depth, notes = self.decode("closed.npy")
         np.testing.assert_array_equal(depth, expected)
         self.assertIn("(3, 121) was taken as (K, N)", notes[0])
-        self.assertIn("repeats the first and was dropped: N = 120, which makes depths 0.833 % larger",
-                      notes[1])
+        self.assertIn("repeats the first and was dropped: N = 120, which makes depths 0.833 % "
+                      "larger", notes[1])
         self.assertIn("--keep-end-point", notes[1])
         text = self.do("decode", "raw.npy", "--code", "closed.npy", "-o", "d.npy")
         self.assertIn("dropped", text)
