@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "played_code.hpp"
 #include "tap_arguments.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/camera/generator_report.hpp"
@@ -160,6 +161,7 @@ void add_codes_command(CLI::App& app, Session& session) {
     if (arguments->samples > 0)
       arguments->camera.settings.push_back(fmt::format("samples={}", arguments->samples));
     const Camera camera = arguments->camera.load();
+    require_no_measured_table(arguments->name);
     const CodeSet code = load_code(arguments->name, camera, arguments->taps.file_options());
     if (!arguments->output.empty())
       write(session, code, camera, arguments->output, arguments->taps.tap_order());

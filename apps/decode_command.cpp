@@ -12,10 +12,12 @@
 #include "decode_stream.hpp"
 #include "map_arguments.hpp"
 #include "method_arguments.hpp"
+#include "number_checks.hpp"
 #include "scene_source.hpp"
 #include "table_arguments.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/io/raw_frames_reader.hpp"
 
@@ -80,6 +82,35 @@ DecodeTarget target_of(const DecodeArguments& arguments, const Camera& camera,
           .view = view_of(camera, reader.width(), reader.height())};
 }
 
+/// Whole numbers that nothing was said about.
+std::optional<std::string> electrons_note(const RawFramesReader& reader,
+                                          const DecodingTable& table) {
+  const bool whole = reader.type() == NpyType::uint8 || reader.type() == NpyType::uint16;
+  if (!whole || table.saturation_level || (table.gain_e_per_raw.array() != 1.0).any() ||
+      (table.black_level.array() != 0.0).any())
+    return std::nullopt;
+  return "raw numbers are taken as electrons: no gain, black level or saturation is set (--set "
+         "sensor.adc_bits=.. --set sensor.gain_e_per_dn=.. --set sensor.black_level_dn=..)";
+}
+
+/// Before any frame is decoded.
+void check_range_fits(const std::filesystem::path& path, double range_m) {
+  constexpr double largest_m = 65.535;
+  if (path.extension() == ".png" && range_m > largest_m)
+    throw IoError(path.string(),
+                  fmt::format("found a range of {:.4g} m; expected at most {} m, all "
+                              "that 16 bits of millimetres hold (write .npy, .exr "
+                              "or .pfm)",
+                              range_m, largest_m));
+}
+
+/// Not even --force may replace what is being read.
+void check_inputs_are_kept(const DecodeArguments& arguments, const DecodeTarget& target) {
+  const std::vector<std::string> inputs = {arguments.raw, arguments.code, arguments.camera.name,
+                                           arguments.maps.offset, arguments.maps.gain};
+  for (const std::filesystem::path& path : target.paths()) check_not_input(path, inputs);
+}
+
 /// Decodes all frames; if it does not come to the end of several, says how far it came.
 DecodeSummary decode_all(const RawFramesReader& reader, int rows, const DecodeRows& decode_rows,
                          DecodeOutput& output) {
@@ -89,8 +120,11 @@ DecodeSummary decode_all(const RawFramesReader& reader, int rows, const DecodeRo
     decode_frames(reader, rows, decode_rows, output, terminal_progress("decoding"), summary);
   } catch (...) {
     if (target.frames > 1)
-      fmt::print(stderr, "tofsmith: decoded {} of {} frames{}\n", summary.frames.size(),
-                 target.frames, target.stack ? "; the stack is not written" : "");
+      fmt::print(stderr, "tofsmith: decoded {} of {} frames; {}\n", summary.frames.size(),
+                 target.frames,
+                 target.stack             ? "with --stack nothing is kept unless all are decoded"
+                 : summary.frames.empty() ? "nothing is kept"
+                                          : "their files are kept");
     throw;
   }
   return summary;
@@ -98,7 +132,8 @@ DecodeSummary decode_all(const RawFramesReader& reader, int rows, const DecodeRo
 
 void run(const DecodeArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
-  const DecodingSource source = arguments.table.load(arguments.code, camera, arguments.taps);
+  DecodingSource source =
+      arguments.table.load(arguments.code, camera, arguments.camera.is_default(), arguments.taps);
   const AnyDecoder decoder = make_decoder(arguments.method.method(), source.table,
                                           arguments.options, arguments.method.unwrap_weights());
   const double memory_bytes = 1e6 * arguments.memory_mb;
@@ -106,6 +141,7 @@ void run(const DecodeArguments& arguments, const Session& session) {
                                {.measurements = source.table.measurements(),
                                 .layout = parse_raw_layout(arguments.layout),
                                 .largest_in_memory = static_cast<std::uint64_t>(memory_bytes)});
+  if (const auto note = electrons_note(reader, source.table)) source.notes.push_back(*note);
   const PixelMaps maps = arguments.maps.load(reader.height(), reader.width());
   const DecodeRows decode_rows = [&](const RawView& raw, int first_row, const DecodedView& decoded,
                                      const Progress& progress) {
@@ -114,13 +150,18 @@ void run(const DecodeArguments& arguments, const Session& session) {
           static_cast<std::size_t>(first_row) * static_cast<std::size_t>(raw.width),
           static_cast<std::size_t>(raw.pixels()));
   };
-  DecodeOutput output(target_of(arguments, camera, reader), session);
-  const DecodeTarget& target = output.target();
-  const int rows = rows_at_a_time(reader, target, memory_bytes);
+  const DecodeTarget target = target_of(arguments, camera, reader);
+  check_inputs_are_kept(arguments, target);
+  check_range_fits(target.path, source.table.range_m);
+  DecodeOutput output(target, session);
+  const int rows =
+      rows_at_a_time(reader, target, memory_bytes, arguments.method.method() == DecodeMethod::ml);
   const DecodeSummary summary = decode_all(reader, rows, decode_rows, output);
 
   nlohmann::ordered_json document = {{"code", source.name},
                                      {"camera", camera.name},
+                                     {"range_m", source.table.range_m},
+                                     {"range_source", source.range_source},
                                      {"method", name_of(arguments.method.method())},
                                      {"height", reader.height()},
                                      {"width", reader.width()},
@@ -129,6 +170,7 @@ void run(const DecodeArguments& arguments, const Session& session) {
   document["notes"] = source.notes;
   session.print_json(document);
   std::string lines = decode_lines(target, summary);
+  if (source.tell_range) lines += "\n" + source.range_line();
   for (const std::string& note : source.notes) lines += "\n" + note;
   if (!camera.lens && (target.path.extension() == ".ply" || arguments.kind == "z"))
     lines += "\nthe camera has no [lens]: its view was taken to be 60 degrees wide";
@@ -172,7 +214,7 @@ void add_decode_command(CLI::App& app, Session& session) {
       ->check(CLI::IsMember({"radial", "z"}))
       ->capture_default_str();
   command->add_option("--frame", arguments->frame, "decode this frame only, counted from 0")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_from_0_on());
   command
       ->add_option("--low-signal-sigma", arguments->options.low_signal_sigma,
                    "signals below this many standard deviations are marked low_signal")
@@ -192,7 +234,7 @@ void add_decode_command(CLI::App& app, Session& session) {
       ->add_option("--memory-mb", arguments->memory_mb,
                    "memory for frames under way [MB]; larger frames go in bands of rows. The "
                    "program itself takes some 50 MB more")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number(1e9))
       ->capture_default_str();
   command->callback([arguments, &session] { run(*arguments, session); });
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <thread>
 #include <utility>
 
 #include "read_ahead.hpp"
@@ -68,7 +69,8 @@ StatusCounts DecodeSummary::total() const {
   return sum;
 }
 
-int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target, double memory_bytes) {
+int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target, double memory_bytes,
+                   bool slowly) {
   const double row_planes =
       static_cast<double>(bytes_per_pixel(target.needed_planes())) * target.view.width;
   const bool in_rows = target.in_rows();
@@ -81,15 +83,19 @@ int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target, do
     throw IoError(
         target.path.string(),
         fmt::format("frames of {} x {} pixels take {:.3g} MB to be written so; expected at most "
-                    "{:.3g} MB (fewer --outputs take less; .npy is written row by row, with "
-                    "--stack every plane; --memory-mb allows more)",
+                    "{:.3g} MB (fewer --outputs take less{}; --memory-mb allows more)",
                     target.view.height, target.view.width, 1e-6 * (whole + row),
-                    1e-6 * memory_bytes));
+                    1e-6 * memory_bytes,
+                    in_rows ? "" : "; .npy is written row by row, with --stack every plane"));
   // Larger bands are no faster: new memory costs more than another call.
   constexpr double comfortable_bytes = 32e6;
   const double rows =
       row > 0.0 ? std::min(memory_bytes - whole, comfortable_bytes) / row : target.view.height;
-  return std::clamp(static_cast<int>(rows), 1, target.view.height);
+  // Decoders split bands into blocks of 16384 pixels: one for every core.
+  const int few_rows = 16384 * static_cast<int>(std::max(1U, std::thread::hardware_concurrency())) /
+                       target.view.width;
+  const int most = slowly ? std::clamp(few_rows, 1, target.view.height) : target.view.height;
+  return std::clamp(static_cast<int>(rows), 1, most);
 }
 
 void decode_frames(const RawFramesReader& reader, int rows, const DecodeRows& decode_rows,

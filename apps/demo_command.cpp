@@ -186,7 +186,10 @@ void add_demo_command(CLI::App& app, Session& session) {
   command->add_option("--trials", arguments->trials, "trials per operating point")
       ->check(CLI::Range(1000, 100000000))
       ->capture_default_str();
-  command->callback([arguments, &session] { run(*arguments, session); });
+  command->callback([arguments, &session] {
+    session.directory = arguments->output;
+    run(*arguments, session);
+  });
 }
 
 }  // namespace tofsmith::apps

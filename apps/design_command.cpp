@@ -115,7 +115,10 @@ void add_design_command(CLI::App& app, Session& session) {
       ->capture_default_str();
   command->add_option("-o,--output", arguments->output,
                       "directory for codes, figures and the report; an interrupted run resumes");
-  command->callback([arguments, &session] { run(*arguments, session); });
+  command->callback([arguments, &session] {
+    session.directory = arguments->output;
+    run(*arguments, session);
+  });
 }
 
 }  // namespace tofsmith::apps

@@ -4,10 +4,11 @@
 
 #include "commands.hpp"
 #include "method_arguments.hpp"
+#include "number_checks.hpp"
+#include "played_code.hpp"
 #include "table_arguments.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
-#include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/report/design_report.hpp"
 #include "zncc_comparison.hpp"
@@ -156,7 +157,7 @@ void run(EvaluateArguments& arguments, const Session& session) {
   check_output(arguments.output, session);
   std::vector<CodeSet> codes;
   for (const std::string& name : arguments.codes)
-    codes.push_back(load_code(name, camera, arguments.taps.file_options()));
+    codes.push_back(load_played_code(name, camera, arguments.taps));
   const std::vector<EvaluatedCode> evaluated = evaluate_all(codes, camera, arguments);
   if (!arguments.output.empty())
     write(arguments.output, session, camera, codes, evaluated, arguments.options);
@@ -184,7 +185,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
   command
       ->add_option("--outlier-threshold", arguments->options.outlier_threshold_m,
                    "circular errors beyond this many metres are outliers")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_from_0_on())
       ->capture_default_str();
   command->add_flag("--on-bins", arguments->on_bins,
                     "true depths on bins only (flatters codes; for comparison with others)");

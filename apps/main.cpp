@@ -84,6 +84,16 @@ int finish_output() {
   return exit_failed;
 }
 
+int stop_interrupted(const Session& session) {
+  std::error_code ignored;
+  const bool kept = std::filesystem::is_directory(session.directory, ignored) &&
+                    !std::filesystem::is_empty(session.directory, ignored);
+  fmt::print(
+      stderr, "tofsmith: interrupted{}\n",
+      kept ? fmt::format("; finished files are kept in {}", session.directory.string()) : "");
+  return exit_interrupted;
+}
+
 int run(int argc, char** argv) {
   Session session;
   session.command_line = as_typed(argc, argv);
@@ -123,6 +133,8 @@ int run(int argc, char** argv) {
       return refuse_usage(app, usage_problem(app, error));
     app.exit(error);  // --help, --version
     return finish_output();
+  } catch (const Interrupted&) {
+    return stop_interrupted(session);
   }
 }
 
@@ -132,9 +144,6 @@ int main(int argc, char** argv) {
   catch_interrupts();
   try {
     return run(argc, argv);
-  } catch (const Interrupted&) {
-    fmt::print(stderr, "tofsmith: interrupted; finished files are kept\n");
-    return exit_interrupted;
   } catch (const UsageError& error) {
     fmt::print(stderr, "tofsmith: {}\n", error.what());
     return exit_usage;

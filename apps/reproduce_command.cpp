@@ -115,7 +115,10 @@ void add_reproduce_command(CLI::App& app, Session& session) {
       ->add_option("-o,--output", arguments->output,
                    "directory; figures that are finished there are not made again (--force does)")
       ->capture_default_str();
-  command->callback([arguments, &session] { run(*arguments, session); });
+  command->callback([arguments, &session] {
+    session.directory = arguments->output;
+    run(*arguments, session);
+  });
 }
 
 }  // namespace tofsmith::apps

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "number_checks.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/albedo_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
@@ -123,7 +124,7 @@ void SceneSource::add_to(CLI::App& command) {
   command.add_option("--height", height, "rows of a built-in scene or a mesh (240)")
       ->check(CLI::Range(1, 16384));
   command.add_option("--scale-m", scale_m, "metres per unit of a mesh (1)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
 }
 
 PinholeView view_of(const Camera& camera, int width, int height) {

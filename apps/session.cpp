@@ -30,8 +30,8 @@ void Session::check_output(const std::filesystem::path& path) const {
 }
 
 void CameraArguments::add_to(CLI::App& command) {
-  command.add_option("--camera", name, "camera: a TOML file or a built-in name")
-      ->capture_default_str();
+  option = command.add_option("--camera", name, "camera: a TOML file or a built-in name")
+               ->capture_default_str();
   command
       .add_option("--set", settings,
                   "override a key of the camera, e.g. --set light.peak_factor=5 (repeatable)")
@@ -76,6 +76,16 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows) {
     text += line + "\n";
   }
   return text;
+}
+
+void check_not_input(const std::filesystem::path& output, const std::vector<std::string>& inputs) {
+  std::error_code ignored;
+  for (const std::string& input : inputs)
+    if (std::filesystem::equivalent(output, input, ignored))
+      throw IoError(output.string(),
+                    fmt::format("is the input {} of this command; choose another name, which "
+                                "--force does not replace",
+                                input));
 }
 
 void create_directories(const std::filesystem::path& directory) {

@@ -23,10 +23,11 @@ class UsageError : public std::runtime_error {
 
 /// What every subcommand shares: flags, how to print, how to write.
 struct Session {
-  bool json = false;         ///< one JSON document on stdout and nothing else there
-  bool force = false;        ///< overwrite output files
-  int threads = 0;           ///< 0 = every core
-  std::string command_line;  ///< as typed, for reports
+  bool json = false;                ///< one JSON document on stdout and nothing else there
+  bool force = false;               ///< overwrite output files
+  int threads = 0;                  ///< 0 = every core
+  std::string command_line;         ///< as typed, for reports
+  std::filesystem::path directory;  ///< where the command keeps finished files, if it does
 
   OutputPolicy output_policy() const {
     return force ? OutputPolicy::overwrite : OutputPolicy::refuse_existing;
@@ -47,6 +48,10 @@ struct Session {
 struct CameraArguments {
   std::string name = "paper-10f0";
   std::vector<std::string> settings;
+  const CLI::Option* option = nullptr;  ///< `--camera`, if the subcommand has it
+
+  /// Whether nobody named a camera.
+  bool is_default() const { return option != nullptr && option->count() == 0; }
 
   /// Adds `--camera` and `--set` to a subcommand.
   void add_to(CLI::App& command);
@@ -66,6 +71,11 @@ std::string rate_text(double per_second);
 
 /// A table of text with a header, columns padded, numbers (all columns but the first) to the right.
 std::string text_table(const std::vector<std::vector<std::string>>& rows);
+
+/// Fails if an output is one of the files that the command reads: writing would destroy it.
+/// @param inputs  paths, or names that are no files
+/// @throws IoError naming the output
+void check_not_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
 /// Creates a directory and its parents. @throws IoError naming it
 void create_directories(const std::filesystem::path& directory);

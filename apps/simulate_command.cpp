@@ -5,10 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "number_checks.hpp"
+#include "played_code.hpp"
 #include "scene_source.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
-#include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/raw_frames_file.hpp"
 #include "tofsmith/simulate/capture.hpp"
@@ -29,8 +30,11 @@ struct SimulateArguments {
 
 void run(SimulateArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
-  const CodeSet code = load_code(arguments.code, camera, arguments.taps.file_options());
+  const CodeSet code = load_played_code(arguments.code, camera, arguments.taps);
   const LoadedScene scene = load_scene(arguments.scene, camera);
+  for (const std::string& output : {arguments.output, arguments.truth})
+    check_not_input(output, {arguments.scene.scene, arguments.scene.image,
+                             arguments.scene.ambient_image, arguments.code, arguments.camera.name});
   session.check_output(arguments.output);
   if (!arguments.truth.empty()) session.check_output(arguments.truth);
   const OperatingPoint middle = camera.operating.middle();
@@ -92,7 +96,7 @@ void add_simulate_command(CLI::App& app, Session& session) {
   command
       ->add_option("--reference-distance", arguments->options.reference_distance_m,
                    "where the signal is as given [m]")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str();
   command->add_flag("!--no-falloff", arguments->options.falloff,
                     "signal depends on albedo only, not on distance and angle");

@@ -9,8 +9,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "number_checks.hpp"
+#include "played_code.hpp"
 #include "session.hpp"
-#include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/io/measured_table_file.hpp"
@@ -18,12 +19,6 @@
 namespace tofsmith::apps {
 
 namespace {
-
-bool names_measured_table(const std::string& code) {
-  std::error_code ignored;
-  return !is_family(code) && std::filesystem::is_regular_file(code, ignored) &&
-         is_measured_table(code);
-}
 
 /// Ambient light that is taken to be equal, though the columns look as if duties were not.
 std::optional<std::string> duty_note(const std::string& path, const MeasuredTable& measured) {
@@ -34,7 +29,8 @@ std::optional<std::string> duty_note(const std::string& path, const MeasuredTabl
   return fmt::format(
       "{}: ambient light was taken to add the same to every measurement, but the "
       "means of the columns differ; --ambient mean or none, or an array 'ambient', "
-      "says otherwise",
+      "says otherwise (or a dark offset was not subtracted: an array 'offset_dn' says "
+      "what raw numbers are without light)",
       path);
 }
 
@@ -44,7 +40,7 @@ void TableArguments::add_to(CLI::App& command) {
   command
       .add_option("--range-m", range_m_,
                   "depth of the period of a measured table in metres (the camera's)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number(1e6));
   command
       .add_option("--ambient", ambient_,
                   "what constant light adds to the columns of a measured table: as much to each "
@@ -58,10 +54,15 @@ void TableArguments::add_to(CLI::App& command) {
                    "keep a measured table's last sample though it equals the first");
 }
 
+std::string DecodingSource::range_line() const {
+  return fmt::format("range {:.4g} m ({})", table.range_m, range_source);
+}
+
 DecodingSource TableArguments::load(const std::string& code, const Camera& camera,
-                                    const TapArguments& taps) const {
+                                    bool default_camera, const TapArguments& taps) const {
   DecodingSource source;
-  if (names_measured_table(code)) {
+  const bool is_table = names_measured_table(code);
+  if (is_table) {
     source = load_measured(code, camera, taps);
   } else {
     const char* const of_tables = range_m_            ? "--range-m"
@@ -69,14 +70,24 @@ DecodingSource TableArguments::load(const std::string& code, const Camera& camer
                                   : !axes_.empty()    ? "--table-axes"
                                   : keep_end_point_   ? "--keep-end-point"
                                                       : nullptr;
-    const CodeSet played = load_code(code, camera, taps.file_options());
+    const CodeSet played = load_played_code(code, camera, taps);
     if (of_tables)
       throw UsageError(
           fmt::format("{} goes with a measured table; {} is a code, which the camera "
                       "says all of",
                       of_tables, code));
-    source = {played.name(), make_decoding_table(ForwardModel(played, camera), camera), {}};
+    source.name = played.name();
+    source.table = make_decoding_table(ForwardModel(played, camera), camera);
   }
+  if (range_m_)
+    source.range_source = "--range-m";
+  else if (default_camera)
+    source.range_source =
+        fmt::format("of the default camera {}; {}", camera.name,
+                    is_table ? "--range-m or --camera say otherwise" : "--camera says otherwise");
+  else
+    source.range_source = fmt::format("of the camera {}", camera.name);
+  source.tell_range = is_table || default_camera;
   if (const auto note = ambiguity_note(source.table)) source.notes.push_back(*note);
   return source;
 }
@@ -93,8 +104,10 @@ DecodingSource TableArguments::load_measured(const std::string& path, const Came
   else if (measured.ambient_gain.size() == 0 && camera.sensor.readout == Readout::separate)
     if (const auto note = duty_note(path, measured)) notes.push_back(*note);
   try {
-    DecodingSource source{std::filesystem::path(path).stem().string(),
-                          make_decoding_table(measured, camera), std::move(notes)};
+    DecodingSource source;
+    source.name = std::filesystem::path(path).stem().string();
+    source.table = make_decoding_table(measured, camera);
+    source.notes = std::move(notes);
     if (range_m_) source.table.range_m = *range_m_;
     source.table.validate();
     return source;

@@ -16,7 +16,12 @@ namespace tofsmith::apps {
 struct DecodingSource {
   std::string name;  ///< of the code or of the measured table
   DecodingTable table;
+  std::string range_source;        ///< what the range is taken from, for people
+  bool tell_range = false;         ///< the range could be another than the user thinks
   std::vector<std::string> notes;  ///< what the user should know of it
+
+  /// "range 9.993 m (of the default camera ..)".
+  std::string range_line() const;
 };
 
 /// What a measured table's file does not say: `--range-m`, `--ambient`, `--table-axes`,
@@ -27,7 +32,8 @@ class TableArguments {
   /// The table of a family, a code's file, or measured correlation functions.
   /// @throws IoError as load_code() and read_measured_table(), or naming the file whose table tells
   ///         no depths apart; UsageError if a code is given what only measured tables need
-  DecodingSource load(const std::string& code, const Camera& camera,
+  /// @param default_camera  nobody chose the camera
+  DecodingSource load(const std::string& code, const Camera& camera, bool default_camera,
                       const TapArguments& taps) const;
 
  private:

@@ -3,6 +3,7 @@
 #include "tofsmith/io/code_npz.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -84,6 +85,10 @@ void require_same_light(const NamedMatrix& modulation, Eigen::Index column, Eige
 CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file,
                        const TapLayout& layout) {
   const NpzReader reader(content, file);
+  if (!reader.contains("modfs") && !reader.contains("corrfs"))
+    throw IoError(file, fmt::format("found the arrays {}; expected modfs and demodfs, a code, or "
+                                    "corrfs, a measured table",
+                                    fmt::join(reader.names(), ", ")));
   NamedMatrix modulation = read_matrix(reader, file, "modfs");
   NamedMatrix demodulation = read_matrix(reader, file, "demodfs");
   require_same_shape(demodulation, modulation);

@@ -38,7 +38,7 @@ void turn(Eigen::MatrixXd& matrix, const std::string& place, std::optional<Table
                                      fewest_samples, most_samples, most_measurements));
   if (!axes && upright && lying && rows <= columns)
     throw IoError(place, fmt::format("found the shape ({}, {}), which could be (N, K) or (K, N); "
-                                     "expected the axes, nk or kn, beside it",
+                                     "expected the axes, --table-axes nk or kn",
                                      rows, columns));
   if (!(axes ? told_lying : !upright)) return;
   matrix.transposeInPlace();
@@ -73,7 +73,9 @@ void drop_repeated_end(Eigen::MatrixXd& matrix, const std::string& place,
                                      last, fewest_samples));
   matrix.conservativeResize(last, Eigen::NoChange);
   notes.push_back(
-      fmt::format("{}: its last sample repeats the first and was dropped: N = {}", place, last));
+      fmt::format("{}: its last sample repeats the first and was dropped: N = {}, which makes "
+                  "depths {:.3g} % larger (--keep-end-point keeps it)",
+                  place, last, 100.0 / static_cast<double>(last)));
 }
 
 /// A list of one number per column; empty if the archive has none.

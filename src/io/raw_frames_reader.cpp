@@ -21,9 +21,9 @@ namespace {
 void check_memory(std::uint64_t bytes, const RawReadOptions& options, const std::string& file,
                   std::string_view what) {
   if (bytes <= options.largest_in_memory / 2) return;
-  throw IoError(file, fmt::format("{} cannot be read in parts and would take {:.0f} MB of memory; "
-                                  "expected at most {:.0f} MB (save it as .npy in C order, or "
-                                  "allow more memory)",
+  throw IoError(file, fmt::format("{} cannot be read in parts and would take {:.3g} MB of memory; "
+                                  "expected at most {:.3g} MB (save it as .npy in C order; "
+                                  "--memory-mb allows more)",
                                   what, 2e-6 * static_cast<double>(bytes),
                                   1e-6 * static_cast<double>(options.largest_in_memory)));
 }

@@ -20,7 +20,7 @@ int exposures_of(Eigen::Index columns, const TapLayout& layout, std::string_view
                                     layout.taps));
   if (layout.taps > 1 && !layout.order)
     throw IoError(file, fmt::format("does not say in which order its columns hold {} taps; "
-                                    "expected the tap order, blocked or interleaved, beside it",
+                                    "expected --tap-order blocked or interleaved",
                                     layout.taps));
   return static_cast<int>(columns) / layout.taps;
 }

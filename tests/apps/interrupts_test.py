@@ -14,13 +14,14 @@ LONG = ("--trials", "100000000")
 
 
 class Interrupts(CommandLineTest):
-    def interrupt(self, *arguments, after=lambda: time.sleep(0.5)):
+    def interrupt(self, *arguments, after=lambda: time.sleep(0.5), directory=None):
         process = self.start(*arguments)
         after()
         process.send_signal(signal.SIGINT)
         out, error = process.communicate(timeout=60)
         self.assertEqual((process.returncode, out), (130, b""), error)
-        self.assertIn(b"interrupted", error)
+        kept = f"; finished files are kept in {directory}" if directory else ""
+        self.assertEqual(error.decode(), f"tofsmith: interrupted{kept}\n")
         self.assertFalse([name for name in self.files() if ".tofsmith" in name])
 
     def wait_for(self, name):
@@ -53,7 +54,8 @@ class Interrupts(CommandLineTest):
             self.wait_for(kept)
             time.sleep(0.5)  # it is being judged now
 
-        self.interrupt("design", "--exposures", "3", *LONG, "-o", "d", after=once_finished)
+        self.interrupt("design", "--exposures", "3", *LONG, "-o", "d", after=once_finished,
+                       directory="d")
         self.assertNotIn("d/design.json", self.files())
         before = self.bytes_of(kept)
         document = self.do_json("design", "--exposures", "3", "--trials", "1000", "-o", "d")

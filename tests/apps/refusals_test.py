@@ -51,6 +51,11 @@ class Refusals(CommandLineTest):
                   "r.npy"], ["--image a.png"]),
                 (["simulate", "table-top", "--code", "sinusoid-k4", "--frames", "0", "-o",
                   "r.npy"], ["--frames"]),
+                (["simulate", "table-top", "--code", "sinusoid-k4", "--reference-distance", "-2",
+                  "-o", "r.npy"], ["--reference-distance: found -2; must be > 0"]),
+                (["scene", "m.obj", "--scale-m", "0", "-o", "d"], ["found 0; must be > 0"]),
+                (["evaluate", "sinusoid-k4", "--outlier-threshold", "nan"],
+                 ["found nan; must be >= 0"]),
                 (["reproduce"], ["FIGURE"]),
                 (["reproduce", "fig99"], ["fig99", "must be all or one of fig2"]),
                 (["reproduce", "fgi5"], ["did you mean fig5?"]),
@@ -153,7 +158,7 @@ class Refusals(CommandLineTest):
     def test_codes_for_another_camera(self):
         self.do("codes", "hamiltonian-k3", "-o", "h.code.json")
         evaluate = ["evaluate", "h.code.json", "--set"]
-        self.refuse([*evaluate, "samples=480"], "240", "480", "samples=240")
+        self.refuse([*evaluate, "samples=480"], "240", "480", "--set samples=240")
         self.refuse([*evaluate, "light.peak_factor=2"], "peak = 6", "peak_factor = 2")
         self.refuse([*evaluate, "sensor.taps=2"], "taps = 1", "sensor.taps = 2")
 
@@ -290,6 +295,21 @@ class Refusals(CommandLineTest):
         self.write("e.csv", "old")
         self.refuse(["evaluate", "sinusoid-k4", "--trials", "100000000", "-o", "e.csv"], "e.csv",
                     "--force")
+
+    def test_outputs_that_are_inputs(self):
+        np.save(self.path("raw.npy"), np.ones((4, 5, 3), np.float32))
+        np.save(self.path("map.npy"), np.ones((4, 5), np.float32))
+        np.save(self.path("t.npy"), np.random.default_rng(1).random((60, 3)))
+        os.symlink("raw.npy", self.path("link.npy"))
+        os.mkdir(self.path("d"))
+        for output in ("raw.npy", "d/../raw.npy", "link.npy", "map.npy", "t.npy"):
+            self.refuse(["decode", "raw.npy", "--code", "t.npy", "--gain-map", "map.npy", "-o",
+                         output, "--force"], output, "input", "choose another name")
+        self.refuse(["decode", "raw.npy", "--code", "t.npy", "--outputs", "depth,status",
+                     "--stack", "--offset-map", "map.npy", "-o", "map.npy", "--force"], "map.npy",
+                    "input")
+        self.refuse(["simulate", "map.npy", "--code", "sinusoid-k4", "-o", "map.npy", "--force"],
+                    "map.npy", "input")
 
     def test_designs(self):
         self.refuse(["report", "."], "design.json")

@@ -143,10 +143,10 @@ class Streaming(CommandLineTest):
 
     def test_many_frames_are_told_in_few_lines(self):
         raw = self.record(frames=2)
-        self.assertEqual(len(self.do(*self.arguments()).splitlines()), 3)
+        self.assertEqual(len(self.do(*self.arguments()).splitlines()), 5)
         np.save(self.path("raw.npy"), np.repeat(raw, 15, axis=0))
         lines = self.do(*self.arguments(output="m.npy")).splitlines()
-        self.assertEqual(len(lines), 5)
+        self.assertEqual(len(lines), 7)
         self.assertIn("m-00.npy", lines[0])
         self.assertIn("27 more, to m-29.npy", lines[3])
         self.assertRegex(lines[4], r"^30 frames of 30 x 40 in .* frames/s, .* Mpixel/s: ok ")
@@ -177,7 +177,31 @@ class Streaming(CommandLineTest):
         np.savez(self.path("raw.npz"), raw=raw)
         self.refuse(self.arguments(*few, raw="raw.npz"), "raw.npz", "save it as .npy")
         self.refuse(self.arguments("--memory-mb", "0.000001"), "MB")
-        self.refuse(self.arguments("--memory-mb", "-1"), "--memory-mb", code=2)
+        error = self.refuse(self.arguments("--memory-mb", "0.000001"), "--memory-mb")
+        self.assertNotIn(".npy is written", error)
+        for value in ("-1", "0", "nan", "inf"):
+            self.refuse(self.arguments("--memory-mb", value), "--memory-mb",
+                        f"found {value}; must be > 0", code=2)
+
+    def test_whole_numbers_without_an_adc_are_told(self):
+        told = "taken as electrons: no gain, black level or saturation is set"
+        for dtype, expected in (("u1", True), ("u2", True), ("f4", False), ("f8", False)):
+            self.record(dtype=dtype)
+            notes = self.decode("--force")["notes"]
+            self.assertEqual([told in note for note in notes], [True] if expected else [])
+        self.record()
+        for setting in ("sensor.gain_e_per_dn=1", "sensor.full_well_e=60000"):
+            more = ("--set", "sensor.adc_bits=12") if "gain" in setting else ()
+            self.assertEqual(self.decode("--force", "--set", setting, *more)["notes"], [])
+
+    def test_the_small_bands_of_ml_make_whole_frames(self):
+        raw = np.full((3, 300, 600, 3), 1000, "u2")
+        raw[..., 0] = 4000
+        np.save(self.path("raw.npy"), raw)
+        self.decode("--method", "ml", "--outputs", "depth,status", output="d.npz")
+        for frame in range(3):
+            depth = np.load(self.path(f"d-{frame}.npz"))["depth"]
+            np.testing.assert_array_equal(depth, np.full((300, 600), depth[0, 0]))
 
     def test_layouts_are_not_guessed(self):
         raw = self.record()
@@ -220,9 +244,9 @@ class Interrupts(CommandLineTest):
         self.wait_for("d-0002.npy")
         process.send_signal(signal.SIGINT)
         error = self.end(process, 130)
-        self.assertIn("interrupted", error)
+        self.assertTrue(error.endswith("tofsmith: interrupted\n"), error)
         done = [name for name in self.files() if name.startswith("d-")]
-        self.assertIn(f"decoded {len(done)} of 3000 frames", error)
+        self.assertIn(f"decoded {len(done)} of 3000 frames; their files are kept", error)
         for name in done:
             self.assertEqual(np.load(self.path(name)).shape, (600, 800))
 
@@ -231,7 +255,9 @@ class Interrupts(CommandLineTest):
         while not [name for name in self.files() if ".tofsmith" in name]:
             time.sleep(0.05)
         process.send_signal(signal.SIGINT)
-        self.assertIn("the stack is not written", self.end(process, 130))
+        error = self.end(process, 130)
+        self.assertIn("with --stack nothing is kept unless all are decoded", error)
+        self.assertTrue(error.endswith("tofsmith: interrupted\n"), error)
         self.assertEqual(self.files(), ["raw.npy"])
 
     def test_a_file_that_shrinks_ends_in_an_error(self):

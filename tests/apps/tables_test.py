@@ -48,6 +48,30 @@ class Tables(CommandLineTest):
         half, _ = self.decode("t.npy", "--range-m", str(RANGE_M / 2))
         np.testing.assert_allclose(half, depth / 2, rtol=1e-5)
 
+    def test_the_range_and_where_it_comes_from_are_told(self):
+        np.save(self.path("t.npy"), self.sweep())
+        self.frame()
+        self.write("c.toml", "fundamental_frequency_hz = 30e6\n")
+
+        def told(code, *more):
+            arguments = ["decode", "raw.npy", "--code", code, "-o", "d.npy", "--force", *more]
+            lines = [line for line in self.do(*arguments).splitlines() if "range" in line[:5]]
+            document = self.do_json(*arguments)
+            return lines, document["range_m"], document["range_source"]
+        line, range_m, source = told("t.npy")
+        self.assertEqual(line, ["range 9.993 m (of the default camera paper-10f0; --range-m or "
+                                "--camera say otherwise)"])
+        self.assertAlmostEqual(range_m, RANGE_M)
+        self.assertIn("default camera paper-10f0", source)
+        self.assertEqual(told("t.npy", "--range-m", "3"), (["range 3 m (--range-m)"], 3,
+                                                           "--range-m"))
+        line, range_m, _ = told("t.npy", "--camera", "c.toml")
+        self.assertEqual(line, ["range 4.997 m (of the camera c)"])
+        self.assertAlmostEqual(range_m, RANGE_M / 2)
+        self.assertEqual(told("hamiltonian-k3")[0], ["range 9.993 m (of the default camera "
+                                                     "paper-10f0; --camera says otherwise)"])
+        self.assertEqual(told("hamiltonian-k3", "--camera", "paper-10f0")[0], [])
+
     def test_quirks_are_told(self):
         table = self.sweep()
         self.frame()
@@ -59,7 +83,9 @@ class Tables(CommandLineTest):
         depth, notes = self.decode("closed.npy")
         np.testing.assert_array_equal(depth, expected)
         self.assertIn("(3, 121) was taken as (K, N)", notes[0])
-        self.assertIn("repeats the first and was dropped: N = 120", notes[1])
+        self.assertIn("repeats the first and was dropped: N = 120, which makes depths 0.833 % "
+                      "larger", notes[1])
+        self.assertIn("--keep-end-point", notes[1])
         text = self.do("decode", "raw.npy", "--code", "closed.npy", "-o", "d.npy")
         self.assertIn("dropped", text)
         kept, notes = self.decode("closed.npy", "--keep-end-point", "--table-axes", "kn")
@@ -87,7 +113,7 @@ class Tables(CommandLineTest):
             depth, _ = self.decode("t.npy", *buckets, *more, "--tap-order", "interleaved")
             self.assertLess(np.abs(depth - truth).max(), 0.02, more)
         self.refuse(["decode", "raw.npy", "--code", "t.npy", *buckets, "-o", "d.npy"], "t.npy",
-                    "order")
+                    "--tap-order")
         np.save(self.path("pairs.npy"), table[:, 0::2] - table[:, 1::2])
         depth, _ = self.decode("pairs.npy", "--ambient", "none")
         self.assertLess(np.abs(depth - truth).max(), 0.02)
@@ -95,7 +121,9 @@ class Tables(CommandLineTest):
     def test_unequal_duties_are_told(self):
         np.save(self.path("t.npy"), self.sweep() * [1, 0.5, 0.8])
         self.frame()
-        self.assertIn("--ambient mean", self.decode("t.npy")[1][0])
+        note = self.decode("t.npy")[1][0]
+        self.assertIn("--ambient mean", note)
+        self.assertIn("dark offset was not subtracted: an array 'offset_dn'", note)
         self.assertEqual(self.decode("t.npy", "--ambient", "mean")[1], [])
 
     def test_equal_rows_are_told(self):
@@ -120,7 +148,8 @@ class Tables(CommandLineTest):
         refuse(np.ones((60, 3)), "rank")
         refuse(np.stack([wave, np.roll(wave, 15)], 1), "measurements = 2", ">= 3")
         refuse(wave, "measurements = 1")
-        refuse(np.random.default_rng(1).random((10, 20)), "(N, K) or (K, N)", "nk or kn")
+        refuse(np.random.default_rng(1).random((10, 20)), "(N, K) or (K, N)",
+               "--table-axes nk or kn")
         refuse(np.full((60, 3), np.nan), "t.npy[0, 0]", "nan")
         refuse(np.random.default_rng(1).random((60, 3)), "exposure_s = 2 entries", "3 exposures",
                options=("--set", "exposure_s=[0.1,0.2]"))
@@ -128,6 +157,29 @@ class Tables(CommandLineTest):
                        ("--keep-end-point",)):
             self.refuse(["decode", "raw.npy", "--code", "hamiltonian-k3", "-o", "d.npy", *option],
                         option[0], "measured table", code=2)
+
+    def test_ranges_that_no_table_has(self):
+        np.save(self.path("t.npy"), self.sweep())
+        self.frame()
+        decode = ["decode", "raw.npy", "--code", "t.npy", "-o"]
+        for value in ("1e300", "0", "-1", "nan", "inf", "far"):
+            error = self.refuse([*decode, "d.npy", "--range-m", value], "--range-m",
+                                f"found {value}; must be > 0", code=2)
+            self.assertLess(len(error), 150)
+        self.refuse([*decode, "d.png", "--range-m", "65.6"], "d.png", "65.6 m", "65.535 m", ".npy")
+        self.do(*decode, "d.png", "--range-m", "65.5")
+
+    def test_only_decode_takes_tables(self):
+        np.save(self.path("t.npy"), self.sweep())
+        np.savez(self.path("t.npz"), corrfs=np.load(self.path("t.npy")))
+        np.savez(self.path("other.npz"), curves=np.load(self.path("t.npy")), made="today")
+        self.frame()
+        for table in ("t.npy", "t.npz"):
+            for command in (["evaluate", table], ["codes", table],
+                            ["simulate", "table-top", "--code", table, "-o", "r.npy"]):
+                self.refuse(command, table, "measured table (corrfs only)", "only decode takes")
+        self.refuse(["decode", "raw.npy", "--code", "other.npz", "-o", "d.npy"], "other.npz",
+                    "curves, made", "modfs", "corrfs")
 
     def test_maps_of_each_pixel(self):
         self.frame()

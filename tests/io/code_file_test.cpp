@@ -50,7 +50,8 @@ TEST(LoadCode, ReadsAFileWithTheTapsOfTheCamera) {
   EXPECT_EQ(load_code(path, camera).measurements(), 8);
   EXPECT_EQ(load_code(path, camera).taps(), 1);
   camera.sensor.taps = 2;
-  EXPECT_THAT(io_error_of([&] { load_code(path, camera); }), HasSubstr("expected the tap order"));
+  EXPECT_THAT(io_error_of([&] { load_code(path, camera); }),
+              HasSubstr("expected --tap-order blocked"));
   expect_same_samples(load_code(path, camera, {.tap_order = TapOrder::interleaved}), code);
 }
 

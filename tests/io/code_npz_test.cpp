@@ -87,8 +87,8 @@ TEST(CodeNpz, TheOrderOfTapsIsNeverGuessed) {
   const FileBytes bytes =
       serialize_code_npz(hamiltonian().with_two_buckets(), TapOrder::interleaved);
   EXPECT_EQ(refusal(bytes, {2, std::nullopt}),
-            "a.npz: does not say in which order its columns hold 2 taps; expected the tap order, "
-            "blocked or interleaved, beside it");
+            "a.npz: does not say in which order its columns hold 2 taps; expected --tap-order "
+            "blocked or interleaved");
   EXPECT_EQ(refusal(bytes, {4, TapOrder::blocked}),
             "a.npz: found 6 columns; expected a multiple of taps = 4");
 }
@@ -145,6 +145,9 @@ TEST(CodeNpz, RefusesArraysThatDisagree) {
   EXPECT_THAT(refusal_of({70000, 1}, {70000, 1}, {70000, 1}), HasSubstr("with N in [2, 65536]"));
   EXPECT_THAT(refusal(serialize_npz({{"modfs", array_of(hamiltonian().modulation_samples())}})),
               HasSubstr("there is no array 'demodfs'"));
+  EXPECT_EQ(refusal(serialize_npz({{"curves", array_of(hamiltonian().modulation_samples())}})),
+            "a.npz: found the arrays curves; expected modfs and demodfs, a code, or corrfs, a "
+            "measured table");
 }
 
 TEST(CodeNpz, DamagedFilesAreReadOrRefused) {

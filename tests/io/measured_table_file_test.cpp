@@ -102,8 +102,11 @@ TEST_F(MeasuredTableFileTest, DropsARepeatedEndPointAndSaysSo) {
   longer(50, 1) += 1e-7;  // as single precision rounds
   const MeasuredTableFile dropped = read(longer);
   EXPECT_EQ(dropped.table.correlation, functions);
-  EXPECT_THAT(without_name(dropped),
-              ElementsAre("its last sample repeats the first and was dropped: N = 50"));
+  EXPECT_THAT(
+      without_name(dropped),
+      ElementsAre(
+          "its last sample repeats the first and was dropped: N = 50, which makes depths 2 % "
+          "larger (--keep-end-point keeps it)"));
   EXPECT_EQ(read(longer, {.keep_end_point = true}).table.samples(), 51);
   longer(50, 1) += 1e-3;
   EXPECT_EQ(read(longer).table.samples(), 51);
@@ -133,8 +136,8 @@ TEST_F(MeasuredTableFileTest, TakesTheOtherOrientationWhereItIsTheOnlyOne) {
 TEST_F(MeasuredTableFileTest, NeverGuessesTheOrientation) {
   const Eigen::MatrixXd lying = sweep(64, 10).transpose();
   EXPECT_EQ(refusal(lying),
-            ": found the shape (10, 64), which could be (N, K) or (K, N); expected the axes, nk "
-            "or kn, beside it");
+            ": found the shape (10, 64), which could be (N, K) or (K, N); expected the axes, "
+            "--table-axes nk or kn");
   EXPECT_THAT(refusal(sweep(16, 16)), HasSubstr("could be (N, K) or (K, N)"));
   EXPECT_EQ(read(lying, {.axes = TableAxes::measurements_first}).table.samples(), 64);
   EXPECT_EQ(read(lying, {.axes = TableAxes::samples_first}).table.samples(), 10);
@@ -160,7 +163,7 @@ TEST_F(MeasuredTableFileTest, PutsTheTapsOfAnExposureSideBySide) {
     EXPECT_DOUBLE_EQ(blocked.ambient_gain[i], 0.1 * source[i]);
   }
   EXPECT_THAT(refusal(functions, {.layout = {2, std::nullopt}}),
-              HasSubstr("expected the tap order"));
+              HasSubstr("expected --tap-order blocked"));
   EXPECT_THAT(refusal(functions, {.layout = {4, TapOrder::blocked}}),
               HasSubstr("multiple of taps"));
 }

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+
+namespace tofsmith::apps {
+
+/// Checks the number of an option; what breaks the rule is refused with "found -1; must be > 0".
+inline CLI::Validator number_that(const std::string& rule, std::function<bool(double)> holds) {
+  return {[rule, holds = std::move(holds)](const std::string& text) {
+            double value = 0.0;
+            return CLI::detail::lexical_cast(text, value) && holds(value)
+                       ? std::string()
+                       : fmt::format("found {}; must be {}", text, rule);
+          },
+          rule};
+}
+
+/// NaN breaks each of these rules.
+inline CLI::Validator positive_number() {
+  return number_that("> 0 and finite",
+                     [](double value) { return value > 0.0 && std::isfinite(value); });
+}
+inline CLI::Validator positive_number(double most) {
+  return number_that(fmt::format("> 0 and at most {}", most),
+                     [most](double value) { return value > 0.0 && value <= most; });
+}
+inline CLI::Validator number_from_0_on() {
+  return number_that(">= 0 and finite",
+                     [](double value) { return value >= 0.0 && std::isfinite(value); });
+}
+
+}  // namespace tofsmith::apps
