@@ -53,8 +53,11 @@ void BinMatcher::find_rivals(PixelTile& tile) const {
       rival = -1;
     else if (circle)
       rival = circle->rival(tile.bin[i]);
-    else if (!has_cells || !rivals_.is_rival(tile.bin[i], rival = CellRecord::rival_in(rival)))
-      rival = rival_of(tile, i);
+    else if (has_cells)
+      rival = rivals_.moved_out(tile.bin[i], CellRecord::rival_in(rival));
+    else
+      rival = RivalSearch::unknown;
+    if (rival == RivalSearch::unknown) rival = rival_of(tile, i);
   }
 }
 

@@ -12,15 +12,23 @@ class RivalSearch {
   RivalSearch(const DirectionTable& directions, const ArcSearch& arcs)
       : directions_(&directions), arcs_(&arcs) {}
 
-  /// Whether `rival` is a bin outside the main lobe of `bin`, or rightly -1.
-  bool is_rival(std::int32_t bin, std::int32_t rival) const {
+  /// A rival found for a bin nearby, moved out of the main lobe of `bin` where its edge has passed
+  /// it; `unknown` where it is further inside.
+  static constexpr std::int32_t unknown = -2;
+  std::int32_t moved_out(std::int32_t bin, std::int32_t rival) const {
     const Lobe& lobe = directions_->main_lobe(bin);
     const std::int32_t length = lobe.end - lobe.begin, samples = directions_->samples();
-    if (rival < 0) return length >= samples;
-    // Counted from the beginning of the lobe, which may be below 0.
+    if (length >= samples) return -1;
+    if (rival < 0) return unknown;
+    // Counted from the beginning of the lobe, which may be below 0 and end past N.
     std::int32_t after = rival - lobe.begin;
     if (after >= samples) after -= samples;
-    return after >= length;
+    if (after < 0) after += samples;
+    if (after >= length) return rival;
+    const std::int32_t edge = samples / 120 + 1;
+    if (length - after <= edge) return lobe.end < samples ? lobe.end : lobe.end - samples;
+    if (after < edge) return lobe.begin > 0 ? lobe.begin - 1 : lobe.begin - 1 + samples;
+    return unknown;
   }
   /// Best bin outside the main lobe of `bin`, for a unit vector; -1 if nothing is outside.
   std::int32_t rival(std::int32_t bin, const float* unit) const {
