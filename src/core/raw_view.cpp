@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/core/raw_view.hpp"
 
-#include <algorithm>
 #include <string>
 
+#include "core/pixel_runs.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -20,19 +20,11 @@ RawView view_of_frame(const RawFrames& raw, int frame) {
 }
 
 void copy_pixels(const RawView& raw, std::int64_t first, std::int64_t count, float* values) {
-  std::visit(
-      [&](const auto* data) {
-        std::int64_t row = first / raw.width, column = first % raw.width;
-        for (std::int64_t done = 0; done < count; ++row, column = 0) {
-          const std::int64_t run = std::min(count - done, raw.width - column);
-          const auto* pixel = data + row * raw.row_stride + column * raw.column_stride;
-          for (std::int64_t i = 0; i < run; ++i, pixel += raw.column_stride)
-            for (int k = 0; k < raw.measurements; ++k)
-              *values++ = static_cast<float>(pixel[k * raw.measurement_stride]);
-          done += run;
-        }
-      },
-      raw.data);
+  for_each_run(raw, first, count, [&](const auto* pixel, std::int64_t length, std::int64_t) {
+    for (std::int64_t i = 0; i < length; ++i, pixel += raw.column_stride)
+      for (int k = 0; k < raw.measurements; ++k)
+        *values++ = static_cast<float>(pixel[k * raw.measurement_stride]);
+  });
 }
 
 }  // namespace tofsmith

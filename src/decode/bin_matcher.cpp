@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/pixel_runs.hpp"
+
 namespace tofsmith {
 
 BinMatcher::BinMatcher(const DecodingTable& table, const AmbientProjection& projection)
@@ -88,15 +90,10 @@ bool BinMatcher::is_precise(const PixelTile& tile, int pixel) const {
 /// One pixel in double arithmetic.
 void BinMatcher::decide(const RawView& view, std::int64_t first, int pixel, PixelTile& tile) const {
   std::array<double, max_measurements> raw;
-  const std::int64_t row = (first + pixel) / view.width, column = (first + pixel) % view.width;
-  std::visit(
-      [&](const auto* data) {
-        const auto* numbers = data + row * view.row_stride + column * view.column_stride;
-        for (int k = 0; k < view.measurements; ++k)
-          raw[static_cast<std::size_t>(k)] =
-              static_cast<double>(numbers[k * view.measurement_stride]);
-      },
-      view.data);
+  for_each_run(view, first + pixel, 1, [&](const auto* number, std::int64_t, std::int64_t) {
+    for (int k = 0; k < view.measurements; ++k)
+      raw[static_cast<std::size_t>(k)] = static_cast<double>(number[k * view.measurement_stride]);
+  });
   PlaneVector vector;
   exact_.project(raw.data(), vector);
   if (!is_precise(tile, pixel))

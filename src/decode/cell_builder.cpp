@@ -164,14 +164,12 @@ void CellBuilder::split(const CellBox& box, const Corners& corners, std::int32_t
     leads_.push_back(lead);
     own = next;
   }
-  // fit() reads the leads of its run from the front.
-  const std::vector<Scores> all = leads_;
   const auto keep = [&](std::int32_t begin, std::int32_t end) {
     CellRecord run;
     run.first = static_cast<std::uint16_t>(around(begin));
     run.length = static_cast<std::uint16_t>(end - begin);
-    leads_.assign(all.begin() + (begin - first), all.begin() + (end - first));
-    fit(corners, run);
+    fit(corners, std::span(leads_).subspan(static_cast<std::size_t>(begin - first), run.length),
+        run);
     const std::int32_t bin = rival(box, run);
     if (bin >= 0) run.rival = static_cast<std::uint16_t>(bin);
     found.push_back(run);
@@ -180,8 +178,8 @@ void CellBuilder::split(const CellBox& box, const Corners& corners, std::int32_t
   double dips = 0.0;  // of the run, in all
   for (std::int32_t n = first + 1; n < last; ++n) {
     if (n == begin) continue;
-    const Scores& after = all[static_cast<std::size_t>(n - first)];
-    const Scores& before = all[static_cast<std::size_t>(n - first - 1)];
+    const Scores& after = leads_[static_cast<std::size_t>(n - first)];
+    const Scores& before = leads_[static_cast<std::size_t>(n - first - 1)];
     double dip = 0.0;
     for (std::size_t i = 0; i < corner_count; ++i) dip = std::max(dip, after[i] - before[i]);
     dips += dip;
@@ -194,7 +192,8 @@ void CellBuilder::split(const CellBox& box, const Corners& corners, std::int32_t
 }
 
 /// Fits x to the borders of neighbours, where they cross the edges of the box: x = n + 1/2 there.
-void CellBuilder::fit(const Corners& corners, CellRecord& run) const {
+void CellBuilder::fit(const Corners& corners, std::span<const Scores> leads,
+                      CellRecord& run) const {
   if (run.length == 0) {
     run.slack = 0;
     return;
@@ -209,14 +208,14 @@ void CellBuilder::fit(const Corners& corners, CellRecord& run) const {
     right += weight * value * place;
   };
   for (std::size_t i = 0; i < static_cast<std::size_t>(corner_count_); ++i) {
-    const auto winner = std::count_if(leads_.begin(), leads_.end(),
+    const auto winner = std::count_if(leads.begin(), leads.end(),
                                       [i](const Scores& lead) { return lead[i] > 0.0; });
     add(corners.place[i], static_cast<double>(winner), weight_of_corner);
   }
   const bool is_short = run.length <= longest_proven_run;
   if (is_short)
-    for (std::size_t n = 0; n < leads_.size(); ++n) {
-      const Scores& lead = leads_[n];
+    for (std::size_t n = 0; n < leads.size(); ++n) {
+      const Scores& lead = leads[n];
       for_each_edge(rank_ - 1, [&](std::size_t from, std::size_t to) {
         if ((lead[from] > 0.0) == (lead[to] > 0.0)) return;
         const double t = lead[from] / (lead[from] - lead[to]);
@@ -230,14 +229,15 @@ void CellBuilder::fit(const Corners& corners, CellRecord& run) const {
   for (std::size_t s = 0; s < max_cell_rank; ++s)
     run.fit[s] = static_cast<std::int16_t>(std::lround(solution[static_cast<Eigen::Index>(s)]));
   if (!is_short) return;
-  const double units = std::ceil(slack(corners, run) / CellRecord::slack_unit) + 1;
+  const double units = std::ceil(slack(corners, leads, run) / CellRecord::slack_unit) + 1;
   if (units < CellRecord::no_proof) run.slack = static_cast<std::int16_t>(units);
 }
 
 /// How far x gets from n + 1/2, at most, on the wrong side: where direction n + 1 does not clearly
 /// beat n, x must be below, and above where n does not clearly beat n + 1. Both are convex parts of
 /// the box, whose corners are the box's or lie on its edges.
-double CellBuilder::slack(const Corners& corners, const CellRecord& run) const {
+double CellBuilder::slack(const Corners& corners, std::span<const Scores> leads,
+                          const CellRecord& run) const {
   Place fit;
   for (std::size_t s = 0; s < max_cell_rank; ++s)
     fit[static_cast<Eigen::Index>(s)] = fit_unit_ * run.fit[s];
@@ -245,9 +245,9 @@ double CellBuilder::slack(const Corners& corners, const CellRecord& run) const {
   for (std::size_t i = 0; i < static_cast<std::size_t>(corner_count_); ++i)
     x_at_corner[i] = fit.dot(corners.place[i]);
   double largest = 0.0;
-  for (std::size_t n = 0; n < leads_.size(); ++n) {
+  for (std::size_t n = 0; n < leads.size(); ++n) {
     const double border = static_cast<double>(n) + 0.5;
-    const Scores& lead = leads_[n];
+    const Scores& lead = leads[n];
     for (std::size_t i = 0; i < static_cast<std::size_t>(corner_count_); ++i) {
       if (lead[i] < clear_lead) largest = std::max(largest, x_at_corner[i] - border);
       if (lead[i] > -clear_lead) largest = std::max(largest, border - x_at_corner[i]);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "decode/cell_record.hpp"
@@ -57,8 +58,8 @@ class CellBuilder {
   std::int32_t around(std::int32_t n) const { return n < count_ ? n : n - count_; }
   void split(const CellBox& box, const Corners& corners, std::int32_t first, std::int32_t last,
              std::vector<CellRecord>& found);
-  void fit(const Corners& corners, CellRecord& run) const;
-  double slack(const Corners& corners, const CellRecord& run) const;
+  void fit(const Corners& corners, std::span<const Scores> leads, CellRecord& run) const;
+  double slack(const Corners& corners, std::span<const Scores> leads, const CellRecord& run) const;
   std::int32_t rival(const CellBox& box, const CellRecord& run) const;
 
   const DistinctDirections* directions_;

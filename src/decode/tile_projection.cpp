@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/pixel_runs.hpp"
 #include "decode/raw_scale.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -243,26 +244,17 @@ TileSource source_of(const RawView& view, std::int64_t first, int pixels) {
 /// Calls use(number, k, i) for number k of every pixel i of a tile of any layout and type.
 template <typename Use>
 void for_each_number(const RawView& view, std::int64_t first, int pixels, const Use& use) {
-  std::visit(
-      [&](const auto* data) {
-        std::int64_t row = first / view.width, column = first % view.width;
-        for (int done = 0; done < pixels; ++row, column = 0) {
-          const int run =
-              static_cast<int>(std::min<std::int64_t>(pixels - done, view.width - column));
-          const auto* from = data + row * view.row_stride + column * view.column_stride;
-          for (int k = 0; k < view.measurements; ++k) {
-            const auto* number = from + k * view.measurement_stride;
-            for (int i = 0; i < run; ++i) use(number[i * view.column_stride], k, done + i);
-          }
-          done += run;
-        }
-      },
-      view.data);
+  for_each_run(view, first, pixels, [&](const auto* from, std::int64_t length, std::int64_t done) {
+    for (int k = 0; k < view.measurements; ++k) {
+      const auto* number = from + k * view.measurement_stride;
+      for (std::int64_t i = 0; i < length; ++i) use(number[i * view.column_stride], k, done + i);
+    }
+  });
 }
 
 /// Copies a tile into its place.
 void gather_tile(const RawView& view, std::int64_t first, int pixels, PixelTile& tile) {
-  for_each_number(view, first, pixels, [&](auto number, int k, int i) {
+  for_each_number(view, first, pixels, [&](auto number, int k, std::int64_t i) {
     tile.raw[k * pixels_per_tile + i] = static_cast<float>(number);
   });
 }
@@ -325,7 +317,7 @@ void TileProjection::project(const RawView& view, std::int64_t first, int pixels
   if (!source.data) gather_tile(view, first, pixels, tile);
   HWY_DYNAMIC_DISPATCH(project_tile)(view_, source, pixels, for_outputs, tile);
   if (!std::holds_alternative<const double*>(view.data)) return;
-  for_each_number(view, first, pixels, [&](auto number, int k, int i) {
+  for_each_number(view, first, pixels, [&](auto number, int k, std::int64_t i) {
     const double rounding = static_cast<double>(number) - tile.raw[k * pixels_per_tile + i];
     tile.error[i] +=
         static_cast<float>(error_per_rounding_[static_cast<std::size_t>(k)] * std::abs(rounding));

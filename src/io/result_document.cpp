@@ -3,6 +3,7 @@
 #include "tofsmith/io/result_document.hpp"
 
 #include <limits>
+#include <utility>
 
 #include "io/camera_json.hpp"
 #include "io/result_json.hpp"
@@ -42,6 +43,17 @@ PointDepthError point_from_json(const JsonReader& json) {
       .receiver_bound_mae_m = json.member("receiver_bound_mae_m").number_or_infinity()};
 }
 
+/// What every list of points says of one.
+Json point_json(const PointDepthError& p) {
+  return {{"signal_e_per_s", p.point.signal_e_per_s},
+          {"ambient_e_per_s", p.point.ambient_e_per_s},
+          {"linear_mde_m", p.linear_mde_m.value},
+          {"linear_se_m", p.linear_mde_m.standard_error},
+          {"circular_mde_m", p.circular_mde_m.value},
+          {"circular_se_m", p.circular_mde_m.standard_error},
+          {"outlier_rate", p.outlier_rate.value}};
+}
+
 /// What `report` is compared with, and how many times as large its errors are.
 Json zncc_json(const DepthErrorReport& report, const DepthErrorReport& zncc) {
   const auto over = [](const Estimate& error, const Estimate& other) {
@@ -55,15 +67,10 @@ Json zncc_json(const DepthErrorReport& report, const DepthErrorReport& zncc) {
       {"points", Json::array()}};
   for (std::size_t i = 0; i < zncc.points.size(); ++i) {
     const PointDepthError &p = report.points[i], &other = zncc.points[i];
-    entry["points"].push_back({{"signal_e_per_s", other.point.signal_e_per_s},
-                               {"ambient_e_per_s", other.point.ambient_e_per_s},
-                               {"linear_mde_m", other.linear_mde_m.value},
-                               {"linear_se_m", other.linear_mde_m.standard_error},
-                               {"circular_mde_m", other.circular_mde_m.value},
-                               {"circular_se_m", other.circular_mde_m.standard_error},
-                               {"outlier_rate", other.outlier_rate.value},
-                               {"linear_ratio", over(p.linear_mde_m, other.linear_mde_m)},
-                               {"circular_ratio", over(p.circular_mde_m, other.circular_mde_m)}});
+    Json point = point_json(other);
+    point["linear_ratio"] = over(p.linear_mde_m, other.linear_mde_m);
+    point["circular_ratio"] = over(p.circular_mde_m, other.circular_mde_m);
+    entry["points"].push_back(std::move(point));
   }
   return entry;
 }
@@ -80,16 +87,12 @@ Json depth_error_json(const DepthErrorReport& report, int rotation_bin) {
                 {"linear", mean_json(report.linear)},
                 {"circular", mean_json(report.circular)},
                 {"points", Json::array()}};
-  for (const PointDepthError& p : report.points)
-    entry["points"].push_back({{"signal_e_per_s", p.point.signal_e_per_s},
-                               {"ambient_e_per_s", p.point.ambient_e_per_s},
-                               {"linear_mde_m", p.linear_mde_m.value},
-                               {"linear_se_m", p.linear_mde_m.standard_error},
-                               {"circular_mde_m", p.circular_mde_m.value},
-                               {"circular_se_m", p.circular_mde_m.standard_error},
-                               {"outlier_rate", p.outlier_rate.value},
-                               {"cramer_rao_mae_m", p.cramer_rao_mae_m},
-                               {"receiver_bound_mae_m", p.receiver_bound_mae_m}});
+  for (const PointDepthError& p : report.points) {
+    Json point = point_json(p);
+    point["cramer_rao_mae_m"] = p.cramer_rao_mae_m;
+    point["receiver_bound_mae_m"] = p.receiver_bound_mae_m;
+    entry["points"].push_back(std::move(point));
+  }
   return entry;
 }
 
