@@ -157,7 +157,7 @@ TEST(ArcSearch, AgreesOnSmoothCurvesOfAllRanksAndLengths) {
       const DirectionTable directions =
           directions_of(random_smooth_curve(rank, samples, static_cast<std::uint64_t>(rank)));
       const double proven =
-          expect_agreement_at_all_levels(directions, vectors_per_level * 20 / (samples + 300));
+          expect_agreement_at_all_levels(directions, 32 + vectors_per_level * 20 / (samples + 300));
       EXPECT_GT(proven, 0.9);
     }
 }
