@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <complex>
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
@@ -57,6 +58,11 @@ class SampledCamera {
   const Eigen::VectorXd& constant_variance_e2() const { return constant_variance_e2_; }
   /// Whether a decoder has to reckon with ambient light: not where buckets are subtracted.
   bool ambient_unknown() const { return !difference_; }
+
+  /// What the arms leave of harmonic n of waveforms held over the grid's cells, n = 0 .. N/2.
+  std::complex<double> transfer(int harmonic) const {
+    return transfer_[harmonic] * static_cast<double>(samples());
+  }
 
   Measured measure(const SampledCode& code) const;
 

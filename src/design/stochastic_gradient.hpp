@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "design/design_problem.hpp"
+#include "tofsmith/core/random.hpp"
+
+namespace tofsmith {
+
+/// Gradient of a problem's objective by the waveforms, from fresh trials at every call. The
+/// objective is the smooth maximum, over the variants of the camera, of the mean log error over the
+/// light levels; what a level counts for follows from running means of its errors.
+class StochasticGradient {
+ public:
+  /// @param trials  per call, over all light levels and variants
+  StochasticGradient(const DesignProblem& problem, int trials);
+
+  /// @param doubt  sharpness of the decoder's decisions per log likelihood
+  SampledCode at(const SampledCode& code, double doubt, RandomStream& random);
+
+ private:
+  double mean_log(std::size_t variant) const;
+  double weight(std::size_t variant, std::size_t point) const;
+  void add(std::size_t variant, std::size_t point, double error);
+
+  const DesignProblem* problem_;
+  int trials_;
+  std::vector<std::vector<double>> average_error_;  // 0: not known yet
+};
+
+}  // namespace tofsmith
