@@ -20,11 +20,17 @@ Sharpness sharpness_at(const DescentSchedule& schedule, double done) {
 
 }  // namespace
 
+namespace {
+// Of streams whose other trials are steps.
+constexpr std::uint32_t noise_in_store = 0xffffffffu;
+}  // namespace
+
 WaveformParameters descend(const DesignProblem& problem, WaveformParameters parameters,
                            const DescentSchedule& schedule, std::uint64_t seed,
                            std::uint64_t work_item) {
   constexpr double largest_modulation = 4.0, largest_demodulation = 3.0;
-  StochasticGradient objective(problem, schedule.trials_per_step);
+  StochasticGradient objective(problem, schedule.trials_per_step,
+                               RandomStream(seed, work_item, noise_in_store));
   Adam modulation, demodulation;
   for (int step = 0; step < schedule.steps; ++step) {
     const double done = static_cast<double>(step) / schedule.steps;

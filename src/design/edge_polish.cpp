@@ -132,7 +132,7 @@ SwitchedCode polish_edges(const DesignProblem& problem, SwitchedCode code, int s
   const double shortest = std::max(least_run, problem.shortest_run_periods);
   if (space.equal_duties && code.light.empty()) return code;
   constexpr double doubt = 3.0;
-  StochasticGradient gradient(problem, trials_per_step);
+  StochasticGradient gradient(problem, trials_per_step, RandomStream(seed, work_item, 0xffffffffu));
   std::vector<Adam> light(code.light.size()), gates(code.gates.size());
   for (int step = 0; step < steps; ++step) {
     const double done = static_cast<double>(step) / steps;

@@ -53,21 +53,42 @@ OptimizeStart start_at(const WaveformSpace& space, const CodeSet& code, double n
   return start;
 }
 
-/// Every exposure at a frequency of its own: the first ones at the lowest, so that depth is unique.
-SampledCode mixture_of_frequencies(const DesignProblem& problem, RandomStream& random) {
+/// Exposures at several frequencies: the first ones at the lowest, so that depth is unique, the
+/// rest at `high` with their phases spread evenly, or at random frequencies and phases if that is
+/// 0.
+SampledCode mixture_of_frequencies(const DesignProblem& problem, int high, RandomStream& random) {
   const WaveformSpace& space = problem.space;
   const int needed = space.taps >= 2 ? (space.taps == 2 ? 2 : 1) : (space.exposures >= 4 ? 3 : 2);
   const int highest = std::min(12, highest_useful_frequency(problem));
+  const double spread = space.taps >= 2 ? 0.5 : 1.0;  // buckets see phases half a period apart too
   SampledCode code = empty_code(space);
   for (int e = 0; e < space.exposures; ++e) {
-    const bool lowest = e < needed;
-    const int frequency =
-        lowest ? 1 : 2 + static_cast<int>(random.uniform() * std::max(1, highest - 1));
-    const double phase =
-        lowest ? static_cast<double>(e) / needed * (space.taps >= 2 ? 0.5 : 1.0) : random.uniform();
+    int frequency = 1;
+    double phase = static_cast<double>(e) / needed * spread;
+    if (e >= needed) {
+      const int others = space.exposures - needed;
+      frequency =
+          high > 0 ? high : 2 + static_cast<int>(random.uniform() * std::max(1, highest - 1));
+      phase = high == 0 ? random.uniform() : (e - needed) * (others == 2 ? 0.25 : spread / others);
+    }
     const double duty = std::max(1.0 / space.peak_factor, space.taps > 2 ? 0.5 / space.taps : 0.2);
     write_pulses(space, frequency, duty, e, code);
     write_turns(space, frequency, phase, e, code);
+  }
+  return code;
+}
+
+SampledCode random_gates(const DesignProblem& problem, bool random_light, RandomStream& random) {
+  const WaveformSpace& space = problem.space;
+  const int highest = std::min(9, highest_useful_frequency(problem));
+  const auto any = [&] { return 1 + static_cast<int>(random.uniform() * highest); };
+  SampledCode code = empty_code(space);
+  for (int e = 0; e < space.exposures; ++e) {
+    write_smooth_gates(space, any(), e, random, code);
+    if (random_light)
+      write_smooth_light(space, any(), e, random, code);
+    else
+      write_pulses(space, 1, 1.0 / space.peak_factor, e, code);
   }
   return code;
 }
@@ -116,31 +137,30 @@ OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeS
   if (index < count)
     return start_at(space, codes[static_cast<std::size_t>(index)], start_noise, random);
 
-  const int kind = (index - count) % 5;
+  const int kind = (index - count) % 5, cycle = (index - count) / 5;
   if (kind == 4 && count > 0) {
-    const auto which = static_cast<std::size_t>((index - count) / 5 % count);
-    OptimizeStart start = start_at(space, codes[which], rough_noise, random);
+    OptimizeStart start =
+        start_at(space, codes[static_cast<std::size_t>(cycle % count)], rough_noise, random);
     start.name += " with noise";
     return start;
   }
-  if (kind == 0 || kind == 2) {
-    OptimizeStart start{
-        "mixture of frequencies",
-        parameters_near(space, mixture_of_frequencies(problem, random), start_scale)};
-    add_noise(start.parameters, start_noise, random);
-    return start;
+  const int highest = highest_useful_frequency(problem);
+  const int high = 2 + cycle % std::max(1, std::min(12, highest) - 1);
+  SampledCode code;
+  std::string name;
+  if (kind == 0) {
+    name = fmt::format("frequencies 1 and {}", high);
+    code = mixture_of_frequencies(problem, high, random);
+  } else if (kind == 2) {
+    name = "mixture of frequencies";
+    code = mixture_of_frequencies(problem, 0, random);
+  } else {
+    name = kind == 1 ? "random gates, one pulse" : "random gates, random light";
+    code = random_gates(problem, /*random_light=*/kind != 1, random);
   }
-  SampledCode code = empty_code(space);
-  const int highest = std::min(9, highest_useful_frequency(problem));
-  for (int e = 0; e < space.exposures; ++e) {
-    write_smooth_gates(space, 1 + static_cast<int>(random.uniform() * highest), e, random, code);
-    if (kind == 1)
-      write_pulses(space, 1, 1.0 / space.peak_factor, e, code);
-    else
-      write_smooth_light(space, 1 + static_cast<int>(random.uniform() * highest), e, random, code);
-  }
-  return {kind == 1 ? "random gates, one pulse" : "random gates, random light",
-          parameters_near(space, code, start_scale)};
+  OptimizeStart start{name, parameters_near(space, code, start_scale)};
+  add_noise(start.parameters, start_noise, random);
+  return start;
 }
 
 }  // namespace tofsmith

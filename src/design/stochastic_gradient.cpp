@@ -13,8 +13,9 @@ namespace {
 constexpr double worst_case_sharpness = 20.0;  // per unit of log error
 }
 
-StochasticGradient::StochasticGradient(const DesignProblem& problem, int trials)
-    : problem_(&problem), trials_(trials) {
+StochasticGradient::StochasticGradient(const DesignProblem& problem, int trials,
+                                       RandomStream random)
+    : problem_(&problem), trials_(trials), noise_(random) {
   for (const CameraVariant& variant : problem.variants)
     average_error_.emplace_back(variant.points.size(), 0.0);
 }
@@ -49,7 +50,7 @@ SampledCode StochasticGradient::at(const SampledCode& code, double doubt, Random
     for (std::size_t p = 0; p < variant.points.size(); ++p) {
       const TrialBatch batch =
           draw_trials(std::max(8, trials_ / levels), variant.camera.measurements(),
-                      problem_->operating, problem_->linear(), random);
+                      problem_->operating, problem_->linear(), random, &noise_);
       const double sharpness = doubt / loss.mean_variance_e2(variant.points[p]);
       if (average_error_[v][p] == 0.0)
         add(v, p, std::max(1e-9, loss.soft_error(variant.points[p], batch, sharpness)));

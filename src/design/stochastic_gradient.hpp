@@ -3,6 +3,7 @@
 #pragma once
 
 #include "design/design_problem.hpp"
+#include "design/trial_batch.hpp"
 #include "tofsmith/core/random.hpp"
 
 namespace tofsmith {
@@ -13,7 +14,8 @@ namespace tofsmith {
 class StochasticGradient {
  public:
   /// @param trials  per call, over all light levels and variants
-  StochasticGradient(const DesignProblem& problem, int trials);
+  /// @param random  of the noise that is kept in store
+  StochasticGradient(const DesignProblem& problem, int trials, RandomStream random);
 
   /// @param doubt  sharpness of the decoder's decisions per log likelihood
   SampledCode at(const SampledCode& code, double doubt, RandomStream& random);
@@ -25,6 +27,7 @@ class StochasticGradient {
 
   const DesignProblem* problem_;
   int trials_;
+  NoiseStore noise_;
   std::vector<std::vector<double>> average_error_;  // 0: not known yet
 };
 

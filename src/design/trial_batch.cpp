@@ -27,8 +27,22 @@ double mixture_density(double depth_periods) {
 
 }  // namespace
 
+NoiseStore::NoiseStore(RandomStream& random) : normals_(std::size_t{1} << 15) {
+  for (double& normal : normals_) normal = random.normal();
+}
+
+std::vector<double> NoiseStore::window(std::size_t count, RandomStream& random) const {
+  std::vector<double> numbers(count);
+  auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(normals_.size()));
+  for (double& number : numbers) {
+    number = normals_[at];
+    at = at + 1 < normals_.size() ? at + 1 : 0;
+  }
+  return numbers;
+}
+
 TrialBatch draw_trials(int count, int measurements, const OperatingRange& range, bool ends_matter,
-                       RandomStream& random) {
+                       RandomStream& random, const NoiseStore* store) {
   TrialBatch batch;
   batch.measurements = measurements;
   batch.trials.resize(static_cast<std::size_t>(count));
@@ -43,7 +57,12 @@ TrialBatch draw_trials(int count, int measurements, const OperatingRange& range,
     if (ends_matter) trial.weight = 1.0 / mixture_density(trial.depth_periods);
     trial.albedo = range.uniform_albedo ? random.uniform() : range.albedo;
   }
-  batch.normals.resize(static_cast<std::size_t>(count) * static_cast<std::size_t>(measurements));
+  const auto numbers = static_cast<std::size_t>(count) * static_cast<std::size_t>(measurements);
+  if (store) {
+    batch.normals = store->window(numbers, random);
+    return batch;
+  }
+  batch.normals.resize(numbers);
   for (double& normal : batch.normals) normal = random.normal();
   return batch;
 }

@@ -16,6 +16,18 @@ struct DepthTrial {
   double albedo = 1.0;         ///< scales the signal
 };
 
+/// Standard normal numbers in store: a window of them costs nothing. Windows overlap, so this is
+/// for gradients, of which very many are averaged, not for verdicts.
+class NoiseStore {
+ public:
+  explicit NoiseStore(RandomStream& random);
+  /// `count` numbers in a row, from a random place.
+  std::vector<double> window(std::size_t count, RandomStream& random) const;
+
+ private:
+  std::vector<double> normals_;
+};
+
 /// Depths and noise to judge a code by; drawn before the code is known, so that codes can be
 /// compared, and gradients taken, on the same ones.
 struct TrialBatch {
@@ -30,7 +42,8 @@ struct TrialBatch {
 
 /// Draws trials: depths stratified over the range. With ends_matter, half of them lie near the ends
 /// of the range, where a wrap costs the whole of it, with a density that falls as 1 / distance.
+/// @param store  where noise comes from; null: fresh
 TrialBatch draw_trials(int count, int measurements, const OperatingRange& range, bool ends_matter,
-                       RandomStream& random);
+                       RandomStream& random, const NoiseStore* store = nullptr);
 
 }  // namespace tofsmith

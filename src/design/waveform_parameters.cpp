@@ -153,6 +153,8 @@ WaveformParameters pull_back(const WaveformSpace& space, const SampledCode& code
 WaveformParameters parameters_near(const WaveformSpace& space, const SampledCode& code,
                                    double scale) {
   const int columns = space.columns();
+  // With a column per class, differences of columns count.
+  const double gate_scale = columns == 1 ? scale : 0.5 * scale;
   WaveformParameters result{Eigen::MatrixXd(space.cells, space.exposures),
                             Eigen::MatrixXd(space.cells, space.exposures * columns)};
   for (int e = 0; e < space.exposures; ++e) {
@@ -164,10 +166,10 @@ WaveformParameters parameters_near(const WaveformSpace& space, const SampledCode
           mean_in_cells(code.demodulation.col(e * space.taps + t), space.repeat);
       drained -= gain;
       if (columns == 1 && t > 0) continue;
-      result.demodulation.col(e * columns + t) = scale * (2.0 * gain - 1.0);
+      result.demodulation.col(e * columns + t) = gate_scale * (2.0 * gain - 1.0);
     }
     if (columns > 1 && space.drain)
-      result.demodulation.col(e * columns + space.taps) = scale * (2.0 * drained - 1.0);
+      result.demodulation.col(e * columns + space.taps) = gate_scale * (2.0 * drained - 1.0);
   }
   return result;
 }
