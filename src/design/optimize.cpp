@@ -86,8 +86,11 @@ void validate_finalist(Finalist& finalist, std::span<const Camera> variants,
   evaluation.trials = options.validation_trials;
   if (camera.operating.error == DepthErrorKind::linear) {
     evaluation.seed = combine_keys(options.seed, rotation_key);
-    finalist.code =
-        finalist.code.rotated(best_rotation(finalist.code, camera, evaluation).rotation_bin);
+    std::vector<double> log_error;
+    for (const double error_m :
+         best_rotation(finalist.code, camera, evaluation).linear_geometric_mean_m)
+      log_error.push_back(std::log(std::max(1e-12, error_m)));
+    finalist.code = finalist.code.rotated(smoothed_minimum(log_error));
   }
   evaluation.seed = combine_keys(options.seed, validation_key);
   for (const Camera& variant : variants) {
