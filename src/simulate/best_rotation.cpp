@@ -4,42 +4,9 @@
 #include <cmath>
 
 #include "simulate/depth_trials.hpp"
+#include "simulate/error_by_rotation.hpp"
 
 namespace tofsmith {
-
-namespace {
-
-/// Sum of linear errors [bin] at every rotation, as a step function of the rotation kept by its
-/// jumps: jumps[r] is what rotation r adds over rotation r - 1; jumps[0] is the sum at rotation 0.
-class ErrorByRotation {
- public:
-  explicit ErrorByRotation(int samples) : jumps_(static_cast<std::size_t>(samples) + 1, 0.0) {}
-
-  void add(double true_bin, double decoded_bin) {
-    const auto samples = static_cast<double>(jumps_.size() - 1);
-    const auto [low, high] = std::minmax(true_bin, decoded_bin);
-    const double error = high - low;
-    jumps_[0] += error;
-    // The origin, put at bin r, parts the two if low < r <= high.
-    const double longer = samples - 2.0 * error;
-    jumps_[static_cast<std::size_t>(std::floor(low)) + 1] += longer;
-    if (high < samples - 1.0) jumps_[static_cast<std::size_t>(std::floor(high)) + 1] -= longer;
-  }
-  void merge(const ErrorByRotation& other) {
-    for (std::size_t r = 0; r < jumps_.size(); ++r) jumps_[r] += other.jumps_[r];
-  }
-  /// Sums at rotations 0 .. N - 1.
-  std::vector<double> sums() const {
-    std::vector<double> result(jumps_.begin(), jumps_.end() - 1);
-    for (std::size_t r = 1; r < result.size(); ++r) result[r] += result[r - 1];
-    return result;
-  }
-
- private:
-  std::vector<double> jumps_;
-};
-
-}  // namespace
 
 BestRotation best_rotation(const CodeSet& code, const Camera& camera,
                            const EvaluateOptions& options, const Progress& progress) {

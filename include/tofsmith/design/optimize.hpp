@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/code/code_set.hpp"
+#include "tofsmith/core/progress.hpp"
+#include "tofsmith/core/statistics.hpp"
+
+namespace tofsmith {
+
+/// Options of the direct optimization of codes for depth error.
+struct OptimizeOptions {
+  int samples = 120;             ///< cells per period while optimizing, 24 .. 960; fewer where the
+                                 ///< camera's shortest pulse is longer than such a cell
+  int starts = 20;               ///< descents from different codes, >= 1
+  int steps_per_start = 300;     ///< >= 1
+  int hops = 20;                 ///< descents from changed copies of the best, >= 0
+  int steps_per_hop = 300;       ///< >= 1
+  int patience = 15;             ///< end hopping after so many hops without a better code; 0: never
+  int refined = 2;               ///< how many of the best codes are refined, >= 1
+  int refinement_steps = 1500;   ///< per refined code, >= 0
+  int trials_per_step = 360;     ///< noisy measurements per gradient, over all light levels, >= 8
+  int pool_trials = 1500;        ///< per light level, to rank codes while searching, >= 100
+  bool polish = true;            ///< move the switching times of the result continuously
+  int polish_steps = 250;        ///< >= 0
+  int validation_trials = 6000;  ///< per operating point, for the final choice, >= 1000
+  std::uint64_t seed = 1;
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+
+/// One event of an optimization.
+struct OptimizeIteration {
+  std::string phase;          ///< "start", "hop", "refinement", "binary", "polish"
+  std::string start;          ///< where the descent began
+  double error_m = 0.0;       ///< of the code it led to, on the search's light levels and trials
+  double best_error_m = 0.0;  ///< least of those so far
+};
+
+/// A code that was a candidate of the final choice.
+struct OptimizeCandidate {
+  std::string name;
+  Estimate
+      error_m;  ///< fresh trials; geometric mean over the operating points; of the worst variant
+};
+
+/// What direct optimization found.
+struct OptimizedCode {
+  CodeSet code;           ///< the best candidate, at its best rotation for the linear error
+  Estimate error_m;       ///< its validated error
+  bool is_given = false;  ///< none of the optimized codes is better than one that was given
+  std::vector<OptimizeCandidate> candidates;  ///< optimized ones first, then the given, in order
+  std::vector<OptimizeIteration> history;
+  std::int64_t steps = 0;  ///< gradient steps of all descents
+  std::string start;       ///< where the best descent began
+  std::string message;  ///< one line: how much better than the best given code, and when it ended
+  double seconds = 0.0;
+};
+
+/// Optimizes all pairs of modulation and demodulation together for the depth error of a camera:
+/// geometric mean over its operating points, linear or circular as the camera asks.
+///
+/// Waveforms go downhill along stochastic gradients through band limit, correlation, noise and a
+/// decoder that doubts, from a pool of starts (all families, random codes and the codes given);
+/// the best are changed and go downhill again; the best of all are refined, made to switch where
+/// arms are binary, and their edges polished. Light may use less than its peak. Taps: one; two
+/// buckets that share all charge; more, exclusive, with a drain where the camera has one. Every
+/// pulse and gap of binary waveforms is at least sensor.shortest_pulse_s long.
+/// @param exposures  1 .. 8, with at least 3 measurements in all (2 differences)
+/// @param also  codes that join the starts (where they have as many exposures) and the candidates;
+///              those the camera cannot play are left out
+/// @return the best candidate by fresh trials: never worse on them than the best code given
+/// @throws std::invalid_argument for bad options, an invalid camera, too few measurements, a camera
+///         without band limit and without sensor.shortest_pulse_s; Interrupted
+/// @note same bits for any number of threads
+OptimizedCode optimize(const Camera& camera, int exposures, const OptimizeOptions& options = {},
+                       std::span<const CodeSet> also = {}, const Progress& progress = {});
+
+/// The same for the worst of several variants of a camera, the first of which is the camera itself:
+/// the code must be one that it can play. Taps and readout of all must be the same.
+OptimizedCode optimize(std::span<const Camera> variants, int exposures,
+                       const OptimizeOptions& options = {}, std::span<const CodeSet> also = {},
+                       const Progress& progress = {});
+
+/// A shortest pulse that the camera's samples can follow [s]: two of them.
+double suggested_shortest_pulse_s(const Camera& camera);
+
+}  // namespace tofsmith

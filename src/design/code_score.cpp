@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/code_score.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "simulate/error_by_rotation.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr double least_error_bin = 1e-9;  // errors have logarithms
+
+/// The code with its modulation delayed: correlation'(z) = correlation(z + rotation_bin).
+SampledCode rotated(const SampledCode& code, int rotation_bin) {
+  SampledCode result = code;
+  const int samples = code.samples();
+  for (int n = 0; n < samples; ++n)
+    result.modulation.row((n + rotation_bin) % samples) = code.modulation.row(n);
+  return result;
+}
+
+std::vector<TrialBatch> draw_batches(const DesignProblem& problem, int trials, bool ends_matter,
+                                     std::uint64_t seed, std::uint64_t work_item) {
+  std::size_t levels = 0;
+  for (const CameraVariant& variant : problem.variants)
+    levels = std::max(levels, variant.points.size());
+  std::vector<TrialBatch> batches;
+  for (std::size_t p = 0; p < levels; ++p) {
+    RandomStream random(seed, work_item, static_cast<std::uint32_t>(2 * p + ends_matter));
+    batches.push_back(
+        draw_trials(trials, problem.measurements(), problem.operating, ends_matter, random));
+  }
+  return batches;
+}
+
+/// Mean error over the trials [bin].
+double mean_error_bin(const TrialBatch& batch, const std::vector<double>& decoded_bin, int samples,
+                      bool linear) {
+  double sum = 0.0;
+  for (std::size_t t = 0; t < decoded_bin.size(); ++t) {
+    const double error = std::abs(batch.trials[t].depth_periods * samples - decoded_bin[t]);
+    sum += batch.trials[t].weight * (linear ? error : std::min(error, samples - error));
+  }
+  return sum / static_cast<double>(decoded_bin.size());
+}
+
+}  // namespace
+
+CodeJudge::CodeJudge(const DesignProblem& problem, int trials, std::uint64_t seed,
+                     std::uint64_t work_item)
+    : problem_(&problem),
+      judging_(draw_batches(problem, trials, problem.linear(), seed, work_item)) {
+  if (problem.linear()) rotating_ = draw_batches(problem, trials, false, seed, work_item);
+}
+
+CodeScore CodeJudge::score(const SampledCode& code) const {
+  if (!problem_->linear()) return {log_error(code), 0};
+  const int rotation = best_rotation(code);
+  return {log_error(rotated(code, rotation)), rotation};
+}
+
+double CodeJudge::log_error(const SampledCode& code) const {
+  double worst = -1e300;
+  std::vector<double> decoded_bin;
+  for (const CameraVariant& variant : problem_->variants) {
+    DepthErrorLoss loss(variant.camera, variant.camera.measure(code).table,
+                        problem_->operating.error);
+    double sum = 0.0;
+    for (std::size_t p = 0; p < variant.points.size(); ++p) {
+      loss.decode(variant.points[p], judging_[p], decoded_bin);
+      sum +=
+          std::log(std::max(least_error_bin, mean_error_bin(judging_[p], decoded_bin,
+                                                            code.samples(), problem_->linear())));
+    }
+    worst = std::max(worst, sum / static_cast<double>(variant.points.size()));
+  }
+  return worst;
+}
+
+int CodeJudge::best_rotation(const SampledCode& code) const {
+  const int samples = code.samples();
+  std::vector<double> worst(static_cast<std::size_t>(samples), -1e300), decoded_bin;
+  for (const CameraVariant& variant : problem_->variants) {
+    DepthErrorLoss loss(variant.camera, variant.camera.measure(code).table,
+                        problem_->operating.error);
+    std::vector<double> log_error(worst.size(), 0.0);
+    for (std::size_t p = 0; p < variant.points.size(); ++p) {
+      loss.decode(variant.points[p], rotating_[p], decoded_bin);
+      ErrorByRotation errors(samples);
+      for (std::size_t t = 0; t < decoded_bin.size(); ++t)  // the end of the last chord is bin 0
+        errors.add(rotating_[p].trials[t].depth_periods * samples,
+                   std::min(decoded_bin[t], std::nextafter(samples, 0.0)));
+      const std::vector<double> sums = errors.sums();
+      for (std::size_t r = 0; r < sums.size(); ++r)
+        log_error[r] += std::log(std::max(least_error_bin, sums[r])) /
+                        static_cast<double>(variant.points.size());
+    }
+    for (std::size_t r = 0; r < worst.size(); ++r) worst[r] = std::max(worst[r], log_error[r]);
+  }
+  return smoothed_minimum(worst);
+}
+
+int smoothed_minimum(const std::vector<double>& values) {
+  constexpr std::array<double, 5> weights = {1.0, 2.0, 3.0, 2.0, 1.0};
+  const std::size_t count = values.size();
+  std::size_t best = 0;
+  double least = 1e300;
+  for (std::size_t i = 0; i < count; ++i) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < weights.size(); ++k)
+      sum += weights[k] * values[(i + count + k - 2) % count];
+    if (sum >= least) continue;
+    least = sum;
+    best = i;
+  }
+  return static_cast<int>(best);
+}
+
+WaveformParameters rotated(const WaveformSpace& space, const WaveformParameters& parameters,
+                           int rotation_bin) {
+  const int cells = (rotation_bin + space.repeat / 2) / space.repeat % space.cells;
+  WaveformParameters result = parameters;
+  for (int c = 0; c < space.cells; ++c)
+    result.modulation.row((c + cells) % space.cells) = parameters.modulation.row(c);
+  return result;
+}
+
+}  // namespace tofsmith

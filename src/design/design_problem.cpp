@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/design_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/design/optimize.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr int fewest_samples = 96;  // of the correlation functions, however long the cells
+constexpr int fewest_cells = 4;
+
+/// Lengths whose transform is fast.
+bool factors_are_small(int count) {
+  for (const int factor : {2, 3, 5})
+    while (count % factor == 0) count /= factor;
+  return count == 1;
+}
+
+/// Share of the peak that pulses of whole cells can use.
+double usable_peak(int cells, double peak_factor) {
+  return cells / std::ceil(cells / peak_factor - 1e-9) / peak_factor;
+}
+
+int cells_within(int most, double peak_factor) {
+  const auto largest = [&](double least_usable) {
+    for (int cells = most; cells >= fewest_cells && 5 * cells >= 4 * most; --cells)
+      if (cells % 2 == 0 && factors_are_small(cells) &&
+          usable_peak(cells, peak_factor) >= least_usable)
+        return cells;
+    return 0;
+  };
+  for (const double least_usable : {0.98, 0.9, 0.0})
+    if (const int cells = largest(least_usable)) return cells;
+  return most;
+}
+
+/// `count` values between those of the list, evenly by rank and by logarithm over `floor`.
+std::vector<double> in_between(std::vector<double> levels, int count, double floor) {
+  std::sort(levels.begin(), levels.end());
+  if (std::ssize(levels) <= count) return levels;
+  std::vector<double> result;
+  for (int i = 0; i < count; ++i) {
+    const double rank = (i + 0.5) / count * static_cast<double>(levels.size() - 1);
+    const auto below = static_cast<std::size_t>(rank);
+    const double share = rank - static_cast<double>(below);
+    const double low = std::log(levels[below] + floor);
+    const double high = std::log(levels[below + 1] + floor);
+    result.push_back(std::exp(low + share * (high - low)) - floor);
+  }
+  return result;
+}
+
+void require_optimizable(const Camera& camera, int exposures) {
+  require(exposures >= 1 && exposures <= 8, "exposures", exposures, "must be in [1, 8]");
+  const bool difference = camera.sensor.readout == Readout::difference;
+  const int measurements = difference ? exposures : exposures * camera.sensor.taps;
+  const int fewest = difference ? 2 : 3;
+  require(measurements >= fewest, "exposures", exposures,
+          fmt::format("must give at least {} measurements; with sensor.taps = {} that takes {}",
+                      fewest, camera.sensor.taps,
+                      difference ? 2 : (2 + camera.sensor.taps) / camera.sensor.taps));
+  require(camera.light.peak_factor > 1.0, "light.peak_factor", camera.light.peak_factor,
+          "must be > 1 to optimize: light that never changes carries no depth");
+  require(camera.band_limited() || camera.sensor.shortest_pulse_s.has_value(),
+          "sensor.shortest_pulse_s", "none",
+          fmt::format("is needed to optimize for a camera without band limit, where ever shorter "
+                      "pulses are ever better; try {:.2g}",
+                      suggested_shortest_pulse_s(camera)));
+  const std::size_t listed = camera.exposure_s.each_s.size();
+  require(listed == 0 || listed == static_cast<std::size_t>(exposures), "number of exposure_s",
+          listed, fmt::format("must equal the {} exposures", exposures));
+}
+
+double shortest_run_periods(const Camera& camera) {
+  return camera.sensor.shortest_pulse_s.value_or(0.0) * camera.fundamental_frequency_hz;
+}
+
+}  // namespace
+
+double suggested_shortest_pulse_s(const Camera& camera) {
+  return 2.0 / (camera.samples * camera.fundamental_frequency_hz);
+}
+
+WaveformSpace waveform_space(const Camera& camera, int exposures, int samples) {
+  const double shortest = shortest_run_periods(camera);
+  int most = samples;
+  if (shortest > 0.0) most = std::min(most, static_cast<int>(std::floor(1.0 / shortest + 1e-9)));
+  require(most >= fewest_cells, "sensor.shortest_pulse_s",
+          camera.sensor.shortest_pulse_s.value_or(0.0), "must fit into the period four times");
+  WaveformSpace space;
+  space.cells = cells_within(most, camera.light.peak_factor);
+  space.repeat = (std::min(samples, fewest_samples) + space.cells - 1) / space.cells;
+  space.exposures = exposures;
+  space.taps = camera.sensor.taps;
+  space.drain = space.taps == 1 || (space.taps > 2 && camera.sensor.drain);
+  space.peak_factor = camera.light.peak_factor;
+  space.equal_duties = camera.sensor.readout == Readout::difference;
+  return space;
+}
+
+std::vector<OperatingPoint> training_points(const Camera& camera) {
+  const std::vector<OperatingPoint> all = camera.operating.points();
+  if (all.size() <= 12) return all;
+  const double floor_e_per_s =
+      std::max(1.0, constant_variance_e2_of(camera.sensor)) /
+      camera.exposure_s.of(
+          0, static_cast<int>(std::max<std::size_t>(1, camera.exposure_s.each_s.size())));
+  OperatingRange fewer = camera.operating;
+  fewer.signal_e_per_s = in_between(fewer.signal_e_per_s, 4, 0.0);
+  fewer.ambient_e_per_s = in_between(fewer.ambient_e_per_s, 3, floor_e_per_s);
+  return fewer.points();
+}
+
+DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples) {
+  require(!variants.empty(), "variants", variants.size(), "must hold at least one camera");
+  const Camera& camera = variants.front();
+  camera.validate();
+  require_optimizable(camera, exposures);
+  DesignProblem problem;
+  problem.space = waveform_space(camera, exposures, samples);
+  problem.operating = camera.operating;
+  problem.shortest_run_periods = shortest_run_periods(camera);
+  problem.binary_modulation = camera.light.binary;
+  problem.binary_demodulation = camera.sensor.binary;
+  for (const Camera& variant : variants) {
+    variant.validate();
+    require(variant.sensor.taps == camera.sensor.taps &&
+                variant.sensor.readout == camera.sensor.readout,
+            "variants", variant.name, "must have the taps and the readout of the first");
+    problem.variants.push_back(
+        {SampledCamera(variant, problem.space.samples(), exposures), training_points(variant)});
+  }
+  return problem;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "design/sampled_camera.hpp"
+#include "design/waveform_parameters.hpp"
+
+namespace tofsmith {
+
+/// A camera as the optimizer sees it: on a grid, at the light levels it learns from.
+struct CameraVariant {
+  SampledCamera camera;
+  std::vector<OperatingPoint> points;
+};
+
+/// What is to be optimized: waveforms of a space, for the error of the worst of one or more
+/// variants of a camera; of each, the geometric mean over its light levels.
+struct DesignProblem {
+  WaveformSpace space;
+  std::vector<CameraVariant> variants;  ///< the first is the camera itself; never empty
+  OperatingRange operating;             ///< kind of error and albedo
+  double shortest_run_periods = 0.0;    ///< of binary waveforms
+  bool binary_modulation = true, binary_demodulation = true;
+
+  int measurements() const { return variants.front().camera.measurements(); }
+  bool linear() const { return operating.error == DepthErrorKind::linear; }
+};
+
+/// The grid for a camera: as many cells as asked, or as many of the shortest pulse as fit in a
+/// period, such that a pulse at the peak fills whole cells where that costs little.
+WaveformSpace waveform_space(const Camera& camera, int exposures, int samples);
+
+/// At most 4 signal by 3 ambient levels, in between those of the range; all, where it has no more
+/// than 12. Levels are spread evenly over the logarithm of signal, and of ambient over the floor
+/// that read noise sets.
+std::vector<OperatingPoint> training_points(const Camera& camera);
+
+/// @throws std::invalid_argument if the camera gives fewer than 3 measurements, has no band limit
+///         and no shortest pulse, or variants differ in what may be played
+DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples);
+
+}  // namespace tofsmith

@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/design/optimize.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "design/binarization.hpp"
+#include "design/edge_polish.hpp"
+#include "design/optimize_pool.hpp"
+#include "design/optimize_starts.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/version.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr std::uint64_t validation_key = 101, rotation_key = 102, polish_key = 103;
+
+/// A code with a name for the history, on its way to the final choice.
+struct Finalist {
+  CodeSet code;
+  std::string start;
+  Estimate error_m;
+};
+
+/// The best of the pool as codes that can be played: switched, and with polished edges too.
+std::vector<Finalist> playable_finalists(const DesignProblem& problem, OptimizePool& pool,
+                                         const Camera& camera, const OptimizeOptions& options,
+                                         const Progress& progress) {
+  const WaveformSpace& space = problem.space;
+  Sharpness sharpness{6.0, 8.0};
+  if (!problem.binary_modulation) sharpness.modulation = 1.0;
+  if (!problem.binary_demodulation) sharpness.demodulation = 1.0;
+  const auto count = std::min<std::int64_t>(options.refined, std::ssize(pool.entries()));
+  std::vector<SwitchedCode> codes(static_cast<std::size_t>(2 * count));
+  report(progress, 0.0, "edges");
+  parallel_for(count, [&](std::int64_t i) {
+    const auto k = static_cast<std::size_t>(i);
+    codes[2 * k] =
+        binarized(problem, render(space, pool.entries()[k].parameters, sharpness), pool.judge());
+    codes[2 * k + 1] = codes[2 * k];
+    if (options.polish)
+      codes[2 * k + 1] =
+          polish_edges(problem, codes[2 * k], options.polish_steps, options.trials_per_step,
+                       options.seed, combine_keys(polish_key, static_cast<std::uint64_t>(i)));
+  });
+  std::vector<Finalist> finalists;
+  for (std::size_t k = 0; k < codes.size(); ++k) {
+    const bool polished = k % 2 == 1;
+    if (polished && !options.polish) continue;
+    const std::string& start = pool.entries()[k / 2].start;
+    pool.record(polished ? "polish" : "binary", start,
+                pool.judge().score(sampled_on(space, codes[k])).log_error_bin);
+    finalists.push_back({code_set("optimized", space, codes[k], camera.samples), start, {}});
+  }
+  return finalists;
+}
+
+/// Those of the codes given that the camera can play.
+std::vector<Finalist> given_finalists(std::span<const CodeSet> also, const Camera& camera) {
+  std::vector<Finalist> finalists;
+  for (const CodeSet& code : also) {
+    try {
+      require_fits(code, camera);
+      finalists.push_back({code, "given", {}});
+    } catch (const std::invalid_argument&) {
+      continue;
+    }
+  }
+  return finalists;
+}
+
+/// Error on fresh trials, at the rotation that other trials chose; of the worst variant.
+void validate_finalist(Finalist& finalist, std::span<const Camera> variants,
+                       const OptimizeOptions& options) {
+  const Camera& camera = variants.front();
+  EvaluateOptions evaluation;
+  evaluation.trials = options.validation_trials;
+  if (camera.operating.error == DepthErrorKind::linear) {
+    evaluation.seed = combine_keys(options.seed, rotation_key);
+    std::vector<double> log_error;
+    for (const double error_m :
+         best_rotation(finalist.code, camera, evaluation).linear_geometric_mean_m)
+      log_error.push_back(std::log(std::max(1e-12, error_m)));
+    finalist.code = finalist.code.rotated(smoothed_minimum(log_error));
+  }
+  evaluation.seed = combine_keys(options.seed, validation_key);
+  for (const Camera& variant : variants) {
+    const DepthErrorReport report = evaluate(finalist.code, variant, evaluation);
+    const Estimate error_m = report.of(camera.operating.error).geometric_mean_m;
+    if (error_m.value > finalist.error_m.value) finalist.error_m = error_m;
+  }
+}
+
+std::string describe(const Finalist& best, const Finalist* best_given, bool is_given,
+                     bool ended_early) {
+  std::string text;
+  if (is_given)
+    text = fmt::format("no better code found than {}", best.code.name());
+  else if (!best_given)
+    text = fmt::format("error {:.4g} mm", 1e3 * best.error_m.value);
+  else
+    text = fmt::format("{:.3g} times better than {}, the best code given",
+                       best_given->error_m.value / best.error_m.value, best_given->code.name());
+  return text + (ended_early ? "; hops ended early, without gain" : "");
+}
+
+}  // namespace
+
+void OptimizeOptions::validate() const {
+  const auto at_least = [](int value, int least, const char* field) {
+    require(value >= least, std::string("OptimizeOptions::") + field, value,
+            fmt::format("must be >= {}", least));
+  };
+  require(samples >= 24 && samples <= 960, "OptimizeOptions::samples", samples,
+          "must be in [24, 960]");
+  at_least(starts, 1, "starts");
+  at_least(steps_per_start, 1, "steps_per_start");
+  at_least(hops, 0, "hops");
+  at_least(steps_per_hop, 1, "steps_per_hop");
+  at_least(patience, 0, "patience");
+  at_least(refined, 1, "refined");
+  at_least(refinement_steps, 0, "refinement_steps");
+  at_least(trials_per_step, 8, "trials_per_step");
+  at_least(pool_trials, 100, "pool_trials");
+  at_least(polish_steps, 0, "polish_steps");
+  at_least(validation_trials, 1000, "validation_trials");
+}
+
+OptimizedCode optimize(std::span<const Camera> variants, int exposures,
+                       const OptimizeOptions& options, std::span<const CodeSet> also,
+                       const Progress& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  options.validate();
+  const DesignProblem problem = make_design_problem(variants, exposures, options.samples);
+  const Camera& camera = variants.front();
+
+  // 1. Go downhill from many codes, from changed copies of the best, and once more from the best.
+  OptimizePool pool(problem, options, camera.range_m() / problem.space.samples());
+  pool.run_starts(also, part_of(progress, 0.0, 0.4));
+  pool.run_hops(part_of(progress, 0.4, 0.75));
+  pool.refine(part_of(progress, 0.75, 0.85));
+
+  // 2. Make them playable, and let all codes given compete.
+  std::vector<Finalist> finalists =
+      playable_finalists(problem, pool, camera, options, part_of(progress, 0.85, 0.9));
+  const std::size_t optimized = finalists.size();
+  for (Finalist& given : given_finalists(also, camera)) finalists.push_back(std::move(given));
+
+  // 3. Judge all on the same fresh trials.
+  for (std::size_t i = 0; i < finalists.size(); ++i) {
+    report(progress, 0.9 + 0.1 * static_cast<double>(i) / static_cast<double>(finalists.size()),
+           "validation");
+    validate_finalist(finalists[i], variants, options);
+  }
+  const auto less = [](const Finalist& a, const Finalist& b) {
+    return a.error_m.value < b.error_m.value;
+  };
+  const auto first_given = finalists.begin() + static_cast<std::ptrdiff_t>(optimized);
+  const auto best = std::min_element(finalists.begin(), finalists.end(), less);
+  const auto best_given = std::min_element(first_given, finalists.end(), less);
+  const Finalist* rival = best_given == finalists.end() ? nullptr : &*best_given;
+
+  OptimizedCode result{.code = best->code, .error_m = best->error_m};
+  result.is_given = best >= first_given;
+  result.start = best->start;
+  result.message = describe(*best, rival, result.is_given, pool.ended_early());
+  for (const Finalist& finalist : finalists)
+    result.candidates.push_back({finalist.code.name(), finalist.error_m});
+  result.history = std::move(pool.history());
+  result.steps =
+      pool.steps() +
+      (options.polish ? static_cast<std::int64_t>(optimized / 2) * options.polish_steps : 0);
+  if (!result.is_given) {
+    Provenance& provenance = result.code.provenance;
+    provenance.method = "optimize";
+    provenance.camera = camera.name;
+    provenance.seed = options.seed;
+    provenance.version = TOFSMITH_VERSION;
+    provenance.depth_error_m = best->error_m.value;
+  }
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  report(progress, 1.0, "done");
+  return result;
+}
+
+OptimizedCode optimize(const Camera& camera, int exposures, const OptimizeOptions& options,
+                       std::span<const CodeSet> also, const Progress& progress) {
+  return optimize(std::span<const Camera>(&camera, 1), exposures, options, also, progress);
+}
+
+}  // namespace tofsmith

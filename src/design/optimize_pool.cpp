@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/optimize_pool.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "design/descent.hpp"
+#include "design/optimize_starts.hpp"
+#include "tofsmith/core/parallel.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+// Work items of one seed: no two phases share their random numbers.
+enum Phase : std::uint64_t { judging = 1, starting, hopping, refining, drawing_starts };
+constexpr std::size_t together = 10;  // descents between two reports
+constexpr std::size_t hops_together = 5;
+constexpr std::size_t largest_pool = 24;
+constexpr double refinement_softness = 1.5;
+
+std::uint64_t work_item(std::uint64_t phase, std::size_t item) {
+  return combine_keys(phase, static_cast<std::uint64_t>(item));
+}
+
+}  // namespace
+
+OptimizePool::OptimizePool(const DesignProblem& problem, const OptimizeOptions& options,
+                           double bin_m)
+    : problem_(&problem),
+      options_(options),
+      bin_m_(bin_m),
+      judge_(problem, options.pool_trials, options.seed, work_item(Phase::judging, 0)) {}
+
+void OptimizePool::record(const std::string& phase, const std::string& start,
+                          double log_error_bin) {
+  const double error_m = std::exp(log_error_bin) * bin_m_;
+  const double best_m = history_.empty() ? error_m : history_.back().best_error_m;
+  history_.push_back({phase, start, error_m, std::min(best_m, error_m)});
+}
+
+/// Replaces every entry by where a descent from it leads; its origin moves to the best rotation.
+void OptimizePool::descend_all(std::vector<PoolEntry>& entries, int steps, double rate,
+                               std::uint64_t phase, std::size_t first_item) const {
+  DescentSchedule schedule;
+  schedule.steps = steps;
+  schedule.rate = rate;
+  schedule.trials_per_step = options_.trials_per_step;
+  if (!problem_->binary_modulation) schedule.final_sharpness.modulation = 1.0;
+  if (!problem_->binary_demodulation) schedule.final_sharpness.demodulation = 1.0;
+  parallel_for(std::ssize(entries), [&](std::int64_t i) {
+    PoolEntry& entry = entries[static_cast<std::size_t>(i)];
+    entry.parameters = descend(*problem_, std::move(entry.parameters), schedule, options_.seed,
+                               work_item(phase, first_item + static_cast<std::size_t>(i)));
+    entry.score = judge_.score(render(problem_->space, entry.parameters, schedule.final_sharpness));
+    entry.parameters = rotated(problem_->space, entry.parameters, entry.score.rotation_bin);
+    entry.score.rotation_bin = 0;
+  });
+}
+
+void OptimizePool::keep(const std::string& phase, std::vector<PoolEntry> entries) {
+  for (PoolEntry& entry : entries) {
+    record(phase, entry.start, entry.score.log_error_bin);
+    entries_.push_back(std::move(entry));
+  }
+  std::stable_sort(entries_.begin(), entries_.end(), [](const PoolEntry& a, const PoolEntry& b) {
+    return a.score.log_error_bin < b.score.log_error_bin;
+  });
+  if (entries_.size() > largest_pool) entries_.resize(largest_pool);
+}
+
+void OptimizePool::run_starts(std::span<const CodeSet> also, const Progress& progress) {
+  const auto count = static_cast<std::size_t>(options_.starts);
+  for (std::size_t first = 0; first < count; first += together) {
+    report(progress, static_cast<double>(first) / static_cast<double>(count), "starts");
+    std::vector<PoolEntry> entries;
+    for (std::size_t i = first; i < std::min(count, first + together); ++i) {
+      RandomStream random(options_.seed, work_item(Phase::drawing_starts, i));
+      OptimizeStart start = optimize_start(*problem_, also, static_cast<int>(i), random);
+      entries.push_back({std::move(start.parameters), {}, std::move(start.name)});
+    }
+    descend_all(entries, options_.steps_per_start, 0.08, Phase::starting, first);
+    steps_ += std::ssize(entries) * options_.steps_per_start;
+    keep("start", std::move(entries));
+  }
+}
+
+void OptimizePool::run_hops(const Progress& progress) {
+  const auto count = static_cast<std::size_t>(options_.hops);
+  int without_gain = 0;
+  for (std::size_t first = 0; first < count; first += hops_together) {
+    report(progress, static_cast<double>(first) / static_cast<double>(count), "hops");
+    std::vector<PoolEntry> entries;
+    for (std::size_t i = first; i < std::min(count, first + hops_together); ++i) {
+      RandomStream random(options_.seed, work_item(Phase::hopping, i), 1u << 30);
+      entries.push_back(hop(*problem_, entries_, random));
+    }
+    descend_all(entries, options_.steps_per_hop, 0.08, Phase::hopping, first);
+    steps_ += std::ssize(entries) * options_.steps_per_hop;
+    without_gain += static_cast<int>(entries.size());
+    const double best_before = entries_.front().score.log_error_bin;
+    keep("hop", std::move(entries));
+    if (entries_.front().score.log_error_bin < best_before) without_gain = 0;
+    if (options_.patience > 0 && without_gain >= options_.patience &&
+        first + hops_together < count) {
+      ended_early_ = true;
+      break;
+    }
+  }
+}
+
+void OptimizePool::refine(const Progress& progress) {
+  if (options_.refinement_steps == 0) return;
+  report(progress, 0.0, "refinement");
+  std::vector<PoolEntry> entries(
+      entries_.begin(),
+      entries_.begin() + std::min<std::ptrdiff_t>(options_.refined, std::ssize(entries_)));
+  for (PoolEntry& entry : entries)
+    entry.parameters = softened(std::move(entry.parameters), refinement_softness);
+  descend_all(entries, options_.refinement_steps, 0.03, Phase::refining, 0);
+  steps_ += std::ssize(entries) * options_.refinement_steps;
+  keep("refinement", std::move(entries));
+}
+
+}  // namespace tofsmith

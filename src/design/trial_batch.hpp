@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/random.hpp"
+
+namespace tofsmith {
+
+/// One true depth and how much it counts.
+struct DepthTrial {
+  double depth_periods = 0.0;  ///< in [0, 1)
+  double weight = 1.0;         ///< uniform density over the density it was drawn from
+  double albedo = 1.0;         ///< scales the signal
+};
+
+/// Standard normal numbers in store: a window of them costs nothing. Windows overlap, so this is
+/// for gradients, of which very many are averaged, not for verdicts.
+class NoiseStore {
+ public:
+  explicit NoiseStore(RandomStream& random);
+  /// `count` numbers in a row, from a random place.
+  std::vector<double> window(std::size_t count, RandomStream& random) const;
+
+ private:
+  std::vector<double> normals_;
+};
+
+/// Depths and noise to judge a code by; drawn before the code is known, so that codes can be
+/// compared, and gradients taken, on the same ones.
+struct TrialBatch {
+  int measurements = 0;
+  std::vector<DepthTrial> trials;
+  std::vector<double> normals;  ///< standard normal, (trials, measurements)
+
+  const double* normals_of(std::size_t trial) const {
+    return normals.data() + trial * static_cast<std::size_t>(measurements);
+  }
+};
+
+/// Draws trials: depths stratified over the range. With ends_matter, half of them lie near the ends
+/// of the range, where a wrap costs the whole of it, with a density that falls as 1 / distance.
+/// @param store  where noise comes from; null: fresh
+TrialBatch draw_trials(int count, int measurements, const OperatingRange& range, bool ends_matter,
+                       RandomStream& random, const NoiseStore* store = nullptr);
+
+}  // namespace tofsmith

@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/depth_error_loss.hpp"
+
+#include <gtest/gtest.h>
+
+#include "each_target.hpp"
+#include "reference_depth_loss.hpp"
+
+namespace tofsmith {
+namespace {
+
+/// A camera, a smooth code with unequal duties on a small grid, and trials.
+struct Setting {
+  explicit Setting(int taps = 1, Readout readout = Readout::separate, double contrast = 1.0)
+      : camera(built_in_camera("paper-10f0")) {
+    camera.sensor.taps = taps;
+    camera.sensor.readout = readout;
+    camera.sensor.modulation_contrast = contrast;
+    camera.sensor.dark_current_e_per_s = 50.0;
+    camera.exposure_s.each_s = {0.05, 0.1, 0.07, 0.08};
+    const int exposures = 4, samples = 24;
+    RandomStream random(3, 1);
+    code.modulation = Eigen::MatrixXd(samples, exposures);
+    code.demodulation = Eigen::MatrixXd(samples, exposures * taps);
+    for (double& m : code.modulation.reshaped()) m = 2.0 * random.uniform();
+    for (double& d : code.demodulation.reshaped()) d = random.uniform() / taps;
+    for (int e = 0; e < exposures; ++e)
+      for (int n = 0; n < samples; ++n)
+        code.demodulation(n, e * taps) += (n * (e + 1) / 12 + e) % 2 == 0 ? 0.4 : 0.0;
+  }
+  SampledCamera sampled() const { return {camera, code.samples(), 4}; }
+
+  Camera camera;
+  SampledCode code;
+  OperatingPoint point{2e4, 1e4};
+};
+
+TrialBatch trials_for(const Setting& setting, int count, bool ends_matter = false) {
+  RandomStream random(7, 2);
+  OperatingRange range;
+  range.uniform_albedo = true;
+  return draw_trials(count, setting.sampled().measurements(), range, ends_matter, random);
+}
+
+const std::vector<Setting>& settings() {
+  static const std::vector<Setting> all = {Setting(), Setting(2),
+                                           Setting(2, Readout::difference, 0.8), Setting(3)};
+  return all;
+}
+
+TEST(DepthErrorLoss, IsThatOfThePlainReferenceOnEveryTarget) {
+  for_each_target([] {
+    for (const Setting& setting : settings())
+      for (const DepthErrorKind kind : {DepthErrorKind::linear, DepthErrorKind::circular}) {
+        const SampledCamera camera = setting.sampled();
+        const MeasurementTable table = camera.measure(setting.code).table;
+        const TrialBatch batch = trials_for(setting, 40, kind == DepthErrorKind::linear);
+        DepthErrorLoss loss(camera, table, kind);
+        const double sharpness = 1.5 / loss.mean_variance_e2(setting.point);
+        const double expected = reference_soft_error(camera, table, setting.point, batch, sharpness,
+                                                     kind == DepthErrorKind::circular);
+        EXPECT_NEAR(loss.soft_error(setting.point, batch, sharpness), expected, 2e-4 * expected);
+        EXPECT_NEAR(loss.soft_error(setting.point, batch, sharpness, 0.5), expected,
+                    2e-4 * expected);
+      }
+  });
+}
+
+TEST(DepthErrorLoss, DecodesToTheBestPointOfAllChords) {
+  for (const Setting& setting : settings()) {
+    const SampledCamera camera = setting.sampled();
+    const MeasurementTable table = camera.measure(setting.code).table;
+    DepthErrorLoss loss(camera, table, DepthErrorKind::circular);
+    TrialBatch batch = trials_for(setting, 25);
+    std::vector<double> decoded;
+    loss.decode(setting.point, batch, decoded);
+    for (std::size_t t = 0; t < decoded.size(); ++t) {
+      TrialBatch one = batch;
+      one.trials = {batch.trials[t]};
+      one.normals.assign(batch.normals_of(t), batch.normals_of(t) + batch.measurements);
+      double expected = 0.0;
+      reference_soft_error(camera, table, setting.point, one, 1.0, true, &expected);
+      EXPECT_NEAR(decoded[t], expected, 1e-3);
+    }
+  }
+}
+
+/// Central difference of the plain reference along a direction.
+double slope_of_reference(const Setting& setting, const SampledCode& direction,
+                          const TrialBatch& batch, double sharpness, bool circular) {
+  const SampledCamera camera = setting.sampled();
+  const double step = 1e-6;
+  const auto at = [&](double s) {
+    SampledCode moved = setting.code;
+    moved.modulation += s * direction.modulation;
+    moved.demodulation += s * direction.demodulation;
+    return reference_soft_error(camera, camera.measure(moved).table, setting.point, batch,
+                                sharpness, circular);
+  };
+  return (at(step) - at(-step)) / (2 * step);
+}
+
+TEST(DepthErrorLoss, GradientByTheWaveformsMatchesFiniteDifferences) {
+  for (const Setting& setting : settings())
+    for (const bool circular : {false, true}) {
+      const SampledCamera camera = setting.sampled();
+      const auto measured = camera.measure(setting.code);
+      const TrialBatch batch = trials_for(setting, 20, !circular);
+      DepthErrorLoss loss(camera, measured.table,
+                          circular ? DepthErrorKind::circular : DepthErrorKind::linear);
+      const double sharpness = 1.2 / loss.mean_variance_e2(setting.point);
+      loss.soft_error(setting.point, batch, sharpness, 1.0);
+      const SampledCode gradient = camera.pull_back(measured, loss.gradient());
+      RandomStream random(11, 5);
+      for (int direction = 0; direction < 4; ++direction) {
+        SampledCode along = setting.code;
+        for (double& m : along.modulation.reshaped()) m = random.normal();
+        for (double& d : along.demodulation.reshaped()) d = random.normal();
+        if (direction == 0) along.modulation.setZero();
+        if (direction == 1) along.demodulation.setZero();
+        const double slope = gradient.modulation.cwiseProduct(along.modulation).sum() +
+                             gradient.demodulation.cwiseProduct(along.demodulation).sum();
+        const double scale = gradient.modulation.norm() * along.modulation.norm() +
+                             gradient.demodulation.norm() * along.demodulation.norm();
+        EXPECT_NEAR(slope, slope_of_reference(setting, along, batch, sharpness, circular),
+                    1e-3 * scale);
+      }
+    }
+}
+
+TEST(DepthErrorLoss, WeightsAndPointsAdd) {
+  const Setting setting;
+  const SampledCamera camera = setting.sampled();
+  const MeasurementTable table = camera.measure(setting.code).table;
+  const TrialBatch batch = trials_for(setting, 10);
+  DepthErrorLoss once(camera, table, DepthErrorKind::circular), twice = once;
+  once.soft_error(setting.point, batch, 1e-3, 3.0);
+  twice.soft_error(setting.point, batch, 1e-3, 1.0);
+  twice.soft_error(setting.point, batch, 1e-3, 2.0);
+  EXPECT_LT((once.gradient().correlation - twice.gradient().correlation).norm(),
+            1e-4 * once.gradient().correlation.norm());
+}
+
+}  // namespace
+}  // namespace tofsmith

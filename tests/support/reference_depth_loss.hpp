@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "design/sampled_camera.hpp"
+#include "design/trial_batch.hpp"
+
+namespace tofsmith {
+
+/// The differentiable depth error written out in double, trial by trial and chord by chord, with no
+/// thought of speed: what DepthErrorLoss is compared with.
+/// @param decoded_bin  if given, where the decoder that does not doubt puts the last trial
+inline double reference_soft_error(const SampledCamera& camera, const MeasurementTable& table,
+                                   const OperatingPoint& point, const TrialBatch& batch,
+                                   double sharpness, bool circular, double* decoded_bin = nullptr) {
+  const int samples = table.samples(), count = table.measurements();
+  const Eigen::VectorXd relative = camera.exposure_s() / camera.exposure_s().mean();
+  const Eigen::VectorXd ambient = relative.cwiseProduct(table.ambient_gain);
+  Eigen::MatrixXd projection = Eigen::MatrixXd::Identity(count, count);
+  if (camera.ambient_unknown()) projection -= ambient * ambient.transpose() / ambient.squaredNorm();
+  double sum = 0.0;
+  for (std::size_t t = 0; t < batch.trials.size(); ++t) {
+    const double position = batch.trials[t].depth_periods * samples;
+    const int bin = std::min(static_cast<int>(position), samples - 1);
+    const double fraction = position - bin;
+    Eigen::VectorXd y(count);
+    for (int i = 0; i < count; ++i) {
+      const auto light = [&](const Eigen::MatrixXd& chi, const Eigen::VectorXd& kappa) {
+        const double value = (1 - fraction) * chi(bin, i) + fraction * chi((bin + 1) % samples, i);
+        return camera.exposure_s()[i] * (batch.trials[t].albedo * point.signal_e_per_s * value +
+                                         point.ambient_e_per_s * kappa[i]);
+      };
+      const double variance =
+          light(table.shot(), table.shot_ambient()) + camera.constant_variance_e2()[i];
+      y[i] = light(table.correlation, table.ambient_gain) +
+             std::sqrt(variance) * batch.normals_of(t)[i];
+    }
+    double best = -1.0, total = 0.0, weighted = 0.0;
+    Eigen::VectorXd score(samples), error(samples);
+    for (int j = 0; j < samples; ++j) {
+      const auto at = [&](int n) -> Eigen::VectorXd {
+        return projection * relative.cwiseProduct(table.correlation.row(n % samples).transpose());
+      };
+      const Eigen::VectorXd p0 = at(j), p1 = at(j + 1);
+      const double b0 = y.dot(p0), b1 = y.dot(p1);
+      const double q00 = p0.dot(p0) + 1e-10, q01 = p0.dot(p1), q11 = p1.dot(p1) + 1e-10;
+      const double u = q11 * b0 - q01 * b1, v = q00 * b1 - q01 * b0;
+      double place = b1 * std::abs(b1) * q00 > b0 * std::abs(b0) * q11 ? 1.0 : 0.0;
+      if (u > 0 && v > 0) place = v / (u + v);
+      const double match = std::max(0.0, (1 - place) * b0 + place * b1);
+      const double square =
+          std::max(1e-10, q00 * (1 - place) * (1 - place) + 2 * q01 * place * (1 - place) +
+                              q11 * place * place);
+      score[j] = 0.5 * match * match / square;
+      error[j] = std::abs(j + place - position);
+      if (circular) error[j] = std::min(error[j], samples - error[j]);
+      if (score[j] > best) {
+        best = score[j];
+        if (decoded_bin) *decoded_bin = j + place;
+      }
+    }
+    for (int j = 0; j < samples; ++j) {
+      const double share = std::exp(sharpness * (score[j] - best));
+      total += share;
+      weighted += share * error[j];
+    }
+    sum += batch.trials[t].weight * weighted / total;
+  }
+  return sum / static_cast<double>(batch.trials.size());
+}
+
+}  // namespace tofsmith
