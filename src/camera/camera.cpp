@@ -184,12 +184,33 @@ OperatingRange paper_operating_range() {
   return range;
 }
 
+namespace {
+/// Three exclusive taps behind a clock of nine chips per period. Peak power is what is fixed: a
+/// source that may shine all the time (peak factor 1) makes S the rate at peak light.
+Camera three_tap_camera() {
+  Camera camera;
+  camera.name = "exclusive-3tap-9chip";
+  constexpr double chip_s = 10e-9;
+  camera.fundamental_frequency_hz = 1.0 / (9 * chip_s);
+  camera.exposure_s.total_s = 10e-3;
+  camera.samples = 180;  // chips of 9, 10, 12, 15, 18 and 20 per period are whole bins
+  camera.light.peak_factor = 1.0;
+  camera.sensor.taps = 3;
+  camera.sensor.shortest_pulse_s = chip_s;
+  camera.operating = {.signal_e_per_s = {1.1e6, 1.7e7},
+                      .ambient_e_per_s = {0.0, 8e7},
+                      .error = DepthErrorKind::circular};
+  return camera;
+}
+}  // namespace
+
 std::vector<std::string> built_in_camera_names() {
-  return {"paper-30x", "paper-10f0", "paper-5f0", "prototype"};
+  return {"paper-30x", "paper-10f0", "paper-5f0", "prototype", "exclusive-3tap-9chip"};
 }
 
 Camera built_in_camera(const std::string& name) {
   if (name == "prototype") return prototype_camera();
+  if (name == "exclusive-3tap-9chip") return three_tap_camera();
   Camera camera;
   camera.name = name;
   camera.sensor.noise = NoiseModel::gaussian;  // as the paper simulates it

@@ -140,7 +140,8 @@ void require_fits(const CodeSet& code, const Camera& camera);
 /// @throws std::invalid_argument for an unknown family or one the camera cannot play
 CodeSet build_family(std::string_view name, const Camera& camera);
 
-/// Cameras that need no file: paper-30x, paper-10f0, paper-5f0, prototype (prototype.hpp).
+/// Cameras that need no file: paper-30x, paper-10f0, paper-5f0, prototype (prototype.hpp) and
+/// exclusive-3tap-9chip: three taps and a clock of 9 chips of 10 ns, for design/chip_search.hpp.
 std::vector<std::string> built_in_camera_names();
 /// @throws std::invalid_argument for an unknown name, with the nearest known one
 Camera built_in_camera(const std::string& name);

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/chip_judge.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "design/chip_margin.hpp"
+#include "tofsmith/design/chip_metric.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Whether the very same measurements come from two depths that are whole chips.
+bool repeats(const ChipCode& code) {
+  std::array<std::array<int, most_chip_measurements>, most_chips> corners{};
+  for (int s = 0; s < code.chips; ++s) {
+    auto& corner = corners[static_cast<std::size_t>(s)];
+    for (int i = 0; i < code.measurements(); ++i)
+      corner[static_cast<std::size_t>(i)] = code.correlation(i, s);
+    for (int u = 0; u < s; ++u)
+      if (corners[static_cast<std::size_t>(u)] == corner) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+ChipJudge::ChipJudge(const Camera& camera, const ChipSearchOptions& options)
+    : chips_(chips_of(camera)),
+      taps_(camera.sensor.taps),
+      equal_duty_(options.equal_duty),
+      drain_(camera.sensor.drain),
+      separation_periods_(options.separation_periods) {
+  for (const OperatingPoint& point : camera.operating.points())
+    lights_.emplace_back(camera, point, chips_, options.exposures);
+  asked_sigma_.assign(lights_.size(), options.margin_sigma);
+}
+
+std::vector<FisherMatrix> ChipJudge::nodes_of(const ChipCode& code, int exposures) const {
+  const auto nodes_per_point = static_cast<std::size_t>(chips_ * nodes_per_chip);
+  std::vector<FisherMatrix> nodes(lights_.size() * nodes_per_point);
+  for (std::size_t p = 0; p < lights_.size(); ++p)
+    for (int e = 0; e < exposures; ++e)
+      add_exposure(code.modulation[static_cast<std::size_t>(e)], code.taps_of(e), taps_, lights_[p],
+                   nodes.data() + p * nodes_per_point);
+  return nodes;
+}
+
+double ChipJudge::score(const ChipCode& code) const {
+  return score_with_last(code, nodes_of(code, code.exposures() - 1),
+                         std::numeric_limits<double>::infinity());
+}
+
+double ChipJudge::score_with_last(const ChipCode& code, const std::vector<FisherMatrix>& nodes,
+                                  double limit) const {
+  const auto nodes_per_point = static_cast<std::size_t>(chips_ * nodes_per_chip);
+  std::array<FisherMatrix, std::size_t{most_chips} * nodes_per_chip> sum;
+  double log_sum = 0.0;
+  for (std::size_t p = 0; p < lights_.size(); ++p) {
+    const auto begin = nodes.begin() + static_cast<std::ptrdiff_t>(p * nodes_per_point);
+    std::copy(begin, begin + static_cast<std::ptrdiff_t>(nodes_per_point), sum.begin());
+    add_exposure(code.modulation.back(), code.taps_of(code.exposures() - 1), taps_, lights_[p],
+                 sum.data());
+    const double gamma = mean_depth_variance(
+        sum.data(), chips_, lights_.size() == 1 ? limit : std::numeric_limits<double>::infinity());
+    if (lights_.size() == 1) return gamma;
+    log_sum += std::log(gamma);
+  }
+  return std::exp(log_sum / static_cast<double>(lights_.size()));
+}
+
+bool ChipJudge::is_safe(const ChipCode& code, ChipSearchCounts& counts) const {
+  if (repeats(code)) {
+    ++counts.ambiguous;
+    return false;
+  }
+  for (std::size_t p = 0; p < lights_.size(); ++p) {
+    const ChipMargin margin(code, lights_[p], separation_periods_);
+    if (margin.sampled_sigma(1, asked_sigma_[p]) < asked_sigma_[p]) {
+      ++counts.below_margin;
+      return false;
+    }
+  }
+  if (is_ambiguous(code)) {
+    ++counts.ambiguous;
+    return false;
+  }
+  for (std::size_t p = 0; p < lights_.size(); ++p) {
+    if (!ChipMargin(code, lights_[p], separation_periods_).reaches(asked_sigma_[p])) {
+      ++counts.below_margin;
+      return false;
+    }
+  }
+  return true;
+}
+
+double ChipJudge::sampled_margin_share(const ChipCode& code) const {
+  double share = 1.0;
+  for (std::size_t p = 0; p < lights_.size(); ++p)
+    if (asked_sigma_[p] > 0.0)
+      share = std::min(share, ChipMargin(code, lights_[p], separation_periods_).sampled_sigma(2) /
+                                  asked_sigma_[p]);
+  return share;
+}
+
+double ChipJudge::proven_margin_sigma(const ChipCode& code) const {
+  double sigma = 0.0, least_share = std::numeric_limits<double>::infinity();
+  for (std::size_t p = 0; p < lights_.size(); ++p) {
+    const double here = ChipMargin(code, lights_[p], separation_periods_).proven_sigma();
+    const double share = here / std::max(1e-9, asked_sigma_[p]);
+    if (share < least_share) {
+      least_share = share;
+      sigma = here;
+    }
+  }
+  return sigma;
+}
+
+void ChipJudge::ask_no_more_than(const std::vector<ChipCode>& codes) {
+  for (std::size_t p = 0; p < lights_.size(); ++p) {
+    double safest = 0.0;
+    for (const ChipCode& code : codes) {
+      if (safest >= asked_sigma_[p] || is_ambiguous(code)) continue;
+      const ChipMargin margin(code, lights_[p], separation_periods_);
+      safest = std::max(safest,
+                        margin.reaches(asked_sigma_[p]) ? asked_sigma_[p] : margin.proven_sigma());
+    }
+    // Without any standard code the asked margin stays: nothing says it is out of reach.
+    if (safest > 0.0) asked_sigma_[p] = std::min(asked_sigma_[p], safest);
+  }
+}
+
+double ChipJudge::rms_m(double score) const { return lights_.front().chip_m * std::sqrt(score); }
+
+bool ChipJudge::is_allowed(const ChipCode& code) const {
+  for (int e = 0; e < code.exposures(); ++e) {
+    const ChipWord light = code.modulation[static_cast<std::size_t>(e)];
+    if (light == 0 || light == all_chips(chips_)) return false;
+    ChipWord taken = 0;
+    for (int i = 0; i < taps_; ++i) {
+      const ChipWord word = code.taps_of(e)[i];
+      if (word == 0 || (taken & word) != 0) return false;
+      if (equal_duty_ && std::popcount(word) != std::popcount(code.taps_of(e)[0])) return false;
+      taken |= word;
+    }
+    if (!drain_ && taken != all_chips(chips_)) return false;
+  }
+  return true;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/design/chip_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "design/chip_annealing.hpp"
+#include "design/chip_margin.hpp"
+#include "design/exhaustive_search.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/design/standard_chip_codes.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/version.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void require_searchable(const Camera& camera, const ChipSearchOptions& options) {
+  require_plain(camera);
+  const int taps = camera.sensor.taps, values = taps * options.exposures;
+  require(values >= 3 && values <= most_chip_measurements, "exposures x sensor.taps", values,
+          "must be in [3, 16]: signal, ambient light and depth are unknown");
+  require(taps <= chips_of(camera), "sensor.taps", taps, "must not exceed the chips of the clock");
+  require(!camera.operating.uniform_albedo, "operating.albedo", "uniform",
+          "must be a number to search codes by their metric");
+}
+
+/// Whether all codes can be tried, and how many about that is.
+bool can_be_exhaustive(const AssignmentRules& rules, const ChipSearchOptions& options) {
+  const bool is_enumerated = rules.taps >= 2 && rules.taps <= most_assigned_taps &&
+                             options.exposures <= 2 && (options.exposures == 2 || rules.taps >= 3);
+  return is_enumerated && exhaustive_size(rules, options.exposures) <= options.largest_exhaustive;
+}
+
+ChipFinalist finalist_of(const ScoredCode& scored, const ChipJudge& judge) {
+  return {.code = scored.code,
+          .rms_m = judge.rms_m(scored.score),
+          .margin_sigma = judge.proven_margin_sigma(scored.code),
+          .circular_mde_m = {}};
+}
+
+/// Monte Carlo has the last word on the order.
+void rank_by_trials(std::vector<ChipFinalist>& finalists, const Camera& camera,
+                    const ChipSearchOptions& options, const Progress& progress) {
+  EvaluateOptions evaluation;
+  evaluation.trials = options.trials;
+  evaluation.seed = options.seed;
+  evaluation.method = DecodeMethod::ml;
+  for (std::size_t i = 0; i < finalists.size(); ++i) {
+    const double count = static_cast<double>(finalists.size());
+    const Camera judged = camera_for(finalists[i].code, camera);
+    finalists[i].circular_mde_m =
+        evaluate(
+            to_code_set(finalists[i].code, judged, "finalist"), judged, evaluation,
+            part_of(progress, static_cast<double>(i) / count, static_cast<double>(i + 1) / count))
+            .circular.geometric_mean_m;
+  }
+  std::ranges::stable_sort(finalists, {},
+                           [](const ChipFinalist& f) { return f.circular_mde_m.value; });
+}
+
+std::string proof_text(const ChipSearchCounts& counts, const AssignmentRules& rules,
+                       const ChipSearchOptions& options, bool is_found) {
+  return fmt::format(
+      "All codes of {} exposure{}, {} taps of {} duty and {} chips were tried: {:.0f} of {:.4g} "
+      "are "
+      "left after symmetry. {} by the metric among those that are not ambiguous and keep the "
+      "margin.",
+      options.exposures, options.exposures == 1 ? "" : "s", rules.taps,
+      options.equal_duty ? "equal" : "any", rules.chips, counts.after_symmetry, counts.raw,
+      is_found ? "No code is better than the finalists" : "None can be ranked");
+}
+
+}  // namespace
+
+void ChipSearchOptions::validate() const {
+  require(exposures >= 1 && exposures <= 4, "ChipSearchOptions::exposures", exposures,
+          "must be in [1, 4]");
+  require(std::isfinite(margin_sigma) && margin_sigma >= 0.0, "ChipSearchOptions::margin_sigma",
+          margin_sigma, "must be finite and >= 0");
+  require(separation_periods > 0.0 && separation_periods < 0.5,
+          "ChipSearchOptions::separation_periods", separation_periods, "must be in (0, 1/2)");
+  require(largest_exhaustive >= 0.0, "ChipSearchOptions::largest_exhaustive", largest_exhaustive,
+          "must be >= 0");
+  require(finalists >= 1 && finalists <= 100, "ChipSearchOptions::finalists", finalists,
+          "must be in [1, 100]");
+  require(annealing_starts >= 0 && annealing_starts <= 10000, "ChipSearchOptions::annealing_starts",
+          annealing_starts, "must be in [0, 10000]");
+  require(annealing_steps >= 1, "ChipSearchOptions::annealing_steps", annealing_steps,
+          "must be >= 1");
+  require(trials == 0 || trials >= 2, "ChipSearchOptions::trials", trials, "must be 0 or >= 2");
+}
+
+ChipSearchCounts& ChipSearchCounts::operator+=(const ChipSearchCounts& other) {
+  raw += other.raw;
+  after_symmetry += other.after_symmetry;
+  examined += other.examined;
+  pruned_by_turning += other.pruned_by_turning;
+  pruned_by_bound += other.pruned_by_bound;
+  metric_evaluations += other.metric_evaluations;
+  pruned_by_metric += other.pruned_by_metric;
+  ambiguous += other.ambiguous;
+  below_margin += other.below_margin;
+  kept += other.kept;
+  return *this;
+}
+
+ChipSearchResult search_chip_codes(const Camera& camera, const ChipSearchOptions& options,
+                                   const Progress& progress) {
+  options.validate();
+  require_searchable(camera, options);
+  const auto begin = std::chrono::steady_clock::now();
+  const AssignmentRules rules{.chips = chips_of(camera),
+                              .taps = camera.sensor.taps,
+                              .equal_duty = options.equal_duty,
+                              .drain = camera.sensor.drain};
+  ChipSearchResult result;
+
+  // 1. Standard codes say what margin can be asked, and where to start.
+  ChipJudge judge(camera, options);
+  std::vector<ChipCode> seeds = multi_phase_codes(rules.chips, rules.taps, options.exposures);
+  std::erase_if(seeds, [&](const ChipCode& code) { return !judge.is_allowed(code); });
+  judge.ask_no_more_than(seeds);
+  result.log.margin_sigma = judge.asked_sigma();
+
+  // 2. Annealing finds good codes: the answer, or what an exhaustive search prunes by.
+  const bool is_exhaustive = can_be_exhaustive(rules, options);
+  ChipSearchOptions annealing = options;
+  if (is_exhaustive) {
+    // One exposure is searched faster than annealed.
+    annealing.annealing_starts = options.exposures == 1 ? 0 : std::min(options.annealing_starts, 4);
+    annealing.annealing_steps = std::min<std::int64_t>(options.annealing_steps, 2000);
+  }
+  ChipSearchCounts annealed;
+  BestCodes best = anneal_chip_codes(judge, seeds, annealing, annealed,
+                                     part_of(progress, 0.0, is_exhaustive ? 0.05 : 0.9));
+
+  // 3. Then all codes, if there are not too many.
+  if (is_exhaustive) {
+    const ExhaustiveTask task{.judge = &judge,
+                              .rules = rules,
+                              .finalists = options.finalists,
+                              .limit = best.codes().empty() ? infinity : best.limit()};
+    const Progress part = part_of(progress, 0.05, 0.9);
+    ExhaustiveFinding finding = options.exposures == 1 ? search_single_exposures(task, part)
+                                                       : search_exposure_pairs(task, part);
+    best = std::move(finding.best);
+    result.log.counts = finding.counts;
+    result.proved = true;
+    result.proof = proof_text(finding.counts, rules, options, !best.codes().empty());
+  } else {
+    result.log.counts = annealed;
+    result.proof = "Not proven: there are too many codes to try them all; these were annealed.";
+  }
+
+  // 4. The finalists, with proven margins and, if asked, judged by Monte Carlo.
+  for (const ScoredCode& scored : best.codes())
+    result.finalists.push_back(finalist_of(scored, judge));
+  for (const ScoredCode& scored : best.improvements())
+    result.log.improvements.push_back({scored.code, judge.rms_m(scored.score), scored.share});
+  if (options.trials > 0)
+    rank_by_trials(result.finalists, camera, options, part_of(progress, 0.9, 1.0));
+  result.log.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  report(progress, 1.0, "codes searched");
+  return result;
+}
+
+}  // namespace tofsmith

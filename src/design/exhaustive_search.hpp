@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "design/best_codes.hpp"
+#include "design/chip_judge.hpp"
+#include "design/tap_assignments.hpp"
+
+namespace tofsmith {
+
+/// What a search is to look at, and what it starts from.
+struct ExhaustiveTask {
+  const ChipJudge* judge = nullptr;
+  AssignmentRules rules;
+  int finalists = 1;
+  double limit = 0.0;  ///< score of codes known to be safe: no need to look beyond
+};
+
+/// What an exhaustive search found: the best codes there are, and what became of the others.
+struct ExhaustiveFinding {
+  BestCodes best;
+  ChipSearchCounts counts;
+};
+
+/// All codes of one exposure: three taps by exact turning of their directions where duties are
+/// equal, else by a bound on the metric.
+ExhaustiveFinding search_single_exposures(const ExhaustiveTask& task, const Progress& progress);
+
+/// All pairs of exposures, by a bound on the metric.
+ExhaustiveFinding search_exposure_pairs(const ExhaustiveTask& task, const Progress& progress);
+
+/// Codes that an exhaustive search would have to look at, after symmetry, about.
+double exhaustive_size(const AssignmentRules& rules, int exposures);
+
+/// One share of a search: adds to counts and best codes that no other share writes to.
+using SearchShare =
+    std::function<void(std::int64_t item, BestCodes& best, ChipSearchCounts& counts)>;
+
+/// Works through items in rounds. Within a round every item starts from what was best before it, so
+/// that results and counts do not depend on threads; rounds grow as the best settles.
+void search_in_rounds(std::int64_t items, std::int64_t items_at_once, ExhaustiveFinding& finding,
+                      const SearchShare& share, const Progress& progress);
+
+/// Looks at one code, given the Fisher matrices of its other exposures, and keeps it if it is good.
+void look_at(const ChipCode& code, const std::vector<FisherMatrix>& nodes,
+             const ExhaustiveTask& task, double share, BestCodes& best, ChipSearchCounts& counts);
+
+/// Writes the entries of a Fisher matrix as find_informed reads them, `stride` floats apart.
+void put_fisher(const FisherMatrix& matrix, float* first, int stride);
+
+/// The score that is still looked at.
+double limit_of(const ExhaustiveTask& task, const BestCodes& best);
+
+}  // namespace tofsmith
