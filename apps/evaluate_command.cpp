@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "evaluation_table.hpp"
 #include "method_arguments.hpp"
 #include "number_checks.hpp"
 #include "played_code.hpp"
@@ -11,6 +12,7 @@
 #include "terminal_progress.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/report/design_report.hpp"
+#include "tofsmith/report/robustness_section.hpp"
 #include "zncc_comparison.hpp"
 
 namespace tofsmith::apps {
@@ -24,64 +26,21 @@ struct EvaluateArguments {
   MethodArguments method;
   bool on_bins = false;
   bool best_rotation = false;
+  bool robustness = false;
   TapArguments taps;
   std::string output;
 };
 
-/// A field of a CSV file, quoted where it needs it (RFC 4180).
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-std::string points_csv(const std::vector<EvaluatedCode>& codes) {
-  const bool compared = is_compared_with_zncc(codes);
-  std::string text = fmt::format(
-      "code,signal_e_per_s,ambient_e_per_s,linear_mde_m,linear_se_m,circular_mde_m,circular_se_m,"
-      "outlier_rate,cramer_rao_mae_m,receiver_bound_mae_m{}\n",
-      compared ? ",zncc_linear_mde_m,zncc_circular_mde_m" : "");
-  for (const EvaluatedCode& code : codes)
-    for (std::size_t i = 0; i < code.error.points.size(); ++i) {
-      const PointDepthError& p = code.error.points[i];
-      text +=
-          fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}",
-                      csv_field(code.error.code), p.point.signal_e_per_s, p.point.ambient_e_per_s,
-                      p.linear_mde_m.value, p.linear_mde_m.standard_error, p.circular_mde_m.value,
-                      p.circular_mde_m.standard_error, p.outlier_rate.value, p.cramer_rao_mae_m,
-                      p.receiver_bound_mae_m);
-      if (compared)
-        text += fmt::format(",{:.9g},{:.9g}", code.zncc_error->points[i].linear_mde_m.value,
-                            code.zncc_error->points[i].circular_mde_m.value);
-      text += "\n";
-    }
-  return text;
-}
-
 void print(const Session& session, const Camera& camera, const std::vector<EvaluatedCode>& codes,
            const EvaluateOptions& options) {
   if (session.json) return session.print_document(evaluation_document(camera, codes, options));
-  std::vector<std::vector<std::string>> rows{{"code", "K", "signal (e/s)", "ambient (e/s)",
-                                              "linear (mm)", "circular (mm)", "outliers (%)",
-                                              "Cramer-Rao (mm)", "receiver (mm)"}};
-  for (const EvaluatedCode& code : codes) {
-    for (const PointDepthError& p : code.error.points)
-      rows.push_back({code.error.code, fmt::format("{}", code.error.measurements),
-                      fmt::format("{:.3g}", p.point.signal_e_per_s),
-                      fmt::format("{:.3g}", p.point.ambient_e_per_s), in_mm(p.linear_mde_m),
-                      in_mm(p.circular_mde_m), fmt::format("{:.2f}", 100 * p.outlier_rate.value),
-                      fmt::format("{:.4g}", 1e3 * p.cramer_rao_mae_m),
-                      fmt::format("{:.4g}", 1e3 * p.receiver_bound_mae_m)});
-    rows.push_back({code.error.code, "", "geometric", "mean",
-                    in_mm(code.error.linear.geometric_mean_m),
-                    in_mm(code.error.circular.geometric_mean_m), "", "", ""});
-  }
-  session.say(text_table(rows));
+  session.say(text_table(evaluation_rows(codes)));
   if (is_compared_with_zncc(codes)) session.say(text_table(zncc_comparison_rows(codes)));
+  if (const auto judged = judged_codes(codes); !judged.empty())
+    session.say(text_table(robustness_rows(judged)));
   session.say(fmt::format(
       "{} trials per operating point, seed {}, N = {}, true depths {}, decoded by {}; +- is one "
-      "standard error",
+      "standard error; (x) is the circular error over the bound",
       codes.empty() ? options.trials : codes.front().error.trials, options.seed, camera.samples,
       options.depth == DepthSampling::bins ? "on bins" : "anywhere in the range",
       name_of(options.method)));
@@ -130,12 +89,28 @@ std::vector<EvaluatedCode> evaluate_all(std::vector<CodeSet>& codes, const Camer
   return evaluated;
 }
 
+/// Errors on perturbed cameras, by the same decoder, from the same seed, in as many trials.
+void judge_robustness(std::vector<EvaluatedCode>& evaluated, const std::vector<CodeSet>& codes,
+                      const Camera& camera, const EvaluateOptions& options) {
+  const Progress progress = terminal_progress("perturbing");
+  const double count = static_cast<double>(codes.size());
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    const double done = static_cast<double>(i);
+    evaluated[i].robustness = robustness(codes[i], camera,
+                                         {.trials = options.trials,
+                                          .seed = options.seed,
+                                          .method = options.method,
+                                          .unwrap_weights = options.unwrap_weights},
+                                         part_of(progress, done / count, (done + 1) / count));
+  }
+}
+
 void write(const std::filesystem::path& path, const Session& session, const Camera& camera,
            const std::vector<CodeSet>& codes, const std::vector<EvaluatedCode>& evaluated,
            const EvaluateOptions& options) {
   std::string content;
   if (path.extension() == ".csv") {
-    content = points_csv(evaluated);
+    content = evaluation_csv(evaluated);
   } else if (path.extension() == ".json") {
     content = evaluation_document(camera, evaluated, options) + "\n";
   } else {
@@ -143,6 +118,8 @@ void write(const std::filesystem::path& path, const Session& session, const Came
     for (const EvaluatedCode& code : evaluated) errors.push_back(code.error);
     Page page = evaluation_report(camera, codes, errors, session.command_line);
     if (is_compared_with_zncc(evaluated)) page.sections.push_back(zncc_comparison(evaluated));
+    if (const auto judged = judged_codes(evaluated); !judged.empty())
+      page.sections.push_back(robustness_section(judged));
     content = render(page);
   }
   write_file_atomically(path, content, session.output_policy());
@@ -158,7 +135,8 @@ void run(EvaluateArguments& arguments, const Session& session) {
   std::vector<CodeSet> codes;
   for (const std::string& name : arguments.codes)
     codes.push_back(load_played_code(name, camera, arguments.taps));
-  const std::vector<EvaluatedCode> evaluated = evaluate_all(codes, camera, arguments);
+  std::vector<EvaluatedCode> evaluated = evaluate_all(codes, camera, arguments);
+  if (arguments.robustness) judge_robustness(evaluated, codes, camera, arguments.options);
   if (!arguments.output.empty())
     write(arguments.output, session, camera, codes, evaluated, arguments.options);
   print(session, camera, evaluated, arguments.options);
@@ -194,6 +172,9 @@ void add_evaluate_command(CLI::App& app, Session& session) {
                     "clip electrons to [0, T (S + A)], as the paper's authors' simulator does");
   command->add_flag("--best-rotation", arguments->best_rotation,
                     "move each code's origin of depth to where its linear error is least");
+  command->add_flag("--robustness", arguments->robustness,
+                    "also judge each code on perturbed cameras: bandwidth +-20 %, peak +-10 %, "
+                    "50 ps edge jitter, 2 % tap mismatch");
   arguments->taps.add_to(*command);
   command->add_option("-o,--output", arguments->output,
                       "write a table (.csv .json) or page (.html)");

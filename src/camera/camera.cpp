@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tofsmith/camera/prototype.hpp"
 #include "tofsmith/code/families.hpp"
@@ -27,6 +28,7 @@ void validate_light(const LightSource& light) {
   require(std::isfinite(light.peak_factor) && light.peak_factor >= 1.0, "light.peak_factor",
           light.peak_factor, "must be finite and >= 1: the peak is never below the average");
   light.impulse_response.validate("light.impulse_response");
+  require_not_negative(light.edge_jitter_s, "light.edge_jitter_s");
 }
 
 void validate_adc(const Sensor& sensor) {
@@ -53,6 +55,9 @@ void validate_adc(const Sensor& sensor) {
 void validate_sensor(const Sensor& sensor) {
   require(sensor.taps >= 1 && sensor.taps <= 16, "sensor.taps", sensor.taps, "must be in [1, 16]");
   sensor.impulse_response.validate("sensor.impulse_response");
+  require_not_negative(sensor.edge_jitter_s, "sensor.edge_jitter_s");
+  require(sensor.tap_mismatch > -1.0 && sensor.tap_mismatch < 1.0, "sensor.tap_mismatch",
+          sensor.tap_mismatch, "must be in (-1, 1)");
   require_not_negative(sensor.read_noise_e, "sensor.read_noise_e");
   require_not_negative(sensor.dark_current_e_per_s, "sensor.dark_current_e_per_s");
   const double contrast = sensor.modulation_contrast;
@@ -84,6 +89,19 @@ void validate_operating(const OperatingRange& range) {
           "must be in (0, 1] or \"uniform\"");
 }
 
+Eigen::VectorXcd arm_transfer(const ImpulseResponse& response, double edge_jitter_s,
+                              double fundamental_frequency_hz, int highest) {
+  Eigen::VectorXcd transfer(highest + 1);
+  for (int n = 0; n <= highest; ++n) {
+    const double frequency_hz = n * fundamental_frequency_hz;
+    transfer[n] = response.transfer(frequency_hz);
+    if (edge_jitter_s == 0.0) continue;
+    const double phase_rad = 2.0 * std::numbers::pi * frequency_hz * edge_jitter_s;
+    transfer[n] *= std::exp(-0.5 * phase_rad * phase_rad);
+  }
+  return transfer;
+}
+
 }  // namespace
 
 std::vector<OperatingPoint> OperatingRange::points() const {
@@ -105,19 +123,27 @@ double ExposureTime::of(int exposure, int exposures) const {
 double Camera::range_m() const { return unambiguous_range_m(fundamental_frequency_hz); }
 double Camera::bin_m() const { return range_m() / samples; }
 
+bool Camera::light_is_band_limited() const {
+  return light.impulse_response.kind != ImpulseResponse::Kind::none || light.edge_jitter_s > 0.0;
+}
+
 bool Camera::band_limited() const {
-  return light.impulse_response.kind != ImpulseResponse::Kind::none ||
-         sensor.impulse_response.kind != ImpulseResponse::Kind::none;
+  return light_is_band_limited() || sensor.impulse_response.kind != ImpulseResponse::Kind::none ||
+         sensor.edge_jitter_s > 0.0;
 }
 
 Eigen::VectorXcd Camera::transfer(int highest) const {
-  Eigen::VectorXcd result(highest + 1);
-  for (int n = 0; n <= highest; ++n) {
-    const double frequency_hz = n * fundamental_frequency_hz;
-    result[n] = sensor.impulse_response.transfer(frequency_hz) *
-                std::conj(light.impulse_response.transfer(frequency_hz));
-  }
-  return result;
+  return sensor_transfer(highest).cwiseProduct(light_transfer(highest).conjugate());
+}
+
+Eigen::VectorXcd Camera::light_transfer(int highest) const {
+  return arm_transfer(light.impulse_response, light.edge_jitter_s, fundamental_frequency_hz,
+                      highest);
+}
+
+Eigen::VectorXcd Camera::sensor_transfer(int highest) const {
+  return arm_transfer(sensor.impulse_response, sensor.edge_jitter_s, fundamental_frequency_hz,
+                      highest);
 }
 
 void Camera::validate() const {

@@ -11,12 +11,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Harmonics kept under an impulse response. Binary waveforms fall as 1/n^2, each arm of a Hann
-/// pair as 1/n^3 and of a low-pass as 1/n beyond its cutoff. For cutoffs within a few hundred f0
-/// what is left out is below 1e-6; a response far faster than that is cut at this many harmonics,
-/// which rounds corners of the correlation function by 1/n of a period.
-int harmonics_kept(int samples) { return std::max(2048, 8 * samples); }
-
 /// Contrast below 1 mixes the taps of an exposure: C x_j + (1 - C) / t sum_k x_k.
 template <typename Columns>
 void mix_taps(Columns& values, int taps, double contrast) {
@@ -28,7 +22,23 @@ void mix_taps(Columns& values, int taps, double contrast) {
   }
 }
 
+/// Sensitivity of every tap value beside the mean of its pixel.
+Eigen::VectorXd sensitivities(const CodeSet& code, const Sensor& sensor) {
+  Eigen::VectorXd sensitivity = Eigen::VectorXd::Ones(code.measurements());
+  for (int i = 0; i < code.measurements(); ++i) {
+    const int place = code.taps() == 1 ? i : i % code.taps();
+    sensitivity[i] += (place % 2 == 0 ? 0.5 : -0.5) * sensor.tap_mismatch;
+  }
+  return sensitivity;
+}
+
 }  // namespace
+
+// Binary waveforms fall as 1/n^2, each arm of a Hann pair as 1/n^3 and of a low-pass as 1/n beyond
+// its cutoff. For cutoffs within a few hundred f0 what is left out is below 1e-6; a response far
+// faster than that is cut at this many harmonics, which rounds corners of the correlation function
+// by 1/n of a period.
+int harmonics_kept(int samples) { return std::max(2048, 8 * samples); }
 
 Eigen::MatrixXd readout_matrix(int tap_values, Readout readout) {
   if (readout == Readout::separate) return Eigen::MatrixXd::Identity(tap_values, tap_values);
@@ -49,6 +59,7 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
     : samples_(code.samples()),
       taps_(code.taps()),
       contrast_(camera.sensor.modulation_contrast),
+      sensitivity_(sensitivities(code, camera.sensor)),
       dark_current_e_per_s_(camera.sensor.dark_current_e_per_s),
       tap_constant_variance_e2_(constant_variance_e2_of(camera.sensor)) {
   camera.validate();
@@ -70,7 +81,7 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
     tap_exposure_s_[i] = camera.exposure_s.of(code.exposure_of(i), code.exposures());
   }
   mix_taps(gain, taps_, contrast_);
-  tap_ambient_gain_ = gain.transpose();
+  tap_ambient_gain_ = gain.transpose().cwiseProduct(sensitivity_);
   ambient_gain_ = readout_ * tap_ambient_gain_;
   exposure_s_.resize(measurements());
   for (int i = 0; i < measurements(); ++i)
@@ -82,7 +93,7 @@ Eigen::VectorXd ForwardModel::tap_correlation(double depth_bin) const {
   for (int i = 0; i < tap_values(); ++i)
     values[i] = functions_[static_cast<std::size_t>(i)](depth_bin / samples_);
   mix_taps(values, taps_, contrast_);
-  return values.transpose();
+  return values.transpose().cwiseProduct(sensitivity_);
 }
 
 Eigen::VectorXd ForwardModel::correlation(double depth_bin) const {
@@ -94,7 +105,7 @@ Eigen::MatrixXd ForwardModel::tap_correlation_table(int points) const {
   for (int i = 0; i < tap_values(); ++i)
     table.col(i) = functions_[static_cast<std::size_t>(i)].table(points);
   mix_taps(table, taps_, contrast_);
-  return table;
+  return table * sensitivity_.asDiagonal();
 }
 
 Eigen::MatrixXd ForwardModel::correlation_table(int points) const {

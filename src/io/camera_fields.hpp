@@ -66,6 +66,7 @@ void visit_light(Table& table, Field<Table, LightSource>& light) {
   table.value("peak_factor", light.peak_factor);
   table.value("binary", light.binary);
   table.table("impulse_response", light.impulse_response, visit_impulse_response<Table>);
+  table.value("edge_jitter_s", light.edge_jitter_s);
   table.table("generator", light.generator, visit_generator<Table>);
 }
 
@@ -74,11 +75,13 @@ void visit_sensor(Table& table, Field<Table, Sensor>& sensor) {
   table.value("taps", sensor.taps);
   table.value("binary", sensor.binary);
   table.table("impulse_response", sensor.impulse_response, visit_impulse_response<Table>);
+  table.value("edge_jitter_s", sensor.edge_jitter_s);
   table.table("generator", sensor.generator, visit_generator<Table>);
   table.value("read_noise_e", sensor.read_noise_e);
   table.choice("noise", sensor.noise, Choices<NoiseModel>(noise_models));
   table.value("dark_current_e_per_s", sensor.dark_current_e_per_s);
   table.value("modulation_contrast", sensor.modulation_contrast);
+  table.value("tap_mismatch", sensor.tap_mismatch);
   table.value("full_well_e", sensor.full_well_e);
   table.value("adc_bits", sensor.adc_bits);
   table.value("gain_e_per_dn", sensor.gain_e_per_dn);

@@ -40,7 +40,8 @@ PointDepthError point_from_json(const JsonReader& json) {
       .circular_mde_m = {not_negative(json, "circular_mde_m"), not_negative(json, "circular_se_m")},
       .outlier_rate = {json.member("outlier_rate").number(0.0, 1.0, 0.0), 0.0},
       .cramer_rao_mae_m = json.member("cramer_rao_mae_m").number_or_infinity(),
-      .receiver_bound_mae_m = json.member("receiver_bound_mae_m").number_or_infinity()};
+      .receiver_bound_mae_m = json.member("receiver_bound_mae_m").number_or_infinity(),
+      .direct_tof_bound_mae_m = json.member("direct_tof_bound_mae_m").number_or_infinity()};
 }
 
 /// What every list of points says of one.
@@ -91,6 +92,7 @@ Json depth_error_json(const DepthErrorReport& report, int rotation_bin) {
     Json point = point_json(p);
     point["cramer_rao_mae_m"] = p.cramer_rao_mae_m;
     point["receiver_bound_mae_m"] = p.receiver_bound_mae_m;
+    point["direct_tof_bound_mae_m"] = p.direct_tof_bound_mae_m;
     entry["points"].push_back(std::move(point));
   }
   return entry;
@@ -112,6 +114,27 @@ DepthErrorReport depth_error_from_json(const JsonReader& entry, const JsonReader
   for (const JsonReader& point : entry.member("points").elements())
     report.points.push_back(point_from_json(point));
   return report;
+}
+
+Json robustness_json(const RobustnessReport& report) {
+  const double nominal_m = report.nominal_m.value;
+  const auto error = [&](const Estimate& error_m) -> Json {
+    return {{"geometric_mean_m", error_m.value},
+            {"geometric_mean_se_m", error_m.standard_error},
+            {"ratio", error_m.value / nominal_m}};
+  };
+  Json entry = {{"error", report.kind == DepthErrorKind::linear ? "linear" : "circular"},
+                {"trials", report.trials},
+                {"seed", report.seed},
+                {"nominal", error(report.nominal_m)},
+                {"worst_calibrated", error(report.worst_calibrated_m())},
+                {"worst_uncalibrated", error(report.worst_uncalibrated_m())},
+                {"perturbations", Json::array()}};
+  for (const PerturbedError& p : report.perturbed)
+    entry["perturbations"].push_back({{"name", p.name},
+                                      {"calibrated", error(p.calibrated_m)},
+                                      {"uncalibrated", error(p.uncalibrated_m)}});
+  return entry;
 }
 
 Json measurements_json(const std::vector<MeasurementReport>& reports) {
@@ -180,6 +203,7 @@ std::string evaluation_document(const Camera& camera, std::span<const EvaluatedC
   for (const EvaluatedCode& code : codes) {
     Json entry = depth_error_json(code.error, code.rotation_bin);
     if (code.zncc_error) entry["zncc"] = zncc_json(code.error, *code.zncc_error);
+    if (code.robustness) entry["robustness"] = robustness_json(*code.robustness);
     document["codes"].push_back(std::move(entry));
   }
   return document.dump(2, ' ', false, Json::error_handler_t::replace);

@@ -7,6 +7,7 @@
 
 #include "io/json_reader.hpp"
 #include "tofsmith/design/design.hpp"
+#include "tofsmith/simulate/robustness.hpp"
 
 namespace tofsmith {
 
@@ -16,6 +17,9 @@ nlohmann::ordered_json depth_error_json(const DepthErrorReport& report, int rota
 /// The same back from a document; standard errors of outlier rates are not in it.
 /// @throws IoError naming file and member
 DepthErrorReport depth_error_from_json(const JsonReader& entry, const JsonReader& document);
+
+/// A code's depth error on perturbed cameras, each beside its ratio to the nominal one.
+nlohmann::ordered_json robustness_json(const RobustnessReport& report);
 
 /// How the measurements of a designed code compare with their targets.
 nlohmann::ordered_json measurements_json(const std::vector<MeasurementReport>& reports);

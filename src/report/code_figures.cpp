@@ -37,6 +37,10 @@ std::string response_text(const ImpulseResponse& response) {
   return "";
 }
 
+std::string jitter_text(double edge_jitter_s) {
+  return edge_jitter_s > 0.0 ? fmt::format("; edge jitter {:.4g} ps", edge_jitter_s * 1e12) : "";
+}
+
 std::string arm_text(bool binary) { return binary ? "switches on and off" : "analog"; }
 
 std::string generator_text(const std::optional<Generator>& generator, double frequency_hz) {
@@ -130,11 +134,15 @@ KeyValueList camera_description(const Camera& camera) {
   add("peak over average power", fmt::format("{:.4g}", camera.light.peak_factor));
   add("light source", arm_text(camera.light.binary) +
                           "; response: " + response_text(camera.light.impulse_response) +
+                          jitter_text(camera.light.edge_jitter_s) +
                           generator_text(camera.light.generator, camera.fundamental_frequency_hz));
   add("sensor", fmt::format("{} tap{}, {}; response: {}", camera.sensor.taps,
                             camera.sensor.taps > 1 ? "s" : "", arm_text(camera.sensor.binary),
                             response_text(camera.sensor.impulse_response)) +
+                    jitter_text(camera.sensor.edge_jitter_s) +
                     generator_text(camera.sensor.generator, camera.fundamental_frequency_hz));
+  if (camera.sensor.tap_mismatch != 0.0)
+    add("tap mismatch", fmt::format("{:.3g} %", 100 * camera.sensor.tap_mismatch));
   add("noise", fmt::format("{} electrons, read noise {:.4g} e",
                            camera.sensor.noise == NoiseModel::poisson ? "Poisson" : "Gaussian",
                            camera.sensor.read_noise_e));

@@ -7,9 +7,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include "report/bound_blocks.hpp"
 #include "report/level_text.hpp"
+#include "report/operating_map.hpp"
 #include "tofsmith/report/bar_figure.hpp"
-#include "tofsmith/report/heat_map_figure.hpp"
 #include "tofsmith/report/line_figure.hpp"
 
 namespace tofsmith {
@@ -106,15 +107,20 @@ Figure curves(const Camera& camera, std::span<const ComparedCode> codes,
   Series cramer_rao{.name = "Cramér-Rao bound of " + winner.code, .style = reference_style()};
   Series receiver{.name = "receiver bound of the camera", .style = reference_style()};
   receiver.style.dash = Dash::dash_dot;
+  Series direct{.name = "direct time-of-flight bound of the light", .style = reference_style()};
+  direct.style.dash = Dash::dash;
   for (const PointDepthError& p : winner.points) {
     if (p.point.ambient_e_per_s != ambient) continue;
     cramer_rao.x.push_back(p.point.signal_e_per_s);
     cramer_rao.y.push_back(1e3 * p.cramer_rao_mae_m);
     receiver.x.push_back(p.point.signal_e_per_s);
     receiver.y.push_back(1e3 * p.receiver_bound_mae_m);
+    direct.x.push_back(p.point.signal_e_per_s);
+    direct.y.push_back(1e3 * p.direct_tof_bound_mae_m);
   }
   series.push_back(std::move(cramer_rao));
   if (receiver.y.front() > 0.0) series.push_back(std::move(receiver));
+  if (direct.y.front() > 0.0) series.push_back(std::move(direct));
   return line_figure(
       {.id = "error-by-signal",
        .title = "Circular depth error by signal",
@@ -128,29 +134,18 @@ Figure curves(const Camera& camera, std::span<const ComparedCode> codes,
 
 Figure heat_maps(const Camera& camera, std::span<const ComparedCode> codes,
                  const std::vector<std::size_t>& order, DepthErrorKind kind) {
-  const OperatingRange& range = camera.operating;
-  CategoryAxis x{.label = "ambient", .unit = "e/s"}, y{.label = "signal", .unit = "e/s"};
-  for (const double a : range.ambient_e_per_s) x.ticks.push_back(level_text(a));
-  for (const double s : range.signal_e_per_s) y.ticks.push_back(level_text(s));
+  const bool is_linear = kind == DepthErrorKind::linear;
   std::vector<HeatMap> maps;
-  for (const std::size_t i : order) {
-    const DepthErrorReport& e = *codes[i].error;
-    HeatMap map{.title = e.code};
-    map.values.resize(std::ssize(range.signal_e_per_s), std::ssize(range.ambient_e_per_s));
-    for (Eigen::Index s = 0; s < map.values.rows(); ++s)
-      for (Eigen::Index a = 0; a < map.values.cols(); ++a) {
-        const PointDepthError& p = e.points[static_cast<std::size_t>(s * map.values.cols() + a)];
-        map.values(s, a) =
-            1e3 * (kind == DepthErrorKind::linear ? p.linear_mde_m.value : p.circular_mde_m.value);
-      }
-    maps.push_back(std::move(map));
-  }
-  const std::string name = kind == DepthErrorKind::linear ? "linear" : "circular";
-  return heat_map_figure(
+  for (const std::size_t i : order)
+    maps.push_back(operating_map(camera.operating, *codes[i].error, [&](const PointDepthError& p) {
+      return 1e3 * (is_linear ? p.linear_mde_m.value : p.circular_mde_m.value);
+    }));
+  return operating_maps(
       {.id = "error-maps",
-       .title = fmt::format("Mean {} depth error by operating point", name),
+       .title =
+           fmt::format("Mean {} depth error by operating point", is_linear ? "linear" : "circular"),
        .caption = "In mm, all codes on one logarithmic colour scale, best first."},
-      maps, x, y, {.label = "depth error", .unit = "mm", .logarithmic = true});
+      camera.operating, maps, {.label = "depth error", .unit = "mm", .logarithmic = true});
 }
 
 }  // namespace
@@ -166,6 +161,8 @@ Section depth_error_section(const Camera& camera, std::span<const ComparedCode> 
   section.blocks.push_back(heat_maps(camera, codes, order, kind));
   if (camera.operating.signal_e_per_s.size() > 1)
     section.blocks.push_back(curves(camera, codes, order, best, colours));
+  for (Block& block : bound_blocks(camera, codes, order))
+    section.blocks.push_back(std::move(block));
   return section;
 }
 

@@ -4,38 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <numbers>
 
+#include "simulate/bound_means.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/periodic.hpp"
 
 namespace tofsmith {
 
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-const double mae_per_sigma = std::sqrt(2.0 / std::numbers::pi);
-
-/// Mean over albedo uniform in (0, 1) of min(mae(albedo), largest). Nodes crowd towards albedo 0,
-/// where the error grows.
-template <typename Mae>
-double mean_over_albedo(double largest, Mae&& mae) {
-  constexpr int nodes = 24;
-  double sum = 0.0;
-  for (int i = 0; i < nodes; ++i) {
-    const double x = (i + 0.5) / nodes;  // albedo = x^2, d albedo = 2 x dx
-    sum += 2.0 * x * std::min(largest, mae(x * x));
-  }
-  // The midpoint rule integrates 2 x exactly: a constant error stays what it is.
-  return sum / nodes;
-}
-
-OperatingPoint dimmed(const OperatingPoint& point, double albedo) {
-  return {albedo * point.signal_e_per_s, point.ambient_e_per_s};
-}
-
 /// Values at the middle of every second cell of a table of twice as many points, and the slope over
 /// the cell around them.
 void middles_and_slopes(const Eigen::MatrixXd& fine, Eigen::MatrixXd& middle,
@@ -137,7 +116,7 @@ Eigen::VectorXd CramerRaoBound::sigma_m(const OperatingPoint& point) const {
 }
 
 double CramerRaoBound::mae_m(const OperatingPoint& point) const {
-  return mae_per_sigma * sigma_m(point).mean();
+  return mae_per_sigma() * sigma_m(point).mean();
 }
 
 double CramerRaoBound::mae_uniform_albedo_m(const OperatingPoint& point) const {
@@ -149,72 +128,59 @@ ReceiverBound::ReceiverBound(const Camera& camera, int exposures)
     : range_m_(camera.range_m()),
       taps_(camera.sensor.taps),
       drain_(camera.sensor.drain),
+      peak_factor_(camera.light.peak_factor),
+      sensitivity_(1.0 + 0.5 * std::abs(camera.sensor.tap_mismatch)),
       dark_e_per_s_(camera.sensor.dark_current_e_per_s),
-      constant_variance_e2_(camera.sensor.read_noise_e * camera.sensor.read_noise_e) {
+      constant_variance_e2_(constant_variance_e2_of(camera.sensor)) {
   camera.validate();
   require(exposures >= 1, "exposures", exposures, "must be >= 1");
   require(camera.exposure_s.each_s.empty() ||
               camera.exposure_s.each_s.size() == static_cast<std::size_t>(exposures),
           "exposures", exposures, "must equal the number of exposure_s of the camera");
   for (int e = 0; e < exposures; ++e) exposure_s_.push_back(camera.exposure_s.of(e, exposures));
-  const double step_e = camera.sensor.gain_e_per_dn.value_or(0.0);
-  constant_variance_e2_ += step_e * step_e / 12.0;
   if (!camera.band_limited()) return;
-
-  // The harmonics the forward model keeps.
-  const int highest = std::max(2048, 8 * camera.samples);
-  const Eigen::VectorXcd transfer = camera.transfer(highest);
-  const double p = camera.light.peak_factor;
-  const double largest_modulation =
-      p / std::numbers::pi * std::sin(std::numbers::pi * std::min(1.0 / p, 0.5));
-  Eigen::VectorXcd spectrum = Eigen::VectorXcd::Zero(2 * highest + 1);
-  Eigen::VectorXcd slope_spectrum = spectrum;
-  const int points = 4 * highest;
-  for (int n = 0; n <= highest; ++n) {
-    const double turn = 2.0 * std::numbers::pi * n;
-    largest_slope_power_ = std::max(largest_slope_power_,
-                                    std::pow(turn * largest_modulation * std::abs(transfer[n]), 2));
-    spectrum[n] = transfer[n] * double(points);
-    slope_spectrum[n] = std::complex<double>(0.0, turn) * spectrum[n];
-  }
-  const PeriodicTransform transform(points);
-  transform.inverse(spectrum, response_);
-  transform.inverse(slope_spectrum, response_slope_);
+  using Kind = ImpulseResponse::Kind;
+  const bool may_ring = camera.light.impulse_response.kind == Kind::file ||
+                        camera.sensor.impulse_response.kind == Kind::file;
+  photons_.emplace(camera.transfer(harmonics_kept(camera.samples)), may_ring);
 }
 
 double ReceiverBound::tap_information(const OperatingPoint& point) const {
-  if (response_.size() == 0) return infinity;
+  if (!photons_) return infinity;
+  const double p = peak_factor_;
+  const double largest_harmonic =
+      p / std::numbers::pi * std::sin(std::numbers::pi * std::min(1.0 / p, 0.5));
+  const double v = photons_->largest_slope_power() * largest_harmonic * largest_harmonic;
+  const double signal = sensitivity_ * point.signal_e_per_s;
+  const double ambient =
+      sensitivity_ * point.ambient_e_per_s - signal * photons_->undershoot(peak_factor_);
   double information = 0.0;
   for (const double time_s : exposure_s_) {
-    const double b = time_s * point.ambient_e_per_s;
-    const double c = constant_variance_e2_ + time_s * dark_e_per_s_;
-    if (b + c == 0.0) return infinity;
-    information += taps_ * std::pow(point.signal_e_per_s * time_s, 2) * largest_slope_power_ *
-                   largest_gated(b, c, taps_, taps_ == 1 || drain_);
+    // A response that rings may take ambient light away: at most at a duty of 1.
+    const double b = time_s * std::max(ambient, 0.0);
+    const double c = constant_variance_e2_ + time_s * (dark_e_per_s_ + std::min(ambient, 0.0));
+    if (c < 0.0 || b + c == 0.0) return infinity;
+    information +=
+        taps_ * std::pow(signal * time_s, 2) * v * largest_gated(b, c, taps_, taps_ == 1 || drain_);
   }
   return information;
 }
 
 double ReceiverBound::photon_information(const OperatingPoint& point) const {
-  if (response_.size() == 0) return infinity;
-  const double S = point.signal_e_per_s;
+  if (!photons_) return infinity;
   double information = 0.0;
   for (const double time_s : exposure_s_) {
-    const double other = time_s * (point.ambient_e_per_s + dark_e_per_s_) + constant_variance_e2_;
-    double sum = 0.0;
-    for (Eigen::Index j = 0; j < response_.size(); ++j) {
-      constexpr double rounding = 1e-12;  // of the response, where it is 0
-      const double variance = time_s * S * std::max(response_[j], rounding) + other;
-      sum += std::pow(S * time_s * response_slope_[j], 2) / variance;
-    }
-    information += sum / static_cast<double>(response_.size());
+    const double signal_e = time_s * sensitivity_ * point.signal_e_per_s;
+    const double other_e =
+        time_s * (sensitivity_ * point.ambient_e_per_s + dark_e_per_s_) + constant_variance_e2_;
+    information += photons_->largest(signal_e, other_e, peak_factor_);
   }
   return information;
 }
 
 double ReceiverBound::mae_m(const OperatingPoint& point) const {
   const double information = std::min(tap_information(point), photon_information(point));
-  return range_m_ * mae_per_sigma / std::sqrt(information);
+  return range_m_ * mae_per_sigma() / std::sqrt(information);
 }
 
 double ReceiverBound::mae_uniform_albedo_m(const OperatingPoint& point) const {

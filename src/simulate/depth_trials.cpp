@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tofsmith/core/random.hpp"
 
@@ -23,6 +24,10 @@ EvaluateOptions with_even_trials(EvaluateOptions options) {
 
 DepthTrials::DepthTrials(const ForwardModel& model, const Camera& camera,
                          const EvaluateOptions& options)
+    : DepthTrials(model, camera, options, make_decoding_table(model, camera)) {}
+
+DepthTrials::DepthTrials(const ForwardModel& model, const Camera& camera,
+                         const EvaluateOptions& options, DecodingTable believed)
     : options_(with_even_trials(options)),
       samples_(model.samples()),
       uniform_albedo_(camera.operating.uniform_albedo),
@@ -31,8 +36,7 @@ DepthTrials::DepthTrials(const ForwardModel& model, const Camera& camera,
       points_(camera.operating.points()),
       correlation_(model),
       noise_(camera.sensor),
-      decoder_(make_decoder(options.method, make_decoding_table(model, camera), {},
-                            options.unwrap_weights)),
+      decoder_(make_decoder(options.method, std::move(believed), {}, options.unwrap_weights)),
       exposure_s_(model.tap_exposure_s()),
       ambient_gain_(model.tap_ambient_gain()) {}
 

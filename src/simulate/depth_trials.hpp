@@ -24,8 +24,12 @@ struct TrialBlock {
 class DepthTrials {
  public:
   DepthTrials(const ForwardModel& model, const Camera& camera, const EvaluateOptions& options);
+  /// Decoded by what a decoder believes of the camera, of as many measurements and samples.
+  DepthTrials(const ForwardModel& model, const Camera& camera, const EvaluateOptions& options,
+              DecodingTable believed);
 
   int samples() const { return samples_; }
+  int measurements() const { return noise_.measurements(correlation_.tap_values()); }
   std::int64_t trials() const { return options_.trials; }
   std::int64_t blocks() const;
   const std::vector<OperatingPoint>& points() const { return points_; }

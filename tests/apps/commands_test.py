@@ -89,8 +89,10 @@ class Commands(CommandLineTest):
                 self.assertEqual(list(point), [
                     "signal_e_per_s", "ambient_e_per_s", "linear_mde_m", "linear_se_m",
                     "circular_mde_m", "circular_se_m", "outlier_rate", "cramer_rao_mae_m",
-                    "receiver_bound_mae_m"])
+                    "receiver_bound_mae_m", "direct_tof_bound_mae_m"])
                 self.assertLessEqual(point["receiver_bound_mae_m"], point["cramer_rao_mae_m"])
+                self.assertLessEqual(point["direct_tof_bound_mae_m"],
+                                     point["receiver_bound_mae_m"])
 
     def test_evaluate_writes_every_format(self):
         document = self.do_json("evaluate", "sinusoid-k4", *FAST, "-o", "e.json")
@@ -99,6 +101,23 @@ class Commands(CommandLineTest):
         self.assertEqual(len(self.bytes_of("e.csv").splitlines()), 26)
         self.do("evaluate", "sinusoid-k4", *FAST, "-o", "e.html")
         self.assertIn(b"sinusoid-k4", self.bytes_of("e.html"))
+
+    def test_evaluate_judges_robustness(self):
+        few = ("--trials", "200", "--set", "samples=60", "--robustness")
+        entry = self.do_json("evaluate", "sinusoid-k4", *few)["codes"][0]["robustness"]
+        self.assertEqual([p["name"] for p in entry["perturbations"]],
+                         ["bandwidth -20 %", "bandwidth +20 %", "peak power -10 %",
+                          "peak power +10 %", "edge jitter 50 ps", "tap mismatch 2 %"])
+        self.assertGreaterEqual(entry["worst_uncalibrated"]["ratio"], 1)
+        self.assertIn("uncalibrated (mm)",
+                      self.do("evaluate", "sinusoid-k4", *few, "-o", "r.html"))
+        self.assertIn(b"Robustness", self.bytes_of("r.html"))
+
+    def test_jitter_and_mismatch_are_settings(self):
+        jitter = ("--set", "light.edge_jitter_s=5e-9", "--set", "sensor.tap_mismatch=0.1")
+        document = self.do_json("evaluate", "sinusoid-k4", *FAST, *jitter)
+        self.assertEqual(document["camera"]["light"]["edge_jitter_s"], 5e-9)
+        self.assertEqual(document["camera"]["sensor"]["tap_mismatch"], 0.1)
 
     def test_an_infinite_bound_is_null(self):
         document = self.do_json("evaluate", "sinusoid-k3", *FAST, "--set",

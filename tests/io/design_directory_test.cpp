@@ -58,6 +58,7 @@ void expect_same_error(const DepthErrorReport& a, const DepthErrorReport& b) {
     EXPECT_EQ(a.points[i].outlier_rate.value, b.points[i].outlier_rate.value);
     EXPECT_EQ(a.points[i].cramer_rao_mae_m, b.points[i].cramer_rao_mae_m);
     EXPECT_EQ(a.points[i].receiver_bound_mae_m, b.points[i].receiver_bound_mae_m);
+    EXPECT_EQ(a.points[i].direct_tof_bound_mae_m, b.points[i].direct_tof_bound_mae_m);
   }
 }
 

@@ -25,9 +25,10 @@ Keys keys_of(const json& object) {
 const Keys code_keys{"name",         "exposures", "taps",     "measurements", "samples",
                      "rotation_bin", "linear",    "circular", "points"};
 const Keys mean_keys{"geometric_mean_m", "geometric_mean_se_m", "mean_m", "mean_se_m"};
-const Keys point_keys{"signal_e_per_s", "ambient_e_per_s",  "linear_mde_m",
-                      "linear_se_m",    "circular_mde_m",   "circular_se_m",
-                      "outlier_rate",   "cramer_rao_mae_m", "receiver_bound_mae_m"};
+const Keys point_keys{"signal_e_per_s",        "ambient_e_per_s",  "linear_mde_m",
+                      "linear_se_m",           "circular_mde_m",   "circular_se_m",
+                      "outlier_rate",          "cramer_rao_mae_m", "receiver_bound_mae_m",
+                      "direct_tof_bound_mae_m"};
 
 TEST(EvaluationDocument, HasExactlyTheKeysOfTheContract) {
   const Camera camera = small_camera("paper-5f0");
@@ -91,6 +92,23 @@ TEST(EvaluationDocument, SetsWhatZnccMakesOfTheSameTrialsBesideMaximumLikelihood
   const json &own = entry["points"][1], &other = zncc["points"][1];
   EXPECT_DOUBLE_EQ(other["circular_ratio"].get<double>() * other["circular_mde_m"].get<double>(),
                    own["circular_mde_m"].get<double>());
+}
+
+TEST(EvaluationDocument, SetsRobustnessBesideTheErrors) {
+  const Camera camera = small_camera("paper-5f0");
+  const CodeSet code = build_family("sinusoid-k4", camera);
+  EvaluatedCode evaluated{evaluate(code, camera, {.trials = 200})};
+  evaluated.robustness = robustness(code, camera, {.trials = 200});
+  const json document = json::parse(evaluation_document(camera, {&evaluated, 1}, {.trials = 200}));
+  const json& entry = document["codes"][0]["robustness"];
+  EXPECT_EQ(keys_of(entry), (Keys{"error", "trials", "seed", "nominal", "worst_calibrated",
+                                  "worst_uncalibrated", "perturbations"}));
+  EXPECT_EQ(entry["error"], "linear");
+  EXPECT_EQ(entry["nominal"]["ratio"], 1.0);
+  ASSERT_EQ(entry["perturbations"].size(), 6u);
+  EXPECT_EQ(keys_of(entry["perturbations"][0]), (Keys{"name", "calibrated", "uncalibrated"}));
+  EXPECT_EQ(entry["perturbations"][5]["uncalibrated"]["geometric_mean_m"],
+            evaluated.robustness->perturbed[5].uncalibrated_m.value);
 }
 
 TEST(DesignDocument, AddsTheBestAndHowEachDesignedCodeCompares) {

@@ -36,6 +36,7 @@ struct LightSource {
   double peak_factor = 15.0;  ///< p = P_max / P_ave, >= 1
   bool binary = true;         ///< a design for it may only switch on and off
   ImpulseResponse impulse_response;
+  double edge_jitter_s = 0.0;          ///< rms displacement of edges, period to period [s], >= 0
   std::optional<Generator> generator;  ///< plays the modulation; none: any waveform, exactly
 
   friend bool operator==(const LightSource&, const LightSource&) = default;
@@ -46,11 +47,15 @@ struct Sensor {
   int taps = 1;        ///< values read out of one exposure; 2 = two-bucket; n = exclusive taps
   bool binary = true;  ///< a design for it may only switch on and off
   ImpulseResponse impulse_response;
-  std::optional<Generator> generator;      ///< plays the demodulation; none: any waveform, exactly
-  double read_noise_e = 20.0;              ///< standard deviation per readout [e], >= 0
+  double edge_jitter_s = 0.0;          ///< rms displacement of edges, period to period [s], >= 0
+  std::optional<Generator> generator;  ///< plays the demodulation; none: any waveform, exactly
+  double read_noise_e = 20.0;          ///< standard deviation per readout [e], >= 0
   NoiseModel noise = NoiseModel::poisson;  ///< how noise is drawn
   double dark_current_e_per_s = 0.0;       ///< per tap [e/s], >= 0
   double modulation_contrast = 1.0;        ///< C in (0, 1]; below 1 the taps mix
+  /// Relative difference in sensitivity of neighbouring taps (with one tap: of neighbouring
+  /// exposures): 1 + m / 2 for the first, third, .., 1 - m / 2 for the others; in (-1, 1).
+  double tap_mismatch = 0.0;
   std::optional<double> full_well_e;       ///< clip at this many electrons [e], > 0
   std::optional<int> adc_bits;             ///< quantize to this many bits, 1 .. 24
   std::optional<double> gain_e_per_dn;     ///< electrons per count [e/DN], > 0; with adc_bits
@@ -122,8 +127,16 @@ struct Camera {
   double bin_m() const;
   /// H_d(n f0) conj(H_m(n f0)) for n = 0 .. highest: what both arms leave of harmonic n.
   Eigen::VectorXcd transfer(int highest) const;
-  /// Whether either arm has an impulse response.
+  /// H_m(n f0) of the light alone. The mean of edges that are displaced by normal deviations of
+  /// rms s, period by period, is the waveform blurred by that normal density: a factor
+  /// exp(-(2 pi n f0 s)^2 / 2) beside the impulse response.
+  Eigen::VectorXcd light_transfer(int highest) const;
+  /// H_d(n f0) of the sensor alone, with its jitter.
+  Eigen::VectorXcd sensor_transfer(int highest) const;
+  /// Whether either arm has an impulse response or jitter.
   bool band_limited() const;
+  /// Whether the light has.
+  bool light_is_band_limited() const;
 
   /// @throws std::invalid_argument naming the field, its value and the rule it breaks
   void validate() const;

@@ -70,6 +70,7 @@ class ForwardModel {
   int samples_ = 0;
   int taps_ = 1;
   double contrast_ = 1.0;
+  Eigen::VectorXd sensitivity_;  // of the tap values; 1 but for tap_mismatch
   double dark_current_e_per_s_ = 0.0;
   double tap_constant_variance_e2_ = 0.0;
   std::vector<CorrelationFunction> functions_;  // of the tap values, before taps mix
@@ -77,6 +78,9 @@ class ForwardModel {
   Eigen::VectorXd tap_exposure_s_, exposure_s_;
   Eigen::MatrixXd readout_;
 };
+
+/// Harmonics of the correlation function kept for `samples` per period, where an arm is limited.
+int harmonics_kept(int samples);
 
 /// What leaves the sensor as sums of tap values, (K, tap values): each by itself, or A - B of every
 /// two neighbours.

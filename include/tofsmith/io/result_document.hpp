@@ -8,6 +8,7 @@
 
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/simulate/robustness.hpp"
 
 namespace tofsmith {
 
@@ -17,11 +18,13 @@ struct EvaluatedCode {
   int rotation_bin = 0;
   /// Of DecodeMethod::ml: the error by zncc in the same trials, to compare with.
   std::optional<DepthErrorReport> zncc_error;
+  /// On perturbed cameras, if that was asked for.
+  std::optional<RobustnessReport> robustness;
 };
 
 /// What `tofsmith evaluate --json` prints: version, seed, trials, the camera with its defaults
 /// filled in, the decoder, and one entry per code with its depth errors and bounds. Beside what it
-/// is compared with stand the ratios of its errors to it.
+/// is compared with stand the ratios of its errors to it; a code's robustness stands in its entry.
 std::string evaluation_document(const Camera& camera, std::span<const EvaluatedCode> codes,
                                 const EvaluateOptions& options);
 

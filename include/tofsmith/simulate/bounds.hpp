@@ -3,9 +3,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/simulate/photon_information.hpp"
 
 namespace tofsmith {
 
@@ -57,7 +59,8 @@ class ReceiverBound {
   /// Mean over depth of the largest information on depth [1 / period^2] that taps can gather: from
   /// the largest harmonic the arms let through and from how much a gate of duty kappa can hold.
   double tap_information(const OperatingPoint& point) const;
-  /// The same for photons recorded one by one behind both arms, one read-out per exposure.
+  /// The same for photons recorded one by one behind both arms, one read-out per exposure: from
+  /// the arms' response itself or from the largest ripple within the peak, whichever is less.
   double photon_information(const OperatingPoint& point) const;
   /// range sqrt(2 / pi) / sqrt(smaller of both) [m].
   double mae_m(const OperatingPoint& point) const;
@@ -68,11 +71,12 @@ class ReceiverBound {
   double range_m_;
   int taps_;
   bool drain_;
+  double peak_factor_;
+  double sensitivity_;  // of the most sensitive tap
   double dark_e_per_s_;
   double constant_variance_e2_;
-  std::vector<double> exposure_s_;             // of each exposure
-  double largest_slope_power_ = 0.0;           // v
-  Eigen::VectorXd response_, response_slope_;  // both arms together, over one period
+  std::vector<double> exposure_s_;            // of each exposure
+  std::optional<PhotonInformation> photons_;  // behind both arms; none without limit
 };
 
 }  // namespace tofsmith

@@ -38,11 +38,12 @@ struct EvaluateOptions {
 /// Depth error at one operating point.
 struct PointDepthError {
   OperatingPoint point;
-  Estimate linear_mde_m;              ///< mean |decoded - true|
-  Estimate circular_mde_m;            ///< mean of the shorter way round the range
-  Estimate outlier_rate;              ///< share of circular errors beyond the threshold
-  double cramer_rao_mae_m = 0.0;      ///< CramerRaoBound of the code
-  double receiver_bound_mae_m = 0.0;  ///< ReceiverBound of the camera, with the code's exposures
+  Estimate linear_mde_m;                ///< mean |decoded - true|
+  Estimate circular_mde_m;              ///< mean of the shorter way round the range
+  Estimate outlier_rate;                ///< share of circular errors beyond the threshold
+  double cramer_rao_mae_m = 0.0;        ///< CramerRaoBound of the code
+  double receiver_bound_mae_m = 0.0;    ///< ReceiverBound of the camera, with the code's exposures
+  double direct_tof_bound_mae_m = 0.0;  ///< DirectTofBound of the camera's light
 };
 
 /// One figure for all operating points.

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tofsmith/report/page.hpp"
+#include "tofsmith/simulate/robustness.hpp"
+
+namespace tofsmith {
+
+/// A code and what becomes of its depth error on perturbed cameras.
+struct JudgedCode {
+  std::string name;
+  RobustnessReport robustness;
+};
+
+/// The lines of a table of robustness, headings first: every code on every perturbed camera, each
+/// error beside its ratio to the nominal one, and the worst of them.
+std::vector<std::vector<std::string>> robustness_rows(const std::vector<JudgedCode>& codes);
+
+/// The same for a page.
+Section robustness_section(const std::vector<JudgedCode>& codes);
+
+}  // namespace tofsmith

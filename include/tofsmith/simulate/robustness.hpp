@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/progress.hpp"
+#include "tofsmith/core/statistics.hpp"
+#include "tofsmith/decode/decode_method.hpp"
+
+namespace tofsmith {
+
+/// How far a camera may be from what it is said to be, and how its depth error is then measured.
+struct RobustnessOptions {
+  double bandwidth = 0.2;         ///< relative change of the arms' bandwidth, [0, 1); 0: leave out
+  double peak = 0.1;              ///< relative change of the peak power, [0, 1); 0: leave out
+  double edge_jitter_s = 50e-12;  ///< rms, of each arm [s], >= 0; 0: leave out
+  double tap_mismatch = 0.02;     ///< difference of neighbouring taps, [0, 1); 0: leave out
+  std::int64_t trials = 4000;     ///< per operating point, 2 .. 4e9
+  std::uint64_t seed = 1;         ///< of all trials: every camera sees the same depths and noise
+  DecodeMethod method = DecodeMethod::zncc;
+  UnwrapWeights unwrap_weights = UnwrapWeights::variance;  ///< of DecodeMethod::unwrap
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+
+/// A camera that is not quite what it was said to be.
+struct PerturbedCamera {
+  std::string name;   ///< "bandwidth -20 %", ..
+  Camera camera;      ///< with its own limits; plays perturbed_code()
+  double peak = 1.0;  ///< its peak power over that it was said to have
+};
+
+/// The camera with one thing changed at a time, light levels and average power kept:
+///   - bandwidth: every frequency of both arms' impulse responses scaled (measured responses are
+///     stretched in time); left out where no arm has one,
+///   - peak: peak power scaled, see perturbed_code(),
+///   - edge jitter: added in quadrature to that of each arm, independent in both (a common one
+///     would cancel),
+///   - tap mismatch: added to that of the camera; left out where it would reach 1.
+std::vector<PerturbedCamera> perturbations(const Camera& camera,
+                                           const RobustnessOptions& options = {});
+
+/// What a perturbed source makes of a code at the same average power.
+///   - Binary modulation: the level is multiplied by `peak` and every pulse's length divided by it,
+///     about its centre. Pulses that so come to overlap merge, at the loss of the light that would
+///     have been twice; pulses that would fill the period stay on.
+///   - Sampled modulation: deviations from its mean are scaled so that its peak is `peak` times
+///     what it was; what falls below 0 is cut, and the whole scaled to the old mean (its peak is
+///     then a little less). Where even the mean would exceed the new peak, the whole is dimmed.
+/// Demodulation stays. A `peak` of 1 gives the code itself.
+CodeSet perturbed_code(const CodeSet& code, const PerturbedCamera& perturbed);
+
+/// Depth error on a perturbed camera: geometric mean over its operating points [m].
+struct PerturbedError {
+  std::string name;
+  Estimate calibrated_m;    ///< by a decoder that knows the perturbed camera
+  Estimate uncalibrated_m;  ///< by one that believes the camera to be what it was said to be
+};
+
+/// Depth error of a code when its camera is not quite what it was said to be.
+struct RobustnessReport {
+  DepthErrorKind kind = DepthErrorKind::linear;  ///< of all errors, as the camera's operating range
+  std::int64_t trials = 0;                       ///< made, per operating point
+  std::uint64_t seed = 0;
+  Estimate nominal_m;  ///< on the camera as it was said to be
+  std::vector<PerturbedError> perturbed;
+
+  /// The largest error, the nominal one included [m].
+  Estimate worst_calibrated_m() const;
+  Estimate worst_uncalibrated_m() const;
+};
+
+/// Judges a code on the perturbations of its camera.
+/// @throws std::invalid_argument if the camera or the options are invalid, the code does not fit or
+///         the method cannot decode it; Interrupted if progress says so
+/// @note same bits for any number of threads
+RobustnessReport robustness(const CodeSet& code, const Camera& camera,
+                            const RobustnessOptions& options = {}, const Progress& progress = {});
+
+}  // namespace tofsmith

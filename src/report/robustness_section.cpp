@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/report/robustness_section.hpp"
+
+#include <fmt/format.h>
+
+namespace tofsmith {
+
+namespace {
+
+using Row = std::vector<std::string>;
+
+std::string in_mm(const Estimate& error_m) {
+  return fmt::format("{:.4g} +- {:.2g}", 1e3 * error_m.value, 1e3 * error_m.standard_error);
+}
+
+/// What both decoders make of one camera.
+Row row(const std::string& code, const std::string& camera, const Estimate& nominal_m,
+        const Estimate& calibrated_m, const Estimate& uncalibrated_m) {
+  const auto ratio = [&](const Estimate& error_m) {
+    return fmt::format("{:.3f}", error_m.value / nominal_m.value);
+  };
+  return {code,
+          camera,
+          in_mm(calibrated_m),
+          ratio(calibrated_m),
+          in_mm(uncalibrated_m),
+          ratio(uncalibrated_m)};
+}
+
+}  // namespace
+
+std::vector<Row> robustness_rows(const std::vector<JudgedCode>& codes) {
+  std::vector<Row> rows{
+      {"code", "camera", "calibrated (mm)", "x nominal", "uncalibrated (mm)", "x nominal"}};
+  for (const JudgedCode& code : codes) {
+    const RobustnessReport& r = code.robustness;
+    rows.push_back(row(code.name, "nominal", r.nominal_m, r.nominal_m, r.nominal_m));
+    for (const PerturbedError& p : r.perturbed)
+      rows.push_back(row(code.name, p.name, r.nominal_m, p.calibrated_m, p.uncalibrated_m));
+    rows.push_back(
+        row(code.name, "worst", r.nominal_m, r.worst_calibrated_m(), r.worst_uncalibrated_m()));
+  }
+  return rows;
+}
+
+Section robustness_section(const std::vector<JudgedCode>& codes) {
+  Table table{.id = "robustness"};
+  std::vector<Row> rows = robustness_rows(codes);
+  for (std::size_t i = 0; i < rows.front().size(); ++i)
+    table.columns.push_back({rows.front()[i], i >= 2});
+  table.rows.assign(rows.begin() + 1, rows.end());
+  const bool is_linear = codes.empty() || codes.front().robustness.kind == DepthErrorKind::linear;
+  table.caption = fmt::format(
+      "{} depth error (geometric mean over the operating points) when the camera is not quite what "
+      "it was said to be: by a decoder that knows the camera as it is (calibrated), and by one "
+      "that believes what was said (uncalibrated). All see the same depths and the same noise.",
+      is_linear ? "Linear" : "Circular");
+  return {"Robustness", {std::move(table)}};
+}
+
+}  // namespace tofsmith

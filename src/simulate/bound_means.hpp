@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tofsmith/camera/camera.hpp"
+
+namespace tofsmith {
+
+/// Mean absolute value of a normal deviation over its standard deviation.
+inline double mae_per_sigma() { return std::sqrt(2.0 / std::numbers::pi); }
+
+/// Mean over albedo uniform in (0, 1) of min(mae(albedo), largest). Nodes crowd towards albedo 0,
+/// where the error grows.
+template <typename Mae>
+double mean_over_albedo(double largest, Mae&& mae) {
+  constexpr int nodes = 24;
+  double sum = 0.0;
+  for (int i = 0; i < nodes; ++i) {
+    const double x = (i + 0.5) / nodes;  // albedo = x^2, d albedo = 2 x dx
+    sum += 2.0 * x * std::min(largest, mae(x * x));
+  }
+  // The midpoint rule integrates 2 x exactly: a constant error stays what it is.
+  return sum / nodes;
+}
+
+inline OperatingPoint dimmed(const OperatingPoint& point, double albedo) {
+  return {albedo * point.signal_e_per_s, point.ambient_e_per_s};
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tofsmith/simulate/robustness.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Every frequency of the response multiplied by `factor`.
+ImpulseResponse with_bandwidth(ImpulseResponse response, double factor) {
+  response.f_max_hz *= factor;
+  response.cutoff_hz *= factor;
+  response.time_step_s /= factor;
+  return response;
+}
+
+bool has_response(const Camera& camera) {
+  return camera.light.impulse_response.kind != ImpulseResponse::Kind::none ||
+         camera.sensor.impulse_response.kind != ImpulseResponse::Kind::none;
+}
+
+PerturbedCamera with_bandwidth(const Camera& camera, double change) {
+  PerturbedCamera perturbed{fmt::format("bandwidth {:+.3g} %", 100 * change), camera};
+  for (ImpulseResponse* response :
+       {&perturbed.camera.light.impulse_response, &perturbed.camera.sensor.impulse_response})
+    *response = with_bandwidth(*response, 1.0 + change);
+  return perturbed;
+}
+
+PerturbedCamera with_peak(const Camera& camera, double change) {
+  PerturbedCamera perturbed{fmt::format("peak power {:+.3g} %", 100 * change), camera,
+                            1.0 + change};
+  double& peak_factor = perturbed.camera.light.peak_factor;
+  peak_factor = std::max(1.0, peak_factor * perturbed.peak);
+  return perturbed;
+}
+
+PerturbedCamera with_jitter(const Camera& camera, double edge_jitter_s) {
+  PerturbedCamera perturbed{fmt::format("edge jitter {:.3g} ps", 1e12 * edge_jitter_s), camera};
+  for (double* jitter_s :
+       {&perturbed.camera.light.edge_jitter_s, &perturbed.camera.sensor.edge_jitter_s})
+    *jitter_s = std::hypot(*jitter_s, edge_jitter_s);
+  return perturbed;
+}
+
+PerturbedCamera with_mismatch(const Camera& camera, double mismatch) {
+  PerturbedCamera perturbed{fmt::format("tap mismatch {:.3g} %", 100 * mismatch), camera};
+  perturbed.camera.sensor.tap_mismatch += mismatch;
+  return perturbed;
+}
+
+/// Whether two pulses leave no gap worth the name between them.
+bool overlap(const OnInterval& first, const OnInterval& second) {
+  constexpr double rounding = 1e-12;
+  return second.rise <= first.fall + rounding;
+}
+
+OnInterval merged(const OnInterval& a, const OnInterval& b) {
+  return {std::min(a.rise, b.rise), std::max(a.fall, b.fall)};
+}
+
+/// Moved by whole periods so that it rises in [0, 1).
+OnInterval within_period(OnInterval pulse) {
+  double periods = std::floor(pulse.rise);
+  if (pulse.rise - periods >= 1.0) periods += 1.0;  // just below 0
+  return {std::max(0.0, pulse.rise - periods), pulse.fall - periods};
+}
+
+/// Pulses of a new length about their old centres; those that overlap become one.
+Waveform with_pulses(const Waveform& modulation, double stretch, double level) {
+  std::vector<OnInterval> on;
+  for (const OnInterval& pulse : modulation.on_intervals()) {
+    const double centre = 0.5 * (pulse.rise + pulse.fall);
+    const double half = 0.5 * stretch * (pulse.fall - pulse.rise);
+    OnInterval longer{centre - half, centre + half};
+    for (; !on.empty() && overlap(on.back(), longer); on.pop_back())
+      longer = merged(on.back(), longer);
+    on.push_back(longer);
+  }
+  // The last pulse may run into the first of the next period.
+  while (on.size() > 1) {
+    const OnInterval next{on.front().rise + 1.0, on.front().fall + 1.0};
+    if (!overlap(on.back(), next)) break;
+    on.back() = merged(on.back(), next);
+    on.erase(on.begin());
+  }
+  if (on.front().fall - on.front().rise >= 1.0 - 1e-12) return Waveform::constant(level);
+  std::transform(on.begin(), on.end(), on.begin(), within_period);
+  std::sort(on.begin(), on.end(),
+            [](const OnInterval& a, const OnInterval& b) { return a.rise < b.rise; });
+  return Waveform::binary(std::move(on), level);
+}
+
+/// Deviations from the mean scaled so that the peak is `factor` times what it was.
+Waveform with_depth_of_modulation(const Waveform& modulation, double factor) {
+  const double mean = modulation.mean(), peak = modulation.peak();
+  if (mean <= 0.0 || peak <= mean) return modulation;
+  const double depth = (factor * peak - mean) / (peak - mean);
+  if (depth <= 0.0) return Waveform::sampled(factor * modulation.samples());  // dimmed
+  const Eigen::VectorXd samples =
+      (mean + depth * (modulation.samples().array() - mean)).cwiseMax(0.0);
+  return Waveform::sampled(samples * (mean / samples.mean()));
+}
+
+Waveform with_peak(const Waveform& modulation, double peak) {
+  if (!modulation.is_binary()) return with_depth_of_modulation(modulation, peak);
+  if (modulation.on_intervals().empty()) return modulation;
+  return with_pulses(modulation, 1.0 / peak, modulation.level() * peak);
+}
+
+}  // namespace
+
+std::vector<PerturbedCamera> perturbations(const Camera& camera, const RobustnessOptions& options) {
+  camera.validate();
+  options.validate();
+  std::vector<PerturbedCamera> cameras;
+  if (options.bandwidth > 0.0 && has_response(camera))
+    for (const double change : {-options.bandwidth, options.bandwidth})
+      cameras.push_back(with_bandwidth(camera, change));
+  if (options.peak > 0.0)
+    for (const double change : {-options.peak, options.peak})
+      cameras.push_back(with_peak(camera, change));
+  if (options.edge_jitter_s > 0.0) cameras.push_back(with_jitter(camera, options.edge_jitter_s));
+  if (options.tap_mismatch > 0.0 && camera.sensor.tap_mismatch + options.tap_mismatch < 1.0)
+    cameras.push_back(with_mismatch(camera, options.tap_mismatch));
+  return cameras;
+}
+
+CodeSet perturbed_code(const CodeSet& code, const PerturbedCamera& perturbed) {
+  if (perturbed.peak == 1.0) return code;
+  std::vector<Waveform> modulation, demodulation;
+  for (int e = 0; e < code.exposures(); ++e)
+    modulation.push_back(with_peak(code.modulation(e), perturbed.peak));
+  for (int i = 0; i < code.measurements(); ++i) demodulation.push_back(code.demodulation(i));
+  return CodeSet::create(code.name(), code.samples(), code.taps(), std::move(modulation),
+                         std::move(demodulation));
+}
+
+}  // namespace tofsmith

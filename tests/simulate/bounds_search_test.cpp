@@ -1,0 +1,206 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// Looks for codes that break the receiver bound.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tofsmith/core/random.hpp"
+#include "tofsmith/simulate/bounds.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
+
+namespace tofsmith {
+namespace {
+
+/// A code of pulse trains: all that a search may change.
+struct TrainCode {
+  int frequency = 1;          // pulses and gates per period
+  double pulse_duty = 0.1;    // of the light
+  std::vector<double> gate;   // duty of every tap of every exposure
+  std::vector<double> begin;  // where the first gate of every exposure opens, in gate periods
+};
+
+/// `count` gates per period, on for `duty` of it from `begin` gate periods on.
+Waveform gates(int count, double duty, double begin) {
+  std::vector<OnInterval> on;
+  for (int i = 0; i < count; ++i) {
+    const double rise = (i + begin - std::floor(begin)) / count;
+    on.push_back({rise, rise + duty / count});
+  }
+  return Waveform::binary(std::move(on));
+}
+
+CodeSet build(const TrainCode& train, const Camera& camera) {
+  const auto taps = static_cast<std::size_t>(camera.sensor.taps);
+  const double duty = std::max(train.pulse_duty, 1.0 / camera.light.peak_factor);
+  std::vector<Waveform> modulation, demodulation;
+  for (std::size_t e = 0; e < train.begin.size(); ++e) {
+    modulation.push_back(pulse_train(train.frequency, std::min(duty, 1.0)));
+    double sum = 0.0, begin = train.begin[e];
+    for (std::size_t j = 0; j < taps; ++j) sum += train.gate[e * taps + j];
+    const double scale = camera.sensor.drain ? std::max(sum, 1.0) : sum;
+    for (std::size_t j = 0; j < taps; ++j) {
+      const double gate = train.gate[e * taps + j] / scale;
+      demodulation.push_back(gates(train.frequency, gate, begin));
+      begin += gate;
+    }
+  }
+  return CodeSet::create("train", camera.samples, camera.sensor.taps, std::move(modulation),
+                         std::move(demodulation));
+}
+
+/// Cramer-Rao bound of a code over the receiver bound of its camera: must not fall below 1.
+double ratio_of(const CodeSet& code, const Camera& camera, const OperatingPoint& point,
+                double bound_m) {
+  return CramerRaoBound(ForwardModel(code, camera), camera).mae_m(point) / bound_m;
+}
+
+double ratio_of(const CodeSet& code, const Camera& camera, const OperatingPoint& point) {
+  return ratio_of(code, camera, point, ReceiverBound(camera, code.exposures()).mae_m(point));
+}
+
+Camera camera_for(const char* name, int taps, bool drain, double peak_factor) {
+  Camera camera = built_in_camera(name);
+  camera.samples = 24;
+  camera.sensor.taps = taps;
+  camera.sensor.drain = drain;
+  camera.light.peak_factor = peak_factor;
+  return camera;
+}
+
+/// Wide pulses and evenly spread gates, so that no depth is lost from the start.
+TrainCode even_train(RandomStream& random, const Camera& camera, int exposures) {
+  TrainCode train;
+  train.frequency = 2 + static_cast<int>(3 * random.uniform());
+  train.pulse_duty = 0.3 + 0.2 * random.uniform();
+  const double gate = camera.sensor.taps == 1 ? 0.5 : 1.0 / camera.sensor.taps;
+  train.gate.assign(static_cast<std::size_t>(exposures * camera.sensor.taps), gate);
+  for (int e = 0; e < exposures; ++e)
+    train.begin.push_back((e + 0.1) / (exposures * camera.sensor.taps));
+  return train;
+}
+
+TrainCode neighbour(TrainCode train, RandomStream& random, double step) {
+  if (random.uniform() < 0.2) train.frequency += random.uniform() < 0.5 ? 1 : -1;
+  train.frequency = std::clamp(train.frequency, 1, 16);
+  train.pulse_duty = std::clamp(train.pulse_duty + step * random.normal(), 0.02, 1.0);
+  for (double& gate : train.gate) gate = std::clamp(gate + step * random.normal(), 0.02, 0.98);
+  for (double& begin : train.begin) begin += step * random.normal();
+  return train;
+}
+
+/// The least ratio a hill climb finds; every code on its way must keep the bound.
+double climb(const Camera& camera, const OperatingPoint& point, int exposures, std::uint64_t item) {
+  RandomStream random(11, item);
+  TrainCode best = even_train(random, camera, exposures);
+  const double bound_m = ReceiverBound(camera, exposures).mae_m(point);
+  double least = ratio_of(build(best, camera), camera, point, bound_m);
+  for (int step = 0; step < 40; ++step) {
+    const TrainCode next = neighbour(best, random, 0.12 / (1 + step / 8));
+    const double ratio = ratio_of(build(next, camera), camera, point, bound_m);
+    EXPECT_GE(ratio, 1.0) << camera.name << ", " << camera.sensor.taps << " taps, S "
+                          << point.signal_e_per_s << ", A " << point.ambient_e_per_s;
+    if (ratio >= least) continue;
+    least = ratio;
+    best = next;
+  }
+  return least;
+}
+
+TEST(ReceiverBoundSearch, HillClimbsOverPulseTrainsStayAboveItAndComeNear) {
+  double nearest = 100.0;
+  std::uint64_t item = 0;
+  for (const int taps : {1, 2, 3, 4})
+    for (const bool drain : {true, false}) {
+      if (taps == 1 && !drain) continue;
+      const int exposures = taps == 1 ? 4 : taps == 2 ? 2 : 1;
+      for (const OperatingPoint& point :
+           {OperatingPoint{1e3, 1e2}, OperatingPoint{1e6, 1e3}, OperatingPoint{1e4, 1e7}}) {
+        const char* name = item % 2 == 0 ? "paper-10f0" : "paper-5f0";
+        const double peak_factor = item % 3 == 0 ? 15.0 : item % 3 == 1 ? 4.0 : 1.5;
+        const Camera camera = camera_for(name, taps, drain, peak_factor);
+        const double ratio = climb(camera, point, exposures, item++);
+        EXPECT_LT(ratio, 12.0) << taps << " taps: a search that finds nothing proves nothing";
+        nearest = std::min(nearest, ratio);
+      }
+    }
+  EXPECT_LT(nearest, 1.5) << "a bound no code comes near would say nothing";
+  RecordProperty("nearest", std::to_string(nearest));
+}
+
+TEST(ReceiverBoundSearch, RandomWordsOfEveryDutyStayAboveIt) {
+  const Camera camera = camera_for("paper-5f0", 1, true, 5.0);
+  for (std::uint64_t item = 0; item < 12; ++item) {
+    RandomStream random(12, item);
+    std::vector<Waveform> words;
+    const double share = 0.02 + 0.96 * random.uniform();
+    for (int k = 0; k < 4; ++k) {
+      Eigen::VectorXd word(camera.samples);
+      for (double& x : word) x = random.uniform() < share ? 1.0 : 0.0;
+      words.push_back(Waveform::binary_from_samples(word, 1.0));
+    }
+    Eigen::VectorXd pulses(camera.samples);
+    for (double& x : pulses) x = random.uniform() < 0.3 ? 1.0 : 0.0;
+    pulses[0] = 1.0;
+    const double level = std::min(5.0, 1.0 / pulses.mean());
+    const CodeSet code = CodeSet::create("words", camera.samples, 1,
+                                         {4, Waveform::binary_from_samples(pulses, level)}, words);
+    for (const OperatingPoint& point :
+         {OperatingPoint{1e3, 1e2}, OperatingPoint{1e6, 1e3}, OperatingPoint{1e4, 1e7}})
+      EXPECT_GE(ratio_of(code, camera, point), 1.0) << item;
+  }
+}
+
+TEST(ReceiverBoundSearch, HoldsForEveryKindOfSensorAndLight) {
+  // One good train on cameras that differ from the plain one in every way there is.
+  TrainCode train{.frequency = 6, .pulse_duty = 0.3, .gate = {}, .begin = {0.0, 0.33, 0.66}};
+  train.gate = {0.5, 0.5, 0.5, 0.5, 0.4, 0.45};
+  const Camera plain = camera_for("paper-10f0", 2, true, 5.0);
+  std::vector<Camera> cameras(11, plain);
+  cameras[1].sensor.read_noise_e = 0.0;
+  cameras[2].sensor.dark_current_e_per_s = 3e4;
+  cameras[3].sensor.modulation_contrast = 0.6;
+  cameras[4].sensor.readout = Readout::difference;
+  cameras[5].exposure_s.each_s = {0.2, 0.09, 0.01};
+  cameras[6].sensor.tap_mismatch = 0.3;
+  cameras[7].light.edge_jitter_s = cameras[7].sensor.edge_jitter_s = 500e-12;
+  cameras[8].light.impulse_response = {};
+  cameras[9].light.impulse_response = {.kind = ImpulseResponse::Kind::lowpass, .cutoff_hz = 60e6};
+  // A measured response that rings below 0.
+  cameras[10].sensor.impulse_response = {.kind = ImpulseResponse::Kind::file,
+                                         .samples = {0.3, 1.0, 0.6, -0.25, 0.1, -0.05},
+                                         .time_step_s = 1.5e-9};
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    const CodeSet code = build(train, cameras[i]);
+    for (const OperatingPoint& point : {OperatingPoint{1e3, 1e2}, OperatingPoint{1e5, 0.0},
+                                        OperatingPoint{1e6, 1e3}, OperatingPoint{1e4, 1e7}}) {
+      const double ratio = ratio_of(code, cameras[i], point);
+      EXPECT_GE(ratio, 1.0) << "camera " << i << ", A " << point.ambient_e_per_s;
+      if (i <= 5) {
+        EXPECT_LT(ratio, 40.0) << "camera " << i << ", A " << point.ambient_e_per_s;
+      }
+    }
+  }
+}
+
+TEST(ReceiverBoundSearch, MonteCarloStaysAboveIt) {
+  Camera camera = camera_for("paper-10f0", 1, true, 15.0);
+  camera.samples = 120;
+  camera.operating.signal_e_per_s = {1e5, 1e6};
+  camera.operating.ambient_e_per_s = {1e3, 1e5};
+  for (const int taps : {1, 2}) {
+    camera.sensor.taps = taps;
+    for (const char* name : {"sinusoid-k4", "hamiltonian-k4", "pulsed-multifrequency-k5"}) {
+      const CodeSet code = build_family(name, camera);
+      for (const PointDepthError& p : evaluate(code, camera, {.trials = 2000}).points)
+        EXPECT_GE(p.circular_mde_m.value + 4 * p.circular_mde_m.standard_error,
+                  p.receiver_bound_mae_m)
+            << name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tofsmith

@@ -1,0 +1,248 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/simulate/robustness.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
+
+namespace tofsmith {
+namespace {
+
+Camera small_camera(const char* name = "paper-10f0") {
+  Camera camera = built_in_camera(name);
+  camera.samples = 60;
+  camera.operating.signal_e_per_s = {1e5};
+  camera.operating.ambient_e_per_s = {1e3, 1e4};
+  return camera;
+}
+
+const PerturbedCamera& find(const std::vector<PerturbedCamera>& cameras, const std::string& name) {
+  for (const PerturbedCamera& camera : cameras)
+    if (camera.name == name) return camera;
+  throw std::runtime_error("no camera " + name);
+}
+
+PerturbedCamera with_peak(const Camera& camera, double peak) { return {"peak", camera, peak}; }
+
+CodeSet code_of(const Camera& camera, const Waveform& modulation) {
+  return CodeSet::create("one", camera.samples, 1, {3, modulation},
+                         {square_wave(1, 0.0), square_wave(1, 0.33), square_wave(1, 0.66)});
+}
+
+TEST(Perturbations, ChangeOneThingEach) {
+  const Camera camera = small_camera();
+  const auto cameras = perturbations(camera);
+  ASSERT_EQ(cameras.size(), 6u);
+  for (const PerturbedCamera& p : cameras) EXPECT_NE(p.camera, camera) << p.name;
+
+  Camera wider = camera;
+  wider.light.impulse_response.f_max_hz *= 1.2;
+  wider.sensor.impulse_response.f_max_hz *= 1.2;
+  EXPECT_EQ(find(cameras, "bandwidth +20 %").camera, wider);
+  Camera brighter = camera;
+  brighter.light.peak_factor *= 1.1;
+  EXPECT_EQ(find(cameras, "peak power +10 %").camera, brighter);
+  EXPECT_EQ(find(cameras, "peak power +10 %").peak, 1.1);
+  Camera jittered = camera;
+  jittered.light.edge_jitter_s = jittered.sensor.edge_jitter_s = 50e-12;
+  EXPECT_EQ(find(cameras, "edge jitter 50 ps").camera, jittered);
+  Camera uneven = camera;
+  uneven.sensor.tap_mismatch = 0.02;
+  EXPECT_EQ(find(cameras, "tap mismatch 2 %").camera, uneven);
+}
+
+TEST(Perturbations, OfNoSizeAreNone) {
+  EXPECT_TRUE(
+      perturbations(small_camera(),
+                    {.bandwidth = 0.0, .peak = 0.0, .edge_jitter_s = 0.0, .tap_mismatch = 0.0})
+          .empty());
+}
+
+TEST(Perturbations, OfBandwidthNeedALimitedCamera) {
+  const auto cameras = perturbations(small_camera("paper-30x"));
+  EXPECT_EQ(cameras.size(), 4u);
+  for (const PerturbedCamera& p : cameras) EXPECT_FALSE(p.name.starts_with("bandwidth")) << p.name;
+}
+
+TEST(Perturbations, StretchMeasuredResponsesInTime) {
+  Camera camera = small_camera();
+  camera.sensor.impulse_response = {
+      .kind = ImpulseResponse::Kind::file, .samples = {0.2, 1.0, 0.3}, .time_step_s = 1e-9};
+  const ImpulseResponse wider =
+      find(perturbations(camera), "bandwidth +20 %").camera.sensor.impulse_response;
+  for (const double f_hz : {1e7, 5e7, 2e8})
+    EXPECT_NEAR(
+        std::abs(wider.transfer(1.2 * f_hz) - camera.sensor.impulse_response.transfer(f_hz)), 0.0,
+        1e-12);
+}
+
+TEST(Perturbations, AddJitterInQuadrature) {
+  Camera camera = small_camera();
+  camera.light.edge_jitter_s = 30e-12;
+  const Camera jittered =
+      find(perturbations(camera, {.edge_jitter_s = 40e-12}), "edge jitter 40 ps").camera;
+  EXPECT_NEAR(jittered.light.edge_jitter_s, 50e-12, 1e-20);
+  EXPECT_EQ(jittered.sensor.edge_jitter_s, 40e-12);
+}
+
+TEST(Perturbations, RefuseNonsense) {
+  EXPECT_THROW(perturbations(small_camera(), {.bandwidth = 1.0}), std::invalid_argument);
+  EXPECT_THROW(perturbations(small_camera(), {.peak = -0.1}), std::invalid_argument);
+  EXPECT_THROW(perturbations(small_camera(), {.edge_jitter_s = NAN}), std::invalid_argument);
+  EXPECT_THROW(
+      robustness(build_family("sinusoid-k4", small_camera()), small_camera(), {.trials = 1}),
+      std::invalid_argument);
+}
+
+TEST(PerturbedCode, KeepsPowerAndCentresOfPulses) {
+  const Camera camera = small_camera();
+  const Waveform pulses = Waveform::binary({{0.1, 0.2}, {0.5, 0.53}, {0.95, 1.02}}, 5.0);
+  for (const double peak : {0.9, 1.1}) {
+    const CodeSet code = perturbed_code(code_of(camera, pulses), with_peak(camera, peak));
+    const Waveform& m = code.modulation(1);
+    EXPECT_NEAR(m.mean(), pulses.mean(), 1e-12);
+    EXPECT_NEAR(m.peak(), 5.0 * peak, 1e-12);
+    ASSERT_EQ(m.on_intervals().size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const OnInterval &was = pulses.on_intervals()[i], &is = m.on_intervals()[i];
+      EXPECT_NEAR(is.rise + is.fall, was.rise + was.fall, 1e-12);
+      EXPECT_NEAR((is.fall - is.rise) * peak, was.fall - was.rise, 1e-12);
+    }
+    EXPECT_EQ(code.demodulation(2), square_wave(1, 0.66));
+  }
+}
+
+TEST(PerturbedCode, MergesPulsesThatComeToOverlap) {
+  const Camera camera = small_camera();
+  const PerturbedCamera dimmer = with_peak(camera, 0.9);
+  // Inside the period and across its end; long ones that swallow short ones; a full period.
+  const Waveform close = Waveform::binary({{0.0, 0.3}, {0.31, 0.6}, {0.7, 0.99}}, 1.1);
+  const Waveform m = perturbed_code(code_of(camera, close), dimmer).modulation(0);
+  EXPECT_EQ(m.on_intervals().size(), 1u);
+  EXPECT_LT(m.mean(), close.mean());
+  EXPECT_NEAR(m.peak(), 0.99, 1e-12);
+  const Waveform swallowed = Waveform::binary({{0.0, 0.9}, {0.91, 0.911}}, 1.05);
+  const Waveform always =
+      perturbed_code(code_of(camera, swallowed), with_peak(camera, 0.8)).modulation(0);
+  EXPECT_EQ(always.duty(), 1.0);
+  // A pulse that begins the period stretches over its beginning.
+  const Waveform first = Waveform::binary({{0.0, 0.5}}, 2.0);
+  EXPECT_NEAR(perturbed_code(code_of(camera, first), dimmer).modulation(0).mean(), 1.0, 1e-12);
+}
+
+TEST(PerturbedCode, OfAnalogLightKeepsPowerAndScalesThePeak) {
+  const Camera camera = small_camera();
+  Eigen::VectorXd samples(60);
+  for (int n = 0; n < 60; ++n) samples[n] = 1.0 + 0.5 * std::sin(0.1047197551 * n);
+  const CodeSet code = code_of(camera, Waveform::sampled(samples));
+  for (const double peak : {0.9, 1.1}) {
+    const Waveform m = perturbed_code(code, with_peak(camera, peak)).modulation(0);
+    EXPECT_NEAR(m.mean(), samples.mean(), 1e-12);
+    EXPECT_NEAR(m.peak(), peak * samples.maxCoeff(), 1e-12);
+  }
+  // Cut at 0, at the same power.
+  const Waveform deep = perturbed_code(code, with_peak(camera, 2.0)).modulation(0);
+  EXPECT_GE(deep.minimum(), 0.0);
+  EXPECT_NEAR(deep.mean(), samples.mean(), 1e-12);
+}
+
+TEST(PerturbedCode, OfNoChangeIsTheCodeItself) {
+  const Camera camera = small_camera();
+  const CodeSet code = build_family("hamiltonian-k3", camera);
+  const CodeSet same = perturbed_code(code, with_peak(camera, 1.0));
+  EXPECT_EQ(same.modulation(0), code.modulation(0));
+}
+
+TEST(Robustness, OfNoPerturbationIsTheDepthErrorItself) {
+  const Camera camera = small_camera();
+  const CodeSet code = build_family("hamiltonian-k4", camera);
+  const RobustnessReport report = robustness(code, camera,
+                                             {.bandwidth = 0.0,
+                                              .peak = 0.0,
+                                              .edge_jitter_s = 0.0,
+                                              .tap_mismatch = 0.0,
+                                              .trials = 999,
+                                              .seed = 3});
+  const DepthErrorReport error = evaluate(code, camera, {.trials = 999, .seed = 3});
+  EXPECT_EQ(report.nominal_m.value, error.linear.geometric_mean_m.value);
+  EXPECT_EQ(report.nominal_m.standard_error, error.linear.geometric_mean_m.standard_error);
+  EXPECT_EQ(report.trials, error.trials);
+  EXPECT_TRUE(report.perturbed.empty());
+  EXPECT_EQ(report.worst_calibrated_m().value, report.nominal_m.value);
+}
+
+TEST(Robustness, CalibratedIsTheDepthErrorOfThePerturbedCamera) {
+  Camera camera = small_camera();
+  camera.operating.error = DepthErrorKind::circular;
+  const CodeSet code = build_family("hamiltonian-k4", camera);
+  const RobustnessReport report = robustness(code, camera, {.trials = 1000});
+  EXPECT_EQ(report.kind, DepthErrorKind::circular);
+  const auto cameras = perturbations(camera);
+  ASSERT_EQ(report.perturbed.size(), cameras.size());
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    const DepthErrorReport error =
+        evaluate(perturbed_code(code, cameras[i]), cameras[i].camera, {.trials = 1000});
+    EXPECT_EQ(report.perturbed[i].name, cameras[i].name);
+    EXPECT_EQ(report.perturbed[i].calibrated_m.value, error.circular.geometric_mean_m.value);
+    EXPECT_LE(report.perturbed[i].calibrated_m.value, report.worst_calibrated_m().value);
+    EXPECT_LE(report.perturbed[i].uncalibrated_m.value, report.worst_uncalibrated_m().value);
+  }
+}
+
+TEST(Robustness, ADecoderThatBelievesAWrongCameraErrs) {
+  // So bright that what is left is bias. (Jitter blurs to both sides alike and leaves next to
+  // none.)
+  Camera camera = small_camera();
+  camera.operating.signal_e_per_s = {1e9};
+  camera.operating.ambient_e_per_s = {0.0};
+  const CodeSet code = build_family("hamiltonian-k4", camera);
+  const RobustnessReport report = robustness(code, camera, {.edge_jitter_s = 0.0, .trials = 400});
+  for (const PerturbedError& p : report.perturbed)
+    EXPECT_GT(p.uncalibrated_m.value, p.calibrated_m.value) << p.name;
+}
+
+TEST(Robustness, GrowsWithThePerturbation) {
+  const Camera camera = small_camera();
+  const CodeSet code = build_family("hamiltonian-k4", camera);
+  double last = 0.0;
+  for (const double mismatch : {0.001, 0.05, 0.2}) {
+    const RobustnessReport report = robustness(code, camera,
+                                               {.bandwidth = 0.0,
+                                                .peak = 0.0,
+                                                .edge_jitter_s = 0.0,
+                                                .tap_mismatch = mismatch,
+                                                .trials = 1000});
+    ASSERT_EQ(report.perturbed.size(), 1u);
+    const double ratio = report.perturbed[0].uncalibrated_m.value / report.nominal_m.value;
+    EXPECT_GT(ratio, last);
+    last = ratio;
+    if (mismatch == 0.001) {
+      EXPECT_NEAR(ratio, 1.0, 0.02);
+    }
+  }
+  EXPECT_GT(last, 1.2);
+}
+
+TEST(Robustness, IsTheSameForAnyNumberOfThreads) {
+  const Camera camera = small_camera();
+  const CodeSet code = build_family("hamiltonian-k3", camera);
+  const RobustnessReport all = robustness(code, camera, {.trials = 1500});
+  const ThreadLimit one(1);
+  const RobustnessReport single = robustness(code, camera, {.trials = 1500});
+  for (std::size_t i = 0; i < all.perturbed.size(); ++i)
+    EXPECT_EQ(all.perturbed[i].uncalibrated_m.value, single.perturbed[i].uncalibrated_m.value);
+}
+
+TEST(Robustness, StopsWhenAsked) {
+  const Camera camera = small_camera();
+  EXPECT_ANY_THROW(robustness(build_family("hamiltonian-k3", camera), camera, {},
+                              [](double fraction, std::string_view) { return fraction < 0.3; }));
+}
+
+}  // namespace
+}  // namespace tofsmith
