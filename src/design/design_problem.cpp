@@ -109,14 +109,14 @@ WaveformSpace waveform_space(const Camera& camera, int exposures, int samples) {
 
 std::vector<OperatingPoint> training_points(const Camera& camera) {
   const std::vector<OperatingPoint> all = camera.operating.points();
-  if (all.size() <= 12) return all;
+  if (all.size() <= 40) return all;
   const double floor_e_per_s =
       std::max(1.0, constant_variance_e2_of(camera.sensor)) /
       camera.exposure_s.of(
           0, static_cast<int>(std::max<std::size_t>(1, camera.exposure_s.each_s.size())));
   OperatingRange fewer = camera.operating;
-  fewer.signal_e_per_s = in_between(fewer.signal_e_per_s, 4, 0.0);
-  fewer.ambient_e_per_s = in_between(fewer.ambient_e_per_s, 3, floor_e_per_s);
+  fewer.signal_e_per_s = in_between(fewer.signal_e_per_s, 6, 0.0);
+  fewer.ambient_e_per_s = in_between(fewer.ambient_e_per_s, 6, floor_e_per_s);
   return fewer.points();
 }
 

@@ -33,9 +33,9 @@ struct DesignProblem {
 /// period, such that a pulse at the peak fills whole cells where that costs little.
 WaveformSpace waveform_space(const Camera& camera, int exposures, int samples);
 
-/// At most 4 signal by 3 ambient levels, in between those of the range; all, where it has no more
-/// than 12. Levels are spread evenly over the logarithm of signal, and of ambient over the floor
-/// that read noise sets.
+/// The points of the camera's operating range; where they are more than 40, 6 signal by 6 ambient
+/// levels in between, spread evenly over the logarithm of signal, and of ambient over the floor that
+/// read noise sets.
 std::vector<OperatingPoint> training_points(const Camera& camera);
 
 /// @throws std::invalid_argument if the camera gives fewer than 3 measurements, has no band limit
