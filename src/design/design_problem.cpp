@@ -136,8 +136,11 @@ DesignProblem make_design_problem(std::span<const Camera> variants, int exposure
     require(variant.sensor.taps == camera.sensor.taps &&
                 variant.sensor.readout == camera.sensor.readout,
             "variants", variant.name, "must have the taps and the readout of the first");
-    problem.variants.push_back(
-        {SampledCamera(variant, problem.space.samples(), exposures), training_points(variant)});
+    const int samples_here = problem.space.samples();
+    const int finer = camera.band_limited() ? 1 : std::clamp(camera.samples / samples_here, 1, 4);
+    problem.variants.push_back({SampledCamera(variant, samples_here, exposures),
+                                SampledCamera(variant, finer * samples_here, exposures),
+                                training_points(variant)});
   }
   return problem;
 }

@@ -13,6 +13,9 @@ namespace tofsmith {
 /// A camera as the optimizer sees it: on a grid, at the light levels it learns from.
 struct CameraVariant {
   SampledCamera camera;
+  /// The same on the grid codes are judged on: that of the camera itself where nothing limits the
+  /// band, since there a decoder with more bins goes wrong less often.
+  SampledCamera judge;
   std::vector<OperatingPoint> points;
 };
 
@@ -34,8 +37,8 @@ struct DesignProblem {
 WaveformSpace waveform_space(const Camera& camera, int exposures, int samples);
 
 /// The points of the camera's operating range; where they are more than 40, 6 signal by 6 ambient
-/// levels in between, spread evenly over the logarithm of signal, and of ambient over the floor that
-/// read noise sets.
+/// levels in between, spread evenly over the logarithm of signal, and of ambient over the floor
+/// that read noise sets.
 std::vector<OperatingPoint> training_points(const Camera& camera);
 
 /// @throws std::invalid_argument if the camera gives fewer than 3 measurements, has no band limit

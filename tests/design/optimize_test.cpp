@@ -38,7 +38,7 @@ OptimizeOptions small_options() {
   options.refinement_steps = 60;
   options.polish_steps = 20;
   options.trials_per_step = 60;
-  options.pool_trials = 200;
+  options.pool_trials = 1000;
   options.validation_trials = 1000;
   return options;
 }
