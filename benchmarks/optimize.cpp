@@ -45,7 +45,7 @@ const Row rows[] = {
     {"four-taps-linear", 10, 10, linear, 2, 4, 37},
     {"four-taps-circular", 10, 10, circular, 2, 4, 20.4},
     {"mid-light", 10, 10, circular, 5, 1, 1.45, 1e4, 1e4},
-    {"high-light", 10, 10, circular, 5, 1, 1.75, 1e5, 1e4},
+    {"high-light", 10, 10, circular, 6, 1, 1.75, 1e5, 1e4},
 };
 
 Camera camera_of(const Row& row) {

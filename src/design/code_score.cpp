@@ -14,6 +14,19 @@ namespace {
 
 constexpr double least_error_bin = 1e-9;  // errors have logarithms
 
+/// The same waveforms on the grid they are judged on.
+SampledCode on_grid_of(const SampledCamera& judge, const SampledCode& code) {
+  const int repeat = judge.samples() / code.samples();
+  if (repeat == 1) return code;
+  SampledCode fine{Eigen::MatrixXd(judge.samples(), code.modulation.cols()),
+                   Eigen::MatrixXd(judge.samples(), code.demodulation.cols())};
+  for (int n = 0; n < judge.samples(); ++n) {
+    fine.modulation.row(n) = code.modulation.row(n / repeat);
+    fine.demodulation.row(n) = code.demodulation.row(n / repeat);
+  }
+  return fine;
+}
+
 /// The code with its modulation delayed: correlation'(z) = correlation(z + rotation_bin).
 SampledCode rotated(const SampledCode& code, int rotation_bin) {
   SampledCode result = code;
@@ -58,16 +71,19 @@ CodeJudge::CodeJudge(const DesignProblem& problem, int trials, std::uint64_t see
 }
 
 CodeScore CodeJudge::score(const SampledCode& code) const {
-  if (!problem_->linear()) return {log_error(code), 0};
-  const int rotation = best_rotation(code);
-  return {log_error(rotated(code, rotation)), rotation};
+  const SampledCode fine = on_grid_of(problem_->variants.front().judge, code);
+  const int finer = fine.samples() / code.samples();
+  const double in_bins_of_code = std::log(finer);
+  if (!problem_->linear()) return {log_error(fine) - in_bins_of_code, 0};
+  const int rotation = best_rotation(fine);
+  return {log_error(rotated(fine, rotation)) - in_bins_of_code, rotation / finer};
 }
 
 double CodeJudge::log_error(const SampledCode& code) const {
   double worst = -1e300;
   std::vector<double> decoded_bin;
   for (const CameraVariant& variant : problem_->variants) {
-    DepthErrorLoss loss(variant.camera, variant.camera.measure(code).table,
+    DepthErrorLoss loss(variant.judge, variant.judge.measure(code).table,
                         problem_->operating.error);
     double sum = 0.0;
     for (std::size_t p = 0; p < variant.points.size(); ++p) {
@@ -85,7 +101,7 @@ int CodeJudge::best_rotation(const SampledCode& code) const {
   const int samples = code.samples();
   std::vector<double> worst(static_cast<std::size_t>(samples), -1e300), decoded_bin;
   for (const CameraVariant& variant : problem_->variants) {
-    DepthErrorLoss loss(variant.camera, variant.camera.measure(code).table,
+    DepthErrorLoss loss(variant.judge, variant.judge.measure(code).table,
                         problem_->operating.error);
     std::vector<double> log_error(worst.size(), 0.0);
     for (std::size_t p = 0; p < variant.points.size(); ++p) {

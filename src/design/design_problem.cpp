@@ -109,14 +109,14 @@ WaveformSpace waveform_space(const Camera& camera, int exposures, int samples) {
 
 std::vector<OperatingPoint> training_points(const Camera& camera) {
   const std::vector<OperatingPoint> all = camera.operating.points();
-  if (all.size() <= 12) return all;
+  if (all.size() <= 40) return all;
   const double floor_e_per_s =
       std::max(1.0, constant_variance_e2_of(camera.sensor)) /
       camera.exposure_s.of(
           0, static_cast<int>(std::max<std::size_t>(1, camera.exposure_s.each_s.size())));
   OperatingRange fewer = camera.operating;
-  fewer.signal_e_per_s = in_between(fewer.signal_e_per_s, 4, 0.0);
-  fewer.ambient_e_per_s = in_between(fewer.ambient_e_per_s, 3, floor_e_per_s);
+  fewer.signal_e_per_s = in_between(fewer.signal_e_per_s, 6, 0.0);
+  fewer.ambient_e_per_s = in_between(fewer.ambient_e_per_s, 6, floor_e_per_s);
   return fewer.points();
 }
 
@@ -136,8 +136,11 @@ DesignProblem make_design_problem(std::span<const Camera> variants, int exposure
     require(variant.sensor.taps == camera.sensor.taps &&
                 variant.sensor.readout == camera.sensor.readout,
             "variants", variant.name, "must have the taps and the readout of the first");
-    problem.variants.push_back(
-        {SampledCamera(variant, problem.space.samples(), exposures), training_points(variant)});
+    const int samples_here = problem.space.samples();
+    const int finer = camera.band_limited() ? 1 : std::clamp(camera.samples / samples_here, 1, 4);
+    problem.variants.push_back({SampledCamera(variant, samples_here, exposures),
+                                SampledCamera(variant, finer * samples_here, exposures),
+                                training_points(variant)});
   }
   return problem;
 }

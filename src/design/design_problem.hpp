@@ -13,6 +13,9 @@ namespace tofsmith {
 /// A camera as the optimizer sees it: on a grid, at the light levels it learns from.
 struct CameraVariant {
   SampledCamera camera;
+  /// The same on the grid codes are judged on: that of the camera itself where nothing limits the
+  /// band, since there a decoder with more bins goes wrong less often.
+  SampledCamera judge;
   std::vector<OperatingPoint> points;
 };
 
@@ -33,8 +36,8 @@ struct DesignProblem {
 /// period, such that a pulse at the peak fills whole cells where that costs little.
 WaveformSpace waveform_space(const Camera& camera, int exposures, int samples);
 
-/// At most 4 signal by 3 ambient levels, in between those of the range; all, where it has no more
-/// than 12. Levels are spread evenly over the logarithm of signal, and of ambient over the floor
+/// The points of the camera's operating range; where they are more than 40, 6 signal by 6 ambient
+/// levels in between, spread evenly over the logarithm of signal, and of ambient over the floor
 /// that read noise sets.
 std::vector<OperatingPoint> training_points(const Camera& camera);
 

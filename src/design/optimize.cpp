@@ -40,7 +40,7 @@ std::vector<Finalist> playable_finalists(const DesignProblem& problem, OptimizeP
   if (!problem.binary_modulation) sharpness.modulation = 1.0;
   if (!problem.binary_demodulation) sharpness.demodulation = 1.0;
   const auto count = std::min<std::int64_t>(options.refined, std::ssize(pool.entries()));
-  std::vector<SwitchedCode> codes(static_cast<std::size_t>(2 * count));
+  std::vector<SwitchedCode> codes(2 * static_cast<std::size_t>(count));
   report(progress, 0.0, "edges");
   parallel_for(count, [&](std::int64_t i) {
     const auto k = static_cast<std::size_t>(i);
@@ -83,7 +83,8 @@ void validate_finalist(Finalist& finalist, std::span<const Camera> variants,
                        const OptimizeOptions& options) {
   const Camera& camera = variants.front();
   EvaluateOptions evaluation;
-  evaluation.trials = options.validation_trials;
+  const auto points = static_cast<std::int64_t>(camera.operating.points().size());
+  evaluation.trials = std::clamp<std::int64_t>(options.validation_trials / points, 3000, 40000);
   if (camera.operating.error == DepthErrorKind::linear) {
     evaluation.seed = combine_keys(options.seed, rotation_key);
     std::vector<double> log_error;
@@ -130,7 +131,7 @@ void OptimizeOptions::validate() const {
   at_least(refined, 1, "refined");
   at_least(refinement_steps, 0, "refinement_steps");
   at_least(trials_per_step, 8, "trials_per_step");
-  at_least(pool_trials, 100, "pool_trials");
+  at_least(pool_trials, 1000, "pool_trials");
   at_least(polish_steps, 0, "polish_steps");
   at_least(validation_trials, 1000, "validation_trials");
 }

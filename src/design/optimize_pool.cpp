@@ -24,6 +24,12 @@ std::uint64_t work_item(std::uint64_t phase, std::size_t item) {
   return combine_keys(phase, static_cast<std::uint64_t>(item));
 }
 
+int trials_per_level(const DesignProblem& problem, const OptimizeOptions& options) {
+  constexpr int fewest = 100;
+  const std::size_t levels = problem.variants.front().points.size();
+  return std::max(fewest, options.pool_trials / static_cast<int>(levels));
+}
+
 }  // namespace
 
 OptimizePool::OptimizePool(const DesignProblem& problem, const OptimizeOptions& options,
@@ -31,7 +37,8 @@ OptimizePool::OptimizePool(const DesignProblem& problem, const OptimizeOptions& 
     : problem_(&problem),
       options_(options),
       bin_m_(bin_m),
-      judge_(problem, options.pool_trials, options.seed, work_item(Phase::judging, 0)) {}
+      judge_(problem, trials_per_level(problem, options), options.seed,
+             work_item(Phase::judging, 0)) {}
 
 void OptimizePool::record(const std::string& phase, const std::string& start,
                           double log_error_bin) {

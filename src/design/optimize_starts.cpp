@@ -132,7 +132,10 @@ OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeS
   std::vector<CodeSet> codes;
   for (const CodeSet& code : also)
     if (fits_space(space, code)) codes.push_back(code);
-  for (CodeSet& code : families_of(space)) codes.push_back(std::move(code));
+  for (CodeSet& family : families_of(space))
+    if (std::ranges::none_of(codes,
+                             [&](const CodeSet& code) { return code.name() == family.name(); }))
+      codes.push_back(std::move(family));
   const auto count = static_cast<int>(codes.size());
   if (index < count)
     return start_at(space, codes[static_cast<std::size_t>(index)], start_noise, random);

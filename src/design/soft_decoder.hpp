@@ -2,43 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
-#include <vector>
-
-#include "design/aligned_floats.hpp"
-#include "design/sampled_camera.hpp"
+#include "design/decoding_curve.hpp"
 
 namespace tofsmith {
-
-/// The curve that the decoder compares with, without what ambient light explains:
-///   p_j = P x_j,  x_j = g o chi_j,  P = I - a a^T / |a|^2,  a = g o kappa,  g_i = T_i / mean T,
-/// at bins j = 0 .. N, the last of which is the first again; and Q_jk = <p_j, p_k> for neighbours.
-struct DecodingCurve {
-  DecodingCurve(const SampledCamera& camera, const MeasurementTable& table);
-
-  /// Component r of the curve, j = 0 .. N and padding.
-  const float* component(int r) const { return points.data() + r * stride; }
-
-  int samples, measurements;
-  int stride;                    ///< between components; whole vectors, and room for one more point
-  AlignedFloats points;          ///< (R, stride)
-  AlignedFloats squares;         ///< Q_jj, j = 0 .. N
-  AlignedFloats products;        ///< Q_j,j+1, j = 0 .. N - 1
-  Eigen::MatrixXd exact_points;  ///< (N, R)
-};
-
-/// Gradient of a function by what is in a DecodingCurve, summed over trials.
-struct CurveGradient {
-  explicit CurveGradient(const DecodingCurve& curve);
-  void clear();
-  /// Adds the gradient by the table that the curve was made of.
-  void pull_back(const SampledCamera& camera, const MeasurementTable& table,
-                 const DecodingCurve& curve, MeasurementTable& gradient) const;
-
-  AlignedFloats points;                 ///< (R, stride)
-  AlignedFloats squares, next_squares;  ///< by Q_jj and Q_j+1,j+1 as seen from chord j
-  AlignedFloats products;
-};
 
 /// How a decoder that doubts is asked: chord j of the curve is chosen with probability
 ///   exp(sharpness S_j) / sum,  S_j = 1/2 max(<y, p>, 0)^2 / |p|^2 at the best point of the chord.
@@ -54,7 +20,7 @@ class SoftDecoder {
  public:
   explicit SoftDecoder(const DecodingCurve& curve);
 
-  /// Position of the best point of the curve for the electrons (R), [bin].
+  /// Position of the best point for the electrons (R), on the chords beside the best bin [bin].
   double decode(const DecodingCurve& curve, const float* electrons);
 
   /// Expected |error| [bin]. With a gradient, adds `weight` times its own by the curve, and writes

@@ -67,7 +67,7 @@ TEST(DepthErrorLoss, IsThatOfThePlainReferenceOnEveryTarget) {
   });
 }
 
-TEST(DepthErrorLoss, DecodesToTheBestPointOfAllChords) {
+TEST(DepthErrorLoss, DecodesToTheBestPointBesideTheBestBin) {
   for (const Setting& setting : settings()) {
     const SampledCamera camera = setting.sampled();
     const MeasurementTable table = camera.measure(setting.code).table;

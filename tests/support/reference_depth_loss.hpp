@@ -39,8 +39,9 @@ inline double reference_soft_error(const SampledCamera& camera, const Measuremen
       y[i] = light(table.correlation, table.ambient_gain) +
              std::sqrt(variance) * batch.normals_of(t)[i];
     }
-    double best = -1.0, total = 0.0, weighted = 0.0;
-    Eigen::VectorXd score(samples), error(samples);
+    double best = -1.0, best_bin_score = -1e300, total = 0.0, weighted = 0.0;
+    Eigen::VectorXd score(samples), error(samples), place_of(samples);
+    int best_bin = 0;
     for (int j = 0; j < samples; ++j) {
       const auto at = [&](int n) -> Eigen::VectorXd {
         return projection * relative.cwiseProduct(table.correlation.row(n % samples).transpose());
@@ -58,11 +59,16 @@ inline double reference_soft_error(const SampledCamera& camera, const Measuremen
       score[j] = 0.5 * match * match / square;
       error[j] = std::abs(j + place - position);
       if (circular) error[j] = std::min(error[j], samples - error[j]);
-      if (score[j] > best) {
-        best = score[j];
-        if (decoded_bin) *decoded_bin = j + place;
+      best = std::max(best, score[j]);
+      place_of[j] = place;
+      if (b0 * std::abs(b0) / q00 > best_bin_score) {
+        best_bin_score = b0 * std::abs(b0) / q00;
+        best_bin = j;
       }
     }
+    const int left = (best_bin + samples - 1) % samples;
+    const int chord = score[left] > score[best_bin] ? left : best_bin;
+    if (decoded_bin) *decoded_bin = chord + place_of[chord];
     for (int j = 0; j < samples; ++j) {
       const double share = std::exp(sharpness * (score[j] - best));
       total += share;

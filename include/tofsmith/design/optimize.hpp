@@ -16,20 +16,22 @@ namespace tofsmith {
 
 /// Options of the direct optimization of codes for depth error.
 struct OptimizeOptions {
-  int samples = 120;             ///< cells per period while optimizing, 24 .. 960; fewer where the
-                                 ///< camera's shortest pulse is longer than such a cell
-  int starts = 20;               ///< descents from different codes, >= 1
-  int steps_per_start = 300;     ///< >= 1
-  int hops = 20;                 ///< descents from changed copies of the best, >= 0
-  int steps_per_hop = 300;       ///< >= 1
-  int patience = 15;             ///< end hopping after so many hops without a better code; 0: never
-  int refined = 2;               ///< how many of the best codes are refined, >= 1
-  int refinement_steps = 1500;   ///< per refined code, >= 0
-  int trials_per_step = 360;     ///< noisy measurements per gradient, over all light levels, >= 8
-  int pool_trials = 1500;        ///< per light level, to rank codes while searching, >= 100
-  bool polish = true;            ///< move the switching times of the result continuously
-  int polish_steps = 250;        ///< >= 0
-  int validation_trials = 6000;  ///< per operating point, for the final choice, >= 1000
+  int samples = 120;            ///< cells per period while optimizing, 24 .. 960; fewer where the
+                                ///< camera's shortest pulse is longer than such a cell
+  int starts = 20;              ///< descents from different codes, >= 1
+  int steps_per_start = 300;    ///< >= 1
+  int hops = 40;                ///< descents from changed copies of the best, >= 0
+  int steps_per_hop = 300;      ///< >= 1
+  int patience = 30;            ///< end hopping after so many hops without a better code; 0: never
+  int refined = 1;              ///< how many of the best codes are refined, >= 1
+  int refinement_steps = 1000;  ///< per refined code, >= 0
+  int trials_per_step = 200;    ///< noisy measurements per gradient, over all light levels, >= 8
+  int pool_trials = 20000;      ///< over all light levels, to rank codes while searching, >= 1000
+  bool polish = true;           ///< move the switching times of the result continuously
+  int polish_steps = 250;       ///< >= 0
+  /// Fresh trials for the final choice, over all operating points, >= 1000; never fewer than 3000
+  /// nor more than 40000 per point.
+  int validation_trials = 100000;
   std::uint64_t seed = 1;
 
   /// @throws std::invalid_argument naming field, value and rule

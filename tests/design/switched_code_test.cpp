@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/switched_code.hpp"
+
+#include <gtest/gtest.h>
+
+#include "design/binarization.hpp"
+#include "design/edge_polish.hpp"
+
+namespace tofsmith {
+namespace {
+
+DesignProblem problem_with(int taps, double shortest_periods = 0.0) {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.sensor.taps = taps;
+  camera.light.peak_factor = 5.0;
+  camera.operating.signal_e_per_s = camera.operating.ambient_e_per_s = {1e4};
+  camera.operating.error = DepthErrorKind::circular;
+  if (shortest_periods > 0.0)
+    camera.sensor.shortest_pulse_s = shortest_periods / camera.fundamental_frequency_hz;
+  return make_design_problem(std::span<const Camera>(&camera, 1), 3, 60);
+}
+
+SampledCode rendered(const DesignProblem& problem, double steepness) {
+  RandomStream random(4, 0);
+  const WaveformSpace& space = problem.space;
+  WaveformParameters p{Eigen::MatrixXd(space.cells, space.exposures),
+                       Eigen::MatrixXd(space.cells, space.exposures * space.columns())};
+  for (double& v : p.modulation.reshaped()) v = random.normal();
+  for (double& v : p.demodulation.reshaped()) v = random.normal();
+  return render(space, p, {steepness, steepness});
+}
+
+TEST(SwitchedCode, ReadsRunsFromCellsRoundThePeriod) {
+  const SwitchedLabels labels = SwitchedLabels::from_cells({1, 0, 0, 2, 1, 1, 1, 1});
+  EXPECT_EQ(labels.at, (std::vector<double>{0.125, 0.375, 0.5}));
+  EXPECT_EQ(labels.label, (std::vector<int>{0, 2, 1}));
+  EXPECT_EQ(labels.share(1), 0.625);
+  EXPECT_EQ(labels.shortest_run(), 0.125);
+  EXPECT_EQ(labels.waveform(1, 2.0), Waveform::binary({{0.5, 1.125}}, 2.0));
+  EXPECT_EQ(labels.waveform(5, 2.0), Waveform::constant(0.0));
+  EXPECT_EQ(SwitchedLabels::from_cells({3, 3}).waveform(3, 1.0), Waveform::constant(1.0));
+}
+
+TEST(SwitchedCode, SamplesAreThoseOfTheCodeSet) {
+  for (const int taps : {1, 2, 3}) {
+    const DesignProblem problem = problem_with(taps);
+    const CodeJudge judge(problem, 100, 1, 1);
+    const SwitchedCode code = binarized(problem, rendered(problem, 4.0), judge);
+    const SampledCode samples = sampled_on(problem.space, code);
+    const CodeSet set = code_set("x", problem.space, code, problem.space.samples());
+    EXPECT_LT((samples.modulation - set.modulation_samples()).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_LT((samples.demodulation - set.demodulation_samples()).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_LE(set.peak(), 5.0 * (1 + 1e-9));
+  }
+}
+
+TEST(Binarization, LeavesASwitchedCodeAsItIs) {
+  const DesignProblem problem = problem_with(3);
+  const CodeJudge judge(problem, 100, 1, 1);
+  const SampledCode code =
+      sampled_on(problem.space, binarized(problem, rendered(problem, 4.0), judge));
+  const SampledCode again = sampled_on(problem.space, binarized(problem, code, judge));
+  EXPECT_EQ((again.demodulation - code.demodulation).cwiseAbs().maxCoeff(), 0.0);
+}
+
+TEST(EdgePolish, GradientByTheEdgesMatchesFiniteDifferences) {
+  for (const int taps : {1, 2, 4}) {
+    const DesignProblem problem = problem_with(taps);
+    const CodeJudge judge(problem, 100, 1, 1);
+    SwitchedCode code = binarized(problem, rendered(problem, 4.0), judge);
+    for (auto* arm : {&code.light, &code.gates})  // off the borders of cells
+      for (SwitchedLabels& labels : *arm)
+        for (double& time : labels.at) time += 0.4 / problem.space.samples();
+    SampledCode weights = sampled_on(problem.space, code);
+    RandomStream random(8, 0);
+    for (double& w : weights.modulation.reshaped()) w = random.normal();
+    for (double& w : weights.demodulation.reshaped()) w = random.normal();
+    const auto value = [&](const SwitchedCode& c) {
+      const SampledCode s = sampled_on(problem.space, c);
+      return s.modulation.cwiseProduct(weights.modulation).sum() +
+             s.demodulation.cwiseProduct(weights.demodulation).sum();
+    };
+    const auto gradient = pull_back_to_edges(problem.space, code, weights);
+    const double step = 1e-5;
+    const auto check = [&](std::vector<SwitchedLabels> SwitchedCode::*arm, std::size_t index) {
+      for (std::size_t e = 0; e < (code.*arm).size(); ++e)
+        for (std::size_t i = 0; i < (code.*arm)[e].runs(); ++i) {
+          SwitchedCode up = code, down = code;
+          (up.*arm)[e].at[i] += step;
+          (down.*arm)[e].at[i] -= step;
+          const double slope = (value(up) - value(down)) / (2 * step);
+          EXPECT_NEAR(gradient[index][e][i], slope, 1e-4 * (10.0 + std::abs(slope)));
+        }
+    };
+    check(&SwitchedCode::light, 0);
+    check(&SwitchedCode::gates, 1);
+  }
+}
+
+TEST(EdgePolish, KeepsRunsPeakAndOrderOfEdges) {
+  const double shortest = 1.0 / 21.0;
+  const DesignProblem problem = problem_with(1, shortest);
+  EXPECT_EQ(problem.space.cells, 20);
+  const CodeJudge judge(problem, 100, 1, 1);
+  const SwitchedCode code = binarized(problem, rendered(problem, 4.0), judge);
+  const SwitchedCode polished = polish_edges(problem, code, 30, 40, 1, 2);
+  bool moved = false;
+  for (std::size_t e = 0; e < 3; ++e) {
+    EXPECT_EQ(polished.light[e].label, code.light[e].label);
+    EXPECT_EQ(polished.gates[e].label, code.gates[e].label);
+    EXPECT_GE(polished.light[e].shortest_run(), shortest);
+    EXPECT_GE(polished.gates[e].shortest_run(), shortest);
+    EXPECT_GE(polished.light[e].share(1), 1.0 / 5.0 - 1e-9);
+    moved = moved || polished.gates[e].at != code.gates[e].at;
+  }
+  EXPECT_TRUE(moved);
+}
+
+}  // namespace
+}  // namespace tofsmith
