@@ -171,7 +171,7 @@ SceneImage bumpy_ball() {
 void compare(benchmarks::AskedFigures& asked) {
   const SceneImage ball = bumpy_ball();
   double mean_distance_m = 0.0, seen = 0.0;
-  for (const float depth_m : ball.depth_m.values)
+  for (const float depth_m : ball.depth_m.pixels)
     if (std::isfinite(depth_m)) {
       mean_distance_m += depth_m;
       ++seen;

@@ -38,7 +38,7 @@ struct ChipSearchCounts {
   double after_symmetry =
       0.0;                    ///< of these, none a delay, a mirror image or a reordering of another
   std::int64_t examined = 0;  ///< really looked at, a few symmetric ones twice
-  std::int64_t pruned_by_turning = 0;  ///< three taps: turn back or stand still (exact)
+  std::int64_t pruned_by_turning = 0;  ///< three taps: not once around, one way (exact)
   std::int64_t pruned_by_bound = 0;    ///< a bound on their metric is worse than the best
   std::int64_t metric_evaluations = 0;
   std::int64_t pruned_by_metric = 0;
