@@ -21,6 +21,7 @@ struct ChipSearchOptions {
   double separation_periods = 1.0 / 36.0;
   bool equal_duty = true;  ///< the taps of an exposure are open equally long
   /// Codes, after symmetry, up to which all are searched; beyond, codes are annealed without proof.
+  /// One of three taps of equal duty in one exposure counts 1, another 20, for the time it takes.
   double largest_exhaustive = 3e11;
   int finalists = 4;                     ///< best codes by the metric to keep, 1 .. 100
   int annealing_starts = 24;             ///< 0 .. 10000
