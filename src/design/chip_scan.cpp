@@ -41,21 +41,27 @@ void turning(const std::int16_t* counts, std::span<const ScanAssignment> assignm
              std::uint32_t* found) {
   const hn::CappedTag<std::int16_t, scan_lanes> d;
   const std::size_t lanes = hn::Lanes(d);
-  const auto zero = hn::Zero(d);
+  const auto zero = hn::Zero(d), three = hn::Set(d, std::int16_t{3});
   for (std::size_t j = 0; j < assignments.size(); ++j) {
     found[j] = 0;
     for (std::size_t lane = 0; lane < scan_lanes; lane += lanes) {
       Direction<decltype(d)> here(d, counts + lane, assignments[j], 0);
       auto left = hn::FirstN(d, lanes), right = left;
+      auto below = hn::BroadcastSignBit(here.y), halves = zero;
       bool any = true;
       for (int s = 1; s <= chips && any; ++s) {
         const Direction<decltype(d)> next(d, counts + lane, assignments[j],
                                           static_cast<std::size_t>(s));
         const auto cross = hn::Sub(hn::Mul(here.x, next.y), hn::Mul(next.x, here.y));
-        left = hn::And(left, hn::Gt(cross, zero));
-        right = hn::And(right, hn::Lt(cross, zero));
+        // Turning one way, a direction passes y = 0 twice in one turn.
+        const auto next_below = hn::BroadcastSignBit(next.y);
+        halves = hn::Sub(halves, hn::Xor(below, next_below));
+        const auto once = hn::Lt(halves, three);
+        left = hn::And(left, hn::And(once, hn::Gt(cross, zero)));
+        right = hn::And(right, hn::And(once, hn::Lt(cross, zero)));
         any = !hn::AllFalse(d, hn::Or(left, right));
         here = next;
+        below = next_below;
       }
       if (any) found[j] |= bits_of(d, hn::Or(left, right), lane);
     }

@@ -19,7 +19,7 @@ struct ScanAssignment {
 };
 
 /// For three taps of equal duty: which modulations make the direction of the measurements turn
-/// the same way between all neighbouring depths. Integers, exact.
+/// the same way between all neighbouring depths, and once around in all. Integers, exact.
 /// @param counts  rows of chips in which light falls on an open tap
 /// @param turning one bit per modulation, for each assignment
 void find_turning(const std::int16_t* counts, std::span<const ScanAssignment> assignments,

@@ -37,7 +37,9 @@ void require_searchable(const Camera& camera, const ChipSearchOptions& options) 
 bool can_be_exhaustive(const AssignmentRules& rules, const ChipSearchOptions& options) {
   const bool is_enumerated = rules.taps >= 2 && rules.taps <= most_assigned_taps &&
                              options.exposures <= 2 && (options.exposures == 2 || rules.taps >= 3);
-  return is_enumerated && exhaustive_size(rules, options.exposures) <= options.largest_exhaustive;
+  const double effort = options.exposures == 1 && rules.taps == 3 && rules.equal_duty ? 1.0 : 20.0;
+  return is_enumerated &&
+         effort * exhaustive_size(rules, options.exposures) <= options.largest_exhaustive;
 }
 
 ChipFinalist finalist_of(const ScoredCode& scored, const ChipJudge& judge) {

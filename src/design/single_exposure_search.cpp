@@ -67,13 +67,20 @@ class ScanRows {
   std::vector<ScanAssignment> scans_;
 };
 
+/// Assignments of one duty together: the rows of their words then stay in the cache.
+std::vector<TapAssignment> by_duty(std::vector<TapAssignment> assignments) {
+  std::ranges::stable_sort(assignments, {},
+                           [](const TapAssignment& a) { return std::popcount(a.taps[0]); });
+  return assignments;
+}
+
 /// One search over all modulations, block by block, and all assignments.
 class SingleExposureSearch {
  public:
   explicit SingleExposureSearch(const ExhaustiveTask& task)
       : task_(task),
         n_(task.rules.chips),
-        assignments_(tap_assignments(task.rules)),
+        assignments_(by_duty(tap_assignments(task.rules))),
         rows_(assignments_, task.rules),
         turns_(task.rules.taps == 3 && task.rules.equal_duty),
         no_nodes_(task.judge->lights().size() * static_cast<std::size_t>(n_ * nodes_per_chip)) {

@@ -3,10 +3,12 @@
 #include "tofsmith/design/standard_chip_codes.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "tofsmith/code/ramp.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/design/chip_metric.hpp"
+#include "tofsmith/simulate/bounds.hpp"
 
 namespace tofsmith {
 
@@ -104,6 +106,35 @@ std::vector<StandardCode> standard_chip_codes(const Camera& camera, int samples)
           {"three-phase-square", to_code_set(square, three_taps, "three-phase-square")},
           {"double-ramp-in-turn", double_ramp_in_turn(samples)},
           {"coprime-three-phase", to_code_set(pair, three_taps, "coprime-three-phase")}};
+}
+
+std::vector<std::vector<ComparedCode>> compare_chip_codes(const std::vector<StandardCode>& codes,
+                                                          const Camera& camera,
+                                                          EvaluateOptions options,
+                                                          const Progress& progress) {
+  options.method = DecodeMethod::ml;
+  const std::vector<OperatingPoint> points = camera.operating.points();
+  std::vector<std::vector<ComparedCode>> table(points.size());
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    const CodeSet& code = codes[i].code;
+    Camera played = camera;
+    played.sensor.taps = code.taps();
+    played.samples = code.samples();
+    const double count = static_cast<double>(codes.size());
+    const DepthErrorReport report = evaluate(
+        code, played, options,
+        part_of(progress, static_cast<double>(i) / count, static_cast<double>(i + 1) / count));
+    const CramerRaoBound bound(ForwardModel(code, played), played);
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const Eigen::VectorXd sigma_m = bound.sigma_m(points[p]);
+      table[p].push_back({.name = codes[i].name,
+                          .exposures = code.exposures(),
+                          .taps = code.taps(),
+                          .rms_m = std::sqrt(sigma_m.squaredNorm() / double(sigma_m.size())),
+                          .circular_mde_m = report.points[p].circular_mde_m});
+    }
+  }
+  return table;
 }
 
 }  // namespace tofsmith

@@ -21,6 +21,7 @@ struct ChipSearchOptions {
   double separation_periods = 1.0 / 36.0;
   bool equal_duty = true;  ///< the taps of an exposure are open equally long
   /// Codes, after symmetry, up to which all are searched; beyond, codes are annealed without proof.
+  /// One of three taps of equal duty in one exposure counts 1, another 20, for the time it takes.
   double largest_exhaustive = 3e11;
   int finalists = 4;                     ///< best codes by the metric to keep, 1 .. 100
   int annealing_starts = 24;             ///< 0 .. 10000
@@ -38,7 +39,7 @@ struct ChipSearchCounts {
   double after_symmetry =
       0.0;                    ///< of these, none a delay, a mirror image or a reordering of another
   std::int64_t examined = 0;  ///< really looked at, a few symmetric ones twice
-  std::int64_t pruned_by_turning = 0;  ///< three taps: turn back or stand still (exact)
+  std::int64_t pruned_by_turning = 0;  ///< three taps: not once around, one way (exact)
   std::int64_t pruned_by_bound = 0;    ///< a bound on their metric is worse than the best
   std::int64_t metric_evaluations = 0;
   std::int64_t pruned_by_metric = 0;
