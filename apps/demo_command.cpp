@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "depth_output.hpp"
+#include "design_effort.hpp"
 #include "design_output.hpp"
 #include "fresh_directory.hpp"
 #include "scene_source.hpp"
@@ -34,6 +35,7 @@ struct DemoArguments {
   SceneSource scene{.scene = "table-top"};
   std::uint64_t seed = 1;
   int trials = 20000;
+  double effort = 1.0;
   std::string output = "tofsmith-demo";
 };
 
@@ -48,6 +50,7 @@ DesignOptions design_options(const DemoArguments& arguments) {
   DesignOptions options;
   options.seed = options.factorize.seed = arguments.seed;
   options.trials = arguments.trials;
+  scale_effort(options, arguments.effort);
   return options;
 }
 
@@ -186,6 +189,7 @@ void add_demo_command(CLI::App& app, Session& session) {
   command->add_option("--trials", arguments->trials, "trials per operating point")
       ->check(CLI::Range(1000, 100000000))
       ->capture_default_str();
+  add_effort(*command, arguments->effort);
   command->callback([arguments, &session] {
     session.directory = arguments->output;
     run(*arguments, session);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "design_effort.hpp"
 #include "design_output.hpp"
 #include "fresh_directory.hpp"
 #include "terminal_progress.hpp"
@@ -22,6 +23,8 @@ struct DesignArguments {
   std::string target;
   bool normalize = false;
   std::vector<int> exposures;  // none: those of DesignOptions
+  double effort = 1.0;
+  bool robust = false;
   std::uint64_t seed = 1;
   int trials = 20000;
   std::string output;
@@ -44,18 +47,35 @@ TargetSet load_target(const DesignArguments& arguments, const Camera& camera) {
   return targets_of(load_code(arguments.target, ideal).resampled(camera.samples));
 }
 
+DesignMethod method_named(const std::string& name) {
+  for (const DesignMethod method :
+       {DesignMethod::factorize, DesignMethod::optimize, DesignMethod::search})
+    if (name == name_of(method)) return method;
+  return DesignMethod::best;
+}
+
 DesignOptions options_for(const DesignArguments& arguments, const Camera& camera) {
   DesignOptions options;
   if (!arguments.target.empty() && !arguments.exposures.empty())
     throw UsageError("--exposures goes with Hamiltonian targets; a --target says how many it has");
-  if (!arguments.exposures.empty()) options.exposures = arguments.exposures;
+  options.method = method_named(arguments.method);
+  options.robust = arguments.robust;
+  if (arguments.robust && options.method != DesignMethod::optimize &&
+      options.method != DesignMethod::best)
+    throw UsageError("--robust goes with --method optimize or best");
+  if (!arguments.target.empty() && options.method != DesignMethod::factorize &&
+      options.method != DesignMethod::best)
+    throw UsageError("--target goes with --method factorize or best");
+  options.exposures = arguments.exposures;
+  scale_effort(options, arguments.effort);
   options.seed = arguments.seed;
   options.factorize.seed = arguments.seed;
   options.trials = arguments.trials;
   if (!arguments.target.empty()) options.target = load_target(arguments, camera);
-  if (arguments.method == "factorize") {
+  if (options.method == DesignMethod::factorize) {
     options.baselines.clear();
-    if (options.target) options.exposures.clear();
+    if (options.exposures.empty() && !options.target)
+      options.exposures = suggested_exposures(camera, DesignMethod::factorize);
     for (const int e : options.exposures)
       options.baselines.push_back(fmt::format("hamiltonian-k{}", e));
   }
@@ -96,18 +116,25 @@ void add_design_command(CLI::App& app, Session& session) {
   arguments->camera.add_to(*command);
   command
       ->add_option("--method", arguments->method,
-                   "factorize: factorize correlation functions; best: that, with every baseline "
-                   "as a competitor")
-      ->check(CLI::IsMember({"factorize", "best"}))
+                   "factorize: factorize correlation functions; optimize: minimize depth error "
+                   "itself; search: all codes on a chip clock, with proof; best: all that suit the "
+                   "camera, with every baseline as a competitor")
+      ->check(CLI::IsMember({"factorize", "optimize", "search", "best"}))
       ->capture_default_str();
   command->add_option("--target", arguments->target,
-                      "correlation functions to aim at: a family, a code file, or a table "
+                      "correlation functions to factorize: a family, a code file, or a table "
                       "(.csv .npy .npz); default: Hamiltonian codes");
   command->add_flag("--normalize", arguments->normalize,
                     "rescale a table's columns to [0, 1] before use");
-  command->add_option("--exposures", arguments->exposures, "numbers of exposures to try (3,4,5)")
+  command
+      ->add_option("--exposures", arguments->exposures,
+                   "numbers of exposures to try (3,4,5); default: what suits the camera")
       ->delimiter(',')
-      ->check(CLI::Range(3, 6));
+      ->check(CLI::Range(1, 8));
+  add_effort(*command, arguments->effort);
+  command->add_flag("--robust", arguments->robust,
+                    "optimize for the worst of +-20 % bandwidth, +-10 % peak, 50 ps edge jitter "
+                    "and 2 % tap mismatch");
   command->add_option("--seed", arguments->seed, "seed of every random choice")
       ->capture_default_str();
   command->add_option("--trials", arguments->trials, "trials per operating point for final figures")

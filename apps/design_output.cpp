@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "tofsmith/io/design_directory.hpp"
 #include "tofsmith/io/result_document.hpp"
@@ -24,28 +23,23 @@ std::string estimate_text(const Estimate& e) {
 std::string verdict(const Camera& camera, const DesignResult& result) {
   const DepthErrorKind kind = camera.operating.error;
   const Candidate& winner = result.winner();
-  const double best_m = chosen_error_m(winner.error, kind);
-  std::string text = fmt::format(
-      "best: {} with {} {} depth error (geometric mean over {} operating points, N = {})",
-      winner.code.name(), length_text(best_m),
-      kind == DepthErrorKind::linear ? "linear" : "circular", winner.error.points.size(),
-      camera.samples);
+  std::string text = fmt::format("best: {} (geometric means over {} operating points, N = {})",
+                                 winner.code.name(), winner.error.points.size(), camera.samples);
+  for (const std::string& sentence : result.explanation) text += "\n  " + sentence;
   std::string tied;
   for (const Candidate& c : result.candidates) {
-    const Estimate mine = winner.error.of(kind).geometric_mean_m;
-    const Estimate other = c.error.of(kind).geometric_mean_m;
-    const double spread = 2.0 * std::hypot(mine.standard_error, other.standard_error);
-    if (&c != &winner && other.value - mine.value < spread)
+    const Estimate gain = gain_over(result, c, kind);
+    if (&c != &winner && gain.value - 1.0 < 2.0 * gain.standard_error)
       tied += (tied.empty() ? "" : ", ") + c.code.name();
   }
   if (!tied.empty())
     text += "\n  within two standard errors of it: " + tied + " (more --trials tell them apart)";
   for (const char* name : {"sinusoid-k3", "sinusoid-k4", "square-k4", "pulsed-multifrequency-k5"})
     if (const Candidate* other = result.find(name); other && other != &winner)
-      text += fmt::format("\n  {:.2f}x better than {}", chosen_error_m(other->error, kind) / best_m,
-                          name);
+      text +=
+          fmt::format("\n  {:.2f}x better than {}", gain_over(result, *other, kind).value, name);
   for (const Candidate& c : result.candidates)
-    if (c.method != "family" && !c.per_measurement.empty())
+    if (!c.per_measurement.empty())
       text += fmt::format("\n  {}: {} ({})", c.code.name(), c.message, time_text(c.seconds));
   return text;
 }

@@ -6,207 +6,39 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
+#include <cmath>
 
-#include "design/pair_choice.hpp"
-#include "design/pair_model.hpp"
-#include "design/start_pool.hpp"
+#include "design/explanation.hpp"
+#include "design/factorized_code.hpp"
+#include "design/judge.hpp"
+#include "design/optimized_code.hpp"
+#include "design/searched_code.hpp"
 #include "tofsmith/code/families.hpp"
-#include "tofsmith/code/hamiltonian.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
-#include "tofsmith/version.hpp"
+#include "tofsmith/design/standard_chip_codes.hpp"
 
 namespace tofsmith {
 
 namespace {
 
-/// Ideal correlation functions to aim at: the user's, or Hamiltonian ones.
-std::vector<TargetSet> targets_for(const Camera& camera, const DesignOptions& options) {
-  if (options.target) return {*options.target};
-  std::vector<TargetSet> targets;
-  for (const int exposures : options.exposures)
-    targets.push_back(targets_of(hamiltonian_code(exposures, {.samples = camera.samples})));
-  return targets;
+/// A code that is yet to be designed.
+struct Task {
+  DesignMethod method;
+  std::string name;
+  double effort;  ///< share of the time, to show progress by
+  std::function<Candidate(const Progress&)> run;
+};
+
+bool includes(DesignMethod asked, DesignMethod method) {
+  return asked == method || asked == DesignMethod::best;
 }
 
-/// Whether codes for these targets can be played at all, before time is spent on them.
-void require_designable(const TargetSet& targets, const Camera& camera) {
-  require(camera.sensor.taps <= 2, "sensor.taps", camera.sensor.taps,
-          "must be 1 or 2 to factorize correlation functions");
-  require(targets.samples() == camera.samples, "length of the target", targets.samples(),
-          fmt::format("must equal the camera's samples = {}", camera.samples));
-  const std::size_t values = targets.measurements.size() * camera.sensor.taps;
-  require(values >= 3 || camera.sensor.readout == Readout::difference,
-          "number of correlation functions", targets.measurements.size(),
-          fmt::format("must be >= {}: signal, ambient light and depth are unknown",
-                      camera.sensor.taps == 2 ? 2 : 3));
-  const std::size_t listed = camera.exposure_s.each_s.size();
-  require(
-      listed == 0 || listed == targets.measurements.size(), "number of exposure_s", listed,
-      fmt::format("must equal the {} exposures of {}", targets.measurements.size(), targets.name));
-}
+constexpr int samples_of_standard_codes = 360;
 
-/// What a designer would play for the targets without optimization: the ideal demodulation with one
-/// pulse each. None if that is not known or cannot be played.
-std::optional<CodeSet> naive_code(const TargetSet& targets, const Camera& camera) {
-  std::vector<Factorization> pairs;
-  for (const CorrelationTarget& target : targets.measurements) {
-    pairs.push_back({.candidates = naive_start(PairModel(target, camera))});
-    if (pairs.back().candidates.empty()) return std::nullopt;
-  }
-  CodeSet code = assemble(targets.name + "-naive", pairs, PairChoice(pairs.size(), 0), camera);
-  code.provenance.method = "naive";
-  code.provenance.camera = camera.name;
-  return code;
-}
-
-Eigen::MatrixXd target_table(const TargetSet& targets) {
-  Eigen::MatrixXd table(targets.samples(), std::ssize(targets.measurements));
-  for (Eigen::Index k = 0; k < table.cols(); ++k)
-    table.col(k) = targets.measurements[static_cast<std::size_t>(k)].samples;
-  return table;
-}
-
-/// Codes and origins are chosen by other random numbers than they are judged by. The judge's are
-/// those of evaluate() with the same seed.
-std::uint64_t search_seed(const DesignOptions& options) { return options.seed + 1; }
-
-/// The circular error does not depend on the origin.
-bool rotates(const Camera& camera, const DesignOptions& options) {
-  return options.best_rotation && camera.operating.error == DepthErrorKind::linear;
-}
-
-/// How near the correlation functions are to their targets, in one line. Whether a target is within
-/// reach is a matter of the pair that comes closest, not of the one that measures depth best.
-std::string describe_residuals(const std::vector<MeasurementReport>& reports,
-                               const std::vector<Factorization>& factorizations) {
-  std::string residuals, smallest, unreachable;
-  bool exact = true, closest = true;
-  for (std::size_t k = 0; k < reports.size(); ++k) {
-    exact = exact && reports[k].residual_rms < 1e-6;
-    residuals += fmt::format("{}{:.3g}", k ? ", " : "", reports[k].residual_rms);
-    smallest += fmt::format("{}{:.3g}", k ? ", " : "", reports[k].smallest_residual_rms);
-    closest = closest && reports[k].residual_rms < 1.01 * reports[k].smallest_residual_rms + 1e-9;
-    if (reports[k].smallest_residual_rms > 0.5 * factorizations[k].target_variation_rms)
-      unreachable += fmt::format("{}{}", unreachable.empty() ? "" : ", ", k + 1);
-  }
-  if (exact) return "all targets reached exactly";
-  std::string text = fmt::format("residuals {} rms", residuals);
-  if (!closest) text += fmt::format(" (chosen by depth error; smallest found {})", smallest);
-  if (!unreachable.empty())
-    text += fmt::format("; target {} out of reach of this camera", unreachable);
-  return text;
-}
-
-MeasurementReport measurement_report(const Factorization& f, const PairCandidate& chosen) {
-  return {.residual_rms = chosen.residual_rms,
-          .smallest_residual_rms = f.best().residual_rms,
-          .demodulation_duty = chosen.pair.demodulation.mean(),
-          .modulation_duty = chosen.pair.modulation.duty(),
-          .peak = chosen.pair.modulation.peak(),
-          .edges = chosen.pair.modulation.edges() + chosen.pair.demodulation.edges(),
-          .start = chosen.start,
-          .history = f.history};
-}
-
-/// Steps 1 to 3 for one target; not judged yet.
-Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
-                               const DesignOptions& options, const Progress& progress) {
-  const auto begin = std::chrono::steady_clock::now();
-  // 1. Factorize every measurement by itself.
-  std::vector<Factorization> factorizations;
-  const double count = static_cast<double>(targets.measurements.size());
-  for (const CorrelationTarget& target : targets.measurements) {
-    const double done = static_cast<double>(factorizations.size());
-    factorizations.push_back(
-        factorize(target, camera, options.factorize,
-                  part_of(progress, 0.7 * done / count, 0.7 * (done + 1) / count)));
-  }
-  // 2. Choose among the pairs by the depth error of the whole code.
-  EvaluateOptions search;
-  search.trials = options.search_trials;
-  search.seed = search_seed(options);
-  const PairChoice choice = choose_by_depth_error(
-      factorizations, camera, search, rotates(camera, options), part_of(progress, 0.7, 1.0));
-  // 3. Put the code together and say how near its target it is.
-  Candidate candidate{
-      .code = assemble(targets.name + "-factorized", factorizations, choice, camera),
-      .method = "factorize",
-      .target = target_table(targets)};
-  Provenance& provenance = candidate.code.provenance;
-  provenance.method = "factorize";
-  provenance.camera = camera.name;
-  provenance.seed = options.seed;
-  provenance.version = TOFSMITH_VERSION;
-  for (std::size_t k = 0; k < choice.size(); ++k) {
-    const Factorization& f = factorizations[k];
-    candidate.per_measurement.push_back(measurement_report(f, f.candidates[choice[k]]));
-    provenance.residuals.push_back(candidate.per_measurement.back().residual_rms);
-    for (const int iterations : f.iterations_per_start) candidate.iterations += iterations;
-  }
-  candidate.message = describe_residuals(candidate.per_measurement, factorizations);
-  candidate.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return candidate;
-}
-
-/// Judges a candidate with random numbers it was not chosen by, at its best origin if asked.
-void judge(Candidate& candidate, const Camera& camera, const DesignOptions& options,
-           const Progress& progress) {
-  EvaluateOptions judging;
-  judging.trials = options.trials;
-  judging.seed = options.seed;
-  if (rotates(camera, options)) {
-    EvaluateOptions search = judging;
-    search.seed = search_seed(options);
-    candidate.rotation_bin =
-        best_rotation(candidate.code, camera, search, part_of(progress, 0.0, 0.5)).rotation_bin;
-    candidate.code = candidate.code.rotated(candidate.rotation_bin);
-  }
-  candidate.error = evaluate(candidate.code, camera, judging, part_of(progress, 0.5, 1.0));
-  candidate.code.provenance.depth_error_m = chosen_error_m(candidate.error, camera.operating.error);
-}
-
-}  // namespace
-
-void DesignOptions::validate() const {
-  for (const int e : exposures) {
-    require(e >= 3 && e <= 6, "DesignOptions::exposures", e, "each must be in [3, 6]");
-    require(std::ranges::count(exposures, e) == 1, "DesignOptions::exposures", e,
-            "must be listed once");
-  }
-  for (const std::string& name : baselines)
-    require(std::ranges::count(baselines, name) == 1, "DesignOptions::baselines", name,
-            "must be listed once");
-  require(!target || !target->measurements.empty(), "DesignOptions::target", "[]",
-          "must hold at least one correlation function");
-  require(search_trials >= 100, "DesignOptions::search_trials", search_trials, "must be >= 100");
-  require(trials >= 1000, "DesignOptions::trials", trials, "must be >= 1000");
-  require(!exposures.empty() || target.has_value() || !baselines.empty(),
-          "DesignOptions::exposures", "[]", "must list something to design");
-  factorize.validate();
-}
-
-const Candidate* DesignResult::find(std::string_view name) const {
-  for (const Candidate& c : candidates)
-    if (c.code.name() == name) return &c;
-  return nullptr;
-}
-
-double chosen_error_m(const DepthErrorReport& report, DepthErrorKind kind) {
-  return report.of(kind).geometric_mean_m.value;
-}
-
-DesignResult design(const Camera& camera, const DesignOptions& options, const Progress& progress,
-                    const DesignStore& store) {
-  options.validate();
-  camera.validate();
-  const std::vector<TargetSet> targets = targets_for(camera, options);
-  for (const TargetSet& target : targets) require_designable(target, camera);
-  DesignResult result;
-
-  // 1. Baselines compete as they are, and so does the naive code of every target.
+/// Codes that compete as they are: families, and the naive code of every target.
+void add_baselines(const Camera& camera, const DesignOptions& options,
+                   const std::vector<TargetSet>& targets, DesignResult& result) {
   for (const std::string& name : options.baselines) {
     try {
       CodeSet code = build_family(name, camera);
@@ -216,33 +48,43 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
       result.left_out.push_back(fmt::format("{}: {}", name, error.what()));
     }
   }
-
+  if (camera.sensor.taps >= 3)
+    for (StandardCode& standard : standard_chip_codes(camera, samples_of_standard_codes))
+      if (standard.code.taps() == camera.sensor.taps)
+        result.candidates.push_back(
+            {.code = standard.code.resampled(camera.samples), .method = "reference"});
   for (const TargetSet& target : targets) {
     if (!options.target && result.find(target.name)) continue;  // that family is the naive code
     if (auto code = naive_code(target, camera))
       result.candidates.push_back({.code = std::move(*code), .method = "naive"});
   }
-  require(!result.candidates.empty() || !targets.empty(), "DesignOptions::baselines",
-          fmt::format("{}", fmt::join(options.baselines, ", ")),
-          "the camera can play none of them");
+}
 
-  // 2. Design a code for every target.
-  for (std::size_t t = 0; t < targets.size(); ++t) {
-    const double count = static_cast<double>(targets.size());
-    const Progress part = part_of(progress, 0.8 * static_cast<double>(t) / count,
-                                  0.8 * static_cast<double>(t + 1) / count);
-    std::optional<Candidate> kept;
-    if (store.load) kept = store.load(targets[t].name + "-factorized");
-    if (!kept) {
-      kept = factorized_candidate(targets[t], camera, options, part);
-      if (store.save) store.save(*kept);
-    }
-    result.candidates.push_back(std::move(*kept));
+/// Where a method cannot serve a camera: a refusal if it was asked for, a note if all were.
+template <typename Action>
+void where_it_serves(DesignMethod method, const DesignOptions& options, DesignResult& result,
+                     Action&& action) {
+  try {
+    action();
+  } catch (const std::invalid_argument& error) {
+    if (options.method == method) throw;
+    result.left_out.push_back(fmt::format("{}: {}", name_of(method), error.what()));
   }
+}
 
-  // A target may be such that no choice of pairs can tell depth: that is a result, not a failure.
+/// The code of a task: kept from an earlier run, or designed now.
+Candidate run_or_load(const Task& task, const DesignStore& store, const Progress& progress) {
+  if (store.load)
+    if (std::optional<Candidate> kept = store.load(task.name)) return std::move(*kept);
+  Candidate candidate = task.run(progress);
+  if (store.save) store.save(candidate);
+  return candidate;
+}
+
+/// A target may be such that no choice of pairs can tell depth: that is a result, not a failure.
+void leave_out_what_tells_no_depth(const Camera& camera, DesignResult& result) {
   std::erase_if(result.candidates, [&](const Candidate& c) {
-    if (c.method != "factorize") return false;
+    if (c.per_measurement.empty()) return false;
     try {
       make_decoding_table(ForwardModel(c.code, camera), camera).validate();
       return false;
@@ -251,19 +93,150 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
       return true;
     }
   });
+}
+
+/// Judges all candidates, finds the best and judges it on perturbed cameras too.
+void judge_all(const Camera& camera, const DesignOptions& options, DesignResult& result,
+               const Progress& progress) {
+  const double count = static_cast<double>(result.candidates.size());
+  const double share = options.robust ? 0.3 : 0.9;  // of the time, without perturbed cameras
+  for (std::size_t i = 0; i < result.candidates.size(); ++i) {
+    Candidate& candidate = result.candidates[i];
+    const double begin = static_cast<double>(i) / count, end = static_cast<double>(i + 1) / count;
+    judge(candidate, camera, options, part_of(progress, share * begin, share * end));
+    if (options.robust)
+      judge_robustness(
+          candidate, camera, options,
+          part_of(progress, share + (1.0 - share) * begin, share + (1.0 - share) * end));
+  }
+  for (std::size_t i = 1; i < result.candidates.size(); ++i)
+    if (choice_error_m(result.candidates[i], camera, options) <
+        choice_error_m(result.winner(), camera, options))
+      result.best = i;
+  Candidate& winner = result.candidates[result.best];
+  if (!winner.robustness) judge_robustness(winner, camera, options, part_of(progress, share, 1.0));
+}
+
+}  // namespace
+
+std::string_view name_of(DesignMethod method) {
+  switch (method) {
+    case DesignMethod::factorize:
+      return "factorize";
+    case DesignMethod::optimize:
+      return "optimize";
+    case DesignMethod::search:
+      return "search";
+    case DesignMethod::best:
+      return "best";
+  }
+  return "";
+}
+
+void DesignOptions::validate() const {
+  for (const int e : exposures) {
+    require(e >= 1 && e <= 8, "DesignOptions::exposures", e, "each must be in [1, 8]");
+    require(std::ranges::count(exposures, e) == 1, "DesignOptions::exposures", e,
+            "must be listed once");
+    require(method != DesignMethod::factorize || (e >= 3 && e <= 6), "DesignOptions::exposures", e,
+            "must be in [3, 6] to aim at Hamiltonian codes");
+  }
+  for (const std::string& name : baselines)
+    require(std::ranges::count(baselines, name) == 1, "DesignOptions::baselines", name,
+            "must be listed once");
+  require(!target || !target->measurements.empty(), "DesignOptions::target", "[]",
+          "must hold at least one correlation function");
+  require(search_trials >= 100, "DesignOptions::search_trials", search_trials, "must be >= 100");
+  require(trials >= 1000, "DesignOptions::trials", trials, "must be >= 1000");
+  factorize.validate();
+  optimize.validate();
+  search.validate();
+}
+
+const Candidate* DesignResult::find(std::string_view name) const {
+  for (const Candidate& c : candidates)
+    if (c.code.name() == name) return &c;
+  return nullptr;
+}
+
+double choice_error_m(const Candidate& candidate, const Camera& camera,
+                      const DesignOptions& options) {
+  if (options.robust && candidate.robustness)
+    return candidate.robustness->worst_calibrated_m().value;
+  return chosen_error_m(candidate.error, camera.operating.error);
+}
+
+double chosen_error_m(const DepthErrorReport& report, DepthErrorKind kind) {
+  return report.of(kind).geometric_mean_m.value;
+}
+
+Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErrorKind kind) {
+  const Estimate best = result.winner().error.of(kind).geometric_mean_m;
+  const Estimate its = other.error.of(kind).geometric_mean_m;
+  const double ratio = its.value / best.value;
+  return {ratio,
+          ratio * std::hypot(its.standard_error / its.value, best.standard_error / best.value)};
+}
+
+DesignResult design(const Camera& camera, const DesignOptions& options, const Progress& progress,
+                    const DesignStore& store) {
+  options.validate();
+  camera.validate();
+  DesignResult result;
+
+  // 1. What there is to factorize; baselines compete as they are.
+  std::vector<TargetSet> targets;
+  if (includes(options.method, DesignMethod::factorize))
+    where_it_serves(DesignMethod::factorize, options, result,
+                    [&] { targets = targets_for(camera, options); });
+  add_baselines(camera, options, targets, result);
+
+  // 2. Design a code for every target, then for every number of exposures; what is there by then
+  //    is where the direct optimization starts, and what it has to beat.
+  std::vector<Task> tasks;
+  for (const TargetSet& target : targets)
+    tasks.push_back(
+        {DesignMethod::factorize, target.name + "-factorized", 1.0, [&](const Progress& part) {
+           return factorized_candidate(target, camera, options, part);
+         }});
+  if (includes(options.method, DesignMethod::search))
+    where_it_serves(DesignMethod::search, options, result, [&] {
+      for (const int exposures : searchable_exposures(camera, options))
+        tasks.push_back({DesignMethod::search, searched_name(exposures), 3.0,
+                         [&, exposures](const Progress& part) {
+                           return searched_candidate(camera, exposures, options, part);
+                         }});
+    });
+  if (includes(options.method, DesignMethod::optimize))
+    where_it_serves(DesignMethod::optimize, options, result, [&] {
+      for (const int exposures : optimizable_exposures(camera, options))
+        tasks.push_back({DesignMethod::optimize, optimized_name(exposures), 3.0,
+                         [&, exposures](const Progress& part) {
+                           return optimized_candidate(camera, exposures, options, result.candidates,
+                                                      part);
+                         }});
+    });
+  require(!result.candidates.empty() || !tasks.empty(), "DesignOptions::baselines",
+          fmt::format("{}", fmt::join(options.baselines, ", ")),
+          fmt::format("there is nothing to design and the camera can play none of them ({})",
+                      fmt::join(result.left_out, "; ")));
+  double effort = 0.0, done = 0.0;
+  for (const Task& task : tasks) effort += task.effort;
+  for (const Task& task : tasks) {
+    const double end = done + task.effort;
+    where_it_serves(task.method, options, result, [&] {
+      result.candidates.push_back(
+          run_or_load(task, store, part_of(progress, 0.8 * done / effort, 0.8 * end / effort)));
+    });
+    done = end;
+  }
+  leave_out_what_tells_no_depth(camera, result);
   require(!result.candidates.empty(), "target", fmt::format("{}", fmt::join(result.left_out, "; ")),
           "nothing that was designed can tell depth");
 
   // 3. Judge all with the same fresh random numbers and pick by the camera's depth error.
-  for (std::size_t i = 0; i < result.candidates.size(); ++i) {
-    const double count = static_cast<double>(result.candidates.size());
-    judge(result.candidates[i], camera, options,
-          part_of(progress, 0.8 + 0.2 * static_cast<double>(i) / count,
-                  0.8 + 0.2 * static_cast<double>(i + 1) / count));
-    if (chosen_error_m(result.candidates[i].error, camera.operating.error) <
-        chosen_error_m(result.winner().error, camera.operating.error))
-      result.best = i;
-  }
+  judge_all(camera, options, result, part_of(progress, 0.8, 1.0));
+  result.explanation = explain(camera, result);
   report(progress, 1.0, "done");
   return result;
 }

@@ -27,13 +27,37 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
+Json search_json(const SearchRecord& search) {
+  Json steps = Json::array();
+  for (const SearchStep& step : search.steps) steps.push_back({step.work, step.error_m});
+  return {{"work_unit", search.work_unit},
+          {"error_name", search.error_name},
+          {"steps", std::move(steps)},
+          {"proved", search.proved},
+          {"account", search.account}};
+}
+
+SearchRecord search_from_json(const JsonReader& json) {
+  SearchRecord search{.work_unit = json.member("work_unit").text(),
+                      .error_name = json.member("error_name").text(),
+                      .proved = json.member("proved").boolean(),
+                      .account = json.member("account").text()};
+  for (const JsonReader& entry : json.member("steps").elements()) {
+    const auto step = entry.elements(2, "work and error");
+    search.steps.push_back({step[0].number(), step[1].number()});
+  }
+  return search;
+}
+
 /// Targets, histories and messages of a designed code: what only reports need.
 Json details_json(const Candidate& candidate) {
   Json details = {{"message", candidate.message}};
+  if (candidate.search) details["search"] = search_json(*candidate.search);
   for (Eigen::Index k = 0; k < candidate.target.cols(); ++k) {
     const Eigen::VectorXd column = candidate.target.col(k);
     details["target"].push_back(std::vector<double>(column.begin(), column.end()));
   }
+  if (candidate.target.size() == 0) return details;
   for (const MeasurementReport& m : candidate.per_measurement) {
     Json history = Json::array();
     for (const FactorizeIteration& i : m.history)
@@ -48,6 +72,9 @@ void read_details(const JsonReader& details, int samples, Candidate& candidate) 
   candidate.message = details.member("message").text();
   const std::size_t measurements = candidate.per_measurement.size();
   if (measurements == 0) return;
+  if (const auto search = details.optional_member("search"))
+    candidate.search = search_from_json(*search);
+  if (!details.optional_member("target")) return;
   const auto columns = details.member("target").elements(measurements, "one per measurement");
   candidate.target.resize(samples, std::ssize(columns));
   for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -91,6 +118,15 @@ std::string design_key(const Camera& camera, const DesignOptions& options) {
                   options.best_rotation, fmt::join(f.total_variation_weights, ","),
                   f.max_iterations, f.objective_tolerance, f.feed_back_projection, f.random_starts,
                   f.structured_starts, f.keep_naive, f.refine_edges, f.refined, f.kept, f.seed);
+  const OptimizeOptions& o = options.optimize;
+  const ChipSearchOptions& c = options.search;
+  key += fmt::format("|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", name_of(options.method),
+                     options.robust, options.exposures.empty(), fmt::join(options.baselines, ","),
+                     o.samples, o.starts, o.steps_per_start, o.hops, o.steps_per_hop, o.patience,
+                     o.refined, o.refinement_steps, o.trials_per_step, o.pool_trials, o.polish,
+                     o.polish_steps, o.validation_trials);
+  key += fmt::format("|{}|{}|{}|{}|{}|{}", c.margin_sigma, c.separation_periods, c.equal_duty,
+                     c.largest_exhaustive, c.annealing_starts, c.annealing_steps);
   if (options.target)
     for (const CorrelationTarget& t : options.target->measurements) {
       key += fmt::format("|{}|{}", t.demodulation_mean,
@@ -117,9 +153,10 @@ void check_code(const Candidate& candidate, const std::string& name, const Camer
   if (candidate.code.name() != name)
     throw IoError(path.string(), fmt::format("found the code \"{}\"; expected \"{}\"",
                                              candidate.code.name(), name));
-  if (reported != 0 && reported != static_cast<std::size_t>(candidate.code.exposures()))
+  if (reported != 0 && reported != static_cast<std::size_t>(candidate.code.exposures()) &&
+      reported != static_cast<std::size_t>(candidate.code.measurements()))
     throw IoError(path.string(), fmt::format("found {} reports per measurement of {}; expected {}",
-                                             reported, name, candidate.code.exposures()));
+                                             reported, name, candidate.code.measurements()));
   try {
     require_fits(candidate.code, camera);
   } catch (const std::invalid_argument& error) {
@@ -180,14 +217,13 @@ DesignStore DesignDirectory::store(const Camera& camera, const DesignOptions& op
           },
           .save =
               [key, directory = path_](const Candidate& candidate) {
-                const Json json = {
-                    {"key", key},
-                    {"method", candidate.method},
-                    {"iterations", candidate.iterations},
-                    {"seconds", candidate.seconds},
-                    {"per_measurement", measurements_json(candidate.per_measurement)},
-                    {"code", Json::parse(code_to_json(candidate.code))},
-                    {"details", details_json(candidate)}};
+                const Json json = {{"key", key},
+                                   {"method", candidate.method},
+                                   {"iterations", candidate.iterations},
+                                   {"seconds", candidate.seconds},
+                                   {"per_measurement", measurements_json(candidate)},
+                                   {"code", Json::parse(code_to_json(candidate.code))},
+                                   {"details", details_json(candidate)}};
                 write_file_atomically(finished_path(directory, candidate.code.name()), json.dump(1),
                                       OutputPolicy::overwrite);
               }};
@@ -237,12 +273,16 @@ DesignRecord DesignDirectory::read() const {
       candidate.seconds = entry.member("seconds").number();
       read_details(details.member(name), record.camera.samples, candidate);
     }
+    if (const auto robustness = entry.optional_member("robustness"))
+      candidate.robustness = robustness_from_json(*robustness);
     if (name == best) result.best = result.candidates.size();
     result.candidates.push_back(std::move(candidate));
   }
   if (!result.find(best)) document.member("best").mistyped("the name of one of the codes");
   for (const JsonReader& reason : document.member("left_out").elements())
     result.left_out.push_back(reason.text());
+  for (const JsonReader& sentence : document.member("explanation").elements())
+    result.explanation.push_back(sentence.text());
   return record;
 }
 

@@ -70,6 +70,11 @@ std::uint64_t JsonReader::unsigned_integer() const {
   return value_->get<std::uint64_t>();
 }
 
+bool JsonReader::boolean() const {
+  if (!value_->is_boolean()) mistyped("true or false");
+  return value_->get<bool>();
+}
+
 std::string JsonReader::text() const {
   if (!value_->is_string()) mistyped("a text");
   return value_->get<std::string>();

@@ -23,6 +23,8 @@ class JsonReader {
   double number(double low, double high, double tolerance) const;
   /// A number >= 0, or infinity where the document says null: JSON has no infinity.
   double number_or_infinity() const;
+  bool is_null() const { return value_->is_null(); }
+  bool boolean() const;
   int integer(int low, int high) const;
   std::uint64_t unsigned_integer() const;
   std::string text() const;

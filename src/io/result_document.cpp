@@ -137,16 +137,36 @@ Json robustness_json(const RobustnessReport& report) {
   return entry;
 }
 
-Json measurements_json(const std::vector<MeasurementReport>& reports) {
+RobustnessReport robustness_from_json(const JsonReader& json) {
+  const auto error = [](const JsonReader& entry) -> Estimate {
+    return {not_negative(entry, "geometric_mean_m"), not_negative(entry, "geometric_mean_se_m")};
+  };
+  RobustnessReport report{
+      .kind = json.member("error").text() == "linear" ? DepthErrorKind::linear
+                                                      : DepthErrorKind::circular,
+      .trials = static_cast<std::int64_t>(json.member("trials").unsigned_integer()),
+      .seed = json.member("seed").unsigned_integer(),
+      .nominal_m = error(json.member("nominal"))};
+  for (const JsonReader& p : json.member("perturbations").elements())
+    report.perturbed.push_back(
+        {p.member("name").text(), error(p.member("calibrated")), error(p.member("uncalibrated"))});
+  return report;
+}
+
+Json measurements_json(const Candidate& candidate) {
   Json list = Json::array();
-  for (const MeasurementReport& m : reports)
-    list.push_back({{"residual_rms", m.residual_rms},
-                    {"smallest_residual_rms", m.smallest_residual_rms},
-                    {"demodulation_duty", m.demodulation_duty},
-                    {"modulation_duty", m.modulation_duty},
-                    {"peak", m.peak},
-                    {"edges", m.edges},
-                    {"start", m.start}});
+  for (const MeasurementReport& m : candidate.per_measurement) {
+    Json entry = {{"residual_rms", nullptr}, {"smallest_residual_rms", nullptr}};
+    if (candidate.target.size() > 0)
+      entry = {{"residual_rms", m.residual_rms},
+               {"smallest_residual_rms", m.smallest_residual_rms}};
+    entry.update({{"demodulation_duty", m.demodulation_duty},
+                  {"modulation_duty", m.modulation_duty},
+                  {"peak", m.peak},
+                  {"edges", m.edges},
+                  {"start", m.start}});
+    list.push_back(std::move(entry));
+  }
   return list;
 }
 
@@ -154,14 +174,18 @@ std::vector<MeasurementReport> measurements_from_json(const JsonReader& entry) {
   std::vector<MeasurementReport> reports;
   const auto list = entry.optional_member("per_measurement");
   if (!list) return reports;
-  for (const JsonReader& m : list->elements())
-    reports.push_back({.residual_rms = not_negative(m, "residual_rms"),
-                       .smallest_residual_rms = not_negative(m, "smallest_residual_rms"),
-                       .demodulation_duty = m.member("demodulation_duty").number(),
-                       .modulation_duty = m.member("modulation_duty").number(),
-                       .peak = m.member("peak").number(),
-                       .edges = m.member("edges").integer(0, std::numeric_limits<int>::max()),
-                       .start = m.member("start").text()});
+  for (const JsonReader& m : list->elements()) {
+    MeasurementReport report{.demodulation_duty = m.member("demodulation_duty").number(),
+                             .modulation_duty = m.member("modulation_duty").number(),
+                             .peak = m.member("peak").number(),
+                             .edges = m.member("edges").integer(0, std::numeric_limits<int>::max()),
+                             .start = m.member("start").text()};
+    if (!m.member("residual_rms").is_null()) {
+      report.residual_rms = not_negative(m, "residual_rms");
+      report.smallest_residual_rms = not_negative(m, "smallest_residual_rms");
+    }
+    reports.push_back(std::move(report));
+  }
   return reports;
 }
 
@@ -185,11 +209,19 @@ Json design_json(const Camera& camera, const DesignResult& result, const DesignO
     if (!candidate.per_measurement.empty()) {
       entry["iterations"] = candidate.iterations;
       entry["seconds"] = candidate.seconds;
-      entry["per_measurement"] = measurements_json(candidate.per_measurement);
+      entry["per_measurement"] = measurements_json(candidate);
     }
+    if (candidate.search) {
+      entry["proved"] = candidate.search->proved;
+      entry["account"] = candidate.search->account;
+    }
+    if (candidate.robustness) entry["robustness"] = robustness_json(*candidate.robustness);
+    const Estimate gain = gain_over(result, candidate, camera.operating.error);
+    entry["times_best"] = {{"ratio", gain.value}, {"ratio_se", gain.standard_error}};
     document["codes"].push_back(std::move(entry));
   }
   document["left_out"] = result.left_out;
+  document["explanation"] = result.explanation;
   return document;
 }
 

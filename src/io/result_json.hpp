@@ -20,9 +20,11 @@ DepthErrorReport depth_error_from_json(const JsonReader& entry, const JsonReader
 
 /// A code's depth error on perturbed cameras, each beside its ratio to the nominal one.
 nlohmann::ordered_json robustness_json(const RobustnessReport& report);
+/// The same back.
+RobustnessReport robustness_from_json(const JsonReader& json);
 
-/// How the measurements of a designed code compare with their targets.
-nlohmann::ordered_json measurements_json(const std::vector<MeasurementReport>& reports);
+/// The measurements of a designed code and, where it has targets, how they compare with them.
+nlohmann::ordered_json measurements_json(const Candidate& candidate);
 /// The same back, without histories; none where the entry has no `per_measurement`.
 std::vector<MeasurementReport> measurements_from_json(const JsonReader& entry);
 

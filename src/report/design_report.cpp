@@ -4,9 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
 #include "report/error_sections.hpp"
+#include "report/search_sections.hpp"
 #include "tofsmith/report/code_figures.hpp"
-#include "tofsmith/report/line_figure.hpp"
+#include "tofsmith/report/robustness_section.hpp"
 #include "tofsmith/report/scene_section.hpp"
 #include "tofsmith/version.hpp"
 
@@ -33,6 +37,15 @@ KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
     if (const std::string gain = gain_over(result, baseline, kind); !gain.empty())
       numbers.entries.push_back({fmt::format("better than {}", baseline), gain});
   return numbers;
+}
+
+/// Why the winner won. A list of settings, since the names in it are set as they are.
+KeyValueList explanation(const DesignResult& result) {
+  constexpr std::array keys = {"the best", "its exposures", "its limits"};
+  KeyValueList list;
+  for (std::size_t i = 0; i < std::min(keys.size(), result.explanation.size()); ++i)
+    list.entries.push_back({keys[i], result.explanation[i]});
+  return list;
 }
 
 /// What the correlation functions of a candidate should be, moved with its origin.
@@ -80,41 +93,13 @@ Section coding_curve_section(const Camera& camera, const DesignResult& result) {
   return section;
 }
 
-/// Residuals against iterations of every measurement that was designed.
-Section convergence_section(const DesignResult& result) {
-  Section section{.title = "Convergence"};
-  for (const Candidate& c : result.candidates) {
-    ColourAssignment colours;
-    std::vector<Series> series;
-    for (std::size_t k = 0; k < c.per_measurement.size(); ++k) {
-      Series relaxed{.name = fmt::format("measurement {}", k + 1),
-                     .mark = Mark::line_and_markers,
-                     .style = colours.style(fmt::format("{}", k))};
-      for (std::size_t i = 0; i < c.per_measurement[k].history.size(); ++i) {
-        relaxed.x.push_back(static_cast<double>(i + 1));
-        relaxed.y.push_back(std::max(1e-6, c.per_measurement[k].history[i].playable_residual_rms));
-      }
-      if (!relaxed.x.empty()) series.push_back(std::move(relaxed));
-    }
-    if (series.empty()) continue;
-    section.blocks.push_back(line_figure(
-        {.id = figure_id("convergence", c.code.name()),
-         .title = fmt::format("Convergence of {}", c.code.name()),
-         .caption = "Residual of the binary projection after each pair of convex steps, for the "
-                    "random start that came closest; values below 1e-6 are drawn "
-                    "at 1e-6."},
-        series, {.label = "iteration"}, {.label = "residual, rms", .logarithmic = true}));
-  }
-  return section;
-}
-
 Section residual_section(const DesignResult& result) {
   Section section{.title = "Designed codes"};
   Table table{.id = "residuals",
               .caption =
-                  "Every measurement of every designed code. Pairs are chosen by depth error: the "
-                  "residual is the chosen pair's distance from the target, beside the smallest "
-                  "distance of any pair found.",
+                  "Every measurement of every designed code. Factorized pairs are chosen by depth "
+                  "error: the residual is the chosen pair's distance from the target, beside the "
+                  "smallest distance of any pair found.",
               .columns = {{"code"},
                           {"measurement", true},
                           {"residual", true},
@@ -127,11 +112,13 @@ Section residual_section(const DesignResult& result) {
   for (const Candidate& c : result.candidates)
     for (std::size_t k = 0; k < c.per_measurement.size(); ++k) {
       const MeasurementReport& m = c.per_measurement[k];
-      table.rows.push_back(
-          {c.code.name(), fmt::format("{}", k + 1), fmt::format("{:.4f}", m.residual_rms),
-           fmt::format("{:.4f}", m.smallest_residual_rms), fmt::format("{:.4f}", m.modulation_duty),
-           fmt::format("{:.2f}", m.peak), fmt::format("{:.4f}", m.demodulation_duty),
-           fmt::format("{}", m.edges), m.start});
+      const bool aimed = c.target.size() > 0;
+      table.rows.push_back({c.code.name(), fmt::format("{}", k + 1),
+                            aimed ? fmt::format("{:.4f}", m.residual_rms) : "",
+                            aimed ? fmt::format("{:.4f}", m.smallest_residual_rms) : "",
+                            fmt::format("{:.4f}", m.modulation_duty), fmt::format("{:.2f}", m.peak),
+                            fmt::format("{:.4f}", m.demodulation_duty), fmt::format("{}", m.edges),
+                            m.start});
     }
   section.blocks.push_back(std::move(table));
   return section;
@@ -147,18 +134,25 @@ Page design_report(const Camera& camera, const DesignResult& result,
                 "{} candidates, judged by {} depth error", result.candidates.size(),
                 camera.operating.error == DepthErrorKind::linear ? "linear" : "circular"),
             .footer = fmt::format("tofsmith {}, seed {}", TOFSMITH_VERSION, winner.error.seed)};
-  page.sections.push_back({"Result", {headline(result, camera.operating.error)}});
+  Section first{"Result", {headline(result, camera.operating.error)}};
+  first.blocks.push_back(explanation(result));
+  page.sections.push_back(std::move(first));
   page.sections.push_back({"Camera", {camera_description(camera)}});
 
   std::vector<ComparedCode> compared;
   for (const Candidate& c : result.candidates) compared.push_back({&c.error, c.method});
   page.sections.push_back(depth_error_section(camera, compared, result.best));
+  page.sections.push_back(gain_section(camera, result));
+  std::vector<JudgedCode> perturbed;
+  for (const Candidate& c : result.candidates)
+    if (c.robustness) perturbed.push_back({c.code.name(), *c.robustness});
+  if (!perturbed.empty()) page.sections.push_back(robustness_section(perturbed));
   page.sections.push_back(waveform_section(camera, result));
   page.sections.push_back(coding_curve_section(camera, result));
   if (scene) page.sections.push_back(scene_section(*scene, camera, winner.code.name()));
   if (Section s = residual_section(result); !std::get<Table>(s.blocks[0]).rows.empty()) {
     page.sections.push_back(std::move(s));
-    page.sections.push_back(convergence_section(result));
+    page.sections.push_back(search_section(result));
   }
   if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
   return page;

@@ -16,6 +16,7 @@ namespace {
 
 DesignOptions design_options(int exposures, const ReproduceOptions& options) {
   DesignOptions design;
+  design.method = DesignMethod::factorize;  // as the paper does
   design.exposures = {exposures};
   design.baselines = {};
   design.best_rotation = true;

@@ -370,6 +370,7 @@ class Commands(CommandLineTest):
 
 
 class Design(CommandLineTest):
+    FAST = (*FAST, "--effort", "0.05")
     ARGUMENTS = ("design", "paper-10f0", "--exposures", "3", *FAST)
 
     def test_design_report_and_resume(self):
@@ -415,13 +416,13 @@ class Design(CommandLineTest):
         np.savetxt(self.path("t.csv"), np.stack(
             [0.5 + 0.5 * np.cos(2 * np.pi * (np.arange(240) / 240 - k / 3)) for k in range(3)], 1),
             delimiter=",")
-        document = self.do_json("design", "--target", "t.csv", *FAST)
+        document = self.do_json("design", "--target", "t.csv", "--method", "factorize", *self.FAST)
         self.assertIn("t-factorized", [code["name"] for code in document["codes"]])
 
     def test_demo(self):
         truth = np.full((12, 16), 2.0, np.float32)
         np.save(self.path("s.npy"), truth)
-        document = self.do_json("demo", "--depth", "s.npy", *FAST, "-o", "demo")
+        document = self.do_json("demo", "--depth", "s.npy", *self.FAST, "-o", "demo")
         self.assertIn(document["best"], [code["name"] for code in document["codes"]])
         self.assertEqual(np.load(self.path("demo/depth.npy")).shape, truth.shape)
         self.assertLessEqual({"demo/report.html", "demo/points.ply", "demo/depth.exr"},

@@ -54,11 +54,12 @@ class Interrupts(CommandLineTest):
             self.wait_for(kept)
             time.sleep(0.5)  # it is being judged now
 
-        self.interrupt("design", "--exposures", "3", *LONG, "-o", "d", after=once_finished,
+        self.interrupt("design", "--method", "factorize", "--exposures", "3", *LONG, "-o", "d", after=once_finished,
                        directory="d")
         self.assertNotIn("d/design.json", self.files())
         before = self.bytes_of(kept)
-        document = self.do_json("design", "--exposures", "3", "--trials", "1000", "-o", "d")
+        document = self.do_json("design", "--method", "factorize", "--exposures", "3", "--trials", "1000",
+                                "-o", "d")
         self.assertEqual(self.bytes_of(kept), before)
         resumed = next(c for c in document["codes"] if c["name"] == "hamiltonian-k3-factorized")
         self.assertEqual(resumed["seconds"], json.loads(before)["seconds"])

@@ -44,7 +44,7 @@ class Refusals(CommandLineTest):
                 (["evaluate", "sinusoid-k4", "--unwrap-weights", "frequency"], ["--method"]),
                 (["design", "a", "b"], ["'b'"]),
                 (["design", "--method", "magic"], ["magic", "factorize"]),
-                (["design", "--exposures", "7"], ["7"]),
+                (["design", "--exposures", "9"], ["9"]),
                 (["codes", "-o", "x.npz"], ["NAME"]),
                 (["simulate", "table-top", "--code", "sinusoid-k4"], ["--output"]),
                 (["simulate", "table-top", "--image", "a.png", "--code", "sinusoid-k4", "-o",
@@ -117,7 +117,8 @@ class Refusals(CommandLineTest):
         code["demodulation"] = [code["demodulation"][0]] * 3
         self.write("c.code.json", json.dumps(code))
         self.refuse(["evaluate", "c.code.json"], "rank", ">= 2")
-        self.refuse(["design", "--set", "samples=1000", "-o", "d"], "samples = 1000")
+        self.refuse(["design", "--method", "factorize", "--set", "samples=1000", "-o", "d"],
+                    "samples = 1000")
 
     def code(self, name="sinusoid-k3"):
         """A code as its file says it; the file is gone."""
@@ -325,7 +326,8 @@ class Refusals(CommandLineTest):
 
     def test_files_that_are_in_the_way_of_a_directory(self):
         self.write("report.html", "mine")
-        self.refuse(["design", "--exposures", "3", "--trials", "1000", "-o", "."], "report.html",
+        self.refuse(["design", "--method", "factorize", "--exposures", "3", "--trials", "1000", "-o",
+                     "."], "report.html",
                     "--force")
         self.refuse(["demo", "--trials", "1000", "-o", "."], "report.html", "--force")
 

@@ -23,6 +23,7 @@ inline Camera small_camera(const std::string& name, DepthErrorKind error = Depth
 /// Options that take a fraction of a second.
 inline DesignOptions small_options(std::vector<int> exposures = {3}) {
   DesignOptions options;
+  options.method = DesignMethod::factorize;
   options.exposures = std::move(exposures);
   options.baselines = {"sinusoid-k4", "square-k4", "hamiltonian-k4"};
   options.search_trials = 200;

@@ -7,18 +7,39 @@
 #include <string>
 #include <vector>
 
+#include "tofsmith/design/chip_search.hpp"
 #include "tofsmith/design/factorize.hpp"
+#include "tofsmith/design/optimize.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/simulate/robustness.hpp"
 
 namespace tofsmith {
 
+/// How codes are found.
+enum class DesignMethod {
+  factorize,  ///< waveforms whose correlation functions come close to given ones, as in the paper
+  optimize,   ///< all waveforms together, by depth error itself
+  search,     ///< all codes on the grid of a chip clock, with proof where that is possible
+  best,       ///< all of these that suit the camera
+};
+/// The enumerator's name.
+std::string_view name_of(DesignMethod method);
+
 /// How the codes of a camera are designed and judged.
 struct DesignOptions {
-  /// Hamiltonian targets to factorize: number of exposures of each, 3 .. 6, each once.
-  std::vector<int> exposures = {3, 4, 5};
+  DesignMethod method = DesignMethod::best;
+  /// Numbers of exposures to design for, 1 .. 8, each once; none: what suits method and camera
+  /// (suggested_exposures). Factorization aims at Hamiltonian codes, which have 3 .. 6.
+  std::vector<int> exposures;
   /// A target of the user's, factorized instead of the Hamiltonian ones.
   std::optional<TargetSet> target;
   FactorizeOptions factorize;
+  OptimizeOptions optimize;
+  ChipSearchOptions search;
+  /// Optimize for, and pick by, the error on the worst of the camera's perturbations
+  /// (simulate/robustness.hpp) instead of the camera's own. The gradients see other bandwidths and
+  /// edge jitter; the choice among all candidates sees all perturbations.
+  bool robust = false;
   /// Families that compete, whether or not anything is designed; those the camera cannot play are
   /// left out.
   std::vector<std::string> baselines = {
@@ -33,9 +54,9 @@ struct DesignOptions {
   void validate() const;
 };
 
-/// How one measurement of a designed code compares with its target.
+/// One measurement of a designed code and, if it has one, how it compares with its target.
 struct MeasurementReport {
-  double residual_rms = 0.0;           ///< of the pair chosen by depth error
+  double residual_rms = 0.0;           ///< of the pair chosen by depth error; 0 without a target
   double smallest_residual_rms = 0.0;  ///< of the pair that comes closest to the target
   double demodulation_duty = 0.0;
   double modulation_duty = 0.0;
@@ -45,29 +66,54 @@ struct MeasurementReport {
   std::vector<FactorizeIteration> history;  ///< as Factorization::history
 };
 
+/// How far a search had come after some work.
+struct SearchStep {
+  double work = 0.0;     ///< in the units of SearchRecord
+  double error_m = 0.0;  ///< smallest error until then, as the search measures it
+};
+
+/// How a code was searched for.
+struct SearchRecord {
+  std::string work_unit;   ///< "gradient steps" or "candidates"
+  std::string error_name;  ///< what the steps' error is
+  std::vector<SearchStep> steps;
+  bool proved = false;  ///< no other code of the searched kind is better
+  std::string account;  ///< what was searched, counted and ruled out by which test
+};
+
 /// A code that competes for the camera.
 struct Candidate {
   CodeSet code;
-  std::string method;      ///< "family", "naive" or "factorize"
+  std::string method;      ///< "family", "naive", "reference", "factorize", "optimize" or "search"
   DepthErrorReport error;  ///< what evaluate() says of the code with the design's seed and trials
   int rotation_bin = 0;    ///< how far the origin was moved
-  int iterations = 0;      ///< pairs of convex steps over all starts that led to it; 0 for a family
+  int iterations = 0;      ///< convex or gradient steps over all starts that led to it
   double seconds = 0.0;    ///< time it took to design
-  Eigen::MatrixXd target;  ///< what it was designed for (N, K); empty for a family
-  std::vector<MeasurementReport> per_measurement;
-  std::string message;  ///< one line on how near the target is
+  Eigen::MatrixXd target;  ///< what it was factorized for (N, K); else empty
+  std::vector<MeasurementReport> per_measurement;  ///< of designed codes; one per demodulation
+  std::optional<SearchRecord> search;              ///< of optimized and searched codes
+  std::string message;                             ///< one line on how it came out
+  /// The error when the camera is not quite what it was said to be; of the winner, and with
+  /// DesignOptions::robust of all.
+  std::optional<RobustnessReport> robustness;
 };
 
 /// All candidates of a camera and which one is best by the camera's chosen depth error.
 struct DesignResult {
   std::vector<Candidate> candidates;
   std::size_t best = 0;
-  std::vector<std::string> left_out;  ///< families the camera cannot play, with the reason
+  std::vector<std::string> left_out;  ///< codes and methods the camera cannot use, with the reason
+  std::vector<std::string> explanation;  ///< why the winner won, in a few sentences
 
   const Candidate& winner() const { return candidates[best]; }
   /// The candidate of that name, or null.
   const Candidate* find(std::string_view name) const;
 };
+
+/// What a candidate is chosen by [m]: its depth error by the camera's choice or, where options ask
+/// for robust codes, that on the worst perturbed camera, to which the decoder is calibrated.
+double choice_error_m(const Candidate& candidate, const Camera& camera,
+                      const DesignOptions& options);
 
 /// A candidate's depth error by the camera's choice: geometric mean over the operating points [m].
 double chosen_error_m(const DepthErrorReport& report, DepthErrorKind kind);
@@ -79,7 +125,15 @@ struct DesignStore {
   std::function<void(const Candidate&)> save;
 };
 
-/// Designs codes for `camera` by factorizing correlation functions, lets all baselines compete and
+/// How many times as large another candidate's chosen error is as the winner's, from the same
+/// trials; the standard error takes the two for independent, which errs on the large side.
+Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErrorKind kind);
+
+/// Numbers of exposures that suit a method on a camera: fewer the more taps there are, more the
+/// wider the band.
+std::vector<int> suggested_exposures(const Camera& camera, DesignMethod method);
+
+/// Designs codes for `camera` by the methods asked for, lets all baselines compete and
 /// picks by the camera's depth error. The naive code of every target (its ideal demodulation with
 /// one pulse, where that is known and playable) competes too, so the winner is never worse than
 /// naive.

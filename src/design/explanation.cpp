@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/explanation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "design/exposure_sweep.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+std::string length_mm(const Estimate& e) {
+  return fmt::format("{:.4g} +- {:.2g} mm", 1e3 * e.value, 1e3 * e.standard_error);
+}
+
+std::string_view kind_name(DepthErrorKind kind) {
+  return kind == DepthErrorKind::linear ? "linear" : "circular";
+}
+
+/// The baseline of the least error that is not the winner; null if there is none.
+const Candidate* best_baseline(const DesignResult& result, DepthErrorKind kind) {
+  const Candidate* best = nullptr;
+  for (const Candidate& c : result.candidates)
+    if (&c != &result.winner() && c.per_measurement.empty() &&
+        (!best || chosen_error_m(c.error, kind) < chosen_error_m(best->error, kind)))
+      best = &c;
+  return best;
+}
+
+std::string what_it_beats(const DesignResult& result, DepthErrorKind kind) {
+  const Candidate& winner = result.winner();
+  std::string text =
+      fmt::format("{} measures depth best: {} of {} error", winner.code.name(),
+                  length_mm(winner.error.of(kind).geometric_mean_m), kind_name(kind));
+  const Candidate* baseline = best_baseline(result, kind);
+  if (!baseline) return text + ".";
+  const Estimate gain = gain_over(result, *baseline, kind);
+  text += fmt::format(", {:.2f} +- {:.2f} times less than {}", gain.value, gain.standard_error,
+                      baseline->code.name());
+  if (winner.per_measurement.empty())
+    return text + ": a standard code, which nothing that was designed here improves on.";
+  return text + ", the best of the codes that were not designed for this camera.";
+}
+
+/// The least error among codes of each number of exposures.
+std::map<int, double> error_by_exposures(const DesignResult& result, DepthErrorKind kind) {
+  std::map<int, double> errors;
+  for (const Candidate& c : result.candidates) {
+    const auto [at, is_new] = errors.try_emplace(c.error.exposures, chosen_error_m(c.error, kind));
+    if (!is_new) at->second = std::min(at->second, chosen_error_m(c.error, kind));
+  }
+  return errors;
+}
+
+std::string why_so_many_exposures(const Camera& camera, const DesignResult& result,
+                                  DepthErrorKind kind) {
+  const DepthErrorReport& winner = result.winner().error;
+  std::string others;
+  for (const auto& [exposures, error_m] : error_by_exposures(result, kind))
+    if (exposures != winner.exposures)
+      others += fmt::format("{}{} would give {:.3g} mm", others.empty() ? "" : ", ", exposures,
+                            1e3 * error_m);
+  const int harmonics = useful_harmonics(camera);
+  const std::string band = harmonics == 0
+                               ? std::string("no band limit")
+                               : fmt::format("a band that passes {} harmonics", harmonics);
+  return fmt::format(
+      "With {} and {} per exposure it takes {} exposure{}{}: more of them, or more taps, tell more "
+      "depths apart, but share the same light and add read noise.",
+      band, winner.taps == 1 ? std::string("one tap") : fmt::format("{} taps", winner.taps),
+      winner.exposures, winner.exposures == 1 ? "" : "s",
+      others.empty() ? std::string() : fmt::format(" ({})", others));
+}
+
+std::string what_limits_it(const DesignResult& result) {
+  const std::vector<PointDepthError>& points = result.winner().error.points;
+  const auto by_error = [](const PointDepthError& a, const PointDepthError& b) {
+    return a.circular_mde_m.value < b.circular_mde_m.value;
+  };
+  const auto [least, most] = std::ranges::minmax_element(points, by_error);
+  const auto describe = [](const PointDepthError& p) {
+    std::string text = fmt::format("{:.3g} mm", 1e3 * p.circular_mde_m.value);
+    if (p.cramer_rao_mae_m > 0.0)
+      text += fmt::format(", {:.2f} times its Cramer-Rao bound",
+                          p.circular_mde_m.value / p.cramer_rao_mae_m);
+    if (p.receiver_bound_mae_m > 0.0)
+      text += fmt::format(" and {:.2f} times what any code could reach",
+                          p.circular_mde_m.value / p.receiver_bound_mae_m);
+    return text;
+  };
+  if (points.size() == 1) return fmt::format("Its circular error is {}.", describe(*least));
+  return fmt::format(
+      "In the best light (S = {:.3g}, A = {:.3g} e/s) its circular error is {}; in the worst "
+      "(S = {:.3g}, A = {:.3g} e/s), where {:.0f} % of depths are outliers, {}.",
+      least->point.signal_e_per_s, least->point.ambient_e_per_s, describe(*least),
+      most->point.signal_e_per_s, most->point.ambient_e_per_s, 100 * most->outlier_rate.value,
+      describe(*most));
+}
+
+}  // namespace
+
+std::vector<std::string> explain(const Camera& camera, const DesignResult& result) {
+  const DepthErrorKind kind = camera.operating.error;
+  return {what_it_beats(result, kind), why_so_many_exposures(camera, result, kind),
+          what_limits_it(result)};
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/factorized_code.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "design/judge.hpp"
+#include "design/pair_choice.hpp"
+#include "design/pair_model.hpp"
+#include "design/start_pool.hpp"
+#include "tofsmith/code/hamiltonian.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/version.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr int fewest_exposures = 3, most_exposures = 6;  // of the Hamiltonian codes to aim at
+
+/// Whether codes for these targets can be played at all, before time is spent on them.
+void require_designable(const TargetSet& targets, const Camera& camera) {
+  require(camera.sensor.taps <= 2, "sensor.taps", camera.sensor.taps,
+          "must be 1 or 2 to factorize correlation functions");
+  require(targets.samples() == camera.samples, "length of the target", targets.samples(),
+          fmt::format("must equal the camera's samples = {}", camera.samples));
+  const std::size_t values = targets.measurements.size() * camera.sensor.taps;
+  require(values >= 3 || camera.sensor.readout == Readout::difference,
+          "number of correlation functions", targets.measurements.size(),
+          fmt::format("must be >= {}: signal, ambient light and depth are unknown",
+                      camera.sensor.taps == 2 ? 2 : 3));
+  const std::size_t listed = camera.exposure_s.each_s.size();
+  require(
+      listed == 0 || listed == targets.measurements.size(), "number of exposure_s", listed,
+      fmt::format("must equal the {} exposures of {}", targets.measurements.size(), targets.name));
+}
+
+Eigen::MatrixXd target_table(const TargetSet& targets) {
+  Eigen::MatrixXd table(targets.samples(), std::ssize(targets.measurements));
+  for (Eigen::Index k = 0; k < table.cols(); ++k)
+    table.col(k) = targets.measurements[static_cast<std::size_t>(k)].samples;
+  return table;
+}
+
+/// How near the correlation functions are to their targets, in one line. Whether a target is within
+/// reach is a matter of the pair that comes closest, not of the one that measures depth best.
+std::string describe_residuals(const std::vector<MeasurementReport>& reports,
+                               const std::vector<Factorization>& factorizations) {
+  std::string residuals, smallest, unreachable;
+  bool exact = true, closest = true;
+  for (std::size_t k = 0; k < reports.size(); ++k) {
+    exact = exact && reports[k].residual_rms < 1e-6;
+    residuals += fmt::format("{}{:.3g}", k ? ", " : "", reports[k].residual_rms);
+    smallest += fmt::format("{}{:.3g}", k ? ", " : "", reports[k].smallest_residual_rms);
+    closest = closest && reports[k].residual_rms < 1.01 * reports[k].smallest_residual_rms + 1e-9;
+    if (reports[k].smallest_residual_rms > 0.5 * factorizations[k].target_variation_rms)
+      unreachable += fmt::format("{}{}", unreachable.empty() ? "" : ", ", k + 1);
+  }
+  if (exact) return "all targets reached exactly";
+  std::string text = fmt::format("residuals {} rms", residuals);
+  if (!closest) text += fmt::format(" (chosen by depth error; smallest found {})", smallest);
+  if (!unreachable.empty())
+    text += fmt::format("; target {} out of reach of this camera", unreachable);
+  return text;
+}
+
+MeasurementReport measurement_report(const Factorization& f, const PairCandidate& chosen) {
+  return {.residual_rms = chosen.residual_rms,
+          .smallest_residual_rms = f.best().residual_rms,
+          .demodulation_duty = chosen.pair.demodulation.mean(),
+          .modulation_duty = chosen.pair.modulation.duty(),
+          .peak = chosen.pair.modulation.peak(),
+          .edges = chosen.pair.modulation.edges() + chosen.pair.demodulation.edges(),
+          .start = chosen.start,
+          .history = f.history};
+}
+
+}  // namespace
+
+std::vector<TargetSet> targets_for(const Camera& camera, const DesignOptions& options) {
+  std::vector<TargetSet> targets;
+  if (options.target) targets.push_back(*options.target);
+  if (!options.target) {
+    const std::vector<int> exposures =
+        options.exposures.empty() ? suggested_exposures(camera, DesignMethod::factorize)
+                                  : options.exposures;
+    for (const int count : exposures)  // the others are for other methods
+      if (count >= fewest_exposures && count <= most_exposures)
+        targets.push_back(targets_of(hamiltonian_code(count, {.samples = camera.samples})));
+  }
+  for (const TargetSet& target : targets) require_designable(target, camera);
+  return targets;
+}
+
+std::optional<CodeSet> naive_code(const TargetSet& targets, const Camera& camera) {
+  std::vector<Factorization> pairs;
+  for (const CorrelationTarget& target : targets.measurements) {
+    pairs.push_back({.candidates = naive_start(PairModel(target, camera))});
+    if (pairs.back().candidates.empty()) return std::nullopt;
+  }
+  CodeSet code = assemble(targets.name + "-naive", pairs, PairChoice(pairs.size(), 0), camera);
+  code.provenance.method = "naive";
+  code.provenance.camera = camera.name;
+  return code;
+}
+
+Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
+                               const DesignOptions& options, const Progress& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  // 1. Factorize every measurement by itself.
+  std::vector<Factorization> factorizations;
+  const double count = static_cast<double>(targets.measurements.size());
+  for (const CorrelationTarget& target : targets.measurements) {
+    const double done = static_cast<double>(factorizations.size());
+    factorizations.push_back(
+        factorize(target, camera, options.factorize,
+                  part_of(progress, 0.7 * done / count, 0.7 * (done + 1) / count)));
+  }
+  // 2. Choose among the pairs by the depth error of the whole code.
+  EvaluateOptions search;
+  search.trials = options.search_trials;
+  search.seed = search_seed(options);
+  const PairChoice choice = choose_by_depth_error(
+      factorizations, camera, search, rotates(camera, options), part_of(progress, 0.7, 1.0));
+  // 3. Put the code together and say how near its target it is.
+  Candidate candidate{
+      .code = assemble(targets.name + "-factorized", factorizations, choice, camera),
+      .method = "factorize",
+      .target = target_table(targets)};
+  Provenance& provenance = candidate.code.provenance;
+  provenance.method = "factorize";
+  provenance.camera = camera.name;
+  provenance.seed = options.seed;
+  provenance.version = TOFSMITH_VERSION;
+  for (std::size_t k = 0; k < choice.size(); ++k) {
+    const Factorization& f = factorizations[k];
+    candidate.per_measurement.push_back(measurement_report(f, f.candidates[choice[k]]));
+    provenance.residuals.push_back(candidate.per_measurement.back().residual_rms);
+    for (const int iterations : f.iterations_per_start) candidate.iterations += iterations;
+  }
+  candidate.message = describe_residuals(candidate.per_measurement, factorizations);
+  candidate.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return candidate;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tofsmith/design/design.hpp"
+
+namespace tofsmith {
+
+/// Numbers of exposures to optimize for: those asked for, else those that suit the camera.
+std::vector<int> optimizable_exposures(const Camera& camera, const DesignOptions& options);
+
+/// "optimized-k5"
+std::string optimized_name(int exposures);
+
+/// The code of so many exposures with the least depth error that direct optimization finds, from
+/// all candidates there are as starts; not judged yet.
+/// @throws std::invalid_argument as optimize(); Interrupted
+Candidate optimized_candidate(const Camera& camera, int exposures, const DesignOptions& options,
+                              const std::vector<Candidate>& starts, const Progress& progress);
+
+}  // namespace tofsmith
