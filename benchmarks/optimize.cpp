@@ -39,7 +39,7 @@ const Row rows[] = {
     {"p5-5f0-circular", 5, 5, circular, 3, 1, 90.5},
     {"p10-20f0-circular", 10, 20, circular, 6, 1, 42},
     {"p15-none-linear", 15, 0, linear, 5, 1, 54},
-    {"p2-none-linear", 2, 0, linear, 5, 1, 90},
+    {"p2-none-linear", 2, 0, linear, 6, 1, 90},
     {"two-bucket-linear", 10, 10, linear, 4, 2, 61},
     {"two-bucket-circular", 10, 10, circular, 4, 2, 36.3},
     {"four-taps-linear", 10, 10, linear, 2, 4, 37},
