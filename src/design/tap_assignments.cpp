@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <compare>
 
 #include "tofsmith/core/parallel.hpp"
 
@@ -82,8 +83,8 @@ class FirstTapLister {
     const auto own = current_.taps.begin() + 1;
     const auto order = std::lexicographical_compare_three_way(moved.begin(), moved.begin() + count,
                                                               own, own + count);
-    if (order == 0 && motion.is_mirror) current_.is_achiral = true;
-    return order >= 0;
+    if (std::is_eq(order) && motion.is_mirror) current_.is_achiral = true;
+    return std::is_gteq(order);
   }
 
   const AssignmentRules& rules_;
