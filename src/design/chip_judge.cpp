@@ -122,17 +122,25 @@ double ChipJudge::proven_margin_sigma(const ChipCode& code) const {
 }
 
 void ChipJudge::ask_no_more_than(const std::vector<ChipCode>& codes) {
-  for (std::size_t p = 0; p < lights_.size(); ++p) {
-    double safest = 0.0;
-    for (const ChipCode& code : codes) {
-      if (safest >= asked_sigma_[p] || is_ambiguous(code)) continue;
+  std::vector<double> asked;  // that the safest code keeps, at every point
+  double largest_share = 0.0;
+  for (const ChipCode& code : codes) {
+    if (largest_share == 1.0) return;
+    if (is_ambiguous(code)) continue;
+    std::vector<double> kept = asked_sigma_;
+    double share = 1.0;
+    for (std::size_t p = 0; p < lights_.size() && share > largest_share; ++p) {
       const ChipMargin margin(code, lights_[p], separation_periods_);
-      safest = std::max(safest,
-                        margin.reaches(asked_sigma_[p]) ? asked_sigma_[p] : margin.proven_sigma());
+      if (margin.reaches(kept[p])) continue;
+      kept[p] = margin.proven_sigma();
+      share = std::min(share, kept[p] / asked_sigma_[p]);
     }
-    // Without any standard code the asked margin stays: nothing says it is out of reach.
-    if (safest > 0.0) asked_sigma_[p] = std::min(asked_sigma_[p], safest);
+    if (share <= largest_share) continue;
+    largest_share = share;
+    asked = std::move(kept);
   }
+  // Without any standard code the asked margin stays: nothing says it is out of reach.
+  if (!asked.empty()) asked_sigma_ = std::move(asked);
 }
 
 double ChipJudge::rms_m(double score) const { return lights_.front().chip_m * std::sqrt(score); }

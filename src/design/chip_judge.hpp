@@ -36,7 +36,8 @@ class ChipJudge {
   double proven_margin_sigma(const ChipCode& code) const;
   /// Margin asked at every point [sigma].
   const std::vector<double>& asked_sigma() const { return asked_sigma_; }
-  /// Asks of every point no more than the safest of these codes has there.
+  /// Asks of every point no more than one of these codes keeps there: the one whose smallest share
+  /// of what is asked is the largest.
   void ask_no_more_than(const std::vector<ChipCode>& codes);
 
   /// Root of a score as depth [m].

@@ -13,6 +13,7 @@
 #include "design/judge.hpp"
 #include "design/optimized_code.hpp"
 #include "design/searched_code.hpp"
+#include "design/shortest_run.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
@@ -36,23 +37,44 @@ bool includes(DesignMethod asked, DesignMethod method) {
 
 constexpr int samples_of_standard_codes = 360;
 
-/// Codes that compete as they are: families, and the naive code of every target.
+/// Notes why something does not compete, once for all that share the reason.
+void leave_out(DesignResult& result, const std::string& name, const std::string& reason) {
+  const std::string ending = ": " + reason;
+  for (std::string& line : result.left_out)
+    if (line.ends_with(ending)) {
+      const std::string names = line.substr(0, line.size() - ending.size());
+      if (names != name) line = fmt::format("{}, {}{}", names, name, ending);
+      return;
+    }
+  result.left_out.push_back(name + ending);
+}
+
+/// Lets a code compete as it is, if the camera can play it.
+template <typename MakeCode>
+void add_baseline(const std::string& name, const std::string& method, const Camera& camera,
+                  DesignResult& result, MakeCode&& make_code) {
+  try {
+    CodeSet code = make_code();
+    require_fits(code, camera);
+    if (!keeps_shortest_run(code, camera))
+      return leave_out(result, name, "has pulses or gaps below sensor.shortest_pulse_s");
+    result.candidates.push_back({.code = std::move(code), .method = method});
+  } catch (const std::invalid_argument& error) {
+    leave_out(result, name, error.what());
+  }
+}
+
+/// Codes that compete as they are: families, what a sensor of exclusive taps plays if nobody
+/// searches, and the naive code of every target.
 void add_baselines(const Camera& camera, const DesignOptions& options,
                    const std::vector<TargetSet>& targets, DesignResult& result) {
-  for (const std::string& name : options.baselines) {
-    try {
-      CodeSet code = build_family(name, camera);
-      require_fits(code, camera);
-      result.candidates.push_back({.code = std::move(code), .method = "family"});
-    } catch (const std::invalid_argument& error) {
-      result.left_out.push_back(fmt::format("{}: {}", name, error.what()));
-    }
-  }
+  for (const std::string& name : options.baselines)
+    add_baseline(name, "family", camera, result, [&] { return build_family(name, camera); });
   if (camera.sensor.taps >= 3)
-    for (StandardCode& standard : standard_chip_codes(camera, samples_of_standard_codes))
+    for (const StandardCode& standard : standard_chip_codes(camera, samples_of_standard_codes))
       if (standard.code.taps() == camera.sensor.taps)
-        result.candidates.push_back(
-            {.code = standard.code.resampled(camera.samples), .method = "reference"});
+        add_baseline(standard.name, "reference", camera, result,
+                     [&] { return standard.code.resampled(camera.samples); });
   for (const TargetSet& target : targets) {
     if (!options.target && result.find(target.name)) continue;  // that family is the naive code
     if (auto code = naive_code(target, camera))
@@ -68,8 +90,38 @@ void where_it_serves(DesignMethod method, const DesignOptions& options, DesignRe
     action();
   } catch (const std::invalid_argument& error) {
     if (options.method == method) throw;
-    result.left_out.push_back(fmt::format("{}: {}", name_of(method), error.what()));
+    leave_out(result, std::string(name_of(method)), error.what());
   }
+}
+
+/// What to design: a code for every target, then for every number of exposures. Tasks refer to all
+/// four arguments.
+std::vector<Task> tasks_for(const Camera& camera, const DesignOptions& options,
+                            const std::vector<TargetSet>& targets, DesignResult& result) {
+  std::vector<Task> tasks;
+  for (const TargetSet& target : targets)
+    tasks.push_back(
+        {DesignMethod::factorize, target.name + "-factorized", 1.0, [&](const Progress& part) {
+           return factorized_candidate(target, camera, options, part);
+         }});
+  if (includes(options.method, DesignMethod::search))
+    where_it_serves(DesignMethod::search, options, result, [&] {
+      for (const int exposures : searchable_exposures(camera, options))
+        tasks.push_back({DesignMethod::search, searched_name(exposures), 3.0,
+                         [&, exposures](const Progress& part) {
+                           return searched_candidate(camera, exposures, options, part);
+                         }});
+    });
+  if (includes(options.method, DesignMethod::optimize))
+    where_it_serves(DesignMethod::optimize, options, result, [&] {
+      for (const int exposures : optimizable_exposures(camera, options))
+        tasks.push_back({DesignMethod::optimize, optimized_name(exposures), 3.0,
+                         [&, exposures](const Progress& part) {
+                           return optimized_candidate(camera, exposures, options, result.candidates,
+                                                      part);
+                         }});
+    });
+  return tasks;
 }
 
 /// The code of a task: kept from an earlier run, or designed now.
@@ -99,22 +151,22 @@ void leave_out_what_tells_no_depth(const Camera& camera, DesignResult& result) {
 void judge_all(const Camera& camera, const DesignOptions& options, DesignResult& result,
                const Progress& progress) {
   const double count = static_cast<double>(result.candidates.size());
-  const double share = options.robust ? 0.3 : 0.9;  // of the time, without perturbed cameras
+  const double all = options.robust ? 1.0 : 0.9;           // of the time, for all but the winner
+  const double unperturbed = options.robust ? 0.15 : 1.0;  // of a candidate's time
   for (std::size_t i = 0; i < result.candidates.size(); ++i) {
-    Candidate& candidate = result.candidates[i];
-    const double begin = static_cast<double>(i) / count, end = static_cast<double>(i + 1) / count;
-    judge(candidate, camera, options, part_of(progress, share * begin, share * end));
+    const double begin = all * static_cast<double>(i) / count;
+    const double end = all * static_cast<double>(i + 1) / count;
+    const double middle = begin + unperturbed * (end - begin);
+    judge(result.candidates[i], camera, options, part_of(progress, begin, middle));
     if (options.robust)
-      judge_robustness(
-          candidate, camera, options,
-          part_of(progress, share + (1.0 - share) * begin, share + (1.0 - share) * end));
+      judge_robustness(result.candidates[i], camera, options, part_of(progress, middle, end));
   }
   for (std::size_t i = 1; i < result.candidates.size(); ++i)
     if (choice_error_m(result.candidates[i], camera, options) <
         choice_error_m(result.winner(), camera, options))
       result.best = i;
   Candidate& winner = result.candidates[result.best];
-  if (!winner.robustness) judge_robustness(winner, camera, options, part_of(progress, share, 1.0));
+  if (!winner.robustness) judge_robustness(winner, camera, options, part_of(progress, all, 1.0));
 }
 
 }  // namespace
@@ -191,35 +243,9 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
                     [&] { targets = targets_for(camera, options); });
   add_baselines(camera, options, targets, result);
 
-  // 2. Design a code for every target, then for every number of exposures; what is there by then
-  //    is where the direct optimization starts, and what it has to beat.
-  std::vector<Task> tasks;
-  for (const TargetSet& target : targets)
-    tasks.push_back(
-        {DesignMethod::factorize, target.name + "-factorized", 1.0, [&](const Progress& part) {
-           return factorized_candidate(target, camera, options, part);
-         }});
-  if (includes(options.method, DesignMethod::search))
-    where_it_serves(DesignMethod::search, options, result, [&] {
-      for (const int exposures : searchable_exposures(camera, options))
-        tasks.push_back({DesignMethod::search, searched_name(exposures), 3.0,
-                         [&, exposures](const Progress& part) {
-                           return searched_candidate(camera, exposures, options, part);
-                         }});
-    });
-  if (includes(options.method, DesignMethod::optimize))
-    where_it_serves(DesignMethod::optimize, options, result, [&] {
-      for (const int exposures : optimizable_exposures(camera, options))
-        tasks.push_back({DesignMethod::optimize, optimized_name(exposures), 3.0,
-                         [&, exposures](const Progress& part) {
-                           return optimized_candidate(camera, exposures, options, result.candidates,
-                                                      part);
-                         }});
-    });
-  require(!result.candidates.empty() || !tasks.empty(), "DesignOptions::baselines",
-          fmt::format("{}", fmt::join(options.baselines, ", ")),
-          fmt::format("there is nothing to design and the camera can play none of them ({})",
-                      fmt::join(result.left_out, "; ")));
+  // 2. Design codes. What is there by then is where the direct optimization starts, and what it has
+  //    to beat.
+  const std::vector<Task> tasks = tasks_for(camera, options, targets, result);
   double effort = 0.0, done = 0.0;
   for (const Task& task : tasks) effort += task.effort;
   for (const Task& task : tasks) {
@@ -232,7 +258,7 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
   }
   leave_out_what_tells_no_depth(camera, result);
   require(!result.candidates.empty(), "target", fmt::format("{}", fmt::join(result.left_out, "; ")),
-          "nothing that was designed can tell depth");
+          "nothing that was designed can tell depth, and the camera can play no baseline");
 
   // 3. Judge all with the same fresh random numbers and pick by the camera's depth error.
   judge_all(camera, options, result, part_of(progress, 0.8, 1.0));

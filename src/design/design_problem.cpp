@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "design/shortest_run.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/design/optimize.hpp"
@@ -78,10 +79,6 @@ void require_optimizable(const Camera& camera, int exposures) {
   const std::size_t listed = camera.exposure_s.each_s.size();
   require(listed == 0 || listed == static_cast<std::size_t>(exposures), "number of exposure_s",
           listed, fmt::format("must equal the {} exposures", exposures));
-}
-
-double shortest_run_periods(const Camera& camera) {
-  return camera.sensor.shortest_pulse_s.value_or(0.0) * camera.fundamental_frequency_hz;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "design/alternation.hpp"
 #include "design/edge_refinement.hpp"
+#include "design/shortest_run.hpp"
 #include "design/start_pool.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
@@ -72,19 +73,6 @@ void drop_repeats(std::vector<PairCandidate>& candidates) {
                b.residual_rms - a.residual_rms < 1e-6 * a.residual_rms + 1e-12;
       });
   candidates.erase(last, candidates.end());
-}
-
-bool keeps_shortest_run(const Waveform& waveform, double shortest_run) {
-  if (!waveform.is_binary()) return true;
-  const std::vector<OnInterval>& on = waveform.on_intervals();
-  for (std::size_t i = 0; i < on.size(); ++i) {
-    const double next = i + 1 < on.size() ? on[i + 1].rise : on[0].rise + 1.0;
-    const double gap = next - on[i].fall;
-    constexpr double rounding = 1e-9;
-    if (on[i].fall - on[i].rise < shortest_run - rounding) return false;
-    if (gap > rounding && gap < shortest_run - rounding) return false;
-  }
-  return true;
 }
 
 /// Leaves only pairs that respect the shortest pulse, if there are any.

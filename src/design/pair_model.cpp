@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "design/grid_transfer.hpp"
+#include "design/shortest_run.hpp"
 #include "tofsmith/camera/correlation.hpp"
 
 namespace tofsmith {
@@ -13,7 +14,7 @@ PairModel::PairModel(const CorrelationTarget& target, const Camera& camera)
     : target_(target),
       camera_(camera),
       peak_factor_(camera.light.peak_factor),
-      shortest_run_(camera.sensor.shortest_pulse_s.value_or(0.0) * camera.fundamental_frequency_hz),
+      shortest_run_(shortest_run_periods(camera)),
       binary_modulation_(camera.light.binary),
       binary_demodulation_(camera.sensor.binary),
       transform_(static_cast<int>(target.samples.size())),

@@ -50,6 +50,7 @@ Candidate searched_candidate(const Camera& camera, int exposures, const DesignOp
   ChipSearchOptions search = options.search;
   search.exposures = exposures;
   search.seed = search_seed(options);
+  search.trials = std::max<std::int64_t>(search.trials, options.search_trials);
   const ChipSearchResult found = search_chip_codes(camera, search, progress);
   require(!found.finalists.empty(), "exposures", exposures,
           "no code on the camera's chip clock tells all depths apart");

@@ -9,7 +9,7 @@ int main() {
   Camera camera = built_in_camera("paper-10f0");
   camera.light.peak_factor = 10;
   const DesignResult result =
-      design(camera, {.method = DesignMethod::factorize, .exposures = {3, 4}, .trials = 5000});
+      design(camera, {.exposures = {4}, .trials = 5000});
   const CodeSet& code = result.winner().code;
   std::cout << code.name() << ": " << result.winner().error.linear.geometric_mean_m.value << " m\n";
 

@@ -122,12 +122,14 @@ TEST(DesignDocument, AddsTheBestAndHowEachDesignedCodeCompares) {
   for (const json& code : document["codes"]) {
     EXPECT_TRUE(names.insert(code["name"]).second) << "a name is told twice";
     Keys expected = code_keys;
-    expected.insert("method");
+    expected.insert({"method", "times_best"});
+    if (code["name"] == document["best"]) expected.insert("robustness");
     if (code["method"] == "factorize")
       expected.insert({"iterations", "seconds", "per_measurement"});
     EXPECT_EQ(keys_of(code), expected) << code["name"];
   }
   EXPECT_TRUE(names.contains(document["best"]));
+  EXPECT_EQ(document["explanation"].size(), 3u);
   const json& designed = document["codes"].back();
   ASSERT_EQ(designed["per_measurement"].size(), 3u);
   for (const char* key : {"residual_rms", "demodulation_duty", "modulation_duty", "peak", "edges"})

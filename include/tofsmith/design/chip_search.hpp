@@ -84,9 +84,9 @@ struct ChipSearchResult {
 
 /// Searches modulations and tap assignments of a camera with a chip clock for the least geometric
 /// mean over its operating points of chip_metric_rms_m, among codes that are not ambiguous and keep
-/// the margin at every point. (Where no standard code keeps it, as the best of them does.) All
-/// codes are tried, up to symmetry, and the result is proven, where there are not too many; else
-/// codes are annealed from multi-phase squares and the result is not proven.
+/// the margin at every point. (Where no standard code keeps it, as the one that comes nearest
+/// does.) All codes are tried, up to symmetry, and the result is proven, where there are not too
+/// many; else codes are annealed from multi-phase squares and the result is not proven.
 /// @throws std::invalid_argument for bad options or a camera without a chip clock, with fewer than
 /// 3
 ///         measurements or with what chip_metric_rms_m leaves out; Interrupted
