@@ -39,13 +39,14 @@ KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
   return numbers;
 }
 
-/// Why the winner won. A list of settings, since the names in it are set as they are.
-KeyValueList explanation(const DesignResult& result) {
-  constexpr std::array keys = {"the best", "its exposures", "its limits"};
-  KeyValueList list;
-  for (std::size_t i = 0; i < std::min(keys.size(), result.explanation.size()); ++i)
-    list.entries.push_back({keys[i], result.explanation[i]});
-  return list;
+/// Why the winner won. A table, whose cells are set as they are: the names in them are users'.
+Table explanation(const DesignResult& result) {
+  constexpr std::array questions = {"What does it beat?", "Why so many exposures?",
+                                    "What limits it?"};
+  Table table{.caption = "Why this code.", .columns = {{"question"}, {"answer"}}};
+  for (std::size_t i = 0; i < std::min(questions.size(), result.explanation.size()); ++i)
+    table.rows.push_back({questions[i], result.explanation[i]});
+  return table;
 }
 
 /// What the correlation functions of a candidate should be, moved with its origin.

@@ -8,8 +8,7 @@ int main() {
   using namespace tofsmith;
   Camera camera = built_in_camera("paper-10f0");
   camera.light.peak_factor = 10;
-  const DesignResult result =
-      design(camera, {.exposures = {4}, .trials = 5000});
+  const DesignResult result = design(camera, {.exposures = {4}, .trials = 5000});
   const CodeSet& code = result.winner().code;
   std::cout << code.name() << ": " << result.winner().error.linear.geometric_mean_m.value << " m\n";
 
