@@ -42,7 +42,7 @@ ChipJudge::ChipJudge(const Camera& camera, const ChipSearchOptions& options)
 }
 
 std::vector<FisherMatrix> ChipJudge::nodes_of(const ChipCode& code, int exposures) const {
-  const auto nodes_per_point = static_cast<std::size_t>(chips_ * nodes_per_chip);
+  const auto nodes_per_point = static_cast<std::size_t>(chips_) * nodes_per_chip;
   std::vector<FisherMatrix> nodes(lights_.size() * nodes_per_point);
   for (std::size_t p = 0; p < lights_.size(); ++p)
     for (int e = 0; e < exposures; ++e)
@@ -58,7 +58,7 @@ double ChipJudge::score(const ChipCode& code) const {
 
 double ChipJudge::score_with_last(const ChipCode& code, const std::vector<FisherMatrix>& nodes,
                                   double limit) const {
-  const auto nodes_per_point = static_cast<std::size_t>(chips_ * nodes_per_chip);
+  const auto nodes_per_point = static_cast<std::size_t>(chips_) * nodes_per_chip;
   std::array<FisherMatrix, std::size_t{most_chips} * nodes_per_chip> sum;
   double log_sum = 0.0;
   for (std::size_t p = 0; p < lights_.size(); ++p) {
