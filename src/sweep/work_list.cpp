@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "sweep/item_key.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/hash.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/code_file.hpp"
@@ -88,27 +88,6 @@ CodeSet load_chosen_code(const SweepSpec& spec, const Choice& choice, const Came
   return code;
 }
 
-std::string key_of(const Camera& camera, const CodeSet& code, const EvaluateOptions& options) {
-  Camera plain = camera;
-  plain.name = "camera";
-  for (ImpulseResponse* response : {&plain.light.impulse_response, &plain.sensor.impulse_response})
-    if (!response->samples.empty()) response->file.clear();  // then its samples are written
-  Json waveforms = Json::parse(code_to_json(code));
-  waveforms.erase("name");
-  waveforms.erase("provenance");
-  const Json content = {
-      {"results", sweep_result_version},
-      {"camera", Json::parse(camera_to_json(plain))},
-      {"code", std::move(waveforms)},
-      {"method", name_of(options.method)},
-      {"unwrap_weights", options.method == DecodeMethod::unwrap ? name_of(options.unwrap_weights)
-                                                                : std::string_view()},
-      {"trials", options.trials},
-      {"seed", options.seed},
-      {"outlier_threshold_m", options.outlier_threshold_m}};
-  return fnv1a_128_hex(content.dump());
-}
-
 /// The place of the axis value that a message about a setting speaks of; "" if it speaks of none.
 std::string place_of_setting(const SweepSpec& spec, std::int64_t item, std::string_view message) {
   const std::vector<std::size_t> indices = spec.value_indices(item);
@@ -145,7 +124,7 @@ WorkItem WorkList::item(std::int64_t item) const {
   try {
     const Camera camera = load_chosen_camera(spec_, choice);
     CodeSet code = load_chosen_code(spec_, choice, camera);
-    std::string key = key_of(camera, code, choice.options);
+    std::string key = item_key(camera, code, choice.options);
     return {std::move(key), camera, std::move(code), choice.options};
   } catch (const std::exception& error) {
     if (dynamic_cast<const IoError*>(&error) == nullptr &&
