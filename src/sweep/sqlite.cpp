@@ -18,7 +18,7 @@ constexpr int patience_ms = 60'000;
 std::string_view advice(int code) {
   switch (code) {
     case SQLITE_FULL:
-      return "; the disk is full: make room and run again, nothing is lost";
+      return "; make room and run again, nothing that is finished is lost";
     case SQLITE_IOERR:
       return "; what was finished before is kept: run again";
     case SQLITE_READONLY:

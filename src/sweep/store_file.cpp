@@ -114,8 +114,10 @@ std::filesystem::path make_directory() {
   return pattern;
 }
 
-bool can_be_read(SqliteDatabase& database) {
-  return database.try_execute("SELECT count(*) FROM sqlite_master") != SQLITE_CANTOPEN;
+/// In WAL mode even readers want to write a file beside it.
+bool asks_for_a_writable_place(SqliteDatabase& database) {
+  const int code = database.try_execute("SELECT count(*) FROM sqlite_master");
+  return code == SQLITE_CANTOPEN || code == SQLITE_READONLY;
 }
 
 }  // namespace
@@ -152,7 +154,7 @@ ReadableStore read_store_file(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) throw IoError(path.string(), "there is no such store");
   require_database(path);
   ReadableStore store{nullptr, SqliteDatabase(path, SqliteDatabase::Access::read)};
-  if (!can_be_read(store.database)) {
+  if (asks_for_a_writable_place(store.database)) {
     auto copy = std::make_unique<ReadableStore::Directory>(make_directory());
     const std::filesystem::path copied = copy->path / "store.sqlite";
     try {
