@@ -46,8 +46,8 @@ std::string figure_id(const std::string& key) {
 }
 
 Series series_of(const std::string& code, const SweepAxis& axis,
-                 const std::map<std::size_t, Group>& groups,
-                 std::vector<Estimate> Group::*errors_m) {
+                 const std::map<std::size_t, Group>& groups, std::vector<Estimate> Group::*errors_m,
+                 const LineStyle& style) {
   std::size_t whole = 0;
   for (const auto& [index, group] : groups) whole = std::max(whole, group.linear_m.size());
   std::vector<std::pair<double, Estimate>> points;
@@ -58,7 +58,7 @@ Series series_of(const std::string& code, const SweepAxis& axis,
     points.emplace_back(*axis.values[index].number, mean);
   }
   std::ranges::sort(points, {}, [](const auto& point) { return point.first; });
-  Series series{.name = code, .mark = Mark::line_and_markers};
+  Series series{.name = code, .mark = Mark::line_and_markers, .style = style};
   for (const auto& [x, mean] : points) {
     series.x.push_back(x);
     series.y.push_back(1e3 * mean.value);
@@ -67,7 +67,8 @@ Series series_of(const std::string& code, const SweepAxis& axis,
   return series;
 }
 
-Figure axis_figure(const WorkList& list, std::span<const SweepResult> results, std::size_t a) {
+Figure axis_figure(const WorkList& list, std::span<const SweepResult> results, std::size_t a,
+                   ColourAssignment& colours) {
   const SweepAxis& axis = list.spec().axes[a];
   std::vector<std::string> codes;
   std::map<std::string, std::map<std::size_t, Group>> groups;
@@ -84,8 +85,9 @@ Figure axis_figure(const WorkList& list, std::span<const SweepResult> results, s
   };
   PanelRow row{"", {{}, {}}};
   for (const std::string& code : codes) {
-    row.panels[0].push_back(series_of(code, axis, groups[code], &Group::linear_m));
-    row.panels[1].push_back(series_of(code, axis, groups[code], &Group::circular_m));
+    const LineStyle style = colours.style(code);
+    row.panels[0].push_back(series_of(code, axis, groups[code], &Group::linear_m, style));
+    row.panels[1].push_back(series_of(code, axis, groups[code], &Group::circular_m, style));
   }
   return small_multiples(
       {.id = figure_id(axis.key),
@@ -146,9 +148,11 @@ Page sweep_page(const WorkList& list, std::span<const SweepResult> results,
                                         {"computing time", time_text(counts.seconds)}}},
                             std::move(settings), CodeBlock{command_line}}});
   if (results.empty()) return page;
+  ColourAssignment colours;
   Section figures{"Depth error over each axis", {}};
   for (std::size_t a = 0; a < spec.axes.size(); ++a)
-    if (can_be_drawn(spec.axes[a])) figures.blocks.push_back(axis_figure(list, results, a));
+    if (can_be_drawn(spec.axes[a]))
+      figures.blocks.push_back(axis_figure(list, results, a, colours));
   if (!figures.blocks.empty()) page.sections.push_back(std::move(figures));
   page.sections.push_back({"All items", {results_table(list, results)}});
   return page;

@@ -3,9 +3,9 @@
 #include "sweep/store_file.hpp"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <thread>
 
@@ -155,7 +155,8 @@ ReadableStore read_store_file(const std::filesystem::path& path) {
   require_database(path);
   ReadableStore store{nullptr, SqliteDatabase(path, SqliteDatabase::Access::read)};
   if (asks_for_a_writable_place(store.database)) {
-    auto copy = std::make_unique<ReadableStore::Directory>(make_directory());
+    auto copy = std::make_unique<ReadableStore::Directory>();
+    copy->path = make_directory();
     const std::filesystem::path copied = copy->path / "store.sqlite";
     try {
       copy_store(path, copied);
