@@ -33,9 +33,9 @@ std::string one_line(const toml::node& node) {
   }
   if (const auto* table = node.as_table()) {
     for (const auto& [key, value] : *table) {
-      std::string member = quoted(std::string(key.str()));
-      member += " = ";
-      inside = joined(inside, member + one_line(value));
+      const std::string member =
+          fmt::format("{} = {}", quoted(std::string(key.str())), one_line(value));
+      inside = joined(inside, member);
     }
     return fmt::format("{{ {} }}", inside);
   }
