@@ -6,19 +6,12 @@
 
 #include <cmath>
 
+#include "tofsmith/io/csv.hpp"
 #include "zncc_comparison.hpp"
 
 namespace tofsmith::apps {
 
 namespace {
-
-/// A field of a CSV file, quoted where it needs it (RFC 4180).
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
 
 /// "61.2 (1.08x)"; "none" where nothing bounds the error from below.
 std::string bound_text(double bound_m, const Estimate& error_m) {

@@ -6,11 +6,13 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <system_error>
 
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "tofsmith/core/dispatch_target.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/version.hpp"
@@ -88,13 +90,27 @@ int stop_interrupted(const Session& session) {
   std::error_code ignored;
   const bool kept = std::filesystem::is_directory(session.directory, ignored) &&
                     !std::filesystem::is_empty(session.directory, ignored);
-  fmt::print(
-      stderr, "tofsmith: interrupted{}\n",
-      kept ? fmt::format("; finished files are kept in {}", session.directory.string()) : "");
+  const bool stored = std::filesystem::is_regular_file(session.directory, ignored);
+  fmt::print(stderr, "tofsmith: interrupted{}\n",
+             kept || stored ? fmt::format("; finished {} are kept in {}", kept ? "files" : "items",
+                                          session.directory.string())
+                            : "");
   return exit_interrupted;
 }
 
+/// TOFSMITH_TARGET names the instruction set to use, so that machines that differ give equal bits.
+void pin_target() {
+  const char* const name = std::getenv("TOFSMITH_TARGET");
+  if (name == nullptr || *name == '\0') return;
+  try {
+    pin_dispatch_target(name);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(fmt::format("TOFSMITH_TARGET: {}", error.what()));
+  }
+}
+
 int run(int argc, char** argv) {
+  pin_target();
   Session session;
   session.command_line = as_typed(argc, argv);
   CLI::App app{
@@ -120,6 +136,7 @@ int run(int argc, char** argv) {
   add_simulate_command(app, session);
   add_decode_command(app, session);
   add_report_command(app, session);
+  add_sweep_command(app, session);
   add_reproduce_command(app, session);
 
   try {

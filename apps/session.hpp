@@ -27,7 +27,7 @@ struct Session {
   bool force = false;               ///< overwrite output files
   int threads = 0;                  ///< 0 = every core
   std::string command_line;         ///< as typed, for reports
-  std::filesystem::path directory;  ///< where the command keeps finished files, if it does
+  std::filesystem::path directory;  ///< or store in which finished work is kept, if it is
 
   OutputPolicy output_policy() const {
     return force ? OutputPolicy::overwrite : OutputPolicy::refuse_existing;

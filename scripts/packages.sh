@@ -18,6 +18,7 @@ packages_build=(
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev
   libzip-dev libopenexr-dev libpng-dev
   libembree-dev libassimp-dev  # ray casting, meshes
+  libsqlite3-dev      # sweep store
   python3-plotly      # its plotly.js goes into the reports
   esbuild             # minifies it
 )

@@ -94,4 +94,11 @@ CsvTable read_csv(const std::filesystem::path& path) {
   return parse_csv(read_text_file(path), path.string());
 }
 
+std::string csv_field(std::string_view text) {
+  if (text.find_first_of(",\"\n\r") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
 }  // namespace tofsmith

@@ -50,10 +50,13 @@ void TableReader::mistyped(const std::string& name, const toml::node& node,
                 fmt::format("{}: found {}; expected {}", name, describe(node), expected));
 }
 
-void TableReader::fail(std::string_view key, std::string_view problem) const {
+std::string TableReader::place_of(std::string_view key) const {
   const toml::node* node = table_.get(key);
-  throw IoError(document_.place_of(node ? node->source() : table_.source()),
-                fmt::format("{}: {}", full(key), problem));
+  return document_.place_of(node ? node->source() : table_.source());
+}
+
+void TableReader::fail(std::string_view key, std::string_view problem) const {
+  throw IoError(place_of(key), fmt::format("{}: {}", full(key), problem));
 }
 
 double TableReader::finite_number(const std::string& name, const toml::node& node,
@@ -106,6 +109,34 @@ void TableReader::value(std::string_view key, std::vector<double>& target) {
   if (!node) return;
   if (!node->is_array()) mistyped(full(key), *node, "a list of numbers");
   target = number_list(full(key), *node->as_array());
+}
+
+void TableReader::value(std::string_view key, std::vector<std::string>& target) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  if (!node->is_array()) mistyped(full(key), *node, "a list of texts in quotes");
+  target.clear();
+  for (const toml::node& element : *node->as_array()) {
+    if (!element.is_string()) mistyped(full(key), element, "a text in quotes");
+    target.push_back(element.as_string()->get());
+  }
+}
+
+void TableReader::value(std::string_view key, std::uint64_t& target) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  if (!node->is_integer() || node->as_integer()->get() < 0)
+    mistyped(full(key), *node, "an integer >= 0");
+  target = static_cast<std::uint64_t>(node->as_integer()->get());
+}
+
+void TableReader::value(std::string_view key, std::vector<SettingValue>& target) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  if (!node->is_array()) mistyped(full(key), *node, "a list of values");
+  target.clear();
+  for (const toml::node& element : *node->as_array())
+    target.push_back(toml_value_of(element, document_.place_of(element.source())));
 }
 
 void TableReader::value(std::string_view key, Eigen::Vector3d& target) {

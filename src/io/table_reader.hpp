@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -15,6 +16,7 @@
 
 #include "io/choices.hpp"
 #include "io/toml_document.hpp"
+#include "io/toml_value.hpp"
 
 namespace tofsmith {
 
@@ -38,6 +40,12 @@ class TableReader {
   void value(std::string_view key, std::string& target);
   /// A list of numbers.
   void value(std::string_view key, std::vector<double>& target);
+  /// A list of texts.
+  void value(std::string_view key, std::vector<std::string>& target);
+  /// An integer >= 0 of at most 63 bits.
+  void value(std::string_view key, std::uint64_t& target);
+  /// A list of values of any kind.
+  void value(std::string_view key, std::vector<SettingValue>& target);
   /// A list of exactly three numbers.
   void value(std::string_view key, Eigen::Vector3d& target);
   template <typename Value>
@@ -88,6 +96,8 @@ class TableReader {
   void refuse(std::initializer_list<std::string_view> keys, std::string_view condition);
 
   bool contains(std::string_view key);
+  /// Where the value of `key` was written, or the table if the key is not there.
+  std::string place_of(std::string_view key) const;
   /// The path in `key`, from where it was written.
   std::filesystem::path resolve(std::string_view key, const std::string& path) const;
   /// @throws IoError about the value of `key`, or about the table if the key is not there

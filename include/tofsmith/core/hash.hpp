@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace tofsmith {
@@ -17,5 +18,9 @@ constexpr std::uint64_t fnv1a_64(std::string_view text) {
   }
   return hash;
 }
+
+/// 128-bit FNV-1a of the bytes of `text` as 32 hexadecimal digits: for keys of things so many that
+/// 64 bits could meet by chance. The same on every machine and in every version.
+std::string fnv1a_128_hex(std::string_view text);
 
 }  // namespace tofsmith

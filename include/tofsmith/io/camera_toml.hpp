@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tofsmith/camera/camera.hpp"
 
@@ -34,6 +35,9 @@ Camera load_camera(const std::string& name_or_path, Settings settings = {});
 
 /// The camera with some keys replaced. @throws IoError as parse_camera_toml()
 Camera with_settings(const Camera& camera, Settings settings);
+
+/// Every key that a camera file can have, such as "light.impulse_response.f_max_hz".
+std::vector<std::string> camera_keys();
 
 /// The camera as TOML, every default filled in: parse_camera_toml(camera_to_toml(c)) == c.
 /// @throws std::invalid_argument if the camera is invalid

@@ -24,4 +24,7 @@ struct CsvTable {
 CsvTable parse_csv(std::string_view text, std::string_view file);
 CsvTable read_csv(const std::filesystem::path& path);
 
+/// A text as a field of a CSV file, quoted where it needs it (RFC 4180).
+std::string csv_field(std::string_view text);
+
 }  // namespace tofsmith

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tofsmith/core/progress.hpp"
+#include "tofsmith/sweep/sweep_store.hpp"
+#include "tofsmith/sweep/work_list.hpp"
+
+namespace tofsmith {
+
+/// One part of a sweep that is cut in parts for machines that share nothing.
+struct SweepShard {
+  int index = 1;  ///< 1 .. count
+  int count = 1;
+
+  /// Whether an item belongs to this part. That depends on its key alone, so it stays where it is
+  /// when axes grow.
+  bool holds(std::string_view key) const;
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+
+struct SweepRunOptions {
+  SweepShard shard;
+  double lease_s = SweepStoreOptions{}.lease_s;  ///< of the store, whose worker must show life
+  double batch_s = 1.0;  ///< work that is taken at a time, so lost when killed [s], > 0
+
+  void validate() const;
+};
+
+/// What a run did.
+struct SweepRun {
+  std::int64_t computed = 0;          ///< items that this run finished
+  std::vector<std::string> failures;  ///< one line for each item that this run could not finish
+};
+
+/// Finishes all items of a sweep that are unfinished, together with all other processes that work
+/// on the store; waits for items that others have at the end. Results have the same bits whatever
+/// the number of threads and processes.
+/// @param keys      of all items, WorkList::keys()
+/// @param progress  called about 20 times a second. When it asks to stop, what is finished is kept
+/// @throws IoError if the store fails; Interrupted if progress says so
+SweepRun run_sweep(const WorkList& list, std::span<const std::string> keys, SweepStore& store,
+                   const SweepRunOptions& options = {}, const Progress& progress = {});
+
+}  // namespace tofsmith

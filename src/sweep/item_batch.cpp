@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sweep/item_batch.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "sweep/item_result.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr std::chrono::milliseconds moment(50);
+
+}  // namespace
+
+ItemBatch::ItemBatch(const WorkList& list, std::vector<ClaimedItem> items)
+    : list_(list), items_(std::move(items)), thread_([this] { compute_all(); }) {}
+
+ItemBatch::~ItemBatch() {
+  stop();
+  thread_.join();
+}
+
+std::vector<ItemOutcome> ItemBatch::wait() {
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, moment, [this] { return !outcomes_.empty() || done_; });
+  return std::exchange(outcomes_, {});
+}
+
+void ItemBatch::compute_all() {
+  parallel_for(static_cast<std::int64_t>(items_.size()),
+               [&](std::int64_t i) { compute(items_[static_cast<std::size_t>(i)]); });
+  const std::lock_guard lock(mutex_);
+  done_ = true;
+  changed_.notify_all();
+}
+
+void ItemBatch::compute(const ClaimedItem& claimed) {
+  if (stop_) return;
+  const bool is_alone = items_.size() == 1;
+  const auto progress = [&](double fraction, std::string_view) {
+    if (is_alone) fraction_ = fraction;
+    return !stop_;
+  };
+  ItemOutcome outcome{.key = claimed.key};
+  const auto begin = std::chrono::steady_clock::now();
+  try {
+    const WorkItem item = list_.item(claimed.item);
+    if (item.key != claimed.key)
+      throw IoError(list_.spec().source_name,
+                    "a file that the sweep reads has changed since it started");
+    outcome.result = item_result_json(evaluate(item.code, item.camera, item.options, progress));
+  } catch (const Interrupted&) {
+    return;
+  } catch (const std::exception& error) {
+    outcome.message = error.what();
+  }
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const std::lock_guard lock(mutex_);
+  outcomes_.push_back(std::move(outcome));
+  changed_.notify_all();
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sweep/item_key.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <iterator>
+
+#include "tofsmith/core/hash.hpp"
+#include "tofsmith/io/camera_toml.hpp"
+#include "tofsmith/sweep/work_list.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Bit for bit: the last digit of a switching time counts.
+void append(std::string& text, double number) {
+  fmt::format_to(std::back_inserter(text), "{:x} ", std::bit_cast<std::uint64_t>(number));
+}
+
+void append(std::string& text, const Waveform& waveform) {
+  text += waveform.is_binary() ? "binary " : "sampled ";
+  append(text, waveform.level());
+  for (const OnInterval& interval : waveform.on_intervals()) {
+    append(text, interval.rise);
+    append(text, interval.fall);
+  }
+  for (const double sample : waveform.samples()) append(text, sample);
+  text += '\n';
+}
+
+/// The camera without its name, its responses as samples wherever they came from.
+std::string camera_text(const Camera& camera) {
+  Camera plain = camera;
+  plain.name = "camera";
+  for (ImpulseResponse* response : {&plain.light.impulse_response, &plain.sensor.impulse_response})
+    if (!response->samples.empty()) response->file.clear();  // then its samples are written
+  return camera_to_json(plain);
+}
+
+}  // namespace
+
+std::string item_key(const Camera& camera, const CodeSet& code, const EvaluateOptions& options) {
+  const bool unwraps = options.method == DecodeMethod::unwrap;
+  std::string text = fmt::format("results {}\nmethod {} {}\ntrials {}\nseed {}\n",
+                                 sweep_result_version, name_of(options.method),
+                                 unwraps ? name_of(options.unwrap_weights) : std::string_view(),
+                                 options.trials, options.seed);
+  append(text, options.outlier_threshold_m);
+  text += camera_text(camera);
+  fmt::format_to(std::back_inserter(text), "code {} {} {}\n", code.samples(), code.exposures(),
+                 code.taps());
+  for (int e = 0; e < code.exposures(); ++e) append(text, code.modulation(e));
+  for (int i = 0; i < code.measurements(); ++i) append(text, code.demodulation(i));
+  return fnv1a_128_hex(text);
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "sweep/store_state.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// A status that nobody works on any more.
+std::string_view settled(ItemStatus status) {
+  if (status == ItemStatus::finished) return "finished";
+  return status == ItemStatus::failed ? "failed" : "pending";
+}
+
+/// Takes over the items of one part.
+class Merger {
+ public:
+  explicit Merger(SqliteDatabase& into)
+      : find_(into.prepare("SELECT status, result, seconds FROM items WHERE key = ?")),
+        replace_(into.prepare("INSERT OR REPLACE INTO items (key, settings, status, result, "
+                              "checksum, message, host, started, finished, seconds) "
+                              "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")) {}
+
+  void take_all(SqliteDatabase& part, const std::filesystem::path& path) {
+    SqliteStatement rows = part.prepare(
+        "SELECT key, settings, status, result, checksum, message, seconds, host, started, finished "
+        "FROM items ORDER BY key");
+    while (rows.step()) take(rows, stored_item(rows, path), path);
+  }
+
+ private:
+  void take(const SqliteStatement& row, const StoredItem& item, const std::filesystem::path& path) {
+    const std::string key = row.text(0);
+    bool is_better = true;
+    if (find_.bind(1, key).step()) {
+      const bool was_finished = find_.text(0) == "finished",
+                 is = item.status == ItemStatus::finished;
+      if (was_finished && is && find_.text(1) != item.result)
+        throw IoError(path.string(),
+                      fmt::format("item {} ({}) has another result than in the stores before it",
+                                  key, item.settings));
+      // Of two that are finished, the one that took less time: whatever the order of the parts.
+      is_better = is && (!was_finished || item.seconds < find_.number(2));
+      find_.reset();
+    }
+    if (!is_better) return;
+    replace_.bind(1, key)
+        .bind(2, item.settings)
+        .bind(3, settled(item.status))
+        .bind(4, item.result)
+        .bind(5, row.text(4))
+        .bind(6, item.message)
+        .bind(7, row.text(7))
+        .bind(8, row.text(8))
+        .bind(9, row.text(9))
+        .bind(10, item.seconds)
+        .run();
+  }
+
+  SqliteStatement find_, replace_;
+};
+
+}  // namespace
+
+void SweepStore::merge(const std::filesystem::path& path,
+                       std::span<const std::filesystem::path> parts) {
+  require(!parts.empty(), "parts", parts.size(), "must be at least one");
+  std::string target;
+  for (const std::filesystem::path& part : parts) {
+    const SweepStore store = read(part);
+    if (target.empty()) target = store.target();
+    if (store.target() != target)
+      throw IoError(part.string(), fmt::format("was computed on {}; the stores before it on {}",
+                                               store.target(), target));
+  }
+  // A rollback journal leaves one file, which may lie on a network file system.
+  SqliteDatabase into = open_store_file(path, target, "any");
+  SqliteTransaction transaction(into);
+  Merger merger(into);
+  for (const std::filesystem::path& part : parts) {
+    ReadableStore store = read_store_file(part);
+    merger.take_all(store.database, part);
+  }
+  transaction.commit();
+}
+
+}  // namespace tofsmith

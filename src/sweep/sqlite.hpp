@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sqlite3.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace tofsmith {
+
+class SqliteStatement;
+
+/// A connection to an SQLite database; use it from one thread at a time. Every member throws
+/// IoError that names the file and what SQLite and the system say.
+class SqliteDatabase {
+ public:
+  enum class Access { read, write };
+
+  /// Opens a file, which Access::write creates if it is missing. Waits for other processes.
+  SqliteDatabase(const std::filesystem::path& path, Access access);
+
+  /// Runs statements that give no rows, or whose rows do not matter.
+  void execute(const std::string& statements);
+  /// Runs it and returns SQLite's code instead of throwing.
+  int try_execute(const std::string& statements);
+  SqliteStatement prepare(std::string_view statement);
+  /// The first column of the first row as text; "" when there is none.
+  std::string text_of(std::string_view query);
+
+  /// @throws IoError about SQLite's last error
+  [[noreturn]] void fail(std::string_view what) const;
+
+ private:
+  struct Close {
+    void operator()(sqlite3* connection) const { sqlite3_close_v2(connection); }
+  };
+  std::filesystem::path path_;
+  std::unique_ptr<sqlite3, Close> connection_;
+};
+
+/// A statement to be run many times. Parameters and columns count from 1 and from 0, as SQLite
+/// does.
+class SqliteStatement {
+ public:
+  SqliteStatement& bind(int parameter, std::string_view text);
+  SqliteStatement& bind(int parameter, std::int64_t number);
+  SqliteStatement& bind(int parameter, double number);
+  /// Goes to the next row. @return false at the end, after which parameters can be bound again
+  bool step();
+  /// Runs it to its end.
+  void run();
+  /// Ends it before its end.
+  void reset() { sqlite3_reset(statement_.get()); }
+
+  std::string text(int column) const;
+  std::int64_t integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
+  double number(int column) const { return sqlite3_column_double(statement_.get(), column); }
+
+ private:
+  friend class SqliteDatabase;
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+  };
+  SqliteStatement(SqliteDatabase& database, sqlite3_stmt* statement)
+      : database_(&database), statement_(statement) {}
+
+  SqliteDatabase* database_;
+  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+};
+
+/// Changes that are made together or not at all; they are undone unless commit() is called.
+class SqliteTransaction {
+ public:
+  explicit SqliteTransaction(SqliteDatabase& database) : database_(&database) {
+    database.execute("BEGIN IMMEDIATE");
+  }
+  ~SqliteTransaction() {
+    if (database_ != nullptr) database_->try_execute("ROLLBACK");
+  }
+  SqliteTransaction(const SqliteTransaction&) = delete;
+  SqliteTransaction& operator=(const SqliteTransaction&) = delete;
+  void commit() {
+    database_->execute("COMMIT");
+    database_ = nullptr;
+  }
+
+ private:
+  SqliteDatabase* database_;
+};
+
+}  // namespace tofsmith

@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "sweep/store_file.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/sweep/work_list.hpp"
+#include "tofsmith/version.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr int application_id = 0x746f6673;  // "tofs"
+constexpr int schema_version = 1;
+constexpr std::size_t header_bytes = 100;
+constexpr std::string_view sqlite_magic("SQLite format 3\0", 16);
+
+/// The first bytes of a database; fewer, if the file is shorter.
+std::string header_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string header(header_bytes, '\0');
+  file.read(header.data(), static_cast<std::streamsize>(header.size()));
+  header.resize(static_cast<std::size_t>(file.gcount()));
+  return header;
+}
+
+/// Refuses what is there and no database, before SQLite touches it.
+void require_database(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) return;
+  if (!std::filesystem::is_regular_file(status))
+    throw IoError(path.string(), "is no regular file; expected a store of tofsmith sweep");
+  const std::string header = header_of(path);
+  if (!header.empty() && !header.starts_with(sqlite_magic))
+    throw IoError(path.string(), "is no SQLite file; expected a store of tofsmith sweep");
+}
+
+void require_ours(SqliteDatabase& database, const std::filesystem::path& path) {
+  if (database.text_of("PRAGMA application_id") != fmt::format("{}", application_id))
+    throw IoError(path.string(),
+                  "is an SQLite file of something else; expected a store of tofsmith sweep");
+}
+
+std::string schema(const std::string& target) {
+  return fmt::format(
+      "PRAGMA application_id = {};"
+      "PRAGMA user_version = {};"
+      "CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;"
+      "INSERT INTO meta VALUES ('tofsmith', '{}'), ('results', '{}'), ('target', '{}');"
+      "CREATE TABLE items (key TEXT PRIMARY KEY, settings TEXT NOT NULL, status TEXT NOT NULL,"
+      " result TEXT, checksum TEXT, message TEXT, worker TEXT, host TEXT, started TEXT,"
+      " finished TEXT, seconds REAL);"
+      // A worker lives as long as its beat goes on counting.
+      "CREATE TABLE workers (id TEXT PRIMARY KEY, host TEXT, machine TEXT, process INTEGER,"
+      " process_start TEXT, beat INTEGER NOT NULL) WITHOUT ROWID;",
+      application_id, schema_version, TOFSMITH_VERSION, sweep_result_version, target);
+}
+
+void create_if_empty(SqliteDatabase& database, const std::string& target) {
+  const auto is_empty = [&] {
+    return database.text_of("SELECT count(*) FROM sqlite_master") == "0" &&
+           database.text_of("PRAGMA application_id") == "0";
+  };
+  if (!is_empty()) return;
+  SqliteTransaction transaction(database);
+  if (is_empty()) database.execute(schema(target));
+  transaction.commit();
+}
+
+/// Whoever reads at this moment keeps SQLite from changing the mode, without waiting.
+void set_journal(SqliteDatabase& database, const std::string& mode) {
+  for (int attempt = 0; database.try_execute("PRAGMA journal_mode = " + mode) == SQLITE_BUSY;
+       ++attempt) {
+    if (attempt >= 1000) database.fail("cannot set the journal mode");
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+using FileTime = std::filesystem::file_time_type;
+
+/// When a file was last written; any fixed time if it is not there.
+FileTime time_of(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::last_write_time(path, ignored);
+}
+
+std::filesystem::path log_of(const std::filesystem::path& path) { return path.string() + "-wal"; }
+
+/// Copies database and log as they are at one moment.
+void copy_store(const std::filesystem::path& from, const std::filesystem::path& to) {
+  const auto replace = std::filesystem::copy_options::overwrite_existing;
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    const FileTime before = time_of(from), log_before = time_of(log_of(from));
+    std::error_code no_log;
+    std::filesystem::copy_file(log_of(from), log_of(to), replace, no_log);
+    std::filesystem::copy_file(from, to, replace);
+    if (time_of(from) == before && time_of(log_of(from)) == log_before) return;
+  }
+  throw IoError(from.string(), "is being written to and cannot be copied; try again");
+}
+
+std::filesystem::path make_directory() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "tofsmith-sweep-XXXXXX").string();
+  if (::mkdtemp(pattern.data()) == nullptr)
+    throw IoError(pattern, "cannot make a directory to read the store from");
+  return pattern;
+}
+
+/// In WAL mode even readers want to write a file beside it.
+bool asks_for_a_writable_place(SqliteDatabase& database) {
+  const int code = database.try_execute("SELECT count(*) FROM sqlite_master");
+  return code == SQLITE_CANTOPEN || code == SQLITE_READONLY;
+}
+
+}  // namespace
+
+ReadableStore::Directory::~Directory() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path, ignored);
+}
+
+bool is_in_wal_mode(const std::filesystem::path& path) {
+  const std::string header = header_of(path);
+  return header.size() == header_bytes && header[18] == 2;
+}
+
+SqliteDatabase open_store_file(const std::filesystem::path& path, const std::string& target,
+                               const std::string& network) {
+  require_database(path);
+  if (!network.empty() && is_in_wal_mode(path))
+    throw IoError(path.string(),
+                  fmt::format("is in WAL mode, which breaks on a network file system ({}); copy it "
+                              "to a disk of this machine, or merge it there into a store that can "
+                              "be used here: tofsmith sweep merge NEW.sqlite {}",
+                              network, path.filename().string()));
+  SqliteDatabase database(path, SqliteDatabase::Access::write);
+  create_if_empty(database, target);
+  require_ours(database, path);
+  set_journal(database, network.empty() ? "WAL" : "DELETE");
+  // In WAL mode a commit need not reach the disk for the file to stay whole.
+  database.execute(network.empty() ? "PRAGMA synchronous = NORMAL" : "PRAGMA synchronous = FULL");
+  return database;
+}
+
+ReadableStore read_store_file(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) throw IoError(path.string(), "there is no such store");
+  require_database(path);
+  ReadableStore store{nullptr, SqliteDatabase(path, SqliteDatabase::Access::read)};
+  if (asks_for_a_writable_place(store.database)) {
+    auto copy = std::make_unique<ReadableStore::Directory>();
+    copy->path = make_directory();
+    const std::filesystem::path copied = copy->path / "store.sqlite";
+    try {
+      copy_store(path, copied);
+    } catch (const std::filesystem::filesystem_error& error) {
+      throw IoError(path.string(), fmt::format("cannot be read: {}", error.code().message()));
+    }
+    store = {std::move(copy), SqliteDatabase(copied, SqliteDatabase::Access::write)};
+  }
+  require_ours(store.database, path);
+  return store;
+}
+
+StoreHead read_store_head(SqliteDatabase& database, const std::filesystem::path& path) {
+  const std::string schema = database.text_of("PRAGMA user_version");
+  const std::string version = database.text_of("SELECT value FROM meta WHERE name = 'tofsmith'");
+  const std::string results = database.text_of("SELECT value FROM meta WHERE name = 'results'");
+  if (schema != fmt::format("{}", schema_version) ||
+      results != fmt::format("{}", sweep_result_version))
+    throw IoError(path.string(),
+                  fmt::format("is of tofsmith {} (store version {}, results {}); this is tofsmith "
+                              "{} (store version {}, results {}); use another store",
+                              version, schema, results, TOFSMITH_VERSION, schema_version,
+                              sweep_result_version));
+  if (const std::string damage = database.text_of("PRAGMA quick_check(1)"); damage != "ok")
+    throw IoError(path.string(),
+                  fmt::format("is damaged ({}); restore a copy, or use another store", damage));
+  return {database.text_of("SELECT value FROM meta WHERE name = 'target'")};
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/sweep/sweep_results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "io/document_text.hpp"
+#include "io/result_json.hpp"
+#include "sweep/item_result.hpp"
+#include "tofsmith/io/csv.hpp"
+#include "tofsmith/version.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What is told of every point.
+struct PointColumn {
+  const char* name;
+  double (*of)(const PointDepthError&);
+};
+
+constexpr std::array<PointColumn, 10> point_columns = {{
+    {"signal_e_per_s", [](const PointDepthError& p) { return p.point.signal_e_per_s; }},
+    {"ambient_e_per_s", [](const PointDepthError& p) { return p.point.ambient_e_per_s; }},
+    {"linear_mde_m", [](const PointDepthError& p) { return p.linear_mde_m.value; }},
+    {"linear_se_m", [](const PointDepthError& p) { return p.linear_mde_m.standard_error; }},
+    {"circular_mde_m", [](const PointDepthError& p) { return p.circular_mde_m.value; }},
+    {"circular_se_m", [](const PointDepthError& p) { return p.circular_mde_m.standard_error; }},
+    {"outlier_rate", [](const PointDepthError& p) { return p.outlier_rate.value; }},
+    {"cramer_rao_mae_m", [](const PointDepthError& p) { return p.cramer_rao_mae_m; }},
+    {"receiver_bound_mae_m", [](const PointDepthError& p) { return p.receiver_bound_mae_m; }},
+    {"direct_tof_bound_mae_m", [](const PointDepthError& p) { return p.direct_tof_bound_mae_m; }},
+}};
+
+/// Axes with a column of their own: not those that every point tells, nor the code, which is named
+/// in full.
+std::vector<std::size_t> told_axes(const SweepSpec& spec) {
+  std::vector<std::size_t> axes;
+  for (std::size_t a = 0; a < spec.axes.size(); ++a) {
+    const std::string& key = spec.axes[a].key;
+    if (key != "code" && key != "signal_e_per_s" && key != "ambient_e_per_s") axes.push_back(a);
+  }
+  return axes;
+}
+
+/// Calls `row(result, point)` for all points of all items.
+void for_each_row(std::span<const SweepResult> results,
+                  const std::function<void(const SweepResult&, const PointDepthError&)>& row) {
+  for (const SweepResult& result : results)
+    for (const PointDepthError& point : result.error.points) row(result, point);
+}
+
+bool is_numeric(const SweepAxis& axis) {
+  return std::ranges::all_of(axis.values,
+                             [](const SettingValue& value) { return value.number.has_value(); });
+}
+
+NpyArray doubles(const std::vector<double>& values) {
+  return NpyArray::of<double>({values.size()}, values);
+}
+
+NpyArray integers(const std::vector<std::int64_t>& values) {
+  return NpyArray::of<std::int64_t>({values.size()}, values);
+}
+
+/// Texts as rows of bytes.
+NpyArray names(const std::vector<std::string>& texts) {
+  std::size_t width = 1;
+  for (const std::string& text : texts) width = std::max(width, text.size());
+  std::vector<std::uint8_t> bytes(texts.size() * width, 0);
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    std::ranges::copy(texts[i], bytes.begin() + static_cast<std::ptrdiff_t>(i * width));
+  return NpyArray::of<std::uint8_t>({texts.size(), width}, bytes);
+}
+
+/// A column of texts as indices into those that differ, in order of appearance.
+void add_texts(NpzArrays& arrays, const std::string& name, const std::vector<std::string>& texts) {
+  std::vector<std::string> distinct;
+  std::map<std::string, std::int64_t> index_of;
+  std::vector<std::int64_t> indices;
+  for (const std::string& text : texts) {
+    const auto [found, is_new] =
+        index_of.try_emplace(text, static_cast<std::int64_t>(distinct.size()));
+    if (is_new) distinct.push_back(text);
+    indices.push_back(found->second);
+  }
+  arrays[fmt::format("{}_index", name)] = integers(indices);
+  arrays[fmt::format("{}_names", name)] = names(distinct);
+}
+
+}  // namespace
+
+std::vector<SweepResult> sweep_results(const WorkList& list, std::span<const std::string> keys,
+                                       SweepStore& store) {
+  std::vector<SweepResult> results;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const auto item = static_cast<std::int64_t>(i);
+    const auto stored = store.find(keys[i]);
+    if (!stored || stored->status != ItemStatus::finished) continue;
+    results.push_back(
+        {item, keys[i],
+         parse_item_result(stored->result, list.code_name(item), fmt::format("item {}", keys[i]))});
+  }
+  return results;
+}
+
+std::string sweep_csv(const WorkList& list, std::span<const SweepResult> results) {
+  const SweepSpec& spec = list.spec();
+  const std::vector<std::size_t> axes = told_axes(spec);
+  std::string text = "item,code";
+  for (const std::size_t a : axes) text += fmt::format(",{}", csv_field(spec.axes[a].key));
+  for (const PointColumn& column : point_columns) text += fmt::format(",{}", column.name);
+  text += "\n";
+  for_each_row(results, [&](const SweepResult& result, const PointDepthError& point) {
+    text += fmt::format("{},{}", result.item + 1, csv_field(result.error.code));
+    const std::vector<std::size_t> indices = spec.value_indices(result.item);
+    for (const std::size_t a : axes)
+      text += fmt::format(",{}", csv_field(spec.axes[a].values[indices[a]].text));
+    for (const PointColumn& column : point_columns) text += fmt::format(",{}", column.of(point));
+    text += "\n";
+  });
+  return text;
+}
+
+std::string sweep_json(const WorkList& list, std::span<const SweepResult> results,
+                       std::string_view target) {
+  Json document = {
+      {"tofsmith", TOFSMITH_VERSION}, {"results", sweep_result_version}, {"target", target},
+      {"items", list.size()},         {"finished", results.size()},      {"axes", Json::array()},
+      {"codes", Json::array()}};
+  for (const SweepAxis& axis : list.spec().axes) {
+    Json values = Json::array();
+    for (const SettingValue& value : axis.values)
+      values.push_back(value.number ? Json(*value.number) : Json(value.text));
+    document["axes"].push_back({{"key", axis.key}, {"values", std::move(values)}});
+  }
+  for (const SweepResult& result : results) {
+    Json entry = {{"item", result.item + 1},
+                  {"key", result.key},
+                  {"settings", Json::parse(list.settings_json(result.item))},
+                  {"trials", result.error.trials},
+                  {"seed", result.error.seed}};
+    entry.update(depth_error_json(result.error, 0));
+    document["codes"].push_back(std::move(entry));
+  }
+  return document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+NpzArrays sweep_arrays(const WorkList& list, std::span<const SweepResult> results) {
+  const SweepSpec& spec = list.spec();
+  NpzArrays arrays;
+  std::vector<std::int64_t> items;
+  std::vector<std::string> codes;
+  for_each_row(results, [&](const SweepResult& result, const PointDepthError&) {
+    items.push_back(result.item + 1);
+    codes.push_back(result.error.code);
+  });
+  arrays["item"] = integers(items);
+  add_texts(arrays, "code", codes);
+  for (const std::size_t a : told_axes(spec)) {
+    const SweepAxis& axis = spec.axes[a];
+    std::vector<double> numbers;
+    std::vector<std::string> texts;
+    for_each_row(results, [&](const SweepResult& result, const PointDepthError&) {
+      const SettingValue& value = axis.values[spec.value_indices(result.item)[a]];
+      numbers.push_back(value.number.value_or(0.0));
+      texts.push_back(value.text);
+    });
+    if (is_numeric(axis))
+      arrays[axis.key] = doubles(numbers);
+    else
+      add_texts(arrays, axis.key, texts);
+  }
+  for (const PointColumn& column : point_columns) {
+    std::vector<double> values;
+    for_each_row(results, [&](const SweepResult&, const PointDepthError& point) {
+      values.push_back(column.of(point));
+    });
+    arrays[column.name] = doubles(values);
+  }
+  return arrays;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,212 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/sweep/sweep_store.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "sweep/file_system.hpp"
+#include "sweep/store_state.hpp"
+#include "tofsmith/core/dispatch_target.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/hash.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Most items that one transaction looks at or adds: others wait for its end.
+constexpr std::size_t most_at_once = 4096;
+
+constexpr std::array<std::string_view, 4> status_words = {"pending", "running", "finished",
+                                                          "failed"};
+constexpr std::string_view utc_now = "strftime('%Y-%m-%dT%H:%M:%SZ', 'now')";
+
+}  // namespace
+
+void SweepStoreOptions::validate() const {
+  require(lease_s > 0.0, "lease_s", lease_s, "must be > 0");
+}
+
+std::string checksum_of(std::string_view key, std::string_view result) {
+  return fmt::format("{:016x}", fnv1a_64(fmt::format("{}\n{}", key, result)));
+}
+
+StoredItem stored_item(const SqliteStatement& row, const std::filesystem::path& path) {
+  const std::string key = row.text(0);
+  const auto damaged = [&](std::string_view how) {
+    throw IoError(path.string(), fmt::format("is damaged (item {}: {}); restore a copy, or use "
+                                             "another store",
+                                             key, how));
+  };
+  StoredItem item{ItemStatus::pending, row.text(1), row.text(3), row.text(5), row.number(6)};
+  const auto word = std::ranges::find(status_words, row.text(2));
+  if (word == status_words.end()) damaged(fmt::format("status {}", row.text(2)));
+  item.status = static_cast<ItemStatus>(word - status_words.begin());
+  if (item.status == ItemStatus::finished && row.text(4) != checksum_of(key, item.result))
+    damaged("its checksum does not hold");
+  return item;
+}
+
+SweepStore::SweepStore(std::unique_ptr<State> state) : state_(std::move(state)) {}
+SweepStore::SweepStore(SweepStore&&) noexcept = default;
+SweepStore::~SweepStore() {
+  if (!state_ || !state_->is_registered) return;
+  try {
+    release();
+  } catch (const std::exception&) {  // then others see that this process is gone
+  }
+}
+
+SweepStore SweepStore::open(const std::filesystem::path& path, const SweepStoreOptions& options) {
+  options.validate();
+  const std::string here = dispatch_target();
+  const std::string network = options.network_file_system.value_or(network_file_system_at(path));
+  auto state = std::make_unique<State>(State{path,
+                                             {nullptr, open_store_file(path, here, network)},
+                                             {},
+                                             WorkerWatch(WorkerIdentity::own(), options.lease_s)});
+  state->head = read_store_head(state->database(), path);
+  if (state->head.target != here)
+    throw IoError(path.string(),
+                  fmt::format("was computed on {}, and this process uses {}: results would differ "
+                              "in their last digits; set TOFSMITH_TARGET={} if this machine has "
+                              "it, or use another store",
+                              state->head.target, here, state->head.target));
+  state->register_worker();
+  return SweepStore(std::move(state));
+}
+
+SweepStore SweepStore::read(const std::filesystem::path& path) {
+  auto state = std::make_unique<State>(
+      State{path, read_store_file(path), {}, WorkerWatch(WorkerIdentity::own(), 1.0)});
+  state->head = read_store_head(state->database(), path);
+  return SweepStore(std::move(state));
+}
+
+const std::string& SweepStore::target() const { return state_->head.target; }
+
+void SweepStore::add(std::span<const std::string> keys,
+                     const std::function<std::string(std::size_t)>& settings) {
+  SqliteDatabase& database = state_->database();
+  SqliteStatement find = database.prepare("SELECT 1 FROM items WHERE key = ?");
+  SqliteStatement insert = database.prepare(
+      "INSERT OR IGNORE INTO items (key, settings, status) VALUES (?, ?, 'pending')");
+  for (std::size_t begin = 0; begin < keys.size(); begin += most_at_once) {
+    const std::size_t end = std::min(begin + most_at_once, keys.size());
+    SqliteTransaction transaction(database);
+    for (std::size_t i = begin; i < end; ++i) {
+      const bool is_there = find.bind(1, keys[i]).step();
+      find.reset();
+      if (!is_there) insert.bind(1, keys[i]).bind(2, settings(i)).run();
+    }
+    transaction.commit();
+  }
+}
+
+std::vector<ClaimAnswer> SweepStore::claim(std::span<const std::string> keys, std::size_t most) {
+  SqliteDatabase& database = state_->database();
+  SqliteTransaction transaction(database);
+  SqliteStatement find = database.prepare("SELECT status, worker FROM items WHERE key = ?");
+  SqliteStatement take = database.prepare(fmt::format(
+      "UPDATE items SET status = 'running', worker = ?, host = ?, started = {} WHERE key = ?",
+      utc_now));
+  const WorkerIdentity& own = state_->watch.own();
+  std::vector<ClaimAnswer> answers;
+  std::set<std::string> living, gone;  // asked once per transaction
+  std::size_t ours = 0;
+  for (const std::string& key : keys.first(std::min(keys.size(), most_at_once))) {
+    if (ours == most) break;
+    if (!find.bind(1, key).step())
+      throw IoError(state_->path.string(), fmt::format("holds no item {} any more", key));
+    const std::string status = find.text(0), worker = find.text(1);
+    find.reset();
+    if (status == "finished") {
+      answers.push_back(ClaimAnswer::finished);
+      continue;
+    }
+    if (status == "running" && worker != own.id && !living.contains(worker) &&
+        !gone.contains(worker))
+      (state_->watch.may_live(database, worker) ? living : gone).insert(worker);
+    if (status == "running" && (worker == own.id || living.contains(worker))) {
+      answers.push_back(ClaimAnswer::taken);
+      continue;
+    }
+    take.bind(1, own.id).bind(2, own.host).bind(3, key).run();
+    answers.push_back(ClaimAnswer::ours);
+    ++ours;
+  }
+  transaction.commit();
+  return answers;
+}
+
+void SweepStore::finish(std::span<const ItemOutcome> outcomes) {
+  if (outcomes.empty()) return;
+  SqliteDatabase& database = state_->database();
+  SqliteTransaction transaction(database);
+  SqliteStatement store = database.prepare(fmt::format(
+      "UPDATE items SET status = ?, result = ?, checksum = ?, message = ?, seconds = ?, worker = "
+      "NULL, host = ?, finished = {} WHERE key = ? AND status <> 'finished'",
+      utc_now));
+  for (const ItemOutcome& outcome : outcomes)
+    store.bind(1, outcome.result.empty() ? "failed" : "finished")
+        .bind(2, outcome.result)
+        .bind(3, checksum_of(outcome.key, outcome.result))
+        .bind(4, outcome.message)
+        .bind(5, outcome.seconds)
+        .bind(6, state_->watch.own().host)
+        .bind(7, outcome.key)
+        .run();
+  transaction.commit();
+}
+
+void SweepStore::beat() {
+  state_->database()
+      .prepare("UPDATE workers SET beat = beat + 1 WHERE id = ?")
+      .bind(1, state_->watch.own().id)
+      .run();
+}
+
+void SweepStore::release() {
+  SqliteDatabase& database = state_->database();
+  SqliteTransaction transaction(database);
+  database
+      .prepare(
+          "UPDATE items SET status = 'pending', worker = NULL WHERE status = 'running' AND "
+          "worker = ?")
+      .bind(1, state_->watch.own().id)
+      .run();
+  database.prepare("DELETE FROM workers WHERE id = ?").bind(1, state_->watch.own().id).run();
+  transaction.commit();
+  state_->is_registered = false;
+}
+
+std::optional<StoredItem> SweepStore::find(std::string_view key) {
+  SqliteStatement query = state_->database().prepare(
+      "SELECT key, settings, status, result, checksum, message, seconds FROM items WHERE key = ?");
+  if (!query.bind(1, key).step()) return std::nullopt;
+  return stored_item(query, state_->path);
+}
+
+SweepCounts SweepStore::count(std::span<const std::string> keys) {
+  SqliteStatement query =
+      state_->database().prepare("SELECT status, seconds FROM items WHERE key = ?");
+  SweepCounts counts;
+  const std::set<std::string_view> distinct(keys.begin(), keys.end());
+  for (const std::string_view key : distinct) {
+    const std::string status = query.bind(1, key).step() ? query.text(0) : "pending";
+    const bool finished = status == "finished";
+    if (finished) counts.seconds += query.number(1);
+    query.reset();
+    ++(finished              ? counts.finished
+       : status == "running" ? counts.running
+       : status == "failed"  ? counts.failed
+                             : counts.pending);
+  }
+  return counts;
+}
+
+}  // namespace tofsmith

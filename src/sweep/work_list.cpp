@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/sweep/work_list.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "sweep/item_key.hpp"
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/io/camera_toml.hpp"
+#include "tofsmith/io/code_file.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What the axes make of the settings that stay.
+struct Choice {
+  std::string camera;
+  std::vector<std::string> settings;
+  std::string code;
+  EvaluateOptions options;
+};
+
+std::string replaced(std::string text, std::string_view what, const std::string& by) {
+  for (std::size_t at; (at = text.find(what)) != std::string::npos;)
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+Choice choose(const SweepSpec& spec, std::int64_t item) {
+  Choice choice{spec.camera, spec.settings, spec.code, spec.options};
+  const std::vector<std::size_t> indices = spec.value_indices(item);
+  std::string exposures;
+  for (std::size_t a = 0; a < spec.axes.size(); ++a) {
+    const std::string& key = spec.axes[a].key;
+    const SettingValue& value = spec.axes[a].values[indices[a]];
+    if (key == "camera")
+      choice.camera = value.text;
+    else if (key == "code")
+      choice.code = value.text;
+    else if (key == "exposures")
+      exposures = value.text;
+    else if (key == "method")
+      choice.options.method = parse_decode_method(value.text);
+    else if (key == "unwrap_weights")
+      choice.options.unwrap_weights = parse_unwrap_weights(value.text);
+    else if (key == "seed")
+      choice.options.seed = static_cast<std::uint64_t>(*value.number);
+    else if (key == "trials")
+      choice.options.trials = static_cast<std::int64_t>(*value.number);
+    else if (key == "signal_e_per_s" || key == "ambient_e_per_s")
+      choice.settings.push_back(fmt::format("operating.{}=[{}]", key, value.toml));
+    else
+      choice.settings.push_back(fmt::format("{}={}", key, value.toml));
+  }
+  choice.code = replaced(std::move(choice.code), "{exposures}", exposures);
+  return choice;
+}
+
+/// A name of ours, or a file beside the sweep's.
+std::string resolved(const SweepSpec& spec, const std::string& name, bool is_ours) {
+  return is_ours || name.empty() ? name : (spec.directory / name).string();
+}
+
+Camera load_chosen_camera(const SweepSpec& spec, const Choice& choice) {
+  const auto names = built_in_camera_names();
+  const bool built_in = std::ranges::find(names, choice.camera) != names.end();
+  return load_camera(resolved(spec, choice.camera, built_in), choice.settings);
+}
+
+CodeSet load_chosen_code(const SweepSpec& spec, const Choice& choice, const Camera& camera) {
+  // What is no file is perhaps a family's name with a slip: load_code() says so.
+  const std::string file = resolved(spec, choice.code, is_family(choice.code));
+  const bool is_file = std::filesystem::exists(file);
+  CodeSet code = load_code(is_file ? file : choice.code, camera);
+  if (code.samples() != camera.samples)
+    throw IoError(choice.code, fmt::format("found {} samples per period; expected {} as of the "
+                                           "camera",
+                                           code.samples(), camera.samples));
+  require_fits(code, camera);
+  return code;
+}
+
+/// The place of the axis value that a message about a setting speaks of; "" if it speaks of none.
+std::string place_of_setting(const SweepSpec& spec, std::int64_t item, std::string_view message) {
+  const std::vector<std::size_t> indices = spec.value_indices(item);
+  for (std::size_t a = 0; a < spec.axes.size(); ++a) {
+    const SettingValue& value = spec.axes[a].values[indices[a]];
+    for (const std::string& setting :
+         {fmt::format("'{}={}'", spec.axes[a].key, value.toml),
+          fmt::format("'operating.{}=[{}]'", spec.axes[a].key, value.toml)})
+      if (message.find("setting " + setting) != std::string_view::npos) return value.place;
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string WorkList::code_name(std::int64_t item) const { return choose(spec_, item).code; }
+
+std::string WorkList::settings_json(std::int64_t item) const {
+  const std::vector<std::size_t> indices = spec_.value_indices(item);
+  Json settings = {{"code", code_name(item)}};
+  for (std::size_t a = 0; a < spec_.axes.size(); ++a) {
+    const SettingValue& value = spec_.axes[a].values[indices[a]];
+    if (spec_.axes[a].key == "code") continue;
+    if (value.number)
+      settings[spec_.axes[a].key] = Json::parse(fmt::format("{}", *value.number));
+    else
+      settings[spec_.axes[a].key] = value.text;
+  }
+  return settings.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+WorkItem WorkList::item(std::int64_t item) const {
+  const Choice choice = choose(spec_, item);
+  try {
+    const Camera camera = load_chosen_camera(spec_, choice);
+    CodeSet code = load_chosen_code(spec_, choice, camera);
+    std::string key = item_key(camera, code, choice.options);
+    return {std::move(key), camera, std::move(code), choice.options};
+  } catch (const std::exception& error) {
+    if (dynamic_cast<const IoError*>(&error) == nullptr &&
+        dynamic_cast<const std::invalid_argument*>(&error) == nullptr)
+      throw;
+    const std::string place = place_of_setting(spec_, item, error.what());
+    throw IoError(place.empty() ? spec_.source_name : place,
+                  fmt::format("{} (in item {} of {}: {})", error.what(), item + 1, size_,
+                              settings_json(item)));
+  }
+}
+
+std::vector<std::string> WorkList::keys(const Progress& progress) const {
+  constexpr std::int64_t block = 256;
+  std::vector<std::string> keys(static_cast<std::size_t>(size_));
+  for (std::int64_t begin = 0; begin < size_; begin += block) {
+    report(progress, static_cast<double>(begin) / static_cast<double>(size_), "reading items");
+    parallel_for(std::min(block, size_ - begin), [&](std::int64_t i) {
+      keys[static_cast<std::size_t>(begin + i)] = item(begin + i).key;
+    });
+  }
+  return keys;
+}
+
+}  // namespace tofsmith

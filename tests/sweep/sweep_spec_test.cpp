@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/sweep/sweep_spec.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "temporary_directory.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/camera_toml.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Property;
+using testing::StartsWith;
+using testing::ThrowsMessage;
+
+const std::string head = "code = \"square-k4\"\n";
+
+SweepSpec with_axis(const std::string& axis) {
+  return parse_sweep_toml(head + "[[axis]]\n" + axis, "s.toml");
+}
+
+std::vector<std::string> texts(const SweepAxis& axis) {
+  std::vector<std::string> list;
+  for (const SettingValue& value : axis.values) list.push_back(value.text);
+  return list;
+}
+
+TEST(SweepSpec, ReadsValuesAsTheyAreWritten) {
+  const SweepSpec spec = with_axis("key = \"samples\"\nvalues = [120, 24, 60]\n");
+  EXPECT_THAT(texts(spec.axes.at(0)), ElementsAre("120", "24", "60"));
+  EXPECT_EQ(spec.axes[0].values[1].number, 24.0);
+  EXPECT_EQ(spec.axes[0].values[1].place, "s.toml:4:16");
+  EXPECT_THAT(texts(with_axis("key = \"exposure_s\"\nvalues = [[0.1, 0.2], 0.3]\n").axes[0]),
+              ElementsAre("[0.1, 0.2]", "0.3"));
+  EXPECT_EQ(with_axis("key = \"sensor.readout\"\nvalues = [\"separate\"]\n").axes[0].values[0].toml,
+            "\"separate\"");
+  EXPECT_EQ(with_axis("key = \"light.impulse_response\"\nvalues = [{kind = \"none\"}]\n")
+                .axes[0]
+                .values[0]
+                .toml,
+            "{ \"kind\" = \"none\" }");
+}
+
+TEST(SweepSpec, RangesGiveTheValuesThatAListWouldSay) {
+  EXPECT_THAT(texts(with_axis("key = \"exposure_s\"\nfrom = 0.1\nto = 0.5\nstep = 0.1\n").axes[0]),
+              ElementsAre("0.1", "0.2", "0.3", "0.4", "0.5"));
+  EXPECT_THAT(texts(with_axis("key = \"samples\"\nfrom = 60\nto = 30\nstep = -12\n").axes[0]),
+              ElementsAre("60", "48", "36"));
+  EXPECT_THAT(
+      texts(with_axis("key = \"signal_e_per_s\"\nfrom = 1e3\nto = 1e5\ncount = 3\n").axes[0]),
+      ElementsAre("1000", "10000", "100000"));
+}
+
+TEST(SweepSpec, AFileHoldsAValueALine) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "peaks.txt") << "# peaks\n 5\n\n7.5 \r\n";
+  std::ofstream(directory / "s.toml")
+      << head << "[[axis]]\nkey = \"light.peak_factor\"\nfile = \"peaks.txt\"\n";
+  const SweepSpec spec = read_sweep_toml(directory / "s.toml");
+  EXPECT_THAT(texts(spec.axes.at(0)), ElementsAre("5", "7.5"));
+  EXPECT_EQ(spec.axes[0].values[1].place, (directory / "peaks.txt").string() + ":4:1");
+}
+
+TEST(SweepSpec, AProductHasEveryPairAndItsLastAxisIsFastest) {
+  const std::string axes =
+      "[[axis]]\nkey = \"samples\"\nvalues = [24, 30]\n[[axis]]\nkey = \"seed\"\nvalues = [1, 2]\n";
+  const SweepSpec product = parse_sweep_toml("codes = [\"a\", \"b\", \"c\"]\n" + axes);
+  EXPECT_EQ(product.items(), 12);
+  EXPECT_THAT(product.value_indices(0), ElementsAre(0, 0, 0));
+  EXPECT_THAT(product.value_indices(1), ElementsAre(0, 0, 1));
+  EXPECT_THAT(product.value_indices(11), ElementsAre(2, 1, 1));
+  const SweepSpec zip =
+      parse_sweep_toml("combine = \"zip\"\ncodes = [\"a\", \"b\", \"c\"]\n" + axes);
+  EXPECT_EQ(zip.items(), 6);
+  EXPECT_THAT(zip.value_indices(1), ElementsAre(0, 1, 1));
+  EXPECT_THAT(zip.value_indices(4), ElementsAre(2, 0, 0));
+}
+
+TEST(SweepSpec, WithoutAxesThereIsOneItem) { EXPECT_EQ(parse_sweep_toml(head).items(), 1); }
+
+TEST(SweepSpec, CountsNoFurtherThanItCan) {
+  std::string text = head;
+  for (const char* key : {"seed", "samples", "light.peak_factor", "exposure_s", "trials",
+                          "signal_e_per_s", "ambient_e_per_s"})
+    text += std::string("[[axis]]\nkey = \"") + key + "\"\nfrom = 2\nto = 1001\nstep = 1\n";
+  EXPECT_EQ(parse_sweep_toml(text).items(), std::int64_t{1} << 62);
+}
+
+TEST(SweepSpec, EveryKeyOfACameraCanVary) {
+  const std::vector<std::string> keys = camera_keys();
+  EXPECT_THAT(keys, testing::IsSupersetOf(
+                        {"samples", "exposure_s", "light.peak_factor",
+                         "light.impulse_response.f_max_hz", "sensor.generator.sample_rate_hz",
+                         "lens.fx_px", "sensor.impulse_response.time_step_s", "operating.albedo"}));
+  for (const std::string& key : keys)
+    EXPECT_NO_THROW(with_axis("key = \"" + key + "\"\nvalues = [1]\n")) << key;
+}
+
+struct Refusal {
+  std::string text;
+  const char* message;
+};
+
+TEST(SweepSpec, RefusesWhatItDoesNotUnderstandAndSaysWhere) {
+  const auto axis = [](const std::string& lines) { return head + "[[axis]]\n" + lines; };
+  for (const Refusal& refusal : {
+           Refusal{"trials = 100\n", "s.toml: found no code; expected"},
+           {head + "trails = 5\n", "s.toml:2:1: unknown key trails; did you mean trials?"},
+           {head + "trials = 1\n", "s.toml:2:10: trials: trials = 1; must be in"},
+           {head + "method = \"zncc2\"\n", "s.toml:2:10: method: found \"zncc2\"; expected one of"},
+           {head + "codes = [\"a\"]\n", "s.toml:1:8: code: has a meaning only with no codes"},
+           {"codes = []\n", "s.toml:1:9: codes: found an empty list"},
+           {axis("key = \"peak_factor\"\nvalues = [1]\n"),
+            "s.toml:3:7: axis[0].key: found unknown axis \"peak_factor\"; did you mean "
+            "\"light.peak_factor\"?"},
+           {axis("key = \"sed\"\nvalues = [1]\n"), "did you mean \"seed\"?"},
+           {axis("key = \"seed\"\nvalues = []\n"), "s.toml:4:10: axis[0].values: found an empty"},
+           {axis("key = \"seed\"\n"), "s.toml:3:7: axis[0].key: found no values"},
+           {axis("key = \"seed\"\nvalues = [1, -1]\n"), "s.toml:4:14: seed: found -1; expected"},
+           {axis("key = \"seed\"\nvalues = [0.5]\n"), "s.toml:4:11: seed: found 0.5; expected"},
+           {axis("key = \"method\"\nvalues = [\"magic\"]\n"), "s.toml:4:11: "},
+           {axis("key = \"code\"\nvalues = [\"a\"]\n"), "s.toml:3:7: found both an axis of codes"},
+           {axis("key = \"seed\"\nfrom = 1\nto = 5\nstep = 0\n"), "s.toml:6:8: axis[0].step"},
+           {axis("key = \"seed\"\nfrom = 1\nto = 5\nstep = -1\n"), "s.toml:6:8: axis[0].step"},
+           {axis("key = \"seed\"\nfrom = 1\nto = 1e300\nstep = 1\n"), "makes 1e+300 values"},
+           {axis("key = \"seed\"\nfrom = 0\nto = 5\ncount = 3\n"), "s.toml:4:8: axis[0].from"},
+           {axis("key = \"seed\"\nfrom = 1\nto = 5\ncount = 1\n"), "s.toml:6:9: axis[0].count"},
+           {axis("key = \"seed\"\nfile = \"none.txt\"\n"), "s.toml:4:8: axis[0].file: none.txt"},
+           {axis("key = \"seed\"\nvalues = [1]\n[[axis]]\nkey = \"seed\"\nvalues = [2]\n"),
+            "s.toml:6:7: axis seed comes twice; the first is at s.toml:3:7"},
+           {"combine = \"zip\"\n" + axis("key = \"seed\"\nvalues = [1]\n[[axis]]\nkey = "
+                                         "\"samples\"\nvalues = [24, 30]\n"),
+            "s.toml:7:7: axis samples has 2 values and seed has 1"},
+           {axis("key = \"exposures\"\nvalues = [3]\n"), "need each other"},
+           {"code = \"hamiltonian-k{exposures}\"\n", "need each other"},
+       }) {
+    SCOPED_TRACE(refusal.text);
+    EXPECT_THAT([&] { parse_sweep_toml(refusal.text, "s.toml"); },
+                ThrowsMessage<IoError>(HasSubstr(refusal.message)));
+  }
+}
+
+}  // namespace
+}  // namespace tofsmith

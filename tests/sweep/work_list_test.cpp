@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/sweep/work_list.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "sweep_setup.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/code_file.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+const std::string base = "set = [\"samples=24\"]\ntrials = 16\n";
+
+std::string key_of(const std::string& text) {
+  return WorkList(parse_sweep_toml(base + "code = \"square-k4\"\n" + text)).item(0).key;
+}
+std::string axis(const std::string& key, const std::string& value) {
+  return "[[axis]]\nkey = \"" + key + "\"\nvalues = [" + value + "]\n";
+}
+
+TEST(WorkList, AKeyDependsOnAllThatDeterminesTheResult) {
+  const std::vector<std::string> texts = {
+      "",
+      axis("seed", "2"),
+      axis("trials", "18"),
+      axis("method", "\"ml\""),
+      axis("method", "\"unwrap\""),
+      axis("method", "\"unwrap\"") + axis("unwrap_weights", "\"frequency\""),
+      axis("signal_e_per_s", "5e3"),
+      axis("ambient_e_per_s", "5e3"),
+      axis("samples", "48"),
+      axis("light.peak_factor", "12"),
+      axis("sensor.read_noise_e", "5"),
+      axis("light.impulse_response.f_max_hz", "1e8"),
+      "outlier_threshold_m = 0.25\n"};
+  std::set<std::string> keys;
+  for (const std::string& text : texts) keys.insert(key_of(text));
+  EXPECT_EQ(keys.size(), texts.size());
+}
+
+TEST(WorkList, AKeyDependsOnNothingElse) {
+  EXPECT_EQ(key_of(""), key_of("camera = \"paper-10f0\"\nseed = 1\n"));
+  EXPECT_EQ(key_of(""), key_of(axis("name", "\"other\"")));
+  EXPECT_EQ(key_of(""), key_of(axis("unwrap_weights", "\"frequency\"")));
+  EXPECT_EQ(key_of(axis("signal_e_per_s", "5e3")), key_of(axis("signal_e_per_s", "5000, 1")));
+}
+
+TEST(WorkList, ACodeCountsByItsWaveformsAndNotByItsName) {
+  const TemporaryDirectory directory;
+  const WorkList family(parse_sweep_toml(base + "code = \"square-k4\"\n"));
+  const CodeSet code = family.item(0).code;
+  const auto key_of_file = [&](const CodeSet& written) {
+    write_code(directory / "mine.code.json", written, OutputPolicy::overwrite);
+    return WorkList(parse_sweep_toml(base + "code = \"mine.code.json\"\n",
+                                     (directory / "s.toml").string()))
+        .item(0)
+        .key;
+  };
+  EXPECT_EQ(key_of_file(code.renamed("mine")), family.item(0).key);
+  EXPECT_NE(key_of_file(code.rotated(1)), family.item(0).key);
+}
+
+TEST(WorkList, AMeasuredResponseCountsByItsSamples) {
+  const TemporaryDirectory directory;
+  const auto key_with = [&](const std::string& file, const std::string& samples) {
+    std::ofstream(directory / file) << samples;
+    return key_of(axis("light.impulse_response", "{kind = \"file\", time_step_s = 1e-9, file = \"" +
+                                                     (directory / file).string() + "\"}"));
+  };
+  const std::string key = key_with("a.csv", "0.5\n1\n0.5\n");
+  EXPECT_EQ(key_with("b.csv", "0.5\n1\n0.5\n"), key);
+  EXPECT_NE(key_with("a.csv", "0.5\n1\n0.25\n"), key);
+}
+
+TEST(WorkList, AddingValuesKeepsTheKeysOfTheOthers) {
+  const std::vector<std::string> few = small_list("12, 15").keys();
+  const std::vector<std::string> many = small_list("10, 12, 13, 15").keys();
+  const std::set<std::string> kept(many.begin(), many.end());
+  EXPECT_EQ(kept.size(), many.size());
+  for (const std::string& key : few) EXPECT_TRUE(kept.contains(key));
+}
+
+TEST(WorkList, ExposuresGoIntoTheNameOfAFamily) {
+  const WorkList list(
+      parse_sweep_toml(base + "code = \"hamiltonian-k{exposures}\"\n" + axis("exposures", "4, 3")));
+  EXPECT_EQ(list.code_name(1), "hamiltonian-k3");
+  EXPECT_EQ(list.item(1).code.exposures(), 3);
+  EXPECT_EQ(list.settings_json(0), R"({"code":"hamiltonian-k4","exposures":4})");
+}
+
+TEST(WorkList, RefusesImpossibleItemsAndSaysWhichValueIsToBlame) {
+  const auto refuse = [](const std::string& text, const char* place, const char* problem) {
+    EXPECT_THAT([&] { WorkList(parse_sweep_toml(text, "s.toml")).keys(); },
+                ThrowsMessage<IoError>(AllOf(testing::StartsWith(place), HasSubstr(problem))));
+  };
+  const std::string code = "code = \"square-k4\"\n";
+  refuse(code + axis("light.peak_factor", "5, 0.5"), "s.toml:4:14", "(in item 2 of 2: ");
+  refuse(code + axis("samples", "\"many\""), "s.toml:4:11", "expected an integer");
+  refuse("code = \"sqare-k4\"\n", "s.toml: ", "did you mean square-k4?");
+  refuse("camera = \"paper\"\n" + code, "s.toml: ", "no built-in camera");
+  refuse(code + "set = [\"samles=24\"]\n", "s.toml: setting 'samles=24'", "did you mean samples?");
+}
+
+}  // namespace
+}  // namespace tofsmith
