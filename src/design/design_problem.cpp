@@ -105,7 +105,7 @@ WaveformSpace waveform_space(const Camera& camera, int exposures, int samples) {
 }
 
 std::vector<OperatingPoint> training_points(const Camera& camera) {
-  const std::vector<OperatingPoint> all = camera.operating.points();
+  std::vector<OperatingPoint> all = camera.operating.points();
   if (all.size() <= 40) return all;
   const double floor_e_per_s =
       std::max(1.0, constant_variance_e2_of(camera.sensor)) /
