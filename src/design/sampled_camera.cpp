@@ -45,7 +45,8 @@ SampledCamera::SampledCamera(const Camera& camera, int samples, int exposures)
 SampledCamera::Measured SampledCamera::measure(const SampledCode& code) const {
   Measured measured;
   measured.modulation.resize(static_cast<std::size_t>(exposures_));
-  measured.demodulation.resize(static_cast<std::size_t>(exposures_ * taps_));
+  measured.demodulation.resize(static_cast<std::size_t>(exposures_) *
+                               static_cast<std::size_t>(taps_));
   Eigen::MatrixXd correlation(samples(), exposures_ * taps_);
   Eigen::VectorXd signal;
   for (int e = 0; e < exposures_; ++e) {
