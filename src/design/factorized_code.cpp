@@ -83,9 +83,9 @@ std::vector<TargetSet> targets_for(const Camera& camera, const DesignOptions& op
   std::vector<TargetSet> targets;
   if (options.target) targets.push_back(*options.target);
   if (!options.target) {
-    const std::vector<int> exposures =
-        options.exposures.empty() ? suggested_exposures(camera, DesignMethod::factorize)
-                                  : options.exposures;
+    const std::vector<int> exposures = options.exposures.empty()
+                                           ? suggested_exposures(camera, DesignMethod::factorize)
+                                           : options.exposures;
     for (const int count : exposures)  // the others are for other methods
       if (count >= fewest_exposures && count <= most_exposures)
         targets.push_back(targets_of(hamiltonian_code(count, {.samples = camera.samples})));
