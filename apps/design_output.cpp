@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "tofsmith/io/design_directory.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/io/scene_directory.hpp"
@@ -39,7 +37,7 @@ std::string verdict(const Camera& camera, const DesignResult& result) {
       text +=
           fmt::format("\n  {:.2f}x better than {}", gain_over(result, *other, kind).value, name);
   for (const Candidate& c : result.candidates)
-    if (!c.per_measurement.empty())
+    if (c.is_designed())
       text += fmt::format("\n  {}: {} ({})", c.code.name(), c.message, time_text(c.seconds));
   return text;
 }
@@ -50,13 +48,9 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
                   const DesignOptions& options) {
   if (session.json) return session.print_document(design_document(camera, result, options));
   const DepthErrorKind kind = camera.operating.error;
-  std::vector<const Candidate*> order;
-  for (const Candidate& c : result.candidates) order.push_back(&c);
-  std::ranges::stable_sort(order, {},
-                           [&](const Candidate* c) { return chosen_error_m(c->error, kind); });
   std::vector<std::vector<std::string>> rows{
       {"code", "K", "linear (mm)", "circular (mm)", "rotation (bin)", "made by"}};
-  for (const Candidate* c : order)
+  for (const Candidate* c : by_chosen_error(result, kind))
     rows.push_back({c->code.name(), fmt::format("{}", c->error.measurements),
                     estimate_text(c->error.linear.geometric_mean_m),
                     estimate_text(c->error.circular.geometric_mean_m),

@@ -6,6 +6,7 @@
 //   benchmark_random_cameras [CAMERAS] [SEED]
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -57,16 +58,6 @@ Camera random_camera(std::uint64_t seed, std::uint64_t index) {
   return camera;
 }
 
-/// The baseline of the least error, or null.
-const Candidate* best_baseline(const DesignResult& result, DepthErrorKind kind) {
-  const Candidate* best = nullptr;
-  for (const Candidate& c : result.candidates)
-    if (c.per_measurement.empty() &&
-        (!best || chosen_error_m(c.error, kind) < chosen_error_m(best->error, kind)))
-      best = &c;
-  return best;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -85,11 +76,14 @@ int main(int argc, char** argv) {
     options.optimize.hops = 6;
     options.optimize.refinement_steps = 300;
     const DesignResult result = design(camera, options);
-    const Candidate* baseline = best_baseline(result, kind);
-    if (!baseline) {
+    const std::vector<const Candidate*> order = by_chosen_error(result, kind);
+    const auto found =
+        std::ranges::find_if(order, [](const Candidate* c) { return !c->is_designed(); });
+    if (found == order.end()) {
       fmt::print("{:10} {} has no baseline\n", camera.name, result.winner().code.name());
       continue;
     }
+    const Candidate* baseline = *found;
     const EvaluateOptions fresh{.trials = 40000, .seed = seed + 1000};
     const Estimate mine = evaluate(result.winner().code, camera, fresh).of(kind).geometric_mean_m;
     const Estimate its = evaluate(baseline->code, camera, fresh).of(kind).geometric_mean_m;

@@ -136,7 +136,7 @@ Candidate run_or_load(const Task& task, const DesignStore& store, const Progress
 /// A target may be such that no choice of pairs can tell depth: that is a result, not a failure.
 void leave_out_what_tells_no_depth(const Camera& camera, DesignResult& result) {
   std::erase_if(result.candidates, [&](const Candidate& c) {
-    if (c.per_measurement.empty()) return false;
+    if (!c.is_designed()) return false;
     try {
       make_decoding_table(ForwardModel(c.code, camera), camera).validate();
       return false;
@@ -220,6 +220,14 @@ double choice_error_m(const Candidate& candidate, const Camera& camera,
 
 double chosen_error_m(const DepthErrorReport& report, DepthErrorKind kind) {
   return report.of(kind).geometric_mean_m.value;
+}
+
+std::vector<const Candidate*> by_chosen_error(const DesignResult& result, DepthErrorKind kind) {
+  std::vector<const Candidate*> order;
+  for (const Candidate& c : result.candidates) order.push_back(&c);
+  std::ranges::stable_sort(order, {},
+                           [&](const Candidate* c) { return chosen_error_m(c->error, kind); });
+  return order;
 }
 
 Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErrorKind kind) {

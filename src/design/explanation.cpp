@@ -23,12 +23,9 @@ std::string_view kind_name(DepthErrorKind kind) {
 
 /// The baseline of the least error that is not the winner; null if there is none.
 const Candidate* best_baseline(const DesignResult& result, DepthErrorKind kind) {
-  const Candidate* best = nullptr;
-  for (const Candidate& c : result.candidates)
-    if (&c != &result.winner() && c.per_measurement.empty() &&
-        (!best || chosen_error_m(c.error, kind) < chosen_error_m(best->error, kind)))
-      best = &c;
-  return best;
+  for (const Candidate* c : by_chosen_error(result, kind))
+    if (c != &result.winner() && !c->is_designed()) return c;
+  return nullptr;
 }
 
 std::string what_it_beats(const DesignResult& result, DepthErrorKind kind) {
@@ -41,7 +38,7 @@ std::string what_it_beats(const DesignResult& result, DepthErrorKind kind) {
   const Estimate gain = gain_over(result, *baseline, kind);
   text += fmt::format(", {:.2f} +- {:.2f} times less than {}", gain.value, gain.standard_error,
                       baseline->code.name());
-  if (winner.per_measurement.empty())
+  if (!winner.is_designed())
     return text + ": a standard code, which nothing that was designed here improves on.";
   return text + ", the best of the codes that were not designed for this camera.";
 }

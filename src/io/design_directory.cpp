@@ -240,7 +240,7 @@ void DesignDirectory::write(const Camera& camera, const DesignResult& result,
     write_code(code_path(path_, c.code.name()), c.code, policy);
   Json details = Json::object();
   for (const Candidate& c : result.candidates)
-    if (!c.per_measurement.empty()) details[c.code.name()] = details_json(c);
+    if (c.is_designed()) details[c.code.name()] = details_json(c);
   write_file_atomically(path_ / "details.json", details.dump(1), policy);
   // Last, since its presence says that the design is complete.
   write_file_atomically(path_ / "design.json", design_document(camera, result, options), policy);
@@ -268,7 +268,7 @@ DesignRecord DesignDirectory::read() const {
       entry.member("points").fail(
           fmt::format("found {} operating points; expected {}, as in camera.toml",
                       candidate.error.points.size(), record.camera.operating.points().size()));
-    if (!candidate.per_measurement.empty()) {
+    if (candidate.is_designed()) {
       candidate.iterations = entry.member("iterations").integer(0, std::numeric_limits<int>::max());
       candidate.seconds = entry.member("seconds").number();
       read_details(details.member(name), record.camera.samples, candidate);

@@ -206,7 +206,7 @@ Json design_json(const Camera& camera, const DesignResult& result, const DesignO
   for (const Candidate& candidate : result.candidates) {
     Json entry = depth_error_json(candidate.error, candidate.rotation_bin);
     entry["method"] = candidate.method;
-    if (!candidate.per_measurement.empty()) {
+    if (candidate.is_designed()) {
       entry["iterations"] = candidate.iterations;
       entry["seconds"] = candidate.seconds;
       entry["per_measurement"] = measurements_json(candidate);

@@ -72,7 +72,7 @@ Section waveform_section(const Camera& camera, const DesignResult& result) {
   };
   add(result.winner());
   for (const Candidate& c : result.candidates)
-    if (&c != &result.winner() && !c.per_measurement.empty()) add(c);
+    if (&c != &result.winner() && c.is_designed()) add(c);
   return section;
 }
 

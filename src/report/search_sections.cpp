@@ -66,18 +66,14 @@ void add_search_progress(const DesignResult& result, Section& section) {
 
 Section gain_section(const Camera& camera, const DesignResult& result) {
   const DepthErrorKind kind = camera.operating.error;
-  std::vector<const Candidate*> order;
-  for (const Candidate& c : result.candidates)
-    if (&c != &result.winner()) order.push_back(&c);
-  std::ranges::stable_sort(order, {},
-                           [&](const Candidate* c) { return chosen_error_m(c->error, kind); });
   Table table{.id = "gains",
               .caption = fmt::format(
                   "How many times as large as that of the best the {} depth error of every other "
                   "candidate is; ± is one standard error, the two taken for independent.",
                   kind == DepthErrorKind::linear ? "linear" : "circular"),
               .columns = {{"code"}, {"made by"}, {"exposures", true}, {"times the best", true}}};
-  for (const Candidate* c : order) {
+  for (const Candidate* c : by_chosen_error(result, kind)) {
+    if (c == &result.winner()) continue;
     const Estimate gain = gain_over(result, *c, kind);
     table.rows.push_back({c->code.name(), c->method, fmt::format("{}", c->error.exposures),
                           fmt::format("{:.3f} ± {:.3f}", gain.value, gain.standard_error)});

@@ -34,8 +34,8 @@ struct DesignOptions {
   /// A target of the user's, factorized instead of the Hamiltonian ones.
   std::optional<TargetSet> target;
   FactorizeOptions factorize;
-  OptimizeOptions optimize;
-  ChipSearchOptions search;
+  OptimizeOptions optimize;  ///< its seed comes from the one below
+  ChipSearchOptions search;  ///< so does this one's; its exposures are those above
   /// Optimize for, and pick by, the error on the worst of the camera's perturbations
   /// (simulate/robustness.hpp) instead of the camera's own. The gradients see other bandwidths and
   /// edge jitter; the choice among all candidates sees all perturbations.
@@ -96,6 +96,9 @@ struct Candidate {
   /// The error when the camera is not quite what it was said to be; of the winner, and with
   /// DesignOptions::robust of all.
   std::optional<RobustnessReport> robustness;
+
+  /// Made for this camera, by any method; not a family, a reference or a naive code.
+  bool is_designed() const { return !per_measurement.empty(); }
 };
 
 /// All candidates of a camera and which one is best by the camera's chosen depth error.
@@ -124,6 +127,9 @@ struct DesignStore {
   std::function<std::optional<Candidate>(const std::string& name)> load;
   std::function<void(const Candidate&)> save;
 };
+
+/// All candidates, the least chosen error first.
+std::vector<const Candidate*> by_chosen_error(const DesignResult& result, DepthErrorKind kind);
 
 /// How many times as large another candidate's chosen error is as the winner's, from the same
 /// trials; the standard error takes the two for independent, which errs on the large side.
