@@ -12,6 +12,7 @@
 #include "decode_stream.hpp"
 #include "map_arguments.hpp"
 #include "method_arguments.hpp"
+#include "multipath_arguments.hpp"
 #include "number_checks.hpp"
 #include "scene_source.hpp"
 #include "table_arguments.hpp"
@@ -32,6 +33,7 @@ struct DecodeArguments {
   TableArguments table;
   MapArguments maps;
   MethodArguments method;
+  MultipathArguments multipath;
   std::vector<std::string> planes;  // empty: as many of the usual ones as the format holds
   DecodeOptions options;
   int frame = -1;
@@ -53,9 +55,16 @@ std::vector<std::string> planes_to_write(const DecodeArguments& arguments) {
   if (arguments.stack && extension != ".npy")
     throw UsageError(
         fmt::format("--stack: found the output {}; expected a .npy file", arguments.output));
+  if (!arguments.method.is_multipath())
+    for (const std::string& plane : arguments.planes)
+      if (is_multipath_plane(plane))
+        throw UsageError(fmt::format(
+            "--outputs {}: found --method {}; expected two-return or tail, which alone fill it",
+            plane, name_of(arguments.method.method())));
   const bool depth_only = extension == ".npy" || extension == ".pfm" || extension == ".png";
   if (arguments.planes.empty())
-    return depth_only ? std::vector<std::string>{"depth"} : plane_names();
+    return depth_only ? std::vector<std::string>{"depth"}
+                      : plane_names(arguments.method.is_multipath());
   if (depth_only && !arguments.stack && arguments.planes != std::vector<std::string>{"depth"})
     throw UsageError(
         fmt::format("--outputs: a {} file holds depth only; .npz, .exr and .ply hold "
@@ -134,8 +143,9 @@ void run(const DecodeArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
   DecodingSource source =
       arguments.table.load(arguments.code, camera, arguments.camera.is_default(), arguments.taps);
-  const AnyDecoder decoder = make_decoder(arguments.method.method(), source.table,
-                                          arguments.options, arguments.method.unwrap_weights());
+  const AnyDecoder decoder =
+      make_decoder(arguments.method.method(), source.table, arguments.options,
+                   arguments.method.unwrap_weights(), arguments.multipath.options());
   const double memory_bytes = 1e6 * arguments.memory_mb;
   const RawFramesReader reader(arguments.raw,
                                {.measurements = source.table.measurements(),
@@ -199,11 +209,13 @@ void add_decode_command(CLI::App& app, Session& session) {
   arguments->table.add_to(*command);
   arguments->maps.add_to(*command);
   arguments->method.add_to(*command);
+  arguments->multipath.add_to(*command);
   command
       ->add_option(
           "--outputs", arguments->planes,
           "planes to write: depth,signal,ambient,confidence,deviation,status (by default as "
-          "many as OUTPUT holds), bin; others are not computed")
+          "many as OUTPUT holds), bin; of two-return and tail also delay, ratio and returns (0 "
+          "none, 1 single, 2 two, 3 unresolved); others are not computed")
       ->delimiter(',')
       ->check(CLI::IsMember(all_plane_names()));
   command

@@ -24,12 +24,6 @@ constexpr std::array float_planes = {
     FloatPlane{"deviation", &DepthImage::predicted_standard_deviation_m},
 };
 
-/// Where a plane of floats is; null for status and bin.
-Image<float> DepthImage::*float_plane(std::string_view name) {
-  const auto found = std::ranges::find(float_planes, name, &FloatPlane::name);
-  return found == float_planes.end() ? nullptr : found->plane;
-}
-
 template <typename Value>
 Image<float> as_floats(const Image<Value>& image) {
   Image<float> floats(image.height, image.width);
@@ -46,18 +40,25 @@ std::span<const std::byte> first_items(const Image<Value>& image, int rows) {
 
 }  // namespace
 
-std::vector<std::string> plane_names() {
-  return {"depth", "signal", "ambient", "confidence", "deviation", "status"};
+std::vector<std::string> plane_names(bool multipath) {
+  std::vector<std::string> names = {"depth",      "signal",    "ambient",
+                                    "confidence", "deviation", "status"};
+  if (multipath) names.insert(names.end(), {"delay", "ratio", "returns"});
+  return names;
+}
+
+bool is_multipath_plane(std::string_view name) {
+  return name == "delay" || name == "ratio" || name == "returns";
 }
 
 std::vector<std::string> all_plane_names() {
-  std::vector<std::string> names = plane_names();
+  std::vector<std::string> names = plane_names(true);
   names.emplace_back("bin");
   return names;
 }
 
 NpyType type_of_plane(std::string_view name) {
-  if (name == "status") return NpyType::uint8;
+  if (name == "status" || name == "returns") return NpyType::uint8;
   return name == "bin" ? NpyType::int32 : NpyType::float32;
 }
 
@@ -72,29 +73,44 @@ DecodedPlanes::DecodedPlanes(const std::vector<std::string>& names, int height, 
   for (const std::string& name : names)
     if (name == "status")
       image_.status = {height, width};
+    else if (name == "returns")
+      returns_ = {height, width};
     else if (name == "bin")
       bin_ = {height, width};
     else
-      image_.*float_plane(name) = {height, width};
+      *float_plane(name) = {height, width};
 }
 
 DecodedPlanes::DecodedPlanes(DepthImage image)
     : height_(image.height()), width_(image.width()), image_(std::move(image)) {}
 
+/// Where a plane of floats is; null for status, returns and bin.
+Image<float>* DecodedPlanes::float_plane(std::string_view name) {
+  if (name == "delay") return &delay_m_;
+  if (name == "ratio") return &ratio_;
+  const auto found = std::ranges::find(float_planes, name, &FloatPlane::name);
+  return found == float_planes.end() ? nullptr : &(image_.*found->plane);
+}
+
 DecodedView DecodedPlanes::view() {
   DecodedView view = DecodedView::of(image_);
   view.bin = bin_.pixels.data();
+  view.delay_m = delay_m_.pixels.data();
+  view.ratio = ratio_.pixels.data();
+  view.returns = returns_.pixels.data();
   return view;
 }
 
 Image<float> DecodedPlanes::floats(std::string_view name) const {
   if (name == "status") return as_floats(image_.status);
-  return name == "bin" ? as_floats(bin_) : image_.*float_plane(name);
+  if (name == "returns") return as_floats(returns_);
+  return name == "bin" ? as_floats(bin_) : *float_plane(name);
 }
 
 std::span<const std::byte> DecodedPlanes::items(std::string_view name, int rows) const {
   if (name == "status") return first_items(image_.status, rows);
-  return name == "bin" ? first_items(bin_, rows) : first_items(image_.*float_plane(name), rows);
+  if (name == "returns") return first_items(returns_, rows);
+  return name == "bin" ? first_items(bin_, rows) : first_items(*float_plane(name), rows);
 }
 
 void turn_into_z(float* depth_m, int first_row, int rows, const PinholeView& view) {

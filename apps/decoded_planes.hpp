@@ -17,12 +17,14 @@
 namespace tofsmith::apps {
 
 /// Names of the planes that are written unless others are asked for: depth, signal, ambient,
-/// confidence, deviation, status.
-std::vector<std::string> plane_names();
-/// The same and bin: of zncc the one that scores best, of others the nearest.
+/// confidence, deviation, status; of decoders of several returns also delay, ratio, returns.
+std::vector<std::string> plane_names(bool multipath = false);
+/// Whether only decoders of several returns fill the plane.
+bool is_multipath_plane(std::string_view name);
+/// All of these and bin: of zncc the one that scores best, of others the nearest.
 std::vector<std::string> all_plane_names();
 
-/// Type of the items of a plane: status uint8, bin int32, others float32.
+/// Type of the items of a plane: status and returns uint8, bin int32, others float32.
 NpyType type_of_plane(std::string_view name);
 /// What one pixel takes in these planes together [bytes].
 std::size_t bytes_per_pixel(const std::vector<std::string>& names);
@@ -47,9 +49,16 @@ class DecodedPlanes {
   std::span<const std::byte> items(std::string_view name, int rows) const;
 
  private:
+  Image<float>* float_plane(std::string_view name);
+  const Image<float>* float_plane(std::string_view name) const {
+    return const_cast<DecodedPlanes*>(this)->float_plane(name);
+  }
+
   int height_, width_;
   DepthImage image_;
   Image<std::int32_t> bin_;
+  Image<float> delay_m_, ratio_;
+  Image<ReturnStatus> returns_;
 };
 
 /// Turns radial distance into z-depth in place.

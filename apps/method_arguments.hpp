@@ -17,8 +17,10 @@ class MethodArguments {
                               .add_option("--method", method_,
                                           "decoder: zncc for any code, ml for any code by maximum "
                                           "likelihood (slower), unwrap "
-                                          "for sinusoids of one or more frequencies")
-                              ->check(CLI::IsMember({"zncc", "ml", "unwrap"}))
+                                          "for sinusoids of one or more frequencies; two-return "
+                                          "and tail where light comes back twice or trails off, "
+                                          "for codes of many independent means")
+                              ->check(CLI::IsMember({"zncc", "ml", "unwrap", "two-return", "tail"}))
                               ->capture_default_str();
     command
         .add_option("--unwrap-weights", weights_,
@@ -29,6 +31,10 @@ class MethodArguments {
         ->needs(method);
   }
   DecodeMethod method() const { return parse_decode_method(method_); }
+  /// Whether it tells later returns from the direct one.
+  bool is_multipath() const {
+    return method() == DecodeMethod::two_return || method() == DecodeMethod::tail;
+  }
   UnwrapWeights unwrap_weights() const { return parse_unwrap_weights(weights_); }
 
  private:

@@ -6,7 +6,7 @@ namespace tofsmith {
 
 bool DecodedView::wants_bins_only() const {
   return bin && !depth_m && !signal_e_per_s && !ambient_e_per_s && !confidence &&
-         !predicted_standard_deviation_m && !status;
+         !predicted_standard_deviation_m && !status && !delay_m && !ratio && !returns;
 }
 
 DecodedView DecodedView::of(DepthImage& image) {
@@ -26,7 +26,10 @@ DecodedView DecodedView::from(std::size_t pixel) const {
           later(ambient_e_per_s),
           later(confidence),
           later(predicted_standard_deviation_m),
-          later(status)};
+          later(status),
+          later(delay_m),
+          later(ratio),
+          later(returns)};
 }
 
 }  // namespace tofsmith

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulate/row_capture.hpp"
+#include "simulate/captured_rows.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 
@@ -31,14 +31,12 @@ double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,
   return reflected * scene.cosine(row, column) / (distance * distance);
 }
 
-RawFrames capture(const SceneImage& scene, const CodeSet& code, const Camera& camera,
-                  const CaptureOptions& options, const Progress& progress) {
-  const RowCapture source(scene, ForwardModel(code, camera), camera, options);
-
+RawFrames captured_rows(const RowCapture& source, int height, int width, int frames,
+                        const Progress& progress) {
   RawFrames raw;
-  raw.frames = options.frames;
-  raw.height = scene.height();
-  raw.width = scene.width();
+  raw.frames = frames;
+  raw.height = height;
+  raw.width = width;
   raw.measurements = source.measurements();
   const auto row_values =
       static_cast<std::size_t>(raw.width) * static_cast<std::size_t>(raw.measurements);
@@ -59,6 +57,12 @@ RawFrames capture(const SceneImage& scene, const CodeSet& code, const Camera& ca
   }
   report(progress, 1.0, "capture");
   return raw;
+}
+
+RawFrames capture(const SceneImage& scene, const CodeSet& code, const Camera& camera,
+                  const CaptureOptions& options, const Progress& progress) {
+  return captured_rows(RowCapture(scene, ForwardModel(code, camera), camera, options),
+                       scene.height(), scene.width(), options.frames, progress);
 }
 
 }  // namespace tofsmith

@@ -10,14 +10,18 @@
 namespace tofsmith {
 
 FineCorrelation::FineCorrelation(const ForwardModel& model, int points_per_bin)
-    : tap_values_(model.tap_values()),
-      points_(model.samples() * points_per_bin),
+    : FineCorrelation(
+          (require(points_per_bin >= 1, "points_per_bin", points_per_bin, "must be >= 1"),
+           model.tap_correlation_table(model.samples() * points_per_bin)),
+          points_per_bin) {}
+
+FineCorrelation::FineCorrelation(const Eigen::MatrixXd& table, int points_per_bin)
+    : tap_values_(static_cast<int>(table.cols())),
+      points_(static_cast<int>(table.rows())),
       points_per_bin_(points_per_bin) {
-  require(points_per_bin >= 1, "points_per_bin", points_per_bin, "must be >= 1");
-  const Eigen::MatrixXd exact = model.tap_correlation_table(points_);
   table_.reserve(static_cast<std::size_t>(points_ + 1) * static_cast<std::size_t>(tap_values_));
   for (int row = 0; row <= points_; ++row)
-    for (int j = 0; j < tap_values_; ++j) table_.push_back(exact(row % points_, j));
+    for (int j = 0; j < tap_values_; ++j) table_.push_back(table(row % points_, j));
 }
 
 void FineCorrelation::at(double depth_bin, double* chi) const {

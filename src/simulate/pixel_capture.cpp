@@ -17,19 +17,33 @@ PixelCapture::PixelCapture(const ForwardModel& model, const Camera& camera)
       exposure_s_(model.tap_exposure_s()),
       ambient_gain_(model.tap_ambient_gain()) {}
 
+void PixelCapture::add_light(const FineCorrelation& correlation, double depth_m,
+                             double signal_e_per_s, std::vector<double>& work,
+                             std::vector<double>& light) const {
+  const double position_bin = std::isnan(depth_m) ? 0.0 : wrap(depth_m, range_m_) / bin_m_;
+  correlation.at(position_bin, work.data());
+  for (std::size_t j = 0; j < light.size(); ++j) light[j] += signal_e_per_s * work[j];
+}
+
+void PixelCapture::expose(double ambient_e_per_s, RandomStream& random, std::vector<double>& light,
+                          float* raw) const {
+  for (std::size_t j = 0; j < light.size(); ++j) {
+    const auto i = static_cast<Eigen::Index>(j);
+    const double expected_e =
+        exposure_s_[i] * (light[j] + ambient_e_per_s * ambient_gain_[i] + dark_e_per_s_);
+    light[j] = noise_.convert(noise_.draw_electrons(expected_e, random));
+  }
+  noise_.read_out(light.data(), tap_values());
+  for (int i = 0; i < measurements(); ++i)
+    raw[i] = static_cast<float>(light[static_cast<std::size_t>(i)]);
+}
+
 void PixelCapture::operator()(double depth_m, double signal_e_per_s, double ambient_e_per_s,
                               RandomStream& random, std::vector<double>& work, float* raw) const {
   const double position_bin = std::isnan(depth_m) ? 0.0 : wrap(depth_m, range_m_) / bin_m_;
   correlation_.at(position_bin, work.data());
-  for (std::size_t j = 0; j < work.size(); ++j) {
-    const auto i = static_cast<Eigen::Index>(j);
-    const double expected_e = exposure_s_[i] * (signal_e_per_s * work[j] +
-                                                ambient_e_per_s * ambient_gain_[i] + dark_e_per_s_);
-    work[j] = noise_.convert(noise_.draw_electrons(expected_e, random));
-  }
-  noise_.read_out(work.data(), tap_values());
-  for (int i = 0; i < measurements(); ++i)
-    raw[i] = static_cast<float>(work[static_cast<std::size_t>(i)]);
+  for (double& value : work) value *= signal_e_per_s;
+  expose(ambient_e_per_s, random, work, raw);
 }
 
 }  // namespace tofsmith

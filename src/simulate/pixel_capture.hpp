@@ -25,6 +25,18 @@ class PixelCapture {
   void operator()(double depth_m, double signal_e_per_s, double ambient_e_per_s,
                   RandomStream& random, std::vector<double>& work, float* raw) const;
 
+  /// The same in two steps, for light that comes back in several ways: adds S chi of one way to
+  /// `light` (tap values), and exposes the sensor to the sum.
+  void add_light(const FineCorrelation& correlation, double depth_m, double signal_e_per_s,
+                 std::vector<double>& work, std::vector<double>& light) const;
+  void add_light(double depth_m, double signal_e_per_s, std::vector<double>& work,
+                 std::vector<double>& light) const {
+    add_light(correlation_, depth_m, signal_e_per_s, work, light);
+  }
+  /// @param light  overwritten
+  void expose(double ambient_e_per_s, RandomStream& random, std::vector<double>& light,
+              float* raw) const;
+
  private:
   double range_m_, bin_m_;
   double dark_e_per_s_;

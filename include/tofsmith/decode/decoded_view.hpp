@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "tofsmith/decode/depth_image.hpp"
+#include "tofsmith/decode/return_status.hpp"
 
 namespace tofsmith {
 
@@ -19,6 +20,10 @@ struct DecodedView {
   float* confidence = nullptr;       ///< in [0, 1]
   float* predicted_standard_deviation_m = nullptr;  ///< [m]
   PixelStatus* status = nullptr;
+  // Of decoders of several returns; others leave them as they are.
+  float* delay_m = nullptr;  ///< as the planes of MultipathImage
+  float* ratio = nullptr;
+  ReturnStatus* returns = nullptr;
 
   bool wants_bins_only() const;
   /// All planes of an image; no bins.

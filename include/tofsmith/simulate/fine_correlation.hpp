@@ -19,6 +19,8 @@ class FineCorrelation {
  public:
   /// @param points_per_bin  table points per bin, >= 1
   explicit FineCorrelation(const ForwardModel& model, int points_per_bin = 16);
+  /// The same of any table of tap values, (points, tap values).
+  FineCorrelation(const Eigen::MatrixXd& table, int points_per_bin);
 
   int tap_values() const { return tap_values_; }
   /// Rows of the table in one period.

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+namespace tofsmith {
+
+/// Average of periodic columns over exponential delays, exact for chords between rows:
+///   y(n) = integral_0^inf exp(-u / mean) / mean x(n + u) du,  rows modulo their number
+/// @param table      (N, columns), N >= 1
+/// @param mean_rows  mean delay in rows, > 0
+Eigen::MatrixXd exponential_average(const Eigen::MatrixXd& table, double mean_rows);
+
+}  // namespace tofsmith

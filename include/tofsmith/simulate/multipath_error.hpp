@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/progress.hpp"
+#include "tofsmith/core/statistics.hpp"
+#include "tofsmith/decode/multipath_options.hpp"
+
+namespace tofsmith {
+
+/// Which light comes back twice, and how error behind it is measured.
+struct MultipathErrorOptions {
+  std::vector<double> delay_m = {0.3, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0};  ///< of a second return [m]
+  std::vector<double> ratio = {0.1, 0.3, 0.6};                         ///< r = S2 / S1, in [0, 1]
+  std::vector<double> tail_m = {0.25, 0.5, 1.0};                       ///< mean delays of tails [m]
+  std::vector<double> signal_e_per_s = {1e4, 1e5};                     ///< S1
+  double ambient_e_per_s = 1e4;                                        ///< A
+  std::int64_t trials = 2000;                                          ///< per place of a map, >= 2
+  std::uint64_t seed = 1;
+  MultipathOptions decoding;  ///< tail_m is taken from each tail's own mean delay
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate(double range_m) const;
+};
+
+/// Error of direct depth in one kind of light: all errors the shorter way round the range.
+struct MultipathCell {
+  double ratio = 0.0;
+  double delay_m = 0.0;      ///< of the second return, or mean delay of the tail
+  Estimate single_bias_m;    ///< mean of decoded - true, single-path (zncc)
+  Estimate single_error_m;   ///< mean of |decoded - true|
+  Estimate bias_m, error_m;  ///< of two-return (tail) decoding; NaN where the code cannot
+  double two_share = 0.0;    ///< of pixels found to hold two returns
+  double unresolved_share = 0.0;
+  double cramer_rao_mae_m = 0.0;  ///< MultipathBound
+  double law_m = 0.0;             ///< r delta / (1 + r)
+
+  double gain() const { return single_error_m.value / error_m.value; }
+};
+
+/// Maps at one signal.
+struct MultipathMaps {
+  double signal_e_per_s = 0.0;
+  std::vector<MultipathCell> points;  ///< ratio by ratio, each delay by delay
+  std::vector<MultipathCell> tails;   ///< the same of tails
+  MultipathCell single;               ///< no second return: what two-return decoding loses
+  MultipathCell single_by_tail;       ///< the same by tail decoding, of the middle tail
+};
+
+/// What a code does where light comes back twice.
+struct MultipathErrorReport {
+  std::string code;
+  int measurements = 0;
+  std::string why_no_two_returns;   ///< empty where two-return decoding works
+  std::string why_no_tail;          ///< empty where tail decoding works
+  std::vector<MultipathMaps> maps;  ///< of each signal
+};
+
+/// Bias and error over (delta, r), single-path against two-return decoding, in the camera's noise.
+/// Trial t of a cell draws from the stream (seed, cell, t): its depth, uniform on the t-th of
+/// `trials` slices of the range, then noise; all codes see the same.
+/// @throws std::invalid_argument if camera, code or options are invalid; Interrupted if progress
+///         says so
+/// @note same bits for any number of threads
+MultipathErrorReport multipath_error(const CodeSet& code, const Camera& camera,
+                                     const MultipathErrorOptions& options = {},
+                                     const Progress& progress = {});
+
+}  // namespace tofsmith

@@ -1,0 +1,233 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/simulate/multipath_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "simulate/pixel_capture.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/decode/tail_decoder.hpp"
+#include "tofsmith/decode/two_return_decoder.hpp"
+#include "tofsmith/simulate/multipath_bounds.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+
+/// The light of a cell.
+struct CellLight {
+  double signal_e_per_s = 0.0;
+  double ratio = 0.0;
+  double delay_m = 0.0;
+  bool is_tail = false;
+};
+
+/// Draws and decodes the trials of cells.
+class CellTrials {
+ public:
+  CellTrials(const CodeSet& code, const Camera& camera, const MultipathErrorOptions& options)
+      : options_(options),
+        camera_(camera),
+        model_(code, camera),
+        pixel_(model_, camera),
+        table_(make_decoding_table(model_, camera)),
+        single_(table_),
+        bound_(model_, camera) {}
+
+  int measurements() const { return pixel_.measurements(); }
+  const DecodingTable& table() const { return table_; }
+
+  /// @param decoder  of two returns or a tail; null: none
+  template <typename AnyDecoder>
+  MultipathCell cell(const CellLight& light, std::uint64_t number, const AnyDecoder* decoder) const;
+
+ private:
+  RawFrames capture(const CellLight& light, std::uint64_t number,
+                    std::vector<double>& true_m) const;
+  void add_errors(const Image<float>& depth_m, const std::vector<double>& true_m, Estimate& bias_m,
+                  Estimate& error_m) const;
+  double cramer_rao_mae_m(const CellLight& light) const;
+
+  const MultipathErrorOptions& options_;
+  const Camera& camera_;
+  ForwardModel model_;
+  PixelCapture pixel_;
+  DecodingTable table_;
+  Decoder single_;
+  MultipathBound bound_;
+};
+
+RawFrames CellTrials::capture(const CellLight& light, std::uint64_t number,
+                              std::vector<double>& true_m) const {
+  constexpr int points_per_bin = 16;
+  std::optional<FineCorrelation> tail;
+  if (light.is_tail)
+    tail.emplace(tap_tail_table(model_, {light.delay_m, light.ratio}, camera_.range_m(),
+                                points_per_bin * model_.samples()),
+                 points_per_bin);
+  RawFrames raw;
+  raw.frames = raw.height = 1;
+  raw.width = static_cast<int>(options_.trials);
+  raw.measurements = measurements();
+  raw.values.resize(static_cast<std::size_t>(raw.width) *
+                    static_cast<std::size_t>(raw.measurements));
+  true_m.resize(static_cast<std::size_t>(options_.trials));
+  parallel_for_blocks(options_.trials, 256, [&](IndexRange trials) {
+    const auto taps = static_cast<std::size_t>(pixel_.tap_values());
+    std::vector<double> work(taps), sum(taps);
+    for (std::int64_t t = trials.begin; t < trials.end; ++t) {
+      RandomStream random(options_.seed, number, static_cast<std::uint32_t>(t));
+      const double depth_m = (static_cast<double>(t) + random.uniform()) /
+                             static_cast<double>(options_.trials) * camera_.range_m();
+      sum.assign(taps, 0.0);
+      pixel_.add_light(depth_m, light.signal_e_per_s, work, sum);
+      const double later = light.ratio * light.signal_e_per_s;
+      if (tail)
+        pixel_.add_light(*tail, depth_m, later, work, sum);
+      else if (later > 0.0)
+        pixel_.add_light(depth_m + light.delay_m, later, work, sum);
+      pixel_.expose(options_.ambient_e_per_s, random, sum, raw.values.data() + t * measurements());
+      true_m[static_cast<std::size_t>(t)] = depth_m;
+    }
+  });
+  return raw;
+}
+
+void CellTrials::add_errors(const Image<float>& depth_m, const std::vector<double>& true_m,
+                            Estimate& bias_m, Estimate& error_m) const {
+  RunningStatistics bias, error;
+  const double range_m = camera_.range_m();
+  for (std::size_t t = 0; t < true_m.size(); ++t) {
+    // Nothing decoded costs what a guess does.
+    const double decoded = depth_m.pixels[t];
+    const double off =
+        std::isnan(decoded) ? 0.25 * range_m : circular_difference(decoded, true_m[t], range_m);
+    bias.add(off);
+    error.add(std::abs(off));
+  }
+  bias_m = bias.estimate();
+  error_m = error.estimate();
+}
+
+double CellTrials::cramer_rao_mae_m(const CellLight& light) const {
+  const OperatingPoint point{light.signal_e_per_s, options_.ambient_e_per_s};
+  return bound_.mae_m(light.is_tail ? bound_.tail_sigma_m(point, {light.delay_m, light.ratio})
+                                    : bound_.sigma_m(point, light.ratio, light.delay_m));
+}
+
+template <typename AnyDecoder>
+MultipathCell CellTrials::cell(const CellLight& light, std::uint64_t number,
+                               const AnyDecoder* decoder) const {
+  MultipathCell result;
+  result.ratio = light.ratio;
+  result.delay_m = light.delay_m;
+  result.law_m = single_path_bias_m(light.ratio, light.delay_m);
+  result.bias_m = result.error_m = {no_number, no_number};
+  result.cramer_rao_mae_m = no_number;
+  std::vector<double> true_m;
+  const RawFrames raw = capture(light, number, true_m);
+  add_errors(single_.decode(raw).depth_m, true_m, result.single_bias_m, result.single_error_m);
+  if (!decoder) return result;
+  const MultipathImage image = decoder->decode(raw);
+  add_errors(image.direct.depth_m, true_m, result.bias_m, result.error_m);
+  const auto share = [&](ReturnStatus status) {
+    return static_cast<double>(std::ranges::count(image.returns.pixels, status)) /
+           static_cast<double>(true_m.size());
+  };
+  result.two_share = share(ReturnStatus::two);
+  result.unresolved_share = share(ReturnStatus::unresolved);
+  if (light.ratio > 0.0) result.cramer_rao_mae_m = cramer_rao_mae_m(light);
+  return result;
+}
+
+template <typename AnyDecoder>
+std::optional<AnyDecoder> try_decoder(const DecodingTable& table, const MultipathOptions& options,
+                                      std::string& why_not) {
+  try {
+    return AnyDecoder(table, options);
+  } catch (const std::invalid_argument& error) {
+    why_not = error.what();
+    return std::nullopt;
+  }
+}
+
+template <typename AnyDecoder>
+const AnyDecoder* pointer_to(const std::optional<AnyDecoder>& decoder) {
+  return decoder ? &*decoder : nullptr;
+}
+
+}  // namespace
+
+void MultipathErrorOptions::validate(double range_m) const {
+  const auto require_each = [](const std::vector<double>& values, const char* field, double least,
+                               double most, const std::string& rule) {
+    require(!values.empty(), field, "nothing", "must have at least one entry");
+    for (const double value : values) require(value >= least && value <= most, field, value, rule);
+  };
+  const std::string within = "must be > 0 and below the range, " + std::to_string(range_m) + " m";
+  const double tiny = std::numeric_limits<double>::min();
+  require_each(delay_m, "MultipathErrorOptions::delay_m", tiny, std::nextafter(range_m, 0.0),
+               within);
+  require_each(tail_m, "MultipathErrorOptions::tail_m", tiny, std::nextafter(range_m, 0.0), within);
+  require_each(ratio, "MultipathErrorOptions::ratio", 0.0, 1.0, "must be in [0, 1]");
+  require_each(signal_e_per_s, "MultipathErrorOptions::signal_e_per_s", tiny,
+               std::numeric_limits<double>::max(), "must be finite and > 0");
+  require(std::isfinite(ambient_e_per_s) && ambient_e_per_s >= 0.0,
+          "MultipathErrorOptions::ambient_e_per_s", ambient_e_per_s, "must be finite and >= 0");
+  require(trials >= 2 && trials <= 10'000'000, "MultipathErrorOptions::trials", trials,
+          "must be in [2, 1e7]");
+  decoding.validate(range_m);
+}
+
+MultipathErrorReport multipath_error(const CodeSet& code, const Camera& camera,
+                                     const MultipathErrorOptions& options,
+                                     const Progress& progress) {
+  camera.validate();
+  options.validate(camera.range_m());
+  const CellTrials trials(code, camera, options);
+  MultipathErrorReport result;
+  result.code = code.name();
+  result.measurements = trials.measurements();
+  const auto two =
+      try_decoder<TwoReturnDecoder>(trials.table(), options.decoding, result.why_no_two_returns);
+  std::vector<std::optional<TailDecoder>> tails;
+  for (const double tail_m : options.tail_m) {
+    MultipathOptions decoding = options.decoding;
+    decoding.tail_m = tail_m;
+    tails.push_back(try_decoder<TailDecoder>(trials.table(), decoding, result.why_no_tail));
+  }
+
+  const std::size_t cells =
+      options.signal_e_per_s.size() *
+      (2 + options.ratio.size() * (options.delay_m.size() + options.tail_m.size()));
+  std::uint64_t number = 0;
+  const auto next = [&] {
+    report(progress, static_cast<double>(number) / static_cast<double>(cells), "multi-path");
+    return number++;
+  };
+  for (const double signal : options.signal_e_per_s) {
+    MultipathMaps maps;
+    maps.signal_e_per_s = signal;
+    maps.single = trials.cell({signal}, next(), pointer_to(two));
+    maps.single_by_tail = trials.cell({signal}, next(), pointer_to(tails[tails.size() / 2]));
+    for (const double r : options.ratio) {
+      for (const double delay_m : options.delay_m)
+        maps.points.push_back(trials.cell({signal, r, delay_m}, next(), pointer_to(two)));
+      for (std::size_t i = 0; i < tails.size(); ++i)
+        maps.tails.push_back(
+            trials.cell({signal, r, options.tail_m[i], true}, next(), pointer_to(tails[i])));
+    }
+    result.maps.push_back(std::move(maps));
+  }
+  report(progress, 1.0, "multi-path");
+  return result;
+}
+
+}  // namespace tofsmith
