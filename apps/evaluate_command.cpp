@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "evaluation_table.hpp"
 #include "method_arguments.hpp"
+#include "multipath_evaluation.hpp"
 #include "number_checks.hpp"
 #include "played_code.hpp"
 #include "table_arguments.hpp"
@@ -27,6 +28,8 @@ struct EvaluateArguments {
   bool on_bins = false;
   bool best_rotation = false;
   bool robustness = false;
+  MultipathEvaluation multipath;
+  const CLI::Option* trials = nullptr;
   TapArguments taps;
   std::string output;
 };
@@ -135,6 +138,10 @@ void run(EvaluateArguments& arguments, const Session& session) {
   std::vector<CodeSet> codes;
   for (const std::string& name : arguments.codes)
     codes.push_back(load_played_code(name, camera, arguments.taps));
+  if (arguments.multipath.is_asked())
+    return arguments.multipath.run(codes, camera,
+                                   arguments.trials->count() > 0 ? arguments.options.trials : 0,
+                                   arguments.options.seed, arguments.output, session);
   std::vector<EvaluatedCode> evaluated = evaluate_all(codes, camera, arguments);
   if (arguments.robustness) judge_robustness(evaluated, codes, camera, arguments.options);
   if (!arguments.output.empty())
@@ -154,9 +161,10 @@ void add_evaluate_command(CLI::App& app, Session& session) {
   command->add_option("CODE", arguments->codes, "families or code files (.code.json, .npz)")
       ->required();
   arguments->camera.add_to(*command);
-  command->add_option("--trials", arguments->options.trials, "trials per operating point")
-      ->check(CLI::Range(std::int64_t{2}, std::int64_t{4'000'000'000}))
-      ->capture_default_str();
+  arguments->trials =
+      command->add_option("--trials", arguments->options.trials, "trials per operating point")
+          ->check(CLI::Range(std::int64_t{2}, std::int64_t{4'000'000'000}))
+          ->capture_default_str();
   command->add_option("--seed", arguments->options.seed, "seed of all trials")
       ->capture_default_str();
   arguments->method.add_to(*command);
@@ -175,6 +183,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
   command->add_flag("--robustness", arguments->robustness,
                     "also judge each code on perturbed cameras: bandwidth +-20 %, peak +-10 %, "
                     "50 ps edge jitter, 2 % tap mismatch");
+  arguments->multipath.add_to(*command);
   arguments->taps.add_to(*command);
   command->add_option("-o,--output", arguments->output,
                       "write a table (.csv .json) or page (.html)");

@@ -7,12 +7,14 @@
 #include "commands.hpp"
 #include "number_checks.hpp"
 #include "played_code.hpp"
+#include "returns_arguments.hpp"
 #include "scene_source.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/raw_frames_file.hpp"
-#include "tofsmith/simulate/capture.hpp"
+#include "tofsmith/io/returns_file.hpp"
+#include "tofsmith/simulate/multipath_capture.hpp"
 
 namespace tofsmith::apps {
 
@@ -25,6 +27,7 @@ struct SimulateArguments {
   std::string code;
   std::optional<double> signal_e_per_s, ambient_e_per_s;
   CaptureOptions options;
+  ReturnsArguments returns;
   std::string output, truth;
 };
 
@@ -32,19 +35,28 @@ void run(SimulateArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
   const CodeSet code = load_played_code(arguments.code, camera, arguments.taps);
   const LoadedScene scene = load_scene(arguments.scene, camera);
-  for (const std::string& output : {arguments.output, arguments.truth})
-    check_not_input(output, {arguments.scene.scene, arguments.scene.image,
-                             arguments.scene.ambient_image, arguments.code, arguments.camera.name});
+  const SceneLight light = arguments.returns.load(scene.image, camera);
+  std::vector<std::string> inputs = arguments.returns.inputs();
+  inputs.insert(inputs.end(),
+                {arguments.scene.scene, arguments.scene.image, arguments.scene.ambient_image,
+                 arguments.code, arguments.camera.name});
+  for (const std::string& output : {arguments.output, arguments.truth, arguments.returns.truth()})
+    check_not_input(output, inputs);
   session.check_output(arguments.output);
-  if (!arguments.truth.empty()) session.check_output(arguments.truth);
+  for (const std::string& truth : {arguments.truth, arguments.returns.truth()})
+    if (!truth.empty()) session.check_output(truth);
   const OperatingPoint middle = camera.operating.middle();
   arguments.options.signal_e_per_s = arguments.signal_e_per_s.value_or(middle.signal_e_per_s);
   arguments.options.ambient_e_per_s = arguments.ambient_e_per_s.value_or(middle.ambient_e_per_s);
   const RawFrames raw =
-      capture(scene.image, code, camera, arguments.options, terminal_progress("capturing"));
+      capture(scene.image, light, code, camera, arguments.options, terminal_progress("capturing"));
   write_raw_frames(arguments.output, raw, session.output_policy());
   if (!arguments.truth.empty())
     write_depth(arguments.truth, scene.image.depth_m, session.output_policy());
+  if (!arguments.returns.truth().empty())
+    write_returns_truth(arguments.returns.truth(),
+                        returns_truth(scene.image, light, arguments.options), light,
+                        session.output_policy());
   const SceneExtent extent = scene_extent(scene.image, camera);
   session.print_json({{"scene", scene.name},
                       {"code", code.name()},
@@ -107,6 +119,7 @@ void add_simulate_command(CLI::App& app, Session& session) {
       ->capture_default_str();
   command->add_option("-o,--output", arguments->output, "raw frames (.npy .npz)")->required();
   command->add_option("--truth", arguments->truth, "also write the true radial distance");
+  arguments->returns.add_to(*command);
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "simulate/bound_means.hpp"
 #include "tofsmith/core/exponential_average.hpp"
-#include "tofsmith/simulate/photon_information.hpp"
 
 namespace tofsmith {
 

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "session.hpp"
+#include "tofsmith/simulate/multipath_capture.hpp"
+
+namespace tofsmith::apps {
+
+/// Light that comes back by longer ways: `--second-return`, `--tail`, `--returns`, `--transient`,
+/// and `--truth-returns` for what was simulated.
+class ReturnsArguments {
+ public:
+  void add_to(CLI::App& command);
+  /// @throws UsageError for words that do not fit each other; IoError as the files' readers;
+  ///         std::invalid_argument as SceneLight::validate
+  SceneLight load(const SceneImage& scene, const Camera& camera) const;
+  /// Files that are read.
+  std::vector<std::string> inputs() const { return {returns_, transient_}; }
+  const std::string& truth() const { return truth_; }
+
+ private:
+  std::vector<std::string> second_returns_;
+  std::optional<double> tail_m_;
+  double tail_ratio_ = 0.3;
+  std::string returns_, transient_, truth_;
+  std::optional<double> transient_bin_s_;
+  std::string transient_origin_ = "first", transient_background_ = "none";
+};
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tofsmith/simulate/multipath_error.hpp"
+
+namespace tofsmith {
+
+/// What `evaluate --multipath` found, as JSON: per code, per signal, every cell; what a code cannot
+/// do is null.
+std::string multipath_document(const Camera& camera, const std::vector<MultipathErrorReport>& codes,
+                               const MultipathErrorOptions& options);
+
+}  // namespace tofsmith

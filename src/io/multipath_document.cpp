@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/multipath_document.hpp"
+
+#include <cmath>
+
+#include "io/camera_json.hpp"
+#include "tofsmith/version.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json cell_json(const MultipathCell& cell) {
+  return {{"ratio", cell.ratio},
+          {"delay_m", cell.delay_m},
+          {"law_m", cell.law_m},
+          {"single_path_bias_m", number(cell.single_bias_m.value)},
+          {"single_path_error_m", number(cell.single_error_m.value)},
+          {"single_path_error_se_m", number(cell.single_error_m.standard_error)},
+          {"bias_m", number(cell.bias_m.value)},
+          {"error_m", number(cell.error_m.value)},
+          {"error_se_m", number(cell.error_m.standard_error)},
+          {"cramer_rao_mae_m", number(cell.cramer_rao_mae_m)},
+          {"two_share", cell.two_share},
+          {"unresolved_share", cell.unresolved_share}};
+}
+
+Json cells_json(const std::vector<MultipathCell>& cells) {
+  Json all = Json::array();
+  for (const MultipathCell& cell : cells) all.push_back(cell_json(cell));
+  return all;
+}
+
+}  // namespace
+
+std::string multipath_document(const Camera& camera, const std::vector<MultipathErrorReport>& codes,
+                               const MultipathErrorOptions& options) {
+  Json document = {{"version", TOFSMITH_VERSION},
+                   {"seed", options.seed},
+                   {"trials", options.trials},
+                   {"ambient_e_per_s", options.ambient_e_per_s},
+                   {"threshold", options.decoding.threshold},
+                   {"camera", camera_document(camera)},
+                   {"codes", Json::array()}};
+  for (const MultipathErrorReport& code : codes) {
+    Json entry = {{"code", code.code}, {"measurements", code.measurements}};
+    if (!code.why_no_two_returns.empty()) entry["why_no_two_returns"] = code.why_no_two_returns;
+    if (!code.why_no_tail.empty()) entry["why_no_tail"] = code.why_no_tail;
+    for (const MultipathMaps& maps : code.maps)
+      entry["signals"].push_back({{"signal_e_per_s", maps.signal_e_per_s},
+                                  {"single_return", cell_json(maps.single)},
+                                  {"single_return_by_tail", cell_json(maps.single_by_tail)},
+                                  {"second_returns", cells_json(maps.points)},
+                                  {"tails", cells_json(maps.tails)}});
+    document["codes"].push_back(std::move(entry));
+  }
+  return document.dump(2);
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "decode/multipath_engine.hpp"
+#include "decode_setup.hpp"
+#include "each_target.hpp"
+#include "reference_returns.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/decode/tail_decoder.hpp"
+#include "tofsmith/decode/two_return_decoder.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr double ambient_e_per_s = 1e4;
+
+/// Two-bucket Hamiltonian with five exposures.
+struct TwoBucket {
+  Camera camera = camera_with("paper-10f0", 2);
+  ForwardModel model{build_family("hamiltonian-k5", camera), camera};
+  DecodingTable table = make_decoding_table(model, camera);
+
+  /// Pixels spread over the range; `noise` standard deviations times normal numbers.
+  RawFrames pixels(int count, double signal, double ratio, double delay_m, double noise,
+                   std::vector<double>& true_m) const {
+    RawFrames raw;
+    raw.frames = raw.height = 1;
+    raw.width = count;
+    raw.measurements = model.measurements();
+    RandomStream random(3, 0);
+    for (int i = 0; i < count; ++i) {
+      const double bin = (i + 0.5) / count * model.samples();
+      true_m.push_back(bin * camera.bin_m());
+      const std::vector<Return> returns = {{signal, bin},
+                                           {ratio * signal, bin + delay_m / camera.bin_m()}};
+      const Eigen::VectorXd mean = model.expected_electrons(returns, ambient_e_per_s);
+      const Eigen::VectorXd variance = model.variance_e2(returns, ambient_e_per_s);
+      for (Eigen::Index k = 0; k < mean.size(); ++k)
+        raw.values.push_back(
+            static_cast<float>(mean[k] + noise * std::sqrt(variance[k]) * random.normal()));
+    }
+    return raw;
+  }
+
+  double mean_error_m(const Image<float>& depth_m, const std::vector<double>& true_m) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < true_m.size(); ++i)
+      sum += std::abs(circular_difference(depth_m.pixels[i], true_m[i], camera.range_m()));
+    return sum / static_cast<double>(true_m.size());
+  }
+};
+
+double share(const MultipathImage& image, ReturnStatus status) {
+  return static_cast<double>(std::ranges::count(image.returns.pixels, status)) /
+         static_cast<double>(image.returns.size());
+}
+
+TEST(TwoReturnDecoder, RecoversBothReturnsWithoutNoise) {
+  const TwoBucket setup;
+  const TwoReturnDecoder decoder(setup.table);
+  std::vector<double> true_m;
+  const MultipathImage image = decoder.decode(setup.pixels(64, 1e6, 0.3, 1.0, 0.0, true_m));
+  EXPECT_EQ(share(image, ReturnStatus::two), 1.0);
+  for (std::size_t i = 0; i < true_m.size(); ++i) {
+    EXPECT_LT(std::abs(circular_difference(image.direct.depth_m.pixels[i], true_m[i],
+                                           setup.camera.range_m())),
+              0.01)
+        << true_m[i];
+    EXPECT_NEAR(image.delay_m.pixels[i], 1.0, 0.03);
+    EXPECT_NEAR(image.ratio.pixels[i], 0.3, 0.02);
+    EXPECT_NEAR(image.direct.ambient_e_per_s.pixels[i], ambient_e_per_s, 0.05 * ambient_e_per_s);
+  }
+}
+
+TEST(TwoReturnDecoder, LowersErrorFourfoldAndDeviationsHold) {
+  const TwoBucket setup;
+  std::vector<double> true_m;
+  const RawFrames raw = setup.pixels(400, 1e5, 0.3, 1.0, 1.0, true_m);
+  const MultipathImage image = TwoReturnDecoder(setup.table).decode(raw);
+  const double single = setup.mean_error_m(Decoder(setup.table).decode(raw).depth_m, true_m);
+  EXPECT_GT(single, 4.0 * setup.mean_error_m(image.direct.depth_m, true_m));
+  int within = 0;
+  for (std::size_t i = 0; i < true_m.size(); ++i)
+    within += std::abs(circular_difference(image.direct.depth_m.pixels[i], true_m[i],
+                                           setup.camera.range_m())) <
+              3.0 * image.direct.predicted_standard_deviation_m.pixels[i];
+  EXPECT_GT(within, 0.94 * 400);
+}
+
+TEST(TwoReturnDecoder, LeavesSingleReturnsAlone) {
+  const TwoBucket setup;
+  std::vector<double> true_m;
+  const RawFrames raw = setup.pixels(2000, 1e4, 0.0, 0.0, 1.0, true_m);
+  const MultipathImage image = TwoReturnDecoder(setup.table).decode(raw);
+  const DepthImage single = Decoder(setup.table).decode(raw);
+  EXPECT_LE(share(image, ReturnStatus::two), 0.015);
+  EXPECT_LT(setup.mean_error_m(image.direct.depth_m, true_m),
+            1.06 * setup.mean_error_m(single.depth_m, true_m));
+  for (std::size_t i = 0; i < true_m.size(); ++i) {
+    if (image.returns.pixels[i] == ReturnStatus::two) continue;
+    ASSERT_EQ(image.direct.depth_m.pixels[i], single.depth_m.pixels[i]);
+    ASSERT_TRUE(std::isnan(image.delay_m.pixels[i]));
+  }
+}
+
+TEST(TwoReturnDecoder, FitsAsWellAsAnExhaustiveReference) {
+  const TwoBucket setup;
+  std::vector<double> true_m;
+  const RawFrames raw = setup.pixels(24, 1e5, 0.4, 1.3, 1.0, true_m);
+  const AmbientProjection projection(setup.table);
+  const MultipathCurve curve(setup.table, projection, 0.0);
+  const DelayBounds delays{0.1f / static_cast<float>(setup.camera.range_m()) * curve.points,
+                           0.33f * curve.points};
+  int as_good = 0;
+  for (int i = 0; i < raw.width; ++i) {
+    PixelGroup group{};
+    for (int k = 0; k < raw.measurements; ++k)
+      for (int lane = 0; lane < pixels_per_group; ++lane) {
+        group.electrons[k][lane] = raw.frame(0)[i * raw.measurements + k];
+        group.variance_e2[k][lane] = group.electrons[k][lane] + 400.0f;
+      }
+    PairFits fits;
+    fit_pair(curve, delays, group, fits);
+    const ReferenceReturns reference(setup.model, group);
+    // Within what curves between bins, drawn from the table, may be off.
+    as_good += fits.chi2[0] < reference.best_pair_chi2(delays.shortest / curve.points,
+                                                       delays.longest / curve.points) +
+                                  1.0;
+    EXPECT_NEAR(fits.single_chi2[0], reference.best_single_chi2(),
+                1.0 + 0.02 * fits.single_chi2[0]);
+  }
+  EXPECT_GE(as_good, 23);
+}
+
+TEST(TwoReturnDecoder, GivesTheSameBitsForAnyNumberOfThreadsAndNeighbours) {
+  const TwoBucket setup;
+  const TwoReturnDecoder decoder(setup.table);
+  std::vector<double> true_m;
+  const RawFrames raw = setup.pixels(600, 1e5, 0.3, 0.8, 1.0, true_m);
+  std::vector<double> whole(600), alone(600);
+  decoder.decode_depth_bins(raw.frame(0), 600, whole.data());
+  for (int i = 0; i < 600; i += 37)
+    decoder.decode_depth_bins(raw.frame(0) + i * raw.measurements, 1, &alone[i]);
+  for (int i = 0; i < 600; i += 37) EXPECT_EQ(alone[i], whole[i]);
+  const MultipathImage many = decoder.decode(raw);
+  const ThreadLimit one(1);
+  const MultipathImage few = decoder.decode(raw);
+  EXPECT_EQ(many.direct.depth_m.pixels, few.direct.depth_m.pixels);
+  EXPECT_EQ(many.returns.pixels, few.returns.pixels);
+}
+
+TEST(TwoReturnDecoder, DecodesAlikeOnEveryInstructionSet) {
+  const TwoBucket setup;
+  const TwoReturnDecoder decoder(setup.table);
+  std::vector<double> true_m;
+  const RawFrames raw = setup.pixels(48, 1e6, 0.3, 1.0, 0.0, true_m);
+  for_each_target(
+      [&] { EXPECT_LT(setup.mean_error_m(decoder.decode(raw).direct.depth_m, true_m), 0.01); });
+}
+
+TEST(TwoReturnDecoder, MarksWhatHasNoDepth) {
+  const TwoBucket setup;
+  std::vector<double> true_m;
+  RawFrames raw = setup.pixels(2, 1e5, 0.3, 1.0, 0.0, true_m);
+  raw.values[3] = std::numeric_limits<float>::quiet_NaN();
+  const MultipathImage image = TwoReturnDecoder(setup.table).decode(raw);
+  EXPECT_EQ(image.returns.pixels[0], ReturnStatus::none);
+  EXPECT_EQ(image.direct.status.pixels[0], PixelStatus::invalid);
+  EXPECT_EQ(image.returns.pixels[1], ReturnStatus::two);
+}
+
+TEST(TwoReturnDecoder, LeansOnItsPriorInDimLight) {
+  const TwoBucket setup;
+  std::vector<double> true_m;
+  const RawFrames raw = setup.pixels(150, 1e4, 0.3, 0.5, 1.0, true_m);
+  const MultipathImage likely = TwoReturnDecoder(setup.table, {.threshold = 2.0}).decode(raw);
+  const MultipathImage believed =
+      TwoReturnDecoder(setup.table, {.threshold = 2.0, .prior = ReturnPrior{}}).decode(raw);
+  EXPECT_LT(setup.mean_error_m(believed.direct.depth_m, true_m),
+            setup.mean_error_m(likely.direct.depth_m, true_m));
+}
+
+TEST(TwoReturnDecoder, RefusesCodesThatCannotTellReturns) {
+  const auto refused = [](const char* code, int taps, const char* why) {
+    const Camera camera = camera_with("paper-10f0", taps);
+    const DecodingTable table =
+        make_decoding_table(ForwardModel(build_family(code, camera), camera), camera);
+    EXPECT_THAT([&] { TwoReturnDecoder{table}; },
+                ThrowsMessage<std::invalid_argument>(testing::AllOf(
+                    HasSubstr("independent means"), HasSubstr(why), HasSubstr("sensor.taps=2"))))
+        << code;
+  };
+  refused("hamiltonian-k5", 1, "5; must be >= 6");
+  refused("sinusoid-k4", 1, "one frequency only");
+  refused("multifrequency-k5", 1, "two frequencies only");
+}
+
+TEST(TwoReturnDecoder, RefusesOptionsThatMakeNoSense) {
+  const TwoBucket setup;
+  const auto refused = [&](const MultipathOptions& options, const char* field) {
+    EXPECT_THAT([&] { TwoReturnDecoder(setup.table, options); },
+                ThrowsMessage<std::invalid_argument>(HasSubstr(field)));
+  };
+  refused({.threshold = -1.0}, "threshold = -1");
+  refused({.shortest_delay_m = 0.0}, "shortest_delay_m = 0");
+  refused({.longest_delay_m = 20.0}, "longest_delay_m = 20");
+  refused({.tail_m = 11.0}, "tail_m = 11");
+  refused({.prior = ReturnPrior{.largest_ratio = 2.0}}, "largest_ratio = 2");
+}
+
+TEST(TailDecoder, LowersTheErrorOfATailFivefold) {
+  const TwoBucket setup;
+  std::vector<double> true_m;
+  RawFrames raw;
+  raw.frames = raw.height = 1;
+  raw.width = 300;
+  raw.measurements = setup.model.measurements();
+  RandomStream random(5, 0);
+  for (int i = 0; i < raw.width; ++i) {
+    const double bin = (i + 0.5) / raw.width * setup.model.samples();
+    true_m.push_back(bin * setup.camera.bin_m());
+    std::vector<Return> returns = {{1e5, bin}};
+    constexpr int parts = 64;
+    for (int j = 0; j < parts; ++j)
+      returns.push_back(
+          {0.3e5 / parts, bin - 0.5 * std::log1p(-(j + 0.5) / parts) / setup.camera.bin_m()});
+    const Eigen::VectorXd mean = setup.model.expected_electrons(returns, ambient_e_per_s);
+    const Eigen::VectorXd variance = setup.model.variance_e2(returns, ambient_e_per_s);
+    for (Eigen::Index k = 0; k < mean.size(); ++k)
+      raw.values.push_back(static_cast<float>(mean[k] + std::sqrt(variance[k]) * random.normal()));
+  }
+  const MultipathImage image = TailDecoder(setup.table).decode(raw);
+  EXPECT_GT(setup.mean_error_m(Decoder(setup.table).decode(raw).depth_m, true_m),
+            5.0 * setup.mean_error_m(image.direct.depth_m, true_m));
+}
+
+}  // namespace
+}  // namespace tofsmith

@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tofsmith/core/exponential_average.hpp"
+#include "tofsmith/simulate/bounds.hpp"
+#include "tofsmith/simulate/multipath_bounds.hpp"
+#include "tofsmith/simulate/multipath_capture.hpp"
+#include "tofsmith/simulate/multipath_error.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+Camera two_bucket_camera() {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.sensor.taps = 2;
+  return camera;
+}
+
+SceneImage flat_scene(int width) {
+  SceneImage scene(1, width);
+  for (int i = 0; i < width; ++i) scene.depth_m(0, i) = 1.0f + 0.7f * static_cast<float>(i);
+  return scene;
+}
+
+/// A camera without noise but that of electrons, in so much light that they do not matter.
+struct Noiseless {
+  Camera camera = two_bucket_camera();
+  CodeSet code;
+  ForwardModel model;
+  CaptureOptions options{.signal_e_per_s = 1e14, .ambient_e_per_s = 0.0, .falloff = false};
+
+  Noiseless() : code(build_family("hamiltonian-k5", camera)), model(code, camera) {}
+
+  Eigen::VectorXd measured(const SceneImage& scene, const SceneLight& light, int pixel) const {
+    const RawFrames raw = capture(scene, light, code, camera, options);
+    Eigen::VectorXd values(raw.measurements);
+    for (int k = 0; k < raw.measurements; ++k)
+      values[k] = raw.frame(0)[pixel * raw.measurements + k];
+    return values;
+  }
+  void expect_close(const Eigen::VectorXd& found, const std::vector<Return>& returns) const {
+    const Eigen::VectorXd expected = model.expected_electrons(returns, 0.0);
+    EXPECT_LT((found - expected).norm(), 1e-4 * expected.norm());
+  }
+};
+
+TEST(ExponentialAverage, OfAHarmonicIsItsTransform) {
+  constexpr int rows = 4800;
+  Eigen::MatrixXd table(rows, 2);
+  for (int n = 0; n < rows; ++n) {
+    table(n, 0) = std::cos(2 * M_PI * n / rows);
+    table(n, 1) = std::sin(2 * M_PI * n / rows);
+  }
+  const double mean = 0.1 * rows, w = 2 * M_PI * 0.1;
+  const Eigen::MatrixXd average = exponential_average(table, mean);
+  // Mean of exp(i (x + u w)) over exponential u: exp(i x) / (1 - i w).
+  EXPECT_NEAR(average(0, 0), 1 / (1 + w * w), 1e-6);
+  EXPECT_NEAR(average(0, 1), w / (1 + w * w), 1e-6);
+  EXPECT_NEAR(average.col(0).sum(), 0.0, 1e-8);
+}
+
+TEST(MultipathCapture, AddsReturnsTailAndTransientAsTheModelDoes) {
+  const Noiseless setup;
+  const SceneImage scene = flat_scene(3);
+  const double bin_m = setup.camera.bin_m(), s = setup.options.signal_e_per_s;
+  const double at = scene.depth_m(0, 1) / bin_m;
+
+  const std::vector<LaterReturn> behind = {{0.5f, 0.3f}, {9.5f, 0.1f}};
+  SceneLight points;
+  points.returns = behind_every_pixel(scene, behind);
+  setup.expect_close(setup.measured(scene, points, 1),
+                     {{s, at}, {0.3 * s, at + 0.5 / bin_m}, {0.1 * s, at + 9.5 / bin_m}});
+
+  SceneLight tail;
+  tail.tail = ExponentialTail{0.5, 0.4};
+  std::vector<Return> trail = {{s, at}};
+  constexpr int parts = 2000;
+  for (int j = 0; j < parts; ++j)
+    trail.push_back({0.4 * s / parts, at - 0.5 * std::log1p(-(j + 0.5) / parts) / bin_m});
+  setup.expect_close(setup.measured(scene, tail, 1), trail);
+
+  const Transient transient{{0.0, 3.0, 1.0, 0.5, 0.0, 0.2}, 0.05, -0.03};
+  for (const std::size_t count : {std::size_t{1}, scene.depth_m.size()}) {
+    SceneLight spread;
+    spread.transients.assign(count, transient);
+    setup.expect_close(setup.measured(scene, spread, 1), transient.returns(at, s, bin_m));
+  }
+}
+
+TEST(MultipathCapture, OfDirectLightAloneIsTheSameBitByBit) {
+  const Noiseless setup;
+  const SceneImage scene = flat_scene(5);
+  const RawFrames direct = capture(scene, setup.code, setup.camera);
+  EXPECT_EQ(direct.values, capture(scene, {}, setup.code, setup.camera).values);
+  SceneLight nothing_later;
+  nothing_later.tail = ExponentialTail{0.5, 0.0};
+  EXPECT_EQ(direct.values, capture(scene, nothing_later, setup.code, setup.camera).values);
+}
+
+TEST(MultipathCapture, TellsTheTruthOfEveryReturn) {
+  const SceneImage scene = flat_scene(2);
+  SceneLight light;
+  light.returns = LaterReturns(1, 2);
+  const std::vector<LaterReturn> two = {{1.5f, 0.5f}, {2.0f, 0.25f}};
+  light.returns.append_pixel(two);
+  light.returns.append_pixel({});
+  const ReturnsTruth truth = returns_truth(scene, light, {.signal_e_per_s = 8.0, .falloff = false});
+  EXPECT_THAT(truth.first, testing::ElementsAre(0, 2, 2));
+  EXPECT_THAT(truth.distance_m, testing::ElementsAre(1.5f, 2.0f));
+  EXPECT_THAT(truth.signal_e_per_s, testing::ElementsAre(4.0f, 2.0f));
+  EXPECT_EQ(truth.direct_e_per_s(0, 1), 8.0f);
+}
+
+TEST(MultipathCapture, RefusesLightThatMakesNoSense) {
+  const Camera camera = two_bucket_camera();
+  const SceneImage scene = flat_scene(2);
+  const auto refused = [&](const SceneLight& light, const char* what) {
+    EXPECT_THAT([&] { light.validate(scene, camera); },
+                ThrowsMessage<std::invalid_argument>(HasSubstr(what)));
+  };
+  const auto behind = [&](std::vector<LaterReturn> returns) {
+    SceneLight light;
+    light.returns = behind_every_pixel(scene, returns);
+    return light;
+  };
+  refused(behind({{1.0f, 0.3f}, {0.5f, 0.2f}}), "must be finite and in order");
+  refused(behind({{-0.5f, 0.3f}}), "not nearer than the direct return");
+  refused(behind({{1.0f, -0.3f}}), "ratio = -0.3");
+  refused(behind({{10.5f, 0.3f}}), "less than the unambiguous range");
+  SceneLight tail;
+  tail.tail = ExponentialTail{12.0, 0.3};
+  refused(tail, "no longer than the period");
+  const auto transient = [](std::vector<double> bins, double bin_m) {
+    SceneLight light;
+    light.transients = {{std::move(bins), bin_m}};
+    return light;
+  };
+  refused(transient({1.0, -2.0}, 0.1), "bin 1 = -2");
+  refused(transient({1.0, std::numeric_limits<double>::quiet_NaN()}, 0.1), "bin 1 = nan");
+  refused(transient({0.0, 0.0}, 0.1), "light of all bins");
+  refused(transient({1.0, 1.0, 1.0}, 4.0), "no longer than the period");
+}
+
+TEST(MultipathBound, OfNoSecondReturnIsNoLessThanThatOfOneAndFallsWithDelay) {
+  const Camera camera = two_bucket_camera();
+  const ForwardModel model(build_family("hamiltonian-k5", camera), camera);
+  const MultipathBound bound(model, camera);
+  const OperatingPoint point{1e5, 1e4};
+  const double one = CramerRaoBound(model, camera).mae_m(point);
+  double before = std::numeric_limits<double>::infinity();
+  for (const double delay_m : {0.3, 0.5, 0.75, 1.0, 1.5}) {
+    const double here = bound.mae_m(bound.sigma_m(point, 0.3, delay_m));
+    EXPECT_GT(here, one);
+    EXPECT_LT(here, before);
+    before = here;
+  }
+  EXPECT_NEAR(bound.mae_m(bound.sigma_m(point, 0.3, 1.0)), 0.010, 0.004);
+}
+
+TEST(MultipathError, TwoReturnsBeatOneWhereTheBoundSaysSo) {
+  MultipathErrorOptions options{
+      .delay_m = {1.0}, .ratio = {0.3}, .tail_m = {0.5}, .signal_e_per_s = {1e5}, .trials = 300};
+  const Camera camera = two_bucket_camera();
+  const CodeSet code = build_family("hamiltonian-k5", camera);
+  const MultipathErrorReport report = multipath_error(code, camera, options);
+  const MultipathMaps& maps = report.maps.front();
+  EXPECT_GT(maps.points.front().gain(), 4.0);
+  EXPECT_GT(maps.tails.front().gain(), 4.0);
+  EXPECT_LT(maps.points.front().cramer_rao_mae_m, maps.points.front().law_m);
+  EXPECT_GT(maps.single.gain(), 0.93);
+  EXPECT_LT(maps.single.two_share, 0.03);
+
+  options.delay_m = {0.2};
+  const Camera one_tap = built_in_camera("paper-10f0");
+  const MultipathErrorReport refused =
+      multipath_error(build_family("sinusoid-k4", one_tap), one_tap, options);
+  EXPECT_THAT(refused.why_no_two_returns, HasSubstr("independent means"));
+  const MultipathCell& cell = refused.maps.front().points.front();
+  EXPECT_NEAR(cell.single_bias_m.value, cell.law_m, 0.2 * cell.law_m);
+  EXPECT_TRUE(std::isnan(cell.error_m.value));
+}
+
+}  // namespace
+}  // namespace tofsmith
