@@ -39,9 +39,9 @@ RowMajorMatrix thinned(const RowMajorMatrix& table, Eigen::Index rows) {
 
 /// So many places that the curve turns little from one to the next.
 int coarse_places(const RowMajorMatrix& curve) {
-  constexpr double most_turn = 0.3;  // of the curve's own length
+  constexpr double most_turn = 0.165;  // of the curve's own length
   const double length = curve.norm();
-  for (const int count : {80, 96, 120, 160}) {
+  for (const int count : {80, 96, 120, 160, 200}) {
     if (count >= curve.rows()) break;
     const RowMajorMatrix rows = thinned(curve, count);
     double turn2 = 0.0;

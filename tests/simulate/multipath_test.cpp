@@ -86,7 +86,7 @@ TEST(MultipathCapture, AddsReturnsTailAndTransientAsTheModelDoes) {
     trail.push_back({0.4 * s / parts, at - 0.5 * std::log1p(-(j + 0.5) / parts) / bin_m});
   setup.expect_close(setup.measured(scene, tail, 1), trail);
 
-  const Transient transient{{0.0, 3.0, 1.0, 0.5, 0.0, 0.2}, 0.05, -0.03};
+  const Transient transient{{0.0, 3.0, 1.0, 0.5, 0.0, 0.2}, 0.02, -0.03};
   for (const std::size_t count : {std::size_t{1}, scene.depth_m.size()}) {
     SceneLight spread;
     spread.transients.assign(count, transient);

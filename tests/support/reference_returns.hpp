@@ -54,7 +54,7 @@ class ReferenceReturns {
     double explained = 0.0;
     for (Eigen::Index j = 0; j < places; ++j)
       for (auto lag = static_cast<Eigen::Index>(std::ceil(shortest * places));
-           lag <= longest * places; ++lag) {
+           lag <= static_cast<Eigen::Index>(longest * places); ++lag) {
         const Eigen::Index k = (j + lag) % places;
         const double det = gram(j, j) * gram(k, k) - gram(j, k) * gram(j, k);
         const double n1 = gram(k, k) * along[j] - gram(j, k) * along[k];
