@@ -5,11 +5,13 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "interrupt.hpp"
 #include "number_checks.hpp"
 #include "sweep_page.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/npz.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
+#include "tofsmith/sweep/sweep_ranks.hpp"
 #include "tofsmith/sweep/sweep_results.hpp"
 #include "tofsmith/version.hpp"
 
@@ -124,7 +126,7 @@ void print(const SweepArguments& arguments, std::int64_t items, const SweepCount
   if (!arguments.report.empty()) session.say("report: " + arguments.report);
 }
 
-void run(const SweepArguments& arguments, Session& session) {
+void lead(const SweepArguments& arguments, Session& session, SweepRanks& ranks) {
   if (arguments.sweep.empty()) throw UsageError("SWEEP is required");
   if (arguments.store.empty()) throw UsageError("--store is required");
   SweepRunOptions options{.shard = parse_shard(arguments.shard),
@@ -138,7 +140,7 @@ void run(const SweepArguments& arguments, Session& session) {
   SweepRun done;
   if (!arguments.status) {
     session.directory = arguments.store;
-    done = run_sweep(list, keys, store, options, progress);
+    done = run_sweep(list, keys, store, options, progress, &ranks);
   }
   report(progress, 1.0, "done");
   const SweepCounts counts = store.count(keys);
@@ -147,6 +149,15 @@ void run(const SweepArguments& arguments, Session& session) {
   if (!done.failures.empty())
     throw std::runtime_error(fmt::format("{} of {} items failed; the first: {}",
                                          done.failures.size(), list.size(), done.failures.front()));
+}
+
+/// Under mpirun every rank comes here, and rank 0 leads: it alone prints, reads and writes.
+void run(const SweepArguments& arguments, Session& session) {
+  SweepRanks ranks = SweepRanks::join(terminal_progress("sweep"));
+  if (ranks.rank() == 0) return lead(arguments, session, ranks);
+  work_for_sweep(
+      ranks, [&] { return WorkList(read_sweep_toml(arguments.sweep)); },
+      [](double, std::string_view) { return !interrupted(); });
 }
 
 void merge(const MergeArguments& arguments, const Session& session) {
