@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "number_checks.hpp"
+#include "shard_argument.hpp"
 #include "sweep_page.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/npz.hpp"
@@ -32,23 +33,6 @@ struct MergeArguments {
   std::string output;
   std::vector<std::filesystem::path> parts;
 };
-
-SweepShard parse_shard(const std::string& text) {
-  SweepShard shard;
-  if (text.empty()) return shard;
-  const std::size_t slash = text.find('/');
-  try {
-    if (slash == std::string::npos ||
-        !CLI::detail::lexical_cast(text.substr(0, slash), shard.index) ||
-        !CLI::detail::lexical_cast(text.substr(slash + 1), shard.count))
-      throw std::invalid_argument("expected two numbers");
-    shard.validate();
-  } catch (const std::invalid_argument&) {
-    throw UsageError(
-        fmt::format("--shard: found {}; expected i/n with i in 1 .. n, such as 3/8", text));
-  }
-  return shard;
-}
 
 /// Outputs are looked at before the long work.
 void check_outputs(const SweepArguments& arguments, const Session& session) {
@@ -155,6 +139,7 @@ void lead(const SweepArguments& arguments, Session& session, SweepRanks& ranks) 
 void run(const SweepArguments& arguments, Session& session) {
   SweepRanks ranks = SweepRanks::join(terminal_progress("sweep"));
   if (ranks.rank() == 0) return lead(arguments, session, ranks);
+  session.follows = true;
   work_for_sweep(
       ranks, [&] { return WorkList(read_sweep_toml(arguments.sweep)); },
       [](double, std::string_view) { return !interrupted(); });
