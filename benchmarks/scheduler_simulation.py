@@ -21,10 +21,10 @@ import random
 import sqlite3
 
 COSTS = {
-    "claim_item_s": 20e-6,     # find and update of one item
-    "finish_item_s": 25e-6,    # update of one item, checksum
-    "commit_s": 150e-6,        # one transaction
-    "message_s": 10e-6,        # take or send one, unpacked
+    "claim_item_s": 42e-6,     # find and update of one item
+    "finish_item_s": 188e-6,   # unpacking 86 us, update of one item and checksum 102 us
+    "commit_s": 370e-6,        # one transaction
+    "message_s": 20e-6,        # take or send one (assumed)
     "network_s": 50e-6,        # on its way
     "poll_s": 1e-3,            # rank 0 and the others look for messages once in
 }
