@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,11 @@ class ReturnsArguments {
   /// @throws UsageError for words that do not fit each other; IoError as the files' readers;
   ///         std::invalid_argument as SceneLight::validate
   SceneLight load(const SceneImage& scene, const Camera& camera) const;
+  /// Whether anything was asked for.
+  bool is_used() const {
+    return !second_returns_.empty() || tail_m_ || !returns_.empty() || !transient_.empty() ||
+           !truth_.empty();
+  }
   /// Files that are read.
   std::vector<std::string> inputs() const { return {returns_, transient_}; }
   const std::string& truth() const { return truth_; }

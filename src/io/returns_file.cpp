@@ -124,6 +124,9 @@ void write_returns_truth(const std::filesystem::path& path, const ReturnsTruth& 
   arrays.emplace("first", as_array({truth.first.size()}, truth.first));
   arrays.emplace("distance_m", as_array({truth.distance_m.size()}, truth.distance_m));
   arrays.emplace("signal_e_per_s", as_array({truth.signal_e_per_s.size()}, truth.signal_e_per_s));
+  std::vector<float> ratio;
+  for (const LaterReturn& later : light.returns.returns) ratio.push_back(later.ratio);
+  arrays.emplace("ratio", as_array({ratio.size()}, ratio));
   if (light.tail)
     arrays.emplace("tail",
                    as_array({2}, std::vector<double>{light.tail->mean_delay_m, light.tail->ratio}));

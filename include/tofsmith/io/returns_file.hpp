@@ -36,7 +36,8 @@ std::vector<Transient> read_transients(const std::filesystem::path& path, int he
                                        const TransientFileOptions& options);
 
 /// The truth of every return as an NPZ: `depth_m` and `direct_e_per_s` (H, W), `first` (H W + 1),
-/// `distance_m` and `signal_e_per_s` of later returns; `tail` (mean delay [m], ratio) if there is
+/// `distance_m`, `signal_e_per_s` and `ratio` of later returns, as
+/// read_later_returns() takes them; `tail` (mean delay [m], ratio) if there is
 /// one; `transient` (T) or (H W, T), of unit sum, with `transient_bin_m` and `transient_first_m`.
 /// @throws IoError as AtomicFile does
 void write_returns_truth(const std::filesystem::path& path, const ReturnsTruth& truth,
