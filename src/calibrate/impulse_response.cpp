@@ -303,9 +303,9 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
   result.peaks = peaks_of(result.response, denoised.noise_rms);
   for (std::size_t i = 1; i < result.peaks.size(); ++i)
     result.notes.push_back(fmt::format(
-        "a second peak of {:.2f} times the highest, {:+.4g} ns from it, was kept: expected of an "
+        "{} peak of {:.2f} times the highest, {:+.4g} ns from it, was kept: expected of an "
         "inner reflection or a second path; cut it from the record if it is not the arm's",
-        result.peaks[i].height, 1e9 * result.peaks[i].time_s));
+        i == 1 ? "a second" : "another", result.peaks[i].height, 1e9 * result.peaks[i].time_s));
   if (!result.fit_is_good())
     result.notes.push_back(fmt::format(
         "no parametric kind describes the record to its noise (best {}, residual {:.2g} % of the "

@@ -7,7 +7,7 @@
 namespace tofsmith {
 
 std::vector<ResponsePeak> peaks_of(const ImpulseResponse& response, double noise_rms) {
-  constexpr double lowest = 0.1, deepest_valley = 0.7;
+  constexpr double lowest = 0.15, deepest_valley = 0.7;
   const std::vector<double>& h = response.samples;
   std::vector<std::size_t> maxima;
   for (std::size_t i = 1; i + 1 < h.size(); ++i)

@@ -117,6 +117,12 @@ DenoisedResponse denoised_response(const ResponseWindow& window, double time_ste
     filtered[kept] *= pass / differencing(window, frequency_hz);
     left += 2 * pass * pass * noise;
   }
+  // A sharp end would ring: the last third fades.
+  const Eigen::Index fading = kept / 3;
+  for (Eigen::Index k = kept - fading; k < kept; ++k)
+    filtered[k] *= std::pow(
+        std::cos(0.5 * pi * static_cast<double>(k - kept + fading) / static_cast<double>(fading)),
+        2);
   filtered.conservativeResize(kept);
 
   const double period_s = coefficients * window.time_step_s;
@@ -141,6 +147,7 @@ DenoisedResponse denoised_response(const ResponseWindow& window, double time_ste
   const double first_s = offset_s - time_step_s * std::ceil(offset_s / time_step_s);
   for (Eigen::Index i = 0; i < count; ++i)
     samples[i] = value_at(first_s + static_cast<double>(i) * time_step_s);
+  const double highest = samples.maxCoeff();
   samples /= samples.sum();
 
   DenoisedResponse result;
@@ -150,7 +157,6 @@ DenoisedResponse denoised_response(const ResponseWindow& window, double time_ste
   result.response_centre_s = centre_s - first_s;
   result.centre_s = window.start_time_s - static_cast<double>(margin) * window.time_step_s +
                     centre_s + (window.differentiated ? 0.5 * window.time_step_s : 0.0);
-  const double highest = window.values.maxCoeff();
   result.noise_rms =
       std::sqrt(left / (static_cast<double>(coefficients) * static_cast<double>(length))) / highest;
   return result;
