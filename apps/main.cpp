@@ -147,7 +147,7 @@ int run(int argc, char** argv) {
 
   try {
     app.parse(argc, argv);
-    if (interrupted()) throw Interrupted();
+    if (interrupted() && !session.follows) throw Interrupted();
     if (!app.get_subcommands().empty()) return finish_output();
     fmt::print(stderr, "{}", app.help());
     return exit_usage;

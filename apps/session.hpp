@@ -25,6 +25,7 @@ class UsageError : public std::runtime_error {
 struct Session {
   bool json = false;                ///< one JSON document on stdout and nothing else there
   bool force = false;               ///< overwrite output files
+  bool follows = false;             ///< another process of the same job speaks for this one
   int threads = 0;                  ///< 0 = every core
   std::string command_line;         ///< as typed, for reports
   std::filesystem::path directory;  ///< or store in which finished work is kept, if it is

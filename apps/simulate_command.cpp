@@ -8,27 +8,61 @@
 #include "number_checks.hpp"
 #include "played_code.hpp"
 #include "scene_source.hpp"
+#include "shard_argument.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/raw_frames_file.hpp"
 #include "tofsmith/simulate/capture.hpp"
+#include "training_set_output.hpp"
 
 namespace tofsmith::apps {
 
 namespace {
 
 struct SimulateArguments {
+  std::vector<std::string> scenes;
   SceneSource scene;
   CameraArguments camera;
   TapArguments taps;
   std::string code;
   std::optional<double> signal_e_per_s, ambient_e_per_s;
+  std::string signal_range, ambient_range, shard;
   CaptureOptions options;
   std::string output, truth;
 };
 
-void run(SimulateArguments& arguments, const Session& session) {
+void simulate_set(const SimulateArguments& arguments, Session& session) {
+  if (!arguments.truth.empty())
+    throw UsageError("--truth: the truth of many scenes is always written");
+  const Camera camera = arguments.camera.load();
+  const OperatingPoint middle = camera.operating.middle();
+  make_training_set(
+      {.scenes = arguments.scenes,
+       .source = arguments.scene,
+       .directory = arguments.output,
+       .options = {.signal = light_range("signal", arguments.signal_range, arguments.signal_e_per_s,
+                                         middle.signal_e_per_s),
+                   .ambient = light_range("ambient", arguments.ambient_range,
+                                          arguments.ambient_e_per_s, middle.ambient_e_per_s),
+                   .capture = arguments.options,
+                   .shard = parse_shard(arguments.shard)}},
+      load_played_code(arguments.code, camera, arguments.taps), camera, session);
+}
+
+/// What only many scenes have.
+void check_is_of_one_scene(const SimulateArguments& arguments) {
+  for (const auto& [option, value] : {std::pair("--signal-range", arguments.signal_range),
+                                      std::pair("--ambient-range", arguments.ambient_range),
+                                      std::pair("--shard", arguments.shard)})
+    if (!value.empty())
+      throw UsageError(fmt::format("{}: needs a folder, a list (.txt) or several scenes", option));
+}
+
+void run(SimulateArguments& arguments, Session& session) {
+  if (are_many_scenes(arguments.scenes)) return simulate_set(arguments, session);
+  check_is_of_one_scene(arguments);
+  arguments.scene.scene = arguments.scenes.front();
   const Camera camera = arguments.camera.load();
   const CodeSet code = load_played_code(arguments.code, camera, arguments.taps);
   const LoadedScene scene = load_scene(arguments.scene, camera);
@@ -82,8 +116,11 @@ void run(SimulateArguments& arguments, const Session& session) {
 
 void add_simulate_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<SimulateArguments>();
-  CLI::App* command = app.add_subcommand("simulate", "raw measurements of a scene");
-  command->add_option("SCENE", arguments->scene.scene, scene_help)->required();
+  CLI::App* command = app.add_subcommand("simulate", "raw measurements of a scene, or of many");
+  command
+      ->add_option("SCENE", arguments->scenes,
+                   std::string(scene_help) + "; many: a folder, a list (.txt) or several")
+      ->required();
   arguments->scene.add_to(*command);
   command->add_option("--code", arguments->code, "a family or a code file")->required();
   arguments->camera.add_to(*command);
@@ -93,6 +130,12 @@ void add_simulate_command(CLI::App& app, Session& session) {
       "signal of albedo 1 at the reference distance [e/s] (middle of the camera's)");
   command->add_option("--ambient", arguments->ambient_e_per_s,
                       "ambient light [e/s] (middle of the camera's)");
+  command->add_option("--signal-range", arguments->signal_range,
+                      "a:b, of many scenes: draw --signal of each log-uniformly");
+  command->add_option("--ambient-range", arguments->ambient_range,
+                      "a:b, of many scenes: draw --ambient of each log-uniformly");
+  command->add_option("--shard", arguments->shard,
+                      "i/n, of many scenes: only the i-th of n parts, into the same directory");
   command
       ->add_option("--reference-distance", arguments->options.reference_distance_m,
                    "where the signal is as given [m]")
@@ -105,7 +148,10 @@ void add_simulate_command(CLI::App& app, Session& session) {
       ->capture_default_str();
   command->add_option("--seed", arguments->options.seed, "seed of all noise")
       ->capture_default_str();
-  command->add_option("-o,--output", arguments->output, "raw frames (.npy .npz)")->required();
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "raw frames (.npy .npz); of many scenes a directory")
+      ->required();
   command->add_option("--truth", arguments->truth, "also write the true radial distance");
   command->callback([arguments, &session] { run(*arguments, session); });
 }

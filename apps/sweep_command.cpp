@@ -5,11 +5,14 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "interrupt.hpp"
 #include "number_checks.hpp"
+#include "shard_argument.hpp"
 #include "sweep_page.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/npz.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
+#include "tofsmith/sweep/sweep_ranks.hpp"
 #include "tofsmith/sweep/sweep_results.hpp"
 #include "tofsmith/version.hpp"
 
@@ -30,23 +33,6 @@ struct MergeArguments {
   std::string output;
   std::vector<std::filesystem::path> parts;
 };
-
-SweepShard parse_shard(const std::string& text) {
-  SweepShard shard;
-  if (text.empty()) return shard;
-  const std::size_t slash = text.find('/');
-  try {
-    if (slash == std::string::npos ||
-        !CLI::detail::lexical_cast(text.substr(0, slash), shard.index) ||
-        !CLI::detail::lexical_cast(text.substr(slash + 1), shard.count))
-      throw std::invalid_argument("expected two numbers");
-    shard.validate();
-  } catch (const std::invalid_argument&) {
-    throw UsageError(
-        fmt::format("--shard: found {}; expected i/n with i in 1 .. n, such as 3/8", text));
-  }
-  return shard;
-}
 
 /// Outputs are looked at before the long work.
 void check_outputs(const SweepArguments& arguments, const Session& session) {
@@ -124,7 +110,7 @@ void print(const SweepArguments& arguments, std::int64_t items, const SweepCount
   if (!arguments.report.empty()) session.say("report: " + arguments.report);
 }
 
-void run(const SweepArguments& arguments, Session& session) {
+void lead(const SweepArguments& arguments, Session& session, SweepRanks& ranks) {
   if (arguments.sweep.empty()) throw UsageError("SWEEP is required");
   if (arguments.store.empty()) throw UsageError("--store is required");
   SweepRunOptions options{.shard = parse_shard(arguments.shard),
@@ -138,7 +124,7 @@ void run(const SweepArguments& arguments, Session& session) {
   SweepRun done;
   if (!arguments.status) {
     session.directory = arguments.store;
-    done = run_sweep(list, keys, store, options, progress);
+    done = run_sweep(list, keys, store, options, progress, &ranks);
   }
   report(progress, 1.0, "done");
   const SweepCounts counts = store.count(keys);
@@ -147,6 +133,16 @@ void run(const SweepArguments& arguments, Session& session) {
   if (!done.failures.empty())
     throw std::runtime_error(fmt::format("{} of {} items failed; the first: {}",
                                          done.failures.size(), list.size(), done.failures.front()));
+}
+
+/// Under mpirun every rank comes here, and rank 0 leads: it alone prints, reads and writes.
+void run(const SweepArguments& arguments, Session& session) {
+  SweepRanks ranks = SweepRanks::join(terminal_progress("sweep"));
+  if (ranks.rank() == 0) return lead(arguments, session, ranks);
+  session.follows = true;
+  work_for_sweep(
+      ranks, [&] { return WorkList(read_sweep_toml(arguments.sweep)); },
+      [](double, std::string_view) { return !interrupted(); });
 }
 
 void merge(const MergeArguments& arguments, const Session& session) {

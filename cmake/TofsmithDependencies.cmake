@@ -21,6 +21,16 @@ if(TOFSMITH_USE_FFTW)
   pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3)
   find_library(FFTW_THREADS_LIBRARY fftw3_threads REQUIRED)  # a planner that threads may share
 endif()
+set(TOFSMITH_HAS_MPI OFF)
+if(TOFSMITH_USE_MPI)
+  set(MPI_CXX_SKIP_MPICXX ON)  # the C interface is used
+  find_package(MPI COMPONENTS CXX)  # can be missing
+  if(MPI_CXX_FOUND)
+    set(TOFSMITH_HAS_MPI ON)
+  else()
+    message(STATUS "MPI not found: sweeps run in one process a machine")
+  endif()
+endif()
 if(TOFSMITH_BUILD_APPS OR TOFSMITH_BUILD_BENCHMARKS)
   find_package(CLI11 REQUIRED)
 endif()

@@ -25,6 +25,7 @@ packages_build=(
 packages_test=(
   "${packages_build[@]}"
   libgtest-dev libgmock-dev
+  libopenmpi-dev openmpi-bin                 # sweeps of several ranks
   python3-numpy                              # reads and writes NPY as others do
   python3-cvxopt                             # an independent solver of the sub-problem
   chromium chromium-driver python3-selenium  # the report, in a browser

@@ -4,18 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <unordered_set>
 
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/random.hpp"
+#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double hottest = 0.15, coldest = 0.005;  // in units of log rms
 constexpr double margin_penalty = 2.5;
 

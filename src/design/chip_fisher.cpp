@@ -8,12 +8,12 @@
 #include <cmath>
 
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
 #include "tofsmith/design/chip_metric.hpp"
 
 namespace tofsmith {
 
 namespace {
-constexpr double infinity = std::numeric_limits<double>::infinity();
 // Gauss-Legendre on [0, 1].
 constexpr std::array<double, nodes_per_chip> node_position = {
     0.06943184420297371, 0.33000947820757187, 0.66999052179242813, 0.93056815579702629};

@@ -5,16 +5,15 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include "decode/bounded_quadratic.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
 #include "tofsmith/design/chip_metric.hpp"
 
 namespace tofsmith {
 
 namespace {
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Stretches of true depth are not halved below this [chips]; what is not proven there fails.
 constexpr double shortest_stretch = 1e-7;
 }  // namespace

@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 
 #include "design/chip_annealing.hpp"
 #include "design/chip_margin.hpp"
 #include "design/exhaustive_search.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
 #include "tofsmith/design/standard_chip_codes.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/version.hpp"
@@ -21,7 +21,6 @@ namespace tofsmith {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void require_searchable(const Camera& camera, const ChipSearchOptions& options) {
   require_plain(camera);

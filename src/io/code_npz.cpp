@@ -20,8 +20,8 @@ namespace tofsmith {
 namespace {
 
 // Noise of the transforms that such files were made with.
-constexpr double tolerance = 1e-9;
-constexpr Eigen::Index max_samples = 65536;  // as a camera's
+constexpr double transform_noise = 1e-9;
+constexpr Eigen::Index max_rows = 65536;  // as a camera's
 constexpr Eigen::Index max_columns = 4096;
 
 /// An array of the archive, with what errors call it.
@@ -34,10 +34,10 @@ NamedMatrix read_matrix(const NpzReader& reader, std::string_view file, const ch
   const std::string place = fmt::format("{}: {}", file, name);
   NamedMatrix matrix{place, matrix_of(reader.read(name), place)};
   const Eigen::Index samples = matrix.values.rows(), columns = matrix.values.cols();
-  if (samples < 2 || samples > max_samples || columns > max_columns)
+  if (samples < 2 || samples > max_rows || columns > max_columns)
     throw IoError(place, fmt::format("found the shape ({}, {}); expected (N, K) with N in [2, {}] "
                                      "and K at most {}",
-                                     samples, columns, max_samples, max_columns));
+                                     samples, columns, max_rows, max_columns));
   return matrix;
 }
 
@@ -54,7 +54,7 @@ void limit(NamedMatrix& matrix, double highest, std::string_view expected) {
   for (Eigen::Index n = 0; n < matrix.values.rows(); ++n)
     for (Eigen::Index i = 0; i < matrix.values.cols(); ++i) {
       double& value = matrix.values(n, i);
-      if (value < -tolerance || value > highest + tolerance)
+      if (value < -transform_noise || value > highest + transform_noise)
         throw IoError(fmt::format("{}[{}, {}]", matrix.place, n, i),
                       fmt::format("found {}; expected {}", value, expected));
       value = std::clamp(value, 0.0, highest);
@@ -64,7 +64,7 @@ void limit(NamedMatrix& matrix, double highest, std::string_view expected) {
 Waveform waveform_of(const Eigen::VectorXd& samples) {
   const double peak = samples.maxCoeff();
   if (peak == 0.0) return Waveform::constant(0.0);
-  const double near = tolerance * peak;
+  const double near = transform_noise * peak;
   const bool two_levels = ((samples.array() <= near) || (samples.array() >= peak - near)).all();
   return two_levels ? Waveform::binary_from_samples(samples, peak) : Waveform::sampled(samples);
 }
@@ -73,7 +73,7 @@ Waveform waveform_of(const Eigen::VectorXd& samples) {
 void require_same_light(const NamedMatrix& modulation, Eigen::Index column, Eigen::Index first) {
   for (Eigen::Index n = 0; n < modulation.values.rows(); ++n) {
     const double value = modulation.values(n, column), expected = modulation.values(n, first);
-    if (std::abs(value - expected) <= tolerance * std::max(1.0, std::abs(expected))) continue;
+    if (std::abs(value - expected) <= transform_noise * std::max(1.0, std::abs(expected))) continue;
     throw IoError(fmt::format("{}[{}, {}]", modulation.place, n, column),
                   fmt::format("found {}; expected {} as in column {}, a tap of the same exposure",
                               value, expected, first));

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 namespace {
@@ -52,7 +53,6 @@ double JsonReader::number(double low, double high, double tolerance) const {
 }
 
 double JsonReader::number_or_infinity() const {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   return value_->is_null() ? infinity : number(0.0, infinity, 0.0);
 }
 

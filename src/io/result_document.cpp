@@ -7,6 +7,7 @@
 
 #include "io/camera_json.hpp"
 #include "io/result_json.hpp"
+#include "tofsmith/core/units.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {
@@ -22,7 +23,6 @@ Json mean_json(const DepthErrorMean& mean) {
           {"mean_se_m", mean.mean_m.standard_error}};
 }
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double not_negative(const JsonReader& json, std::string_view member) {
   return json.member(member).number(0.0, infinity, 0.0);

@@ -10,6 +10,7 @@
 #include "io/json_reader.hpp"
 #include "io/json_text.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
 #include "tofsmith/io/file_name.hpp"
 #include "tofsmith/io/float_image_file.hpp"
 #include "tofsmith/io/read_file.hpp"
@@ -39,7 +40,6 @@ double share(const JsonReader& json, std::string_view member) {
 }
 
 SceneError error_from_json(const JsonReader& json) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   const auto length_m = [&](std::string_view member) {
     return json.member(member).number(0.0, infinity, 0.0);
   };
@@ -52,7 +52,8 @@ SceneError error_from_json(const JsonReader& json) {
 }
 
 /// A plane of the scene's size.
-Image<float> read_plane(const fs::path& path, std::string_view what, const SceneImage& truth) {
+Image<float> read_image_plane(const fs::path& path, std::string_view what,
+                              const SceneImage& truth) {
   Image<float> plane = read_float_image(path, what);
   if (plane.height != truth.height() || plane.width != truth.width())
     throw IoError(path.string(),
@@ -64,8 +65,8 @@ Image<float> read_plane(const fs::path& path, std::string_view what, const Scene
 SceneImage read_truth(const fs::path& directory) {
   SceneImage truth;
   truth.depth_m = read_float_image(directory / "true_depth.npy", "depth");
-  truth.albedo = read_plane(directory / "albedo.npy", "albedo", truth);
-  truth.cosine = read_plane(directory / "cosine.npy", "cosine", truth);
+  truth.albedo = read_image_plane(directory / "albedo.npy", "albedo", truth);
+  truth.cosine = read_image_plane(directory / "cosine.npy", "cosine", truth);
   try {
     truth.validate();
   } catch (const std::invalid_argument& error) {
@@ -80,7 +81,7 @@ SceneDecoding read_decoding(const JsonReader& json, const fs::path& directory,
   if (fs::path(file).has_parent_path())
     json.member("file").mistyped("a file of the same directory");
   return {.code = json.member("code").text(),
-          .depth_m = read_plane(directory / file, "depth", truth),
+          .depth_m = read_image_plane(directory / file, "depth", truth),
           .error = error_from_json(json.member("error"))};
 }
 

@@ -30,7 +30,7 @@ double share_at_ends(const Eigen::VectorXd& x, double top) {
 }
 
 /// What stands in a row of the table: the median over starts of each.
-struct Shape {
+struct PairShape {
   double modulation_variation = 0.0;  // in units of its maximum: 2 is a single pulse
   double demodulation_variation = 0.0;
   double modulation_share = 0.0;
@@ -38,7 +38,7 @@ struct Shape {
   double residual_rms = 0.0;
 };
 
-Shape shape_of(const SampledPair& pair, double residual_rms) {
+PairShape shape_of(const SampledPair& pair, double residual_rms) {
   const double top = pair.modulation.maxCoeff();
   return {circular_total_variation(pair.modulation) / top,
           circular_total_variation(pair.demodulation), share_at_ends(pair.modulation, top),
@@ -51,19 +51,20 @@ double median(std::vector<double> values) {
   return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
-Shape median_shape(const std::vector<Shape>& shapes) {
-  const auto of = [&](double Shape::*member) {
+PairShape median_shape(const std::vector<PairShape>& shapes) {
+  const auto of = [&](double PairShape::*member) {
     std::vector<double> values;
-    for (const Shape& shape : shapes) values.push_back(shape.*member);
+    for (const PairShape& shape : shapes) values.push_back(shape.*member);
     return median(std::move(values));
   };
-  return {of(&Shape::modulation_variation), of(&Shape::demodulation_variation),
-          of(&Shape::modulation_share), of(&Shape::demodulation_share), of(&Shape::residual_rms)};
+  return {of(&PairShape::modulation_variation), of(&PairShape::demodulation_variation),
+          of(&PairShape::modulation_share), of(&PairShape::demodulation_share),
+          of(&PairShape::residual_rms)};
 }
 
 /// The three variants on one target: medians over the starts, and what the first start gives.
 struct Variants {
-  Shape without, with, projected;
+  PairShape without, with, projected;
   SampledPair first_without, first_with, first_projected;
 };
 
@@ -74,7 +75,7 @@ Variants run_variants(const CorrelationTarget& target, const Camera& camera, std
   FactorizeOptions options;
   options.max_iterations = 60;
   Variants variants;
-  std::vector<Shape> without, with, projected;
+  std::vector<PairShape> without, with, projected;
   for (int start = 0; start < starts; ++start) {
     const SampledPair begin = random_start(model, seed, start).pair;
     const AlternationResult free = alternate(model, begin, 0.0, options, solver);
@@ -99,7 +100,7 @@ WaveformPair as_sampled(const SampledPair& pair) {
 }
 
 std::vector<std::string> table_row(const std::string& target, const std::string& variant,
-                                   const Shape& shape) {
+                                   const PairShape& shape) {
   return {target,
           variant,
           fmt::format("{:.2f}", shape.modulation_variation),
@@ -109,7 +110,7 @@ std::vector<std::string> table_row(const std::string& target, const std::string&
           rms_text(shape.residual_rms)};
 }
 
-std::vector<double> csv_row(const Shape& shape) {
+std::vector<double> csv_row(const PairShape& shape) {
   return {shape.modulation_variation, shape.modulation_share, shape.demodulation_variation,
           shape.demodulation_share, shape.residual_rms};
 }
@@ -165,7 +166,7 @@ void add_total_variation_ablation(Reproduction& result, const ReproduceContext& 
     with_text.push_back(fmt::format("{}: {:.0f} % of m, {:.0f} % of d", label,
                                     100 * v.with.modulation_share,
                                     100 * v.with.demodulation_share));
-    const auto add = [&](const std::string& variant, const Shape& shape) {
+    const auto add = [&](const std::string& variant, const PairShape& shape) {
       table.rows.push_back(table_row(label, variant, shape));
       row_names.push_back(fmt::format("k{}-{} {}", one.order, one.code, variant));
       rows.push_back(csv_row(shape));

@@ -4,17 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "simulate/bound_means.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Values at the middle of every second cell of a table of twice as many points, and the slope over
 /// the cell around them.
 void middles_and_slopes(const Eigen::MatrixXd& fine, Eigen::MatrixXd& middle,

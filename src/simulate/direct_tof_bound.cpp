@@ -3,17 +3,16 @@
 #include "tofsmith/simulate/direct_tof_bound.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "simulate/bound_means.hpp"
 #include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double total_exposure_s(const ExposureTime& exposure) {
   if (exposure.each_s.empty()) return exposure.total_s;

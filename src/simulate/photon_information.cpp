@@ -5,15 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 
 #include "tofsmith/core/periodic.hpp"
+#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 
 namespace {
-constexpr double infinity = std::numeric_limits<double>::infinity();
 // Of the largest value: what the harmonics left out may make of a response that is 0.
 constexpr double rounding = 1e-7;
 }  // namespace

@@ -11,12 +11,6 @@
 
 namespace tofsmith {
 
-namespace {
-
-constexpr std::chrono::milliseconds moment(50);
-
-}  // namespace
-
 ItemBatch::ItemBatch(const WorkList& list, std::vector<ClaimedItem> items)
     : list_(list), items_(std::move(items)), thread_([this] { compute_all(); }) {}
 
@@ -25,10 +19,15 @@ ItemBatch::~ItemBatch() {
   thread_.join();
 }
 
-std::vector<ItemOutcome> ItemBatch::wait() {
+std::vector<ItemOutcome> ItemBatch::wait(std::chrono::milliseconds most) {
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, moment, [this] { return !outcomes_.empty() || done_; });
+  changed_.wait_for(lock, most, [this] { return !outcomes_.empty() || done_; });
   return std::exchange(outcomes_, {});
+}
+
+void ItemBatch::wait_until_done() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return done_.load(); });
 }
 
 void ItemBatch::compute_all() {

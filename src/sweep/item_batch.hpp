@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -28,8 +29,10 @@ class ItemBatch {
   ItemBatch(const ItemBatch&) = delete;
   ItemBatch& operator=(const ItemBatch&) = delete;
 
-  /// Waits a moment for something to come out, and takes what did.
-  std::vector<ItemOutcome> wait();
+  /// Waits at most so long for something to come out, and takes what did.
+  std::vector<ItemOutcome> wait(std::chrono::milliseconds most);
+  /// Waits for the end, and takes nothing.
+  void wait_until_done();
   /// Whether all is computed. What came out last may still be waiting.
   bool is_done() const { return done_; }
   /// Asks all work to stop; wait() gives what was finished nevertheless.

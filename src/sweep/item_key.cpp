@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <iterator>
+#include <span>
 
 #include "tofsmith/core/hash.hpp"
 #include "tofsmith/io/camera_toml.hpp"
@@ -31,29 +32,46 @@ void append(std::string& text, const Waveform& waveform) {
   text += '\n';
 }
 
-/// The camera without its name, its responses as samples wherever they came from.
+/// The camera without its name and light levels, its responses as samples wherever they came from.
 std::string camera_text(const Camera& camera) {
   Camera plain = camera;
   plain.name = "camera";
+  plain.operating = paper_operating_range();
   for (ImpulseResponse* response : {&plain.light.impulse_response, &plain.sensor.impulse_response})
     if (!response->samples.empty()) response->file.clear();  // then its samples are written
   return camera_to_json(plain);
 }
 
+void append(std::string& text, std::string_view name, std::span<const double> numbers) {
+  text += name;
+  for (const double number : numbers) append(text, number);
+  text += '\n';
+}
+
 }  // namespace
 
-std::string item_key(const Camera& camera, const CodeSet& code, const EvaluateOptions& options) {
-  const bool unwraps = options.method == DecodeMethod::unwrap;
-  std::string text = fmt::format("results {}\nmethod {} {}\ntrials {}\nseed {}\n",
-                                 sweep_result_version, name_of(options.method),
-                                 unwraps ? name_of(options.unwrap_weights) : std::string_view(),
-                                 options.trials, options.seed);
-  append(text, options.outlier_threshold_m);
-  text += camera_text(camera);
+std::string setup_key(const Camera& camera, const CodeSet& code) {
+  std::string text = camera_text(camera);
   fmt::format_to(std::back_inserter(text), "code {} {} {}\n", code.samples(), code.exposures(),
                  code.taps());
   for (int e = 0; e < code.exposures(); ++e) append(text, code.modulation(e));
   for (int i = 0; i < code.measurements(); ++i) append(text, code.demodulation(i));
+  return fnv1a_128_hex(text);
+}
+
+std::string item_key(std::string_view setup, const OperatingRange& light,
+                     const EvaluateOptions& options) {
+  const bool unwraps = options.method == DecodeMethod::unwrap;
+  std::string text = fmt::format("results {}\nmethod {} {}\ntrials {}\nseed {}\nsetup {}\n",
+                                 sweep_result_version, name_of(options.method),
+                                 unwraps ? name_of(options.unwrap_weights) : std::string_view(),
+                                 options.trials, options.seed, setup);
+  append(text, "outlier ", {&options.outlier_threshold_m, 1});
+  append(text, "signal ", light.signal_e_per_s);
+  append(text, "ambient ", light.ambient_e_per_s);
+  append(text, "albedo ", {&light.albedo, 1});
+  fmt::format_to(std::back_inserter(text), "{} {}\n", light.uniform_albedo,
+                 static_cast<int>(light.error));
   return fnv1a_128_hex(text);
 }
 

@@ -3,12 +3,18 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
 
+/// A hash of all of a camera and the code it plays, but for names and light levels.
+std::string setup_key(const Camera& camera, const CodeSet& code);
+
 /// WorkItem::key of what evaluate() is called with.
-std::string item_key(const Camera& camera, const CodeSet& code, const EvaluateOptions& options);
+/// @param setup  setup_key()
+std::string item_key(std::string_view setup, const OperatingRange& light,
+                     const EvaluateOptions& options);
 
 }  // namespace tofsmith

@@ -5,11 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
-#include <unordered_set>
+#include <deque>
+#include <iterator>
 
-#include "sweep/item_batch.hpp"
+#include "sweep/key_order.hpp"
+#include "sweep/open_items.hpp"
+#include "sweep/sweep_crew.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -22,111 +24,115 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// The items of a run that are not known to be finished: first those that were never asked for,
-/// then those that others had when we asked.
-class OpenItems {
+/// How much one member of the crew has to do, and how fast it is.
+class MemberLoad {
  public:
-  OpenItems(std::span<const std::string> keys, const SweepShard& shard) {
-    std::unordered_set<std::string_view> seen;
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-      if (!shard.holds(keys[i]) || !seen.insert(keys[i]).second) continue;
-      keys_.push_back(keys[i]);
-      items_.push_back(static_cast<std::int64_t>(i));
-    }
-    count_ = keys_.size();
+  /// Items for about `batch_s` of work; fewer near the end, so that all end together.
+  std::size_t batch(double batch_s, std::size_t left, std::size_t members) const {
+    const double most = std::clamp(batch_s / std::max(each_s_, 1e-6), 1.0, 256.0);
+    const std::size_t share = left / (2 * members);
+    return std::max<std::size_t>(1, std::min(static_cast<std::size_t>(most), share));
   }
+  /// It is to have the next batch before it is done with this one.
+  bool is_short_of(std::size_t batch) const { return in_work_ <= batch / 2; }
 
-  const std::vector<std::string>& keys() const { return keys_; }
-  const std::vector<std::int64_t>& items() const { return items_; }
-  std::size_t count() const { return count_; }
-  /// Items that nobody needs to compute any more, or that are ours.
-  std::size_t settled() const { return settled_; }
-  bool are_none() const { return settled_ == count_; }
-  bool were_all_asked() const { return next_ == keys_.size(); }
-
-  /// Claims up to `most`. May come back empty-handed though some are open.
-  std::vector<ClaimedItem> claim(SweepStore& store, std::size_t most) {
-    if (were_all_asked()) start_over();
-    const std::span<const std::string> rest = std::span(keys_).subspan(next_);
-    std::vector<ClaimedItem> ours;
-    for (const ClaimAnswer answer : store.claim(rest, most)) {
-      if (answer == ClaimAnswer::taken)
-        taken_.push_back(next_);
-      else
-        ++settled_;
-      if (answer == ClaimAnswer::ours) ours.push_back({items_[next_], keys_[next_]});
-      ++next_;
-    }
-    return ours;
+  void give(std::size_t items) {
+    if (in_work_ == 0) restart();
+    in_work_ += items;
+  }
+  void take(std::size_t items) {
+    in_work_ -= items;
+    done_ += items;
+    each_s_ = seconds_since(begin_) / static_cast<double>(done_);
+    if (seconds_since(begin_) > 5.0) restart();
   }
 
  private:
-  /// Goes on with those that others had.
-  void start_over() {
-    std::vector<std::string> keys;
-    std::vector<std::int64_t> items;
-    for (const std::size_t i : taken_) {
-      keys.push_back(std::move(keys_[i]));
-      items.push_back(items_[i]);
-    }
-    keys_ = std::move(keys);
-    items_ = std::move(items);
-    taken_.clear();
-    next_ = 0;
+  void restart() {
+    begin_ = Clock::now();
+    done_ = 0;
   }
 
-  std::vector<std::string> keys_;
-  std::vector<std::int64_t> items_;
-  std::vector<std::size_t> taken_;
-  std::size_t next_ = 0, settled_ = 0, count_ = 0;
+  std::size_t in_work_ = 0, done_ = 0;
+  double each_s_ = 1e6;  // not known yet: it gets one
+  Clock::time_point begin_;
 };
 
-/// One run: claims, computes, stores, over and over.
+/// One run: claims, has computed, stores, over and over.
 class Runner {
  public:
   Runner(const WorkList& list, SweepStore& store, const SweepRunOptions& options,
-         const Progress& progress, OpenItems& open)
-      : list_(list), store_(store), options_(options), progress_(progress), open_(open) {}
+         const Progress& progress, OpenItems& open, SweepRanks* ranks)
+      : store_(store),
+        options_(options),
+        progress_(progress),
+        open_(open),
+        crew_(list, ranks, ranks == nullptr || ranks->count() <= options.most_ranks_computing),
+        loads_(crew_.size()) {}
 
   SweepRun run() {
-    while (!open_.are_none()) {
-      std::vector<ClaimedItem> items = open_.claim(store_, batch_items_);
-      if (!items.empty())
-        compute(std::move(items));
-      else if (open_.were_all_asked() && !open_.are_none())
-        wait_for_others();
-      show_life(0.0);
+    try {
+      while (!open_.are_none() || in_work() > 0) {
+        claim();
+        hand_out();
+        take(crew_.wait());
+        show_life();
+      }
+    } catch (const Interrupted&) {
+      keep(crew_.stop());
+      throw;
     }
     return std::move(result_);
   }
 
  private:
-  void compute(std::vector<ClaimedItem> items) {
-    const std::size_t count = items.size();
-    const Clock::time_point begin = Clock::now();
-    in_work_ = count;
-    ItemBatch batch(list_, std::move(items));
-    try {
-      while (!batch.is_done()) {
-        keep(batch.wait());
-        show_life(batch.fraction());
-      }
-    } catch (const Interrupted&) {
-      batch.stop();
-      while (!batch.is_done()) keep(batch.wait());
-      keep(batch.wait());
-      throw;
+  std::size_t in_work() const { return computing_ + ready_.size(); }
+  /// Items that are still to be given to somebody, or were not asked for.
+  std::size_t left() const { return open_.count() - open_.settled() + ready_.size(); }
+  std::size_t batch_of(const MemberLoad& load) const {
+    return load.batch(options_.batch_s, left(), loads_.size());
+  }
+
+  /// Enough for all members who are short of work, in one transaction.
+  void claim() {
+    if (open_.are_none()) return;
+    std::size_t wanted = 0;
+    for (const MemberLoad& load : loads_)
+      if (load.is_short_of(batch_of(load))) wanted += batch_of(load);
+    if (wanted <= ready_.size()) return;
+    if (open_.were_all_asked() && seconds_since(asked_all_at_) < 0.3) return;
+    for (ClaimedItem& item : open_.claim(store_, wanted - ready_.size()))
+      ready_.push_back(std::move(item));
+    if (open_.were_all_asked()) asked_all_at_ = Clock::now();
+  }
+
+  void hand_out() {
+    for (std::size_t m = 0; m < loads_.size() && !ready_.empty(); ++m) {
+      const std::size_t batch = std::min(batch_of(loads_[m]), ready_.size());
+      if (!loads_[m].is_short_of(batch_of(loads_[m]))) continue;
+      const auto end = ready_.begin() + static_cast<std::ptrdiff_t>(batch);
+      crew_.give(m, {std::make_move_iterator(ready_.begin()), std::make_move_iterator(end)});
+      ready_.erase(ready_.begin(), end);
+      loads_[m].give(batch);
+      computing_ += batch;
     }
-    keep(batch.wait());
-    const double each_s = seconds_since(begin) / static_cast<double>(count);
-    batch_items_ =
-        static_cast<std::size_t>(std::clamp(options_.batch_s / std::max(each_s, 1e-6), 1.0, 256.0));
+  }
+
+  /// Stores all that came, in one transaction.
+  void take(std::vector<SweepCrew::Delivery> deliveries) {
+    std::vector<ItemOutcome> outcomes;
+    for (SweepCrew::Delivery& delivery : deliveries) {
+      loads_[delivery.member].take(delivery.outcomes.size());
+      outcomes.insert(outcomes.end(), std::make_move_iterator(delivery.outcomes.begin()),
+                      std::make_move_iterator(delivery.outcomes.end()));
+    }
+    keep(outcomes);
   }
 
   void keep(const std::vector<ItemOutcome>& outcomes) {
     store_.finish(outcomes);
     for (const ItemOutcome& outcome : outcomes) {
-      --in_work_;
+      --computing_;
       if (outcome.message.empty())
         ++result_.computed;
       else
@@ -134,43 +140,35 @@ class Runner {
     }
   }
 
-  void wait_for_others() {
-    const Clock::time_point begin = Clock::now();
-    while (seconds_since(begin) < 0.3) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-      show_life(0.0);
-    }
-  }
-
   /// To the user, and to other workers.
-  void show_life(double fraction_of_one) {
+  void show_life() {
     if (seconds_since(last_beat_) > options_.lease_s / 6) {
       store_.beat();
       last_beat_ = Clock::now();
     }
-    const std::size_t finished = open_.settled() - in_work_;
+    const std::size_t finished = open_.settled() - in_work();
     report(progress_,
-           (static_cast<double>(finished) + fraction_of_one) / static_cast<double>(open_.count()),
+           (static_cast<double>(finished) + crew_.fraction()) / static_cast<double>(open_.count()),
            fmt::format("{} of {} items", finished, open_.count()));
   }
 
-  const WorkList& list_;
   SweepStore& store_;
   const SweepRunOptions& options_;
   const Progress& progress_;
   OpenItems& open_;
+  SweepCrew crew_;
+  std::vector<MemberLoad> loads_;
+  std::deque<ClaimedItem> ready_;  // ours, and given to nobody yet
+  std::size_t computing_ = 0;
   SweepRun result_;
-  std::size_t batch_items_ = 1;
-  std::size_t in_work_ = 0;
-  Clock::time_point last_beat_ = Clock::now();
+  Clock::time_point last_beat_ = Clock::now(), asked_all_at_ = Clock::now() - std::chrono::hours(1);
 };
 
 }  // namespace
 
 bool SweepShard::holds(std::string_view key) const {
-  std::uint64_t number = 0;
-  std::from_chars(key.data(), key.data() + std::min<std::size_t>(key.size(), 16), number, 16);
-  return number % static_cast<std::uint64_t>(count) == static_cast<std::uint64_t>(index - 1);
+  return key_number(key) % static_cast<std::uint64_t>(count) ==
+         static_cast<std::uint64_t>(index - 1);
 }
 
 void SweepShard::validate() const {
@@ -182,14 +180,17 @@ void SweepRunOptions::validate() const {
   shard.validate();
   require(lease_s > 0.0, "lease_s", lease_s, "must be > 0");
   require(batch_s > 0.0, "batch_s", batch_s, "must be > 0");
+  require(most_ranks_computing >= 1, "most_ranks_computing", most_ranks_computing, "must be >= 1");
 }
 
 SweepRun run_sweep(const WorkList& list, std::span<const std::string> keys, SweepStore& store,
-                   const SweepRunOptions& options, const Progress& progress) {
+                   const SweepRunOptions& options, const Progress& progress, SweepRanks* ranks) {
   options.validate();
+  require(ranks == nullptr || ranks->rank() == 0, "rank", ranks == nullptr ? 0 : ranks->rank(),
+          "must be 0: the others work_for_sweep()");
   OpenItems open(keys, options.shard);
-  store.add(open.keys(), [&](std::size_t i) { return list.settings_json(open.items()[i]); });
-  return Runner(list, store, options, progress, open).run();
+  open.add_to(store, list, progress);
+  return Runner(list, store, options, progress, open, ranks).run();
 }
 
 }  // namespace tofsmith

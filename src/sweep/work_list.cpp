@@ -5,7 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "sweep/item_key.hpp"
 #include "tofsmith/code/families.hpp"
@@ -26,6 +32,9 @@ struct Choice {
   std::vector<std::string> settings;
   std::string code;
   EvaluateOptions options;
+  /// Of an axis; NaN: those of the camera.
+  double signal_e_per_s = std::numeric_limits<double>::quiet_NaN();
+  double ambient_e_per_s = std::numeric_limits<double>::quiet_NaN();
 };
 
 std::string replaced(std::string text, std::string_view what, const std::string& by) {
@@ -55,9 +64,10 @@ Choice choose(const SweepSpec& spec, std::int64_t item) {
       choice.options.seed = static_cast<std::uint64_t>(*value.number);
     else if (key == "trials")
       choice.options.trials = static_cast<std::int64_t>(*value.number);
-    else if (key == "signal_e_per_s" || key == "ambient_e_per_s")
+    else if (key == "signal_e_per_s" || key == "ambient_e_per_s") {
       choice.settings.push_back(fmt::format("operating.{}=[{}]", key, value.toml));
-    else
+      (key == "signal_e_per_s" ? choice.signal_e_per_s : choice.ambient_e_per_s) = *value.number;
+    } else
       choice.settings.push_back(fmt::format("{}={}", key, value.toml));
   }
   choice.code = replaced(std::move(choice.code), "{exposures}", exposures);
@@ -101,6 +111,64 @@ std::string place_of_setting(const SweepSpec& spec, std::int64_t item, std::stri
   return "";
 }
 
+/// Keys of items by the camera and the code they share: those are read and built once, however
+/// many seeds and light levels they meet.
+class SetupCache {
+ public:
+  explicit SetupCache(const WorkList& list) : list_(list) {
+    for (std::size_t a = 0; a < list.spec().axes.size(); ++a) {
+      const std::string& key = list.spec().axes[a].key;
+      // Whichever of two axes sets the light levels last has the say.
+      if (key.starts_with("operating")) sets_light_twice_ = true;
+      if (std::ranges::find(light_keys, key) == light_keys.end()) setup_axes_.push_back(a);
+    }
+  }
+
+  /// @throws IoError as WorkList::item()
+  std::string key(std::int64_t item) {
+    const SweepSpec& spec = list_.spec();
+    const Choice choice = choose(spec, item);
+    const bool is_plain = !sets_light_twice_ && !(choice.signal_e_per_s <= 0.0);
+    const std::optional<Setup> setup = is_plain ? setup_of(item) : std::nullopt;
+    if (!setup) return list_.item(item).key;
+    OperatingRange light = setup->light;
+    if (!std::isnan(choice.signal_e_per_s)) light.signal_e_per_s = {choice.signal_e_per_s};
+    if (!std::isnan(choice.ambient_e_per_s)) light.ambient_e_per_s = {choice.ambient_e_per_s};
+    return item_key(setup->key, light, choice.options);
+  }
+
+ private:
+  struct Setup {
+    std::string key;
+    OperatingRange light;
+  };
+  static constexpr std::size_t most_kept = 100'000;
+  static constexpr std::array<std::string_view, 6> light_keys = {
+      "signal_e_per_s", "ambient_e_per_s", "seed", "trials", "method", "unwrap_weights"};
+
+  /// None if nothing more is kept: then it is built for each item.
+  std::optional<Setup> setup_of(std::int64_t item) {
+    const std::vector<std::size_t> indices = list_.spec().value_indices(item);
+    std::vector<std::size_t> own;
+    for (const std::size_t a : setup_axes_) own.push_back(indices[a]);
+    {
+      const std::lock_guard lock(mutex_);
+      if (const auto found = setups_.find(own); found != setups_.end()) return found->second;
+      if (setups_.size() >= most_kept) return std::nullopt;
+    }
+    const WorkItem built = list_.item(item);
+    const Setup setup{setup_key(built.camera, built.code), built.camera.operating};
+    const std::lock_guard lock(mutex_);
+    return setups_.emplace(std::move(own), setup).first->second;
+  }
+
+  const WorkList& list_;
+  bool sets_light_twice_ = false;
+  std::vector<std::size_t> setup_axes_;
+  std::mutex mutex_;
+  std::map<std::vector<std::size_t>, Setup> setups_;
+};
+
 }  // namespace
 
 std::string WorkList::code_name(std::int64_t item) const { return choose(spec_, item).code; }
@@ -124,7 +192,7 @@ WorkItem WorkList::item(std::int64_t item) const {
   try {
     const Camera camera = load_chosen_camera(spec_, choice);
     CodeSet code = load_chosen_code(spec_, choice, camera);
-    std::string key = item_key(camera, code, choice.options);
+    std::string key = item_key(setup_key(camera, code), camera.operating, choice.options);
     return {std::move(key), camera, std::move(code), choice.options};
   } catch (const std::exception& error) {
     if (dynamic_cast<const IoError*>(&error) == nullptr &&
@@ -138,12 +206,14 @@ WorkItem WorkList::item(std::int64_t item) const {
 }
 
 std::vector<std::string> WorkList::keys(const Progress& progress) const {
-  constexpr std::int64_t block = 256;
+  constexpr std::int64_t block = 4096;
+  SetupCache setups(*this);
   std::vector<std::string> keys(static_cast<std::size_t>(size_));
   for (std::int64_t begin = 0; begin < size_; begin += block) {
     report(progress, static_cast<double>(begin) / static_cast<double>(size_), "reading items");
-    parallel_for(std::min(block, size_ - begin), [&](std::int64_t i) {
-      keys[static_cast<std::size_t>(begin + i)] = item(begin + i).key;
+    parallel_for_blocks(std::min(block, size_ - begin), 64, [&](IndexRange range) {
+      for (std::int64_t i = range.begin; i < range.end; ++i)
+        keys[static_cast<std::size_t>(begin + i)] = setups.key(begin + i);
     });
   }
   return keys;

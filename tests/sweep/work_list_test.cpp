@@ -90,6 +90,23 @@ TEST(WorkList, AddingValuesKeepsTheKeysOfTheOthers) {
   for (const std::string& key : few) EXPECT_TRUE(kept.contains(key));
 }
 
+TEST(WorkList, KeysOfAllAreTheKeysOfEach) {
+  const std::string codes = "codes = [\"square-k4\", \"sinusoid-k4\"]\n";
+  for (const std::string& text :
+       {codes + axis("seed", "1, 2") + axis("light.peak_factor", "12, 15") +
+            axis("signal_e_per_s", "1e3, 2.1e4") + axis("ambient_e_per_s", "0, 0.3"),
+        codes + axis("method", "\"zncc\", \"ml\"") + axis("trials", "2, 4"),
+        codes + axis("operating.signal_e_per_s", "[1e3], [2e3]") + axis("signal_e_per_s", "5e3"),
+        codes + axis("signal_e_per_s", "5e3, 6e3") + axis("operating.signal_e_per_s", "[1e3]"),
+        "combine = \"zip\"\n" + codes + axis("samples", "24, 48") + axis("seed", "7, 8")}) {
+    const WorkList list(parse_sweep_toml(base + text));
+    const std::vector<std::string> keys = list.keys();
+    ASSERT_EQ(list.size(), static_cast<std::int64_t>(keys.size()));
+    for (std::size_t i = 0; i < keys.size(); ++i)
+      EXPECT_EQ(keys[i], list.item(static_cast<std::int64_t>(i)).key) << text << i;
+  }
+}
+
 TEST(WorkList, ExposuresGoIntoTheNameOfAFamily) {
   const WorkList list(
       parse_sweep_toml(base + "code = \"hamiltonian-k{exposures}\"\n" + axis("exposures", "4, 3")));

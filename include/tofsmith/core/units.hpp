@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
+
 namespace tofsmith {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Speed of light in vacuum [m/s].
 inline constexpr double speed_of_light_m_per_s = 299792458.0;

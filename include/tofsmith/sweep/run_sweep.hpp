@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tofsmith/core/progress.hpp"
+#include "tofsmith/sweep/sweep_ranks.hpp"
 #include "tofsmith/sweep/sweep_store.hpp"
 #include "tofsmith/sweep/work_list.hpp"
 
@@ -30,6 +31,9 @@ struct SweepRunOptions {
   SweepShard shard;
   double lease_s = SweepStoreOptions{}.lease_s;  ///< of the store, whose worker must show life
   double batch_s = 1.0;  ///< work that is taken at a time, so lost when killed [s], > 0
+  /// Of a job of more ranks than that, rank 0 hands out and stores only; it computes too in smaller
+  /// ones. >= 1
+  int most_ranks_computing = 64;
 
   void validate() const;
 };
@@ -45,8 +49,11 @@ struct SweepRun {
 /// the number of threads and processes.
 /// @param keys      of all items, WorkList::keys()
 /// @param progress  called about 20 times a second. When it asks to stop, what is finished is kept
-/// @throws IoError if the store fails; Interrupted if progress says so
+/// @param ranks     of which this is rank 0, and which compute too; null if there are no others
+/// @throws IoError if the store fails; Interrupted if progress says so, here or on another rank;
+///         std::runtime_error if another rank cannot go on
 SweepRun run_sweep(const WorkList& list, std::span<const std::string> keys, SweepStore& store,
-                   const SweepRunOptions& options = {}, const Progress& progress = {});
+                   const SweepRunOptions& options = {}, const Progress& progress = {},
+                   SweepRanks* ranks = nullptr);
 
 }  // namespace tofsmith

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tofsmith/core/progress.hpp"
+#include "tofsmith/scene/pinhole.hpp"
+#include "tofsmith/simulate/capture.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
+
+namespace tofsmith {
+
+/// One scene of a training set.
+struct TrainingScene {
+  std::string name;            ///< what it is known by: its path within the folder or the list
+  std::filesystem::path file;  ///< where it is now
+};
+
+/// The scenes that folders, lists (.txt: a file a line, named from where the list stands; # starts
+/// a remark) and files name, each once, in the order of their names. Of a folder, all files below
+/// it that can be scenes.
+/// @throws IoError for what cannot be read, an empty folder or list, and names that come twice
+std::vector<TrainingScene> training_scenes(std::span<const std::string> inputs);
+
+/// A light level: drawn log-uniformly for every scene, or the same for all.
+struct LightRange {
+  double low_e_per_s = 0.0, high_e_per_s = 0.0;
+
+  /// @param which  how errors call it
+  /// @throws std::invalid_argument unless both are finite, 0 <= low <= high, and low > 0 if they
+  ///         differ
+  void validate(const std::string& which) const;
+};
+
+struct TrainingSetOptions {
+  LightRange signal, ambient;
+  CaptureOptions capture;  ///< its signal and ambient light are not used; seed of the whole set
+  SweepShard shard;        ///< by the scenes' names
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+
+/// What became of a training set.
+struct TrainingSetRun {
+  std::int64_t scenes = 0;             ///< of this shard
+  std::int64_t written = 0, kept = 0;  ///< now, and found finished
+  std::vector<std::string> failures;   ///< "name: problem" of scenes that could not be simulated
+  std::filesystem::path index;         ///< the list of all that is finished
+};
+
+/// How a scene is loaded.
+struct LoadedTrainingScene {
+  SceneImage image;
+  PinholeView view;
+};
+using TrainingSceneLoader = std::function<LoadedTrainingScene(const TrainingScene&)>;
+
+/// Captures and decodes every scene, and writes into `directory`, for each, KEY.npz (raw, depth_m,
+/// true_depth_m, albedo) and then KEY.json (parameters), below a folder of the first two digits of
+/// its key; at the end, an index. The key is a hash of everything that determines the content: what
+/// is there under it is finished and stays.
+/// @param load  called from several threads at a time; what it throws fails that scene only
+/// @return with what failed. Noise and drawn light levels depend on the seed and the scene's name
+///         and content: same bits whatever the order, the shards and the number of threads
+/// @throws IoError if an output cannot be written; Interrupted if progress says so (asked between
+///         scenes), then what is finished is kept
+TrainingSetRun write_training_set(const std::filesystem::path& directory,
+                                  std::span<const TrainingScene> scenes, const CodeSet& code,
+                                  const Camera& camera, const TrainingSceneLoader& load,
+                                  const TrainingSetOptions& options, const Progress& progress = {});
+
+}  // namespace tofsmith

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/read_file.hpp"
+#include "tofsmith/sweep/training_set.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 9> scene_extensions = {
+    ".npy", ".npz", ".exr", ".pfm", ".png", ".toml", ".obj", ".ply", ".stl"};
+
+bool can_be_scene(const fs::path& path) {
+  return std::ranges::find(scene_extensions, path.extension().string()) != scene_extensions.end();
+}
+
+void add_folder(std::vector<TrainingScene>& scenes, const fs::path& folder) {
+  const std::size_t before = scenes.size();
+  try {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+      if (entry.is_regular_file() && can_be_scene(entry.path()))
+        scenes.push_back({entry.path().lexically_relative(folder).generic_string(), entry.path()});
+  } catch (const fs::filesystem_error& error) {
+    throw IoError(folder.string(), fmt::format("cannot be read: {}", error.code().message()));
+  }
+  if (scenes.size() == before)
+    throw IoError(folder.string(), fmt::format("holds no scenes; expected files of {}",
+                                               fmt::join(scene_extensions, ", ")));
+}
+
+void add_list(std::vector<TrainingScene>& scenes, const fs::path& list) {
+  const std::size_t before = scenes.size();
+  std::istringstream lines(read_text_file(list));
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t begin = line.find_first_not_of(" \t\r");
+    if (begin == std::string::npos || line[begin] == '#') continue;
+    const std::string name = line.substr(begin, line.find_last_not_of(" \t\r") + 1 - begin);
+    scenes.push_back({name, list.parent_path() / name});
+  }
+  if (scenes.size() == before) throw IoError(list.string(), "names no scene; expected one a line");
+}
+
+}  // namespace
+
+std::vector<TrainingScene> training_scenes(std::span<const std::string> inputs) {
+  std::vector<TrainingScene> scenes;
+  for (const std::string& input : inputs) {
+    std::error_code ignored;
+    if (fs::is_directory(input, ignored))
+      add_folder(scenes, input);
+    else if (fs::path(input).extension() == ".txt")
+      add_list(scenes, input);
+    else
+      scenes.push_back({input, input});
+  }
+  std::ranges::sort(scenes, {}, &TrainingScene::name);
+  const auto twice = std::ranges::adjacent_find(scenes, {}, &TrainingScene::name);
+  if (twice != scenes.end())
+    throw IoError(twice->file.string(),
+                  fmt::format("found the name {} twice ({} is the other); a scene's noise depends "
+                              "on its name, so expected different ones",
+                              twice->name, std::next(twice)->file.string()));
+  return scenes;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,115 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""tofsmith simulate of many scenes: the same files whatever the order, shards and interruptions."""
+
+import json
+import os
+import signal
+import time
+import unittest
+
+import numpy as np
+
+from command_line import CommandLineTest
+
+CODE = ("--code", "hamiltonian-k3", "--set", "samples=60")
+
+
+class Datasets(CommandLineTest):
+    def make_scenes(self, count=5, height=6):
+        os.makedirs(self.path("scenes/sub"), exist_ok=True)
+        for i in range(count):
+            folder = "scenes/sub" if i % 2 else "scenes"
+            np.save(self.path(f"{folder}/{i:03}.npy"), np.full((height, 8), 1.0 + i, np.float32))
+
+    def simulate(self, output, *inputs):
+        return self.do_json("simulate", *(inputs or ("scenes",)), *CODE, "-o", output)
+
+    def content(self, folder):
+        return {os.path.relpath(name, folder): self.bytes_of(name) for name in self.files()
+                if name.startswith(folder + "/") and os.path.isfile(self.path(name))}
+
+    def test_writes_raw_depth_truth_and_parameters(self):
+        self.make_scenes()
+        document = self.simulate("set", "scenes", "--signal-range", "1e5:1e7", "--frames", "2")
+        self.assertEqual((document["scenes"], document["written"], document["kept"]), (5, 5, 0))
+        index = json.loads(self.bytes_of("set/index.json"))
+        self.assertEqual([scene["name"] for scene in index["scenes"]],
+                         ["000.npy", "002.npy", "004.npy", "sub/001.npy", "sub/003.npy"])
+        signals = set()
+        for scene in index["scenes"]:
+            arrays = np.load(self.path("set/" + scene["file"]))
+            self.assertEqual(arrays["raw"].shape, (2, 6, 8, 3))
+            self.assertEqual(arrays["depth_m"].shape, (2, 6, 8))
+            self.assertEqual(arrays["true_depth_m"].shape, (6, 8))
+            self.assertTrue(1e5 <= scene["signal_e_per_s"] <= 1e7)
+            signals.add(scene["signal_e_per_s"])
+            parameters = self.bytes_of("set/" + scene["file"].replace(".npz", ".json"))
+            self.assertEqual(json.loads(parameters), scene)
+        self.assertEqual(len(signals), 5)
+        again = self.simulate("set", "scenes", "--signal-range", "1e5:1e7", "--frames", "2")
+        self.assertEqual((again["written"], again["kept"]), (0, 5))
+
+    def test_a_list_and_shards_give_the_bytes_of_the_folder(self):
+        self.make_scenes()
+        self.simulate("whole")
+        self.write("scenes/list.txt", "sub/003.npy\n# remark\n004.npy\nsub/001.npy\n002.npy\n000.npy\n")
+        self.simulate("listed", "scenes/list.txt", "--threads", "1")
+        self.assertEqual(self.content("whole"), self.content("listed"))
+        sums = [self.simulate("parts", "scenes", "--shard", f"{i}/2")["written"] for i in (2, 1)]
+        self.assertEqual(sum(sums), 5)
+        self.assertEqual(self.simulate("parts")["kept"], 5)
+        parts = {name: data for name, data in self.content("parts").items() if "-of-" not in name}
+        self.assertEqual(parts, self.content("whole"))
+
+    def test_a_bad_file_is_told_and_leaves_the_others(self):
+        self.make_scenes(3)
+        self.write("scenes/broken.npy", "no array")
+        code, _, error = self.run_tool("simulate", "scenes", *CODE, "-o", "set")
+        self.assertEqual(code, 1)
+        self.assertIn("1 of 4 scenes failed", error)
+        self.assertIn("broken.npy", error)
+        index = json.loads(self.bytes_of("set/index.json"))
+        self.assertEqual(len(index["scenes"]), 3)
+        self.assertEqual(index["failures"][0]["name"], "broken.npy")
+
+    def test_an_interrupt_keeps_what_is_finished(self):
+        self.make_scenes(200, height=800)
+        process = self.start("simulate", "scenes", *CODE, "-o", "set")
+        while not any(name.endswith(".json") for name in self.files()):
+            time.sleep(0.02)
+            self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGINT)
+        out, error = process.communicate(timeout=60)
+        self.assertEqual((process.returncode, out), (130, b""))
+        self.assertIn(b"finished files are kept in set", error)
+        self.assertFalse([name for name in self.files() if ".tofsmith" in name])
+        kept = sum(name.endswith(".json") for name in self.content("set"))
+        self.assertLess(kept, 200)
+        document = self.simulate("set")
+        self.assertEqual((document["written"], document["kept"]), (200 - kept, kept))
+
+    def test_refuses_what_does_not_go_together(self):
+        self.make_scenes(2)
+        np.save(self.path("one.npy"), np.ones((4, 4), np.float32))
+        for arguments, words in (
+                (["scenes", "--truth", "t.npy"], ["--truth"]),
+                (["scenes", "--signal-range", "5"], ["--signal-range: found 5", "a:b"]),
+                (["scenes", "--signal-range", "5:1"], ["--signal-range"]),
+                (["scenes", "--signal-range", "1:5", "--signal", "3"], ["--signal-range"]),
+                (["scenes", "--shard", "3/2"], ["--shard: found 3/2"]),
+                (["one.npy", "--shard", "1/2"], ["--shard", "a folder"]),
+                (["one.npy", "--ambient-range", "1:2"], ["--ambient-range", "a folder"]),
+        ):
+            self.refuse(["simulate", *arguments, *CODE, "-o", "out"], *words, code=2)
+        os.makedirs(self.path("empty"))
+        for arguments, words in (
+                (["empty"], ["empty", "holds no scenes"]),
+                (["nowhere.txt"], ["nowhere.txt"]),
+                (["one.npy", "one.npy"], ["one.npy", "twice"]),
+        ):
+            self.refuse(["simulate", *arguments, *CODE, "-o", "out"], *words)
+
+
+if __name__ == "__main__":
+    unittest.main()
