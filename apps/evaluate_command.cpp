@@ -7,6 +7,7 @@
 #include "method_arguments.hpp"
 #include "multipath_evaluation.hpp"
 #include "number_checks.hpp"
+#include "perturb_arguments.hpp"
 #include "played_code.hpp"
 #include "table_arguments.hpp"
 #include "tap_arguments.hpp"
@@ -30,6 +31,7 @@ struct EvaluateArguments {
   bool robustness = false;
   MultipathEvaluation multipath;
   const CLI::Option* trials = nullptr;
+  std::string perturb;
   TapArguments taps;
   std::string output;
 };
@@ -94,16 +96,17 @@ std::vector<EvaluatedCode> evaluate_all(std::vector<CodeSet>& codes, const Camer
 
 /// Errors on perturbed cameras, by the same decoder, from the same seed, in as many trials.
 void judge_robustness(std::vector<EvaluatedCode>& evaluated, const std::vector<CodeSet>& codes,
-                      const Camera& camera, const EvaluateOptions& options) {
+                      const Camera& camera, const EvaluateOptions& options,
+                      RobustnessOptions perturbed) {
+  perturbed.trials = options.trials;
+  perturbed.seed = options.seed;
+  perturbed.method = options.method;
+  perturbed.unwrap_weights = options.unwrap_weights;
   const Progress progress = terminal_progress("perturbing");
   const double count = static_cast<double>(codes.size());
   for (std::size_t i = 0; i < codes.size(); ++i) {
     const double done = static_cast<double>(i);
-    evaluated[i].robustness = robustness(codes[i], camera,
-                                         {.trials = options.trials,
-                                          .seed = options.seed,
-                                          .method = options.method,
-                                          .unwrap_weights = options.unwrap_weights},
+    evaluated[i].robustness = robustness(codes[i], camera, perturbed,
                                          part_of(progress, done / count, (done + 1) / count));
   }
 }
@@ -135,6 +138,12 @@ void run(EvaluateArguments& arguments, const Session& session) {
   arguments.options.unwrap_weights = arguments.method.unwrap_weights();
   arguments.options.validate();
   check_output(arguments.output, session);
+  if (arguments.robustness && !arguments.perturb.empty())
+    throw UsageError("--robustness and --perturb: choose one; --perturb says what to change");
+  std::optional<RobustnessOptions> perturbed;
+  if (arguments.robustness) perturbed.emplace();
+  if (!arguments.perturb.empty()) perturbed = parse_perturbations(arguments.perturb);
+  if (perturbed) static_cast<void>(perturbations(camera, *perturbed));  // refused before long work
   std::vector<CodeSet> codes;
   for (const std::string& name : arguments.codes)
     codes.push_back(load_played_code(name, camera, arguments.taps));
@@ -143,7 +152,7 @@ void run(EvaluateArguments& arguments, const Session& session) {
                                    arguments.trials->count() > 0 ? arguments.options.trials : 0,
                                    arguments.options.seed, arguments.output, session);
   std::vector<EvaluatedCode> evaluated = evaluate_all(codes, camera, arguments);
-  if (arguments.robustness) judge_robustness(evaluated, codes, camera, arguments.options);
+  if (perturbed) judge_robustness(evaluated, codes, camera, arguments.options, *perturbed);
   if (!arguments.output.empty())
     write(arguments.output, session, camera, codes, evaluated, arguments.options);
   print(session, camera, evaluated, arguments.options);
@@ -184,6 +193,9 @@ void add_evaluate_command(CLI::App& app, Session& session) {
                     "also judge each code on perturbed cameras: bandwidth +-20 %, peak +-10 %, "
                     "50 ps edge jitter, 2 % tap mismatch");
   arguments->multipath.add_to(*command);
+  command->add_option("--perturb", arguments->perturb,
+                      "also judge each code on cameras with each of these changes and with all at "
+                      "once: jitter=50ps,clock=5ns,droop=3%,bandwidth=20%,peak=10%,mismatch=2%");
   arguments->taps.add_to(*command);
   command->add_option("-o,--output", arguments->output,
                       "write a table (.csv .json) or page (.html)");

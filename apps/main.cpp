@@ -10,6 +10,7 @@
 #include <memory>
 #include <system_error>
 
+#include "calibrate_command.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "tofsmith/core/dispatch_target.hpp"
@@ -36,7 +37,13 @@ std::string as_typed(int argc, char** argv) {
 /// The subcommand that was typed, or the program itself.
 const CLI::App& chosen(const CLI::App& app) {
   const auto subcommands = app.get_subcommands();
-  return subcommands.empty() ? app : *subcommands.front();
+  return subcommands.empty() ? app : chosen(*subcommands.front());
+}
+
+/// " calibrate noise" for a subcommand of a subcommand.
+std::string words_of(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  return parent == nullptr ? std::string() : words_of(*parent) + " " + command.get_name();
 }
 
 /// What could have been meant: commands where none was given, options elsewhere.
@@ -72,9 +79,7 @@ std::string usage_problem(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 int refuse_usage(const CLI::App& app, const std::string& problem) {
-  const CLI::App& command = chosen(app);
-  fmt::print(stderr, "tofsmith: {}\nSee `tofsmith{} --help`.\n", problem,
-             &command == &app ? "" : " " + command.get_name());
+  fmt::print(stderr, "tofsmith: {}\nSee `tofsmith{} --help`.\n", problem, words_of(chosen(app)));
   return exit_usage;
 }
 
@@ -132,11 +137,13 @@ int run(int argc, char** argv) {
   add_codes_command(app, session);
   add_design_command(app, session);
   add_evaluate_command(app, session);
+  add_export_command(app, session);
   add_scene_command(app, session);
   add_simulate_command(app, session);
   add_decode_command(app, session);
   add_report_command(app, session);
   add_sweep_command(app, session);
+  add_calibrate_command(app, session);
   add_reproduce_command(app, session);
 
   try {

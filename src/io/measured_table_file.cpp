@@ -98,8 +98,8 @@ Eigen::VectorXd list_of(const NpzReader& archive, const std::string& file, const
 
 void note_unused(const NpzReader& archive, const std::string& file,
                  std::vector<std::string>& notes) {
-  constexpr std::array<std::string_view, 5> known = {"corrfs", "ambient", "exposure_s", "offset_dn",
-                                                     "gain_e_per_dn"};
+  constexpr std::array<std::string_view, 6> known = {"corrfs",    "ambient",       "exposure_s",
+                                                     "offset_dn", "gain_e_per_dn", "corrfs_se"};
   std::vector<std::string> unused;
   for (const std::string& name : archive.names())
     if (std::ranges::find(known, name) == known.end()) unused.push_back(name);

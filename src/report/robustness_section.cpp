@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "tofsmith/report/bar_figure.hpp"
+#include "tofsmith/report/colours.hpp"
+
 namespace tofsmith {
 
 namespace {
@@ -26,6 +29,31 @@ Row row(const std::string& code, const std::string& camera, const Estimate& nomi
           ratio(calibrated_m),
           in_mm(uncalibrated_m),
           ratio(uncalibrated_m)};
+}
+
+/// How much each camera costs each code whose decoder knows nothing of it.
+Figure ratio_figure(const std::vector<JudgedCode>& codes) {
+  std::vector<std::string> cameras;
+  for (const PerturbedError& p : codes.front().robustness.perturbed) cameras.push_back(p.name);
+  std::vector<BarSeries> series;
+  ColourAssignment colours;
+  const bool one = codes.size() == 1;
+  for (const JudgedCode& code : codes)
+    for (const bool calibrated : {true, false}) {
+      const std::string decoder = calibrated ? "calibrated" : "uncalibrated";
+      BarSeries bars{.name = one ? decoder : code.name + ", " + decoder};
+      for (const PerturbedError& p : code.robustness.perturbed) {
+        const Estimate& error_m = calibrated ? p.calibrated_m : p.uncalibrated_m;
+        bars.values.push_back(error_m.value / code.robustness.nominal_m.value);
+      }
+      bars.style = colours.style(bars.name);
+      series.push_back(std::move(bars));
+    }
+  return bar_figure({.id = "robustness-ratios",
+                     .title = "Cost of each perturbation",
+                     .caption = "Depth error on the perturbed camera over that on the nominal one; "
+                                "1 is no change."},
+                    cameras, series, {.label = "error ratio", .from_zero = true});
 }
 
 }  // namespace
@@ -56,7 +84,10 @@ Section robustness_section(const std::vector<JudgedCode>& codes) {
       "it was said to be: by a decoder that knows the camera as it is (calibrated), and by one "
       "that believes what was said (uncalibrated). All see the same depths and the same noise.",
       is_linear ? "Linear" : "Circular");
-  return {"Robustness", {std::move(table)}};
+  Section section{"Robustness", {std::move(table)}};
+  if (!codes.empty() && !codes.front().robustness.perturbed.empty())
+    section.blocks.push_back(ratio_figure(codes));
+  return section;
 }
 
 }  // namespace tofsmith

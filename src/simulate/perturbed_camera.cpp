@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
 namespace tofsmith {
@@ -51,6 +52,40 @@ PerturbedCamera with_jitter(const Camera& camera, double edge_jitter_s) {
 PerturbedCamera with_mismatch(const Camera& camera, double mismatch) {
   PerturbedCamera perturbed{fmt::format("tap mismatch {:.3g} %", 100 * mismatch), camera};
   perturbed.camera.sensor.tap_mismatch += mismatch;
+  return perturbed;
+}
+
+PerturbedCamera with_clock(const Camera& camera, double clock_s) {
+  const Generator clock{.sample_rate_hz = 1.0 / clock_s};
+  clock.validate("clock", camera.fundamental_frequency_hz);
+  const int points = clock.points_per_period(camera.fundamental_frequency_hz);
+  PerturbedCamera perturbed{
+      fmt::format("clock {:.3g} ns", 1e9 / (points * camera.fundamental_frequency_hz)), camera};
+  perturbed.clock_s = clock_s;
+  return perturbed;
+}
+
+PerturbedCamera with_droop(const Camera& camera, double droop) {
+  PerturbedCamera perturbed{fmt::format("droop {:.3g} %", 100 * droop), camera};
+  perturbed.droop = droop;
+  return perturbed;
+}
+
+/// All at once.
+PerturbedCamera with_everything(const Camera& camera, const RobustnessOptions& options) {
+  PerturbedCamera perturbed{"all together", camera};
+  if (options.bandwidth > 0.0)
+    perturbed.camera = with_bandwidth(perturbed.camera, -options.bandwidth).camera;
+  if (options.peak > 0.0) {
+    const PerturbedCamera dim = with_peak(perturbed.camera, -options.peak);
+    perturbed.camera = dim.camera;
+    perturbed.peak = dim.peak;
+  }
+  perturbed.camera = with_jitter(perturbed.camera, options.edge_jitter_s).camera;
+  if (camera.sensor.tap_mismatch + options.tap_mismatch < 1.0)
+    perturbed.camera.sensor.tap_mismatch += options.tap_mismatch;
+  perturbed.clock_s = options.clock_s;
+  perturbed.droop = options.droop;
   return perturbed;
 }
 
@@ -108,9 +143,52 @@ Waveform with_depth_of_modulation(const Waveform& modulation, double factor) {
 }
 
 Waveform with_peak(const Waveform& modulation, double peak) {
+  if (peak == 1.0) return modulation;
   if (!modulation.is_binary()) return with_depth_of_modulation(modulation, peak);
   if (modulation.on_intervals().empty()) return modulation;
   return with_pulses(modulation, 1.0 / peak, modulation.level() * peak);
+}
+
+/// On the points of a clock; light within its average power.
+Waveform on_clock(const Waveform& waveform, double clock_s, const Camera& camera) {
+  if (clock_s == 0.0) return waveform;
+  return generated(waveform, {.sample_rate_hz = 1.0 / clock_s, .amplitude_bits = 24},
+                   camera.fundamental_frequency_hz);
+}
+
+Waveform within_power(const Waveform& modulation) {
+  const double mean = modulation.mean();
+  if (mean <= 1.0) return modulation;
+  return modulation.is_binary() && !modulation.on_intervals().empty()
+             ? Waveform::binary(modulation.on_intervals(), modulation.level() / mean)
+             : Waveform::sampled(modulation.cell_averages(
+                                     std::max(1, static_cast<int>(modulation.samples().size()))) /
+                                 mean);
+}
+
+/// Sampled waveforms as a code of that many samples holds them.
+Waveform on_samples(const Waveform& waveform, int samples) {
+  if (waveform.is_binary() || waveform.samples().size() == samples) return waveform;
+  return Waveform::sampled(waveform.cell_averages(samples));
+}
+
+/// Falling off as exp(-t / s) from every rise on: means over `samples` cells.
+Waveform with_droop(const Waveform& modulation, double droop, int samples) {
+  if (droop == 0.0 || !modulation.is_binary() || modulation.on_intervals().empty())
+    return modulation;
+  const double rate = -std::log1p(-droop) / 0.5;  // per period
+  Eigen::VectorXd cells = Eigen::VectorXd::Zero(samples);
+  for (const OnInterval& pulse : modulation.on_intervals()) {
+    const auto first = static_cast<int>(std::floor(pulse.rise * samples));
+    for (int n = first; n < pulse.fall * samples; ++n) {
+      const double begin = std::max(pulse.rise, static_cast<double>(n) / samples) - pulse.rise;
+      const double end = std::min(pulse.fall, static_cast<double>(n + 1) / samples) - pulse.rise;
+      if (end <= begin) continue;
+      cells[n % samples] +=
+          modulation.level() * samples / rate * (std::exp(-rate * begin) - std::exp(-rate * end));
+    }
+  }
+  return Waveform::sampled(std::move(cells));
 }
 
 }  // namespace
@@ -128,15 +206,27 @@ std::vector<PerturbedCamera> perturbations(const Camera& camera, const Robustnes
   if (options.edge_jitter_s > 0.0) cameras.push_back(with_jitter(camera, options.edge_jitter_s));
   if (options.tap_mismatch > 0.0 && camera.sensor.tap_mismatch + options.tap_mismatch < 1.0)
     cameras.push_back(with_mismatch(camera, options.tap_mismatch));
+  if (options.clock_s > 0.0) cameras.push_back(with_clock(camera, options.clock_s));
+  if (options.droop > 0.0) cameras.push_back(with_droop(camera, options.droop));
+  if (options.together) cameras.push_back(with_everything(camera, options));
   return cameras;
 }
 
 CodeSet perturbed_code(const CodeSet& code, const PerturbedCamera& perturbed) {
-  if (perturbed.peak == 1.0) return code;
+  if (perturbed.peak == 1.0 && perturbed.clock_s == 0.0 && perturbed.droop == 0.0) return code;
+  const Camera& camera = perturbed.camera;
   std::vector<Waveform> modulation, demodulation;
-  for (int e = 0; e < code.exposures(); ++e)
-    modulation.push_back(with_peak(code.modulation(e), perturbed.peak));
-  for (int i = 0; i < code.measurements(); ++i) demodulation.push_back(code.demodulation(i));
+  for (int e = 0; e < code.exposures(); ++e) {
+    Waveform m = with_peak(code.modulation(e), perturbed.peak);
+    m = within_power(on_clock(m, perturbed.clock_s, camera));
+    require(perturbed.clock_s == 0.0 || m.mean() > 0.0, "clock_s", perturbed.clock_s,
+            fmt::format("must be short enough to leave modulation {} a pulse", e));
+    modulation.push_back(
+        on_samples(with_droop(m, perturbed.droop, code.samples()), code.samples()));
+  }
+  for (int i = 0; i < code.measurements(); ++i)
+    demodulation.push_back(
+        on_samples(on_clock(code.demodulation(i), perturbed.clock_s, camera), code.samples()));
   return CodeSet::create(code.name(), code.samples(), code.taps(), std::move(modulation),
                          std::move(demodulation));
 }

@@ -46,6 +46,7 @@ bool is_measured_table(const std::filesystem::path& path);
 ///   exposure_s     [s]
 ///   offset_dn      raw number without light
 ///   gain_e_per_dn  electrons per raw number
+/// and `corrfs_se`, standard errors that decoding does not need.
 /// corrfs itself is without offset, gain and exposure. A last sample that repeats the first is
 /// dropped with a note, unless the table is flat there. Columns come out exposure by exposure, the
 /// taps of each side by side, as decoders take measurements.

@@ -19,6 +19,9 @@ struct RobustnessOptions {
   double peak = 0.1;              ///< relative change of the peak power, [0, 1); 0: leave out
   double edge_jitter_s = 50e-12;  ///< rms, of each arm [s], >= 0; 0: leave out
   double tap_mismatch = 0.02;     ///< difference of neighbouring taps, [0, 1); 0: leave out
+  double clock_s = 0.0;           ///< grid of the switching times [s], >= 0; 0: leave out
+  double droop = 0.0;             ///< sag of the light within half a period, [0, 1); 0: leave out
+  bool together = false;          ///< also one camera with all of this at once
   std::int64_t trials = 4000;     ///< per operating point, 2 .. 4e9
   std::uint64_t seed = 1;         ///< of all trials: every camera sees the same depths and noise
   DecodeMethod method = DecodeMethod::zncc;
@@ -30,9 +33,11 @@ struct RobustnessOptions {
 
 /// A camera that is not quite what it was said to be.
 struct PerturbedCamera {
-  std::string name;   ///< "bandwidth -20 %", ..
-  Camera camera;      ///< with its own limits; plays perturbed_code()
-  double peak = 1.0;  ///< its peak power over that it was said to have
+  std::string name;      ///< "bandwidth -20 %", ..
+  Camera camera;         ///< with its own limits; plays perturbed_code()
+  double peak = 1.0;     ///< its peak power over that it was said to have
+  double clock_s = 0.0;  ///< grid of its switching times [s]; 0: none
+  double droop = 0.0;    ///< sag of its light within half a period
 };
 
 /// The camera with one thing changed at a time, light levels and average power kept:
@@ -41,7 +46,10 @@ struct PerturbedCamera {
 ///   - peak: peak power scaled, see perturbed_code(),
 ///   - edge jitter: added in quadrature to that of each arm, independent in both (a common one
 ///     would cancel),
-///   - tap mismatch: added to that of the camera; left out where it would reach 1.
+///   - tap mismatch: added to that of the camera; left out where it would reach 1,
+///   - clock: switching times of both arms on the points of a clock, see perturbed_code(),
+///   - droop: the light sags while it is on, see perturbed_code(),
+///   - together: all of these at once, bandwidth and peak lowered.
 std::vector<PerturbedCamera> perturbations(const Camera& camera,
                                            const RobustnessOptions& options = {});
 
@@ -52,7 +60,13 @@ std::vector<PerturbedCamera> perturbations(const Camera& camera,
 ///   - Sampled modulation: deviations from its mean are scaled so that its peak is `peak` times
 ///     what it was; what falls below 0 is cut, and the whole scaled to the old mean (its peak is
 ///     then a little less). Where even the mean would exceed the new peak, the whole is dimmed.
-/// Demodulation stays. A `peak` of 1 gives the code itself.
+/// Then a clock moves every switching time of both arms to its nearest point, a whole number of
+/// them per period, as generated() does; what so comes to emit more than the average power is
+/// dimmed. Last, binary light that droops falls off as exp(-t / s) from every rise on, with the s
+/// at which half a period takes it to 1 - droop; power is lost. It is then kept as means over the
+/// code's samples. Light that is not binary has no plateaus and stays. Demodulation changes by the
+/// clock alone. Without any of the three it is the code itself.
+/// @throws std::invalid_argument if the clock has fewer than 2 points or leaves a modulation dark
 CodeSet perturbed_code(const CodeSet& code, const PerturbedCamera& perturbed);
 
 /// Depth error on a perturbed camera: geometric mean over its operating points [m].

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "calibrate_command.hpp"
+#include "calibrate_output.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/camera_toml.hpp"
+#include "tofsmith/version.hpp"
+
+namespace tofsmith::apps {
+
+void CalibrateOutput::add_to(CLI::App& command) {
+  command.add_option("-o,--output", camera_path,
+                     "write the camera with what was found (.toml), for design, evaluate, ..");
+  command.add_option("--report", page_path, "write a page with pictures (.html)");
+}
+
+void CalibrateOutput::check(const Session& session, const std::vector<std::string>& inputs) const {
+  const auto check_one = [&](const std::string& path, const char* option, const char* extension) {
+    if (path.empty()) return;
+    if (std::filesystem::path(path).extension() != extension)
+      throw UsageError(
+          fmt::format("{} {}: unknown extension; expected {}", option, path, extension));
+    check_not_input(path, inputs);
+    session.check_output(path);
+  };
+  check_one(camera_path, "-o", ".toml");
+  check_one(page_path, "--report", ".html");
+}
+
+void CalibrateOutput::write_camera(const Camera& camera, const Session& session) const {
+  if (camera_path.empty()) return;
+  Camera named = camera;
+  named.name = std::filesystem::path(camera_path).stem().string();
+  write_file_atomically(camera_path, camera_to_toml(named), session.output_policy());
+  session.say(
+      fmt::format("wrote {}\nnext: tofsmith design {} -o designed", camera_path, camera_path));
+}
+
+void CalibrateOutput::write_page(Page page, const Session& session) const {
+  if (page_path.empty()) return;
+  page.footer = "tofsmith " TOFSMITH_VERSION;
+  page.sections.push_back({"Command", {CodeBlock{session.command_line}}});
+  write_file_atomically(page_path, render(page), session.output_policy());
+  session.say(fmt::format("wrote {}", page_path));
+}
+
+nlohmann::ordered_json number_json(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json estimate_json(const Estimate& estimate) {
+  return {{"value", number_json(estimate.value)},
+          {"standard_error", number_json(estimate.standard_error)}};
+}
+
+std::string estimate_text(const Estimate& estimate, double unit) {
+  return fmt::format("{:.5g} +- {:.2g}", estimate.value / unit, estimate.standard_error / unit);
+}
+
+std::string note_lines(const std::vector<std::string>& notes) {
+  std::string lines;
+  for (const std::string& note : notes) lines += fmt::format("note: {}\n", note);
+  return lines;
+}
+
+Section notes_section(const std::vector<std::string>& notes) {
+  Table table{.caption = "What to know of this calibration.", .columns = {{"note"}}};
+  for (const std::string& note : notes) table.rows.push_back({note});
+  return {"Notes", {std::move(table)}};
+}
+
+void add_calibrate_command(CLI::App& app, Session& session) {
+  CLI::App* command = app.add_subcommand(
+      "calibrate", "a camera as it is measured: impulse responses, correlation tables, noise");
+  command->require_subcommand(1);
+  command->footer(
+      "Try: tofsmith calibrate impulse-response scope.csv -o mine.toml\n"
+      "     tofsmith calibrate correlation sweep.npy --shifts shifts.txt -o mine.toml\n"
+      "     tofsmith calibrate noise level*.npy --dark dark.npy -o mine.toml");
+  add_calibrate_response(*command, session);
+  add_calibrate_correlation(*command, session);
+  add_calibrate_noise(*command, session);
+}
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,287 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibrate_correlation_page.hpp"
+#include "calibrate_output.hpp"
+#include "number_checks.hpp"
+#include "tap_arguments.hpp"
+#include "terminal_progress.hpp"
+#include "tofsmith/calibrate/calibrated_table_file.hpp"
+#include "tofsmith/calibrate/correlation_calibration.hpp"
+#include "tofsmith/calibrate/ideal_code_fit.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/float_image_file.hpp"
+#include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/scene/pinhole.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+struct CorrelationArguments {
+  std::string file, shifts, dark;
+  std::string table, offset_map, gain_map;
+  std::string unit = "s", decimal = "auto", axes;
+  std::vector<std::string> codes;
+  std::optional<double> target_distance_m;
+  bool keep_end_point = false;
+  CameraArguments camera;
+  TapArguments taps;
+  CalibrateOutput output;
+};
+
+DelaySweep load_sweep(const CorrelationArguments& arguments, const Camera& camera) {
+  DelaySweepOptions options{.shifts = arguments.shifts,
+                            .unit = parse_delay_unit(arguments.unit),
+                            .fundamental_frequency_hz = camera.fundamental_frequency_hz,
+                            .samples = camera.samples,
+                            .decimal = parse_decimal_mark(arguments.decimal)};
+  if (options.unit == DelayUnit::second) options.unit_scale = seconds_per_unit(arguments.unit);
+  options.table.keep_end_point = arguments.keep_end_point;
+  if (!arguments.axes.empty()) options.table.axes = parse_table_axes(arguments.axes);
+  if (const auto order = arguments.taps.tap_order())
+    options.table.layout = {.taps = camera.sensor.taps, .order = *order};
+  return read_delay_sweep(arguments.file, options);
+}
+
+/// How much farther a flat target at that distance is in each pixel than on the axis.
+Image<float> geometry_of(double distance_m, const Camera& camera, const RawFrames& frames) {
+  if (!camera.lens)
+    throw UsageError("--target-distance-m needs the camera's [lens], which says where pixels look");
+  const PinholeView view{camera.lens->fx_px, camera.lens->fy_px, camera.lens->cx_px,
+                         camera.lens->cy_px, frames.width,       frames.height};
+  Image<float> geometry(frames.height, frames.width);
+  for (int row = 0; row < frames.height; ++row)
+    for (int column = 0; column < frames.width; ++column)
+      geometry(row, column) =
+          static_cast<float>(distance_m * (view.radial_per_z(row, column) - 1.0));
+  return geometry;
+}
+
+CorrelationCalibrationOptions options_for(const CorrelationArguments& arguments,
+                                          const Camera& camera, const DelaySweep& sweep) {
+  CorrelationCalibrationOptions options{.taps = camera.sensor.taps,
+                                        .differences = camera.sensor.readout == Readout::difference,
+                                        .range_m = camera.range_m(),
+                                        .black_level = camera.sensor.black_level_dn.value_or(0.0)};
+  if (options.differences) options.black_level = 0.0;
+  if (!arguments.dark.empty()) options.dark = read_raw_frames(arguments.dark);
+  if (camera.sensor.adc_bits && !options.differences)
+    options.saturation_level = static_cast<float>(std::exp2(*camera.sensor.adc_bits) - 1.0);
+  if (arguments.target_distance_m)
+    options.geometry_m = geometry_of(*arguments.target_distance_m, camera, sweep.frames);
+  if (!camera.exposure_s.each_s.empty()) {
+    const int per_exposure = options.differences ? options.taps / 2 : options.taps;
+    const int exposures = sweep.frames.measurements / per_exposure;
+    options.exposure_s.resize(sweep.frames.measurements);
+    for (int k = 0; k < sweep.frames.measurements; ++k)
+      options.exposure_s[k] = camera.exposure_s.of(k / per_exposure, exposures);
+  }
+  return options;
+}
+
+std::vector<CodeSet> candidates(const CorrelationArguments& arguments, const Camera& camera,
+                                int measurements) {
+  std::vector<CodeSet> codes = ideal_codes(camera, measurements);
+  if (arguments.codes.empty()) return codes;
+  codes.clear();
+  Camera open = camera;
+  open.light.peak_factor = 1e6;
+  for (const std::string& name : arguments.codes)
+    codes.push_back(load_code(name, open, arguments.taps.file_options()));
+  return codes;
+}
+
+std::string brief(const IdealCodeFit& fit) {
+  const bool limited = fit.response.kind != ImpulseResponse::Kind::none;
+  return fmt::format("{}: {:.2f} % left ({:.2f} % without a response), delay {:.4f} periods{}{}{}",
+                     fit.code, 100 * fit.residual, 100 * fit.ideal_residual, fit.delay_periods,
+                     fit.reversed ? ", delay runs backwards" : "",
+                     fit.inverted ? ", signs opposite" : "",
+                     limited ? fmt::format(", {} on both arms, {} MHz", name_of(fit.response.kind),
+                                           estimate_text(fit.parameter_hz, 1e6))
+                             : "");
+}
+
+nlohmann::ordered_json fit_json(const IdealCodeFit& fit) {
+  nlohmann::ordered_json harmonics = nlohmann::ordered_json::array();
+  for (const HarmonicRatio& h : fit.harmonics)
+    harmonics.push_back({{"harmonic", h.harmonic},
+                         {"measured", h.measured},
+                         {"ideal", h.ideal},
+                         {"ratio", estimate_json(h.ratio)}});
+  return {{"code", fit.code},
+          {"residual", fit.residual},
+          {"ideal_residual", fit.ideal_residual},
+          {"delay_periods", fit.delay_periods},
+          {"reversed", fit.reversed},
+          {"inverted", fit.inverted},
+          {"exposure", fit.exposure},
+          {"scale", fit.scale},
+          {"response", name_of(fit.response.kind)},
+          {"parameter_hz", estimate_json(fit.parameter_hz)},
+          {"harmonics", harmonics}};
+}
+
+nlohmann::ordered_json document_of(const CalibratedCorrelation& found,
+                                   const std::vector<IdealCodeFit>& fits) {
+  nlohmann::ordered_json mismatch = nlohmann::ordered_json::array();
+  for (const Estimate& m : found.tap_mismatch) mismatch.push_back(estimate_json(m));
+  nlohmann::ordered_json codes = nlohmann::ordered_json::array();
+  for (const IdealCodeFit& fit : fits) codes.push_back(fit_json(fit));
+  nlohmann::ordered_json document = {
+      {"samples", found.table.samples()},
+      {"measurements", found.table.columns()},
+      {"noise_rms", found.noise_rms},
+      {"noise_source", found.noise_source},
+      {"largest_standard_error", found.standard_error.maxCoeff()},
+      {"swing", found.table.correlation.colwise().maxCoeff().maxCoeff() -
+                    found.table.correlation.colwise().minCoeff().minCoeff()},
+      {"dead_pixels", found.dead.total()},
+      {"drift_known", found.drift_known},
+      {"drift_corrected", found.drift_corrected},
+      {"light_drift", found.drift_known ? estimate_json(found.light_drift) : nullptr},
+      {"level_drift", found.drift_known ? estimate_json(found.level_drift) : nullptr},
+      {"tap_mismatch", mismatch},
+      {"offset_standard_error_m", number_json(found.delay_error_m)},
+      {"gain_standard_error", number_json(found.gain_error)},
+      {"ideal_codes", codes},
+      {"notes", found.notes}};
+  return document;
+}
+
+void check_outputs(const CorrelationArguments& arguments, const Session& session) {
+  const std::vector<std::string> inputs = {arguments.file, arguments.shifts, arguments.dark,
+                                           arguments.camera.name};
+  arguments.output.check(session, inputs);
+  for (const std::string& path : {arguments.table, arguments.offset_map, arguments.gain_map}) {
+    if (path.empty()) continue;
+    check_not_input(path, inputs);
+    session.check_output(path);
+  }
+  if (!arguments.table.empty() && std::filesystem::path(arguments.table).extension() != ".npz")
+    throw UsageError(fmt::format("--table {}: unknown extension; expected .npz", arguments.table));
+}
+
+void write_maps(const CorrelationArguments& arguments, const CalibratedCorrelation& found,
+                const Session& session) {
+  const auto write = [&](const std::string& path, const Image<float>& map, const char* name) {
+    if (path.empty()) return;
+    if (map.empty())
+      throw UsageError(
+          fmt::format("{}: a table of means has no pixels; expected a stack of frames", path));
+    write_float_image(path, map, name, session.output_policy());
+    session.say(fmt::format("wrote {}", path));
+  };
+  write(arguments.offset_map, found.maps.delay_offset_m, "offset");
+  write(arguments.gain_map, found.maps.gain, "gain");
+}
+
+void run(const CorrelationArguments& arguments, const Session& session) {
+  const Camera base = arguments.camera.load();
+  check_outputs(arguments, session);
+  const DelaySweep sweep = load_sweep(arguments, base);
+  CalibratedCorrelation found;
+  try {
+    found = calibrate_correlation(sweep, options_for(arguments, base, sweep),
+                                  terminal_progress("calibrating"));
+  } catch (const std::invalid_argument& error) {
+    throw IoError(arguments.file, error.what());
+  }
+  const std::vector<CodeSet> codes = candidates(arguments, base, found.table.columns());
+  std::vector<IdealCodeFit> fits;
+  if (codes.empty())
+    found.notes.push_back(fmt::format(
+        "no built-in code of {} measurements on {} taps to compare with; --code names one",
+        found.table.columns(), base.sensor.taps));
+  else
+    fits = fit_ideal_codes(found.table.correlation, found.standard_error, base, codes);
+  if (!fits.empty() && fits.front().residual > 0.1)
+    found.notes.push_back(
+        fmt::format("no ideal code comes near: {:.0f} % are left of the best; --code names another",
+                    100 * fits.front().residual));
+
+  session.print_json(document_of(found, fits));
+  const double swing =
+      (found.table.correlation.colwise().maxCoeff() - found.table.correlation.colwise().minCoeff())
+          .maxCoeff();
+  session.say(fmt::format(
+      "a table of {} x {}: standard errors up to {:.3g} of a swing of {:.5g} raw numbers (noise "
+      "{:.3g} per number, from {})",
+      found.table.samples(), found.table.columns(), found.standard_error.maxCoeff(), swing,
+      found.noise_rms, found.noise_source));
+  if (!found.maps.empty())
+    session.say(fmt::format("maps of {} x {} pixels: offsets known to {}, gains to {:.2g} %",
+                            found.maps.gain.width, found.maps.gain.height,
+                            length_text(found.delay_error_m), 100 * found.gain_error));
+  for (const IdealCodeFit& fit : fits) session.say(brief(fit));
+  session.say(note_lines(found.notes));
+  if (!arguments.table.empty()) {
+    write_calibrated_table(arguments.table, found, session.output_policy());
+    session.say(fmt::format(
+        "wrote {}\nnext: tofsmith decode RAW --code {} --camera {} -o depth.npy", arguments.table,
+        arguments.table,
+        arguments.output.camera_path.empty() ? "CAMERA.toml" : arguments.output.camera_path));
+  }
+  write_maps(arguments, found, session);
+  arguments.output.write_page(correlation_page(found, fits, arguments.file), session);
+  if (!arguments.output.camera_path.empty()) {
+    if (fits.empty()) throw UsageError("-o: no code was fitted, so that no response is known");
+    arguments.output.write_camera(with_fit(base, fits.front(), found.tap_mismatch), session);
+  }
+}
+
+}  // namespace
+
+void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
+  auto arguments = std::make_shared<CorrelationArguments>();
+  CLI::App* command = calibrate.add_subcommand(
+      "correlation",
+      "correlation functions, pixel maps and responses from a flat target at known delays");
+  command
+      ->add_option("SWEEP", arguments->file,
+                   "a table of delay and K values (.csv .txt), a stack of frames (F,H,W,K) with "
+                   "--shifts, or an array (N,K) of one period (.npy .npz)")
+      ->required();
+  command->add_option("--shifts", arguments->shifts,
+                      "delay of each frame of a stack, one per line or .npy");
+  command
+      ->add_option("--shift-unit", arguments->unit,
+                   "unit of the delays: s ms us ns ps, m of depth, bin, period")
+      ->check(CLI::IsMember({"s", "ms", "us", "ns", "ps", "m", "bin", "period"}))
+      ->capture_default_str();
+  command->add_option("--dark", arguments->dark, "frames with the light off, room as in the sweep");
+  command
+      ->add_option("--target-distance-m", arguments->target_distance_m,
+                   "distance of a flat target square to the axis: its slant is taken out of the "
+                   "offset map")
+      ->check(positive_number());
+  command
+      ->add_option("--code", arguments->codes,
+                   "codes to compare with: families or files; default: all built-in ones")
+      ->delimiter(',');
+  command->add_option("--decimal", arguments->decimal, "decimal mark of a text")
+      ->check(CLI::IsMember({"auto", "point", "comma"}))
+      ->capture_default_str();
+  command->add_option("--table-axes", arguments->axes, "axes of an array: nk or kn")
+      ->check(CLI::IsMember({"nk", "kn"}));
+  command->add_flag("--keep-end-point", arguments->keep_end_point,
+                    "the last row of an array that repeats the first is one of its own");
+  arguments->camera.add_to(*command);
+  arguments->taps.add_to(*command);
+  command->add_option("--table", arguments->table,
+                      "write the measured table (.npz), which decode takes for --code");
+  command->add_option("--offset-map", arguments->offset_map,
+                      "write each pixel's offset in metres (.npy .npz .exr .pfm)");
+  command->add_option("--gain-map", arguments->gain_map, "write each pixel's gain");
+  arguments->output.add_to(*command);
+  command->callback([arguments, &session] { run(*arguments, session); });
+}
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "session.hpp"
+#include "tofsmith/core/statistics.hpp"
+#include "tofsmith/report/page.hpp"
+
+namespace tofsmith::apps {
+
+/// Adds one of the calibrations to `calibrate`.
+void add_calibrate_response(CLI::App& calibrate, Session& session);
+void add_calibrate_correlation(CLI::App& calibrate, Session& session);
+void add_calibrate_noise(CLI::App& calibrate, Session& session);
+
+/// What all calibrations write: a camera and a page.
+struct CalibrateOutput {
+  std::string camera_path;  ///< .toml, or ""
+  std::string page_path;    ///< .html, or ""
+
+  void add_to(CLI::App& command);
+  /// Looks at the outputs before the work. @throws UsageError, IoError
+  void check(const Session& session, const std::vector<std::string>& inputs) const;
+  void write_camera(const Camera& camera, const Session& session) const;
+  void write_page(Page page, const Session& session) const;
+};
+
+/// {"value": .., "standard_error": ..}; null where it is no number.
+nlohmann::ordered_json estimate_json(const Estimate& estimate);
+/// A number, or null where it is none.
+nlohmann::ordered_json number_json(double value);
+/// "90.12 +- 0.08" of value / unit.
+std::string estimate_text(const Estimate& estimate, double unit);
+/// "name: note" lines.
+std::string note_lines(const std::vector<std::string>& notes);
+/// Notes as the last section of a page.
+Section notes_section(const std::vector<std::string>& notes);
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "calibrate_output.hpp"
+#include "number_checks.hpp"
+#include "tofsmith/calibrate/impulse_response.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/io/impulse_response_file.hpp"
+#include "tofsmith/report/colours.hpp"
+#include "tofsmith/report/line_figure.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+struct ResponseArguments {
+  std::string file;
+  CameraArguments camera;
+  CalibrateOutput output;
+  ResponseRecordOptions record;
+  std::string excitation = "auto", decimal = "auto", time_unit, arm = "light", as = "file";
+};
+
+ImpulseResponse::Kind kind_named(const std::string& name) {
+  for (const auto kind : {ImpulseResponse::Kind::hann, ImpulseResponse::Kind::gaussian,
+                          ImpulseResponse::Kind::lowpass})
+    if (name == name_of(kind)) return kind;
+  return ImpulseResponse::Kind::file;
+}
+
+/// The response that the camera gets; a measured one goes into a file beside the camera's.
+ImpulseResponse written_response(const ResponseArguments& arguments,
+                                 const CalibratedResponse& result) {
+  const auto kind = kind_named(arguments.as);
+  for (const ParametricResponse& fit : result.fits)
+    if (fit.response.kind == kind) return fit.response;
+  return result.response;
+}
+
+std::filesystem::path response_path(const ResponseArguments& arguments) {
+  std::filesystem::path path = arguments.output.camera_path;
+  return path.replace_filename(path.stem().string() + "-response.csv");
+}
+
+Camera camera_with(Camera camera, const ResponseArguments& arguments,
+                   const ImpulseResponse& response) {
+  if (arguments.arm != "sensor") camera.light.impulse_response = response;
+  if (arguments.arm == "sensor") camera.sensor.impulse_response = response;
+  if (arguments.arm == "system") camera.sensor.impulse_response = {};
+  return camera;
+}
+
+std::vector<std::vector<std::string>> fit_rows(const CalibratedResponse& result) {
+  std::vector<std::vector<std::string>> rows{
+      {"kind", "f_max or cutoff (MHz)", "-3 dB (MHz)", "residual (% of height)"}};
+  for (const ParametricResponse& fit : result.fits)
+    rows.push_back({std::string(name_of(fit.response.kind)), estimate_text(fit.parameter_hz, 1e6),
+                    estimate_text(fit.bandwidth_hz, 1e6),
+                    fmt::format("{:.3g}", 100 * fit.residual_rms)});
+  rows.push_back({"measured", "", estimate_text(result.bandwidth_hz, 1e6), ""});
+  return rows;
+}
+
+nlohmann::ordered_json document_of(const CalibratedResponse& result) {
+  nlohmann::ordered_json fits = nlohmann::ordered_json::array();
+  for (const ParametricResponse& fit : result.fits)
+    fits.push_back({{"kind", name_of(fit.response.kind)},
+                    {"parameter_hz", estimate_json(fit.parameter_hz)},
+                    {"bandwidth_hz", estimate_json(fit.bandwidth_hz)},
+                    {"residual_rms", fit.residual_rms}});
+  nlohmann::ordered_json peaks = nlohmann::ordered_json::array();
+  for (const ResponsePeak& peak : result.peaks)
+    peaks.push_back({{"time_s", peak.time_s}, {"height", peak.height}});
+  return {{"excitation", name_of(result.excitation)},
+          {"falling", result.falling},
+          {"background", result.background},
+          {"height", result.height},
+          {"noise_rms", result.noise_rms},
+          {"snr_db", number_json(result.snr_db)},
+          {"delay_s", result.delay_s},
+          {"response_centre_s", result.response_centre_s},
+          {"time_step_s", result.response.time_step_s},
+          {"samples", result.response.samples.size()},
+          {"bandwidth_hz", estimate_json(result.bandwidth_hz)},
+          {"fits", fits},
+          {"fit_is_good", result.fit_is_good()},
+          {"peaks", peaks},
+          {"notes", result.notes}};
+}
+
+std::vector<double> times_ns(Eigen::Index count, double start_s, double step_s) {
+  std::vector<double> times;
+  for (Eigen::Index i = 0; i < count; ++i)
+    times.push_back(1e9 * (start_s + static_cast<double>(i) * step_s));
+  return times;
+}
+
+Page page_of(const CalibratedResponse& result, const std::string& file) {
+  ColourAssignment colours;
+  const ResponseRecord& record = result.record;
+  const std::vector<double> times =
+      times_ns(record.values.size(), record.start_time_s, record.time_step_s);
+  std::vector<Series> recorded{{.name = "record", .x = times, .y = to_values(record.values)}};
+  recorded.back().style = reference_style();
+  const ParametricResponse& best = result.fits.front();
+  recorded.push_back({.name = fmt::format("{} fit", name_of(best.response.kind)),
+                      .x = times,
+                      .y = to_values(best.fit),
+                      .style = colours.style("fit")});
+  const auto count = static_cast<Eigen::Index>(result.response.samples.size());
+  const Series response{
+      .name = "response",
+      .x = times_ns(count, -result.response_centre_s, result.response.time_step_s),
+      .y = result.response.samples,
+      .style = colours.style("response")};
+  Series passed{.name = "measured", .style = colours.style("response")};
+  Series fitted{.name = std::string(name_of(best.response.kind)), .style = colours.style("fit")};
+  for (int i = 0; i <= 200; ++i) {
+    const double f_hz = 4 * best.bandwidth_hz.value * i / 200;
+    for (auto [series, h] : {std::pair{&passed, &result.response}, {&fitted, &best.response}}) {
+      series->x.push_back(f_hz / 1e6);
+      series->y.push_back(std::abs(h->transfer(f_hz)));
+    }
+  }
+  Table table{.id = "fits", .caption = "Fits to the record itself.", .columns = {{"kind"}}};
+  const auto rows = fit_rows(result);
+  for (std::size_t i = 1; i < rows.front().size(); ++i)
+    table.columns.push_back({rows.front()[i], true});
+  table.rows.assign(rows.begin() + 1, rows.end());
+  Section section{"Impulse response", {std::move(table)}};
+  section.blocks.push_back(line_figure({.id = "record",
+                                        .title = "Record and fit",
+                                        .caption = "As measured, with the kind that fits best."},
+                                       recorded, {.label = "time", .unit = "ns"},
+                                       {.label = "record"}));
+  section.blocks.push_back(
+      line_figure({.id = "response",
+                   .title = "Response",
+                   .caption = "De-noised, its centre of gravity at 0, of sum 1."},
+                  {response}, {.label = "time", .unit = "ns"}, {.label = "response"}));
+  section.blocks.push_back(line_figure({.id = "transfer",
+                                        .title = "What passes",
+                                        .caption = "Amplitude by frequency; -3 dB is 0.707."},
+                                       {passed, fitted}, {.label = "frequency", .unit = "MHz"},
+                                       {.label = "amplitude", .from_zero = true}));
+  return {.title = fmt::format("Impulse response of {}", file),
+          .sections = {std::move(section), notes_section(result.notes)}};
+}
+
+void run(ResponseArguments& arguments, const Session& session) {
+  const Camera base = arguments.camera.load();
+  arguments.output.check(session, {arguments.file, arguments.camera.name});
+  const bool measured = kind_named(arguments.as) == ImpulseResponse::Kind::file;
+  const bool writes_response = measured && !arguments.output.camera_path.empty();
+  if (writes_response) {
+    check_not_input(response_path(arguments), {arguments.file, arguments.camera.name});
+    session.check_output(response_path(arguments));
+  }
+  arguments.record.decimal = parse_decimal_mark(arguments.decimal);
+  if (!arguments.time_unit.empty())
+    arguments.record.time_unit_s = seconds_per_unit(arguments.time_unit);
+  ResponseRecord record = read_response_record(arguments.file, arguments.record);
+  if (record.time_step_s > 1.0 / base.fundamental_frequency_hz)
+    throw IoError(arguments.file,
+                  fmt::format("found steps of {:.4g} s, longer than the camera's period of {:.4g} "
+                              "s; expected --time-unit ns or --time-step to say what they are",
+                              record.time_step_s, 1.0 / base.fundamental_frequency_hz));
+  ResponseCalibrationOptions options{.fundamental_frequency_hz = base.fundamental_frequency_hz,
+                                     .samples = base.samples};
+  if (arguments.excitation != "auto") options.excitation = parse_excitation(arguments.excitation);
+  CalibratedResponse result;
+  try {
+    result = calibrate_impulse_response(std::move(record), options);
+  } catch (const std::invalid_argument& error) {
+    throw IoError(arguments.file, error.what());
+  }
+
+  ImpulseResponse response = written_response(arguments, result);
+  if (writes_response) {
+    write_impulse_response(response_path(arguments), response, session.output_policy());
+    response.file = response_path(arguments).filename().string();
+  }
+  session.print_json(document_of(result));
+  session.say(fmt::format("{}: a {}{}, {:.1f} dB above its noise\n\n{}", arguments.file,
+                          result.falling ? "falling " : "", name_of(result.excitation),
+                          result.snr_db, text_table(fit_rows(result))));
+  if (measured)
+    session.say(
+        fmt::format("the response's centre comes {:.4g} ns after its first sample: decoded "
+                    "on a real camera, a constant {} to take off by calibration",
+                    1e9 * result.response_centre_s,
+                    length_text(0.5 * speed_of_light_m_per_s * result.response_centre_s)));
+  session.say(note_lines(result.notes));
+  arguments.output.write_page(page_of(result, arguments.file), session);
+  arguments.output.write_camera(camera_with(base, arguments, response), session);
+}
+
+}  // namespace
+
+void add_calibrate_response(CLI::App& calibrate, Session& session) {
+  auto arguments = std::make_shared<ResponseArguments>();
+  CLI::App* command = calibrate.add_subcommand(
+      "impulse-response",
+      "bandwidth and response of an arm from a record of its answer to a pulse or a step");
+  command
+      ->add_option("FILE", arguments->file,
+                   "oscilloscope CSV (time, value), or a histogram (.npy or values alone)")
+      ->required();
+  arguments->camera.add_to(*command);
+  command->add_option("--excitation", arguments->excitation, "what the arm answered to")
+      ->check(CLI::IsMember({"auto", "pulse", "step"}))
+      ->capture_default_str();
+  command->add_option("--column", arguments->record.column,
+                      "name or number (from 1) of the column that holds the response");
+  command
+      ->add_option("--time-step", arguments->record.time_step_s,
+                   "seconds between values, for files without times")
+      ->check(positive_number());
+  command->add_option("--time-unit", arguments->time_unit, "unit of the time column")
+      ->check(CLI::IsMember({"s", "ms", "us", "ns", "ps"}));
+  command->add_option("--decimal", arguments->decimal, "decimal mark of a text")
+      ->check(CLI::IsMember({"auto", "point", "comma"}))
+      ->capture_default_str();
+  command
+      ->add_option("--arm", arguments->arm,
+                   "whose response it is; system: that of both together, kept in the light's")
+      ->check(CLI::IsMember({"light", "sensor", "system"}))
+      ->capture_default_str();
+  command
+      ->add_option("--as", arguments->as,
+                   "what the camera gets: the measured response in a file beside it, or a fit")
+      ->check(CLI::IsMember({"file", "hann", "gaussian", "lowpass"}))
+      ->capture_default_str();
+  arguments->output.add_to(*command);
+  command->callback([arguments, &session] { run(*arguments, session); });
+}
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/statistics.hpp"
+
+namespace tofsmith {
+
+struct PhotonTransferOptions {
+  std::optional<double> black_level_dn;  ///< [DN], known; none: from dark frames
+  std::optional<int> adc_bits;           ///< of the raw numbers; none: the fewest usual ones
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+
+/// Mean and variance of one pair of frames of one measurement.
+struct PhotonTransferPoint {
+  double mean_dn = 0.0;    ///< over both frames and all pixels [DN]
+  Estimate variance_dn2;   ///< of one frame in time [DN^2]
+  bool dark = false;       ///< of the dark frames
+  bool saturated = false;  ///< too close to the limit to count in the fit
+};
+
+/// Noise of a sensor from pairs of frames of the same light:
+///   variance [DN^2] = read_noise^2 / gain^2 + (mean - black) / gain + 1/12
+struct PhotonTransfer {
+  Estimate gain_e_per_dn;               ///< [e/DN]
+  Estimate read_noise_e;                ///< [e]
+  Estimate black_level_dn;              ///< [DN]
+  std::optional<Estimate> full_well_e;  ///< [e], if frames reach it before the converter's end
+  double saturation_dn = 0.0;           ///< highest number seen, or where numbers are clipped
+  int adc_bits = 0;
+  double reduced_chi2 = 0.0;  ///< of the fit: near 1 where the model holds
+  std::vector<PhotonTransferPoint> points;
+  std::vector<std::string> notes;
+};
+
+/// Photon transfer. Each two frames of a recording that follow one another saw the same light; the
+/// difference of the two leaves out what is fixed in a pixel, half its variance is that in time.
+/// The darkest and dark frames fix read noise, the rise of variance with the mean the gain.
+///   1. Black level: mean of the dark frames, or as told.
+///   2. Mean and variance of every pair and measurement; a change of light between the two frames
+///      of a pair is taken out.
+///   3. Full well: where pixels pile up at one number below the converter's last.
+///   4. Straight line by weighted least squares, weights from the expected variance; read noise
+///      from its value at black, less 1/12 of rounding.
+/// @param levels  one recording per level of light or one of them all, raw numbers of single taps
+///                (not differences), an even number of frames
+/// @param dark    frames without light; may have no frames if the black level is told
+/// @throws std::invalid_argument if frames are no pairs, sizes differ, the black level is unknown,
+///         or the levels do not differ
+PhotonTransfer photon_transfer(const std::vector<RawFrames>& levels, const RawFrames& dark,
+                               const PhotonTransferOptions& options = {});
+
+/// The camera with what was found: gain, read noise, black level, bits and full well.
+Camera with_noise(Camera camera, const PhotonTransfer& found);
+
+}  // namespace tofsmith

@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/calibrate/delay_sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibrate/delay_groups.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/io/npy.hpp"
+#include "tofsmith/io/raw_frames_file.hpp"
+
+namespace tofsmith {
+namespace {
+
+double periods_per_number(const DelaySweepOptions& options) {
+  const double f0_hz = options.fundamental_frequency_hz;
+  switch (options.unit) {
+    case DelayUnit::second:
+      return options.unit_scale * f0_hz;
+    case DelayUnit::metre:
+      return options.unit_scale / unambiguous_range_m(f0_hz);
+    case DelayUnit::bin:
+      return options.unit_scale / options.samples;
+    case DelayUnit::period:
+      break;
+  }
+  return options.unit_scale;
+}
+
+/// One pixel of which row f is frame f.
+RawFrames frames_of(const Eigen::MatrixXd& values) {
+  RawFrames frames{.frames = static_cast<int>(values.rows()),
+                   .height = 1,
+                   .width = 1,
+                   .measurements = static_cast<int>(values.cols())};
+  for (Eigen::Index f = 0; f < values.rows(); ++f)
+    for (Eigen::Index k = 0; k < values.cols(); ++k)
+      frames.values.push_back(static_cast<float>(values(f, k)));
+  return frames;
+}
+
+std::vector<double> shifts_of(const std::filesystem::path& path, DecimalMark decimal) {
+  if (path.extension() == ".npy") {
+    const NpyArray array = read_npy(path);
+    if (array.axes() != 1)
+      throw IoError(path.string(), fmt::format("found an array of shape {}; expected one axis",
+                                               describe_shape(array.shape())));
+    return array.to_doubles();
+  }
+  const InstrumentTable table = read_instrument_table(path, decimal);
+  if (table.values.cols() != 1)
+    throw IoError(path.string(),
+                  fmt::format("found {} columns; expected one, the shifts", table.values.cols()));
+  return {table.values.col(0).begin(), table.values.col(0).end()};
+}
+
+DelaySweep read_text(const std::filesystem::path& path, DelaySweepOptions options) {
+  const InstrumentTable table = read_instrument_table(path, options.decimal);
+  if (table.values.cols() < 2)
+    throw IoError(path.string(),
+                  "found one column; expected the delay and a value for each "
+                  "measurement");
+  // The header's unit, unless one was told.
+  if (options.unit == DelayUnit::second && options.unit_scale == 1.0 && !table.names.empty())
+    if (const double unit_s = seconds_per_unit(table.names[0]); unit_s > 0.0)
+      options.unit_scale = unit_s;
+  DelaySweep sweep;
+  sweep.notes = table.notes;
+  for (const double delay : table.values.col(0))
+    sweep.delay_periods.push_back(delay * periods_per_number(options));
+  sweep.frames = frames_of(table.values.rightCols(table.values.cols() - 1));
+  return sweep;
+}
+
+DelaySweep read_stack(const std::filesystem::path& path, const DelaySweepOptions& options) {
+  DelaySweep sweep;
+  sweep.frames = read_raw_frames(path);
+  const std::vector<double> shifts = shifts_of(options.shifts, options.decimal);
+  if (std::ssize(shifts) != sweep.frames.frames)
+    throw IoError(options.shifts.string(),
+                  fmt::format("found {} shifts; expected {}, one per frame of {}", shifts.size(),
+                              sweep.frames.frames, path.string()));
+  for (std::size_t i = 0; i < shifts.size(); ++i) {
+    if (!std::isfinite(shifts[i]))
+      throw IoError(fmt::format("{}[{}]", options.shifts.string(), i),
+                    fmt::format("found {}; expected a finite number", shifts[i]));
+    sweep.delay_periods.push_back(shifts[i] * periods_per_number(options));
+  }
+  return sweep;
+}
+
+}  // namespace
+
+DelayUnit parse_delay_unit(std::string_view word) {
+  if (word == "m") return DelayUnit::metre;
+  if (word == "bin") return DelayUnit::bin;
+  if (word == "period") return DelayUnit::period;
+  require(seconds_per_unit(word) > 0.0, "delay unit", word,
+          "must be s, ms, us, ns, ps, m, bin or period");
+  return DelayUnit::second;
+}
+
+void DelaySweep::validate() const {
+  require(std::ssize(delay_periods) == frames.frames, "delays", delay_periods.size(),
+          fmt::format("must be {}, one per frame", frames.frames));
+  const auto needed = static_cast<std::size_t>(frames.frames) * frames.pixels_per_frame() *
+                      static_cast<std::size_t>(frames.measurements);
+  require(needed > 0 && frames.values.size() == needed, "frames", frames.values.size(),
+          "must hold F x H x W x K values");
+  require_whole_period(delay_groups(delay_periods));
+}
+
+DelaySweep read_delay_sweep(const std::filesystem::path& path, const DelaySweepOptions& options) {
+  const std::string extension = path.extension().string();
+  DelaySweep sweep;
+  if (extension == ".csv" || extension == ".txt" || extension == ".tsv" || extension == ".dat") {
+    if (!options.shifts.empty())
+      throw IoError(path.string(),
+                    "is a table, whose first column is the delay; expected no "
+                    "list of shifts beside it");
+    sweep = read_text(path, options);
+  } else if (!options.shifts.empty()) {
+    sweep = read_stack(path, options);
+  } else {
+    const MeasuredTableFile file = read_measured_table(path, options.table);
+    sweep.frames = frames_of(file.table.correlation);
+    sweep.notes = file.notes;
+    const int count = file.table.samples();
+    sweep.notes.push_back(fmt::format("{}: its {} rows were taken as equal steps of one period",
+                                      path.string(), count));
+    for (int n = 0; n < count; ++n) sweep.delay_periods.push_back(static_cast<double>(n) / count);
+  }
+  try {
+    sweep.validate();
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path.string(), error.what());
+  }
+  return sweep;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/calibrate/response_record.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/statistics.hpp"
+#include "tofsmith/io/npy.hpp"
+
+namespace tofsmith {
+namespace {
+
+constexpr double equal_steps = 0.01;  // of a step: room for times written with few digits
+constexpr double longest_gap = 10.0;  // steps
+constexpr Eigen::Index fewest_values = 16;
+
+/// Column of the values, from 0; the times, if there are any, are the first column.
+Eigen::Index value_column(const InstrumentTable& table, const std::string& wanted,
+                          const std::string& file) {
+  const Eigen::Index columns = table.values.cols();
+  if (wanted.empty()) {
+    if (columns <= 2) return columns - 1;
+    throw IoError(file, fmt::format("found {} columns{}; expected --column to say which holds the "
+                                    "response",
+                                    columns,
+                                    table.names.empty()
+                                        ? std::string()
+                                        : fmt::format(" ({})", fmt::join(table.names, ", "))));
+  }
+  const auto named = std::ranges::find(table.names, wanted);
+  if (named != table.names.end()) return named - table.names.begin();
+  Eigen::Index number = 0;
+  const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
+  if (error == std::errc() && end == wanted.data() + wanted.size() && number >= 1 &&
+      number <= columns)
+    return number - 1;
+  throw IoError(file, fmt::format("found no column {}; expected 1 to {}{}", wanted, columns,
+                                  table.names.empty() ? std::string()
+                                                      : fmt::format(" or one of {}",
+                                                                    fmt::join(table.names, ", "))));
+}
+
+double median_step(const Eigen::VectorXd& time_s) {
+  std::vector<double> steps;
+  for (Eigen::Index i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
+  return median_of(std::move(steps));
+}
+
+/// Values at equal steps along the straight lines between those measured.
+Eigen::VectorXd resampled(const Eigen::VectorXd& time_s, const Eigen::VectorXd& values,
+                          double step_s) {
+  const double span_s = time_s[time_s.size() - 1] - time_s[0];
+  const auto count = static_cast<Eigen::Index>(std::floor(span_s / step_s + 1e-9)) + 1;
+  Eigen::VectorXd result(count);
+  Eigen::Index after = 1;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double t = time_s[0] + step_s * static_cast<double>(i);
+    while (after + 1 < time_s.size() && time_s[after] < t) ++after;
+    const double share =
+        std::clamp((t - time_s[after - 1]) / (time_s[after] - time_s[after - 1]), 0.0, 1.0);
+    result[i] = values[after - 1] + share * (values[after] - values[after - 1]);
+  }
+  return result;
+}
+
+void set_times(ResponseRecord& record, const Eigen::VectorXd& time_s,
+               const std::vector<std::size_t>& lines, const std::string& file) {
+  const double step_s = median_step(time_s);
+  double largest = 0.0;
+  for (Eigen::Index i = 1; i < time_s.size(); ++i) {
+    const double gap_s = time_s[i] - time_s[i - 1];
+    const std::string place = fmt::format("{}:{}", file, lines[static_cast<std::size_t>(i)]);
+    if (!(gap_s > 0.0))
+      throw IoError(place, fmt::format("found the time {:.9g} s after {:.9g} s; expected times "
+                                       "that rise",
+                                       time_s[i], time_s[i - 1]));
+    if (gap_s > longest_gap * step_s)
+      throw IoError(place, fmt::format("found a gap of {:.4g} s between two times; expected at "
+                                       "most {:.0f} steps of {:.4g} s",
+                                       gap_s, longest_gap, step_s));
+    largest = std::max(largest, std::abs(gap_s - step_s));
+  }
+  record.start_time_s = time_s[0];
+  // The mean step: few digits in a file make the median one of two neighbours.
+  const double mean_step_s =
+      (time_s[time_s.size() - 1] - time_s[0]) / static_cast<double>(time_s.size() - 1);
+  double strayed = 0.0;
+  for (Eigen::Index i = 0; i < time_s.size(); ++i)
+    strayed =
+        std::max(strayed, std::abs(time_s[i] - time_s[0] - mean_step_s * static_cast<double>(i)));
+  record.time_step_s = mean_step_s;
+  if (strayed <= equal_steps * mean_step_s) return;
+  if (strayed <= mean_step_s && largest <= 0.5 * step_s) {
+    record.notes.push_back(
+        fmt::format("{}: its times stray from equal steps by up to {:.2g} of a step and the values "
+                    "were resampled along straight lines",
+                    file, strayed / mean_step_s));
+  } else {
+    record.time_step_s = step_s;
+    record.notes.push_back(fmt::format(
+        "{}: its times are not equally spaced (steps off by up to {:.3g} of {:.4g} s); the values "
+        "were resampled along straight lines",
+        file, largest / step_s, step_s));
+  }
+  record.values = resampled(time_s, record.values, record.time_step_s);
+}
+
+void read_text(const std::filesystem::path& path, const ResponseRecordOptions& options,
+               ResponseRecord& record) {
+  const std::string file = path.string();
+  const InstrumentTable table = read_instrument_table(path, options.decimal);
+  record.notes = table.notes;
+  const Eigen::Index column = value_column(table, options.column, file);
+  record.values = table.values.col(column);
+  if (options.time_step_s || table.values.cols() < 2 || column == 0) {
+    if (options.time_step_s && table.values.cols() >= 2 && column != 0)
+      record.notes.push_back(
+          fmt::format("{}: its first column was not read: --time-step counts", file));
+    return;
+  }
+  double unit_s = options.time_unit_s.value_or(0.0);
+  if (unit_s == 0.0 && !table.names.empty()) unit_s = seconds_per_unit(table.names[0]);
+  if (unit_s == 0.0) {
+    unit_s = 1.0;
+    record.notes.push_back(
+        fmt::format("{}: its times were taken as seconds (--time-unit says otherwise)", file));
+  }
+  set_times(record, unit_s * table.values.col(0), table.lines, file);
+}
+
+void read_array(const std::filesystem::path& path, ResponseRecord& record) {
+  const NpyArray array = read_npy(path);
+  if (array.axes() != 1)
+    throw IoError(path.string(), fmt::format("found an array of shape {}; expected one axis",
+                                             describe_shape(array.shape())));
+  const std::vector<double> values = array.to_doubles();
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i]))
+      throw IoError(fmt::format("{}[{}]", path.string(), i),
+                    fmt::format("found {}; expected a finite number", values[i]));
+  record.values =
+      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+bool are_counts(const Eigen::VectorXd& values) {
+  return values.minCoeff() >= 0.0 && values.maxCoeff() >= 10.0 &&
+         (values.array() == values.array().round()).all();
+}
+
+}  // namespace
+
+ResponseRecord read_response_record(const std::filesystem::path& path,
+                                    const ResponseRecordOptions& options) {
+  if (options.time_step_s)
+    require(std::isfinite(*options.time_step_s) && *options.time_step_s > 0.0, "time_step_s",
+            *options.time_step_s, "must be finite and > 0");
+  ResponseRecord record;
+  if (path.extension() == ".npy")
+    read_array(path, record);
+  else
+    read_text(path, options, record);
+  if (record.values.size() < fewest_values)
+    throw IoError(path.string(), fmt::format("found {} values; expected at least {}",
+                                             record.values.size(), fewest_values));
+  if (record.time_step_s == 0.0) {
+    if (!options.time_step_s)
+      throw IoError(path.string(), "found values without times; expected --time-step");
+    record.time_step_s = *options.time_step_s;
+  }
+  record.counts = are_counts(record.values);
+  return record;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,147 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Calibrations from files to a camera, a table and maps that other commands take."""
+
+import unittest
+
+import numpy as np
+
+from command_line import CommandLineTest
+
+RANGE_M = 299792458 / 2 / 15e6
+CAMERA = """fundamental_frequency_hz = 15e6
+exposure_s = 0.004
+samples = 60
+[light]
+impulse_response = { kind = "hann", f_max_hz = 75e6 }
+[sensor]
+impulse_response = { kind = "hann", f_max_hz = 75e6 }
+read_noise_e = 30
+adc_bits = 12
+gain_e_per_dn = 8
+black_level_dn = 100
+[operating]
+signal_e_per_s = [1e6]
+ambient_e_per_s = [1e5]
+"""
+
+
+class Calibrate(CommandLineTest):
+    def record(self, sigma_ns=1.5):
+        """A Gaussian pulse as a scope with German settings writes it."""
+        t = np.arange(400) * 0.1
+        rng = np.random.default_rng(1)
+        v = np.exp(-((t - 20) / sigma_ns) ** 2 / 2) + 0.01 * rng.standard_normal(t.size)
+        rows = "".join(f"{a:.2f};{b:.6f}\n".replace(".", ",") for a, b in zip(t, v))
+        return self.write("scope.csv", "Scope;4711\nTime (ns);Volt\n" + rows)
+
+    def test_a_response_becomes_a_camera(self):
+        self.record()
+        document = self.do_json("calibrate", "impulse-response", "scope.csv")
+        best = document["fits"][0]
+        true_hz = np.sqrt(np.log(2)) / (2 * np.pi * 1.5e-9)
+        self.assertEqual((document["excitation"], best["kind"]), ("pulse", "gaussian"))
+        self.assertLess(abs(best["bandwidth_hz"]["value"] / true_hz - 1), 0.02)
+        text = self.do("calibrate", "impulse-response", "scope.csv", "-o", "mine.toml",
+                       "--report", "page.html")
+        self.assertIn("next: tofsmith design mine.toml", text)
+        self.assertIn("mine-response.csv", self.files())
+        errors = self.do_json("evaluate", "hamiltonian-k3", "--camera", "mine.toml",
+                              "--trials", "200")
+        self.assertEqual(errors["camera"]["light"]["impulse_response"]["kind"], "file")
+        self.do("calibrate", "impulse-response", "scope.csv", "-o", "fit.toml", "--as", "gaussian",
+                "--arm", "sensor")
+        self.assertIn("gaussian", self.bytes_of("fit.toml").decode())
+
+    def test_bad_records_are_refused(self):
+        command = ["calibrate", "impulse-response"]
+        self.write("a.csv", "4,5\n1,7\n" * 20)
+        self.refuse([*command, "a.csv"], "a.csv:1", "--decimal")
+        self.write("b.csv", "t,v\n" + "".join(f"{i}.5,{i}\n" for i in range(30)) + "30.5,nan\n")
+        self.refuse([*command, "b.csv"], "b.csv:32", "nan")
+        self.write("c.csv", "".join(f"{i}.5,1.5\n" for i in range(30)))
+        self.refuse([*command, "c.csv"], "longer than the camera's period", "--time-unit")
+        self.record()
+        self.refuse([*command, "scope.csv", "-o", "x.json"], ".toml", code=2)
+        self.refuse([*command, "scope.csv", "--report", "scope.csv"], ".html", code=2)
+        self.refuse(["calibrate"], "subcommand", code=2)
+        self.refuse(["calibrate", "noise", "--darkk", "x"], "did you mean --dark?", code=2)
+
+    def sweep(self):
+        """A flat target at 61 delays, seen by 6 x 6 pixels."""
+        self.write("camera.toml", CAMERA)
+        frames = []
+        for i in range(61):
+            depth = np.full((6, 6), RANGE_M * ((i % 60) / 60 or 1), np.float32)
+            np.save(self.path("scene.npy"), depth)
+            self.do("simulate", "scene.npy", "--kind", "radial", "--code", "hamiltonian-k4",
+                    "--no-falloff", "--camera", "camera.toml", "--signal", "3e7", "--ambient", "0",
+                    "--seed", str(i), "-o", "raw.npy", "--force")
+            frames.append(np.load(self.path("raw.npy")))
+        frames = np.stack(frames)
+        frames[:, 2, 3, :] = 7
+        np.save(self.path("sweep.npy"), frames)
+        np.savetxt(self.path("shifts.txt"), np.arange(61))
+
+    def test_a_sweep_becomes_table_maps_and_camera(self):
+        self.sweep()
+        arguments = ["calibrate", "correlation", "sweep.npy", "--shifts", "shifts.txt",
+                     "--shift-unit", "bin", "--camera", "camera.toml"]
+        found = self.do_json(*arguments, "--table", "t.npz", "--offset-map", "o.npy", "--gain-map",
+                             "g.npy", "-o", "fitted.toml", "--report", "page.html")
+        self.assertEqual((found["samples"], found["measurements"]), (60, 4))
+        self.assertEqual(found["dead_pixels"], 1)
+        best = found["ideal_codes"][0]
+        self.assertEqual(best["code"], "hamiltonian-k4")
+        f_max = best["parameter_hz"]
+        self.assertLess(abs(f_max["value"] - 75e6), 4 * f_max["standard_error"] + 1e6)
+        self.assertTrue(np.isnan(np.load(self.path("o.npy"))[2, 3]))
+        decoded = self.do_json("decode", "raw.npy", "--code", "t.npz", "--camera", "camera.toml",
+                               "--offset-map", "o.npy", "--gain-map", "g.npy", "-o", "d.npy")
+        self.assertEqual([n for n in decoded["notes"] if "not used" in n], [])
+        depth = np.load(self.path("d.npy"))
+        off = (depth - 0.0 + RANGE_M / 2) % RANGE_M - RANGE_M / 2
+        self.assertLess(np.nanmedian(np.abs(off)), 0.05)
+        self.do("design", "fitted.toml", "--method", "factorize", "--exposures", "3", "--trials",
+                "1000", "--effort", "0.1", "-o", "designed")
+        np.save(self.path("short.npy"), np.load(self.path("sweep.npy"))[:40])
+        np.savetxt(self.path("some.txt"), np.arange(40))
+        self.refuse(["calibrate", "correlation", "short.npy", "--shifts", "some.txt",
+                     "--shift-unit", "bin", "--camera", "camera.toml"], "whole period", "missing")
+
+    def test_pairs_of_frames_become_noise(self):
+        self.write("camera.toml", CAMERA)
+        np.save(self.path("scene.npy"), np.full((32, 32), 2.0, np.float32))
+
+        def frames(ambient, name, seed):
+            self.do("simulate", "scene.npy", "--kind", "radial", "--code", "sinusoid-k4",
+                    "--camera", "camera.toml", "--signal", "0", "--ambient", ambient, "--frames",
+                    "2", "--seed", seed, "-o", name)
+        for i, ambient in enumerate(("0", "4e6", "1e7", "2e7")):
+            frames(ambient, f"{i}.npy", str(i))
+        command = ["calibrate", "noise", "1.npy", "2.npy", "3.npy", "--camera", "camera.toml"]
+        found = self.do_json(*command, "--dark", "0.npy", "-o", "noisy.toml", "--report", "p.html")
+        for key, truth in (("gain_e_per_dn", 8), ("read_noise_e", 30), ("black_level_dn", 100)):
+            self.assertLess(abs(found[key]["value"] - truth), 4 * found[key]["standard_error"], key)
+        self.assertIn("read_noise_e", self.bytes_of("noisy.toml").decode())
+        self.refuse([*command, "--set", "sensor.taps=2", "--set", "sensor.readout=difference"],
+                    "differences", code=2)
+        self.refuse(["calibrate", "noise", "1.npy"], "--dark", code=2)
+
+    def test_perturbations_are_told_alone_and_together(self):
+        arguments = ["evaluate", "hamiltonian-k3", "--trials", "200"]
+        report = self.do_json(*arguments, "--perturb", "jitter=50ps,clock=5ns,droop=3%")
+        names = [p["name"] for p in report["codes"][0]["robustness"]["perturbations"]]
+        self.assertEqual(names, ["edge jitter 50 ps", "clock 5.13 ns", "droop 3 %",
+                                 "all together"])
+        self.do(*arguments, "--perturb", "droop=3%", "-o", "page.html")
+        self.assertIn("robustness-ratios", self.bytes_of("page.html").decode())
+        self.refuse([*arguments, "--perturb", "jiter=50ps"], "jitter=VALUE", code=2)
+        self.refuse([*arguments, "--perturb", "jitter=50"], "with its unit", code=2)
+        self.refuse([*arguments, "--perturb", "droop=300%"], "share in (0, 1)", code=2)
+        self.refuse([*arguments, "--perturb", "droop=3%", "--robustness"], "choose one", code=2)
+        self.refuse([*arguments, "--perturb", "clock=60ns"], "points per period")
+
+
+if __name__ == "__main__":
+    unittest.main()

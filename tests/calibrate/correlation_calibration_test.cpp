@@ -1,0 +1,235 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/calibrate/correlation_calibration.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tofsmith/calibrate/ideal_code_fit.hpp"
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/random.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+constexpr double scale = 1000.0, level = 300.0;  // raw numbers
+
+struct Bench {
+  int side = 8;           // pixels each way
+  int steps = 30;         // per period
+  int frames = 31;        // the last repeats the first
+  double noise = 3.0;     // raw numbers
+  double drift = 0.0;     // of the light, from the first to the last frame
+  double mismatch = 0.0;  // of two taps
+  double first = 0.0;     // delay of the first frame [steps]
+  std::uint64_t seed = 1;
+};
+
+Camera camera_of(const Bench& bench, int taps = 1) {
+  Camera camera = built_in_camera("paper-5f0");
+  camera.sensor.taps = taps;
+  camera.sensor.drain = taps == 1;
+  camera.sensor.tap_mismatch = bench.mismatch;
+  return camera;
+}
+
+double delay_of(int p) { return 0.004 * std::sin(1.7 * p); }  // periods
+double gain_of(int p) { return 1.0 + 0.2 * std::cos(2.3 * p); }
+
+/// Raw numbers of pixels with delays and gains of their own, whose means are 0 and 1.
+DelaySweep sweep_of(const Bench& bench, const ForwardModel& model) {
+  DelaySweep sweep;
+  const int pixels = bench.side * bench.side, columns = model.measurements();
+  double mean_delay = 0.0, mean_gain = 0.0;
+  for (int p = 0; p < pixels; ++p) {
+    mean_delay += delay_of(p) / pixels;
+    mean_gain += gain_of(p) / pixels;
+  }
+  sweep.frames = {
+      .frames = bench.frames, .height = bench.side, .width = bench.side, .measurements = columns};
+  for (int f = 0; f < bench.frames; ++f) {
+    const double place = (f + bench.first) / bench.steps;
+    sweep.delay_periods.push_back(place);
+    const double light = 1.0 + bench.drift * (static_cast<double>(f) / (bench.frames - 1) - 0.5);
+    for (int p = 0; p < pixels; ++p) {
+      RandomStream random(bench.seed, static_cast<std::uint64_t>(p), static_cast<unsigned>(f));
+      const bool one = pixels == 1;
+      const double u = place + (one ? 0.0 : delay_of(p) - mean_delay);
+      const double gain = one ? 1.0 : gain_of(p) / mean_gain;
+      const Eigen::VectorXd chi = model.correlation((u - std::floor(u)) * model.samples());
+      for (int k = 0; k < columns; ++k)
+        sweep.frames.values.push_back(static_cast<float>(level + scale * light * gain * chi[k] +
+                                                         bench.noise * random.normal()));
+    }
+  }
+  return sweep;
+}
+
+/// Largest and mean square distance from the truth in standard errors. Light that drifted is known
+/// in the middle of the sweep.
+std::pair<double, double> distance(const CalibratedCorrelation& found, const ForwardModel& model) {
+  const Eigen::MatrixXd truth =
+      (scale * model.correlation_table(found.table.samples())).array() + level;
+  const Eigen::ArrayXXd off =
+      (found.table.correlation - truth).array() / found.standard_error.array();
+  return {off.abs().maxCoeff(), off.square().mean()};
+}
+
+TEST(CorrelationCalibration, RecoversTheTableWithinFourStandardErrorsAtEverySample) {
+  double mean_square = 0.0;
+  constexpr int seeds = 6;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const Bench bench{.seed = seed};
+    const Camera camera = camera_of(bench);
+    const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
+    const CalibratedCorrelation found =
+        calibrate_correlation(sweep_of(bench, model), {.range_m = camera.range_m()});
+    EXPECT_EQ(found.table.samples(), bench.steps);
+    EXPECT_EQ(found.noise_source, "pixels");
+    EXPECT_NEAR(found.noise_rms, bench.noise, 0.1);
+    const auto [largest, square] = distance(found, model);
+    EXPECT_LT(largest, 4.0);
+    mean_square += square / seeds;
+    // The maps: delays and gains of the pixels.
+    RunningStatistics offset, gain;
+    for (int p = 0; p < bench.side * bench.side; ++p) {
+      const auto i = static_cast<std::size_t>(p);
+      offset.add(found.maps.delay_offset_m.pixels[i] / camera.range_m() - delay_of(p));
+      gain.add(found.maps.gain.pixels[i] - gain_of(p));
+    }
+    const double offset_error = found.delay_error_m / camera.range_m();
+    EXPECT_NEAR(std::sqrt(offset.variance()), offset_error, 0.35 * offset_error);
+    EXPECT_LT(std::sqrt(gain.variance()), 3 * found.gain_error + 1e-3);
+  }
+  EXPECT_GT(mean_square, 0.6);
+  EXPECT_LT(mean_square, 1.5);
+}
+
+TEST(CorrelationCalibration, TakesOutDriftThatRepeatsTell) {
+  const Bench bench{.frames = 60, .drift = 0.05};
+  const Camera camera = camera_of(bench);
+  const ForwardModel model(build_family("hamiltonian-k4", camera), camera);
+  const CalibratedCorrelation found =
+      calibrate_correlation(sweep_of(bench, model), {.range_m = camera.range_m()});
+  EXPECT_TRUE(found.drift_corrected);
+  EXPECT_NEAR(found.light_drift.value, 0.05, 4 * found.light_drift.standard_error + 0.002);
+  EXPECT_THAT(found.notes, Contains(HasSubstr("light changed by +5")));
+  // Without repeats nobody can know.
+  const Bench once{.frames = 30};
+  const CalibratedCorrelation blind =
+      calibrate_correlation(sweep_of(once, model), {.range_m = camera.range_m()});
+  EXPECT_FALSE(blind.drift_known);
+  EXPECT_THAT(blind.notes, Contains(HasSubstr("measure the first delay again")));
+}
+
+TEST(CorrelationCalibration, LeavesDeadPixelsOut) {
+  const Bench bench;
+  const Camera camera = camera_of(bench);
+  const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
+  DelaySweep sweep = sweep_of(bench, model);
+  const int columns = 3, pixels = bench.side * bench.side;
+  RandomStream random(9, 9);
+  for (int f = 0; f < bench.frames; ++f)
+    for (int k = 0; k < columns; ++k) {
+      float* frame = sweep.frames.frame(f);
+      frame[0 * columns + k] = 17.0f;                                         // constant
+      frame[5 * columns + k] = 300.0f + static_cast<float>(random.normal());  // hardly responds
+      if (f == 3) frame[7 * columns + k] = NAN;
+      if (f == 4) frame[9 * columns + k] = 5000.0f;  // saturated
+    }
+  const CalibratedCorrelation found =
+      calibrate_correlation(sweep, {.range_m = camera.range_m(), .saturation_level = 4095.0f});
+  EXPECT_EQ(found.dead.constant, 1);
+  EXPECT_EQ(found.dead.low, 1);
+  EXPECT_EQ(found.dead.not_a_number, 1);
+  EXPECT_EQ(found.dead.saturated, 1);
+  for (const std::size_t p : {0u, 5u, 7u, 9u}) {
+    EXPECT_TRUE(std::isnan(found.maps.delay_offset_m.pixels[p])) << p;
+    EXPECT_TRUE(std::isnan(found.maps.gain.pixels[p])) << p;
+  }
+  EXPECT_NO_THROW(found.maps.validate(bench.side, bench.side));
+  EXPECT_EQ(std::ranges::count_if(found.maps.gain.pixels, [](float g) { return g > 0.0f; }),
+            pixels - 4);
+}
+
+TEST(CorrelationCalibration, FindsTheImbalanceOfTaps) {
+  const Bench bench{.mismatch = 0.03};
+  const Camera camera = camera_of(bench, 2);
+  const ForwardModel model(build_family("sinusoid-k4", camera), camera);
+  const CalibratedCorrelation found =
+      calibrate_correlation(sweep_of(bench, model), {.taps = 2, .range_m = camera.range_m()});
+  ASSERT_EQ(found.tap_mismatch.size(), 4u);
+  for (const Estimate& m : found.tap_mismatch) EXPECT_NEAR(m.value, 0.03, 4 * m.standard_error);
+  EXPECT_LT(distance(found, model).first, 4.5);
+}
+
+TEST(CorrelationCalibration, ReadsASweepThatStartsAnywhereAndTablesOfMeans) {
+  const Bench bench{.side = 1, .frames = 90, .noise = 0.2, .first = 0.37};
+  const Camera camera = camera_of(bench);
+  const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
+  const CalibratedCorrelation found =
+      calibrate_correlation(sweep_of(bench, model), {.range_m = camera.range_m()});
+  EXPECT_EQ(found.noise_source, "repeats");
+  EXPECT_TRUE(found.maps.empty());
+  EXPECT_LT(distance(found, model).first, 5.0);
+  const Bench once{.side = 1, .steps = 60, .frames = 60, .noise = 0.2};
+  const CalibratedCorrelation table =
+      calibrate_correlation(sweep_of(once, model), {.range_m = camera.range_m()});
+  EXPECT_EQ(table.noise_source, "high harmonics");
+  EXPECT_NEAR(table.noise_rms, 0.2, 0.08);
+}
+
+TEST(CorrelationCalibration, RefusesWhatIsLessThanAPeriod) {
+  const Camera camera = camera_of({});
+  const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
+  const auto refusal = [&](const Bench& bench) -> std::string {
+    try {
+      calibrate_correlation(sweep_of(bench, model), {.range_m = camera.range_m()});
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  EXPECT_THAT(refusal({.side = 2, .frames = 20}),
+              HasSubstr("from 0.6667 to 0.9667 periods are missing, 10 more steps"));
+  EXPECT_THAT(refusal({.side = 2, .frames = 5}), HasSubstr("at least 8 different"));
+  EXPECT_EQ(refusal({.side = 2, .frames = 30}), "none");
+}
+
+TEST(IdealCodeFit, FindsCodeDelayAndResponse) {
+  const Bench bench{.first = 0.0};
+  const Camera camera = camera_of(bench);  // hann on both arms, 5 f0
+  for (const char* name : {"hamiltonian-k4", "sinusoid-k4", "square-k4"}) {
+    const CodeSet code = build_family(name, camera).rotated(-48);  // arrives 0.2 periods later
+    const ForwardModel model(code, camera);
+    const CalibratedCorrelation found =
+        calibrate_correlation(sweep_of(bench, model), {.range_m = camera.range_m()});
+    const auto fits = fit_ideal_codes(found.table.correlation, found.standard_error, camera,
+                                      ideal_codes(camera, 4));
+    const IdealCodeFit& best = fits.front();
+    if (std::string(name) == "hamiltonian-k4") {
+      EXPECT_EQ(best.code, name);
+      EXPECT_NEAR(best.delay_periods, 0.2, 2e-3);
+      EXPECT_FALSE(best.reversed || best.inverted);
+      EXPECT_EQ(best.response.kind, ImpulseResponse::Kind::hann);
+      EXPECT_NEAR(best.parameter_hz.value, 75e6, 4 * best.parameter_hz.standard_error + 1e6);
+      EXPECT_LT(best.residual, 0.01);
+      EXPECT_GT(best.ideal_residual, 2 * best.residual);
+      const Camera fitted = with_fit(built_in_camera("paper-30x"), best);
+      EXPECT_EQ(fitted.sensor.impulse_response, best.response);
+    } else {  // a sinusoid passes any response, a square with it may look like one
+      EXPECT_LT(best.residual, 0.01) << best.code;
+    }
+    EXPECT_THROW(fit_ideal_codes(found.table.correlation, found.standard_error, camera,
+                                 ideal_codes(camera, 3)),
+                 std::invalid_argument);
+  }
+}
+
+}  // namespace
+}  // namespace tofsmith

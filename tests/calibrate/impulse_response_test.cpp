@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/calibrate/impulse_response.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tofsmith/core/random.hpp"
+
+namespace tofsmith {
+namespace {
+
+using Kind = ImpulseResponse::Kind;
+using testing::HasSubstr;
+
+constexpr double step_s = 0.1e-9;
+constexpr int count = 1200;
+
+ImpulseResponse response_of(Kind kind) {
+  return {.kind = kind, .f_max_hz = 150e6, .cutoff_hz = 90e6};
+}
+
+/// What an oscilloscope shows of a response at `onset_s`: the response by its transfer function
+/// alone, in the time domain, of height 1, with normal noise.
+ResponseRecord record_of(const ImpulseResponse& response, Excitation excitation, double noise,
+                         std::uint64_t seed) {
+  constexpr int harmonics = 6000;
+  constexpr double period_s = 4 * count * step_s, onset_s = 40e-9;
+  ResponseRecord record;
+  record.time_step_s = step_s;
+  record.values.resize(count);
+  const double pi = std::numbers::pi;
+  for (int i = 0; i < count; ++i) {
+    // A pulse, or a square wave that is on for half the period.
+    const double t = i * step_s - onset_s;
+    double value = excitation == Excitation::step ? 0.5 : 1.0;
+    for (int n = 1; n <= harmonics; ++n) {
+      const double f = n / period_s;
+      std::complex<double> h = response.transfer(f);
+      if (std::abs(h) < 1e-7) continue;
+      if (excitation == Excitation::step)
+        h *= (1.0 - std::polar(1.0, -pi * n)) / std::complex<double>(0.0, 2 * pi * n);
+      value += 2 * (h * std::polar(1.0, 2 * pi * f * t)).real();
+    }
+    record.values[i] = value;
+  }
+  const double height =
+      excitation == Excitation::step ? 1.0 : record.values.maxCoeff() - record.values.minCoeff();
+  RandomStream random(seed, 1);
+  for (double& value : record.values)
+    value = 0.3 + 2.0 * (value / height + noise * random.normal());
+  return record;
+}
+
+const ParametricResponse& fit_of(const CalibratedResponse& result, Kind kind) {
+  for (const ParametricResponse& fit : result.fits)
+    if (fit.response.kind == kind) return fit;
+  ADD_FAILURE() << "no fit of " << name_of(kind);
+  return result.fits.front();
+}
+
+class Recovers : public testing::TestWithParam<std::tuple<Kind, Excitation>> {};
+
+TEST_P(Recovers, TheBandwidthWithinTwoPercentAt40Decibels) {
+  const auto [kind, excitation] = GetParam();
+  const ImpulseResponse truth = response_of(kind);
+  const double true_hz = bandwidth_hz(truth);
+  ResponseRecord clean = record_of(truth, excitation, 0.0, 0);
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    ResponseRecord record = clean;
+    RandomStream random(seed, 2);
+    for (double& value : record.values) value += 2.0 * 0.01 * random.normal();
+    const CalibratedResponse result = calibrate_impulse_response(record);
+    EXPECT_EQ(result.excitation, excitation);
+    EXPECT_NEAR(result.snr_db, 40.0, 1.5);
+    EXPECT_TRUE(result.fit_is_good());
+    EXPECT_EQ(result.fits.front().response.kind, kind);
+    const Estimate fitted = fit_of(result, kind).bandwidth_hz;
+    EXPECT_NEAR(fitted.value, true_hz, 0.02 * true_hz);
+    EXPECT_NEAR(fitted.value, true_hz, 4 * fitted.standard_error);
+    EXPECT_LT(fitted.standard_error, 0.01 * true_hz);
+    // The measured response too, without any kind.
+    EXPECT_NEAR(result.bandwidth_hz.value, true_hz, 0.05 * true_hz);
+    EXPECT_NEAR(bandwidth_hz(result.response), true_hz, 0.06 * true_hz);
+    EXPECT_EQ(result.peaks.size(), 1u);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Recovers,
+                         testing::Combine(testing::Values(Kind::hann, Kind::gaussian,
+                                                          Kind::lowpass),
+                                          testing::Values(Excitation::pulse, Excitation::step)));
+
+TEST(CalibratedResponse, IsCentredAndOnTheCamerasGrid) {
+  const CalibratedResponse result = calibrate_impulse_response(
+      record_of(response_of(Kind::gaussian), Excitation::pulse, 0.003, 3));
+  EXPECT_NEAR(result.delay_s, 40e-9, 0.05e-9);
+  const double steps = 1.0 / (15e6 * 240) / result.response.time_step_s;
+  EXPECT_NEAR(steps, std::round(steps), 1e-9);
+  const double centre = result.response_centre_s / result.response.time_step_s;
+  EXPECT_NEAR(centre, std::round(centre), 1e-6);
+  double moment_s = 0.0;
+  for (std::size_t i = 0; i < result.response.samples.size(); ++i)
+    moment_s += result.response.samples[i] * static_cast<double>(i) * result.response.time_step_s;
+  EXPECT_NEAR(moment_s, result.response_centre_s, 0.02e-9);
+  for (const double f_hz : {15e6, 45e6, 90e6}) {
+    const std::complex<double> centred =
+        result.response.transfer(f_hz) *
+        std::polar(1.0, 2 * std::numbers::pi * f_hz * result.response_centre_s);
+    EXPECT_NEAR(std::abs(centred - response_of(Kind::gaussian).transfer(f_hz)), 0.0, 0.02);
+  }
+}
+
+TEST(CalibratedResponse, ErrorsAreHonest) {
+  const ResponseRecord clean = record_of(response_of(Kind::gaussian), Excitation::pulse, 0.0, 0);
+  const double true_hz = bandwidth_hz(response_of(Kind::gaussian));
+  double fitted = 0.0, measured = 0.0;
+  constexpr int seeds = 24;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    ResponseRecord record = clean;
+    RandomStream random(seed, 3);
+    for (double& value : record.values) value += 0.02 * random.normal();
+    const CalibratedResponse result = calibrate_impulse_response(record);
+    const auto square = [&](const Estimate& e) {
+      return std::pow((e.value - true_hz) / e.standard_error, 2) / seeds;
+    };
+    fitted += square(fit_of(result, Kind::gaussian).bandwidth_hz);
+    measured += square(result.bandwidth_hz);
+  }
+  EXPECT_GT(fitted, 0.35);  // chi^2 of 24 over 24
+  EXPECT_LT(fitted, 2.2);
+  EXPECT_GT(measured, 0.3);
+  EXPECT_LT(measured, 3.0);
+}
+
+TEST(CalibratedResponse, KeepsASecondPeakWithANote) {
+  ResponseRecord record = record_of(response_of(Kind::gaussian), Excitation::pulse, 0.0, 0);
+  const Eigen::VectorXd once = record.values;
+  for (Eigen::Index i = 150; i < count; ++i) record.values[i] += 0.6 * (once[i - 150] - 0.3);
+  RandomStream random(5, 4);
+  for (double& value : record.values) value += 0.01 * random.normal();
+  const CalibratedResponse result = calibrate_impulse_response(record);
+  ASSERT_EQ(result.peaks.size(), 2u);
+  EXPECT_NEAR(result.peaks[1].height, 0.6, 0.03);
+  EXPECT_NEAR(result.peaks[1].time_s, 15e-9, 0.3e-9);
+  EXPECT_THAT(result.notes, testing::Contains(HasSubstr("second peak of 0.6")));
+}
+
+TEST(CalibratedResponse, TurnsRoundAFallingOrRolledRecord) {
+  const ResponseRecord clean = record_of(response_of(Kind::hann), Excitation::pulse, 0.002, 7);
+  const double expected_hz = calibrate_impulse_response(clean).fits.front().bandwidth_hz.value;
+  ResponseRecord falling = clean;
+  falling.values = -clean.values;
+  const CalibratedResponse turned = calibrate_impulse_response(falling);
+  EXPECT_TRUE(turned.falling);
+  EXPECT_NEAR(turned.fits.front().bandwidth_hz.value, expected_hz, 1e-6 * expected_hz);
+  ResponseRecord rolled = clean;
+  for (int i = 0; i < count; ++i) rolled.values[i] = clean.values[(i + 400) % count];
+  const CalibratedResponse unrolled = calibrate_impulse_response(rolled);
+  EXPECT_NEAR(unrolled.fits.front().bandwidth_hz.value, expected_hz, 1e-3 * expected_hz);
+  EXPECT_THAT(unrolled.notes, testing::Contains(HasSubstr("turned round")));
+}
+
+TEST(CalibratedResponse, RefusesARecordWithoutAResponse) {
+  ResponseRecord record;
+  record.time_step_s = 1e-9;
+  record.values = Eigen::VectorXd::Zero(100);
+  EXPECT_THROW(calibrate_impulse_response(record), std::invalid_argument);
+  record.values.resize(3);
+  EXPECT_THROW(calibrate_impulse_response(record), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tofsmith

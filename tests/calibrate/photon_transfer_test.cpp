@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/calibrate/photon_transfer.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tofsmith/simulate/capture.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::HasSubstr;
+
+Camera known_camera() {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.exposure_s.total_s = 4e-3;
+  camera.sensor.adc_bits = 12;
+  camera.sensor.gain_e_per_dn = 7.5;
+  camera.sensor.black_level_dn = 64.0;
+  camera.sensor.read_noise_e = 28.0;
+  return camera;
+}
+
+/// Frames of a flat wall whose pixels differ, under ambient light only.
+RawFrames frames_of(const Camera& camera, double ambient_e_per_s, std::uint64_t seed) {
+  SceneImage scene(24, 24);
+  scene.ambient_scale = Image<float>(24, 24, 1.0f);
+  for (int row = 0; row < 24; ++row)
+    for (int column = 0; column < 24; ++column)
+      scene.ambient_scale(row, column) = 0.7f + 0.025f * static_cast<float>(column);
+  return capture(
+      scene, build_family("sinusoid-k4", camera), camera,
+      {.signal_e_per_s = 0.0, .ambient_e_per_s = ambient_e_per_s, .seed = seed, .frames = 2});
+}
+
+PhotonTransfer calibrated(const Camera& camera, std::uint64_t seed, double brightest = 2e7,
+                          const PhotonTransferOptions& options = {.adc_bits = 12}) {
+  std::vector<RawFrames> levels;
+  for (int i = 1; i <= 6; ++i)
+    levels.push_back(frames_of(camera, brightest * i / 6, 100 * seed + static_cast<unsigned>(i)));
+  return photon_transfer(levels, frames_of(camera, 0.0, 100 * seed), options);
+}
+
+TEST(PhotonTransfer, RecoversAKnownSensorWithHonestErrors) {
+  const Camera camera = known_camera();
+  constexpr int seeds = 12;
+  double gain = 0.0, noise = 0.0, black = 0.0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const PhotonTransfer found = calibrated(camera, seed);
+    const auto square = [&](const Estimate& e, double truth) {
+      EXPECT_NEAR(e.value, truth, 4 * e.standard_error) << "seed " << seed;
+      return std::pow((e.value - truth) / e.standard_error, 2) / seeds;
+    };
+    gain += square(found.gain_e_per_dn, 7.5);
+    noise += square(found.read_noise_e, 28.0);
+    black += square(found.black_level_dn, 64.0);
+    EXPECT_LT(found.gain_e_per_dn.standard_error, 0.02 * 7.5);
+    EXPECT_LT(found.read_noise_e.standard_error, 0.05 * 28.0);
+    EXPECT_FALSE(found.full_well_e);
+  }
+  for (const double chi2 : {gain, noise, black}) {  // of 12 over 12
+    EXPECT_GT(chi2, 0.25);
+    EXPECT_LT(chi2, 2.7);
+  }
+}
+
+TEST(PhotonTransfer, FindsTheFullWellAndLeavesSaturatedFramesOut) {
+  Camera camera = known_camera();
+  camera.sensor.full_well_e = 12000.0;  // DN 1664, below the converter's 4095
+  const PhotonTransfer found = calibrated(camera, 3, 5e7);
+  ASSERT_TRUE(found.full_well_e);
+  EXPECT_NEAR(found.full_well_e->value, 12000.0, 4 * found.full_well_e->standard_error);
+  EXPECT_NEAR(found.gain_e_per_dn.value, 7.5, 4 * found.gain_e_per_dn.standard_error);
+  EXPECT_TRUE(std::ranges::any_of(found.points, [](const auto& p) { return p.saturated; }));
+  const Camera written = with_noise(built_in_camera("paper-10f0"), found);
+  EXPECT_EQ(written.sensor.full_well_e, found.full_well_e->value);
+  EXPECT_EQ(written.sensor.adc_bits, 12);
+}
+
+TEST(PhotonTransfer, SaysWhenTheConverterEndsFirst) {
+  Camera camera = known_camera();
+  camera.sensor.adc_bits = 11;
+  const PhotonTransfer found = calibrated(camera, 4, 8e7, {});
+  EXPECT_EQ(found.adc_bits, 12);  // 2047 is none of the usual 8, 10, 12, ..
+  const PhotonTransfer told = calibrated(camera, 4, 8e7, {.adc_bits = 11});
+  EXPECT_FALSE(told.full_well_e);
+  EXPECT_THAT(told.notes, testing::Contains(HasSubstr("last number 2047")));
+}
+
+TEST(PhotonTransfer, AsksForWhatItNeeds) {
+  const Camera camera = known_camera();
+  RawFrames one = frames_of(camera, 1e6, 1);
+  EXPECT_THROW(photon_transfer({one}, {}), std::invalid_argument);  // no black level
+  EXPECT_THROW(photon_transfer({}, one), std::invalid_argument);
+  const RawFrames dark = frames_of(camera, 0.0, 2);
+  EXPECT_THROW(photon_transfer({dark}, dark), std::invalid_argument);  // no light
+  one.frames = 1;
+  one.values.resize(one.values.size() / 2);
+  EXPECT_THROW(photon_transfer({one}, dark), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tofsmith
