@@ -40,3 +40,10 @@ endif()
 if(TOFSMITH_BUILD_BENCHMARKS)
   find_path(NANOFLANN_INCLUDE_DIR nanoflann.hpp)  # a peer; can be missing
 endif()
+if(TOFSMITH_BUILD_PYTHON)
+  # Debian's own, for which the packages are: another python3 may come first on PATH. pip names the
+  # one it installs for.
+  set(Python_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "The python3 to build the package for")
+  find_package(Python 3.11 REQUIRED COMPONENTS Interpreter Development.Module NumPy)
+  find_package(pybind11 REQUIRED)
+endif()
