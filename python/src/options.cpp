@@ -46,8 +46,10 @@ py::object OptionReader::take(const char* name) {
 }
 
 void OptionReader::wrong_type(const char* name, py::handle given, const std::string& needs) const {
-  PyErr_SetString(PyExc_TypeError,
-                  (full_name(name) + ": got " + shown(given) + "; needs " + needs).c_str());
+  std::string text = full_name(name);
+  text.append(": got ").append(shown(given)).append("; needs ").append(needs);
+  const bool is_out_of_range = PyLong_Check(given.ptr()) && needs.starts_with("a whole number");
+  PyErr_SetString(is_out_of_range ? PyExc_ValueError : PyExc_TypeError, text.c_str());
   throw py::error_already_set();
 }
 

@@ -77,7 +77,7 @@ refusals = [
     (lambda: ts.ForwardModel("hamiltonian-k4", "paper-10f0").correlation_table(10**9), ValueError, "points: got 1000000000; needs a whole number from 1"),
     (lambda: ts.evaluate("hamiltonian-k4", "paper-10f0", trials=1), ValueError, "trials = 1; "),
     (lambda: ts.evaluate("hamiltonian-k4", "paper-10f0", trials=2.5), TypeError, "trials: got float 2.5; needs a whole number"),
-    (lambda: ts.evaluate("hamiltonian-k4", "paper-10f0", seed=-1), TypeError, "seed: got int -1; needs a whole number from 0"),
+    (lambda: ts.evaluate("hamiltonian-k4", "paper-10f0", seed=-1), ValueError, "seed: got int -1; needs a whole number from 0"),
     (lambda: ts.evaluate("hamiltonian-k4", "paper-10f0", depth="grid"), ValueError, "depth: got 'grid'; needs uniform or bins"),
     (lambda: ts.robustness("square-k4", "paper-10f0", bandwith=0.1), ValueError, "did you mean bandwidth?"),
     (lambda: ts.CramerRaoBound("square-k4", "paper-10f0").mae_m(-1, 0), ValueError, "signal_e_per_s: got -1; needs a number >= 0"),
