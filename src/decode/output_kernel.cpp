@@ -89,6 +89,35 @@ void write(const BinRecords& records, const OutputConstants& c, const OutputStep
   }
 }
 
+template <int Rank>
+HWY_INLINE void find_tile_offsets(const BinRecords& records, const MatchedTile& tile,
+                                  float* offset_bin) {
+  OutputChunk chunk;
+  const RecordLayout& layout = records.layout;
+  for (int first = 0; first < tile.pixels; first += pixels_per_chunk) {
+    chunk.pixels = std::min(tile.pixels - first, pixels_per_chunk);
+    chunk.plane = tile.plane + first;
+    find_rows(records.records, tile.bin + first, chunk.pixels, chunk.start);
+    for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(Floats())))
+      gather(records.records.data(), chunk.start + i, 0, layout.end_of_depth(), chunk.record + i);
+    refine(layout, Rank > 0 ? Rank : layout.rank, chunk);
+    std::copy_n(chunk.offset, chunk.pixels, offset_bin + first);
+  }
+}
+
+void find_offsets(const BinRecords& records, const MatchedTile& tile, float* offset_bin) {
+  switch (records.layout.rank) {
+    case 2:
+      return find_tile_offsets<2>(records, tile, offset_bin);
+    case 3:
+      return find_tile_offsets<3>(records, tile, offset_bin);
+    case 4:
+      return find_tile_offsets<4>(records, tile, offset_bin);
+    default:
+      return find_tile_offsets<0>(records, tile, offset_bin);
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();
@@ -97,6 +126,7 @@ HWY_AFTER_NAMESPACE();
 namespace tofsmith {
 
 HWY_EXPORT(write);
+HWY_EXPORT(find_offsets);
 
 namespace {
 
@@ -162,6 +192,10 @@ void OutputKernel::write(const MatchedTile& tile, const DecodedView& planes) con
                  : steps.ambient  ? layout.end_of_light()
                                   : layout.end_of_depth();
   HWY_DYNAMIC_DISPATCH(write)(records_, constants_, steps, tile, planes);
+}
+
+void OutputKernel::find_offsets(const MatchedTile& tile, float* offset_bin) const {
+  HWY_DYNAMIC_DISPATCH(find_offsets)(records_, tile, offset_bin);
 }
 
 }  // namespace tofsmith

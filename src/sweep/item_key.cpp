@@ -49,6 +49,10 @@ std::string item_key(const Camera& camera, const CodeSet& code, const EvaluateOp
                                  unwraps ? name_of(options.unwrap_weights) : std::string_view(),
                                  options.trials, options.seed);
   append(text, options.outlier_threshold_m);
+  if (options.target_standard_error > 0.0) {
+    append(text, options.target_standard_error);
+    append(text, static_cast<double>(options.most_trials));
+  }
   text += camera_text(camera);
   fmt::format_to(std::back_inserter(text), "code {} {} {}\n", code.samples(), code.exposures(),
                  code.taps());
