@@ -51,10 +51,10 @@ class OutputKernel {
   /// Writes the tile's pixels to the planes that are not null, from their first value on.
   /// @note thread-safe; allocates nothing
   void write(const MatchedTile& tile, const DecodedView& planes) const;
-  /// How far the best points on the chords lie from the best bins, [bin] in [-1, 1]: all that a
-  /// depth needs, and 0 for one that `write` would leave out.
-  /// @param offset_bin  (pixels)
-  void find_offsets(const MatchedTile& tile, float* offset_bin) const;
+  /// The best points on the chords, or the best bins where `write` would leave depth out, [bin] in
+  /// [0, N); not a number without a bin.
+  /// @param depth_bin  with room for pixels_per_tile
+  void find_positions(const MatchedTile& tile, double* depth_bin) const;
 
  private:
   BinRecords records_;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "decode/trial_decoder.hpp"
 
-#include <array>
 #include <limits>
 
 namespace tofsmith {
@@ -61,17 +60,11 @@ void TrialDecoder::decode_raw(const float* raw, bool sub_bin, PixelTile& tile,
 }
 
 void TrialDecoder::positions_of(bool sub_bin, const PixelTile& tile, double* depth_bin) const {
-  alignas(64) std::array<float, pixels_per_tile> offset{};
   if (sub_bin)
-    zncc_->outputs.find_offsets({.pixels = tile.pixels, .plane = tile.plane, .bin = tile.bin},
-                                offset.data());
-  const double samples = samples_;
-  for (int i = 0; i < tile.pixels; ++i) {
-    const double bin = tile.bin[i] < 0 ? std::numeric_limits<double>::quiet_NaN() : tile.bin[i];
-    const double position = bin + static_cast<double>(offset[static_cast<std::size_t>(i)]);
-    const double wrapped = position < 0.0 ? position + samples : position;
-    depth_bin[i] = wrapped >= samples ? wrapped - samples : wrapped;
-  }
+    return zncc_->outputs.find_positions(
+        {.pixels = tile.pixels, .plane = tile.plane, .bin = tile.bin}, depth_bin);
+  for (int i = 0; i < tile.pixels; ++i)
+    depth_bin[i] = tile.bin[i] < 0 ? std::numeric_limits<double>::quiet_NaN() : tile.bin[i];
 }
 
 }  // namespace tofsmith

@@ -33,7 +33,7 @@ class TrialDecoder {
   /// Positions in [0, N) of what stands in tile.plane.
   /// @param tile       with `pixels` set, plane filled up to a multiple of 16
   /// @param sub_bin    between bins; else the best bins
-  /// @param depth_bin  (pixels); not a number where the plane is not finite
+  /// @param depth_bin  room for pixels_per_tile; not a number where the plane is not finite
   void decode_plane(bool sub_bin, PixelTile& tile, double* depth_bin) const;
   /// The same of raw numbers [K][pixels_per_tile].
   void decode_raw(const float* raw, bool sub_bin, PixelTile& tile, double* depth_bin) const;

@@ -29,6 +29,7 @@ void place(const DepthSlices& slices, double rows, double rows_per_bin, int tria
   const hn::Rebind<std::int32_t, Doubles> narrow_i;
   const hn::Rebind<float, Doubles> narrow_f;
   const auto lanes = static_cast<int>(hn::Lanes(d));
+  const double bins_per_row = 1.0 / rows_per_bin;  // exact: a power of two
   const auto set = [&](double value) { return hn::Set(d, value); };
   const auto low_byte = hn::Set(narrow, 0xffu);
   const auto as_double = [&](auto words) {
@@ -42,11 +43,11 @@ void place(const DepthSlices& slices, double rows, double rows_per_bin, int tria
         hn::Mul(hn::Add(as_double(hn::Or(hn::ShiftLeft<8>(high), low)), set(0.5)), set(0x1p-16));
     auto at = hn::Mul(hn::Add(number, within), set(slices.rows_per_trial));
     at = hn::Min(at, set(rows * (1.0 - 0x1p-50)));
-    if (slices.on_bins) at = hn::Mul(hn::Floor(hn::Div(at, set(rows_per_bin))), set(rows_per_bin));
+    if (slices.on_bins) at = hn::Mul(hn::Floor(hn::Mul(at, set(bins_per_row))), set(rows_per_bin));
     const auto row = hn::Floor(at);
     hn::StoreU(hn::DemoteTo(narrow_i, row), narrow_i, tile.row + i);
     hn::StoreU(hn::DemoteTo(narrow_f, hn::Sub(at, row)), narrow_f, tile.share + i);
-    hn::StoreU(hn::Div(at, set(rows_per_bin)), d, tile.true_bin + i);
+    hn::StoreU(hn::Mul(at, set(bins_per_row)), d, tile.true_bin + i);
     number = hn::Add(number, set(lanes));
   }
 }
