@@ -159,7 +159,10 @@ class Commands(CommandLineTest):
         self.assertEqual((unwrap["method"], unwrap["unwrap_weights"]), ("unwrap", "variance"))
         errors = [[code["circular"]["geometric_mean_m"] for code in document["codes"]]
                   for document in (zncc, unwrap)]
-        self.assertAlmostEqual(errors[0][0], errors[1][0], 4)
+        # The same decoder, on noise of its own.
+        deviation = np.hypot(*(document["codes"][0]["circular"]["geometric_mean_se_m"]
+                               for document in (zncc, unwrap)))
+        self.assertLess(abs(errors[0][0] - errors[1][0]), 4 * deviation)
         self.assertNotEqual(errors[0][1], errors[1][1])
         classical = self.do_json("evaluate", *codes, *FAST, "--method", "unwrap",
                                  "--unwrap-weights", "frequency")["codes"][1]
