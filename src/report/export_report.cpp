@@ -17,8 +17,6 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-constexpr int curve_points = 480;
-
 std::string in_mm(const Estimate& error_m) {
   return fmt::format("{:.4g} +- {:.2g}", 1e3 * error_m.value, 1e3 * error_m.standard_error);
 }
