@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "generator_json.hpp"
 #include "played_code.hpp"
 #include "tap_arguments.hpp"
 #include "tofsmith/camera/forward_model.hpp"
@@ -14,6 +15,7 @@
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/waveform_csv.hpp"
 #include "tofsmith/report/code_figures.hpp"
+#include "tofsmith/report/export_report.hpp"
 
 namespace tofsmith::apps {
 
@@ -52,39 +54,6 @@ std::string strip(const Waveform& waveform) {
   return text;
 }
 
-/// What the camera's generators make of the code: rows of a table, and the same as JSON.
-std::vector<std::vector<std::string>> generator_rows(const CodeSet& code, const Camera& camera,
-                                                     nlohmann::ordered_json& document) {
-  std::vector<std::vector<std::string>> rows{{"generator", "points", "clock (MHz)", "duty told",
-                                              "played", "mean told", "played", "edge move (ns)",
-                                              "rms change"}};
-  for (const GeneratorReport& r : generator_report(code, camera)) {
-    const bool light = r.arm == Arm::light;
-    document.push_back({{"arm", light ? "light" : "sensor"},
-                        {"index", r.index},
-                        {"points_per_period", r.points_per_period},
-                        {"clock_hz", r.clock_hz},
-                        {"duty_told", r.duty_told},
-                        {"duty_played", r.duty_played},
-                        {"mean_told", r.mean_told},
-                        {"mean_played", r.mean_played},
-                        {"peak_told", r.peak_told},
-                        {"peak_played", r.peak_played},
-                        {"edges_told", r.edges_told},
-                        {"edges_played", r.edges_played},
-                        {"rms_difference", r.rms_difference}});
-    if (r.largest_edge_move_s) document.back()["largest_edge_move_s"] = *r.largest_edge_move_s;
-    rows.push_back(
-        {fmt::format("{}{}", light ? "m" : "d", r.index + 1),
-         fmt::format("{}", r.points_per_period), fmt::format("{:.4g}", r.clock_hz / 1e6),
-         fmt::format("{:.4f}", r.duty_told), fmt::format("{:.4f}", r.duty_played),
-         fmt::format("{:.4f}", r.mean_told), fmt::format("{:.4f}", r.mean_played),
-         r.largest_edge_move_s ? fmt::format("{:.3f}", *r.largest_edge_move_s * 1e9) : "-",
-         fmt::format("{:.4g}", r.rms_difference)});
-  }
-  return rows;
-}
-
 void show(const Session& session, const CodeSet& code, const Camera& camera) {
   const ForwardModel model(code, camera);
   const Eigen::MatrixXd table = model.correlation_table(8 * code.samples());
@@ -113,9 +82,8 @@ void show(const Session& session, const CodeSet& code, const Camera& camera) {
                     fmt::format("{:.4f}", d.mean()), fmt::format("{}", d.edges())});
     strips += fmt::format("  m{:<2} |{}|\n  d{:<2} |{}|\n", i + 1, strip(m), i + 1, strip(d));
   }
-  nlohmann::ordered_json generators = nlohmann::ordered_json::array();
-  const auto generator_table = generator_rows(code, camera, generators);
-  if (!generators.empty()) document["generators"] = generators;
+  const std::vector<GeneratorReport> generators = generator_report(code, camera);
+  if (!generators.empty()) document["generators"] = generators_json(generators);
   session.print_json(document);
   session.say(fmt::format(
       "{} on {}: {} measurements, {} exposures, N = {}, peak {:.3g}\n"
@@ -125,7 +93,7 @@ void show(const Session& session, const CodeSet& code, const Camera& camera) {
       strips));
   if (!generators.empty())
     session.say("What the generators really play, ahead of the arms' responses:\n" +
-                text_table(generator_table));
+                text_table(generator_report_rows(generators)));
 }
 
 void write(const Session& session, const CodeSet& code, const Camera& camera,

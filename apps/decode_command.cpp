@@ -37,6 +37,7 @@ struct DecodeArguments {
   int frame = -1;
   std::string kind = "radial";
   std::string layout = "interleaved";
+  std::string raw_format;
   bool stack = false;
   double memory_mb = 256;
 };
@@ -85,9 +86,8 @@ DecodeTarget target_of(const DecodeArguments& arguments, const Camera& camera,
 /// Whole numbers that nothing was said about.
 std::optional<std::string> electrons_note(const RawFramesReader& reader,
                                           const DecodingTable& table) {
-  const bool whole = reader.type() == NpyType::uint8 || reader.type() == NpyType::uint16;
-  if (!whole || table.saturation_level || (table.gain_e_per_raw.array() != 1.0).any() ||
-      (table.black_level.array() != 0.0).any())
+  if (!reader.holds_integers() || table.saturation_level ||
+      (table.gain_e_per_raw.array() != 1.0).any() || (table.black_level.array() != 0.0).any())
     return std::nullopt;
   return "raw numbers are taken as electrons: no gain, black level or saturation is set (--set "
          "sensor.adc_bits=.. --set sensor.gain_e_per_dn=.. --set sensor.black_level_dn=..)";
@@ -106,7 +106,8 @@ void check_range_fits(const std::filesystem::path& path, double range_m) {
 
 /// Not even --force may replace what is being read.
 void check_inputs_are_kept(const DecodeArguments& arguments, const DecodeTarget& target) {
-  const std::vector<std::string> inputs = {arguments.raw, arguments.code, arguments.camera.name,
+  const std::vector<std::string> inputs = {arguments.raw,         arguments.raw_format,
+                                           arguments.code,        arguments.camera.name,
                                            arguments.maps.offset, arguments.maps.gain};
   for (const std::filesystem::path& path : target.paths()) check_not_input(path, inputs);
 }
@@ -130,6 +131,11 @@ DecodeSummary decode_all(const RawFramesReader& reader, int rows, const DecodeRo
   return summary;
 }
 
+std::optional<RawFormat> described_format(const DecodeArguments& arguments) {
+  if (arguments.raw_format.empty()) return std::nullopt;
+  return read_raw_format(arguments.raw_format);
+}
+
 void run(const DecodeArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
   DecodingSource source =
@@ -140,7 +146,8 @@ void run(const DecodeArguments& arguments, const Session& session) {
   const RawFramesReader reader(arguments.raw,
                                {.measurements = source.table.measurements(),
                                 .layout = parse_raw_layout(arguments.layout),
-                                .largest_in_memory = static_cast<std::uint64_t>(memory_bytes)});
+                                .largest_in_memory = static_cast<std::uint64_t>(memory_bytes),
+                                .format = described_format(arguments)});
   if (const auto note = electrons_note(reader, source.table)) source.notes.push_back(*note);
   const PixelMaps maps = arguments.maps.load(reader.height(), reader.width());
   const DecodeRows decode_rows = [&](const RawView& raw, int first_row, const DecodedView& decoded,
@@ -182,13 +189,22 @@ void run(const DecodeArguments& arguments, const Session& session) {
 void add_decode_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<DecodeArguments>();
   CLI::App* command = app.add_subcommand("decode", "depth from raw measurements");
-  command->add_option("RAW", arguments->raw, "raw frames (.npy .npz): (H,W,K) or (F,H,W,K)")
-      ->required();
   command
-      ->add_option("--layout", arguments->layout,
-                   "how RAW runs: interleaved, or planar for (K,H,W) and (F,K,H,W); never guessed")
-      ->check(CLI::IsMember({"interleaved", "planar"}))
-      ->capture_default_str();
+      ->add_option("RAW", arguments->raw,
+                   "raw frames (.npy .npz): (H,W,K) or (F,H,W,K); any dump with --raw-format")
+      ->required();
+  CLI::Option* const layout =
+      command
+          ->add_option(
+              "--layout", arguments->layout,
+              "how RAW runs: interleaved, or planar for (K,H,W) and (F,K,H,W); never guessed")
+          ->check(CLI::IsMember({"interleaved", "planar"}))
+          ->capture_default_str();
+  command
+      ->add_option("--raw-format", arguments->raw_format,
+                   "RAW is a sensor's dump without header, as this .raw.toml file describes it "
+                   "(docs/raw_formats.md)")
+      ->excludes(layout);
   command
       ->add_option(
           "--code", arguments->code,

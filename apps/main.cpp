@@ -132,6 +132,7 @@ int run(int argc, char** argv) {
   add_codes_command(app, session);
   add_design_command(app, session);
   add_evaluate_command(app, session);
+  add_export_command(app, session);
   add_scene_command(app, session);
   add_simulate_command(app, session);
   add_decode_command(app, session);

@@ -56,10 +56,57 @@ Waveform on_points(const Waveform& waveform, int points) {
   return Waveform::binary(std::move(on), waveform.level());
 }
 
+/// The value at the middle of every point.
+Eigen::VectorXd values_at_middles(const Eigen::VectorXd& told, int points) {
+  Eigen::VectorXd values(points);
+  for (int j = 0; j < points; ++j) {
+    const double middle = (j + 0.5) / points * static_cast<double>(told.size());
+    values[j] = told[static_cast<Eigen::Index>(middle + rounding)];
+  }
+  return values;
+}
+
+Eigen::VectorXd rounded_amplitudes(Eigen::VectorXd values, double peak, int bits) {
+  const double step = peak / (std::exp2(bits) - 1.0);
+  for (double& value : values)
+    value = peak > 0.0 ? std::min(peak, std::max(0.0, std::round(value / step) * step)) : 0.0;
+  return values;
+}
+
+double most_points_per_period(double sample_rate_hz, double frequency_hz) {
+  return sample_rate_hz / frequency_hz * (1 + 1e-12);
+}
+
+/// Steps of an edge grid in one period; a whole number on a valid generator.
+double grid_steps(double edge_grid_s, double frequency_hz) {
+  return std::round(1.0 / (edge_grid_s * frequency_hz));
+}
+
+void validate_edge_grid(const std::string& field, double edge_grid_s, double frequency_hz) {
+  require(std::isfinite(edge_grid_s) && edge_grid_s > 0.0, field, edge_grid_s,
+          "must be finite and > 0");
+  const double steps = 1.0 / (edge_grid_s * frequency_hz);
+  require(
+      steps >= 2.0 - 1e-6 && steps <= most_points && std::abs(steps - std::round(steps)) <= 1e-6,
+      field, edge_grid_s,
+      fmt::format("must divide the period of fundamental_frequency_hz = {} into 2 .. {:.0f} "
+                  "whole steps{}",
+                  frequency_hz, most_points,
+                  steps >= 2.0 && steps <= most_points
+                      ? fmt::format(" (it gives {:.6g}; {:.9g} s would give {:.0f})", steps,
+                                    1.0 / (std::round(steps) * frequency_hz), std::round(steps))
+                      : ""));
+}
+
 }  // namespace
 
 int Generator::points_per_period(double fundamental_frequency_hz) const {
-  return static_cast<int>(std::floor(sample_rate_hz / fundamental_frequency_hz * (1 + 1e-12)));
+  const double most = most_points_per_period(sample_rate_hz, fundamental_frequency_hz);
+  return table_points && *table_points <= most ? *table_points : static_cast<int>(std::floor(most));
+}
+
+int Generator::points_in_table(double fundamental_frequency_hz) const {
+  return table_points.value_or(points_per_period(fundamental_frequency_hz));
 }
 
 void Generator::validate(std::string_view field, double fundamental_frequency_hz) const {
@@ -68,10 +115,16 @@ void Generator::validate(std::string_view field, double fundamental_frequency_hz
           sample_rate_hz, "must be finite and > 0");
   require(amplitude_bits >= 1 && amplitude_bits <= 24, prefix + "amplitude_bits", amplitude_bits,
           "must be in [1, 24]");
-  const double points = sample_rate_hz / fundamental_frequency_hz * (1 + 1e-12);
-  require(points >= 2.0 && points <= most_points, prefix + "sample_rate_hz", sample_rate_hz,
+  if (table_points)
+    require(*table_points >= 2 && *table_points <= most_points, prefix + "table_points",
+            *table_points, fmt::format("must be in [2, {:.0f}]", most_points));
+  const double points = most_points_per_period(sample_rate_hz, fundamental_frequency_hz);
+  require(points >= 2.0 && (table_points || points <= most_points), prefix + "sample_rate_hz",
+          sample_rate_hz,
           fmt::format("must give 2 .. {:.0f} points per period at fundamental_frequency_hz = {}",
                       most_points, fundamental_frequency_hz));
+  if (edge_grid_s)
+    validate_edge_grid(prefix + "edge_grid_s", *edge_grid_s, fundamental_frequency_hz);
 }
 
 double nearest_point(double switching_time_periods, double points_per_period) {
@@ -79,24 +132,40 @@ double nearest_point(double switching_time_periods, double points_per_period) {
   return std::ceil(switching_time_periods * points_per_period - 0.5 - rounding);
 }
 
-Waveform generated(const Waveform& waveform, const Generator& generator,
-                   double fundamental_frequency_hz) {
+double generated_switching_time(double switching_time_periods, const Generator& generator,
+                                double fundamental_frequency_hz) {
+  const auto moved_to = [&](double steps) {
+    switching_time_periods = nearest_point(switching_time_periods, steps) / steps;
+  };
+  if (generator.edge_grid_s) moved_to(grid_steps(*generator.edge_grid_s, fundamental_frequency_hz));
+  const int table = generator.points_in_table(fundamental_frequency_hz),
+            played = generator.points_per_period(fundamental_frequency_hz);
+  moved_to(table);
+  if (played != table) moved_to(played);
+  return switching_time_periods;
+}
+
+Waveform generator_table(const Waveform& waveform, const Generator& generator,
+                         double fundamental_frequency_hz) {
   generator.validate("generator", fundamental_frequency_hz);
   require(waveform.minimum() >= -1e-9, "waveform minimum", waveform.minimum(),
           "must be >= 0: a generator's levels run from 0 to the peak");
-  const int points = generator.points_per_period(fundamental_frequency_hz);
-  if (waveform.is_binary()) return on_points(waveform, points);
+  const int points = generator.points_in_table(fundamental_frequency_hz);
+  if (!waveform.is_binary())
+    return Waveform::sampled(rounded_amplitudes(values_at_middles(waveform.samples(), points),
+                                                waveform.peak(), generator.amplitude_bits));
+  if (!generator.edge_grid_s) return on_points(waveform, points);
+  const double steps = grid_steps(*generator.edge_grid_s, fundamental_frequency_hz);
+  return on_points(on_points(waveform, static_cast<int>(steps)), points);
+}
 
-  const double peak = waveform.peak();
-  const double step = peak / (std::exp2(generator.amplitude_bits) - 1.0);
-  const Eigen::VectorXd& told = waveform.samples();
-  Eigen::VectorXd played(points);
-  for (int j = 0; j < points; ++j) {
-    const double middle = (j + 0.5) / points * static_cast<double>(told.size());
-    const double value = told[static_cast<Eigen::Index>(middle + rounding)];
-    played[j] = peak > 0.0 ? std::min(peak, std::max(0.0, std::round(value / step) * step)) : 0.0;
-  }
-  return Waveform::sampled(std::move(played));
+Waveform generated(const Waveform& waveform, const Generator& generator,
+                   double fundamental_frequency_hz) {
+  Waveform table = generator_table(waveform, generator, fundamental_frequency_hz);
+  const int played = generator.points_per_period(fundamental_frequency_hz);
+  if (played == generator.points_in_table(fundamental_frequency_hz)) return table;
+  return table.is_binary() ? on_points(table, played)
+                           : Waveform::sampled(values_at_middles(table.samples(), played));
 }
 
 }  // namespace tofsmith

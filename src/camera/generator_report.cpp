@@ -42,11 +42,13 @@ double rms_difference(const Waveform& a, const Waveform& b) {
   return std::sqrt(sum);
 }
 
-double largest_edge_move_periods(const Waveform& told, int points) {
+double largest_edge_move_periods(const Waveform& told, const Generator& generator,
+                                 double frequency_hz) {
   double largest = 0.0;
   for (const OnInterval& on : told.on_intervals())
     for (const double edge : {on.rise, on.fall})
-      largest = std::max(largest, std::abs(nearest_point(edge, points) / points - edge));
+      largest = std::max(largest,
+                         std::abs(generated_switching_time(edge, generator, frequency_hz) - edge));
   return largest;
 }
 
@@ -65,7 +67,7 @@ GeneratorReport compare(Arm arm, int index, const Waveform& told, const Waveform
   report.edges_played = played.edges();
   if (told.is_binary())
     report.largest_edge_move_s =
-        largest_edge_move_periods(told, report.points_per_period) / frequency_hz;
+        largest_edge_move_periods(told, generator, frequency_hz) / frequency_hz;
   report.rms_difference = rms_difference(told, played);
   return report;
 }

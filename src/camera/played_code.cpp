@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -15,12 +17,11 @@ Waveform scaled(const Waveform& waveform, double factor) {
                               : Waveform::sampled(factor * waveform.samples());
 }
 
-Waveform within_average_power(const Waveform& modulation) {
-  const double mean = modulation.mean();
-  return mean > 1.0 ? scaled(modulation, 1.0 / mean) : modulation;
-}
-
 }  // namespace
+
+double average_power_scale(const Waveform& modulation) {
+  return 1.0 / std::max(1.0, modulation.mean());
+}
 
 bool taps_share_a_generator(const CodeSet& code, const Camera& camera) {
   return code.taps() == 2 && !camera.sensor.drain;
@@ -41,7 +42,8 @@ PlayedCode played_code(const CodeSet& code, const Camera& camera) {
             fmt::format("has no pulse that light.generator can play: its points are 1/{} of a "
                         "period",
                         camera.light.generator->points_per_period(frequency_hz)));
-    played.modulation.push_back(within_average_power(points));
+    const double scale = average_power_scale(points);
+    played.modulation.push_back(scale < 1.0 ? scaled(points, scale) : points);
   }
   for (int i = 0; i < code.measurements(); ++i) {
     if (!camera.sensor.generator)

@@ -59,6 +59,8 @@ template <typename Table>
 void visit_generator(Table& table, Field<Table, Generator>& generator) {
   table.value("sample_rate_hz", generator.sample_rate_hz);
   table.value("amplitude_bits", generator.amplitude_bits);
+  table.value("table_points", generator.table_points);
+  table.value("edge_grid_s", generator.edge_grid_s);
 }
 
 template <typename Table>

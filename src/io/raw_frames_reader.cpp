@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 #include <numeric>
 #include <span>
@@ -11,8 +12,10 @@
 
 #include "io/array_image.hpp"
 #include "io/file_kind.hpp"
+#include "io/raw_dump_reader.hpp"
 #include "io/raw_sizes.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/image_limits.hpp"
 
 namespace tofsmith {
 namespace {
@@ -44,6 +47,13 @@ std::uint64_t bytes_of(const NpyReader& reader) {
 
 RawFramesReader::RawFramesReader(const std::filesystem::path& path, const RawReadOptions& options)
     : layout_(options.layout) {
+  options.format ? open_dump(path, options) : open_array(path, options);
+}
+
+RawFramesReader::~RawFramesReader() = default;
+RawFramesReader::RawFramesReader(RawFramesReader&&) noexcept = default;
+
+void RawFramesReader::open_array(const std::filesystem::path& path, const RawReadOptions& options) {
   if (known_extension(path, {".npy", ".npz"}) == ".npz") {
     whole_ = read_npz_array(path, options);
   } else {
@@ -57,6 +67,29 @@ RawFramesReader::RawFramesReader(const std::filesystem::path& path, const RawRea
   type_ = file_ ? file_->type() : whole_.type();
   sizes_ =
       checked_raw_sizes(type_, file_ ? file_->shape() : whole_.shape(), options, path.string());
+  holds_integers_ = type_ != NpyType::float32 && type_ != NpyType::float64;
+  if (type_ != NpyType::int16) return;
+  type_ = NpyType::float32;
+  if (!file_) whole_ = NpyArray::of<float>(whole_.shape(), whole_.to_floats());
+}
+
+void RawFramesReader::open_dump(const std::filesystem::path& path, const RawReadOptions& options) {
+  dump_ = std::make_unique<RawDumpReader>(path, *options.format);
+  const RawFormat& format = dump_->format();
+  type_ = format.needs_doubles() ? NpyType::float64 : NpyType::float32;
+  holds_integers_ = format.numbers == RawNumbers::integers;
+  layout_ = RawLayout::interleaved;
+  sizes_.frames = dump_->frames();
+  sizes_.height = format.height;
+  sizes_.width = format.width;
+  sizes_.measurements = format.output_measurements();
+  check_image_size(path.string(), static_cast<std::uint64_t>(format.height),
+                   static_cast<std::uint64_t>(format.width));
+  if (options.measurements && *options.measurements != sizes_.measurements)
+    throw IoError(path.string(),
+                  fmt::format("the description gives {} measurements per pixel; expected {} as the "
+                              "code takes",
+                              sizes_.measurements, *options.measurements));
 }
 
 std::size_t RawFramesReader::row_bytes() const {
@@ -72,11 +105,35 @@ RawView RawFramesReader::read_rows(int frame, int first_row, int rows,
           fmt::format("must be 0 .. {}", height()));
   require(rows >= 0 && rows <= height() - first_row, "rows", rows,
           fmt::format("must be 0 .. {} from row {} on", height() - first_row, first_row));
+  if (dump_) {
+    buffer.resize(static_cast<std::size_t>(rows) * row_bytes());
+    if (type_ == NpyType::float64)
+      dump_->read_rows(frame, first_row, rows, reinterpret_cast<double*>(buffer.data()));
+    else
+      dump_->read_rows(frame, first_row, rows, reinterpret_cast<float*>(buffer.data()));
+    return view_of(buffer.data(), rows, rows);
+  }
   if (!file_) return rows_in_memory(frame, first_row, rows);
+  if (file_->type() == NpyType::int16) {
+    std::vector<std::byte> stored;
+    read_stored_rows(frame, first_row, rows, stored);
+    const std::size_t count = stored.size() / sizeof(std::int16_t);
+    buffer.resize(count * sizeof(float));
+    std::copy_n(reinterpret_cast<const std::int16_t*>(stored.data()), count,
+                reinterpret_cast<float*>(buffer.data()));
+  } else {
+    read_stored_rows(frame, first_row, rows, buffer);
+  }
+  return view_of(buffer.data(), rows, rows);
+}
 
+/// The rows as the file's items.
+void RawFramesReader::read_stored_rows(int frame, int first_row, int rows,
+                                       std::vector<std::byte>& buffer) const {
   const bool planar = layout_ == RawLayout::planar;
   const auto planes = static_cast<std::size_t>(planar ? measurements() : 1);
-  const std::size_t item = item_size(type_), row_items = row_bytes() / item / planes;
+  const std::size_t item = item_size(file_->type()),
+                    row_items = row_bytes() / item_size(type_) / planes;
   const std::size_t plane_bytes = static_cast<std::size_t>(rows) * row_items * item;
   buffer.resize(planes * plane_bytes);
   for (std::size_t plane = 0; plane < planes; ++plane) {
@@ -85,7 +142,6 @@ RawView RawFramesReader::read_rows(int frame, int first_row, int rows,
         static_cast<std::size_t>(first_row);
     file_->read_items(row * row_items, std::span(buffer).subspan(plane * plane_bytes, plane_bytes));
   }
-  return view_of(buffer.data(), rows, rows);
 }
 
 RawView RawFramesReader::rows_in_memory(int frame, int first_row, int rows) const {

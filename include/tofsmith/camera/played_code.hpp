@@ -23,6 +23,10 @@ struct PlayedCode {
 /// @throws std::invalid_argument if a modulation has no pulse that the generator can play
 PlayedCode played_code(const CodeSet& code, const Camera& camera);
 
+/// What a generated modulation is scaled by to keep the source's average power: 1 / mean above a
+/// mean of 1, else 1.
+double average_power_scale(const Waveform& modulation);
+
 /// Whether the second tap of every exposure is what the first leaves.
 bool taps_share_a_generator(const CodeSet& code, const Camera& camera);
 

@@ -11,8 +11,8 @@
 namespace tofsmith {
 
 /// Raw measurements of shape (H, W, K), or (F, H, W, K) for several frames, from .npy or .npz (the
-/// array "raw", or the only one): uint8, uint16, float32 or float64. Values are kept as they are,
-/// NaN and infinity too.
+/// array "raw", or the only one): uint8, uint16, int16, float32 or float64. Values are kept as they
+/// are, NaN and infinity too.
 /// @param measurements  K that the code asks for, if one is known
 /// @throws IoError if the extension, the shape or the type is another, or K differs
 RawFrames read_raw_frames(const std::filesystem::path& path,

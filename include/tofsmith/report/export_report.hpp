@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tofsmith/io/waveform_export.hpp"
+#include "tofsmith/report/page.hpp"
+#include "tofsmith/simulate/generator_loss.hpp"
+
+namespace tofsmith {
+
+/// The lines of a table of what generators make of each waveform, headings first.
+std::vector<std::vector<std::string>> generator_report_rows(
+    const std::vector<GeneratorReport>& reports);
+
+/// The lines of a table of what that costs in depth error, headings first.
+std::vector<std::vector<std::string>> generator_loss_rows(const GeneratorLoss& loss,
+                                                          DepthErrorKind kind);
+
+/// A page of an export: what was told and what is played, correlation functions, and the depth
+/// error that the limits cost.
+/// @param played  the camera that exporting_camera() made
+/// @param loss    none if it was not measured
+Page export_page(const CodeSet& code, const Camera& played, const WaveformExport& exported,
+                 const std::optional<GeneratorLoss>& loss, const std::string& command_line);
+
+}  // namespace tofsmith

@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/report/export_report.hpp"
+
+#include <fmt/format.h>
+
+#include "report/waveform_series.hpp"
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/camera/generator_report.hpp"
+#include "tofsmith/report/code_figures.hpp"
+#include "tofsmith/report/line_figure.hpp"
+#include "tofsmith/version.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+using Row = std::vector<std::string>;
+
+constexpr int curve_points = 480;
+
+std::string in_mm(const Estimate& error_m) {
+  return fmt::format("{:.4g} +- {:.2g}", 1e3 * error_m.value, 1e3 * error_m.standard_error);
+}
+
+Table table_of(std::string id, std::string caption, std::vector<Row> rows) {
+  Table table{.id = std::move(id), .caption = std::move(caption)};
+  for (std::size_t i = 0; i < rows.front().size(); ++i)
+    table.columns.push_back({rows.front()[i], i >= 1});
+  table.rows.assign(rows.begin() + 1, rows.end());
+  return table;
+}
+
+/// Correlation functions as told, dotted, and as played.
+Figure correlation_figure(const CodeSet& code, const Camera& played) {
+  Camera ideal = played;
+  ideal.light.generator.reset();
+  ideal.sensor.generator.reset();
+  const double range_m = played.range_m();
+  const std::vector<double> depth_m = axis_values(curve_points, range_m);
+  const Eigen::MatrixXd told = ForwardModel(code, ideal).correlation_table(curve_points),
+                        now = ForwardModel(code, played).correlation_table(curve_points);
+  std::vector<Series> series;
+  ColourAssignment colours;
+  for (Eigen::Index k = 0; k < told.cols(); ++k) {
+    const auto values = [](const auto& column) {
+      return std::vector<double>(column.begin(), column.end());
+    };
+    series.push_back({.name = fmt::format("{} as told", k + 1),
+                      .x = depth_m,
+                      .y = values(told.col(k)),
+                      .period = range_m,
+                      .style = reference_style()});
+    const std::string name = fmt::format("{} as played", k + 1);
+    series.push_back({.name = name,
+                      .x = depth_m,
+                      .y = values(now.col(k)),
+                      .period = range_m,
+                      .style = colours.style(name)});
+  }
+  return line_figure({.id = "correlation",
+                      .title = "Correlation functions",
+                      .caption = "Dotted: of the waveforms as told. Lines: of those played."},
+                     series, {.label = "depth", .unit = "m"}, {.label = "chi"});
+}
+
+KeyValueList description(const WaveformExport& exported) {
+  const double frequency_hz = exported.fundamental_frequency_hz;
+  KeyValueList list;
+  const auto add = [&](std::string key, std::string value) {
+    list.entries.push_back({std::move(key), std::move(value)});
+  };
+  add("format", fmt::format("{}: {}", exported.format.name, exported.format.description));
+  add("code", exported.code);
+  add("period", fmt::format("{:.9g} Hz", frequency_hz));
+  for (const auto* generator : {&exported.light, &exported.sensor})
+    add(generator == &exported.light ? "light" : "sensor",
+        fmt::format("table of {} points, {} played, {:.6g} MS/s, {} bits{}",
+                    generator->points_in_table(frequency_hz),
+                    generator->points_per_period(frequency_hz), generator->sample_rate_hz / 1e6,
+                    generator->amplitude_bits,
+                    generator->edge_grid_s
+                        ? fmt::format(", edges on {:.6g} ns", *generator->edge_grid_s * 1e9)
+                        : ""));
+  add("tables",
+      fmt::format("{} of {} points ({} periods)", exported.waveforms.size(),
+                  exported.waveforms.front().points(), exported.waveforms.front().periods));
+  return list;
+}
+
+}  // namespace
+
+std::vector<Row> generator_report_rows(const std::vector<GeneratorReport>& reports) {
+  std::vector<Row> rows{{"generator", "points", "clock (MHz)", "duty told", "played", "mean told",
+                         "played", "edge move (ns)", "rms change"}};
+  for (const GeneratorReport& r : reports)
+    rows.push_back(
+        {fmt::format("{}{}", r.arm == Arm::light ? "m" : "d", r.index + 1),
+         fmt::format("{}", r.points_per_period), fmt::format("{:.4g}", r.clock_hz / 1e6),
+         fmt::format("{:.4f}", r.duty_told), fmt::format("{:.4f}", r.duty_played),
+         fmt::format("{:.4f}", r.mean_told), fmt::format("{:.4f}", r.mean_played),
+         r.largest_edge_move_s ? fmt::format("{:.3f}", *r.largest_edge_move_s * 1e9) : "-",
+         fmt::format("{:.4g}", r.rms_difference)});
+  return rows;
+}
+
+std::vector<Row> generator_loss_rows(const GeneratorLoss& loss, DepthErrorKind kind) {
+  std::vector<Row> rows{{"signal, ambient (e/s)", "told (mm)", "played (mm)", "x told",
+                         "uncalibrated (mm)", "x told"}};
+  const auto row = [](std::string name, const Estimate& told, const Estimate& played,
+                      const Estimate& uncalibrated) {
+    return Row{std::move(name),     in_mm(told),
+               in_mm(played),       fmt::format("{:.3f}", played.value / told.value),
+               in_mm(uncalibrated), fmt::format("{:.3f}", uncalibrated.value / told.value)};
+  };
+  const auto error = kind == DepthErrorKind::linear ? &PointDepthError::linear_mde_m
+                                                    : &PointDepthError::circular_mde_m;
+  for (std::size_t i = 0; i < loss.told.points.size(); ++i) {
+    const OperatingPoint& point = loss.told.points[i].point;
+    rows.push_back(row(fmt::format("{:.3g}, {:.3g}", point.signal_e_per_s, point.ambient_e_per_s),
+                       loss.told.points[i].*error, loss.played.points[i].*error,
+                       loss.uncalibrated.points[i].*error));
+  }
+  rows.push_back(row("geometric mean", loss.told.of(kind).geometric_mean_m,
+                     loss.played.of(kind).geometric_mean_m,
+                     loss.uncalibrated.of(kind).geometric_mean_m));
+  return rows;
+}
+
+Page export_page(const CodeSet& code, const Camera& played, const WaveformExport& exported,
+                 const std::optional<GeneratorLoss>& loss, const std::string& command_line) {
+  const DepthErrorKind kind = played.operating.error;
+  Page page{.title = fmt::format("{} as {}", code.name(), exported.format.name),
+            .subtitle = fmt::format("what the hardware's limits change, on {}", played.name),
+            .footer = "tofsmith " TOFSMITH_VERSION};
+  page.sections.push_back({"Export", {description(exported)}});
+  page.sections.push_back(
+      {"Waveforms",
+       {table_of("generators", "Each waveform as told and as played, ahead of the arms' responses.",
+                 generator_report_rows(generator_report(code, played))),
+        waveform_figure({.id = "waveforms",
+                         .title = "Waveforms and correlation functions",
+                         .caption = "One row per measurement, over one period. Dotted: as told, "
+                                    "where the hardware changes it."},
+                        code, played),
+        correlation_figure(code, played)}});
+  if (loss)
+    page.sections.push_back(
+        {"Depth error",
+         {table_of("loss",
+                   fmt::format(
+                       "{} depth error of the waveforms as told, as played by a decoder that knows "
+                       "what is played, and by one that believes what was told (uncalibrated). All "
+                       "see the same depths and the same noise, {} trials each, seed {}.",
+                       kind == DepthErrorKind::linear ? "Linear" : "Circular", loss->told.trials,
+                       loss->told.seed),
+                   generator_loss_rows(*loss, kind))}});
+  if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
+  return page;
+}
+
+}  // namespace tofsmith

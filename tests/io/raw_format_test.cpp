@@ -1,0 +1,269 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/raw_format.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "damaged_files.hpp"
+#include "raw_packer.hpp"
+#include "temporary_directory.hpp"
+#include "tofsmith/io/npy.hpp"
+#include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/io/raw_frames_reader.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+RawFormat random_format(RandomStream& random) {
+  const auto below = [&](unsigned n) { return static_cast<int>(random() % n); };
+  RawFormat f;
+  f.width = 1 + below(9);
+  f.height = 1 + below(5);
+  f.measurements = 1 + below(6);
+  f.layout = std::array{RawOrder::planar, RawOrder::interleaved,
+                        RawOrder::by_rows}[static_cast<std::size_t>(below(3))];
+  switch (below(6)) {
+    case 0:
+      f.numbers = RawNumbers::floats;
+      f.bits = below(2) == 0 ? 32 : 64;
+      f.big_endian = below(2) == 0;
+      break;
+    case 1:
+      f.packing = RawPacking::mipi;
+      f.bits = 10 + 2 * below(3);
+      f.width = 4 * (1 + below(3));
+      break;
+    case 2:
+    case 3:
+      f.packing = below(2) == 0 ? RawPacking::lsb_first : RawPacking::msb_first;
+      f.bits = 1 + below(32);
+      f.rows_start_bytes = below(2) == 0;
+      break;
+    default:
+      f.bits = 1 + below(32);
+      if (below(2) == 0) f.container_bits = f.bits <= 8 ? 8 << below(3) : f.bits <= 16 ? 16 : 32;
+      f.align = below(2) == 0 ? RawAlignment::low : RawAlignment::high;
+      f.big_endian = below(2) == 0;
+  }
+  f.is_signed = f.numbers == RawNumbers::integers && below(2) == 0;
+  f.header_bytes = static_cast<std::uint64_t>(below(3) * 7);
+  f.frame_header_bytes = static_cast<std::uint64_t>(below(3) * 5);
+  if (f.layout == RawOrder::planar) f.image_header_bytes = static_cast<std::uint64_t>(below(3));
+  if (f.rows_start_bytes && below(2) == 0)
+    f.row_bytes = f.tight_row_bytes() + static_cast<std::uint64_t>(below(4));
+  if (below(2) == 0) {
+    f.order.resize(static_cast<std::size_t>(f.measurements));
+    std::iota(f.order.begin(), f.order.end(), 0);
+    for (std::size_t i = f.order.size(); i > 1; --i)
+      std::swap(f.order[i - 1], f.order[random() % i]);
+  }
+  f.flip_rows = below(2) == 0;
+  f.flip_columns = below(2) == 0;
+  f.subtract_taps = f.measurements % 2 == 0 && below(2) == 0;
+  if (!f.subtract_taps) f.black_level = below(3) * 16.0;
+  f.validate();
+  return f;
+}
+
+double random_number(const RawFormat& f, RandomStream& random) {
+  if (f.numbers == RawNumbers::floats)
+    return f.bits == 32 ? static_cast<float>(random.uniform() - 0.5) : random.uniform() - 0.5;
+  const double word =
+      static_cast<double>((random() & 0xffffffffU) >> (32 - static_cast<unsigned>(f.bits)));
+  return f.is_signed ? word - std::exp2(f.bits - 1) : word;
+}
+
+/// Place of number j of the pixel at (row, column) of the scene in the order of the file.
+std::size_t place_in_file(const RawFormat& f, int frame, int row, int column, int j) {
+  const int r = f.flip_rows ? f.height - 1 - row : row;
+  const int c = f.flip_columns ? f.width - 1 - column : column;
+  int place = 0;
+  switch (f.layout) {
+    case RawOrder::planar:
+      place = ((frame * f.measurements + j) * f.height + r) * f.width + c;
+      break;
+    case RawOrder::interleaved:
+      place = ((frame * f.height + r) * f.width + c) * f.measurements + j;
+      break;
+    case RawOrder::by_rows:
+      place = ((frame * f.height + r) * f.measurements + j) * f.width + c;
+      break;
+  }
+  return static_cast<std::size_t>(place);
+}
+
+/// Numbers of a pixel as they shall come out.
+std::vector<double> expected_pixel(const RawFormat& f, const std::vector<double>& numbers,
+                                   int frame, int row, int column) {
+  std::vector<double> pixel(static_cast<std::size_t>(f.measurements));
+  for (int j = 0; j < f.measurements; ++j) {
+    const auto file_j = static_cast<std::size_t>(j);
+    pixel[f.order.empty() ? file_j : static_cast<std::size_t>(f.order[file_j])] =
+        numbers[place_in_file(f, frame, row, column, j)] - f.black_level;
+  }
+  if (!f.subtract_taps) return pixel;
+  std::vector<double> differences;
+  for (std::size_t k = 0; k < pixel.size(); k += 2) differences.push_back(pixel[k] - pixel[k + 1]);
+  return differences;
+}
+
+TEST(RawFormat, UnpacksWhatWasPackedForAnyDescription) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "dump.bin";
+  for (std::uint32_t item = 0; item < 150; ++item) {
+    SCOPED_TRACE(item);
+    RandomStream random(71, item);
+    RawFormat f = random_format(random);
+    const int frames = 1 + static_cast<int>(random() % 3);
+    if (random() % 2 == 0) f.frames = frames;
+    std::vector<double> numbers(
+        static_cast<std::size_t>(frames * f.height * f.width * f.measurements));
+    for (double& number : numbers) number = random_number(f, random);
+    write_file_atomically(path, RawPacker(f).pack(numbers, frames), OutputPolicy::overwrite);
+    RawReadOptions options;
+    options.format = f;
+    const RawFramesReader reader(path, options);
+    ASSERT_EQ(reader.frames(), frames);
+    ASSERT_EQ(reader.measurements(), f.output_measurements());
+    EXPECT_EQ(reader.type(), f.needs_doubles() ? NpyType::float64 : NpyType::float32);
+    const int first = static_cast<int>(random() % static_cast<unsigned>(f.height));
+    std::vector<std::byte> buffer;
+    const RawView view = reader.read_rows(frames - 1, first, f.height - first, buffer);
+    for (int row = first; row < f.height; ++row)
+      for (int column = 0; column < f.width; ++column) {
+        const auto pixel = expected_pixel(f, numbers, frames - 1, row, column);
+        for (int k = 0; k < view.measurements; ++k) {
+          const std::ptrdiff_t at = (row - first) * view.row_stride + column * view.column_stride +
+                                    k * view.measurement_stride;
+          const double expected = pixel[static_cast<std::size_t>(k)];
+          if (f.needs_doubles())
+            EXPECT_EQ(std::get<const double*>(view.data)[at], expected);
+          else
+            EXPECT_EQ(std::get<const float*>(view.data)[at], static_cast<float>(expected));
+        }
+      }
+  }
+}
+
+// MIPI CSI-2: the first four bytes are bits 9..2, the fifth the bits 1..0, first pixel lowest.
+TEST(RawFormat, UnpacksMipiAsTheStandardShows) {
+  RawFormat f{.width = 4, .height = 1, .measurements = 1, .bits = 10};
+  f.packing = RawPacking::mipi;
+  const std::array bytes = {std::byte{0xff}, std::byte{0x00}, std::byte{0x80}, std::byte{0x01},
+                            std::byte{0b11'00'10'01}};
+  std::array<double, 4> numbers;
+  unpack_numbers(f, bytes, 0, numbers);
+  EXPECT_THAT(numbers, testing::ElementsAre(0x3fd, 0x002, 0x200, 0x007));
+  f.bits = 12;
+  f.width = 2;
+  const std::array raw12 = {std::byte{0xab}, std::byte{0x12}, std::byte{0x3c}};
+  std::array<double, 2> pair;
+  unpack_numbers(f, raw12, 0, pair);
+  EXPECT_THAT(pair, testing::ElementsAre(0xabc, 0x123));
+}
+
+const char* const described = R"(# 11 bits in a stream, A and B of two subframes
+width = 8
+height = 2
+measurements = 4
+bits = 11
+packing = "lsb_first"
+signed = true
+layout = "planar"
+order = [2, 0, 3, 1]
+flip_rows = true
+taps = "subtract"
+header_bytes = 16
+)";
+
+TEST(RawFormatToml, ReadsADescription) {
+  const RawFormat f = parse_raw_format(described);
+  EXPECT_EQ(f.width, 8);
+  EXPECT_EQ(f.bits, 11);
+  EXPECT_EQ(f.packing, RawPacking::lsb_first);
+  EXPECT_EQ(f.order, (std::vector<int>{2, 0, 3, 1}));
+  EXPECT_TRUE(f.is_signed && f.flip_rows && f.subtract_taps);
+  EXPECT_EQ(f.frame_bytes(), 4u * 2 * 11);
+}
+
+TEST(RawFormatToml, SaysWhereAndWhatIsWrong) {
+  const std::string start = "width = 8\nheight = 2\nmeasurements = 4\nbits = 10\n";
+  const auto error = [&](const std::string& line) {
+    return io_error_of([&] { parse_raw_format(start + line, "s.raw.toml"); });
+  };
+  EXPECT_THAT(error("pakcing = \"mipi\""),
+              AllOf(HasSubstr("s.raw.toml:5:1"), HasSubstr("did you mean packing?")));
+  EXPECT_THAT(error("packing = \"raw10\""), HasSubstr("mipi"));
+  EXPECT_THAT(error("packing = \"mipi\"\nbyte_order = \"big\""),
+              HasSubstr("must be left out unless plain"));
+  EXPECT_THAT(error("packing = \"mipi\"\ncontainer_bits = 16"), HasSubstr("s.raw.toml:6:18"));
+  EXPECT_THAT(error("container_bits = 8"), HasSubstr("8, 16 or 32 and hold bits = 10"));
+  EXPECT_THAT(error("numbers = \"float\""), HasSubstr("bits = 10; must be 32 or 64"));
+  EXPECT_THAT(error("order = [0, 1, 2]"), HasSubstr("must list all 4 measurements"));
+  EXPECT_THAT(error("order = [0, 1, 2, 2]"), HasSubstr("must name each of 0 .. 3 once"));
+  EXPECT_THAT(error("order = [0, 1, 2, 2.5]"), HasSubstr("whole numbers"));
+  EXPECT_THAT(error("row_bytes = 15"), HasSubstr("at least the 16 bytes"));
+  EXPECT_THAT(error("rows_start_bytes = false"), HasSubstr("lsb_first or msb_first"));
+  EXPECT_THAT(error("layout = \"interleaved\"\nimage_header_bytes = 4"), HasSubstr("planar"));
+  EXPECT_THAT(error("taps = \"subtract\"\nblack_level = 3.0"), HasSubstr("where it cancels"));
+  EXPECT_THAT(io_error_of([] { parse_raw_format("width = 8\n", "s.raw.toml"); }),
+              HasSubstr("height"));
+  EXPECT_THAT(io_error_of([] {
+                parse_raw_format("width=7\nheight=1\nmeasurements=1\nbits=10\npacking=\"mipi\"");
+              }),
+              HasSubstr("whole groups of 4 numbers (it gives 7)"));
+}
+
+TEST(RawFormat, RefusesFilesThatAreNoWholeNumberOfFrames) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "dump.bin";
+  RawReadOptions options;
+  options.format = parse_raw_format(described);  // frames of 88 bytes behind 16
+  const auto error = [&](std::size_t bytes, std::optional<int> measurements = {}) {
+    options.measurements = measurements;
+    write_file_atomically(path, FileBytes(bytes), OutputPolicy::overwrite);
+    return io_error_of([&] { RawFramesReader reader(path, options); });
+  };
+  EXPECT_THAT(error(16 + 88 + 5),
+              HasSubstr("found 109 bytes; expected 16 of header and a whole number of frames (1 or "
+                        "more) of 2 x 8 pixels, 4 measurements of 11 bits, 88 bytes per frame; 5 "
+                        "bytes are left over after 1 frames"));
+  EXPECT_THAT(error(10), HasSubstr("found 10 bytes"));
+  EXPECT_THAT(error(16), HasSubstr("found 16 bytes"));
+  EXPECT_THAT(error(16 + 88, 3), HasSubstr("gives 2 measurements per pixel; expected 3"));
+  options.format->frames = 2;
+  EXPECT_THAT(error(16 + 88), HasSubstr("found 104 bytes; expected 192"));
+}
+
+TEST(RawFrames, OfInt16ComeAsFloats) {
+  const TemporaryDirectory directory;
+  const std::vector<std::int16_t> values = {-32768, -1, 0, 1, 2, 32767};
+  const auto array = NpyArray::of<std::int16_t>({1, 2, 3}, values);
+  write_npy(directory / "a.npy", array, OutputPolicy::overwrite);
+  write_npz(directory / "a.npz", {{"raw", array}}, OutputPolicy::overwrite);
+  for (const char* name : {"a.npy", "a.npz"}) {
+    const RawFramesReader reader(directory / name);
+    EXPECT_EQ(reader.type(), NpyType::float32);
+    EXPECT_TRUE(reader.holds_integers());
+    EXPECT_THAT(reader.read_frame(0).values, testing::ElementsAre(-32768, -1, 0, 1, 2, 32767));
+    EXPECT_EQ(read_raw_frames(directory / name).values, reader.read_frame(0).values);
+  }
+  RawReadOptions planar;
+  planar.layout = RawLayout::planar;
+  const RawFramesReader reader(directory / "a.npy", planar);
+  EXPECT_EQ(reader.measurements(), 1);
+  std::vector<std::byte> buffer;
+  const RawView row = reader.read_rows(0, 1, 1, buffer);
+  EXPECT_EQ(std::get<const float*>(row.data)[2], 32767.0F);
+}
+
+}  // namespace
+}  // namespace tofsmith

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "damaged_files.hpp"
+#include "tofsmith/io/raw_format.hpp"
+
+namespace tofsmith {
+
+/// Writes a dump bit by bit, as docs/raw_formats.md says, with a map of every bit's place.
+class RawPacker {
+ public:
+  explicit RawPacker(const RawFormat& format) : format_(format) {}
+
+  FileBytes pack(const std::vector<double>& numbers, int frames) {
+    gap(format_.header_bytes);
+    auto next = numbers.begin();
+    for (int f = 0; f < frames; ++f) {
+      gap(format_.frame_header_bytes);
+      for (std::size_t image = 0; image < format_.images(); ++image) {
+        gap(format_.image_header_bytes);
+        const std::size_t begin = bytes_.size();
+        for (std::size_t row = 0; row < format_.rows_per_image(); ++row) {
+          if (format_.rows_start_bytes) align();
+          const std::size_t row_begin = bytes_.size();
+          const auto end = next + static_cast<std::ptrdiff_t>(format_.numbers_per_row());
+          put_row({next, end});
+          next = end;
+          if (format_.row_bytes > 0) gap(format_.row_bytes - (bytes_.size() - row_begin));
+        }
+        align();
+        EXPECT_EQ(bytes_.size() - begin, format_.image_bytes());
+      }
+    }
+    return bytes_;
+  }
+
+ private:
+  void gap(std::uint64_t count) {
+    align();
+    bytes_.insert(bytes_.end(), count, std::byte{0xa5});
+  }
+  void align() { bit_ = 0; }
+  std::uint64_t word_of(double number) const {
+    const auto word = static_cast<std::uint64_t>(static_cast<std::int64_t>(number));
+    return word & ((std::uint64_t{1} << format_.bits) - 1);
+  }
+  void put_bit(bool bit) {
+    if (bit_ == 0) bytes_.push_back(std::byte{0});
+    const int place = format_.packing == RawPacking::msb_first ? 7 - bit_ : bit_;
+    if (bit) bytes_.back() |= static_cast<std::byte>(1U << place);
+    bit_ = (bit_ + 1) % 8;
+  }
+  void put_container(std::uint64_t word, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i)
+      bytes_.push_back(static_cast<std::byte>(word >> 8 * (format_.big_endian ? size - 1 - i : i)));
+  }
+  void put_row(const std::vector<double>& row) {
+    if (format_.numbers == RawNumbers::floats) {
+      for (const double number : row)
+        if (format_.bits == 64)
+          put_container(std::bit_cast<std::uint64_t>(number), 8);
+        else
+          put_container(std::bit_cast<std::uint32_t>(static_cast<float>(number)), 4);
+    } else if (format_.packing == RawPacking::plain) {
+      const int container = format_.container_bits > 0 ? format_.container_bits
+                            : format_.bits <= 8        ? 8
+                            : format_.bits <= 16       ? 16
+                                                       : 32;
+      for (const double number : row)
+        put_container(word_of(number)
+                          << (format_.align == RawAlignment::high ? container - format_.bits : 0),
+                      static_cast<std::size_t>(container) / 8);
+    } else if (format_.packing == RawPacking::mipi) {
+      const std::size_t group = format_.bits == 12 ? 2 : 4;
+      for (std::size_t at = 0; at < row.size(); at += group) {
+        for (std::size_t i = 0; i < group; ++i)
+          put_container(word_of(row[at + i]) >> (format_.bits - 8), 1);
+        for (std::size_t i = 0; i < group; ++i)
+          for (int b = 0; b < format_.bits - 8; ++b) put_bit((word_of(row[at + i]) >> b & 1) != 0);
+      }
+    } else {
+      for (const double number : row)
+        for (int b = 0; b < format_.bits; ++b) {
+          const int place = format_.packing == RawPacking::msb_first ? format_.bits - 1 - b : b;
+          put_bit((word_of(number) >> place & 1) != 0);
+        }
+    }
+  }
+
+  const RawFormat& format_;
+  FileBytes bytes_;
+  int bit_ = 0;
+};
+
+}  // namespace tofsmith
