@@ -127,7 +127,7 @@ TEST(PatternParser, SaysWhatIsWrong) {
   };
   EXPECT_THAT(error("radix=16;", PatternSyntax::coe), HasSubstr("f: found no memory_init"));
   EXPECT_THAT(
-      error("memory_initialization_radix=8;memory_initialization_vector=1;", PatternSyntax::coe),
+      error("memory_initialization_radix=8;\nmemory_initialization_vector=1;", PatternSyntax::coe),
       HasSubstr("found the radix 8; expected 2, 10 or 16"));
   const std::string mif = "DEPTH=2;WIDTH=4;ADDRESS_RADIX=UNS;DATA_RADIX=HEX;CONTENT BEGIN ";
   EXPECT_THAT(error(mif + "0:1; END;", PatternSyntax::mif), HasSubstr("no word at the address 1"));
