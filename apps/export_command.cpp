@@ -129,7 +129,7 @@ void run(ExportArguments& arguments, const Session& session) {
   } else {
     const std::string page =
         render(export_page(code, played, exported, loss, session.command_line));
-    create_directories(output);
+    apps::create_directories(output);
     std::vector<Product> products;
     for (const ExportedFile& file : files)
       products.push_back({output / file.name, text_of(file.bytes)});
