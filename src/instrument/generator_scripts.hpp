@@ -19,6 +19,8 @@ std::vector<std::string> scpi_outputs_off(const UploadRequest& request);
 
 /// A message without answer.
 UploadStep told(std::string what, std::string message);
+/// The same, which switches an output on.
+UploadStep output_on(std::string message);
 /// A question and its answer's checks.
 UploadStep asked(std::string what, std::string message, std::vector<AnswerCheck> checks);
 

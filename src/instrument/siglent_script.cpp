@@ -73,9 +73,9 @@ void set_siglent_channel(std::vector<UploadStep>& steps, const UploadRequest& re
   set("waveform", fmt::format("C{}:ARWV NAME,{}", n, memory_name(w)));
   set("kind of waveform", fmt::format("C{}:BSWV WVTP,ARB", n));
   if (has_rate)
-    set("clock", request.true_arb ? fmt::format("C{}:SRATE MODE,TARB,VALUE,{:.12g},INTER,HOLD", n,
-                                                w.sample_rate_hz)
-                                  : fmt::format("C{}:SRATE MODE,DDS", n));
+    set("clock", request.true_arb
+                     ? fmt::format("C{}:SRATE MODE,TARB,VALUE,{:.12g}", n, w.sample_rate_hz)
+                     : fmt::format("C{}:SRATE MODE,DDS", n));
   if (!request.true_arb)
     set("frequency", fmt::format("C{}:BSWV FRQ,{:.12g}", n, w.repetition_hz()));
   set("amplitude", fmt::format("C{}:BSWV AMP,{:.6g}", n, w.amplitude_vpp()));
@@ -159,7 +159,7 @@ std::vector<UploadStep> siglent_steps(const GeneratorModel& model, const UploadR
     steps.push_back(siglent_output_check(channel.channel, false, request.load_ohm, true));
   if (!request.output_on) return steps;
   for (const UploadChannel& channel : request.channels)
-    steps.push_back(told("switch outputs on", fmt::format("C{}:OUTP ON", channel.channel)));
+    steps.push_back(output_on(fmt::format("C{}:OUTP ON", channel.channel)));
   for (const UploadChannel& channel : request.channels)
     steps.push_back(siglent_output_check(channel.channel, true, request.load_ohm, true));
   return steps;

@@ -139,7 +139,7 @@ std::vector<UploadStep> tektronix_steps(const UploadRequest& request) {
   check_outputs(false);
   if (!request.output_on) return steps;
   for (const UploadChannel& channel : request.channels)
-    steps.push_back(told("switch outputs on", fmt::format("OUTP{} ON", channel.channel)));
+    steps.push_back(output_on(fmt::format("OUTP{} ON", channel.channel)));
   check_outputs(true);
   return steps;
 }

@@ -70,7 +70,7 @@ class Uploader {
   }
 
   void say(const UploadStep& step) {
-    output_touched_ = output_touched_ || step.what == "switch outputs on";
+    output_touched_ = output_touched_ || step.switches_on;
     session_.send(step.message + step.data + (step.line_end ? "\n" : ""));
     if (step.pause_s > 0.0)
       std::this_thread::sleep_for(std::chrono::duration<double>(step.pause_s));

@@ -60,6 +60,20 @@ void check_table(const GeneratorModel& model, const QuantizedWaveform& waveform)
                       model.least_points, model.most_points, model.name));
 }
 
+void check_channels(const GeneratorModel& model, const UploadRequest& request) {
+  for (std::size_t i = 0; i < request.channels.size(); ++i) {
+    const UploadChannel& channel = request.channels[i];
+    require(channel.channel >= 1 && channel.channel <= model.channels, "channel", channel.channel,
+            fmt::format("must be in [1, {}], the channels of {}", model.channels, model.name));
+    for (std::size_t j = 0; j < i; ++j)
+      require(request.channels[j].channel != channel.channel, "channel", channel.channel,
+              "must be another for light and sensor");
+    require(
+        channel.selected >= 0 && static_cast<std::size_t>(channel.selected) < channel.stored.size(),
+        "selected", channel.selected, "must be the index of a stored waveform");
+  }
+}
+
 void check_memory(const GeneratorModel& model, const UploadRequest& request) {
   std::size_t tables = 0;
   for (const UploadChannel& channel : request.channels) {
@@ -95,22 +109,13 @@ void check_upload(const GeneratorModel& model, const UploadRequest& request) {
     require(model.true_arb_rate_hz > 0.0, "true_arb", "on",
             fmt::format("must be off: {} does not choose between skipping points and playing all",
                         model.name));
-  for (std::size_t i = 0; i < request.channels.size(); ++i) {
-    const UploadChannel& channel = request.channels[i];
-    require(channel.channel >= 1 && channel.channel <= model.channels, "channel", channel.channel,
-            fmt::format("must be in [1, {}], the channels of {}", model.channels, model.name));
-    for (std::size_t j = 0; j < i; ++j)
-      require(request.channels[j].channel != channel.channel, "channel", channel.channel,
-              "must be another for light and sensor");
-    require(
-        channel.selected >= 0 && static_cast<std::size_t>(channel.selected) < channel.stored.size(),
-        "selected", channel.selected, "must be the index of a stored waveform");
+  check_channels(model, request);
+  for (const UploadChannel& channel : request.channels)
     for (const QuantizedWaveform& waveform : channel.stored) {
       check_table(model, waveform);
       check_rate(model, request, waveform);
       check_volts(model, request.load_ohm, waveform);
     }
-  }
   check_memory(model, request);
 }
 

@@ -18,6 +18,12 @@ UploadStep told(std::string what, std::string message) {
   return step;
 }
 
+UploadStep output_on(std::string message) {
+  UploadStep step = told("switch outputs on", std::move(message));
+  step.switches_on = true;
+  return step;
+}
+
 UploadStep asked(std::string what, std::string message, std::vector<AnswerCheck> checks) {
   UploadStep step = told(std::move(what), std::move(message));
   step.answer = UploadStep::Answer::line;

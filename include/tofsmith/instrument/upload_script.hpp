@@ -57,6 +57,7 @@ struct UploadStep {
   std::string message;  ///< without line end
   std::string data;     ///< bytes behind the message
   bool line_end = true;
+  bool switches_on = false;  ///< an output
   Answer answer = Answer::none;
   std::vector<AnswerCheck> checks;  ///< of a line
   /// Of a block or wave data: what is wrong with it, or "".
