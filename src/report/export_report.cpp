@@ -70,7 +70,7 @@ KeyValueList description(const WaveformExport& exported) {
   };
   add("format", fmt::format("{}: {}", exported.format.name, exported.format.description));
   add("code", exported.code);
-  add("period", fmt::format("{:.9g} Hz", frequency_hz));
+  add("frequency", fmt::format("{:.9g} Hz", frequency_hz));
   for (const auto* generator : {&exported.light, &exported.sensor})
     add(generator == &exported.light ? "light" : "sensor",
         fmt::format("table of {} points, {} played, {:.6g} MS/s, {} bits{}",
