@@ -5,6 +5,7 @@
 #include <map>
 
 #include "bindings.hpp"
+#include "multipath_options.hpp"
 #include "options.hpp"
 #include "progress.hpp"
 #include "raw_array.hpp"
@@ -21,29 +22,6 @@ struct BoundDecoder {
   AnyDecoder any;
 };
 
-MultipathOptions multipath_options(const py::dict& values, double range_m) {
-  MultipathOptions options;
-  OptionReader reader(values, "multipath");
-  double longest_m = 0.0;
-  reader.value("threshold", options.threshold)
-      .value("shortest_delay_m", options.shortest_delay_m)
-      .value("longest_delay_m", longest_m)
-      .value("tail_m", options.tail_m);
-  if (longest_m != 0.0) options.longest_delay_m = longest_m;
-  const py::dict prior = reader.table("prior");
-  if (!prior.empty()) {
-    options.prior.emplace();
-    OptionReader prior_reader(prior, "multipath.prior");
-    prior_reader.value("single_probability", options.prior->single_probability)
-        .value("mean_delay_m", options.prior->mean_delay_m)
-        .value("largest_ratio", options.prior->largest_ratio)
-        .finish();
-  }
-  reader.finish();
-  options.validate(range_m);
-  return options;
-}
-
 BoundDecoder decoder_of(const DecodingTable& table, const py::dict& values) {
   DecodeMethod method = DecodeMethod::zncc;
   DecodeOptions doubt;
@@ -53,7 +31,8 @@ BoundDecoder decoder_of(const DecodingTable& table, const py::dict& values) {
       .word("unwrap_weights", weights, parse_unwrap_weights)
       .value("low_signal_sigma", doubt.low_signal_sigma)
       .value("minimum_confidence", doubt.minimum_confidence);
-  const MultipathOptions multipath = multipath_options(reader.table("multipath"), table.range_m);
+  const MultipathOptions multipath =
+      multipath_options(reader.table("multipath"), "multipath", table.range_m);
   reader.finish();
   const py::gil_scoped_release release;
   return {make_decoder(method, table, doubt, weights, multipath)};

@@ -6,7 +6,8 @@
 #include "options.hpp"
 #include "progress.hpp"
 #include "reports.hpp"
-#include "tofsmith/simulate/capture.hpp"
+#include "tofsmith/simulate/generator_loss.hpp"
+#include "tofsmith/simulate/table_depth_error.hpp"
 
 namespace tofsmith::python {
 
@@ -29,6 +30,9 @@ EvaluateOptions evaluate_options(const py::dict& values) {
       .value("clip_to_open_sensor", options.clip_to_open_sensor)
       .word("method", options.method, parse_decode_method)
       .word("unwrap_weights", options.unwrap_weights, parse_unwrap_weights)
+      .value("target_standard_error", options.target_standard_error)
+      .value("most_trials", options.most_trials)
+      .value("draw_every_measurement", options.draw_every_measurement)
       .finish();
   options.validate();
   return options;
@@ -53,56 +57,9 @@ RobustnessOptions robustness_options(const py::dict& values) {
   return options;
 }
 
-SceneImage scene_of(const py::dict& planes) {
-  const Image<float> depth_m = to_image(planes["depth_m"], "depth_m");
-  if (depth_m.empty())
-    refuse("depth_m",
-           "shape (" + std::to_string(depth_m.height) + ", " + std::to_string(depth_m.width) + ")",
-           "(H, W) with at least one pixel");
-  SceneImage scene(depth_m.height, depth_m.width);
-  scene.depth_m = depth_m;
-  const auto take = [&](const char* name, Image<float>& plane) {
-    const py::object values = planes[name];
-    if (values.is_none()) return;
-    plane = to_image(values, name);
-    if (plane.height != depth_m.height || plane.width != depth_m.width)
-      refuse(name,
-             "shape (" + std::to_string(plane.height) + ", " + std::to_string(plane.width) + ")",
-             "shape (" + std::to_string(depth_m.height) + ", " + std::to_string(depth_m.width) +
-                 ") as of depth_m");
-  };
-  take("albedo", scene.albedo);
-  take("cosine", scene.cosine);
-  take("ambient_scale", scene.ambient_scale);
-  scene.validate();
-  return scene;
-}
-
-py::array_t<float> capture_array(const py::dict& planes, const CodeSet& code, const Camera& camera,
-                                 const py::dict& values, const py::object& callback) {
-  CaptureOptions options;
-  const OperatingPoint middle = camera.operating.middle();
-  options.signal_e_per_s = middle.signal_e_per_s;
-  options.ambient_e_per_s = middle.ambient_e_per_s;
-  OptionReader(values, "")
-      .value("signal_e_per_s", options.signal_e_per_s)
-      .value("ambient_e_per_s", options.ambient_e_per_s)
-      .value("reference_distance_m", options.reference_distance_m)
-      .value("falloff", options.falloff)
-      .value("seed", options.seed)
-      .value("frames", options.frames)
-      .finish();
-  const SceneImage scene = scene_of(planes);
-  RawFrames raw = without_gil(callback, [&](const Progress& progress) {
-    return capture(scene, code, camera, options, progress);
-  });
-  return adopt(std::move(raw.values), {raw.frames, raw.height, raw.width, raw.measurements});
-}
-
 }  // namespace
 
 void bind_simulate(py::module_& module) {
-  module.def("capture", &capture_array);
   module.def("evaluate", [](const CodeSet& code, const Camera& camera, const py::dict& values,
                             const py::object& callback) {
     const EvaluateOptions options = evaluate_options(values);
@@ -125,6 +82,21 @@ void bind_simulate(py::module_& module) {
       return robustness(code, camera, options, progress);
     }));
   });
+  module.def("generator_loss", [](const CodeSet& code, const Camera& camera, const py::dict& values,
+                                  const py::object& callback) {
+    const EvaluateOptions options = evaluate_options(values);
+    return loss_dict(without_gil(callback, [&](const Progress& progress) {
+      return generator_loss(code, camera, options, progress);
+    }));
+  });
+  module.def("table_depth_error_m",
+             [](const DecodingTable& table, double signal, double ambient_e_per_s,
+                std::int64_t trials, std::uint64_t seed) {
+               const Estimate error_m = without_gil(py::none(), [&](const Progress&) {
+                 return table_depth_error_m(table, {signal, ambient_e_per_s}, trials, seed);
+               });
+               return py::make_tuple(error_m.value, error_m.standard_error);
+             });
 }
 
 }  // namespace tofsmith::python

@@ -14,10 +14,13 @@ void bind_code(py::module_& module);
 void bind_forward_model(py::module_& module);
 void bind_decode(py::module_& module);
 void bind_scene(py::module_& module);
+void bind_capture(py::module_& module);
 void bind_simulate(py::module_& module);
+void bind_multipath(py::module_& module);
 void bind_bounds(py::module_& module);
 void bind_design(py::module_& module);
 void bind_files(py::module_& module);
+void bind_export(py::module_& module);
 void bind_sweep(py::module_& module);
 void bind_figures(py::module_& module);
 

@@ -9,6 +9,14 @@ namespace tofsmith::python {
 
 namespace {
 
+/// What the command line calls --force is overwrite here.
+std::string in_words_of_python(std::string message) {
+  constexpr std::string_view flag = "--force";
+  const std::size_t place = message.find(flag);
+  if (place != std::string::npos) message.replace(place, flag.size(), "overwrite=True");
+  return message;
+}
+
 /// Holds the number of threads from call to call.
 class ThreadSetting {
  public:
@@ -35,7 +43,7 @@ PYBIND11_MODULE(_tofsmith, module) {
     try {
       if (error) std::rethrow_exception(error);
     } catch (const IoError& io) {
-      PyErr_SetString(PyExc_OSError, io.what());
+      PyErr_SetString(PyExc_OSError, in_words_of_python(io.what()).c_str());
     }
   });
   auto* const setting = new ThreadSetting;  // lives as long as the module
@@ -46,10 +54,13 @@ PYBIND11_MODULE(_tofsmith, module) {
   bind_forward_model(module);
   bind_decode(module);
   bind_scene(module);
+  bind_capture(module);
   bind_simulate(module);
+  bind_multipath(module);
   bind_bounds(module);
   bind_design(module);
   bind_files(module);
+  bind_export(module);
   bind_sweep(module);
   bind_figures(module);
 }

@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -13,10 +14,17 @@
 
 namespace tofsmith::python {
 
+template <typename Value>
+inline constexpr bool is_optional = false;
+template <typename Value>
+inline constexpr bool is_optional<std::optional<Value>> = true;
+
 /// What a Python value must be to become a `Value`, in words.
 template <typename Value>
 std::string needed() {
-  if constexpr (std::is_same_v<Value, bool>) {
+  if constexpr (is_optional<Value>) {
+    return needed<typename Value::value_type>();
+  } else if constexpr (std::is_same_v<Value, bool>) {
     return "True or False";
   } else if constexpr (std::is_integral_v<Value>) {
     using Limits = std::numeric_limits<Value>;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reports.hpp"
 
+#include <type_traits>
+
 #include "arrays.hpp"
 
 namespace tofsmith::python {
@@ -22,8 +24,8 @@ py::dict mean_dict(const DepthErrorMean& mean) {
 }
 
 template <typename OfPoint>
-py::array_t<double> column(const DepthErrorReport& report, OfPoint of_point) {
-  std::vector<double> values;
+py::array column(const DepthErrorReport& report, OfPoint of_point) {
+  std::vector<std::invoke_result_t<OfPoint, const PointDepthError&>> values;
   for (const PointDepthError& point : report.points) values.push_back(of_point(point));
   return adopt(std::move(values));
 }
@@ -39,11 +41,13 @@ py::dict report_dict(const DepthErrorReport& report) {
   dict["measurements"] = report.measurements;
   dict["samples"] = report.samples;
   dict["trials"] = report.trials;
+  dict["points_short_of_target"] = report.points_short_of_target;
   dict["seed"] = report.seed;
   dict["outlier_threshold_m"] = report.outlier_threshold_m;
   const auto add = [&](const char* name, auto of_point) { dict[name] = column(report, of_point); };
   add("signal_e_per_s", [](const Point& p) { return p.point.signal_e_per_s; });
   add("ambient_e_per_s", [](const Point& p) { return p.point.ambient_e_per_s; });
+  add("point_trials", [](const Point& p) { return p.trials; });
   add("linear_mde_m", [](const Point& p) { return p.linear_mde_m.value; });
   add("linear_se_m", [](const Point& p) { return p.linear_mde_m.standard_error; });
   add("circular_mde_m", [](const Point& p) { return p.circular_mde_m.value; });
@@ -54,6 +58,15 @@ py::dict report_dict(const DepthErrorReport& report) {
   add("direct_tof_bound_mae_m", [](const Point& p) { return p.direct_tof_bound_mae_m; });
   dict["linear"] = mean_dict(report.linear);
   dict["circular"] = mean_dict(report.circular);
+  return dict;
+}
+
+py::dict loss_dict(const GeneratorLoss& loss) {
+  py::dict dict;
+  dict["told"] = report_dict(loss.told);
+  dict["played"] = report_dict(loss.played);
+  dict["uncalibrated"] = report_dict(loss.uncalibrated);
+  dict["correlation_change"] = adopt(std::vector<double>(loss.correlation_change));
   return dict;
 }
 

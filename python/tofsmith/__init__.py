@@ -16,11 +16,11 @@ Examples
 """
 
 from . import _check, _tofsmith
+from ._bounds import CramerRaoBound, DirectTofBound, ReceiverBound
 from ._camera import Camera, built_in_camera_names, camera_keys
 from ._camera_fields import Generator, ImpulseResponse, Lens, Light, Operating, Sensor
 from ._code import (
     CodeSet,
-    Waveform,
     build_family,
     list_families,
     load_code,
@@ -28,7 +28,9 @@ from ._code import (
     require_fits,
     write_code,
 )
-from ._decode import Decoder, DecodingTable, DepthImage, PixelStatus, ReturnStatus, decode
+from ._decode import Decoder, decode
+from ._decoding_table import DecodingTable
+from ._depth_image import DepthImage, PixelStatus, ReturnStatus
 from ._design import (
     Candidate,
     DesignResult,
@@ -37,17 +39,8 @@ from ._design import (
     design,
     suggested_exposures,
 )
-from ._evaluate import (
-    CramerRaoBound,
-    DepthErrorMean,
-    DepthErrorReport,
-    DirectTofBound,
-    ReceiverBound,
-    RobustnessReport,
-    best_rotation,
-    evaluate,
-    robustness,
-)
+from ._evaluate import best_rotation, evaluate, generator_loss, robustness, table_depth_error_m
+from ._export import ExportedCode, WaveformFormat, export_waveforms, waveform_formats
 from ._files import (
     read_correlation_functions,
     read_depth,
@@ -65,6 +58,16 @@ from ._forward_model import (
     coding_curve_rank,
     harmonics_used,
 )
+from ._light import ExponentialTail, LaterReturns, Transients
+from ._multipath import (
+    MultipathBound,
+    MultipathCells,
+    MultipathErrorReport,
+    MultipathMaps,
+    multipath_error,
+    single_path_bias_m,
+)
+from ._reports import DepthErrorMean, DepthErrorReport, GeneratorLoss, RobustnessReport
 from ._scene import (
     Scene,
     built_in_scene,
@@ -78,6 +81,7 @@ from ._scene import (
 )
 from ._sweep import SweepResults, read_sweep, read_sweep_export, run_sweep
 from ._tofsmith import Interrupted
+from ._waveform import Waveform
 
 __version__: str = _tofsmith.version
 
@@ -100,13 +104,21 @@ __all__ = [
     "DepthImage",
     "DesignResult",
     "DirectTofBound",
+    "ExponentialTail",
+    "ExportedCode",
     "ForwardModel",
     "Generator",
+    "GeneratorLoss",
     "ImpulseResponse",
     "Interrupted",
+    "LaterReturns",
     "Lens",
     "Light",
     "MeasurementReport",
+    "MultipathBound",
+    "MultipathCells",
+    "MultipathErrorReport",
+    "MultipathMaps",
     "Operating",
     "PixelStatus",
     "ReceiverBound",
@@ -116,7 +128,9 @@ __all__ = [
     "SearchRecord",
     "Sensor",
     "SweepResults",
+    "Transients",
     "Waveform",
+    "WaveformFormat",
     "best_rotation",
     "build_family",
     "built_in_camera_names",
@@ -131,9 +145,12 @@ __all__ = [
     "decode",
     "design",
     "evaluate",
+    "export_waveforms",
+    "generator_loss",
     "harmonics_used",
     "list_families",
     "load_code",
+    "multipath_error",
     "points_m",
     "radial_from_z",
     "read_code",
@@ -149,7 +166,10 @@ __all__ = [
     "robustness",
     "run_sweep",
     "set_threads",
+    "single_path_bias_m",
     "suggested_exposures",
+    "table_depth_error_m",
+    "waveform_formats",
     "write_code",
     "write_depth",
     "write_points",

@@ -75,7 +75,7 @@ def one_of(value: object, name: str, words: tuple[str, ...]) -> str:
 
 def real_array(value: Any, name: str, axes: str) -> npt.NDArray[Any]:
     """An array of real numbers with as many axes as `axes`, such as "(N, K)", names."""
-    array = np.asanyarray(value)
+    array: npt.NDArray[Any] = np.asanyarray(value)
     if array.dtype.kind not in "fiu":
         raise ValueError(f"{name}: got dtype {array.dtype}; needs real numbers, such as float64")
     count = 0 if axes == "()" else axes.rstrip(",)").count(",") + 1

@@ -16,7 +16,7 @@ from . import _check, _tofsmith
 from ._camera import Camera, CameraLike, camera_of
 from ._check import FloatArray, Path, Progress
 from ._code import CodeSet, load_code
-from ._evaluate import DepthErrorReport, RobustnessReport, report_of
+from ._reports import DepthErrorReport, RobustnessReport, report_of
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ from . import _check
 from ._camera import Camera, CameraLike, camera_of
 from ._check import FloatArray
 from ._code import CodeLike, CodeSet, code_of
-from ._decode import DepthImage
+from ._depth_image import DepthImage
 from ._design import Candidate
-from ._evaluate import DepthErrorReport
+from ._reports import DepthErrorReport
 
 Reports = Union[DepthErrorReport, Candidate, Sequence[Union[DepthErrorReport, Candidate]]]
 Depth = Union[DepthImage, npt.NDArray[Any]]

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
 from typing import Any, Optional, Union
@@ -17,6 +18,7 @@ from ._camera import CameraLike, camera_of
 from ._camera_fields import Lens
 from ._check import Path, Progress
 from ._code import CodeLike, code_of
+from ._light import ExponentialTail, LaterReturns, Transients, light_dict
 
 FloatImage = npt.NDArray[np.float32]
 
@@ -118,7 +120,8 @@ def points_m(radial_m: npt.ArrayLike, lens: Lens) -> FloatImage:
     row, column = np.mgrid[: z_m.shape[0], : z_m.shape[1]]
     x_m = (column - lens.cx_px) / lens.fx_px * z_m
     y_m = (row - lens.cy_px) / lens.fy_px * z_m
-    return np.stack([x_m, y_m, z_m], axis=-1).astype(np.float32)
+    points: FloatImage = np.stack([x_m, y_m, z_m], axis=-1).astype(np.float32)
+    return points
 
 
 def capture(
@@ -132,6 +135,9 @@ def capture(
     falloff: Optional[bool] = None,
     seed: Optional[int] = None,
     frames: Optional[int] = None,
+    returns: Union[LaterReturns, Sequence[tuple[float, float]], None] = None,
+    tail: Optional[ExponentialTail] = None,
+    transients: Optional[Transients] = None,
     progress: Progress = None,
 ) -> npt.NDArray[np.float32]:
     """Raw measurements of a scene.
@@ -155,6 +161,13 @@ def capture(
         Of all noise (1); the same bits for any number of threads.
     frames : int, optional
         F, independent noise for each (1).
+    returns : LaterReturns or sequence of (delay_m, ratio), optional
+        Light that comes back again: of each pixel, or the same behind all pixels.
+    tail : ExponentialTail, optional
+        Behind every direct return.
+    transients : Transients, optional
+        In place of the direct return: the pixel's signal shared out over a histogram; goes without
+        the two above.
     progress : callable, optional
 
     Returns
@@ -183,8 +196,12 @@ def capture(
     }
     handle = code_of(code, camera)._handle
     callback = _check.progress(progress)
-    raw = _tofsmith.capture(planes, handle, camera._handle, options, callback)
-    return raw[0] if frames is None else raw
+    light = light_dict(returns, tail, transients, seen.depth_m)
+    raw: npt.NDArray[np.float32] = _tofsmith.capture(planes, light, handle, camera._handle, options, callback)
+    if frames is not None:
+        return raw
+    only: npt.NDArray[np.float32] = raw[0]
+    return only
 
 
 def _scene_of(scene: Any) -> Scene:

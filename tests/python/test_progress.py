@@ -10,7 +10,7 @@ import pytest
 
 import tofsmith as ts
 
-long_work = {"trials": 2_000_000, "seed": 1}  # minutes, unless it is stopped
+long_work = {"trials": 2_000_000_000, "seed": 1}  # many minutes, unless it is stopped
 
 
 def test_progress_rises_to_the_end(camera):

@@ -32,16 +32,20 @@ def test_types_hold(tmp_path):
 
 def test_stubs_agree_with_the_compiled_part(tmp_path):
     pytest.importorskip("mypy", reason="mypy is not installed")
-    done = run_mypy(tmp_path, "mypy.stubtest", "tofsmith._tofsmith")
+    # What pybind11 makes of any class: a metaclass, and an __init__ that refuses where there is none.
+    allowed = tmp_path / "allowed.txt"
+    allowed.write_text("tofsmith\\._tofsmith\\.[A-Z]\\w*(\\.__init__)?\n")
+    done = run_mypy(tmp_path, "mypy.stubtest", "--allowlist", str(allowed), "tofsmith._tofsmith")
     assert done.returncode == 0, done.stdout + done.stderr
 
 
 def public():
-    for module in (ts, figures, plot):
+    for name in ts.__all__:
+        if name != "Interrupted":
+            yield f"tofsmith.{name}", getattr(ts, name)
+    for module in (figures, plot):
         for name, value in vars(module).items():
-            if name.startswith("_") or not callable(value):
-                continue
-            if getattr(value, "__module__", "").startswith("tofsmith") and value is not ts.Interrupted:
+            if not name.startswith("_") and getattr(value, "__module__", "") == module.__name__:
                 yield f"{module.__name__}.{name}", value
 
 
