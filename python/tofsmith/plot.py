@@ -176,7 +176,7 @@ def depth_error_map(
         axis.tick_params(length=0)
         for (row, column), value in np.ndenumerate(v):
             dark = norm(value) < 0.6
-            axis.text(column, row, short(value), ha="center", va="center", fontsize=6,
+            axis.text(column, row, short(float(value)), ha="center", va="center", fontsize=6,
                       color="white" if dark else "black")
     for axis in axes.flat[len(listed) :]:
         axis.axis("off")
