@@ -37,6 +37,7 @@ class CMakeBuild(build_ext):
             "TOFSMITH_BUILD_APPS": "OFF",
             "TOFSMITH_BUILD_TESTS": "OFF",
             "BUILD_SHARED_LIBS": "OFF",
+            "TOFSMITH_UNITY": "ON",  # compiles in a third of the time
             "Python_EXECUTABLE": sys.executable,
         }
         defines = [f"-D{name}={value}" for name, value in options.items()]

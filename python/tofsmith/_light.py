@@ -103,8 +103,9 @@ def light_dict(
         axes = "(T,)" if np.ndim(transients.light) == 1 else "(H, W, T)"
         bins = _check.finite_array(transients.light, "transients.light", axes)
         if bins.ndim == 3 and bins.shape[:2] != np.shape(depth_m):
+            height, width = np.shape(depth_m)
             raise ValueError(f"transients.light: got shape {bins.shape}; needs (T,) or "
-                             f"{(*np.shape(depth_m), 'T')} as of the scene".replace("'", ""))
+                             f"({height}, {width}, T) as of the scene")
         light["transients"] = (
             bins.reshape(-1, bins.shape[-1]),
             _check.number(transients.bin_m, "transients.bin_m"),

@@ -98,6 +98,30 @@ refusals = [
     (lambda: ts.write_raw("/tmp/x.npy", np.ones((2, 2))), ValueError, "raw: got shape (2, 2); needs (F, H, W, K)"),
     (lambda: ts.read_sweep_export("x.txt"), OSError, "expected .npz, .csv or .json"),
     (lambda: ts.run_sweep("codes = 3\n", "/nowhere/store.sqlite"), OSError, "sweep:1"),
+    (lambda: ts.evaluate("square-k4", "paper-10f0", target_standard_error=1.5), ValueError, "target_standard_error = 1.5; "),
+    (lambda: ts.evaluate("square-k4", "paper-10f0", target_standard_error="1%"), TypeError, "target_standard_error: got str '1%'; needs a number"),
+    (lambda: ts.evaluate("square-k4", "paper-10f0", target_standard_error=0.1, most_trials=0), ValueError, "most_trials = 0; "),
+    (lambda: ts.evaluate("square-k4", "paper-10f0", draw_every_measurement=1), TypeError, "draw_every_measurement: got int 1; needs True or False"),
+    (lambda: ts.generator_loss("square-k4", "prototype", trails=9), ValueError, "did you mean trials?"),
+    (lambda: ts.table_depth_error_m("square-k4", 1, 1), TypeError, "table: got str 'square-k4'; needs a tofsmith.DecodingTable"),
+    (lambda: ts.multipath_error("square-k4", "paper-10f0", ratio=[2]), ValueError, "ratio"),
+    (lambda: ts.multipath_error("square-k4", "paper-10f0", delay_m=["far"]), TypeError, "delay_m: got list ['far']; needs a list of numbers"),
+    (lambda: ts.multipath_error("square-k4", "paper-10f0", decoding={"treshold": 9}), ValueError, "did you mean threshold?"),
+    (lambda: ts.MultipathBound("square-k4", "paper-10f0").sigma_m(1e4, -1, 0.1, 1), ValueError, "ambient_e_per_s: got -1; needs a number >= 0"),
+    (lambda: ts.MultipathBound("square-k4", "paper-10f0").tail_sigma_m(1e4, 0, 0.5), TypeError, "tail: got float 0.5; needs a tofsmith.ExponentialTail"),
+    (lambda: ts.capture(depth, "square-k4", "paper-10f0", returns=[1, 2]), ValueError, "returns: got shape (2,); needs (returns, 2)"),
+    (lambda: ts.capture(depth, "square-k4", "paper-10f0", returns=[(np.nan, 0.1)]), ValueError, "returns: got nan at (0, 0); needs finite numbers"),
+    (lambda: ts.capture(depth, "square-k4", "paper-10f0", returns=ts.LaterReturns(np.arange(4), np.ones(3), np.ones(3))), ValueError, "returns.first: got shape (4,); needs shape (5,)"),
+    (lambda: ts.capture(depth, "square-k4", "paper-10f0", returns=ts.LaterReturns(np.arange(5), np.full(4, 2), np.ones(3))), ValueError, "returns.ratio: got shape (3,); needs shape (4,)"),
+    (lambda: ts.capture(depth, "square-k4", "paper-10f0", returns=ts.LaterReturns(np.array([0, 9, 2, 3, 4]), np.full(4, 2), np.ones(4))), ValueError, "returns"),
+    (lambda: ts.capture(depth, "square-k4", "paper-10f0", returns=ts.LaterReturns(np.ones(5), np.ones(4), np.ones(4))), ValueError, "returns.first: got dtype float64; needs whole numbers"),
+    (lambda: ts.capture(depth, "square-k4", "paper-10f0", tail=(1, 2)), TypeError, "tail: got tuple (1, 2); needs a tofsmith.ExponentialTail"),
+    (lambda: ts.capture(depth, "square-k4", "paper-10f0", tail=ts.ExponentialTail(-1)), ValueError, "mean_delay_m = -1; "),
+    (lambda: ts.capture(depth, "square-k4", "paper-10f0", transients=ts.Transients(np.ones((3, 2, 4)), 0.1)), ValueError, "transients.light: got shape (3, 2, 4); needs (T,) or (2, 2, T)"),
+    (lambda: ts.capture(depth, "square-k4", "paper-10f0", transients=ts.Transients(np.array([1, np.inf]), 0.1)), ValueError, "transients.light: got inf at 1; needs finite"),
+    (lambda: ts.export_waveforms("square-k4", "paper-10f0", "/tmp/none", "keysight-arc"), ValueError, "did you mean keysight-arb?"),
+    (lambda: ts.export_waveforms("square-k4", "paper-10f0", "/tmp/none", "csv", bits=99), ValueError, "bits"),
+    (lambda: ts.export_waveforms("square-k4", "paper-10f0", "/proc/none", "csv"), OSError, "/proc/none: "),
     (lambda: ts.set_threads(-1), ValueError, "threads: got -1; needs a whole number from 0"),
 ]
 
@@ -111,7 +135,7 @@ def test_bad_input_is_refused_by_name(call, kind, message):
 def test_existing_files_stay(tmp_path):
     path = tmp_path / "depth.npy"
     ts.write_depth(path, depth)
-    with pytest.raises(OSError, match="exists"):
+    with pytest.raises(OSError, match="exists already; .* overwrite=True"):
         ts.write_depth(path, depth)
     ts.write_depth(path, 2 * depth, overwrite=True)
     assert ts.read_depth(path)[0, 0] == 2
