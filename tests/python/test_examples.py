@@ -3,6 +3,7 @@
 """Every example runs as it stands, and its twin in C++ says the same."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -29,6 +30,19 @@ def test_twins_run_and_say_the_same(example, tmp_path):
     assert said[0]
     if programs:
         assert output_of([Path(programs) / example.stem], tmp_path / "cpp") == said
+
+
+def snippets():
+    for page in ("README.md", "docs/python.md"):
+        text = (folder.parent / page).read_text()
+        blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+        assert blocks, page
+        yield pytest.param("".join(blocks), id=page)
+
+
+@pytest.mark.parametrize("snippet", snippets())
+def test_what_pages_show_runs(snippet, tmp_path):
+    output_of([sys.executable, "-B", "-c", snippet], tmp_path / "page")
 
 
 def test_every_example_has_a_twin():
