@@ -18,7 +18,7 @@ from sweep_text import ITEMS, sweep_text
 MPIRUN = sys.argv.pop(1) if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else None
 
 SWEEP = sweep_text(4000)
-LONG = sweep_text(2000000)
+LONG = sweep_text(100_000_000)  # must not end before it is killed
 
 
 class RanksTest(CommandLineTest):
@@ -101,7 +101,7 @@ class Ranks(RanksTest):
             self.assertNotEqual(job.returncode, 0)
             finished = self.status(store)["finished"]
             self.assertLess(finished, ITEMS)
-            self.write("s.toml", LONG.replace("2000000", "2000"))  # others: quick to compute
+            self.write("s.toml", sweep_text(2000))  # others: quick to compute
             out, _ = self.finish(self.ranks(2, "sweep", "s.toml", "--store", store))
             self.assertIn(f"{ITEMS} finished", out)
             self.write("s.toml", LONG)

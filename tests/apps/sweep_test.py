@@ -131,7 +131,7 @@ class Sweep(CommandLineTest):
             print(f"{kills} kills of {rounds} sweeps", file=sys.stderr)
 
     def test_an_interrupt_keeps_what_is_finished(self):
-        self.write("s.toml", sweep_text(1000000))
+        self.write("s.toml", sweep_text(100_000_000))
         process = self.start("sweep", "s.toml", "--store", "s.sqlite")
         while not os.path.exists(self.path("s.sqlite")):
             time.sleep(0.02)
