@@ -91,6 +91,14 @@ class Ranks(RanksTest):
             time.sleep(0.05)
         self.fail("the sweep did not start")
 
+    def test_one_rank_merges(self):
+        for part in "12":
+            self.do("sweep", "s.toml", "--store", part + ".sqlite", "--shard", part + "/2")
+        out, error = self.finish(
+            self.ranks(3, "sweep", "merge", "all.sqlite", "1.sqlite", "2.sqlite"))
+        self.assertEqual((out.count("merged"), error), (1, ""))
+        self.assertEqual(self.status("all.sqlite")["finished"], ITEMS)
+
     def test_a_dead_rank_ends_the_job_and_loses_only_unfinished_items(self):
         for rank in (0, 2):
             store = f"killed{rank}.sqlite"
