@@ -135,17 +135,23 @@ void lead(const SweepArguments& arguments, Session& session, SweepRanks& ranks) 
                                          done.failures.size(), list.size(), done.failures.front()));
 }
 
-/// Under mpirun every rank comes here, and rank 0 leads: it alone prints, reads and writes.
-void run(const SweepArguments& arguments, Session& session) {
-  SweepRanks ranks = SweepRanks::join(terminal_progress("sweep"));
-  if (ranks.rank() == 0) return lead(arguments, session, ranks);
+void follow(const std::string& sweep, Session& session, SweepRanks& ranks) {
   session.follows = true;
   work_for_sweep(
-      ranks, [&] { return WorkList(read_sweep_toml(arguments.sweep)); },
+      ranks, [&] { return WorkList(read_sweep_toml(sweep)); },
       [](double, std::string_view) { return !interrupted(); });
 }
 
-void merge(const MergeArguments& arguments, const Session& session) {
+/// Under mpirun every rank comes here, and rank 0 leads: it alone prints, reads and writes.
+void run(const SweepArguments& arguments, Session& session) {
+  SweepRanks ranks = SweepRanks::join(terminal_progress("sweep"));
+  if (ranks.rank() != 0) return follow(arguments.sweep, session, ranks);
+  lead(arguments, session, ranks);
+}
+
+void merge(const MergeArguments& arguments, Session& session) {
+  SweepRanks ranks = SweepRanks::join();
+  if (ranks.rank() != 0) return follow("", session, ranks);  // there is no work to share
   for (const std::filesystem::path& part : arguments.parts)
     check_not_input(arguments.output, {part.string()});
   AtomicFile file(arguments.output, session.output_policy());

@@ -3,12 +3,12 @@
 #include <pybind11/stl.h>
 
 #include <filesystem>
-#include <system_error>
 
 #include "bindings.hpp"
 #include "options.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/io/output_directory.hpp"
 #include "tofsmith/io/waveform_export.hpp"
 
 namespace tofsmith::python {
@@ -46,13 +46,7 @@ py::dict format_dict(const WaveformFormat& format) {
   return dict;
 }
 
-void make_directory(const std::filesystem::path& directory) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) throw IoError(directory.string(), "the directory cannot be made: " + error.message());
-}
-
-/// The tables and their manifest, which say nothing of each other's names.
+/// The tables, and the manifest last.
 std::vector<ExportedFile> all_files(const WaveformExport& exported) {
   std::vector<ExportedFile> files = export_files(exported);
   const std::string manifest = export_manifest(exported, files);
@@ -68,7 +62,7 @@ py::tuple write_export(const CodeSet& code, const Camera& camera, const std::str
   const Camera played = exporting_camera(resampled, camera, options);
   const std::vector<ExportedFile> files = all_files(export_waveforms(resampled, played, options));
   const std::filesystem::path folder = directory;
-  make_directory(folder);
+  make_output_directory(folder);
   std::vector<std::string> names;
   for (const ExportedFile& file : files) {
     if (!overwrite && std::filesystem::exists(folder / file.name))
