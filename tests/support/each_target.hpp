@@ -5,15 +5,23 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <string>
 #include <type_traits>
+#include <vector>
+
+#include "tofsmith/core/dispatch_target.hpp"
 
 namespace tofsmith {
 
-/// Runs `body(target)` or `body()` once for every instruction set this machine offers.
+/// Runs `body(target)` or `body()` once for every instruction set this machine offers and the
+/// library has kernels for.
 template <typename Body>
 void for_each_target(const Body& body) {
+  const std::vector<std::string> with_kernels = dispatch_targets();
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    if (std::ranges::find(with_kernels, hwy::TargetName(target)) == with_kernels.end()) continue;
     hwy::SetSupportedTargetsForTest(target);
     SCOPED_TRACE(hwy::TargetName(target));
     if constexpr (std::is_invocable_v<Body, std::int64_t>)
