@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """pip install --no-build-isolation . : CMake builds the compiled part of the Python package.
 
-The build directory is build/pip-.., or that of the environment variable TOFSMITH_CMAKE_BUILD.
+The build directory is build/pip, or that of the environment variable TOFSMITH_CMAKE_BUILD.
 """
 
 import os

@@ -65,7 +65,7 @@ def write_raw(path: Path, raw: npt.ArrayLike, *, overwrite: bool = False) -> Non
 
 
 def read_depth(path: Path) -> npt.NDArray[np.float32]:
-    """Depth [m] (H, W), NaN where nothing came back, from .npy .npz .exr .pfm .png (16 bits, mm)."""
+    """Depth [m] (H, W), NaN where nothing came back; .npy .npz .exr .pfm .png (16 bits, mm)."""
     return _tofsmith.read_depth(_check.path(path))
 
 

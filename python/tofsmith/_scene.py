@@ -197,7 +197,9 @@ def capture(
     handle = code_of(code, camera)._handle
     callback = _check.progress(progress)
     light = light_dict(returns, tail, transients, seen.depth_m)
-    raw: npt.NDArray[np.float32] = _tofsmith.capture(planes, light, handle, camera._handle, options, callback)
+    raw: npt.NDArray[np.float32] = _tofsmith.capture(
+        planes, light, handle, camera._handle, options, callback
+    )
     if frames is not None:
         return raw
     only: npt.NDArray[np.float32] = raw[0]

@@ -165,7 +165,8 @@ def _json_columns(name: str) -> dict[str, npt.NDArray[Any]]:
     for entry in document["codes"]:
         for point in entry["points"]:
             row = {"item": entry["item"], "code": entry["name"]}
-            settings = {k: v for k, v in entry["settings"].items() if k not in point and k != "code"}
+            given = entry["settings"].items()
+            settings = {k: v for k, v in given if k not in point and k != "code"}
             rows.append(row | settings | point)
     keys = list(rows[0]) if rows else ["linear_mde_m"]
     return {key: _column([row[key] for row in rows]) for key in keys}

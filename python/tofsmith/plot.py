@@ -200,8 +200,8 @@ def depth_error_curves(
     """Mean depth error along signal or ambient light, with standard errors; the other light at the
     level nearest `at` (the middle unless given). Dotted grey: the bound of any code."""
     listed = reports_of(reports)
-    longest = max(len(report.code) for report in listed)
-    figure = new_figure(figure, column_in + 0.4 + 0.055 * max(longest, len("bound of any code")), 2.4)
+    longest = max(len("bound of any code"), *(len(report.code) for report in listed))
+    figure = new_figure(figure, column_in + 0.4 + 0.055 * longest, 2.4)
     axis = figure.subplots()
     bounds: dict[bytes, Any] = {}
     level = 0.0
