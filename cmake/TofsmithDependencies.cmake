@@ -47,3 +47,17 @@ endif()
 if(TOFSMITH_BUILD_BENCHMARKS)
   find_path(NANOFLANN_INCLUDE_DIR nanoflann.hpp)  # a peer; can be missing
 endif()
+if(TOFSMITH_BUILD_PYTHON)
+  # Debian's own, for which the packages are: another python3 may come first on PATH. pip names the
+  # one it installs for.
+  set(Python_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "The python3 to build the package for")
+  find_package(Python 3.11 COMPONENTS Interpreter Development.Module NumPy)
+  if(Python_FOUND)
+    find_package(pybind11)
+  endif()
+  if(NOT Python_FOUND OR NOT pybind11_FOUND)
+    message(WARNING "The Python package is not built: it needs pybind11-dev, python3-dev and "
+                    "python3-numpy (scripts/packages.sh python)")
+    set(TOFSMITH_BUILD_PYTHON OFF)
+  endif()
+endif()

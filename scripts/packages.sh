@@ -5,7 +5,7 @@
 # The Debian packages of the project, in one place. Sourced by the other scripts; run by hand it
 # installs what is missing of the groups named:
 #
-#   scripts/packages.sh build|test|benchmark|check ..  install what is missing
+#   scripts/packages.sh build|python|test|benchmark|check ..  install what is missing
 #   scripts/packages.sh --list GROUP                  print the names, one a line
 
 # The library and the command line.
@@ -23,11 +23,18 @@ packages_build=(
   python3-plotly      # its plotly.js goes into the reports
   esbuild             # minifies it
 )
-packages_test=(
+# The Python package, on top of the library.
+packages_python=(
   "${packages_build[@]}"
+  pybind11-dev python3-dev python3-numpy
+  python3-matplotlib                          # tofsmith.plot
+  python3-setuptools python3-wheel python3-pip python3-venv  # pip install
+)
+packages_test=(
+  "${packages_python[@]}"
   libgtest-dev libgmock-dev
   libopenmpi-dev openmpi-bin                 # sweeps of several ranks
-  python3-numpy                              # reads and writes NPY as others do
+  python3-pytest mypy                        # the Python package
   python3-cvxopt                             # an independent solver of the sub-problem
   chromium chromium-driver python3-selenium  # the report, in a browser
 )
@@ -50,10 +57,11 @@ tofsmith_die() {
 packages_of() {
   case "$1" in
     build) printf '%s\n' "${packages_build[@]}" ;;
+    python) printf '%s\n' "${packages_python[@]}" ;;
     test) printf '%s\n' "${packages_test[@]}" ;;
     benchmark) printf '%s\n' "${packages_benchmark[@]}" ;;
     check) printf '%s\n' "${packages_check[@]}" ;;
-    *) tofsmith_die "no package group '$1'; there are build, test, benchmark and check" ;;
+    *) tofsmith_die "no package group '$1'; there are build, python, test, benchmark and check" ;;
   esac
 }
 
@@ -106,9 +114,9 @@ use_debian_tools() {
 
 if [[ "${BASH_SOURCE[0]}" == "$0" ]]; then
   set -euo pipefail
-  (($#)) || tofsmith_die "which group? build, test, benchmark or check"
+  (($#)) || tofsmith_die "which group? build, python, test, benchmark or check"
   if [[ "$1" == --list ]]; then
-    packages_of "${2:?which group? build, test, benchmark or check}"
+    packages_of "${2:?which group? build, python, test, benchmark or check}"
   else
     for group in "$@"; do
       install_packages "$group"

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include "bindings.hpp"
+#include "options.hpp"
+#include "progress.hpp"
+#include "tofsmith/simulate/multipath_capture.hpp"
+
+namespace tofsmith::python {
+
+namespace {
+
+SceneImage scene_of(const py::dict& planes) {
+  const Image<float> depth_m = to_image(planes["depth_m"], "depth_m");
+  if (depth_m.empty())
+    refuse("depth_m",
+           "shape (" + std::to_string(depth_m.height) + ", " + std::to_string(depth_m.width) + ")",
+           "(H, W) with at least one pixel");
+  SceneImage scene(depth_m.height, depth_m.width);
+  scene.depth_m = depth_m;
+  const auto take = [&](const char* name, Image<float>& plane) {
+    const py::object values = planes[name];
+    if (values.is_none()) return;
+    plane = to_image(values, name);
+    if (plane.height != depth_m.height || plane.width != depth_m.width)
+      refuse(name,
+             "shape (" + std::to_string(plane.height) + ", " + std::to_string(plane.width) + ")",
+             "shape (" + std::to_string(depth_m.height) + ", " + std::to_string(depth_m.width) +
+                 ") as of depth_m");
+  };
+  take("albedo", scene.albedo);
+  take("cosine", scene.cosine);
+  take("ambient_scale", scene.ambient_scale);
+  scene.validate();
+  return scene;
+}
+
+std::vector<LaterReturn> later_returns(const Floats& distance_m, const Floats& ratio) {
+  if (distance_m.size() != ratio.size())
+    refuse("returns.ratio", "shape " + shape_of(ratio),
+           "shape " + shape_of(distance_m) + " as of distance_m");
+  std::vector<LaterReturn> returns;
+  for (py::ssize_t i = 0; i < ratio.size(); ++i) returns.push_back({distance_m.at(i), ratio.at(i)});
+  return returns;
+}
+
+LaterReturns returns_of(const py::tuple& arrays, const SceneImage& scene) {
+  const auto first = py::cast<py::array_t<std::int64_t, py::array::c_style>>(arrays[0]);
+  LaterReturns later(scene.height(), scene.width());
+  later.first.assign(first.data(), first.data() + first.size());
+  later.returns = later_returns(py::cast<Floats>(arrays[1]), py::cast<Floats>(arrays[2]));
+  const auto pixels = static_cast<py::ssize_t>(scene.height()) * scene.width();
+  if (first.size() != pixels + 1)
+    refuse("returns.first", "shape " + shape_of(first),
+           "shape (" + std::to_string(pixels + 1) + ",), a number for every pixel and the end");
+  return later;
+}
+
+LaterReturns behind_of(const Doubles& pairs, const SceneImage& scene) {
+  std::vector<LaterReturn> behind;
+  for (py::ssize_t i = 0; i < pairs.shape(0); ++i)
+    behind.push_back({static_cast<float>(pairs.at(i, 0)), static_cast<float>(pairs.at(i, 1))});
+  return behind_every_pixel(scene, behind);
+}
+
+std::vector<Transient> transients_of(const py::tuple& values) {
+  const auto bins = py::cast<Doubles>(values[0]);
+  std::vector<Transient> transients;
+  for (py::ssize_t i = 0; i < bins.shape(0); ++i)
+    transients.push_back({{bins.data(i, 0), bins.data(i, 0) + bins.shape(1)},
+                          py::cast<double>(values[1]),
+                          py::cast<double>(values[2])});
+  return transients;
+}
+
+SceneLight light_of(const py::dict& values, const SceneImage& scene) {
+  SceneLight light;
+  if (values.contains("returns")) light.returns = returns_of(values["returns"], scene);
+  if (values.contains("behind"))
+    light.returns = behind_of(py::cast<Doubles>(values["behind"]), scene);
+  if (values.contains("tail")) {
+    const py::tuple tail = values["tail"];
+    light.tail = {py::cast<double>(tail[0]), py::cast<double>(tail[1])};
+  }
+  if (values.contains("transients")) light.transients = transients_of(values["transients"]);
+  return light;
+}
+
+py::array_t<float> capture_array(const py::dict& planes, const py::dict& returns,
+                                 const CodeSet& code, const Camera& camera, const py::dict& values,
+                                 const py::object& callback) {
+  CaptureOptions options;
+  const OperatingPoint middle = camera.operating.middle();
+  options.signal_e_per_s = middle.signal_e_per_s;
+  options.ambient_e_per_s = middle.ambient_e_per_s;
+  OptionReader(values, "")
+      .value("signal_e_per_s", options.signal_e_per_s)
+      .value("ambient_e_per_s", options.ambient_e_per_s)
+      .value("reference_distance_m", options.reference_distance_m)
+      .value("falloff", options.falloff)
+      .value("seed", options.seed)
+      .value("frames", options.frames)
+      .finish();
+  const SceneImage scene = scene_of(planes);
+  const SceneLight light = light_of(returns, scene);
+  RawFrames raw = without_gil(callback, [&](const Progress& progress) {
+    return capture(scene, light, code, camera, options, progress);
+  });
+  return adopt(std::move(raw.values), {raw.frames, raw.height, raw.width, raw.measurements});
+}
+
+}  // namespace
+
+void bind_capture(py::module_& module) { module.def("capture", &capture_array); }
+
+}  // namespace tofsmith::python

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <map>
+
+#include "bindings.hpp"
+#include "multipath_options.hpp"
+#include "options.hpp"
+#include "progress.hpp"
+#include "raw_array.hpp"
+#include "tofsmith/decode/decode_method.hpp"
+#include "tofsmith/decode/measured_table.hpp"
+#include "tofsmith/decode/pixel_maps.hpp"
+
+namespace tofsmith::python {
+
+namespace {
+
+/// A class of its own: pybind11 would take a variant apart.
+struct BoundDecoder {
+  AnyDecoder any;
+};
+
+BoundDecoder decoder_of(const DecodingTable& table, const py::dict& values) {
+  DecodeMethod method = DecodeMethod::zncc;
+  DecodeOptions doubt;
+  UnwrapWeights weights = UnwrapWeights::variance;
+  OptionReader reader(values, "");
+  reader.word("method", method, parse_decode_method)
+      .word("unwrap_weights", weights, parse_unwrap_weights)
+      .value("low_signal_sigma", doubt.low_signal_sigma)
+      .value("minimum_confidence", doubt.minimum_confidence);
+  const MultipathOptions multipath =
+      multipath_options(reader.table("multipath"), "multipath", table.range_m);
+  reader.finish();
+  const py::gil_scoped_release release;
+  return {make_decoder(method, table, doubt, weights, multipath)};
+}
+
+const DecodingTable& table_of(const BoundDecoder& decoder) {
+  return std::visit([](const auto& d) -> const DecodingTable& { return d.table(); }, decoder.any);
+}
+
+/// The planes of a stack of frames, in arrays that Python allocated.
+class Planes {
+ public:
+  Planes(const py::dict& arrays, const RawArray& raw) : shape_(raw.plane_shape()) {
+    take(arrays, "bin", view_.bin);
+    take(arrays, "depth_m", view_.depth_m);
+    take(arrays, "signal_e_per_s", view_.signal_e_per_s);
+    take(arrays, "ambient_e_per_s", view_.ambient_e_per_s);
+    take(arrays, "confidence", view_.confidence);
+    take(arrays, "predicted_standard_deviation_m", view_.predicted_standard_deviation_m);
+    take(arrays, "status", view_.status);
+    take(arrays, "delay_m", view_.delay_m);
+    take(arrays, "ratio", view_.ratio);
+    take(arrays, "returns", view_.returns);
+  }
+  const DecodedView& view() const { return view_; }
+
+ private:
+  template <typename Item>
+  void take(const py::dict& arrays, const char* name, Item*& plane) {
+    if (!arrays.contains(name)) return;
+    using Stored = std::conditional_t<std::is_enum_v<Item>, std::uint8_t, Item>;
+    const py::dtype needs = py::dtype::of<Stored>();
+    const std::string argument = std::string("out.") + name;
+    const py::array array = arrays[name];
+    if (!array.dtype().is(needs) && !array.dtype().equal(needs))
+      refuse(argument, "dtype " + std::string(py::str(static_cast<py::handle>(array.dtype()))),
+             std::string(py::str(static_cast<py::handle>(needs))));
+    if (std::vector<py::ssize_t>(array.shape(), array.shape() + array.ndim()) != shape_)
+      refuse(argument, "shape " + shape_of(array),
+             "shape " + std::string(py::str(py::tuple(py::cast(shape_)))));
+    if ((array.flags() & py::array::c_style) == 0)
+      refuse(argument, "an array with gaps or of another order", "C order without gaps");
+    if (!array.writeable()) refuse(argument, "a read-only array", "one that can be written");
+    plane = reinterpret_cast<Item*>(const_cast<void*>(array.data()));
+  }
+
+  std::vector<py::ssize_t> shape_;
+  DecodedView view_;
+};
+
+PixelMaps maps_of(const py::object& delay_offset_m, const py::object& gain, const RawArray& raw) {
+  PixelMaps maps{to_image(delay_offset_m, "delay_offset_m"), to_image(gain, "gain")};
+  maps.validate(raw.height, raw.width);
+  return maps;
+}
+
+void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_planar,
+            const py::dict& arrays, const py::object& delay_offset_m, const py::object& gain,
+            const py::object& callback) {
+  const RawArray raw = view_raw(raw_numbers, is_planar, table_of(decoder).measurements());
+  const Planes planes(arrays, raw);
+  const PixelMaps maps = maps_of(delay_offset_m, gain, raw);
+  without_gil(callback, [&](const Progress& progress) {
+    const auto pixels = static_cast<std::size_t>(raw.frames.front().pixels());
+    const double count = static_cast<double>(raw.frames.size());
+    for (std::size_t f = 0; f < raw.frames.size(); ++f) {
+      const DecodedView decoded = planes.view().from(f * pixels);
+      const double done = static_cast<double>(f);
+      const Progress part = part_of(progress, done / count, (done + 1.0) / count);
+      std::visit([&](const auto& d) { d.decode(raw.frames[f], decoded, part); }, decoder.any);
+      if (!maps.empty()) apply(maps, table_of(decoder).range_m, decoded, 0, pixels);
+    }
+  });
+}
+
+py::array_t<double> decode_depth_bins(const BoundDecoder& decoder, const Floats& measurements) {
+  const int needed = table_of(decoder).measurements();
+  if (measurements.ndim() != 2 || measurements.shape(1) != needed)
+    refuse("measurements", "shape " + shape_of(measurements),
+           "(pixels, " + std::to_string(needed) + ")");
+  std::vector<double> depth_bin(static_cast<std::size_t>(measurements.shape(0)));
+  {
+    const py::gil_scoped_release release;
+    std::visit(
+        [&](const auto& d) {
+          d.decode_depth_bins(measurements.data(), measurements.shape(0), depth_bin.data());
+        },
+        decoder.any);
+  }
+  return adopt(std::move(depth_bin));
+}
+
+DecodingTable measured_table(const Doubles& correlation, const Camera& camera,
+                             const py::dict& values) {
+  MeasuredTable measured;
+  measured.correlation = to_matrix(correlation, "correlation");
+  std::string ambient;
+  OptionReader reader(values, "");
+  reader.value("taps", measured.taps).value("ambient", ambient);
+  reader.finish();
+  if (!ambient.empty())
+    measured.ambient_gain = ambient_gain_of(measured.correlation, parse_measured_ambient(ambient));
+  return make_decoding_table(measured, camera);
+}
+
+void bind_table(py::module_& module) {
+  py::class_<DecodingTable>(module, "DecodingTable")
+      .def_static("of_code",
+                  [](const CodeSet& code, const Camera& camera) {
+                    return make_decoding_table(ForwardModel(code, camera), camera);
+                  })
+      .def_static("of_measured", &measured_table)
+      .def_static("of_correlation",
+                  [](const Doubles& correlation, double range_m) {
+                    DecodingTable table =
+                        make_decoding_table(to_matrix(correlation, "correlation"), range_m);
+                    table.validate();
+                    return table;
+                  })
+      .def("with_range",
+           [](DecodingTable table, double range_m) {
+             table.range_m = range_m;
+             table.validate();
+             return table;
+           })
+      .def("correlation",
+           [](const DecodingTable& t) { return adopt(Eigen::MatrixXd(t.correlation)); })
+      .def("ambient_gain",
+           [](const DecodingTable& t) { return adopt(Eigen::VectorXd(t.ambient_gain)); })
+      .def("exposure_s",
+           [](const DecodingTable& t) { return adopt(Eigen::VectorXd(t.exposure_s)); })
+      .def("range_m", [](const DecodingTable& t) { return t.range_m; })
+      .def("ambiguous_depths", [](const DecodingTable& table) {
+        const std::vector<AmbiguousDepths> pairs = ambiguous_depths(table);
+        Eigen::MatrixXd depths_m(static_cast<Eigen::Index>(pairs.size()), 2);
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+          depths_m.row(static_cast<Eigen::Index>(i)) << pairs[i].first_m, pairs[i].second_m;
+        return adopt(std::move(depths_m));
+      });
+}
+
+}  // namespace
+
+void bind_decode(py::module_& module) {
+  bind_table(module);
+  py::class_<BoundDecoder>(module, "Decoder")
+      .def(py::init(&decoder_of))
+      .def("table", [](const BoundDecoder& decoder) { return table_of(decoder); })
+      .def("decode", &decode)
+      .def("decode_depth_bins", &decode_depth_bins);
+  module.def("decode_methods", [] {
+    std::vector<std::string> names;
+    for (const DecodeMethod method : all_decode_methods) names.emplace_back(name_of(method));
+    return names;
+  });
+  module.def("pixel_statuses", [] {
+    std::map<std::string, int> values;
+    for (const PixelStatus status : all_pixel_statuses)
+      values.emplace(name_of(status), static_cast<int>(status));
+    return values;
+  });
+  module.def("return_statuses", [] {
+    std::map<std::string, int> values;
+    for (const ReturnStatus status : all_return_statuses)
+      values.emplace(name_of(status), static_cast<int>(status));
+    return values;
+  });
+}
+
+}  // namespace tofsmith::python

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "tofsmith/report/code_figures.hpp"
+#include "tofsmith/report/heat_map_figure.hpp"
+#include "tofsmith/report/image_figure.hpp"
+#include "tofsmith/report/line_figure.hpp"
+#include "tofsmith/report/space_figure.hpp"
+
+namespace tofsmith::python {
+
+namespace {
+
+FigureText text_of(const std::string& title) { return {.id = "figure", .title = title}; }
+
+ColourScale depth_colours(const std::string& label, bool logarithmic) {
+  return {.label = label, .unit = "m", .logarithmic = logarithmic};
+}
+
+std::string curves(const std::string& title, const std::vector<std::string>& names,
+                   const std::vector<std::vector<double>>& x,
+                   const std::vector<std::vector<double>>& y,
+                   const std::vector<std::vector<double>>& y_error, const std::string& x_label,
+                   const std::string& x_unit) {
+  ColourAssignment colours;
+  std::vector<Series> series;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    Series one{.name = names[i], .x = x.at(i), .y = y.at(i), .y_error = y_error.at(i)};
+    one.mark = one.y_error.empty() ? Mark::line : Mark::line_and_markers;
+    one.style = one.y_error.empty() ? reference_style() : colours.style(names[i]);
+    series.push_back(std::move(one));
+  }
+  return line_figure(text_of(title), series,
+                     {.label = x_label, .unit = x_unit, .logarithmic = true},
+                     {.label = "mean depth error", .unit = "m", .logarithmic = true})
+      .plain_plotly_json();
+}
+
+std::string heat_maps(const std::string& title, const std::vector<std::string>& names,
+                      const std::vector<Doubles>& values, const std::vector<std::string>& x_ticks,
+                      const std::vector<std::string>& y_ticks) {
+  std::vector<HeatMap> maps;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    maps.push_back({names[i], to_matrix(values.at(i), "values")});
+  return heat_map_figure(text_of(title), maps, {"ambient", "e/s", x_ticks},
+                         {"signal", "e/s", y_ticks}, depth_colours("mean depth error", true))
+      .plain_plotly_json();
+}
+
+std::string images(const std::string& title, const std::vector<std::string>& names,
+                   const py::list& depths_m) {
+  std::vector<ValueImage> pictures;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    pictures.push_back({names[i], to_image(depths_m[i], "depth_m")});
+  return image_figure(text_of(title), pictures, depth_colours("depth", false)).plain_plotly_json();
+}
+
+std::string points(const std::string& title, const Floats& points_m, const Floats& values,
+                   const std::string& label, const std::string& unit) {
+  using Points = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
+  const Eigen::MatrixX3f places = Eigen::Map<const Points>(points_m.data(), points_m.shape(0), 3);
+  const Eigen::VectorXf colours = Eigen::Map<const Eigen::VectorXf>(values.data(), values.size());
+  return point_cloud_figure(text_of(title), places, colours, {.label = label, .unit = unit})
+      .plain_plotly_json();
+}
+
+}  // namespace
+
+void bind_figures(py::module_& module) {
+  module.def("waveform_figure",
+             [](const std::string& title, const CodeSet& code, const Camera& camera) {
+               return waveform_figure(text_of(title), code, camera).plain_plotly_json();
+             });
+  module.def("coding_curve_figure",
+             [](const std::string& title, const std::vector<CodeSet>& codes, const Camera& camera) {
+               return coding_curve_figure(text_of(title), codes, camera).plain_plotly_json();
+             });
+  module.def("curve_figure", &curves);
+  module.def("heat_map_figure", &heat_maps);
+  module.def("image_figure", &images);
+  module.def("point_cloud_figure", &points);
+}
+
+}  // namespace tofsmith::python

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/correlation_file.hpp"
+#include "tofsmith/io/depth_file.hpp"
+#include "tofsmith/io/impulse_response_file.hpp"
+#include "tofsmith/io/measured_table_file.hpp"
+#include "tofsmith/io/ply.hpp"
+#include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/io/raw_frames_reader.hpp"
+
+namespace tofsmith::python {
+
+namespace {
+
+OutputPolicy policy_of(bool overwrite) {
+  return overwrite ? OutputPolicy::overwrite : OutputPolicy::refuse_existing;
+}
+
+/// All frames as (F, H, W, K) floats.
+py::array_t<float> read_raw(const std::string& path, const std::optional<int>& measurements,
+                            const std::string& layout, const std::optional<std::string>& format) {
+  RawReadOptions options;
+  options.measurements = measurements;
+  options.layout = parse_raw_layout(layout);
+  if (format) options.format = read_raw_format(*format);
+  RawFrames all;
+  {
+    const py::gil_scoped_release release;
+    const RawFramesReader reader(path, options);
+    all.frames = reader.frames();
+    all.height = reader.height();
+    all.width = reader.width();
+    all.measurements = reader.measurements();
+    const std::size_t size = all.pixels_per_frame() * static_cast<std::size_t>(all.measurements);
+    all.values.resize(size * static_cast<std::size_t>(all.frames));
+    std::vector<std::byte> buffer;
+    for (int f = 0; f < all.frames; ++f) {
+      const RawView view = reader.read_rows(f, 0, all.height, buffer);
+      copy_pixels(view, 0, view.pixels(), all.frame(f));
+    }
+  }
+  return adopt(std::move(all.values), {all.frames, all.height, all.width, all.measurements});
+}
+
+void write_raw(const std::string& path, const Floats& values, bool overwrite) {
+  RawFrames raw;
+  raw.frames = static_cast<int>(values.shape(0));
+  raw.height = static_cast<int>(values.shape(1));
+  raw.width = static_cast<int>(values.shape(2));
+  raw.measurements = static_cast<int>(values.shape(3));
+  raw.values.assign(values.data(), values.data() + values.size());
+  write_raw_frames(path, raw, policy_of(overwrite));
+}
+
+py::tuple read_table(const std::string& path, int taps, const std::optional<std::string>& tap_order,
+                     const std::optional<std::string>& axes, bool keep_end_point) {
+  MeasuredTableOptions options;
+  options.layout.taps = taps;
+  if (tap_order) options.layout.order = parse_tap_order(*tap_order);
+  if (axes) options.axes = parse_table_axes(*axes);
+  options.keep_end_point = keep_end_point;
+  MeasuredTableFile file = read_measured_table(path, options);
+  return py::make_tuple(adopt(std::move(file.table.correlation)), file.notes);
+}
+
+void write_points(const std::string& path, const Floats& points_m, const py::dict& scalars,
+                  bool overwrite) {
+  PointCloud cloud;
+  for (py::ssize_t i = 0; i < points_m.shape(0); ++i)
+    cloud.points_m.push_back({points_m.at(i, 0), points_m.at(i, 1), points_m.at(i, 2)});
+  for (const auto& entry : scalars) {
+    const auto values = py::cast<Floats>(entry.second);
+    cloud.scalars.push_back({py::cast<std::string>(entry.first),
+                             std::vector<float>(values.data(), values.data() + values.size())});
+  }
+  write_ply(path, cloud, policy_of(overwrite));
+}
+
+}  // namespace
+
+void bind_files(py::module_& module) {
+  module.def("read_raw", &read_raw);
+  module.def("write_raw", &write_raw);
+  module.def("read_depth", [](const std::string& path) { return adopt(read_depth(path)); });
+  module.def("write_depth", [](const std::string& path, const py::object& depth_m, bool overwrite) {
+    write_depth(path, to_image(depth_m, "depth_m"), policy_of(overwrite));
+  });
+  module.def("read_correlation_functions",
+             [](const std::string& path) { return adopt(read_correlation_functions(path)); });
+  module.def("read_measured_table", &read_table);
+  module.def("write_points", &write_points);
+  module.def("read_impulse_response",
+             [](const std::string& path, const std::optional<double>& time_step_s) {
+               ImpulseResponse response = read_impulse_response(path, time_step_s);
+               return py::make_tuple(adopt(std::move(response.samples)), response.time_step_s);
+             });
+}
+
+}  // namespace tofsmith::python

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "bindings.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/version.hpp"
+
+namespace tofsmith::python {
+
+namespace {
+
+/// What the command line calls --force is overwrite here.
+std::string in_words_of_python(std::string message) {
+  constexpr std::string_view flag = "--force";
+  const std::size_t place = message.find(flag);
+  if (place != std::string::npos) message.replace(place, flag.size(), "overwrite=True");
+  return message;
+}
+
+/// Holds the number of threads from call to call.
+class ThreadSetting {
+ public:
+  void set(int threads) {
+    limit_.reset();
+    if (threads > 0) limit_ = std::make_unique<ThreadLimit>(threads);
+  }
+
+ private:
+  std::unique_ptr<ThreadLimit> limit_;
+};
+
+}  // namespace
+
+// The package tofsmith checks classes and documents; here arguments have no names, and options come
+// as dicts. std::invalid_argument becomes ValueError.
+PYBIND11_MODULE(_tofsmith, module) {
+  py::options options;
+  options.disable_function_signatures();
+  module.doc() = "Compiled part of the package tofsmith; use that.";
+  module.attr("version") = TOFSMITH_VERSION;
+  py::register_exception<Interrupted>(module, "Interrupted", PyExc_RuntimeError);
+  py::register_exception_translator([](std::exception_ptr error) {
+    try {
+      if (error) std::rethrow_exception(error);
+    } catch (const IoError& io) {
+      PyErr_SetString(PyExc_OSError, in_words_of_python(io.what()).c_str());
+    }
+  });
+  auto* const setting = new ThreadSetting;  // lives as long as the module
+  module.def("set_threads", [setting](int threads) { setting->set(threads); });
+
+  bind_camera(module);
+  bind_code(module);
+  bind_forward_model(module);
+  bind_decode(module);
+  bind_scene(module);
+  bind_capture(module);
+  bind_simulate(module);
+  bind_multipath(module);
+  bind_bounds(module);
+  bind_design(module);
+  bind_files(module);
+  bind_export(module);
+  bind_sweep(module);
+  bind_figures(module);
+}
+
+}  // namespace tofsmith::python

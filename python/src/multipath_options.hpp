@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+
+#include "tofsmith/decode/multipath_options.hpp"
+
+namespace tofsmith::python {
+
+/// Options of two-return and tail decoding from a dict, which errors call `owner`.
+/// @throws std::invalid_argument naming what breaks a rule, or an unknown name
+MultipathOptions multipath_options(const pybind11::dict& values, const std::string& owner,
+                                   double range_m);
+
+}  // namespace tofsmith::python

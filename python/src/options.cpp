@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "options.hpp"
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith::python {
+
+std::string shown(py::handle value) {
+  std::string text = py::str(py::type::handle_of(value).attr("__name__"));
+  std::string content = py::repr(value);
+  constexpr std::size_t longest = 60;
+  if (content.size() > longest) content = content.substr(0, longest) + "..";
+  text += " ";
+  text += content;
+  return text;
+}
+
+OptionReader::OptionReader(const py::dict& values, std::string owner)
+    : values_(values.attr("copy")()), owner_(std::move(owner)) {}
+
+py::dict OptionReader::table(const char* name) {
+  const py::object given = take(name);
+  if (given.is_none()) return {};
+  if (!py::isinstance<py::dict>(given)) wrong_type(name, given, "a dict of options");
+  return py::dict(given);
+}
+
+void OptionReader::finish() const {
+  for (const auto& entry : values_) {
+    const std::string name = py::str(entry.first);
+    const std::string near = nearest_word(name, known_);
+    std::string needs;
+    for (const std::string& word : known_) {
+      needs += needs.empty() ? "one of " : ", ";
+      needs += word;
+    }
+    if (!near.empty()) needs.append("; did you mean ").append(near).append("?");
+    refuse(owner_.empty() ? "options" : owner_, "the unknown name '" + name + "'", needs);
+  }
+}
+
+py::object OptionReader::take(const char* name) {
+  known_.emplace_back(name);
+  return values_.attr("pop")(name, py::none());
+}
+
+void OptionReader::wrong_type(const char* name, py::handle given, const std::string& needs) const {
+  std::string text = full_name(name);
+  text.append(": got ").append(shown(given)).append("; needs ").append(needs);
+  const bool is_out_of_range = PyLong_Check(given.ptr()) && needs.starts_with("a whole number");
+  PyErr_SetString(is_out_of_range ? PyExc_ValueError : PyExc_TypeError, text.c_str());
+  throw py::error_already_set();
+}
+
+std::string OptionReader::full_name(const std::string& name) const {
+  return owner_.empty() ? name : owner_ + "." + name;
+}
+
+}  // namespace tofsmith::python

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <chrono>
+#include <exception>
+#include <utility>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/progress.hpp"
+
+namespace tofsmith::python {
+
+namespace py = pybind11;
+
+/// Between the library's progress and Python: runs signal handlers, so that Ctrl-C stops the work,
+/// and calls `callback(fraction, step)` unless it is None, at most 50 times a second. The work
+/// stops if the callback returns False or raises.
+class ProgressBridge {
+ public:
+  explicit ProgressBridge(py::object callback) : callback_(std::move(callback)) {}
+  Progress progress();
+  /// What Python raised while the work ran, if anything.
+  void rethrow() const;
+
+ private:
+  bool call(double fraction, std::string_view step);
+
+  py::object callback_;
+  std::exception_ptr error_;
+  std::chrono::steady_clock::time_point next_;
+};
+
+/// work(progress) without the GIL. An exception of the callback or of a signal handler passes on.
+template <typename Work>
+auto without_gil(const py::object& callback, Work&& work) {
+  ProgressBridge bridge(callback);
+  try {
+    const py::gil_scoped_release release;
+    return work(bridge.progress());
+  } catch (const Interrupted&) {
+    bridge.rethrow();
+    throw;
+  }
+}
+
+}  // namespace tofsmith::python

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/simulate/generator_loss.hpp"
+#include "tofsmith/simulate/robustness.hpp"
+
+namespace tofsmith::python {
+
+/// Results as dicts of numbers and arrays, under the names of the C++ fields; what belongs to
+/// operating points is an array of one entry per point.
+pybind11::dict report_dict(const DepthErrorReport& report);
+pybind11::dict loss_dict(const GeneratorLoss& loss);
+pybind11::dict robustness_dict(const RobustnessReport& report);
+
+}  // namespace tofsmith::python

@@ -1,0 +1,178 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""tofsmith: design, simulate and decode coding functions of continuous-wave time-of-flight cameras.
+
+The same words as the C++ library, the command line and the files: `Camera`, `CodeSet`, `evaluate`,
+`design`, `capture`, `Decoder`. SI units inside: names end in _m, _s, _hz, _e (photo-electrons),
+_e_per_s, _bin. Errors of arguments are ValueError or TypeError, of files OSError; long work takes
+`progress` and stops on Ctrl-C. Figures: `tofsmith.plot` (matplotlib), `tofsmith.figures` (Plotly).
+
+Examples
+--------
+>>> import tofsmith
+>>> camera = tofsmith.Camera("paper-10f0")
+>>> code = tofsmith.build_family("hamiltonian-k4", camera)
+>>> report = tofsmith.evaluate(code, camera, trials=1000)
+"""
+
+from . import _check, _tofsmith
+from ._bounds import CramerRaoBound, DirectTofBound, ReceiverBound
+from ._camera import Camera, built_in_camera_names, camera_keys
+from ._camera_fields import Generator, ImpulseResponse, Lens, Light, Operating, Sensor
+from ._code import (
+    CodeSet,
+    build_family,
+    list_families,
+    load_code,
+    read_code,
+    require_fits,
+    write_code,
+)
+from ._decode import Decoder, decode
+from ._decoding_table import DecodingTable
+from ._depth_image import DepthImage, PixelStatus, ReturnStatus
+from ._design import (
+    Candidate,
+    DesignResult,
+    MeasurementReport,
+    SearchRecord,
+    design,
+    suggested_exposures,
+)
+from ._evaluate import best_rotation, evaluate, generator_loss, robustness, table_depth_error_m
+from ._export import ExportedCode, WaveformFormat, export_waveforms, waveform_formats
+from ._files import (
+    read_correlation_functions,
+    read_depth,
+    read_impulse_response,
+    read_measured_table,
+    read_raw,
+    write_depth,
+    write_points,
+    write_raw,
+)
+from ._forward_model import (
+    ForwardModel,
+    coding_curve_in_space,
+    coding_curve_length,
+    coding_curve_rank,
+    harmonics_used,
+)
+from ._light import ExponentialTail, LaterReturns, Transients
+from ._multipath import (
+    MultipathBound,
+    MultipathCells,
+    MultipathErrorReport,
+    MultipathMaps,
+    multipath_error,
+    single_path_bias_m,
+)
+from ._reports import DepthErrorMean, DepthErrorReport, GeneratorLoss, RobustnessReport
+from ._scene import (
+    Scene,
+    built_in_scene,
+    built_in_scene_names,
+    capture,
+    centred_lens,
+    points_m,
+    radial_from_z,
+    read_scene,
+    z_from_radial,
+)
+from ._sweep import SweepResults, read_sweep, read_sweep_export, run_sweep
+from ._tofsmith import Interrupted
+from ._waveform import Waveform
+
+__version__: str = _tofsmith.version
+
+
+def set_threads(threads: int) -> None:
+    """At most so many threads work from now on; 0: as many as there are cores. Results do not
+    depend on it."""
+    _tofsmith.set_threads(_check.whole(threads, "threads", 0, 65536))
+
+
+__all__ = [
+    "Camera",
+    "Candidate",
+    "CodeSet",
+    "CramerRaoBound",
+    "Decoder",
+    "DecodingTable",
+    "DepthErrorMean",
+    "DepthErrorReport",
+    "DepthImage",
+    "DesignResult",
+    "DirectTofBound",
+    "ExponentialTail",
+    "ExportedCode",
+    "ForwardModel",
+    "Generator",
+    "GeneratorLoss",
+    "ImpulseResponse",
+    "Interrupted",
+    "LaterReturns",
+    "Lens",
+    "Light",
+    "MeasurementReport",
+    "MultipathBound",
+    "MultipathCells",
+    "MultipathErrorReport",
+    "MultipathMaps",
+    "Operating",
+    "PixelStatus",
+    "ReceiverBound",
+    "ReturnStatus",
+    "RobustnessReport",
+    "Scene",
+    "SearchRecord",
+    "Sensor",
+    "SweepResults",
+    "Transients",
+    "Waveform",
+    "WaveformFormat",
+    "best_rotation",
+    "build_family",
+    "built_in_camera_names",
+    "built_in_scene",
+    "built_in_scene_names",
+    "camera_keys",
+    "capture",
+    "centred_lens",
+    "coding_curve_in_space",
+    "coding_curve_length",
+    "coding_curve_rank",
+    "decode",
+    "design",
+    "evaluate",
+    "export_waveforms",
+    "generator_loss",
+    "harmonics_used",
+    "list_families",
+    "load_code",
+    "multipath_error",
+    "points_m",
+    "radial_from_z",
+    "read_code",
+    "read_correlation_functions",
+    "read_depth",
+    "read_impulse_response",
+    "read_measured_table",
+    "read_raw",
+    "read_scene",
+    "read_sweep",
+    "read_sweep_export",
+    "require_fits",
+    "robustness",
+    "run_sweep",
+    "set_threads",
+    "single_path_bias_m",
+    "suggested_exposures",
+    "table_depth_error_m",
+    "waveform_formats",
+    "write_code",
+    "write_depth",
+    "write_points",
+    "write_raw",
+    "z_from_radial",
+]

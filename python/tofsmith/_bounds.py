@@ -1,0 +1,79 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Bounds on depth error."""
+
+from __future__ import annotations
+
+from . import _check, _tofsmith
+from ._camera import CameraLike, camera_of
+from ._check import FloatArray
+from ._code import CodeLike, code_of
+
+
+def light_of(signal_e_per_s: float, ambient_e_per_s: float) -> tuple[float, float]:
+    light = []
+    for value, name in ((signal_e_per_s, "signal_e_per_s"), (ambient_e_per_s, "ambient_e_per_s")):
+        if _check.number(value, name) < 0:
+            raise ValueError(f"{name}: got {value}; needs a number >= 0")
+        light.append(float(value))
+    return light[0], light[1]
+
+
+class CramerRaoBound:
+    """How well any unbiased estimator can measure depth with one code, signal and ambient light
+    unknown; see docs/bounds.md.
+
+    Parameters
+    ----------
+    code : CodeSet, name of a family or file
+    camera : Camera or its name
+    of_variance_too : bool
+        Also count what the size of the noise tells (under 0.1 % more).
+    """
+
+    def __init__(
+        self, code: CodeLike, camera: CameraLike, *, of_variance_too: bool = False
+    ) -> None:
+        camera = camera_of(camera)
+        handle = code_of(code, camera)._handle
+        self._handle = _tofsmith.CramerRaoBound(handle, camera._handle, bool(of_variance_too))
+
+    def sigma_m(self, signal_e_per_s: float, ambient_e_per_s: float) -> FloatArray:
+        """Smallest standard deviation [m] at 4 N depths, the middles of cells of 1/4 bin."""
+        return self._handle.sigma_m(*light_of(signal_e_per_s, ambient_e_per_s))
+
+    def mae_m(
+        self, signal_e_per_s: float, ambient_e_per_s: float, *, uniform_albedo: bool = False
+    ) -> float:
+        """Mean absolute error over depth [m]; also over a signal scaled uniformly in (0, 1)."""
+        light = light_of(signal_e_per_s, ambient_e_per_s)
+        return self._handle.mae_m(*light, bool(uniform_albedo))
+
+
+class ReceiverBound:
+    """How well any code at all can do on a camera, in a number of exposures; docs/bounds.md."""
+
+    def __init__(self, camera: CameraLike, exposures: int) -> None:
+        count = _check.whole(exposures, "exposures", 1, 1_000_000)
+        self._handle = _tofsmith.ReceiverBound(camera_of(camera)._handle, count)
+
+    def mae_m(
+        self, signal_e_per_s: float, ambient_e_per_s: float, *, uniform_albedo: bool = False
+    ) -> float:
+        """Mean absolute error over depth [m]; 0 without impulse responses."""
+        light = light_of(signal_e_per_s, ambient_e_per_s)
+        return self._handle.mae_m(*light, bool(uniform_albedo))
+
+
+class DirectTofBound:
+    """What the camera's light alone allows, to an ideal direct time-of-flight receiver."""
+
+    def __init__(self, camera: CameraLike) -> None:
+        self._handle = _tofsmith.DirectTofBound(camera_of(camera)._handle)
+
+    def mae_m(
+        self, signal_e_per_s: float, ambient_e_per_s: float, *, uniform_albedo: bool = False
+    ) -> float:
+        """Mean absolute error over depth [m]; 0 where the light has no impulse response."""
+        light = light_of(signal_e_per_s, ambient_e_per_s)
+        return self._handle.mae_m(*light, bool(uniform_albedo))

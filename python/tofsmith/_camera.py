@@ -1,0 +1,255 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Cameras: light source, sensor, lens and the light levels at which codes are judged."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _check, _tofsmith
+from ._camera_fields import Generator, ImpulseResponse, Lens, Light, Operating, Sensor
+from ._check import Path
+
+
+def _tuples(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: tuple(v) if isinstance(v, list) else v for key, v in values.items()}
+
+
+def _arm(values: Mapping[str, Any]) -> dict[str, Any]:
+    arm = _tuples(values)
+    arm["impulse_response"] = ImpulseResponse(**_tuples(arm.get("impulse_response") or {}))
+    if arm.get("generator") is not None:
+        arm["generator"] = Generator(**arm["generator"])
+    return arm
+
+
+def _toml(value: Any, name: str) -> str:
+    """The value as the right side of `key = ..`."""
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (int, np.integer)):
+        return str(int(value))
+    if isinstance(value, (float, np.floating)):
+        return repr(float(value))
+    if isinstance(value, str):
+        return json.dumps(value)
+    if isinstance(value, os.PathLike):
+        return json.dumps(os.fspath(value))
+    if isinstance(value, Mapping):
+        inner = (f"{key} = {_toml(v, f'{name}.{key}')}" for key, v in value.items())
+        return "{ " + ", ".join(inner) + " }"
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_toml(v, name) for v in value) + "]"
+    if hasattr(value, "__dataclass_fields__"):
+        fields = {key: getattr(value, key) for key in value.__dataclass_fields__}
+        return _toml({key: v for key, v in fields.items() if v is not None}, name)
+    raise TypeError(
+        f"{name}: got {_check.shown(value)}; needs a number, text, bool, list or dict, as in a "
+        "camera file"
+    )
+
+
+def _settings(keys: Mapping[str, Any]) -> list[str]:
+    """Keywords as `key=value`: keys of light, sensor and operating one by one, so that others
+    stay."""
+    settings = []
+    for key, value in keys.items():
+        if key in ("light", "sensor", "operating") and isinstance(value, Mapping):
+            settings += _settings({f"{key}.{inner}": v for inner, v in value.items()})
+        else:
+            settings.append(f"{key}={_toml(value, key)}")
+    return settings
+
+
+class Camera:
+    """A continuous-wave time-of-flight camera. Immutable; pickles.
+
+    Keys are those of a camera file (TOML): `fundamental_frequency_hz`, `exposure_s`, `samples`,
+    `light`, `sensor`, `lens`, `operating`; see docs/formats.md. Those of light, sensor and
+    operating are dicts, of which keys left out keep what they are.
+
+    Parameters
+    ----------
+    name_or_path : str or path, optional
+        A built-in camera (`built_in_camera_names()`) or a .toml file. None: the defaults, with
+        `fundamental_frequency_hz` needed.
+    **keys
+        What is other than there.
+
+    Raises
+    ------
+    OSError
+        If there is no such camera, or the file says what no camera has; names file, line, column.
+    ValueError
+        For keywords that no camera has, or values that break a rule.
+
+    Examples
+    --------
+    >>> camera = Camera("paper-10f0", light={"peak_factor": 5})
+    >>> camera.light.peak_factor
+    5.0
+    """
+
+    _handle: _tofsmith.Camera
+
+    def __init__(self, name_or_path: Optional[Path] = None, **keys: Any) -> None:
+        settings = _settings(keys)
+        if name_or_path is not None:
+            source = _check.path(name_or_path, "name_or_path")
+            self._handle = _refused(lambda: _tofsmith.Camera.load(source, settings))
+        else:
+            try:
+                self._handle = _tofsmith.Camera.parse("", "camera", settings)
+            except OSError as error:  # no file is involved
+                raise ValueError(str(error)) from None
+
+    @classmethod
+    def _of(cls, handle: _tofsmith.Camera) -> Camera:
+        camera = cls.__new__(cls)
+        camera._handle = handle
+        return camera
+
+    @classmethod
+    def from_toml(cls, text: str, source_name: str = "camera.toml") -> Camera:
+        """A camera from the text of a camera file.
+
+        Raises
+        ------
+        OSError
+            With `source_name`, line and column.
+        """
+        text, source_name = _check.text(text, "text"), _check.text(source_name, "source_name")
+        return cls._of(_tofsmith.Camera.parse(text, source_name, []))
+
+    def replace(self, **keys: Any) -> Camera:
+        """The camera with some keys replaced, as in the constructor.
+
+        Examples
+        --------
+        >>> Camera("paper-10f0").replace(samples=120).samples
+        120
+        """
+        settings = _settings(keys)
+        return Camera._of(_refused(lambda: self._handle.with_settings(settings)))
+
+    def to_toml(self) -> str:
+        """The camera as a file says it, every default filled in."""
+        return self._handle.to_toml()
+
+    @cached_property
+    def _fields(self) -> dict[str, Any]:
+        fields: dict[str, Any] = json.loads(self._handle.to_json())
+        return fields
+
+    @property
+    def name(self) -> str:
+        return str(self._fields["name"])
+
+    @property
+    def fundamental_frequency_hz(self) -> float:
+        """f0 [Hz]: repetition frequency of all codes."""
+        return float(self._fields["fundamental_frequency_hz"])
+
+    @property
+    def exposure_s(self) -> Union[float, tuple[float, ...]]:
+        """Integration time [s]: a total for all exposures, or one for each."""
+        value = self._fields["exposure_s"]
+        return tuple(value) if isinstance(value, list) else float(value)
+
+    @property
+    def samples(self) -> int:
+        """N, time samples per period."""
+        return int(self._fields["samples"])
+
+    @cached_property
+    def light(self) -> Light:
+        return Light(**_arm(self._fields["light"]))
+
+    @cached_property
+    def sensor(self) -> Sensor:
+        return Sensor(**_arm(self._fields["sensor"]))
+
+    @cached_property
+    def lens(self) -> Optional[Lens]:
+        """The pinhole, if the camera has one."""
+        lens = self._fields.get("lens")
+        return None if lens is None else Lens(**lens)
+
+    @cached_property
+    def operating(self) -> Operating:
+        return Operating(**_tuples(self._fields["operating"]))
+
+    @property
+    def range_m(self) -> float:
+        """Largest depth that can be told from zero [m]: c / (2 f0)."""
+        return self._handle.range_m()
+
+    @property
+    def bin_m(self) -> float:
+        """Depth of one bin [m]: range / N."""
+        return self._handle.bin_m()
+
+    def transfer(self, highest: int) -> npt.NDArray[np.complex128]:
+        """What both arms leave of harmonics n = 0 .. highest: H_d(n f0) conj(H_m(n f0)).
+
+        Returns
+        -------
+        ndarray of complex128, shape (highest + 1,)
+        """
+        return self._handle.transfer(_check.whole(highest, "highest", 0, 1_000_000))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Camera) and self._handle.is_equal(other._handle)
+
+    def __hash__(self) -> int:
+        return hash(self.to_toml())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Camera.from_toml, (self.to_toml(), self.name)
+
+    def __repr__(self) -> str:
+        return (
+            f"<Camera {self.name}: f0 = {self.fundamental_frequency_hz / 1e6:g} MHz, range "
+            f"{self.range_m:.4g} m, N = {self.samples}, p = {self.light.peak_factor:g}, "
+            f"taps = {self.sensor.taps}>"
+        )
+
+
+def _refused(make: Any) -> _tofsmith.Camera:
+    """Errors of keywords are of the call, not of a file."""
+    try:
+        handle: _tofsmith.Camera = make()
+        return handle
+    except OSError as error:
+        if str(error).startswith("setting "):
+            raise ValueError(str(error)) from None
+        raise
+
+
+#: Where a camera is asked for, its name or file will do.
+CameraLike = Union[Camera, Path]
+
+
+def camera_of(camera: CameraLike) -> Camera:
+    if isinstance(camera, (str, os.PathLike)):
+        return Camera(camera)
+    return _check.instance(camera, Camera, "camera")
+
+
+def built_in_camera_names() -> list[str]:
+    """Cameras that need no file."""
+    return _tofsmith.built_in_camera_names()
+
+
+def camera_keys() -> list[str]:
+    """Every key that a camera file can have, such as "light.impulse_response.f_max_hz"."""
+    return _tofsmith.camera_keys()

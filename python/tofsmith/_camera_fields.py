@@ -1,0 +1,153 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a camera says of its parts, under the keys of a camera file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional, Union
+
+
+@dataclass(frozen=True)
+class ImpulseResponse:
+    """How a light source or a sensor smooths what it is told to play.
+
+    Attributes
+    ----------
+    kind : str
+        none, hann, gaussian, lowpass or file.
+    f_max_hz : float, optional
+        Of hann: where it attenuates by 5 [Hz].
+    cutoff_hz : float, optional
+        Of gaussian and lowpass: the frequency of -3 dB [Hz].
+    samples : tuple of float, optional
+        Of file: the measured response in steps of `time_step_s`; scaled to sum 1 where it is used.
+    time_step_s : float, optional
+        Of `samples` [s].
+    file : str, optional
+        Where `samples` came from.
+    """
+
+    kind: str = "none"
+    f_max_hz: Optional[float] = None
+    cutoff_hz: Optional[float] = None
+    samples: Optional[tuple[float, ...]] = None
+    time_step_s: Optional[float] = None
+    file: Optional[str] = None
+
+
+@dataclass(frozen=True)
+class Generator:
+    """An arm's waveform generator; see docs/formats.md for its keys."""
+
+    sample_rate_hz: Optional[float] = None
+    amplitude_bits: Optional[int] = None
+    table_points: Optional[int] = None
+    edge_grid_s: Optional[float] = None
+
+
+@dataclass(frozen=True)
+class Light:
+    """The modulated light source.
+
+    Attributes
+    ----------
+    peak_factor : float
+        p = P_max / P_ave, >= 1.
+    binary : bool
+        A design for it may only switch on and off.
+    impulse_response : ImpulseResponse
+    edge_jitter_s : float
+        Rms displacement of edges, period to period [s].
+    generator : Generator, optional
+        Plays the modulation; None: any waveform, exactly.
+    """
+
+    peak_factor: float
+    binary: bool
+    impulse_response: ImpulseResponse
+    edge_jitter_s: float
+    generator: Optional[Generator] = None
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """The demodulating pixel.
+
+    Attributes
+    ----------
+    taps : int
+        Values read out of one exposure: 1; 2 = two-bucket; n = exclusive taps.
+    binary : bool
+        A design for it may only switch on and off.
+    impulse_response : ImpulseResponse
+    edge_jitter_s : float
+        Rms displacement of edges, period to period [s].
+    read_noise_e : float
+        Standard deviation per readout [e].
+    noise : str
+        poisson, or gaussian of the same variance.
+    dark_current_e_per_s : float
+        Per tap [e/s].
+    modulation_contrast : float
+        C in (0, 1]; below 1 the taps mix.
+    tap_mismatch : float
+        Relative difference in sensitivity of neighbouring taps.
+    drain : bool
+        Charge may be thrown away; else the taps add to 1.
+    readout : str
+        separate, or difference of two taps.
+    generator : Generator, optional
+        Plays the demodulation; None: any waveform, exactly.
+    full_well_e, adc_bits, gain_e_per_dn, black_level_dn, shortest_pulse_s : optional
+        Clip [e]; quantize to so many bits; electrons per count [e/DN]; count without light [DN];
+        shortest pulse or gap that a design may use [s].
+    """
+
+    taps: int
+    binary: bool
+    impulse_response: ImpulseResponse
+    edge_jitter_s: float
+    read_noise_e: float
+    noise: str
+    dark_current_e_per_s: float
+    modulation_contrast: float
+    tap_mismatch: float
+    drain: bool
+    readout: str
+    generator: Optional[Generator] = None
+    full_well_e: Optional[float] = None
+    adc_bits: Optional[int] = None
+    gain_e_per_dn: Optional[float] = None
+    black_level_dn: Optional[float] = None
+    shortest_pulse_s: Optional[float] = None
+
+
+@dataclass(frozen=True)
+class Lens:
+    """An ideal pinhole: focal lengths and optical axis [px]; pixel centres are whole numbers."""
+
+    fx_px: float
+    fy_px: float
+    cx_px: float
+    cy_px: float
+
+
+@dataclass(frozen=True)
+class Operating:
+    """Where a code is judged: every pair of signal and ambient light.
+
+    Attributes
+    ----------
+    signal_e_per_s, ambient_e_per_s : tuple of float
+        Photo-electron rates were the sensor fully open [e/s].
+    error : str
+        linear or circular: which difference between true and decoded depth counts.
+    albedo : float or str
+        Scales the signal; "uniform": a fresh draw in (0, 1) for every trial.
+    """
+
+    signal_e_per_s: tuple[float, ...]
+    ambient_e_per_s: tuple[float, ...]
+    error: str
+    albedo: Union[float, str]

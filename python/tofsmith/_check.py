@@ -1,0 +1,104 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Arguments as users give them: what is wrong is refused by name, with what is needed."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any, Optional, TypeVar, Union
+
+import numpy as np
+import numpy.typing as npt
+
+Kind = TypeVar("Kind")
+Path = Union[str, "os.PathLike[str]"]
+#: Called now and then with the share of work that is done and what is being done; False stops.
+Progress = Optional[Callable[[float, str], Optional[bool]]]
+FloatArray = npt.NDArray[np.float64]
+
+
+def shown(value: object) -> str:
+    """What was given, in a few words."""
+    if isinstance(value, np.ndarray):
+        return f"an array of shape {value.shape} and dtype {value.dtype}"
+    text = repr(value)
+    return f"{type(value).__name__} {text if len(text) <= 60 else text[:60] + '..'}"
+
+
+def instance(value: object, kind: type[Kind], name: str) -> Kind:
+    """`value`, which must be of class `kind`."""
+    if isinstance(value, kind):
+        return value
+    raise TypeError(f"{name}: got {shown(value)}; needs a tofsmith.{kind.__name__}")
+
+
+def path(value: Path, name: str = "path") -> str:
+    """A file's name."""
+    try:
+        text = os.fspath(value)
+    except TypeError:
+        raise TypeError(f"{name}: got {shown(value)}; needs the name of a file") from None
+    if not isinstance(text, str) or "\0" in text:
+        raise TypeError(f"{name}: got {shown(value)}; needs the name of a file as text")
+    return text
+
+
+def text(value: object, name: str) -> str:
+    if isinstance(value, str):
+        return value
+    raise TypeError(f"{name}: got {shown(value)}; needs a text")
+
+
+def whole(value: Any, name: str, least: int, most: int = 2**31 - 1) -> int:
+    """A whole number of a range; numbers of NumPy too."""
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
+        raise TypeError(f"{name}: got {shown(value)}; needs a whole number")
+    if not least <= value <= most:
+        raise ValueError(f"{name}: got {int(value)}; needs a whole number from {least} to {most}")
+    return int(value)
+
+
+def number(value: Any, name: str) -> float:
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, float, np.number)):
+        raise TypeError(f"{name}: got {shown(value)}; needs a number")
+    if not np.isreal(value) or not np.isfinite(value):
+        raise ValueError(f"{name}: got {value}; needs a finite number")
+    return float(value)
+
+
+def one_of(value: object, name: str, words: tuple[str, ...]) -> str:
+    if isinstance(value, str) and value in words:
+        return value
+    raise ValueError(f"{name}: got {shown(value)}; needs one of {', '.join(words)}")
+
+
+def real_array(value: Any, name: str, axes: str) -> npt.NDArray[Any]:
+    """An array of real numbers with as many axes as `axes`, such as "(N, K)", names."""
+    array: npt.NDArray[Any] = np.asanyarray(value)
+    if array.dtype.kind not in "fiu":
+        raise ValueError(f"{name}: got dtype {array.dtype}; needs real numbers, such as float64")
+    count = 0 if axes == "()" else axes.rstrip(",)").count(",") + 1
+    if array.ndim != count:
+        raise ValueError(f"{name}: got shape {array.shape}; needs {axes}")
+    if array.size == 0:
+        raise ValueError(f"{name}: got shape {array.shape}, which is empty; needs {axes}")
+    return array
+
+
+def finite_array(value: Any, name: str, axes: str) -> FloatArray:
+    """As real_array(), of finite numbers, as float64."""
+    array = np.asarray(real_array(value, name, axes), dtype=np.float64)
+    if not np.isfinite(array).all():
+        index = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
+        place = index[0] if len(index) == 1 else index
+        raise ValueError(f"{name}: got {array[index]} at {place}; needs finite numbers")
+    return array
+
+
+def progress(value: Progress) -> Progress:
+    if value is None or callable(value):
+        return value
+    raise TypeError(
+        f"progress: got {shown(value)}; needs a function of (fraction, step), or None"
+    )

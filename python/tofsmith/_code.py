@@ -1,0 +1,285 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Coding functions: modulation of the light and demodulation of the sensor."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Any, Optional, Union
+
+import numpy.typing as npt
+
+from . import _check, _tofsmith
+from ._camera import CameraLike, camera_of
+from ._check import FloatArray, Path
+from ._waveform import Waveform
+
+
+class CodeSet:
+    """A set of coding functions: E modulations and K = E x taps demodulations. Immutable; pickles.
+
+    Measurement i belongs to exposure i // taps and tap i % taps. Modulation is emitted over average
+    power (mean at most 1), demodulation is sensor gain in [0, 1].
+
+    See Also
+    --------
+    build_family, load_code, CodeSet.from_arrays, CodeSet.from_waveforms
+    """
+
+    _handle: _tofsmith.CodeSet
+
+    def __init__(self) -> None:
+        raise TypeError(
+            "CodeSet: use build_family(name, camera), load_code(name_or_path, camera), "
+            "CodeSet.from_arrays(modulation, demodulation) or CodeSet.from_waveforms(..)"
+        )
+
+    @classmethod
+    def _of(cls, handle: _tofsmith.CodeSet) -> CodeSet:
+        code = cls.__new__(cls)
+        code._handle = handle
+        return code
+
+    @classmethod
+    def from_arrays(
+        cls,
+        modulation: npt.ArrayLike,
+        demodulation: npt.ArrayLike,
+        *,
+        taps: int = 1,
+        name: str = "code",
+    ) -> CodeSet:
+        """A code from samples. A column of two levels, the lower of which is 0, becomes binary.
+
+        Parameters
+        ----------
+        modulation : array_like, shape (N, E)
+            Values >= 0 with mean at most 1 in every column.
+        demodulation : array_like, shape (N, E * taps)
+            Values in [0, 1], the taps of an exposure side by side.
+        taps : int
+            Values read out of one exposure.
+        name : str
+
+        Raises
+        ------
+        ValueError
+            Naming the array and the rule it breaks.
+        """
+        return cls._of(
+            _tofsmith.CodeSet.from_arrays(
+                _check.text(name, "name"),
+                _check.finite_array(modulation, "modulation", "(N, E)"),
+                _check.finite_array(demodulation, "demodulation", "(N, K)"),
+                _check.whole(taps, "taps", 1, 64),
+            )
+        )
+
+    @classmethod
+    def from_waveforms(
+        cls,
+        modulation: Sequence[Waveform],
+        demodulation: Sequence[Waveform],
+        *,
+        samples: int,
+        taps: int = 1,
+        name: str = "code",
+    ) -> CodeSet:
+        """A code from E modulations and E * taps demodulations on `samples` per period."""
+        return cls._of(
+            _tofsmith.CodeSet.create(
+                _check.text(name, "name"),
+                _check.whole(samples, "samples", 1),
+                _check.whole(taps, "taps", 1, 64),
+                [_check.instance(m, Waveform, "modulation")._handle for m in modulation],
+                [_check.instance(d, Waveform, "demodulation")._handle for d in demodulation],
+            )
+        )
+
+    @classmethod
+    def from_json(cls, text: str, file: str = "code.json") -> CodeSet:
+        """A code from the text of a .code.json file; errors call it `file`."""
+        return cls._of(
+            _tofsmith.CodeSet.parse(_check.text(text, "text"), _check.text(file, "file"))
+        )
+
+    def to_json(self) -> str:
+        """The code as a .code.json file; numbers read back as exactly what they were."""
+        return self._handle.to_json()
+
+    @property
+    def name(self) -> str:
+        return self._handle.name()
+
+    @property
+    def samples(self) -> int:
+        """N, samples per period."""
+        return self._handle.samples()
+
+    @property
+    def taps(self) -> int:
+        return self._handle.taps()
+
+    @property
+    def exposures(self) -> int:
+        """E."""
+        return self._handle.exposures()
+
+    @property
+    def measurements(self) -> int:
+        """K = E x taps."""
+        return self._handle.measurements()
+
+    @property
+    def peak(self) -> float:
+        """The peak factor that the code needs."""
+        return self._handle.peak()
+
+    @property
+    def modulation(self) -> FloatArray:
+        """Cell averages (N, E)."""
+        return self._handle.modulation_samples()
+
+    @property
+    def demodulation(self) -> FloatArray:
+        """Cell averages (N, K)."""
+        return self._handle.demodulation_samples()
+
+    def modulation_waveforms(self) -> list[Waveform]:
+        """The E modulation functions."""
+        return [Waveform._of(self._handle.modulation(e)) for e in range(self.exposures)]
+
+    def demodulation_waveforms(self) -> list[Waveform]:
+        """The K demodulation functions."""
+        return [Waveform._of(self._handle.demodulation(i)) for i in range(self.measurements)]
+
+    @property
+    def provenance(self) -> dict[str, Any]:
+        """Where the code comes from: method, camera, seed, version, residuals, depth_error_m."""
+        return self._handle.provenance()
+
+    def renamed(self, name: str) -> CodeSet:
+        return CodeSet._of(self._handle.renamed(_check.text(name, "name")))
+
+    def resampled(self, samples: int) -> CodeSet:
+        """The same waveforms on another number of samples."""
+        return CodeSet._of(self._handle.resampled(_check.whole(samples, "samples", 1)))
+
+    def rotated(self, rotation_bin: int) -> CodeSet:
+        """Moves the origin of depth: correlation'(z) = correlation(z + rotation_bin)."""
+        return CodeSet._of(
+            self._handle.rotated(_check.whole(rotation_bin, "rotation_bin", -(2**31)))
+        )
+
+    def with_two_buckets(self) -> CodeSet:
+        """With the complement of every demodulation read out of the same exposure; taps must be
+        1."""
+        return CodeSet._of(self._handle.with_two_buckets())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, CodeSet) and self.to_json() == other.to_json()
+
+    def __hash__(self) -> int:
+        return hash(self.to_json())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return CodeSet.from_json, (self.to_json(),)
+
+    def __repr__(self) -> str:
+        return (
+            f"<CodeSet {self.name}: E = {self.exposures}, taps = {self.taps}, "
+            f"K = {self.measurements}, N = {self.samples}>"
+        )
+
+
+#: Where a code is asked for, the name of a family or a file will do.
+CodeLike = Union[CodeSet, Path]
+
+
+def code_of(code: CodeLike, camera: CameraLike) -> CodeSet:
+    if isinstance(code, (str, os.PathLike)):
+        return load_code(code, camera)
+    return _check.instance(code, CodeSet, "code")
+
+
+def list_families() -> list[tuple[str, str, str]]:
+    """All built-in families: pattern of names, one that can be built, what it is."""
+    return _tofsmith.list_families()
+
+
+def build_family(name: str, camera: CameraLike) -> CodeSet:
+    """The family `name`, built for the camera: within its peak, on its samples and taps.
+
+    Raises
+    ------
+    ValueError
+        For an unknown family, with the nearest known one, or one the camera cannot play.
+    """
+    return CodeSet._of(
+        _tofsmith.build_family(_check.text(name, "name"), camera_of(camera)._handle)
+    )
+
+
+def require_fits(code: CodeSet, camera: CameraLike) -> None:
+    """Raises ValueError unless `code` can be played and read out on `camera`, saying why not."""
+    _tofsmith.require_fits(
+        _check.instance(code, CodeSet, "code")._handle, camera_of(camera)._handle
+    )
+
+
+def load_code(
+    name_or_path: Path,
+    camera: CameraLike,
+    *,
+    taps: Optional[int] = None,
+    tap_order: Optional[str] = None,
+) -> CodeSet:
+    """A family, built for the camera, or a code from a file as it is there.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+        Family, .code.json or .npz (modfs, demodfs, each (N, K)).
+    camera : Camera or its name
+    taps : int, optional
+        Of .npz: values read out of one exposure; None: as the camera's.
+    tap_order : {"blocked", "interleaved"}, optional
+        Of .npz with several taps: never guessed.
+
+    Raises
+    ------
+    OSError
+        Naming the file and the place.
+    ValueError
+        For a family that the camera cannot play.
+    """
+    return CodeSet._of(
+        _tofsmith.load_code(
+            _check.path(name_or_path, "name_or_path"),
+            camera_of(camera)._handle,
+            None if taps is None else _check.whole(taps, "taps", 1, 64),
+            tap_order,
+        )
+    )
+
+
+def read_code(path: Path, *, taps: int = 1, tap_order: Optional[str] = None) -> CodeSet:
+    """A code from a .code.json or .npz file; see load_code()."""
+    return CodeSet._of(
+        _tofsmith.read_code(_check.path(path), _check.whole(taps, "taps", 1, 64), tap_order)
+    )
+
+
+def write_code(
+    path: Path, code: CodeSet, *, overwrite: bool = False, tap_order: Optional[str] = None
+) -> None:
+    """Writes a code by extension: .json, or .npz, which needs `tap_order` for several taps.
+
+    Raises
+    ------
+    OSError
+        If the file exists and `overwrite` is not set, or cannot be written.
+    """
+    handle = _check.instance(code, CodeSet, "code")._handle
+    _tofsmith.write_code(_check.path(path), handle, bool(overwrite), tap_order)

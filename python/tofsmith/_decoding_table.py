@@ -1,0 +1,116 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a decoder needs to know of a code on a camera, or of a measured table."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+import numpy.typing as npt
+
+from . import _check, _tofsmith
+from ._camera import CameraLike, camera_of
+from ._check import FloatArray
+from ._code import CodeLike, code_of
+
+
+class DecodingTable:
+    """Everything a decoder needs to know of a code on a camera.
+
+    See Also
+    --------
+    DecodingTable.of_code, DecodingTable.of_measured
+    """
+
+    _handle: _tofsmith.DecodingTable
+
+    def __init__(self) -> None:
+        raise TypeError(
+            "DecodingTable: use DecodingTable.of_code(code, camera) or "
+            "DecodingTable.of_measured(correlation, camera)"
+        )
+
+    @classmethod
+    def _of(cls, handle: _tofsmith.DecodingTable) -> DecodingTable:
+        table = cls.__new__(cls)
+        table._handle = handle
+        return table
+
+    @classmethod
+    def of_code(cls, code: CodeLike, camera: CameraLike) -> DecodingTable:
+        """The table of a code on a camera."""
+        camera = camera_of(camera)
+        handle = code_of(code, camera)._handle
+        return cls._of(_tofsmith.DecodingTable.of_code(handle, camera._handle))
+
+    @classmethod
+    def of_measured(
+        cls,
+        correlation: npt.ArrayLike,
+        camera: Optional[CameraLike] = None,
+        *,
+        range_m: Optional[float] = None,
+        taps: int = 1,
+        ambient: Optional[str] = None,
+    ) -> DecodingTable:
+        """The table of measured correlation functions.
+
+        Parameters
+        ----------
+        correlation : array_like, shape (N, K)
+            chi up to one common factor, row n at depth_bin = n, the end point left out, the taps of
+            an exposure side by side.
+        camera : Camera or its name, optional
+            Gives range, exposure, noise, saturation and read-out. None: equal exposures, raw
+            numbers without read noise.
+        range_m : float, optional
+            Depth of the whole table [m]; needed without a camera.
+        taps : int
+            Columns per exposure.
+        ambient : {"equal", "mean", "none"}, optional
+            What constant light adds: the same to all columns (the default), as much as the mean of
+            the column, or nothing.
+
+        Raises
+        ------
+        ValueError
+            If depths cannot be told apart, or table and camera do not fit.
+        """
+        table = _check.finite_array(correlation, "correlation", "(N, K)")
+        if camera is None:
+            if range_m is None:
+                raise ValueError("range_m: got None; needs the depth of the table in metres, or a "
+                                 "camera that says it")
+            if ambient is not None or taps != 1:
+                raise ValueError("camera: got None; ambient and taps need the camera")
+            metres = _check.number(range_m, "range_m")
+            return cls._of(_tofsmith.DecodingTable.of_correlation(table, metres))
+        options = {"taps": taps, "ambient": ambient}
+        made = _tofsmith.DecodingTable.of_measured(table, camera_of(camera)._handle, options)
+        if range_m is not None:
+            made = made.with_range(_check.number(range_m, "range_m"))
+        return cls._of(made)
+
+    @property
+    def correlation(self) -> FloatArray:
+        """chi, (N, K)."""
+        return self._handle.correlation()
+
+    @property
+    def ambient_gain(self) -> FloatArray:
+        """kappa (K,)."""
+        return self._handle.ambient_gain()
+
+    @property
+    def exposure_s(self) -> FloatArray:
+        """T [s] (K,)."""
+        return self._handle.exposure_s()
+
+    @property
+    def range_m(self) -> float:
+        """Depth of a whole period [m]."""
+        return self._handle.range_m()
+
+    def ambiguous_depths(self) -> FloatArray:
+        """Pairs of depths that look the same [m], (pairs, 2); decoders answer with the first."""
+        return self._handle.ambiguous_depths()

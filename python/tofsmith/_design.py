@@ -1,0 +1,250 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Codes designed for a camera."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _check, _tofsmith
+from ._camera import Camera, CameraLike, camera_of
+from ._check import FloatArray, Path, Progress
+from ._code import CodeSet, load_code
+from ._reports import DepthErrorReport, RobustnessReport, report_of
+
+
+@dataclass(frozen=True)
+class MeasurementReport:
+    """One measurement of a designed code and, if it has one, how it compares with its target."""
+
+    residual_rms: float
+    smallest_residual_rms: float
+    demodulation_duty: float
+    modulation_duty: float
+    peak: float
+    edges: int
+    start: str
+
+
+@dataclass(frozen=True)
+class SearchRecord:
+    """How a code was searched for: `error_m` (steps,) as it fell over `work` (steps,), whether no
+    other code of the searched kind is better (`proved`), and an account of what was searched."""
+
+    work_unit: str
+    error_name: str
+    work: FloatArray
+    error_m: FloatArray
+    proved: bool
+    account: str
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A code that competes for the camera.
+
+    Attributes
+    ----------
+    code : CodeSet
+    method : str
+        family, naive, reference, factorize, optimize or search.
+    choice_error_m : float
+        What it is chosen by [m].
+    error : DepthErrorReport
+    rotation_bin : int
+        How far the origin of depth was moved.
+    iterations : int
+    seconds : float
+        Time it took to design.
+    target : ndarray, shape (N, K) or (0, 0)
+        What it was factorized for.
+    per_measurement : list of MeasurementReport
+        Of designed codes.
+    search : SearchRecord, optional
+        Of optimized and searched codes.
+    message : str
+        One line on how it came out.
+    robustness : RobustnessReport, optional
+    """
+
+    code: CodeSet
+    method: str
+    choice_error_m: float
+    error: DepthErrorReport
+    rotation_bin: int
+    iterations: int
+    seconds: float
+    target: FloatArray
+    per_measurement: list[MeasurementReport]
+    search: Optional[SearchRecord]
+    message: str
+    robustness: Optional[RobustnessReport]
+
+    @property
+    def is_designed(self) -> bool:
+        """Made for this camera; not a family, a reference or a naive code."""
+        return bool(self.per_measurement)
+
+    def __repr__(self) -> str:
+        return f"<Candidate {self.code.name} ({self.method}): {self.choice_error_m * 1e3:.4g} mm>"
+
+
+@dataclass(frozen=True)
+class DesignResult:
+    """All candidates of a camera, and which one is best by its chosen depth error.
+
+    Attributes
+    ----------
+    candidates : list of Candidate
+    best : int
+        Index of the winner.
+    left_out : list of str
+        Codes and methods that the camera cannot use, with the reason.
+    explanation : list of str
+        Why the winner won.
+    """
+
+    candidates: list[Candidate]
+    best: int
+    left_out: list[str]
+    explanation: list[str]
+
+    @property
+    def winner(self) -> Candidate:
+        return self.candidates[self.best]
+
+    def by_choice(self) -> list[Candidate]:
+        """All candidates, the least error first."""
+        return sorted(self.candidates, key=lambda c: c.choice_error_m)
+
+    def __getitem__(self, name: str) -> Candidate:
+        """The candidate of that name; KeyError names those there are."""
+        for candidate in self.candidates:
+            if candidate.code.name == name:
+                return candidate
+        names = ", ".join(c.code.name for c in self.candidates)
+        raise KeyError(f"no candidate '{name}'; there are {names}")
+
+    def __repr__(self) -> str:
+        return f"<DesignResult: {self.winner!r} of {len(self.candidates)} candidates>"
+
+
+#: A family, a code file, a code, or correlation functions (N, K).
+Target = Union[CodeSet, Path, npt.NDArray[Any]]
+
+
+def _candidate(values: dict[str, Any]) -> Candidate:
+    values["code"] = CodeSet._of(values["code"])
+    values["error"] = report_of(values["error"])
+    values["per_measurement"] = [MeasurementReport(**m) for m in values["per_measurement"]]
+    if values["search"] is not None:
+        values["search"] = SearchRecord(**values["search"])
+    if values["robustness"] is not None:
+        values["robustness"] = RobustnessReport(**values["robustness"])
+    return Candidate(**values)
+
+
+def _target(target: Target, camera: Camera, normalize: bool) -> _tofsmith.TargetSet:
+    if isinstance(target, np.ndarray):
+        table = _check.finite_array(target, "target", "(N, K)")
+        return _tofsmith.targets_from_table("target", table, camera.samples, normalize)
+    if normalize:
+        raise ValueError("normalize: goes with a target that is an array; codes are as they are")
+    if isinstance(target, (str, os.PathLike)):
+        # The ideal code, not the one within this camera's peak.
+        ideal = camera.replace(
+            light={"peak_factor": 1e6},
+            sensor={"taps": 1, "readout": "separate", "modulation_contrast": 1.0},
+        )
+        target = load_code(target, ideal)
+    code = _check.instance(target, CodeSet, "target").resampled(camera.samples)
+    return _tofsmith.targets_of(code._handle)
+
+
+def suggested_exposures(camera: CameraLike, method: str = "best") -> list[int]:
+    """Numbers of exposures that suit a method of design on a camera."""
+    return _tofsmith.suggested_exposures(camera_of(camera)._handle, _check.text(method, "method"))
+
+
+def design(
+    camera: CameraLike,
+    *,
+    method: Optional[str] = None,
+    exposures: Optional[Sequence[int]] = None,
+    target: Optional[Target] = None,
+    normalize: bool = False,
+    robust: Optional[bool] = None,
+    baselines: Optional[Sequence[str]] = None,
+    best_rotation: Optional[bool] = None,
+    trials: Optional[int] = None,
+    search_trials: Optional[int] = None,
+    seed: Optional[int] = None,
+    factorize: Optional[Mapping[str, Any]] = None,
+    optimize: Optional[Mapping[str, Any]] = None,
+    search: Optional[Mapping[str, Any]] = None,
+    progress: Progress = None,
+) -> DesignResult:
+    """Designs codes for a camera, lets baselines compete, and picks by the camera's depth error.
+
+    Parameters
+    ----------
+    camera : Camera or its name
+    method : {"best", "factorize", "optimize", "search"}, optional
+        factorize: waveforms whose correlation functions come close to given ones, as in the paper;
+        optimize: all waveforms together, by depth error itself; search: all codes on a chip clock,
+        with proof where that is possible; best (the default): all that suit the camera.
+    exposures : sequence of int, optional
+        Numbers of exposures to design for, 1 .. 8; None: what suits method and camera.
+    target : str, path, CodeSet or ndarray (N, K), optional
+        Correlation functions to factorize instead of Hamiltonian ones: a family, a code, or values
+        at equal steps of depth over one period, end point left out.
+    normalize : bool
+        Rescale the columns of an array to [0, 1].
+    robust : bool, optional
+        Optimize for, and pick by, the worst of the camera's perturbations (False).
+    baselines : sequence of str, optional
+        Families that compete; those the camera cannot play are left out.
+    best_rotation : bool, optional
+        Give every candidate its best origin of depth (True).
+    trials, search_trials : int, optional
+        Per operating point, for final figures (20000) and while pairs are chosen (600).
+    seed : int, optional
+        Of every random choice (1).
+    factorize, optimize, search : dict, optional
+        Options of the methods by the names of FactorizeOptions, OptimizeOptions and
+        ChipSearchOptions, such as `optimize={"starts": 4, "hops": 0}` for a quick look.
+    progress : callable, optional
+
+    Returns
+    -------
+    DesignResult
+
+    Raises
+    ------
+    ValueError
+        For bad options, or a target that the camera cannot play.
+    """
+    camera = camera_of(camera)
+    options = {
+        "method": method,
+        "exposures": None if exposures is None else list(exposures),
+        "robust": robust,
+        "baselines": None if baselines is None else list(baselines),
+        "best_rotation": best_rotation,
+        "trials": trials,
+        "search_trials": search_trials,
+        "seed": seed,
+        "factorize": None if factorize is None else dict(factorize),
+        "optimize": None if optimize is None else dict(optimize),
+        "search": None if search is None else dict(search),
+    }
+    targets = None if target is None else _target(target, camera, normalize)
+    result = _tofsmith.design(camera._handle, options, targets, _check.progress(progress))
+    result["candidates"] = [_candidate(c) for c in result["candidates"]]
+    return DesignResult(**result)

@@ -1,0 +1,88 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the figures of plot (matplotlib) and figures (Plotly) share: their arguments."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _check
+from ._camera import Camera, CameraLike, camera_of
+from ._check import FloatArray
+from ._code import CodeLike, CodeSet, code_of
+from ._depth_image import DepthImage
+from ._design import Candidate
+from ._reports import DepthErrorReport
+
+Reports = Union[DepthErrorReport, Candidate, Sequence[Union[DepthErrorReport, Candidate]]]
+Depth = Union[DepthImage, npt.NDArray[Any]]
+
+
+def code_and_camera(code: CodeLike, camera: CameraLike) -> tuple[CodeSet, Camera]:
+    camera = camera_of(camera)
+    return code_of(code, camera), camera
+
+
+def reports_of(reports: Reports) -> list[DepthErrorReport]:
+    """One report or several."""
+    listed = [reports] if isinstance(reports, (DepthErrorReport, Candidate)) else list(reports)
+    if not listed:
+        raise ValueError("reports: got none; needs at least one DepthErrorReport")
+    errors = [r.error if isinstance(r, Candidate) else r for r in listed]
+    return [_check.instance(r, DepthErrorReport, "reports") for r in errors]
+
+
+def error_grid(report: DepthErrorReport, kind: str) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Signals (S,), ambient lights (A,) and mean depth error (S, A) [m]."""
+    _check.one_of(kind, "kind", ("linear", "circular"))
+    signal, row = np.unique(report.signal_e_per_s, return_inverse=True)
+    ambient, column = np.unique(report.ambient_e_per_s, return_inverse=True)
+    values = np.full((len(signal), len(ambient)), np.nan)
+    values[row, column] = report.linear_mde_m if kind == "linear" else report.circular_mde_m
+    return signal, ambient, values
+
+
+def error_curve(
+    report: DepthErrorReport, kind: str, along: str, at: float | None
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, float]:
+    """Along signal or ambient light, the other at the level nearest `at` (the middle unless
+    given): places, errors, standard errors, receiver bounds [m], and that level."""
+    _check.one_of(kind, "kind", ("linear", "circular"))
+    _check.one_of(along, "along", ("signal", "ambient"))
+    pair = (report.signal_e_per_s, report.ambient_e_per_s)
+    x, other = pair if along == "signal" else pair[::-1]
+    levels = np.unique(other)
+    near = levels[len(levels) // 2] if at is None else levels[np.argmin(np.abs(levels - at))]
+    kept = other == near
+    order = np.argsort(x[kept])
+    mde, se = (
+        (report.linear_mde_m, report.linear_se_m)
+        if kind == "linear"
+        else (report.circular_mde_m, report.circular_se_m)
+    )
+    picked = [values[kept][order] for values in (x, mde, se, report.receiver_bound_mae_m)]
+    return picked[0], picked[1], picked[2], picked[3], float(near)
+
+
+def depth_of(depth: Depth, name: str = "depth") -> npt.NDArray[np.float32]:
+    """A plane of depths [m], (H, W)."""
+    plane = depth.depth_m if isinstance(depth, DepthImage) else depth
+    if plane is None:
+        raise ValueError(f"{name}: got a DepthImage without depth_m; needs one with it")
+    return np.asarray(_check.real_array(plane, name, "(H, W)"), np.float32)
+
+
+def named_depths(depths: Any) -> dict[str, npt.NDArray[np.float32]]:
+    """One depth map, or several by name."""
+    listed = depths if isinstance(depths, dict) else {"depth": depths}
+    if not listed:
+        raise ValueError("depths: got none; needs at least one depth map")
+    named = {str(name): depth_of(d, str(name)) for name, d in listed.items()}
+    shapes = {d.shape for d in named.values()}
+    if len(shapes) > 1:
+        raise ValueError(f"depths: got shapes {sorted(shapes)}; needs one shape")
+    return named

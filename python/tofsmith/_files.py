@@ -1,0 +1,157 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Raw frames, depth, measured tables and point clouds in files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _check, _tofsmith
+from ._check import FloatArray, Path
+
+
+def read_raw(
+    path: Path,
+    *,
+    measurements: Optional[int] = None,
+    layout: str = "interleaved",
+    raw_format: Optional[Path] = None,
+) -> npt.NDArray[np.float32]:
+    """Raw frames from .npy or .npz, or from any dump that a .raw.toml file describes.
+
+    Parameters
+    ----------
+    path : str or path
+    measurements : int, optional
+        K that the code asks for.
+    layout : {"interleaved", "planar"}
+        Of the file; never guessed.
+    raw_format : str or path, optional
+        A .raw.toml file, see docs/raw_formats.md.
+
+    Returns
+    -------
+    ndarray of float32, shape (F, H, W, K)
+
+    Raises
+    ------
+    OSError
+        Naming file and place, what was found and what is expected.
+    """
+    return _tofsmith.read_raw(
+        _check.path(path),
+        None if measurements is None else _check.whole(measurements, "measurements", 1),
+        _check.text(layout, "layout"),
+        None if raw_format is None else _check.path(raw_format, "raw_format"),
+    )
+
+
+def write_raw(path: Path, raw: npt.ArrayLike, *, overwrite: bool = False) -> None:
+    """Writes (H, W, K) or (F, H, W, K) as float32 to .npy or .npz.
+
+    Raises
+    ------
+    OSError
+        If the file exists and `overwrite` is not set, or cannot be written.
+    """
+    array = np.asarray(raw)
+    axes = "(H, W, K)" if array.ndim == 3 else "(F, H, W, K)"
+    frames = np.asarray(_check.real_array(array, "raw", axes), np.float32)
+    _tofsmith.write_raw(_check.path(path), frames.reshape(-1, *frames.shape[-3:]), bool(overwrite))
+
+
+def read_depth(path: Path) -> npt.NDArray[np.float32]:
+    """Depth [m] (H, W), NaN where nothing came back; .npy .npz .exr .pfm .png (16 bits, mm)."""
+    return _tofsmith.read_depth(_check.path(path))
+
+
+def write_depth(path: Path, depth_m: npt.ArrayLike, *, overwrite: bool = False) -> None:
+    """Writes depth [m] (H, W) by extension: .npy .npz .exr .pfm .png (16 bits, mm)."""
+    depth = np.asarray(_check.real_array(depth_m, "depth_m", "(H, W)"), np.float32)
+    _tofsmith.write_depth(_check.path(path), depth, bool(overwrite))
+
+
+def write_points(
+    path: Path,
+    points_m: npt.ArrayLike,
+    scalars: Optional[Mapping[str, npt.ArrayLike]] = None,
+    *,
+    overwrite: bool = False,
+) -> None:
+    """Writes a point cloud as .ply, without points that are not finite.
+
+    Parameters
+    ----------
+    path : str or path
+    points_m : array_like, shape (.., 3)
+        x, y, z [m].
+    scalars : dict of array_like, shape (..), optional
+        More numbers per point, such as {"intensity": image.signal_e_per_s}.
+    overwrite : bool
+    """
+    points = np.asarray(points_m)
+    if points.ndim < 2 or points.shape[-1] != 3 or points.dtype.kind not in "fiu":
+        raise ValueError(f"points_m: got {_check.shown(points)}; needs numbers of shape (.., 3)")
+    flat = points.reshape(-1, 3).astype(np.float32)
+    kept = np.isfinite(flat).all(axis=1)
+    columns = {}
+    for name, values in (scalars or {}).items():
+        column = np.asarray(values)
+        if column.shape != points.shape[:-1]:
+            raise ValueError(
+                f"scalars['{name}']: got shape {column.shape}; needs {points.shape[:-1]}"
+            )
+        columns[name] = column.reshape(-1)[kept].astype(np.float32)
+    _tofsmith.write_points(_check.path(path), flat[kept], columns, bool(overwrite))
+
+
+def read_correlation_functions(path: Path) -> FloatArray:
+    """Correlation functions (N, K) from .csv, .txt, .npy or .npz (corrfs), to design for."""
+    return _tofsmith.read_correlation_functions(_check.path(path))
+
+
+def read_measured_table(
+    path: Path,
+    *,
+    taps: int = 1,
+    tap_order: Optional[str] = None,
+    table_axes: Optional[str] = None,
+    keep_end_point: bool = False,
+) -> tuple[FloatArray, list[str]]:
+    """A measured correlation table (N, K) from .csv, .txt, .npy or .npz, and notes on how it was
+    read. DecodingTable.of_measured() decodes with it.
+
+    Parameters
+    ----------
+    path : str or path
+    taps : int
+    tap_order : {"blocked", "interleaved"}, optional
+        Needed for several taps.
+    table_axes : {"nk", "kn"}, optional
+        Which axis of an array is depth.
+    keep_end_point : bool
+        Keep a last sample that equals the first.
+    """
+    count = _check.whole(taps, "taps", 1, 64)
+    return _tofsmith.read_measured_table(
+        _check.path(path), count, tap_order, table_axes, bool(keep_end_point)
+    )
+
+
+def read_impulse_response(
+    path: Path, time_step_s: Optional[float] = None
+) -> tuple[FloatArray, float]:
+    """A measured impulse response from .csv, .txt or .npy: samples (T,) and their step [s].
+
+    Examples
+    --------
+    samples, step = read_impulse_response("response.csv")
+    camera.replace(light={"impulse_response":
+                          {"kind": "file", "samples": samples, "time_step_s": step}})
+    """
+    step = None if time_step_s is None else _check.number(time_step_s, "time_step_s")
+    return _tofsmith.read_impulse_response(_check.path(path), step)

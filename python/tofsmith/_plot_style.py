@@ -1,0 +1,100 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""How the figures of tofsmith.plot look."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Optional, TypeVar
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+else:
+    Figure = Any
+
+colours = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
+_style = {
+    "font.size": 8,
+    "axes.titlesize": 8,
+    "axes.labelsize": 8,
+    "legend.fontsize": 7,
+    "xtick.labelsize": 7,
+    "ytick.labelsize": 7,
+    "axes.linewidth": 0.6,
+    "lines.linewidth": 1.2,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+    "figure.dpi": 200,
+}
+column_in = 3.4
+page_in = 7.0
+
+Draw = TypeVar("Draw", bound=Callable[..., Any])
+
+
+def styled(draw: Draw) -> Draw:
+    """The function, with figures in our style and the user's as it was."""
+    from functools import wraps
+
+    @wraps(draw)
+    def drawn(*arguments: Any, **keywords: Any) -> Any:
+        import matplotlib
+
+        with matplotlib.rc_context(_style):
+            figure = draw(*arguments, **keywords)
+            figure.draw_without_rendering()  # ticks are made now, in our style
+            return figure
+
+    return drawn  # type: ignore[return-value]
+
+
+def new_figure(
+    figure: Optional[Figure],
+    width_in: float,
+    height_in: float,
+    margins: Optional[tuple[float, ...]] = None,
+) -> Figure:
+    """The given figure, or one of this size. Axes in space collapse under the layout that suits all
+    others: they have margins of their own."""
+    if figure is not None:
+        return figure
+    import matplotlib.pyplot as plt
+
+    made = plt.figure(figsize=(width_in, height_in), constrained_layout=margins is None)
+    if margins is not None:
+        made.subplots_adjust(*margins)
+    return made
+
+
+def grid(panels: int) -> tuple[int, int]:
+    """Rows and columns, at most three of them, as full as can be."""
+    rows = -(-panels // 3)
+    return rows, -(-panels // rows)
+
+
+def ten_to(value: float) -> str:
+    """10^3 or 3 10^3, as readers of papers are used to."""
+    if value <= 0:
+        return f"{value:g}"
+    exponent = int(np.floor(np.log10(value) + 1e-9))
+    factor = value / 10.0**exponent
+    power = rf"10^{{{exponent}}}"
+    return f"${power}$" if abs(factor - 1) < 0.005 else rf"${factor:.2g}\cdot{power}$"
+
+
+def log_ticks_in_plain_numbers(axis: Any) -> None:
+    """1, 10, 100 in place of powers; 2 and 5 too where there are few of them."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    low, high = axis.get_view_interval()
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 300 * low else (1,)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def short(value: float) -> str:
+    """Two digits; whole numbers from 10 on."""
+    return f"{value:.2g}" if value < 10 else f"{value:.0f}"

@@ -1,0 +1,153 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""What is known of the depth error of a code."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _check
+from ._check import FloatArray
+
+
+@dataclass(frozen=True)
+class DepthErrorMean:
+    """One figure for all operating points, with its standard error [m]."""
+
+    geometric_mean_m: float
+    geometric_mean_se_m: float
+    mean_m: float
+    mean_se_m: float
+
+
+@dataclass(frozen=True)
+class DepthErrorReport:
+    """Depth error of a code on a camera; arrays have one entry per operating point, (P,), signal by
+    signal.
+
+    Attributes
+    ----------
+    code : str
+    exposures, taps, measurements, samples : int
+    trials : int
+        Made per operating point; with a target: at most.
+    points_short_of_target : int
+        Operating points that reached most_trials first.
+    seed : int
+    outlier_threshold_m : float
+    signal_e_per_s, ambient_e_per_s : ndarray
+        The operating points [e/s].
+    linear_mde_m, linear_se_m : ndarray
+        Mean |decoded - true| [m] and its standard error.
+    circular_mde_m, circular_se_m : ndarray
+        Of the shorter way round the range [m].
+    point_trials : ndarray of int64
+        Trials made at each point.
+    outlier_rate : ndarray
+        Share of circular errors beyond the threshold.
+    cramer_rao_mae_m, receiver_bound_mae_m, direct_tof_bound_mae_m : ndarray
+        Bounds of the code, of any code on the camera, of the camera's light [m]; docs/bounds.md.
+    linear, circular : DepthErrorMean
+    """
+
+    code: str
+    exposures: int
+    taps: int
+    measurements: int
+    samples: int
+    trials: int
+    points_short_of_target: int
+    seed: int
+    outlier_threshold_m: float
+    signal_e_per_s: FloatArray
+    ambient_e_per_s: FloatArray
+    point_trials: npt.NDArray[np.int64]
+    linear_mde_m: FloatArray
+    linear_se_m: FloatArray
+    circular_mde_m: FloatArray
+    circular_se_m: FloatArray
+    outlier_rate: FloatArray
+    cramer_rao_mae_m: FloatArray
+    receiver_bound_mae_m: FloatArray
+    direct_tof_bound_mae_m: FloatArray
+    linear: DepthErrorMean
+    circular: DepthErrorMean
+
+    def of(self, kind: str) -> DepthErrorMean:
+        """The figure of `kind`, linear or circular."""
+        _check.one_of(kind, "kind", ("linear", "circular"))
+        return self.linear if kind == "linear" else self.circular
+
+    def __repr__(self) -> str:
+        return (
+            f"<DepthErrorReport {self.code}: linear {self.linear.geometric_mean_m * 1e3:.4g} mm, "
+            f"circular {self.circular.geometric_mean_m * 1e3:.4g} mm (geometric means of "
+            f"{len(self.signal_e_per_s)} operating points, {self.trials} trials each)>"
+        )
+
+
+@dataclass(frozen=True)
+class RobustnessReport:
+    """Depth error when the camera is not quite what it was said to be: geometric means over its
+    operating points [m]; pairs are (value, standard error).
+
+    Attributes
+    ----------
+    kind : str
+        linear or circular, as the camera's operating range says.
+    nominal_m, worst_calibrated_m, worst_uncalibrated_m : tuple of float
+        On the camera as it was said to be; on the worst, with a decoder that knows it, and with one
+        that does not.
+    names : list of str
+        What was changed.
+    calibrated_m, uncalibrated_m : ndarray
+        Of each change.
+    """
+
+    kind: str
+    trials: int
+    seed: int
+    nominal_m: tuple[float, float]
+    worst_calibrated_m: tuple[float, float]
+    worst_uncalibrated_m: tuple[float, float]
+    names: list[str]
+    calibrated_m: FloatArray
+    uncalibrated_m: FloatArray
+
+
+@dataclass(frozen=True)
+class GeneratorLoss:
+    """What the limits of a camera's generators do to a code: all of the same depths and noise.
+
+    Attributes
+    ----------
+    told, played, uncalibrated : DepthErrorReport
+        On the camera without generators; with them, by a decoder that knows what is played; with
+        them, by one that believes what was told. Without bounds.
+    correlation_change : ndarray, shape (K,)
+        Rms difference of the correlation functions told and played, over the rms of the one told
+        about its mean.
+    """
+
+    told: DepthErrorReport
+    played: DepthErrorReport
+    uncalibrated: DepthErrorReport
+    correlation_change: FloatArray
+
+    def ratio(self, kind: str = "linear") -> float:
+        """played / told, of the geometric means."""
+        return self.played.of(kind).geometric_mean_m / self.told.of(kind).geometric_mean_m
+
+    def uncalibrated_ratio(self, kind: str = "linear") -> float:
+        """uncalibrated / told, of the geometric means."""
+        return self.uncalibrated.of(kind).geometric_mean_m / self.told.of(kind).geometric_mean_m
+
+
+def report_of(values: dict[str, Any]) -> DepthErrorReport:
+    linear = DepthErrorMean(**values.pop("linear"))
+    circular = DepthErrorMean(**values.pop("circular"))
+    return DepthErrorReport(**values, linear=linear, circular=circular)

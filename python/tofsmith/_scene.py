@@ -1,0 +1,215 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Scenes, and what a camera captures of them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi
+from typing import Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _check, _tofsmith
+from ._camera import CameraLike, camera_of
+from ._camera_fields import Lens
+from ._check import Path, Progress
+from ._code import CodeLike, code_of
+from ._light import ExponentialTail, LaterReturns, Transients, light_dict
+
+FloatImage = npt.NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What a camera looks at, pixel by pixel; all planes are (H, W).
+
+    Attributes
+    ----------
+    depth_m : ndarray
+        Radial distance from the camera [m], > 0; NaN = no return. radial_from_z() makes it of
+        depth along the axis.
+    albedo : ndarray, optional
+        Share of light that is reflected, [0, 1]; None: 1.
+    cosine : ndarray, optional
+        Of the angle of incidence, [0, 1]; None: 1.
+    ambient_scale : ndarray, optional
+        Ambient light relative to the scene's, >= 0; None: 1.
+    lens : Lens, optional
+        The pinhole it is seen through.
+    """
+
+    depth_m: npt.NDArray[Any]
+    albedo: Optional[npt.NDArray[Any]] = None
+    cosine: Optional[npt.NDArray[Any]] = None
+    ambient_scale: Optional[npt.NDArray[Any]] = None
+    lens: Optional[Lens] = None
+
+
+def built_in_scene_names() -> list[str]:
+    """Scenes that need no files."""
+    return _tofsmith.built_in_scene_names()
+
+
+def built_in_scene(name: str, width: int = 320, height: int = 240) -> Scene:
+    """A scene that needs no files, ray cast.
+
+    Raises
+    ------
+    ValueError
+        For an unknown name, with the nearest known one.
+    """
+    return _scene(
+        _tofsmith.built_in_scene(
+            _check.text(name, "name"),
+            _check.whole(width, "width", 1, 16384),
+            _check.whole(height, "height", 1, 16384),
+        )
+    )
+
+
+def read_scene(path: Path) -> Scene:
+    """A scene from a TOML file of shapes and a pinhole, ray cast; OSError names the place."""
+    return _scene(_tofsmith.read_scene(_check.path(path)))
+
+
+def _scene(seen: dict[str, Any]) -> Scene:
+    lens = Lens(*seen.pop("lens"))
+    return Scene(**seen, lens=lens)
+
+
+def _lens(lens: Lens) -> list[float]:
+    _check.instance(lens, Lens, "lens")
+    return [lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px]
+
+
+def centred_lens(width: int, height: int, horizontal_angle_rad: float = pi / 3) -> Lens:
+    """Square pixels, the axis in the middle, so wide between the outer edges of the image."""
+    size = _check.whole(width, "width", 1), _check.whole(height, "height", 1)
+    angle = _check.number(horizontal_angle_rad, "horizontal_angle_rad")
+    return Lens(*_tofsmith.centred_lens(*size, angle))
+
+
+def radial_from_z(z_m: npt.ArrayLike, lens: Lens) -> FloatImage:
+    """Radial distance [m] from depth along the axis [m], both (H, W); NaN stays NaN."""
+    return _tofsmith.radial_from_z(_check.real_array(z_m, "z_m", "(H, W)"), _lens(lens))
+
+
+def z_from_radial(radial_m: npt.ArrayLike, lens: Lens) -> FloatImage:
+    """Depth along the axis [m] from radial distance [m], both (H, W); NaN stays NaN."""
+    return _tofsmith.z_from_radial(_check.real_array(radial_m, "radial_m", "(H, W)"), _lens(lens))
+
+
+def points_m(radial_m: npt.ArrayLike, lens: Lens) -> FloatImage:
+    """Points in the camera's frame (x right, y down, z forward) [m] from radial distance.
+
+    Parameters
+    ----------
+    radial_m : array_like, shape (H, W)
+    lens : Lens
+
+    Returns
+    -------
+    ndarray of float32, shape (H, W, 3)
+        NaN where there is no depth.
+    """
+    z_m = z_from_radial(radial_m, lens)
+    row, column = np.mgrid[: z_m.shape[0], : z_m.shape[1]]
+    x_m = (column - lens.cx_px) / lens.fx_px * z_m
+    y_m = (row - lens.cy_px) / lens.fy_px * z_m
+    points: FloatImage = np.stack([x_m, y_m, z_m], axis=-1).astype(np.float32)
+    return points
+
+
+def capture(
+    scene: Union[Scene, str, npt.NDArray[Any]],
+    code: CodeLike,
+    camera: CameraLike,
+    *,
+    signal_e_per_s: Optional[float] = None,
+    ambient_e_per_s: Optional[float] = None,
+    reference_distance_m: Optional[float] = None,
+    falloff: Optional[bool] = None,
+    seed: Optional[int] = None,
+    frames: Optional[int] = None,
+    returns: Union[LaterReturns, Sequence[tuple[float, float]], None] = None,
+    tail: Optional[ExponentialTail] = None,
+    transients: Optional[Transients] = None,
+    progress: Progress = None,
+) -> npt.NDArray[np.float32]:
+    """Raw measurements of a scene.
+
+    Parameters
+    ----------
+    scene : Scene, name of a built-in scene, .toml file, or radial distance [m] (H, W)
+        Depth beyond the unambiguous range wraps.
+    code : CodeSet, name of a family or file
+    camera : Camera or its name
+    signal_e_per_s : float, optional
+        S [e/s] of albedo 1 facing the camera at the reference distance; the middle operating
+        point's unless given.
+    ambient_e_per_s : float, optional
+        A [e/s]; so is this.
+    reference_distance_m : float, optional
+        [m] (1).
+    falloff : bool, optional
+        S = signal albedo cosine / (d / d_ref)^2 (the default); else signal albedo.
+    seed : int, optional
+        Of all noise (1); the same bits for any number of threads.
+    frames : int, optional
+        F, independent noise for each (1).
+    returns : LaterReturns or sequence of (delay_m, ratio), optional
+        Light that comes back again: of each pixel, or the same behind all pixels.
+    tail : ExponentialTail, optional
+        Behind every direct return.
+    transients : Transients, optional
+        In place of the direct return: the pixel's signal shared out over a histogram; goes without
+        the two above.
+    progress : callable, optional
+
+    Returns
+    -------
+    ndarray of float32, shape (H, W, K), or (F, H, W, K) if `frames` is given
+        Electrons, or counts if the sensor has an ADC.
+    """
+    camera = camera_of(camera)
+    seen = _scene_of(scene)
+    planes = {
+        name: None if plane is None else _check.real_array(plane, name, "(H, W)")
+        for name, plane in (
+            ("depth_m", seen.depth_m),
+            ("albedo", seen.albedo),
+            ("cosine", seen.cosine),
+            ("ambient_scale", seen.ambient_scale),
+        )
+    }
+    options = {
+        "signal_e_per_s": signal_e_per_s,
+        "ambient_e_per_s": ambient_e_per_s,
+        "reference_distance_m": reference_distance_m,
+        "falloff": falloff,
+        "seed": seed,
+        "frames": frames,
+    }
+    handle = code_of(code, camera)._handle
+    callback = _check.progress(progress)
+    light = light_dict(returns, tail, transients, seen.depth_m)
+    raw: npt.NDArray[np.float32] = _tofsmith.capture(
+        planes, light, handle, camera._handle, options, callback
+    )
+    if frames is not None:
+        return raw
+    only: npt.NDArray[np.float32] = raw[0]
+    return only
+
+
+def _scene_of(scene: Any) -> Scene:
+    if isinstance(scene, np.ndarray):
+        return Scene(scene)
+    if isinstance(scene, (str, os.PathLike)):
+        name = os.fspath(scene)
+        return read_scene(name) if str(name).endswith(".toml") else built_in_scene(str(name))
+    return _check.instance(scene, Scene, "scene")

@@ -1,0 +1,108 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""One period of a modulation or demodulation function."""
+
+from __future__ import annotations
+
+import numpy.typing as npt
+
+from . import _check, _tofsmith
+from ._check import FloatArray
+
+
+class Waveform:
+    """One period of a modulation or demodulation function. Immutable.
+
+    Binary waveforms are kept as switching times, which no grid can round; all others as N samples,
+    each held over its cell [n, n + 1) / N.
+    """
+
+    _handle: _tofsmith.Waveform
+
+    def __init__(self) -> None:
+        raise TypeError("Waveform: use Waveform.binary(on_intervals) or Waveform.sampled(samples)")
+
+    @classmethod
+    def _of(cls, handle: _tofsmith.Waveform) -> Waveform:
+        waveform = cls.__new__(cls)
+        waveform._handle = handle
+        return waveform
+
+    @classmethod
+    def binary(cls, on_intervals: npt.ArrayLike, level: float = 1.0) -> Waveform:
+        """`level` inside the intervals, 0 elsewhere.
+
+        Parameters
+        ----------
+        on_intervals : array_like, shape (intervals, 2)
+            Rise and fall of each [periods], sorted, disjoint; 0 <= rise < 1, fall <= rise + 1.
+        level : float
+            > 0.
+
+        Raises
+        ------
+        ValueError
+        """
+        on = _check.finite_array(on_intervals, "on_intervals", "(intervals, 2)")
+        return cls._of(_tofsmith.Waveform.binary(on, _check.number(level, "level")))
+
+    @classmethod
+    def sampled(cls, samples: npt.ArrayLike) -> Waveform:
+        """Values (N,), each held over a cell of the period."""
+        return cls._of(_tofsmith.Waveform.sampled(_check.finite_array(samples, "samples", "(N,)")))
+
+    @property
+    def is_binary(self) -> bool:
+        return self._handle.is_binary()
+
+    @property
+    def on_intervals(self) -> FloatArray:
+        """Rise and fall of a binary waveform [periods], (intervals, 2); else (0, 2)."""
+        return self._handle.on_intervals()
+
+    @property
+    def level(self) -> float:
+        """Value while on, of a binary waveform."""
+        return self._handle.level()
+
+    @property
+    def samples(self) -> FloatArray:
+        """Samples (N,) of a waveform that is not binary; else (0,)."""
+        return self._handle.samples()
+
+    @property
+    def mean(self) -> float:
+        return self._handle.mean()
+
+    @property
+    def peak(self) -> float:
+        return self._handle.peak()
+
+    @property
+    def duty(self) -> float:
+        """Share of the period above half the peak."""
+        return self._handle.duty()
+
+    @property
+    def edges(self) -> int:
+        """Number of jumps in one period."""
+        return self._handle.edges()
+
+    def cell_averages(self, samples: int) -> FloatArray:
+        """Means over N cells of the period, (samples,)."""
+        return self._handle.cell_averages(_check.whole(samples, "samples", 1, 2**24))
+
+    def delayed(self, periods: float) -> Waveform:
+        """The waveform, arriving `periods` later."""
+        return Waveform._of(self._handle.delayed(_check.number(periods, "periods")))
+
+    def complement(self) -> Waveform:
+        """1 - x: what the other bucket of a two-bucket sensor collects."""
+        return Waveform._of(self._handle.complement())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Waveform) and self._handle.is_equal(other._handle)
+
+    def __repr__(self) -> str:
+        kind = "binary" if self.is_binary else f"{len(self.samples)} samples"
+        return f"<Waveform: {kind}, duty {self.duty:.4g}, peak {self.peak:.4g}, {self.edges} edges>"

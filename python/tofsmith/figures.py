@@ -1,0 +1,107 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Figures as Plotly JSON: dicts {"data": [..], "layout": {..}} that plotly.graph_objects.Figure
+takes, and that any Plotly shows. The same figures as in the HTML reports.
+
+Examples
+--------
+>>> figure = waveforms("hamiltonian-k4", "paper-10f0")
+>>> sorted(figure)
+['data', 'layout']
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _check, _tofsmith
+from ._camera import CameraLike, camera_of
+from ._camera_fields import Lens
+from ._code import CodeLike, code_of
+from ._figure_data import (
+    Depth,
+    Reports,
+    code_and_camera,
+    depth_of,
+    error_curve,
+    error_grid,
+    named_depths,
+    reports_of,
+)
+from ._scene import points_m
+
+Figure = dict[str, Any]
+
+
+def _figure(plotly_json: str) -> Figure:
+    figure: Figure = json.loads(plotly_json)
+    return figure
+
+
+def waveforms(code: CodeLike, camera: CameraLike) -> Figure:
+    """Modulation, demodulation and correlation function of every measurement."""
+    played, camera = code_and_camera(code, camera)
+    return _figure(_tofsmith.waveform_figure(played.name, played._handle, camera._handle))
+
+
+def coding_curve(codes: Union[CodeLike, Sequence[CodeLike]], camera: CameraLike) -> Figure:
+    """The coding curves of some codes in three dimensions, coloured by depth."""
+    camera = camera_of(camera)
+    listed = list(codes) if isinstance(codes, (list, tuple)) else [codes]
+    if not listed:
+        raise ValueError("codes: got none; needs at least one code")
+    handles = [code_of(code, camera)._handle for code in listed]
+    return _figure(_tofsmith.coding_curve_figure("Coding curve", handles, camera._handle))
+
+
+def depth_error_map(reports: Reports, *, kind: str = "linear") -> Figure:
+    """Mean depth error at every operating point, a panel per code."""
+    listed = reports_of(reports)
+    signal, ambient, _ = error_grid(listed[0], kind)
+    maps = [error_grid(report, kind)[2] for report in listed]
+    names = [report.code for report in listed]
+    x_ticks, y_ticks = [f"{a:.3g}" for a in ambient], [f"{s:.3g}" for s in signal]
+    return _figure(_tofsmith.heat_map_figure("Depth error", names, maps, x_ticks, y_ticks))
+
+
+def depth_error_curves(
+    reports: Reports, *, along: str = "signal", at: Optional[float] = None, kind: str = "linear"
+) -> Figure:
+    """Mean depth error along signal or ambient light, the other at the level nearest `at`."""
+    curves = [(r.code, *error_curve(r, kind, along, at)) for r in reports_of(reports)]
+    return _figure(
+        _tofsmith.curve_figure(
+            "Depth error",
+            [c[0] for c in curves],
+            [c[1].tolist() for c in curves],
+            [c[2].tolist() for c in curves],
+            [c[3].tolist() for c in curves],
+            along,
+            "e/s",
+        )
+    )
+
+
+def depth_maps(depths: Union[Depth, dict[str, Depth]]) -> Figure:
+    """Depth maps side by side: one, or several of one shape by name."""
+    named = named_depths(depths)
+    return _figure(_tofsmith.image_figure("Depth", list(named), list(named.values())))
+
+
+def point_cloud(
+    depth: Depth, lens: Lens, values: Optional[npt.ArrayLike] = None, *, label: str = "depth"
+) -> Figure:
+    """Points in the camera's frame, coloured by radial distance or by `values` (H, W)."""
+    radial_m = depth_of(depth)
+    points = points_m(radial_m, lens).reshape(-1, 3)
+    plane = radial_m if values is None else _check.real_array(values, "values", "(H, W)")
+    if plane.shape != radial_m.shape:
+        raise ValueError(f"values: got shape {plane.shape}; needs {radial_m.shape} as of depth")
+    colours = np.asarray(plane, np.float32).reshape(-1)
+    unit = "m" if values is None else ""
+    return _figure(_tofsmith.point_cloud_figure("Point cloud", points, colours, label, unit))

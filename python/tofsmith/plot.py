@@ -1,0 +1,287 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Figures for papers, one line each (matplotlib, imported when the first is drawn).
+
+Every function draws on a new figure, or on `figure`, and returns it:
+
+>>> from tofsmith import plot
+>>> plot.waveforms("hamiltonian-k4", "paper-10f0").savefig("code.pdf")  # doctest: +SKIP
+
+Sizes suit one or two columns of a paper, fonts 8 pt, colours those of Okabe and Ito, which read
+with any colour vision; maps are viridis. (Some publishers want
+matplotlib.rcParams["pdf.fonttype"] = 42.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _check
+from ._camera import CameraLike, camera_of
+from ._camera_fields import Lens
+from ._code import CodeLike, code_of
+from ._figure_data import (
+    Depth,
+    Reports,
+    code_and_camera,
+    depth_of,
+    error_curve,
+    error_grid,
+    named_depths,
+    reports_of,
+)
+from ._forward_model import ForwardModel, coding_curve_in_space
+from ._plot_style import (
+    colours,
+    column_in,
+    grid,
+    log_ticks_in_plain_numbers,
+    new_figure,
+    page_in,
+    short,
+    styled,
+    ten_to,
+)
+from ._scene import points_m
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+else:
+    Figure = Any
+
+@styled
+def waveforms(
+    code: CodeLike, camera: CameraLike, *, figure: Optional[Figure] = None
+) -> Figure:
+    """Modulation, demodulation and correlation function of every measurement, a row each."""
+    played, camera = code_and_camera(code, camera)
+    model = ForwardModel(played, camera)
+    modulation, demodulation = played.modulation, played.demodulation
+    rows = played.measurements
+    figure = new_figure(figure, page_in, 0.5 + 0.75 * rows)
+    axes = figure.subplots(rows, 3, squeeze=False, sharex="col", sharey="col")
+    edges = np.arange(played.samples + 1) / played.samples
+    depth_m = np.arange(played.samples) * camera.bin_m
+    chi = model.correlation_table() if model.measurements == rows else None
+    for i in range(rows):
+        axes[i, 0].stairs(modulation[:, i // played.taps], edges, color=colours[0], lw=1.2)
+        axes[i, 1].stairs(demodulation[:, i], edges, color=colours[1], lw=1.2)
+        if chi is not None:
+            axes[i, 2].plot(depth_m, chi[:, i], color=colours[2])
+        axes[i, 0].set_ylabel(f"{i + 1}")
+    if chi is None:  # differences: fewer than there are taps
+        _curves_in_one(axes[:, 2], depth_m, model.correlation_table())
+    for axis, title in zip(axes[0], ("modulation m", "demodulation d", r"correlation $\chi$")):
+        axis.set_title(title)
+    for axis, label in zip(axes[-1], ("time (periods)", "time (periods)", "depth (m)")):
+        axis.set_xlabel(label)
+    return figure
+
+
+def _curves_in_one(column: Any, depth_m: Any, chi: Any) -> None:
+    for axis, values in zip(column, chi.T):
+        axis.plot(depth_m, values, color=colours[2])
+    for axis in column[chi.shape[1] :]:
+        axis.axis("off")
+    last = column[min(chi.shape[1], len(column)) - 1]
+    last.set_xlabel("depth (m)")
+    last.tick_params(labelbottom=True)
+
+
+@styled
+def correlation_functions(
+    code: CodeLike, camera: CameraLike, *, figure: Optional[Figure] = None
+) -> Figure:
+    """The K correlation functions over depth, behind the camera's impulse responses."""
+    played, camera = code_and_camera(code, camera)
+    chi = ForwardModel(played, camera).correlation_table()
+    figure = new_figure(figure, column_in, 2.2)
+    axis = figure.subplots()
+    depth_m = np.linspace(0, camera.range_m, len(chi) + 1)
+    for i, values in enumerate(np.vstack([chi, chi[:1]]).T):
+        dash = ("-", "--", ":", "-.")[i // len(colours) % 4]
+        axis.plot(depth_m, values, dash, color=colours[i % len(colours)], label=f"{i + 1}")
+    axis.set(xlabel="depth (m)", ylabel=r"correlation $\chi$")
+    axis.set_xlim(0, camera.range_m)
+    axis.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=min(chi.shape[1], 8),
+                columnspacing=1.0, handlelength=1.2, borderaxespad=0.3, title=played.name,
+                alignment="left")
+    return figure
+
+
+@styled
+def coding_curve(
+    codes: Union[CodeLike, Sequence[CodeLike]],
+    camera: CameraLike,
+    *,
+    figure: Optional[Figure] = None,
+) -> Figure:
+    """Coding curves in their three directions of largest extent, coloured by depth."""
+    from mpl_toolkits.mplot3d.art3d import Line3DCollection
+
+    camera = camera_of(camera)
+    listed = list(codes) if isinstance(codes, (list, tuple)) else [codes]
+    if not listed:
+        raise ValueError("codes: got none; needs at least one code")
+    rows, columns = grid(len(listed))
+    figure = new_figure(figure, 2.4 * columns + 0.8, 2.3 * rows,
+                        (0.01, 0.02, 0.97, 0.92, 0.02, 0.15))
+    lines = None
+    for i, one in enumerate(listed):
+        played = code_of(one, camera)
+        curve = coding_curve_in_space(ForwardModel(played, camera).correlation_table())
+        closed = np.vstack([curve, curve[:1]])
+        axis = figure.add_subplot(rows, columns, i + 1, projection="3d")
+        lines = Line3DCollection(np.stack([closed[:-1], closed[1:]], axis=1), cmap="viridis")
+        lines.set_array(np.arange(len(curve)) * camera.range_m / len(curve))
+        axis.add_collection(lines)
+        reach = 1.05 * np.abs(curve).max()
+        axis.set(xlim=(-reach, reach), ylim=(-reach, reach), zlim=(-reach, reach))
+        axis.set(title=played.name, xticklabels=[], yticklabels=[], zticklabels=[])
+        axis.set_box_aspect((1, 1, 1))
+        for of_space in (axis.xaxis, axis.yaxis, axis.zaxis):
+            of_space.set_tick_params(length=0)
+            of_space._axinfo["grid"].update(linewidth=0.4, color="0.85")
+            of_space._axinfo["tick"].update(inward_factor=0, outward_factor=0)
+    figure.colorbar(lines, ax=figure.axes, label="depth (m)", shrink=0.7, pad=0.03)
+    return figure
+
+
+@styled
+def depth_error_map(
+    reports: Reports, *, kind: str = "linear", figure: Optional[Figure] = None
+) -> Figure:
+    """Mean depth error [mm] at every operating point, a panel per code, one colour scale."""
+    from matplotlib.colors import LogNorm
+
+    listed = reports_of(reports)
+    grids = [error_grid(report, kind) for report in listed]
+    values_mm = [1e3 * grid[2] for grid in grids]
+    lowest = min(np.nanmin(np.maximum(v, 1e-6)) for v in values_mm)
+    highest = max(np.nanmax(v) for v in values_mm)
+    norm = LogNorm(lowest, max(highest, 1.001 * lowest))
+    rows, columns = grid(len(listed))
+    figure = new_figure(figure, 0.9 + 1.9 * columns, 0.5 + 1.7 * rows)
+    axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
+    picture = None
+    for axis, report, (signal, ambient, _), v in zip(axes.flat, listed, grids, values_mm):
+        picture = axis.imshow(v, origin="lower", norm=norm, aspect="auto")
+        axis.set_title(report.code)
+        axis.set_xticks(range(len(ambient)), [ten_to(a) for a in ambient], rotation=45)
+        axis.set_yticks(range(len(signal)), [ten_to(s) for s in signal])
+        axis.tick_params(length=0)
+        for (row, column), value in np.ndenumerate(v):
+            dark = norm(value) < 0.6
+            axis.text(column, row, short(float(value)), ha="center", va="center", fontsize=6,
+                      color="white" if dark else "black")
+    for axis in axes.flat[len(listed) :]:
+        axis.axis("off")
+    for axis in axes.flat[len(listed) - columns : len(listed)]:
+        axis.tick_params(labelbottom=True)  # nothing is drawn below
+    figure.supxlabel("ambient light (e/s)", fontsize=8)
+    figure.supylabel("signal (e/s)", fontsize=8)
+    figure.colorbar(picture, ax=axes, label=f"mean depth error, {kind} (mm)")
+    return figure
+
+
+@styled
+def depth_error_curves(
+    reports: Reports,
+    *,
+    along: str = "signal",
+    at: Optional[float] = None,
+    kind: str = "linear",
+    figure: Optional[Figure] = None,
+) -> Figure:
+    """Mean depth error along signal or ambient light, with standard errors; the other light at the
+    level nearest `at` (the middle unless given). Dotted grey: the bound of any code."""
+    listed = reports_of(reports)
+    longest = max(len("bound of any code"), *(len(report.code) for report in listed))
+    figure = new_figure(figure, column_in + 0.4 + 0.055 * longest, 2.4)
+    axis = figure.subplots()
+    bounds: dict[bytes, Any] = {}
+    level = 0.0
+    for i, report in enumerate(listed):
+        x, mde, se, bound, level = error_curve(report, kind, along, at)
+        colour = colours[i % len(colours)]
+        axis.errorbar(x, 1e3 * mde, 1e3 * se, marker="o", ms=2.5, color=colour, label=report.code)
+        bounds[bound.tobytes()] = (x, bound)
+    for i, (x, bound) in enumerate(bounds.values()):
+        if (bound > 0).any():
+            axis.plot(x, 1e3 * bound, ":", color="0.5", label=None if i else "bound of any code")
+    names = ("signal", "ambient light")
+    varied, other = names if along == "signal" else names[::-1]
+    axis.set(xscale="log", yscale="log", ylabel=f"mean depth error, {kind} (mm)")
+    axis.set(xlabel=f"{varied} (e/s), at {other} {ten_to(level)} e/s")
+    log_ticks_in_plain_numbers(axis.yaxis)
+    axis.grid(True, which="major", lw=0.3, color="0.85")
+    axis.legend(loc="upper left", bbox_to_anchor=(1, 1), handlelength=1.6)  # hides nothing
+    return figure
+
+
+@styled
+def depth_maps(
+    depths: Union[Depth, dict[str, Depth]], *, figure: Optional[Figure] = None
+) -> Figure:
+    """Depth maps side by side with one colour scale: one, or several of one shape by name. Pixels
+    without depth are grey."""
+    named = named_depths(depths)
+    shown = np.concatenate([d[np.isfinite(d)] for d in named.values()])
+    low, high = np.percentile(shown, (0.5, 99.5)) if shown.size else (0.0, 1.0)
+    rows, columns = grid(len(named))
+    height, width = next(iter(named.values())).shape
+    panel_in = (page_in - 0.8) / 3 if len(named) > 1 else column_in - 0.8
+    figure = new_figure(figure, 0.8 + panel_in * columns, 0.3 + panel_in * height / width * rows)
+    axes = figure.subplots(rows, columns, squeeze=False)
+    picture = None
+    for axis, (name, depth) in zip(axes.flat, named.items()):
+        axis.set_facecolor("0.8")
+        picture = axis.imshow(depth, vmin=low, vmax=high, interpolation="nearest")
+        axis.set(title=name if isinstance(depths, dict) else "", xticks=[], yticks=[])
+        axis.spines[:].set_visible(False)
+    for axis in axes.flat[len(named) :]:
+        axis.axis("off")
+    figure.colorbar(picture, ax=axes, label="depth (m)")
+    return figure
+
+
+@styled
+def point_cloud(
+    depth: Depth,
+    lens: Lens,
+    values: Optional[npt.ArrayLike] = None,
+    *,
+    label: str = "distance (m)",
+    most_points: int = 20000,
+    figure: Optional[Figure] = None,
+) -> Figure:
+    """Points in the camera's frame, coloured by radial distance or by `values` (H, W); of more
+    than `most_points`, every n-th is drawn. The half per cent farthest out on either side of each
+    axis is left out."""
+    radial_m = depth_of(depth)
+    shown = radial_m if values is None else _check.real_array(values, "values", "(H, W)")
+    if shown.shape != radial_m.shape:
+        raise ValueError(f"values: got shape {shown.shape}; needs {radial_m.shape} as of depth")
+    points = points_m(radial_m, lens).reshape(-1, 3)
+    kept = np.flatnonzero(np.isfinite(points).all(axis=1) & np.isfinite(shown.reshape(-1)))
+    kept = kept[:: max(1, -(-len(kept) // _check.whole(most_points, "most_points", 1)))]
+    if len(kept):
+        low, high = np.percentile(points[kept], (0.5, 99.5), axis=0)
+        kept = kept[((points[kept] >= low) & (points[kept] <= high)).all(axis=1)]
+    x, y, z = points[kept].T
+    figure = new_figure(figure, column_in + 1.2, 3.2, (0.0, 0.06, 0.94, 1.0))
+    axis = figure.add_subplot(projection="3d")
+    cloud = axis.scatter(x, z, -y, c=shown.reshape(-1)[kept], s=0.6, lw=0, cmap="viridis")
+    if len(kept):
+        axis.set_box_aspect([max(float(np.ptp(v)), 1e-3) for v in (x, z, y)])
+    axis.set(xlabel="right (m)", ylabel="ahead (m)", zlabel="up (m)")
+    axis.view_init(elev=18, azim=-70)
+    axis.locator_params(nbins=5)
+    for of_space in (axis.xaxis, axis.yaxis, axis.zaxis):
+        of_space._axinfo["grid"].update(linewidth=0.4, color="0.85")
+    figure.colorbar(cloud, ax=axis, label=label, shrink=0.6, pad=0.2)
+    return figure

@@ -1,0 +1,51 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Every example runs as it stands, and its twin in C++ says the same."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+folder = Path(__file__).resolve().parents[2] / "examples"
+examples = sorted((folder / "python").glob("[0-9]*.py"))
+programs = os.environ.get("TOFSMITH_EXAMPLES")
+
+
+def output_of(command, directory):
+    directory.mkdir()
+    done = subprocess.run(
+        command, cwd=directory, capture_output=True, text=True,
+        env=os.environ | {"MPLBACKEND": "Agg"})
+    assert done.returncode == 0, done.stderr
+    return done.stdout, sorted(path.name for path in directory.iterdir())
+
+
+@pytest.mark.parametrize("example", examples, ids=lambda path: path.stem)
+def test_twins_run_and_say_the_same(example, tmp_path):
+    said = output_of([sys.executable, "-B", example], tmp_path / "python")
+    assert said[0]
+    if programs:
+        assert output_of([Path(programs) / example.stem], tmp_path / "cpp") == said
+
+
+def snippets():
+    for page in ("README.md", "docs/python.md"):
+        text = (folder.parent / page).read_text()
+        blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+        assert blocks, page
+        yield pytest.param("".join(blocks), id=page)
+
+
+@pytest.mark.parametrize("snippet", snippets())
+def test_what_pages_show_runs(snippet, tmp_path):
+    output_of([sys.executable, "-B", "-c", snippet], tmp_path / "page")
+
+
+def test_every_example_has_a_twin():
+    assert len(examples) == 7
+    twins = sorted(path.stem for path in (folder / "cpp").glob("[0-9]*.cpp"))
+    assert twins == [path.stem for path in examples]

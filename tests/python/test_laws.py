@@ -1,0 +1,253 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""The package says what the command line and the formulas say."""
+
+import json
+import pickle
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import tofsmith as ts
+
+
+def run(cli, *arguments):
+    done = subprocess.run([cli, *map(str, arguments)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_cameras_come_from_names_files_and_keywords_alike(tmp_path):
+    by_name = ts.Camera("paper-10f0", light={"peak_factor": 5}, samples=120)
+    file = tmp_path / "mine.toml"
+    file.write_text(by_name.to_toml())
+    assert ts.Camera(file) == by_name == ts.Camera("paper-10f0").replace(
+        samples=120, light={"peak_factor": 5})
+    assert by_name.light.peak_factor == 5 and by_name.sensor.read_noise_e == 20
+    assert by_name.light.impulse_response == ts.ImpulseResponse("hann", f_max_hz=150e6)
+    assert by_name.range_m == pytest.approx(299792458 / 30e6)
+    assert abs(by_name.transfer(10)[10]) == pytest.approx(1 / 25, rel=0.05)
+    assert pickle.loads(pickle.dumps(by_name)) == by_name and by_name != ts.Camera("paper-5f0")
+
+
+def test_every_key_of_a_camera_file_is_an_attribute():
+    parts = {"light": ts.Light, "sensor": ts.Sensor, "lens": ts.Lens, "operating": ts.Operating,
+             "impulse_response": ts.ImpulseResponse, "generator": ts.Generator}
+    for key in ts.camera_keys():
+        *path, last = key.split(".")
+        owner = parts[path[-1]] if path else ts.Camera
+        assert last in parts or last in getattr(owner, "__dataclass_fields__", vars(owner)), key
+
+
+def test_measured_impulse_responses_are_keywords_too():
+    samples = np.array([1.0, 2.0, 1.0])
+    camera = ts.Camera(fundamental_frequency_hz=15e6, light={
+        "impulse_response": {"kind": "file", "samples": samples, "time_step_s": 1e-9}})
+    assert camera.light.impulse_response.samples == (1.0, 2.0, 1.0)
+
+
+def test_codes_survive_arrays_files_and_pickles(camera, tmp_path):
+    code = ts.build_family("hamiltonian-k4", camera)
+    assert (code.exposures, code.taps, code.measurements, code.samples) == (4, 1, 4, 120)
+    again = ts.CodeSet.from_arrays(code.modulation, code.demodulation, name=code.name)
+    assert np.array_equal(again.demodulation, code.demodulation)
+    assert again.demodulation_waveforms()[0].is_binary
+    assert pickle.loads(pickle.dumps(code)) == code
+    for name in ("code.code.json", "code.npz"):
+        ts.write_code(tmp_path / name, code)
+        assert np.array_equal(ts.read_code(tmp_path / name).modulation, code.modulation)
+    two = code.with_two_buckets()
+    assert two.taps == 2 and np.allclose(two.demodulation.reshape(120, 4, 2).sum(axis=2), 1)
+    waveform = ts.Waveform.binary([[0.25, 0.5]], 4.0)
+    assert waveform.mean == 1.0 and waveform.delayed(0.25).on_intervals.tolist() == [[0.5, 0.75]]
+
+
+def test_expected_electrons_follow_their_formula(camera):
+    model = ts.ForwardModel("hamiltonian-k4", camera)
+    z = np.array([[0.0, 17.25], [60.5, 119.9]])
+    chi = model.correlation(z)
+    assert chi.shape == (2, 2, 4)
+    mu = model.expected_electrons(z, 1e4, 1e3)
+    assert np.allclose(mu, model.exposure_s * (1e4 * chi + 1e3 * model.ambient_gain))
+    assert np.allclose(model.variance_e2(z, 1e4, 1e3), mu + model.constant_variance_e2)
+    table = model.correlation_table()
+    assert np.allclose(table[::4], model.correlation(np.arange(0, 120, 4)))
+    curve = ts.coding_curve_in_space(table)
+    assert curve.shape == (120, 3) and ts.coding_curve_rank(table) >= 3
+    steps = np.diff(np.vstack([table, table[:1]]), axis=0)
+    assert ts.coding_curve_length(table) == pytest.approx(np.linalg.norm(steps, axis=1).sum())
+
+
+def test_evaluate_says_what_the_command_line_says(cli):
+    said = json.loads(run(cli, "evaluate", "square-k4", "--camera", "paper-10f0", "--set",
+                          "samples=120", "--trials", 200, "--seed", 7, "--json"))["codes"][0]
+    camera = ts.Camera("paper-10f0", samples=120)
+    report = ts.evaluate("square-k4", camera, trials=200, seed=7)
+    for key in ("linear_mde_m", "circular_se_m", "cramer_rao_mae_m", "receiver_bound_mae_m"):
+        assert getattr(report, key).tolist() == [p[key] for p in said["points"]], key
+    assert report.linear.geometric_mean_m == said["linear"]["geometric_mean_m"]
+    bound = ts.CramerRaoBound("square-k4", camera)
+    point = report.signal_e_per_s[3], report.ambient_e_per_s[3]
+    assert bound.mae_m(*point) == report.cramer_rao_mae_m[3]
+    assert bound.sigma_m(*point).shape == (480,)
+    assert ts.ReceiverBound(camera, 4).mae_m(*point) == report.receiver_bound_mae_m[3]
+    assert ts.DirectTofBound(camera).mae_m(*point) == report.direct_tof_bound_mae_m[3]
+
+
+def test_capture_and_decode_say_what_the_command_line_says(cli, tmp_path):
+    raw_file, depth_file = tmp_path / "raw.npy", tmp_path / "depth.npz"
+    run(cli, "simulate", "books", "--width", 40, "--height", 30, "--code", "hamiltonian-k4",
+        "--camera", "paper-10f0", "--seed", 3, "-o", raw_file)
+    run(cli, "decode", raw_file, "--code", "hamiltonian-k4", "--camera", "paper-10f0", "-o",
+        depth_file)
+    scene = ts.built_in_scene("books", 40, 30)
+    raw = ts.capture(scene, "hamiltonian-k4", "paper-10f0", seed=3)
+    assert raw.dtype == np.float32 and np.array_equal(raw, np.load(raw_file))
+    assert np.array_equal(ts.read_raw(raw_file)[0], raw)
+    image = ts.decode(raw, "hamiltonian-k4", "paper-10f0")
+    said = np.load(depth_file)
+    assert np.array_equal(image.depth_m, said["depth"], equal_nan=True)
+    assert np.array_equal(image.status, said["status"])
+
+
+def layouts(raw):
+    """The same frame in other types and layouts."""
+    planar = np.ascontiguousarray(np.moveaxis(raw, -1, 0))
+    padded = np.zeros((raw.shape[0], raw.shape[1] + 3, 2 * raw.shape[2]), np.float32)
+    padded[:, 1:-2, ::2] = raw
+    read_only = raw.copy()
+    read_only.flags.writeable = False
+    yield "float64", raw.astype(np.float64), "interleaved"
+    yield "Fortran order", np.asfortranarray(raw), "interleaved"
+    yield "planar", planar, "planar"
+    yield "view with gaps", padded[:, 1:-2, ::2], "interleaved"
+    yield "read-only", read_only, "interleaved"
+    yield "turned round twice", raw[::-1, ::-1].copy()[::-1, ::-1], "interleaved"
+
+
+def test_layouts_and_types_do_not_change_depth(camera):
+    raw = ts.capture(ts.Scene(np.linspace(0.5, 9, 600).reshape(20, 30)), "hamiltonian-k4", camera,
+                     signal_e_per_s=1e5)
+    decoder = ts.Decoder("hamiltonian-k4", camera)
+    truth = decoder.decode(raw)
+    for name, array, layout in layouts(raw):
+        depth = decoder.decode(array, layout=layout, planes=["depth_m"]).depth_m
+        assert np.array_equal(depth, truth.depth_m, equal_nan=True), name
+    counts = np.round(np.clip(raw, 0, 65535))
+    for kind in (np.uint16, np.int16):
+        small = np.clip(counts, 0, 32767)
+        assert np.array_equal(decoder.decode(small.astype(kind)).depth_m,
+                              decoder.decode(small.astype(np.float32)).depth_m, equal_nan=True)
+    stack = np.stack([raw, raw[::-1]])
+    both = decoder.decode(stack)
+    assert np.array_equal(both.depth_m[1], truth.depth_m[::-1], equal_nan=True)
+    out = ts.DepthImage(depth_m=np.zeros((20, 30), np.float32), bin=np.zeros((20, 30), np.int32))
+    assert decoder.decode(raw, out=out) is out
+    assert np.array_equal(out.depth_m, truth.depth_m, equal_nan=True) and out.bin.max() < 120
+    raw[0, 0, 0] = np.nan
+    assert decoder.decode(raw).status[0, 0] == ts.PixelStatus.invalid
+    offset = np.full((20, 30), 0.25, np.float32)
+    moved = decoder.decode(raw, delay_offset_m=offset).depth_m
+    difference = (truth.depth_m - moved - 0.25 + 1) % camera.range_m - 1
+    assert np.nanmax(np.abs(difference)) < 1e-4
+
+
+@pytest.mark.parametrize("method, code", [("ml", "hamiltonian-k4"), ("unwrap", "multifrequency-k5"),
+                                          ("two-return", "hamiltonian-k8"),
+                                          ("tail", "hamiltonian-k8")])
+def test_every_method_recovers_depth(method, code):
+    camera = ts.Camera("paper-30x", samples=240, sensor={"read_noise_e": 0})
+    if code == "hamiltonian-k8":
+        camera, code = ts.Camera("paper-10f0", samples=240), "multifrequency-1x3-2x2-3x2-5x2"
+    model = ts.ForwardModel(code, camera)
+    z = np.linspace(3, 230, 40)
+    raw = model.expected_electrons(z, 1e6, 1e3).astype(np.float32)
+    decoder = ts.Decoder(code, camera, method=method)
+    image = decoder.decode(raw[None])
+    error = (image.depth_m[0] / camera.bin_m - z + 120) % 240 - 120
+    assert np.nanmax(np.abs(error)) < 0.5
+    assert np.allclose(decoder.decode_depth_bins(raw), z, atol=0.5)
+    assert (image.returns is not None) == (method in ("two-return", "tail"))
+
+
+def test_status_values_are_those_of_the_library():
+    from tofsmith import _tofsmith
+
+    assert _tofsmith.pixel_statuses() == {s.name: s.value for s in ts.PixelStatus}
+    assert _tofsmith.return_statuses() == {s.name: s.value for s in ts.ReturnStatus}
+
+
+def test_measured_tables_decode(camera):
+    model = ts.ForwardModel("square-k4", camera)
+    table = ts.DecodingTable.of_measured(model.correlation_table(), camera)
+    raw = model.expected_electrons(np.arange(120) + 0.5, 1e5, 1e3).astype(np.float32)[None]
+    measured = ts.Decoder(table).decode(raw).depth_m
+    assert np.allclose(measured, ts.Decoder("square-k4", camera).decode(raw).depth_m, atol=1e-3)
+    alone = ts.DecodingTable.of_measured(model.correlation_table(), range_m=camera.range_m)
+    assert np.allclose(ts.Decoder(alone).decode(raw).depth_m, measured, atol=1e-3)
+
+
+def test_design_keeps_baselines_and_reports_itself(camera):
+    quick = {"random_starts": 2, "max_iterations": 2, "refined": 2, "structured_starts": False}
+    chi = ts.ForwardModel("hamiltonian-k3", "paper-30x").correlation_table()
+    result = ts.design(camera, method="factorize", target=chi, trials=1000, search_trials=100,
+                       baselines=["hamiltonian-k3"], factorize=quick)
+    assert {c.method for c in result.candidates} >= {"factorize", "family"}
+    assert result.winner is result.by_choice()[0]
+    designed = next(c for c in result.candidates if c.method == "factorize")
+    assert designed.is_designed and len(designed.per_measurement) == 3
+    assert result["hamiltonian-k3"].error.trials == 1000
+    again = ts.evaluate(designed.code, camera, trials=1000)
+    assert again.linear.geometric_mean_m == designed.error.linear.geometric_mean_m
+
+
+def test_sweeps_run_resume_and_read_exports(cli, tmp_path):
+    file, store = tmp_path / "sweep.toml", tmp_path / "store.sqlite"
+    file.write_text('camera = "paper-10f0"\nset = ["samples=60"]\n'
+                    'codes = ["square-k4", "hamiltonian-k3"]\ntrials = 20\n[[axis]]\n'
+                    'key = "light.peak_factor"\nvalues = [10, 15]\n[[axis]]\n'
+                    'key = "signal_e_per_s"\nvalues = [1e4]\n[[axis]]\n'
+                    'key = "ambient_e_per_s"\nvalues = [1e3]\n')
+    results = ts.run_sweep(file, store)
+    assert (results.items, results.finished, len(results)) == (4, 4, 4)
+    assert results["linear_mde_m"].tolist() == ts.read_sweep(file, store)["linear_mde_m"].tolist()
+    assert len(results.where(code="square-k4", **{"light.peak_factor": 15})) == 1
+    for kind in ("npz", "csv", "json"):
+        path = tmp_path / f"export.{kind}"
+        run(cli, "sweep", file, "--store", store, "--status", "--export", path)
+        export = ts.read_sweep_export(path)
+        assert export["code"].tolist() == results["code"].tolist()
+        assert np.array_equal(export["circular_mde_m"], results["circular_mde_m"])
+
+
+def test_files_of_depth_and_points(tmp_path):
+    depth = np.array([[1.0, np.nan], [2.5, 3.0]], np.float32)
+    for name in ("d.npy", "d.exr", "d.pfm", "d.png"):
+        ts.write_depth(tmp_path / name, depth)
+        assert np.allclose(ts.read_depth(tmp_path / name), depth, atol=1e-3, equal_nan=True), name
+    lens = ts.centred_lens(2, 2)
+    points = ts.points_m(depth, lens)
+    assert np.allclose(np.linalg.norm(points, axis=-1), depth, equal_nan=True)
+    assert np.allclose(ts.radial_from_z(ts.z_from_radial(depth, lens), lens), depth, equal_nan=True)
+    ts.write_points(tmp_path / "p.ply", points, {"intensity": depth})
+    assert b"element vertex 3" in (tmp_path / "p.ply").read_bytes()
+    raw = np.arange(24, dtype=np.float32).reshape(2, 3, 4)
+    ts.write_raw(tmp_path / "raw.npz", raw)
+    assert np.array_equal(ts.read_raw(tmp_path / "raw.npz", measurements=4), raw[None])
+
+
+def test_threads_do_not_change_results(camera):
+    many = ts.evaluate("square-k4", camera, trials=200)
+    ts.set_threads(1)
+    one = ts.evaluate("square-k4", camera, trials=200)
+    ts.set_threads(0)
+    assert one.linear_mde_m.tolist() == many.linear_mde_m.tolist()
+
+
+def test_import_is_lean():
+    said = subprocess.run(
+        [sys.executable, "-c", "import tofsmith.plot, sys; print('matplotlib' in sys.modules)"],
+        capture_output=True, text=True)
+    assert said.stdout == "False\n", said.stderr

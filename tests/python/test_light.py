@@ -1,0 +1,131 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Light that comes back twice, evaluations to an accuracy, and what hardware makes of a code: as on
+the command line."""
+
+import hashlib
+import json
+import subprocess
+
+import numpy as np
+import pytest
+
+import tofsmith as ts
+
+code = "multifrequency-1x3-2x2-3x2-5x2"
+settings = ["samples=60", "operating.signal_e_per_s=[1e5]", "operating.ambient_e_per_s=[1e3]"]
+
+
+def run(cli, *arguments):
+    done = subprocess.run([cli, *map(str, arguments)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def small():
+    return ts.Camera("paper-10f0", samples=60,
+                     operating={"signal_e_per_s": [1e5], "ambient_e_per_s": [1e3]})
+
+
+def test_trials_go_on_until_the_target(small, cli):
+    report = ts.evaluate("hamiltonian-k4", small, trials=100, target_standard_error=0.05)
+    assert report.points_short_of_target == 0 and report.point_trials[0] > 100
+    assert report.linear_se_m[0] <= 0.05 * report.linear_mde_m[0]
+    assert report.trials == report.point_trials.max() and report.point_trials.dtype == np.int64
+    sets = [word for setting in settings for word in ("--set", setting)]
+    said = json.loads(run(cli, "evaluate", "hamiltonian-k4", *sets, "--trials", 100,
+                          "--target-standard-error", "5%", "--json"))["codes"][0]["points"][0]
+    assert said["trials"] == report.point_trials[0]
+    assert said["linear_mde_m"] == report.linear_mde_m[0]
+    few = ts.evaluate("hamiltonian-k4", small, trials=100, target_standard_error=1e-4,
+                      most_trials=200)
+    assert few.points_short_of_target == 1 and few.trials <= 200
+
+
+def test_every_measurement_can_be_drawn(small):
+    errors = [ts.evaluate("hamiltonian-k4", small, trials=2000, draw_every_measurement=draw)
+              for draw in (False, True)]
+    assert errors[0].circular_mde_m[0] != errors[1].circular_mde_m[0]
+    assert errors[0].circular_mde_m[0] == pytest.approx(errors[1].circular_mde_m[0], rel=0.2)
+
+
+def test_tables_are_judged_as_their_codes(small):
+    table = ts.DecodingTable.of_code("hamiltonian-k4", small)
+    error_m, se_m = ts.table_depth_error_m(table, 1e5, 1e3, trials=4000)
+    report = ts.evaluate("hamiltonian-k4", small, trials=4000)
+    assert error_m == pytest.approx(report.circular_mde_m[0], abs=5 * (se_m + report.circular_se_m[0]))
+
+
+def test_captures_of_later_returns_are_those_of_the_command_line(cli, tmp_path):
+    file = tmp_path / "raw.npy"
+    scene = ts.built_in_scene("wall", 8, 6)
+    light = {"signal_e_per_s": 1e6, "ambient_e_per_s": 1e3}
+    direct = ts.capture(scene, code, "paper-10f0", **light)
+    for option, words, keywords in (
+            ("--second-return", ["delta=0.8,ratio=0.3"], {"returns": [(0.8, 0.3)]}),
+            ("--tail", [0.5, "--tail-ratio", 0.4], {"tail": ts.ExponentialTail(0.5, 0.4)})):
+        run(cli, "simulate", "wall", "--width", 8, "--height", 6, "--code", code, "--signal", 1e6,
+            "--ambient", 1e3, option, *words, "-o", file, "--force")
+        raw = ts.capture(scene, code, "paper-10f0", **light, **keywords)
+        assert np.array_equal(raw, np.load(file)) and raw.sum() > direct.sum()
+    pixels = 48
+    listed = ts.LaterReturns(np.arange(pixels + 1), scene.depth_m.ravel() + np.float32(0.8),
+                             np.full(pixels, 0.3))
+    behind = ts.capture(scene, code, "paper-10f0", **light, returns=[(0.8, 0.3)])
+    assert np.array_equal(ts.capture(scene, code, "paper-10f0", **light, returns=listed), behind)
+    pulse = ts.Transients(np.array([1.0, 0, 0]), bin_m=1e-3)
+    assert np.allclose(ts.capture(scene, code, "paper-10f0", **light, transients=pulse), direct,
+                       atol=5 * np.sqrt(direct.max()))
+
+
+def test_two_returns_and_tails_decode(small):
+    model = ts.ForwardModel(code, small)
+    scene = np.full((4, 5), 3.0)
+    dark = small.replace(sensor={"read_noise_e": 1})
+    raw = ts.capture(scene, code, dark, signal_e_per_s=1e8, falloff=False, ambient_e_per_s=0,
+                     returns=[(1.5, 0.4)])
+    assert raw.shape[-1] == model.measurements
+    image = ts.Decoder(code, dark, method="two-return").decode(raw)
+    assert (image.returns == ts.ReturnStatus.two).all()
+    assert np.allclose(image.depth_m, 3, atol=0.02) and np.allclose(image.delay_m, 1.5, atol=0.05)
+    assert np.allclose(image.ratio, 0.4, atol=0.05)
+
+
+def test_multipath_maps_are_those_of_the_bound(small):
+    report = ts.multipath_error(code, small, delay_m=[0.8, 2], ratio=[0.1, 0.3, 0.6], tail_m=[0.5],
+                                signal_e_per_s=[1e6], ambient_e_per_s=1e3, trials=40)
+    assert report.why_no_two_returns == "" and len(report.maps) == 1
+    cells = report.maps[0].points
+    assert cells.error_m.shape == (3, 2) and report.maps[0].tails.error_m.shape == (3, 1)
+    assert cells.delay_m[0].tolist() == [0.8, 2] and cells.ratio[:, 0].tolist() == [0.1, 0.3, 0.6]
+    assert np.allclose(cells.law_m, cells.ratio * cells.delay_m / (1 + cells.ratio))
+    assert cells.law_m[1, 1] == ts.single_path_bias_m(0.3, 2)
+    assert report.maps[0].single.error_m.shape == () and np.all(cells.gain() > 0)
+    bound = ts.MultipathBound(code, small)
+    sigma = bound.sigma_m(1e6, 1e3, 0.3, 2)
+    assert sigma.shape == (60,)
+    assert bound.mae_m(sigma) == pytest.approx(cells.cramer_rao_mae_m[1, 1])
+    assert bound.tail_sigma_m(1e6, 1e3, ts.ExponentialTail(0.5, 0.3)).shape == (60,)
+
+
+def test_generators_cost_what_the_command_line_says(cli, tmp_path):
+    camera = ts.Camera("prototype", operating={"signal_e_per_s": [1e5], "ambient_e_per_s": [1e3]})
+    folder = tmp_path / "bench"
+    written = ts.export_waveforms("hamiltonian-k3", camera, folder, "keysight-arb", samples=100)
+    assert sorted(written.files) == sorted(folder.iterdir())
+    assert written.files[-1].name == "manifest.json"
+    assert written.manifest == json.loads((folder / "manifest.json").read_text())
+    assert written.camera.light.generator is not None
+    loss = ts.generator_loss("hamiltonian-k3", written.camera, trials=500)
+    assert loss.correlation_change.shape == (3,) and loss.ratio("circular") > 0.5
+    assert loss.told.of("linear").geometric_mean_m > 0 and loss.uncalibrated_ratio() > 0.5
+    sets = [word for setting in settings[1:] for word in ("--set", setting)]
+    run(cli, "export", "hamiltonian-k3", "--camera", "prototype", *sets, "--format", "keysight-arb",
+        "--samples", 100, "--no-loss", "-o", tmp_path / "said")
+    for path in written.files:
+        told = hashlib.sha256(path.read_bytes()).digest()
+        assert told == hashlib.sha256((tmp_path / "said" / path.name).read_bytes()).digest(), path
+    with pytest.raises(OSError, match="exists"):
+        ts.export_waveforms("hamiltonian-k3", camera, folder, "keysight-arb", samples=100)
+    assert "keysight-arb" in [f.name for f in ts.waveform_formats()]

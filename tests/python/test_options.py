@@ -1,0 +1,77 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Options have the names of the library's headers, none missing."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tofsmith as ts
+
+headers = Path(__file__).resolve().parents[2] / "include" / "tofsmith"
+quick = {"trials": 1000, "method": "factorize"}
+
+#: Struct, header, a call that names the options it knows when it is given `unknown`, and the fields
+#: that are given in other ways.
+structs = [
+    ("EvaluateOptions", "simulate/depth_error.hpp",
+     lambda o: ts.generator_loss("square-k4", "paper-10f0", **o), set()),
+    ("RobustnessOptions", "simulate/robustness.hpp",
+     lambda o: ts.robustness("square-k4", "paper-10f0", **o), set()),
+    ("FactorizeOptions", "design/factorize.hpp",
+     lambda o: ts.design("paper-10f0", **quick, factorize=o), set()),
+    ("OptimizeOptions", "design/optimize.hpp",
+     lambda o: ts.design("paper-10f0", **quick, optimize=o), {"seed"}),
+    ("ChipSearchOptions", "design/chip_search.hpp",
+     lambda o: ts.design("paper-10f0", **quick, search=o), {"seed", "exposures"}),
+    ("MultipathOptions", "decode/multipath_options.hpp",
+     lambda o: ts.Decoder("hamiltonian-k4", "paper-10f0", multipath=o), {"doubt"}),
+    ("ReturnPrior", "decode/multipath_options.hpp",
+     lambda o: ts.Decoder("hamiltonian-k4", "paper-10f0", multipath={"prior": o}), set()),
+]
+#: Struct, header, function or class whose keywords are its fields.
+keywords = [
+    ("EvaluateOptions", "simulate/depth_error.hpp", ts.evaluate, set()),
+    ("CaptureOptions", "simulate/capture.hpp", ts.capture, set()),
+    ("DesignOptions", "design/design.hpp", ts.design, set()),
+    ("MultipathErrorOptions", "simulate/multipath_error.hpp", ts.multipath_error, set()),
+    ("DecodeOptions", "decode/decoder.hpp", ts.Decoder, set()),
+    ("ExportOptions", "io/waveform_export.hpp", ts.export_waveforms, set()),
+]
+
+
+def fields(struct, header):
+    """Names of the members of a struct without methods' names."""
+    text = re.sub(r"//.*", "", (headers / header).read_text())
+    body = re.search(rf"\nstruct {struct} {{\n(.*?)\n}};", text, re.DOTALL).group(1)
+    names = re.findall(r"^  [\w:<>*]+ (\w+)\s*(?:=[^;]*)?;", body, re.MULTILINE)
+    assert names, struct
+    return set(names)
+
+
+@pytest.mark.parametrize("struct, header, call, elsewhere", structs, ids=[s[0] for s in structs])
+def test_every_option_can_be_given(struct, header, call, elsewhere):
+    with pytest.raises(ValueError, match="the unknown name 'unknown'; needs one of ") as refused:
+        call({"unknown": 1})
+    known = re.search(r"needs one of ([\w, ]+)", str(refused.value)).group(1).split(", ")
+    # design() gives factorize the seed of all, unless it has one of its own.
+    assert set(known) == fields(struct, header) - elsewhere
+
+
+@pytest.mark.parametrize("struct, header, of, elsewhere", keywords,
+                         ids=[f"{k[0]} of {k[2].__name__}" for k in keywords])
+def test_every_option_is_a_keyword(struct, header, of, elsewhere):
+    import inspect
+
+    parameters = set(inspect.signature(of).parameters)
+    assert fields(struct, header) - elsewhere <= parameters
+
+
+def test_every_plane_of_a_decoded_image_is_there():
+    planes = fields("DecodedView", "decode/decoded_view.hpp")
+    names = {name for name in vars(ts.DepthImage)["__dataclass_fields__"]}
+    assert names == planes
+    image = ts.decode(np.ones((1, 1, 4), np.float32), "hamiltonian-k4", "paper-10f0")
+    assert set(image.planes()) == planes - {"bin", "delay_m", "ratio", "returns"}

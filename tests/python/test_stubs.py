@@ -1,0 +1,64 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Types, stubs and docstrings are there and say what the package does."""
+
+import inspect
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import tofsmith as ts
+from tofsmith import figures, plot
+
+root = Path(__file__).resolve().parents[2]
+
+
+def run_mypy(tmp_path, *arguments):
+    environment = os.environ | {"MYPYPATH": str(Path(ts.__file__).parents[1])}
+    return subprocess.run(
+        [sys.executable, "-m", *arguments],
+        capture_output=True, text=True, cwd=tmp_path, env=environment)
+
+
+def test_types_hold(tmp_path):
+    pytest.importorskip("mypy", reason="mypy is not installed")
+    done = run_mypy(tmp_path, "mypy", "--config-file", str(root / "pyproject.toml"),
+                    "--cache-dir", str(tmp_path), "-p", "tofsmith")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_stubs_agree_with_the_compiled_part(tmp_path):
+    pytest.importorskip("mypy", reason="mypy is not installed")
+    # What pybind11 makes of any class: a metaclass, and an __init__ that refuses where there is none.
+    allowed = tmp_path / "allowed.txt"
+    allowed.write_text("tofsmith\\._tofsmith\\.[A-Z]\\w*(\\.__init__)?\n")
+    done = run_mypy(tmp_path, "mypy.stubtest", "--allowlist", str(allowed), "tofsmith._tofsmith")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def public():
+    for name in ts.__all__:
+        if name != "Interrupted":
+            yield f"tofsmith.{name}", getattr(ts, name)
+    for module in (figures, plot):
+        for name, value in vars(module).items():
+            if not name.startswith("_") and getattr(value, "__module__", "") == module.__name__:
+                yield f"{module.__name__}.{name}", value
+
+
+def test_everything_public_is_documented_and_listed():
+    for name, value in public():
+        assert inspect.getdoc(value), name
+    names = {n for n, v in vars(ts).items() if inspect.isclass(v) or inspect.isfunction(v)}
+    assert {n for n in names if not n.startswith("_")} == set(ts.__all__)
+
+
+def test_parameters_are_documented():
+    for name, value in public():
+        doc = inspect.getdoc(value) or ""
+        if "Parameters\n" in doc and inspect.isfunction(value):
+            for parameter in inspect.signature(value).parameters:
+                assert parameter in doc, f"{name}: {parameter}"
