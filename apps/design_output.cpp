@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "tofsmith/io/design_directory.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/io/scene_directory.hpp"
@@ -55,6 +57,15 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
                     estimate_text(c->error.linear.geometric_mean_m),
                     estimate_text(c->error.circular.geometric_mean_m),
                     fmt::format("{}", c->rotation_bin), c->method});
+  if (options.optimize.later)
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const Candidate* c = i == 0 ? nullptr : by_chosen_error(result, kind)[i - 1];
+      rows[i].push_back(c ? estimate_text(*c->second_return_error_m) : "second return (mm)");
+      rows[i].push_back(!c ? "as two (mm)"
+                        : std::isfinite(c->two_return_error_m->value)
+                            ? estimate_text(*c->two_return_error_m)
+                            : "");
+    }
   session.say(text_table(rows));
   if (kind == DepthErrorKind::linear)
     session.say(

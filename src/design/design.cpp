@@ -215,6 +215,9 @@ double choice_error_m(const Candidate& candidate, const Camera& camera,
                       const DesignOptions& options) {
   if (options.robust && candidate.robustness)
     return candidate.robustness->worst_calibrated_m().value;
+  if (const auto& later = options.optimize.later; later && candidate.second_return_error_m)
+    return std::pow(chosen_error_m(candidate.error, camera.operating.error), 1.0 - later->weight) *
+           std::pow(candidate.second_return_error_m->value, later->weight);
   return chosen_error_m(candidate.error, camera.operating.error);
 }
 

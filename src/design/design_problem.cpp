@@ -81,6 +81,18 @@ void require_optimizable(const Camera& camera, int exposures) {
           listed, fmt::format("must equal the {} exposures", exposures));
 }
 
+/// The camera's points, and the same with second returns where those matter.
+std::vector<LightLevel> levels_of(const Camera& camera,
+                                  const std::optional<SecondReturnGoal>& later) {
+  const std::vector<OperatingPoint> points = training_points(camera);
+  std::vector<LightLevel> levels;
+  for (const OperatingPoint& point : points)
+    levels.push_back({point, false, later ? 1.0 - later->weight : 1.0});
+  if (later)
+    for (const OperatingPoint& point : points) levels.push_back({point, true, later->weight});
+  return levels;
+}
+
 }  // namespace
 
 double suggested_shortest_pulse_s(const Camera& camera) {
@@ -117,7 +129,14 @@ std::vector<OperatingPoint> training_points(const Camera& camera) {
   return fewer.points();
 }
 
-DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples) {
+double CameraVariant::total_weight() const {
+  double total = 0.0;
+  for (const LightLevel& level : levels) total += level.weight;
+  return total;
+}
+
+DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples,
+                                  const std::optional<SecondReturnGoal>& later) {
   require(!variants.empty(), "variants", variants.size(), "must hold at least one camera");
   const Camera& camera = variants.front();
   camera.validate();
@@ -128,6 +147,10 @@ DesignProblem make_design_problem(std::span<const Camera> variants, int exposure
   problem.shortest_run_periods = shortest_run_periods(camera);
   problem.binary_modulation = camera.light.binary;
   problem.binary_demodulation = camera.sensor.binary;
+  if (later) {
+    later->validate(camera.range_m());
+    problem.later = LaterTrials{later->returns, camera.range_m()};
+  }
   for (const Camera& variant : variants) {
     variant.validate();
     require(variant.sensor.taps == camera.sensor.taps &&
@@ -137,7 +160,7 @@ DesignProblem make_design_problem(std::span<const Camera> variants, int exposure
     const int finer = camera.band_limited() ? 1 : std::clamp(camera.samples / samples_here, 1, 4);
     problem.variants.push_back({SampledCamera(variant, samples_here, exposures),
                                 SampledCamera(variant, finer * samples_here, exposures),
-                                training_points(variant)});
+                                levels_of(variant, later)});
   }
   return problem;
 }

@@ -3,6 +3,9 @@
 #include "design/judge.hpp"
 
 #include <algorithm>
+#include <limits>
+
+#include "tofsmith/simulate/second_return_error.hpp"
 
 namespace tofsmith {
 
@@ -25,6 +28,18 @@ void judge(Candidate& candidate, const Camera& camera, const DesignOptions& opti
     candidate.code = candidate.code.rotated(candidate.rotation_bin);
   }
   candidate.error = evaluate(candidate.code, camera, judging, part_of(progress, 0.5, 1.0));
+  if (const auto& later = options.optimize.later) {
+    candidate.second_return_error_m =
+        second_return_error(candidate.code, camera, later->returns, judging)
+            .of(camera.operating.error)
+            .geometric_mean_m;
+    try {
+      candidate.two_return_error_m =
+          two_return_error_m(candidate.code, camera, later->returns, judging);
+    } catch (const std::invalid_argument&) {  // too few means to tell two returns
+      candidate.two_return_error_m = Estimate{std::numeric_limits<double>::quiet_NaN(), 0.0};
+    }
+  }
   candidate.code.provenance.depth_error_m = chosen_error_m(candidate.error, camera.operating.error);
 }
 

@@ -127,6 +127,11 @@ std::string design_key(const Camera& camera, const DesignOptions& options) {
                      o.polish_steps, o.validation_trials);
   key += fmt::format("|{}|{}|{}|{}|{}|{}", c.margin_sigma, c.separation_periods, c.equal_duty,
                      c.largest_exhaustive, c.annealing_starts, c.annealing_steps);
+  if (o.later)
+    key += fmt::format("|{}|{}|{}|{}|{}|{}", o.later->returns.least_ratio,
+                       o.later->returns.largest_ratio, o.later->returns.shortest_delay_m,
+                       o.later->returns.longest_delay_m, o.later->weight,
+                       o.later->most_two_return_loss);
   if (options.target)
     for (const CorrelationTarget& t : options.target->measurements) {
       key += fmt::format("|{}|{}", t.demodulation_mean,

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tofsmith/core/random.hpp"
+#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 
@@ -37,6 +38,7 @@ DepthTrials::DepthTrials(const ForwardModel& model, const Camera& camera,
       correlation_(model),
       noise_(camera.sensor),
       decoder_(make_decoder(options.method, std::move(believed), {}, options.unwrap_weights)),
+      range_m_(camera.range_m()),
       exposure_s_(model.tap_exposure_s()),
       ambient_gain_(model.tap_ambient_gain()) {}
 
@@ -67,7 +69,7 @@ void DepthTrials::run_block(std::size_t point, IndexRange trials, std::vector<do
   true_bin.resize(count);
   decoded_bin.resize(count);
   std::vector<float> raw(count * static_cast<std::size_t>(measurements));
-  std::vector<double> value(static_cast<std::size_t>(taps)), ambient_e(value);
+  std::vector<double> value(static_cast<std::size_t>(taps)), ambient_e(value), second(value);
   for (std::size_t j = 0; j < value.size(); ++j) {
     const auto i = static_cast<Eigen::Index>(j);
     ambient_e[j] =
@@ -85,6 +87,7 @@ void DepthTrials::run_block(std::size_t point, IndexRange trials, std::vector<do
     const double signal_e_per_s = albedo * points_[point].signal_e_per_s;
 
     correlation_.at(true_bin[t], value.data());
+    if (later_) add_second_return(true_bin[t], random, value, second);
     for (std::size_t j = 0; j < value.size(); ++j) {
       const double time_s = exposure_s_[static_cast<Eigen::Index>(j)];
       double electrons =
@@ -101,8 +104,22 @@ void DepthTrials::run_block(std::size_t point, IndexRange trials, std::vector<do
   decode(raw, decoded_bin);
 }
 
+void DepthTrials::add_second_return(double true_bin, RandomStream& random,
+                                    std::vector<double>& value, std::vector<double>& second) const {
+  const double ratio = later_->ratio(random.uniform());
+  const double delay_bin = later_->delay_m(random.uniform()) / range_m_ * samples();
+  correlation_.at(wrap(true_bin + delay_bin, samples()), second.data());
+  for (std::size_t j = 0; j < value.size(); ++j) value[j] += ratio * second[j];
+}
+
 void DepthTrials::decode(const std::vector<float>& raw, std::vector<double>& decoded_bin) const {
   const auto count = static_cast<std::int64_t>(decoded_bin.size());
+  if (two_return_) {
+    two_return_->decode_depth_bins(raw.data(), count, decoded_bin.data());
+    for (double& bin : decoded_bin)
+      if (std::isnan(bin)) bin = 0.0;  // no depth: as good as any
+    return;
+  }
   std::visit(
       [&](const auto& decoder) {
         if (options_.sub_bin)

@@ -3,10 +3,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 
+#include "tofsmith/camera/second_returns.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/random.hpp"
 #include "tofsmith/decode/decode_method.hpp"
+#include "tofsmith/decode/two_return_decoder.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/simulate/fine_correlation.hpp"
 #include "tofsmith/simulate/noise.hpp"
@@ -28,6 +32,11 @@ class DepthTrials {
   DepthTrials(const ForwardModel& model, const Camera& camera, const EvaluateOptions& options,
               DecodingTable believed);
 
+  /// From now on every trial has a second return, too.
+  void add_second_returns(const SecondReturns& later) { later_ = later; }
+  /// From now on trials are decoded as two returns.
+  void decode_as(TwoReturnDecoder decoder) { two_return_.emplace(std::move(decoder)); }
+
   int samples() const { return samples_; }
   int measurements() const { return noise_.measurements(correlation_.tap_values()); }
   std::int64_t trials() const { return options_.trials; }
@@ -42,6 +51,8 @@ class DepthTrials {
  private:
   void run_block(std::size_t point, IndexRange trials, std::vector<double>& true_bin,
                  std::vector<double>& decoded_bin) const;
+  void add_second_return(double true_bin, RandomStream& random, std::vector<double>& value,
+                         std::vector<double>& second) const;
   void decode(const std::vector<float>& raw, std::vector<double>& decoded_bin) const;
 
   EvaluateOptions options_;
@@ -53,6 +64,9 @@ class DepthTrials {
   FineCorrelation correlation_;
   PixelNoise noise_;
   AnyDecoder decoder_;
+  std::optional<TwoReturnDecoder> two_return_;  ///< instead of decoder_
+  std::optional<SecondReturns> later_;
+  double range_m_;
   Eigen::VectorXd exposure_s_, ambient_gain_;  // of the tap values
 };
 
