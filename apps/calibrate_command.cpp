@@ -70,6 +70,7 @@ std::string note_lines(const std::vector<std::string>& notes) {
 Section notes_section(const std::vector<std::string>& notes) {
   Table table{.caption = "What to know of this calibration.", .columns = {{"note"}}};
   for (const std::string& note : notes) table.rows.push_back({note});
+  if (notes.empty()) table.rows.push_back({"none"});
   return {"Notes", {std::move(table)}};
 }
 

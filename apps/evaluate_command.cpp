@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "commands.hpp"
 #include "evaluation_table.hpp"
 #include "method_arguments.hpp"
@@ -36,6 +38,29 @@ struct EvaluateArguments {
   std::string output;
 };
 
+std::string trials_text(const std::vector<EvaluatedCode>& codes, const EvaluateOptions& options) {
+  std::int64_t least = codes.front().error.trials, most = 0;
+  for (const EvaluatedCode& code : codes)
+    for (const PointDepthError& point : code.error.points) {
+      least = std::min(least, point.trials);
+      most = std::max(most, point.trials);
+    }
+  if (options.target_standard_error == 0.0) return fmt::format("{} trials", most);
+  return fmt::format("{} to {} trials", least, most);
+}
+
+/// What a reader must know of points that reached the most trials before the target.
+void note_missed_targets(const Session& session, const std::vector<EvaluatedCode>& codes,
+                         const EvaluateOptions& options) {
+  for (const EvaluatedCode& code : codes)
+    if (code.error.points_short_of_target > 0)
+      session.say(fmt::format(
+          "note: {}: {} of {} operating points stay short of a standard error of {:.3g} % after "
+          "{} trials; raise --most-trials or the target",
+          code.error.code, code.error.points_short_of_target, code.error.points.size(),
+          100.0 * options.target_standard_error, options.most_trials));
+}
+
 void print(const Session& session, const Camera& camera, const std::vector<EvaluatedCode>& codes,
            const EvaluateOptions& options) {
   if (session.json) return session.print_document(evaluation_document(camera, codes, options));
@@ -44,11 +69,12 @@ void print(const Session& session, const Camera& camera, const std::vector<Evalu
   if (const auto judged = judged_codes(codes); !judged.empty())
     session.say(text_table(robustness_rows(judged)));
   session.say(fmt::format(
-      "{} trials per operating point, seed {}, N = {}, true depths {}, decoded by {}; +- is one "
+      "{} per operating point, seed {}, N = {}, true depths {}, decoded by {}; +- is one "
       "standard error; (x) is the circular error over the bound",
-      codes.empty() ? options.trials : codes.front().error.trials, options.seed, camera.samples,
+      trials_text(codes, options), options.seed, camera.samples,
       options.depth == DepthSampling::bins ? "on bins" : "anywhere in the range",
       name_of(options.method)));
+  note_missed_targets(session, codes, options);
 }
 
 /// Where to write, looked at before the long work.
@@ -80,11 +106,12 @@ std::vector<EvaluatedCode> evaluate_all(std::vector<CodeSet>& codes, const Camer
     }
     const bool is_compared = arguments.options.method == DecodeMethod::ml;
     const double end = is_compared ? middle + 0.8 * (done + 1 - middle) : done + 1;
-    EvaluatedCode code{evaluate(codes[i], camera, arguments.options,
-                                part_of(progress, middle / count, end / count)),
-                       rotation};
+    EvaluateOptions options = arguments.options;
+    options.draw_every_measurement = is_compared;
+    EvaluatedCode code{
+        evaluate(codes[i], camera, options, part_of(progress, middle / count, end / count)),
+        rotation};
     if (is_compared) {
-      EvaluateOptions options = arguments.options;
       options.method = DecodeMethod::zncc;
       code.zncc_error =
           evaluate(codes[i], camera, options, part_of(progress, end / count, (done + 1) / count));
@@ -170,10 +197,24 @@ void add_evaluate_command(CLI::App& app, Session& session) {
   command->add_option("CODE", arguments->codes, "families or code files (.code.json, .npz)")
       ->required();
   arguments->camera.add_to(*command);
-  arguments->trials =
-      command->add_option("--trials", arguments->options.trials, "trials per operating point")
-          ->check(CLI::Range(std::int64_t{2}, std::int64_t{4'000'000'000}))
-          ->capture_default_str();
+  const CLI::Range trials(std::int64_t{2}, std::int64_t{4'000'000'000});
+  arguments->trials = command
+                          ->add_option("--trials", arguments->options.trials,
+                                       "trials per operating point; with a target, at first")
+                          ->check(trials)
+                          ->capture_default_str();
+  command
+      ->add_option(
+          "--target-standard-error", arguments->options.target_standard_error,
+          "go on at every operating point until the standard error of its error (linear or "
+          "circular, as the camera's operating.error) is at most this share of it, such as "
+          "1% or 0.01")
+      ->transform(share_or_percentage(1e-5, 1.0));
+  command
+      ->add_option("--most-trials", arguments->options.most_trials,
+                   "with a target, trials per operating point after which to stop short of it")
+      ->check(trials)
+      ->capture_default_str();
   command->add_option("--seed", arguments->options.seed, "seed of all trials")
       ->capture_default_str();
   arguments->method.add_to(*command);

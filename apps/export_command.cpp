@@ -36,6 +36,14 @@ struct Product {
   std::string_view text;
 };
 
+const WaveformFormat& chosen_format(const std::string& name) {
+  try {
+    return waveform_format(name);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(fmt::format("--format: {}", error.what()));
+  }
+}
+
 /// A single file, or all files, the manifest and the report in a directory.
 bool is_one_file(const ExportArguments& arguments, const WaveformFormat& format) {
   const std::filesystem::path path = arguments.output;
@@ -98,7 +106,7 @@ void say_report(const Session& session, const std::vector<GeneratorReport>& repo
 }
 
 void run(ExportArguments& arguments, const Session& session) {
-  const WaveformFormat& format = waveform_format(arguments.options.format);
+  const WaveformFormat& format = chosen_format(arguments.options.format);
   if (!arguments.volts.empty()) {
     arguments.options.low_v = arguments.volts[0];
     arguments.options.high_v = arguments.volts[1];

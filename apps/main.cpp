@@ -138,6 +138,7 @@ int run(int argc, char** argv) {
   add_design_command(app, session);
   add_evaluate_command(app, session);
   add_export_command(app, session);
+  add_upload_command(app, session);
   add_scene_command(app, session);
   add_simulate_command(app, session);
   add_decode_command(app, session);

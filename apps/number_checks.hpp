@@ -37,4 +37,23 @@ inline CLI::Validator number_from_0_on() {
                      [](double value) { return value >= 0.0 && std::isfinite(value); });
 }
 
+/// A share in [least, most), which may be written as a percentage: "1%" becomes "0.01".
+inline CLI::Validator share_or_percentage(double least, double most) {
+  const std::string rule = fmt::format("a share in [{}, {}), such as 0.01 or 1%", least, most);
+  return {[=](std::string& text) {
+            const bool is_percentage = text.ends_with('%');
+            double value = 0.0;
+            if (!CLI::detail::lexical_cast(is_percentage ? text.substr(0, text.size() - 1) : text,
+                                           value) ||
+                !std::isfinite(value))
+              return fmt::format("found {}; must be {}", text, rule);
+            if (is_percentage) value /= 100.0;
+            if (!(value >= least && value < most))
+              return fmt::format("found {}; must be {}", text, rule);
+            text = fmt::format("{}", value);
+            return std::string();
+          },
+          "SHARE"};
+}
+
 }  // namespace tofsmith::apps

@@ -19,6 +19,7 @@ packages_build=(
   libzip-dev libopenexr-dev libpng-dev
   libembree-dev libassimp-dev  # ray casting, meshes
   libsqlite3-dev      # sweep store
+  libboost-dev        # Asio: generators in the network
   python3-plotly      # its plotly.js goes into the reports
   esbuild             # minifies it
 )

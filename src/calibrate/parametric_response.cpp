@@ -14,7 +14,7 @@ using Kind = ImpulseResponse::Kind;
 using Matrix4 = Eigen::Matrix4d;
 using Vector4 = Eigen::Vector4d;  // place [s], log of the scale [s], height, background
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Integral of the response of unit scale from the beginning to x.
 double step_response(Kind kind, double x) {

@@ -12,7 +12,7 @@
 namespace tofsmith {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Sum of h[i] exp(-2 pi j f t_i), t from the first value.
 std::complex<double> transform_at(const ResponseWindow& window, double frequency_hz) {

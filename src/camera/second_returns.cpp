@@ -15,10 +15,10 @@ void SecondReturns::validate(double range_m) const {
           largest_ratio, "must be in [least_ratio, 1]");
   require(shortest_delay_m > 0.0 && shortest_delay_m < range_m, "SecondReturns::shortest_delay_m",
           shortest_delay_m, "must be > 0 and below the range, " + std::to_string(range_m) + " m");
-  require(longest_delay_m >= shortest_delay_m && longest_delay_m < range_m,
-          "SecondReturns::longest_delay_m", longest_delay_m,
-          "must be at least shortest_delay_m and below the range, " + std::to_string(range_m) +
-              " m");
+  require(
+      longest_delay_m >= shortest_delay_m && longest_delay_m < range_m,
+      "SecondReturns::longest_delay_m", longest_delay_m,
+      "must be at least shortest_delay_m and below the range, " + std::to_string(range_m) + " m");
 }
 
 }  // namespace tofsmith

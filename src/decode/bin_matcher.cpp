@@ -31,6 +31,25 @@ void BinMatcher::match(const RawView& view, std::int64_t first, int pixels, bool
     if (tile.bin[i] < 0) decide(view, first, i, tile);
 }
 
+void BinMatcher::match_plane(PixelTile& tile) const {
+  std::fill_n(tile.error, (tile.pixels + 15) / 16 * 16, 0.0f);
+  if (search(false, tile)) return;
+  for (int i = 0; i < tile.pixels; ++i) {
+    if (tile.bin[i] >= 0) continue;
+    std::array<double, max_measurements> unit;
+    double length2 = 0.0;
+    for (int j = 0; j < exact_.rank(); ++j) {
+      const double q = tile.plane[j * pixels_per_tile + i];
+      unit[static_cast<std::size_t>(j)] = q;
+      length2 += q * q;
+    }
+    if (!std::isfinite(length2)) continue;
+    const double scale = length2 > 0.0 ? 1.0 / std::sqrt(length2) : 0.0;
+    for (int j = 0; j < exact_.rank(); ++j) unit[static_cast<std::size_t>(j)] *= scale;
+    tile.bin[i] = length2 > 0.0 ? choose(unit.data()) : distinct_.bin.front();
+  }
+}
+
 /// @returns whether all bins are proven
 bool BinMatcher::search(bool wants_rivals, PixelTile& tile) const {
   if (const auto* circle = std::get_if<CircleSearch>(&search_)) return circle->search(tile);

@@ -28,6 +28,9 @@ class BinMatcher {
   /// @param for_outputs  as of TileProjection::project
   void match(const RawView& view, std::int64_t first, int pixels, bool for_outputs,
              PixelTile& tile) const;
+  /// The same for vectors that already lie in the tile's plane and are what they are: exact. Bins
+  /// are -1 where one is not finite.
+  void match_plane(PixelTile& tile) const;
   /// Completes `rival` of a matched tile: what the search found with the bin (rank 3 and 4: for the
   /// centre of the cell; rank 2: for the bin's own direction) if it is outside the main lobe of the
   /// pixel's bin, else the best for the pixel's own vector.

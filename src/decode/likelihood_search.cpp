@@ -17,13 +17,13 @@ constexpr double cost_tie = 1e-9;
 /// peak plus `squares_lead`: weights come from one estimate for all.
 constexpr double squares_ratio = 2.0, squares_lead = 30.0;
 
+}  // namespace
+
 /// A peak over bins, and the weighted squares it leaves on the better chord beside it.
-struct Peak {
+struct LikelihoodSearch::Peak {
   std::int32_t bin = 0;
   double squares = 0.0;
 };
-
-}  // namespace
 
 /// The most promising peaks of a pixel, best first.
 class LikelihoodSearch::Peaks {

@@ -41,6 +41,7 @@ class LikelihoodSearch {
                     const std::vector<double>& fall) const;
 
  private:
+  struct Peak;
   class Peaks;
   bool estimate_weights(const double* electrons, MostLikely& result) const;
   double squares_beside(const LikelihoodPixel& pixel, std::int32_t bin, const double* weight) const;

@@ -89,6 +89,53 @@ void write(const BinRecords& records, const OutputConstants& c, const OutputStep
   }
 }
 
+/// Bins and offsets of a chunk as positions in double precision.
+HWY_INLINE void join(const std::int32_t* bin, const OutputChunk& chunk, double samples,
+                     double* depth_bin) {
+  const hn::CappedTag<double, 8> d;
+  const hn::Rebind<std::int32_t, decltype(d)> di;
+  const hn::Rebind<float, decltype(d)> df;
+  const auto zero = hn::Zero(d), all_samples = hn::Set(d, samples);
+  const auto none = hn::Set(d, std::numeric_limits<double>::quiet_NaN());
+  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d))) {
+    const auto whole = hn::PromoteTo(d, hn::LoadU(di, bin + i));
+    auto at = hn::Add(whole, hn::PromoteTo(d, hn::LoadU(df, chunk.offset + i)));
+    at = hn::Add(at, hn::IfThenElseZero(hn::Lt(at, zero), all_samples));
+    at = hn::Sub(at, hn::IfThenElseZero(hn::Ge(at, all_samples), all_samples));
+    hn::StoreU(hn::IfThenElse(hn::Lt(whole, zero), none, at), d, depth_bin + i);
+  }
+}
+
+template <int Rank>
+HWY_INLINE void find_tile_positions(const BinRecords& records, const OutputConstants& c,
+                                    const MatchedTile& tile, double* depth_bin) {
+  OutputChunk chunk;
+  const RecordLayout& layout = records.layout;
+  for (int first = 0; first < tile.pixels; first += pixels_per_chunk) {
+    chunk.pixels = std::min(tile.pixels - first, pixels_per_chunk);
+    chunk.plane = tile.plane + first;
+    find_rows(records.records, tile.bin + first, chunk.pixels, chunk.start);
+    for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(Floats())))
+      gather(records.records.data(), chunk.start + i, 0, layout.end_of_depth(), chunk.record + i);
+    refine(layout, Rank > 0 ? Rank : layout.rank, chunk);
+    join(tile.bin + first, chunk, c.samples, depth_bin + first);
+  }
+}
+
+void find_positions(const BinRecords& records, const OutputConstants& c, const MatchedTile& tile,
+                    double* depth_bin) {
+  switch (records.layout.rank) {
+    case 2:
+      return find_tile_positions<2>(records, c, tile, depth_bin);
+    case 3:
+      return find_tile_positions<3>(records, c, tile, depth_bin);
+    case 4:
+      return find_tile_positions<4>(records, c, tile, depth_bin);
+    default:
+      return find_tile_positions<0>(records, c, tile, depth_bin);
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();
@@ -97,6 +144,7 @@ HWY_AFTER_NAMESPACE();
 namespace tofsmith {
 
 HWY_EXPORT(write);
+HWY_EXPORT(find_positions);
 
 namespace {
 
@@ -162,6 +210,10 @@ void OutputKernel::write(const MatchedTile& tile, const DecodedView& planes) con
                  : steps.ambient  ? layout.end_of_light()
                                   : layout.end_of_depth();
   HWY_DYNAMIC_DISPATCH(write)(records_, constants_, steps, tile, planes);
+}
+
+void OutputKernel::find_positions(const MatchedTile& tile, double* depth_bin) const {
+  HWY_DYNAMIC_DISPATCH(find_positions)(records_, constants_, tile, depth_bin);
 }
 
 }  // namespace tofsmith

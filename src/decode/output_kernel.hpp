@@ -51,6 +51,10 @@ class OutputKernel {
   /// Writes the tile's pixels to the planes that are not null, from their first value on.
   /// @note thread-safe; allocates nothing
   void write(const MatchedTile& tile, const DecodedView& planes) const;
+  /// The best points on the chords, or the best bins where `write` would leave depth out, [bin] in
+  /// [0, N); not a number without a bin.
+  /// @param depth_bin  with room for pixels_per_tile
+  void find_positions(const MatchedTile& tile, double* depth_bin) const;
 
  private:
   BinRecords records_;

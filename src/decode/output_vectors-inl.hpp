@@ -14,16 +14,13 @@
 #include <cstring>
 #include <limits>
 
+#include "core/vector_math-inl.hpp"
 #include "decode/output_chunk.hpp"
 #include "decode/pixel_tile.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, pixels_per_chunk>;
-using Vector = hn::Vec<Floats>;
 using Mask = hn::Mask<Floats>;
 using Indices = hn::RebindToSigned<Floats>;
 using Bytes = hn::Rebind<std::uint8_t, Indices>;
@@ -31,7 +28,6 @@ using Bytes = hn::Rebind<std::uint8_t, Indices>;
 /// a b + c, rounded twice: the same with and without fused instructions.
 HWY_INLINE Vector product_plus(Vector a, Vector b, Vector c) { return hn::Add(hn::Mul(a, b), c); }
 HWY_INLINE Vector load(const float* row, int i) { return hn::LoadU(Floats(), row + i); }
-HWY_INLINE Vector all(float value) { return hn::Set(Floats(), value); }
 HWY_INLINE Vector unless(Mask is_so, Vector value) {
   return hn::IfThenElse(is_so, value, all(std::numeric_limits<float>::quiet_NaN()));
 }

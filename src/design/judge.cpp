@@ -31,11 +31,10 @@ void judge(Candidate& candidate, const Camera& camera, const DesignOptions& opti
   if (const auto& later = options.optimize.later) {
     candidate.second_return_error_m =
         second_return_error(candidate.code, camera, later->returns, judging)
-            .of(camera.operating.error)
-            .geometric_mean_m;
+            .of(camera.operating.error);
     try {
       candidate.two_return_error_m =
-          two_return_error_m(candidate.code, camera, later->returns, judging);
+          two_return_error(candidate.code, camera, later->returns, judging).circular_m;
     } catch (const std::invalid_argument&) {  // too few means to tell two returns
       candidate.two_return_error_m = Estimate{std::numeric_limits<double>::quiet_NaN(), 0.0};
     }

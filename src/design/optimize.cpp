@@ -129,11 +129,11 @@ void validate_second_returns(Finalist& finalist, const Camera& camera,
   evaluation.trials = std::clamp<std::int64_t>(options.validation_trials / points, 3000, 40000);
   evaluation.seed = combine_keys(options.seed, validation_key);
   const SecondReturns& later = options.later->returns;
-  finalist.second_return_error_m = second_return_error(finalist.code, camera, later, evaluation)
-                                       .of(camera.operating.error)
-                                       .geometric_mean_m;
+  finalist.second_return_error_m =
+      second_return_error(finalist.code, camera, later, evaluation).of(camera.operating.error);
   try {
-    finalist.two_return_error_m = two_return_error_m(finalist.code, camera, later, evaluation);
+    finalist.two_return_error_m =
+        two_return_error(finalist.code, camera, later, evaluation).circular_m;
   } catch (const std::invalid_argument&) {  // too few means to tell two returns
     finalist.two_return_error_m.value = std::numeric_limits<double>::quiet_NaN();
   }

@@ -17,14 +17,17 @@
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
+
+/// Named, for the state of a reader holds one.
+struct DiscardNpzArchive {
+  void operator()(zip_t* archive) const { zip_discard(archive); }
+};
+
 namespace {
 
 constexpr std::string_view suffix = ".npy";
 
-struct DiscardArchive {
-  void operator()(zip_t* archive) const { zip_discard(archive); }
-};
-using Archive = std::unique_ptr<zip_t, DiscardArchive>;
+using Archive = std::unique_ptr<zip_t, DiscardNpzArchive>;
 
 struct FreeSource {
   void operator()(zip_source_t* source) const { zip_source_free(source); }

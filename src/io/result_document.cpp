@@ -113,6 +113,7 @@ DepthErrorReport depth_error_from_json(const JsonReader& entry, const JsonReader
   report.circular = mean_from_json(entry.member("circular"));
   for (const JsonReader& point : entry.member("points").elements())
     report.points.push_back(point_from_json(point));
+  for (PointDepthError& point : report.points) point.trials = report.trials;
   return report;
 }
 
@@ -231,9 +232,18 @@ std::string evaluation_document(const Camera& camera, std::span<const EvaluatedC
   document["method"] = name_of(options.method);
   if (options.method == DecodeMethod::unwrap)
     document["unwrap_weights"] = name_of(options.unwrap_weights);
+  if (options.target_standard_error > 0.0) {
+    document["target_standard_error"] = options.target_standard_error;
+    document["most_trials"] = options.most_trials;
+  }
   document["codes"] = Json::array();
   for (const EvaluatedCode& code : codes) {
     Json entry = depth_error_json(code.error, code.rotation_bin);
+    if (options.target_standard_error > 0.0) {
+      entry["points_short_of_target"] = code.error.points_short_of_target;
+      for (std::size_t p = 0; p < code.error.points.size(); ++p)
+        entry["points"][p]["trials"] = code.error.points[p].trials;
+    }
     if (code.zncc_error) entry["zncc"] = zncc_json(code.error, *code.zncc_error);
     if (code.robustness) entry["robustness"] = robustness_json(*code.robustness);
     document["codes"].push_back(std::move(entry));

@@ -17,8 +17,6 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int curve_points = 480;  // of a drawn period
-
 std::string response_text(const ImpulseResponse& response) {
   switch (response.kind) {
     case ImpulseResponse::Kind::none:

@@ -17,8 +17,6 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-constexpr int curve_points = 480;
-
 std::string in_mm(const Estimate& error_m) {
   return fmt::format("{:.4g} +- {:.2g}", 1e3 * error_m.value, 1e3 * error_m.standard_error);
 }
@@ -72,7 +70,7 @@ KeyValueList description(const WaveformExport& exported) {
   };
   add("format", fmt::format("{}: {}", exported.format.name, exported.format.description));
   add("code", exported.code);
-  add("period", fmt::format("{:.9g} Hz", frequency_hz));
+  add("frequency", fmt::format("{:.9g} Hz", frequency_hz));
   for (const auto* generator : {&exported.light, &exported.sensor})
     add(generator == &exported.light ? "light" : "sensor",
         fmt::format("table of {} points, {} played, {:.6g} MS/s, {} bits{}",

@@ -8,8 +8,6 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int curve_points = 480;  // of a drawn period
-
 /// A waveform by its steps, not on a grid.
 Series stepped(const std::string& name, const Waveform& waveform, double period_ns,
                const LineStyle& style) {

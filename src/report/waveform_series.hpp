@@ -11,6 +11,8 @@
 
 namespace tofsmith {
 
+inline constexpr int curve_points = 480;  ///< of a drawn period
+
 /// `points` equal steps over [0, end), end point left out: the x of a drawn period.
 std::vector<double> axis_values(int points, double end);
 

@@ -13,40 +13,17 @@ namespace tofsmith {
 
 namespace {
 
-/// Trials after which the standard error of the linear error is about `relative` of it.
-std::int64_t foreseen_trials(double circular_error_m, double range_m, double relative,
-                             const SurfacePrecision& precision) {
-  const double needed = range_m / (4.0 * circular_error_m * relative * relative);
-  const auto most = static_cast<double>(precision.most_trials);
-  std::int64_t trials = precision.first_trials;
-  while (static_cast<double>(trials) < std::min(needed, most)) trials *= 2;
-  return std::min(trials, precision.most_trials);
-}
-
-double wanted_standard_error(const OperatingPoint& point, const SurfacePrecision& precision) {
-  const auto levels = named_levels();
-  const bool named = std::ranges::any_of(levels, [&](const NamedLevel& l) {
-    return std::abs(l.point.signal_e_per_s / point.signal_e_per_s - 1.0) < 1e-6 &&
-           l.point.ambient_e_per_s == point.ambient_e_per_s;
-  });
-  return named ? std::min(precision.named_standard_error, precision.standard_error)
-               : precision.standard_error;
-}
-
 Eigen::Index place_of(const std::vector<double>& levels, double level, const char* name) {
   for (std::size_t i = 0; i < levels.size(); ++i)
     if (std::abs(levels[i] / level - 1.0) < 1e-6) return static_cast<Eigen::Index>(i);
   reject(name, fmt::format("{}", level), "must be a light level of the grid");
 }
 
-double relative_error(const Estimate& e) { return e.standard_error / e.value; }
-
 }  // namespace
 
 SurfacePrecision surface_precision(const ReproduceContext& context) {
   if (!context.options.fast) return {.seed = context.options.seed};
   return {.standard_error = 0.1,
-          .named_standard_error = 0.1,
           .first_trials = 16000,
           .most_trials = 16000,
           .rotation_trials = 4000,
@@ -88,47 +65,32 @@ ErrorSurface measure_surface(const Contender& contender, const Camera& camera,
       best_rotation(contender.code, camera, options, part_of(progress, 0.0, 0.1)).rotation_bin;
   const CodeSet code = contender.code.rotated(surface.rotation_bin);
 
-  // 2. A first look, which tells how many trials every light level needs.
+  // 2. Every light level, with as many trials as it needs.
   options.trials = precision.first_trials;
+  options.target_standard_error = precision.standard_error;
+  options.most_trials = precision.most_trials;
   options.seed = precision.seed + 2;
-  const DepthErrorReport look = evaluate(code, camera, options, part_of(progress, 0.1, 0.15));
+  Camera judged = camera;
+  judged.operating.error = DepthErrorKind::linear;
+  const DepthErrorReport errors = evaluate(code, judged, options, part_of(progress, 0.1, 1.0));
 
-  // 3. Where that is not exact enough, the level is measured by itself.
   const auto rows = static_cast<Eigen::Index>(surface.ambient_e_per_s.size());
   const auto columns = static_cast<Eigen::Index>(surface.signal_e_per_s.size());
   for (auto* values :
        {&surface.linear_m, &surface.linear_se_m, &surface.circular_m, &surface.circular_se_m})
     values->resize(rows, columns);
-  std::vector<Estimate> linear, circular;
-  for (std::size_t p = 0; p < look.points.size(); ++p) {
-    report(progress, 0.15 + 0.85 * static_cast<double>(p) / static_cast<double>(look.points.size()),
-           contender.name);
-    PointDepthError error = look.points[p];
-    Camera at_point = camera;
-    at_point.operating.signal_e_per_s = {error.point.signal_e_per_s};
-    at_point.operating.ambient_e_per_s = {error.point.ambient_e_per_s};
-    const double wanted = wanted_standard_error(error.point, precision);
-    const std::int64_t foreseen =
-        foreseen_trials(error.circular_mde_m.value, camera.range_m(), wanted, precision);
-    options.seed = precision.seed + 3 + p;
-    options.trials = precision.first_trials;
-    while (options.trials < precision.most_trials &&
-           (options.trials < foreseen || relative_error(error.linear_mde_m) > wanted)) {
-      options.trials = std::min(std::max(foreseen, 2 * options.trials), precision.most_trials);
-      error = evaluate(code, at_point, options).points.front();
-    }
-    surface.trials += options.trials;
+  for (std::size_t p = 0; p < errors.points.size(); ++p) {
+    const PointDepthError& error = errors.points[p];
     const auto row = static_cast<Eigen::Index>(p) % rows;
     const auto column = static_cast<Eigen::Index>(p) / rows;  // points run signal by signal
     surface.linear_m(row, column) = error.linear_mde_m.value;
     surface.linear_se_m(row, column) = error.linear_mde_m.standard_error;
     surface.circular_m(row, column) = error.circular_mde_m.value;
     surface.circular_se_m(row, column) = error.circular_mde_m.standard_error;
-    linear.push_back(error.linear_mde_m);
-    circular.push_back(error.circular_mde_m);
+    surface.trials += error.trials;
   }
-  surface.linear_geometric_mean_m = geometric_mean_of(linear);
-  surface.circular_geometric_mean_m = geometric_mean_of(circular);
+  surface.linear_geometric_mean_m = errors.linear.geometric_mean_m;
+  surface.circular_geometric_mean_m = errors.circular.geometric_mean_m;
   return surface;
 }
 

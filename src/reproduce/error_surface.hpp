@@ -22,7 +22,6 @@ struct Contender {
 /// How exactly a surface is measured.
 struct SurfacePrecision {
   double standard_error = 0.02;           ///< of every value, relative, unless most_trials is less
-  double named_standard_error = 0.02;     ///< the same at the named light levels
   std::int64_t first_trials = 8000;       ///< per light level, before more are found needed
   std::int64_t most_trials = 50'000'000;  ///< per light level
   std::int64_t rotation_trials = 20000;   ///< per light level, to find the best origin
@@ -59,9 +58,7 @@ struct ErrorSurface {
 };
 
 /// Measures the contender at every light level of the camera, at its best origin of depth for the
-/// linear error. The trials that a level needs are foreseen: with uniform depth the share of trials
-/// that wrap is (circular error) / range, each costs about the range, and that scatter dominates
-/// the linear error's. Where the standard error is still too large, trials are doubled.
+/// linear error, with as many trials as EvaluateOptions::target_standard_error takes.
 ErrorSurface measure_surface(const Contender& contender, const Camera& camera,
                              const SurfacePrecision& precision, const Progress& progress = {});
 

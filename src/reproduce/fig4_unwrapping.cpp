@@ -32,7 +32,8 @@ DepthErrorReport decode_by(DecodeMethod method, UnwrapWeights weights, const Cam
                   {.trials = context.pick(100000, 4000),
                    .seed = context.options.seed,
                    .method = method,
-                   .unwrap_weights = weights});
+                   .unwrap_weights = weights,
+                   .draw_every_measurement = true});
 }
 
 std::vector<Decoded> decode_all(const ReproduceContext& context, const Progress& progress) {

@@ -17,7 +17,6 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int curve_points = 480;    // of a drawn period
 constexpr int kept_harmonics = 480;  // a Hann window leaves nothing beyond
 
 }  // namespace

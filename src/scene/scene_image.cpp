@@ -20,7 +20,7 @@ void require_plane(const Image<float>& plane, const SceneImage& scene, std::stri
   const auto pixels =
       static_cast<std::size_t>(scene.height()) * static_cast<std::size_t>(scene.width());
   require(plane.height == scene.height() && plane.width == scene.width() && plane.size() == pixels,
-          std::string(field) + " size",
+          fmt::format("{} size", field),
           fmt::format("{} x {} with {} pixels", plane.height, plane.width, plane.size()),
           fmt::format("must equal depth_m's, {} x {}", scene.height(), scene.width()));
   for (int row = 0; row < plane.height; ++row)

@@ -10,32 +10,27 @@ namespace tofsmith {
 
 BestRotation best_rotation(const CodeSet& code, const Camera& camera,
                            const EvaluateOptions& options, const Progress& progress) {
+  constexpr std::int64_t runs_at_once = 64;  // each keeps N figures
   const ForwardModel model(code, camera);
   const DepthTrials trials(model, camera, options);
-  const int samples = trials.samples();
-  std::vector<double> log_sum(static_cast<std::size_t>(samples), 0.0);
+  const std::vector<TrialRound> rounds = trials.first_rounds();
+  const std::vector<ErrorByRotation> of_point = trials.sum(
+      rounds, ErrorByRotation(trials.samples()),
+      [](ErrorByRotation& errors, const TrialBlock& block) {
+        for (std::size_t t = 0; t < block.true_bin.size(); ++t)
+          errors.add(block.true_bin[t], block.decoded_bin[t]);
+      },
+      progress, runs_at_once);
 
-  const auto points = static_cast<double>(trials.points().size());
-  for (std::size_t p = 0; p < trials.points().size(); ++p) {
-    std::vector<ErrorByRotation> of_block(static_cast<std::size_t>(trials.blocks()),
-                                          ErrorByRotation(samples));
-    trials.run(
-        p,
-        [&](const TrialBlock& block) {
-          ErrorByRotation& errors = of_block[static_cast<std::size_t>(block.block)];
-          for (std::size_t t = 0; t < block.true_bin.size(); ++t)
-            errors.add(block.true_bin[t], block.decoded_bin[t]);
-        },
-        part_of(progress, static_cast<double>(p) / points, static_cast<double>(p + 1) / points));
-    ErrorByRotation total(samples);
-    for (const ErrorByRotation& errors : of_block) total.merge(errors);
-    const std::vector<double> sums = total.sums();
+  std::vector<double> log_sum(static_cast<std::size_t>(trials.samples()), 0.0);
+  for (std::size_t p = 0; p < of_point.size(); ++p) {
+    const std::vector<double> sums = of_point[p].sums();
     for (std::size_t r = 0; r < sums.size(); ++r)
-      log_sum[r] += std::log(sums[r] * camera.bin_m() / static_cast<double>(trials.trials()));
+      log_sum[r] += std::log(sums[r] * camera.bin_m() / static_cast<double>(rounds[p].trials));
   }
-
   BestRotation best;
-  for (const double sum : log_sum) best.linear_geometric_mean_m.push_back(std::exp(sum / points));
+  for (const double sum : log_sum)
+    best.linear_geometric_mean_m.push_back(std::exp(sum / static_cast<double>(of_point.size())));
   best.rotation_bin =
       static_cast<int>(std::min_element(log_sum.begin(), log_sum.end()) - log_sum.begin());
   return best;

@@ -22,6 +22,10 @@ double bound_mae_m(const Bound& bound, const Camera& camera, const OperatingPoin
 
 void EvaluateOptions::validate() const {
   require(trials >= 2 && trials <= 4'000'000'000, "trials", trials, "must be in [2, 4e9]");
+  require(target_standard_error >= 0.0 && target_standard_error < 1.0, "target_standard_error",
+          target_standard_error, "must be in [0, 1)");
+  require(most_trials >= 2 && most_trials <= 4'000'000'000, "most_trials", most_trials,
+          "must be in [2, 4e9]");
   require(outlier_threshold_m >= 0.0, "outlier_threshold_m", outlier_threshold_m, "must be >= 0");
 }
 
@@ -33,7 +37,7 @@ DepthErrorReport evaluate(const CodeSet& code, const Camera& camera, const Evalu
   const ReceiverBound receiver(camera, code.exposures());
   const DirectTofBound direct_tof(camera);
 
-  DepthErrorReport result = trial_errors(trials, code, camera.bin_m(), options, progress);
+  DepthErrorReport result = trial_errors(trials, code, camera, options, progress);
   for (PointDepthError& error : result.points) {
     error.cramer_rao_mae_m = bound_mae_m(cramer_rao, camera, error.point);
     error.receiver_bound_mae_m = bound_mae_m(receiver, camera, error.point);

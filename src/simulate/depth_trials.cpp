@@ -2,23 +2,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulate/depth_trials.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include <array>
 #include <utility>
 
-#include "tofsmith/core/random.hpp"
-#include "tofsmith/core/units.hpp"
+#include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 
 namespace {
 
-constexpr std::int64_t trials_per_block = 512;  // even: pairs of trials stay together
+/// Where the words of albedo stand: apart from those of normals, blocks 0, 1, .., and of Poisson
+/// counts, from 2^30 on.
+constexpr std::uint32_t albedo_block = 1u << 29;
 
 EvaluateOptions with_even_trials(EvaluateOptions options) {
   options.validate();
   options.trials += options.trials % 2;
+  options.most_trials += options.most_trials % 2;
   return options;
+}
+
+/// Vector code takes whole vectors; trials past the last are drawn in vain.
+int padded(int trials) { return (trials + 15) / 16 * 16; }
+
+std::vector<float> in_floats(const Eigen::VectorXd& values) {
+  return {values.begin(), values.end()};
 }
 
 }  // namespace
@@ -30,105 +38,107 @@ DepthTrials::DepthTrials(const ForwardModel& model, const Camera& camera,
 DepthTrials::DepthTrials(const ForwardModel& model, const Camera& camera,
                          const EvaluateOptions& options, DecodingTable believed)
     : options_(with_even_trials(options)),
-      samples_(model.samples()),
       uniform_albedo_(camera.operating.uniform_albedo),
       albedo_(camera.operating.albedo),
-      dark_e_per_s_(camera.sensor.dark_current_e_per_s),
       points_(camera.operating.points()),
-      correlation_(model),
-      noise_(camera.sensor),
-      decoder_(make_decoder(options.method, std::move(believed), {}, options.unwrap_weights)),
-      range_m_(camera.range_m()),
-      exposure_s_(model.tap_exposure_s()),
-      ambient_gain_(model.tap_ambient_gain()) {}
-
-std::int64_t DepthTrials::blocks() const {
-  return (options_.trials + trials_per_block - 1) / trials_per_block;
-}
-
-void DepthTrials::run(std::size_t point, const std::function<void(const TrialBlock&)>& use,
-                      const Progress& progress) const {
-  constexpr std::int64_t blocks_between_reports = 128;
-  for (std::int64_t first = 0; first < blocks(); first += blocks_between_reports) {
-    report(progress, static_cast<double>(first) / static_cast<double>(blocks()), "depth error");
-    parallel_for(std::min(blocks_between_reports, blocks() - first), [&](std::int64_t i) {
-      const std::int64_t begin = (first + i) * trials_per_block;
-      std::vector<double> true_bin, decoded_bin;
-      run_block(point, {begin, std::min(options_.trials, begin + trials_per_block)}, true_bin,
-                decoded_bin);
-      use({first + i, true_bin, decoded_bin});
-    });
+      model_(model, camera),
+      decoder_(options.method, std::move(believed), options.unwrap_weights) {
+  const PlaneMap* map = decoder_.plane_map();
+  const bool in_plane = map != nullptr && model_.is_linear() && !options_.clip_to_open_sensor &&
+                        !options_.draw_every_measurement;
+  for (const OperatingPoint& point : points_) {
+    if (in_plane) plane_noise_.emplace_back(model_, *map, point.ambient_e_per_s);
+    mean_floor_e_.push_back(in_floats(model_.mean_floor_e(point.ambient_e_per_s)));
+    most_e_.emplace_back();
+    if (options_.clip_to_open_sensor)
+      most_e_.back() =
+          in_floats((point.signal_e_per_s + point.ambient_e_per_s) * model_.exposure_s());
   }
 }
 
-void DepthTrials::run_block(std::size_t point, IndexRange trials, std::vector<double>& true_bin,
-                            std::vector<double>& decoded_bin) const {
-  const int taps = correlation_.tap_values();
-  const int measurements = noise_.measurements(taps);
-  const auto count = static_cast<std::size_t>(trials.end - trials.begin);
-  true_bin.resize(count);
-  decoded_bin.resize(count);
-  std::vector<float> raw(count * static_cast<std::size_t>(measurements));
-  std::vector<double> value(static_cast<std::size_t>(taps)), ambient_e(value), second(value);
-  for (std::size_t j = 0; j < value.size(); ++j) {
-    const auto i = static_cast<Eigen::Index>(j);
-    ambient_e[j] =
-        exposure_s_[i] * (points_[point].ambient_e_per_s * ambient_gain_[i] + dark_e_per_s_);
-  }
-
-  float* out = raw.data();
-  for (std::size_t t = 0; t < count; ++t, out += measurements) {
-    const std::int64_t trial = trials.begin + static_cast<std::int64_t>(t);
-    RandomStream random(options_.seed, point, static_cast<std::uint32_t>(trial));
-    const double slice = (static_cast<double>(trial) + random.uniform()) /
-                         static_cast<double>(options_.trials) * samples();
-    true_bin[t] = options_.depth == DepthSampling::bins ? std::floor(slice) : slice;
-    const double albedo = uniform_albedo_ ? random.uniform() : albedo_;
-    const double signal_e_per_s = albedo * points_[point].signal_e_per_s;
-
-    correlation_.at(true_bin[t], value.data());
-    if (later_) add_second_return(true_bin[t], random, value, second);
-    for (std::size_t j = 0; j < value.size(); ++j) {
-      const double time_s = exposure_s_[static_cast<Eigen::Index>(j)];
-      double electrons =
-          noise_.draw_electrons(time_s * signal_e_per_s * value[j] + ambient_e[j], random);
-      if (options_.clip_to_open_sensor)
-        electrons =
-            std::clamp(electrons, 0.0, time_s * (signal_e_per_s + points_[point].ambient_e_per_s));
-      value[j] = noise_.convert(electrons);
-    }
-    noise_.read_out(value.data(), taps);
-    for (int i = 0; i < measurements; ++i)
-      out[i] = static_cast<float>(value[static_cast<std::size_t>(i)]);
-  }
-  decode(raw, decoded_bin);
+DepthTrials::DepthTrials(const DecodingTable& table, const OperatingPoint& light,
+                         const EvaluateOptions& options)
+    : options_(with_even_trials(options)),
+      points_{light},
+      model_(table),
+      decoder_(DecodeMethod::zncc, table, options.unwrap_weights) {
+  plane_noise_.emplace_back(model_, *decoder_.plane_map(), light.ambient_e_per_s);
 }
 
-void DepthTrials::add_second_return(double true_bin, RandomStream& random,
-                                    std::vector<double>& value, std::vector<double>& second) const {
-  const double ratio = later_->ratio(random.uniform());
-  const double delay_bin = later_->delay_m(random.uniform()) / range_m_ * samples();
-  correlation_.at(wrap(true_bin + delay_bin, samples()), second.data());
-  for (std::size_t j = 0; j < value.size(); ++j) value[j] += ratio * second[j];
+std::vector<TrialRound> DepthTrials::first_rounds() const {
+  std::vector<TrialRound> rounds;
+  for (std::size_t p = 0; p < points_.size(); ++p) rounds.push_back({p, 0, options_.trials});
+  return rounds;
 }
 
-void DepthTrials::decode(const std::vector<float>& raw, std::vector<double>& decoded_bin) const {
-  const auto count = static_cast<std::int64_t>(decoded_bin.size());
-  if (two_return_) {
-    two_return_->decode_depth_bins(raw.data(), count, decoded_bin.data());
-    for (double& bin : decoded_bin)
-      if (std::isnan(bin)) bin = 0.0;  // no depth: as good as any
+TrialBlock DepthTrials::run(const TrialRound& round, IndexRange trials, TrialTile& tile) const {
+  const auto count = static_cast<int>(trials.end - trials.begin);
+  const int drawn = padded(count);
+  const TrialStreams streams{options_.seed, round.point,
+                             static_cast<std::uint32_t>(round.first + trials.begin)};
+  tile.pixels.pixels = count;
+
+  // 1. A depth in the trial's slice, and light.
+  draw_words(streams, 0, drawn, tile.words);
+  place_depths(model_,
+               {.first = trials.begin,
+                .rows_per_trial = model_.rows() / static_cast<double>(round.trials),
+                .on_bins = options_.depth == DepthSampling::bins},
+               drawn, tile);
+  // 2. Noise of that depth and light where the decoder looks, or of every measurement; 3. decode.
+  if (draws_in_plane()) {
+    const PlaneNoise& noise = plane_noise_[round.point];
+    draw_normals(streams, noise.rank, drawn, tile);
+    draw_signal(streams, round.point, drawn, tile);
+    draw_plane(model_, noise, drawn, tile);
+    decoder_.decode_plane(options_.sub_bin, tile.pixels, tile.decoded_bin);
+  } else {
+    draw_normals(streams, model_.taps(), drawn, tile);
+    draw_signal(streams, round.point, drawn, tile);
+    draw_measurements(streams, round.point, drawn, tile);
+    decoder_.decode_raw(tile.taps, options_.sub_bin, tile.pixels, tile.decoded_bin);
+  }
+  const auto size = static_cast<std::size_t>(count);
+  return {{tile.true_bin, size}, {tile.decoded_bin, size}};
+}
+
+/// Rows of normals, from the words of block 0 on.
+void DepthTrials::draw_normals(const TrialStreams& streams, int count, int trials,
+                               TrialTile& tile) const {
+  for (int pair = 0; 2 * pair < count; ++pair) {
+    if (pair > 0 && pair % 2 == 0)
+      draw_words(streams, static_cast<std::uint32_t>(pair / 2), trials, tile.words);
+    const std::uint32_t* words = tile.words + pair % 2 * 2 * trials_per_tile;
+    float* const rows = tile.normals + 2 * pair * trials_per_tile;
+    normals_of(words, words + trials_per_tile, trials, rows, rows + trials_per_tile);
+  }
+}
+
+void DepthTrials::draw_signal(const TrialStreams& streams, std::size_t point, int trials,
+                              TrialTile& tile) const {
+  const double signal_e_per_s = points_[point].signal_e_per_s;
+  if (!uniform_albedo_) {
+    std::fill_n(tile.signal, trials, static_cast<float>(albedo_ * signal_e_per_s));
     return;
   }
-  std::visit(
-      [&](const auto& decoder) {
-        if (options_.sub_bin)
-          return decoder.decode_depth_bins(raw.data(), count, decoded_bin.data());
-        std::vector<std::int32_t> bins(decoded_bin.size());
-        decoder.decode_bins(raw.data(), count, bins.data());
-        std::copy(bins.begin(), bins.end(), decoded_bin.begin());
-      },
-      decoder_);
+  draw_words(streams, albedo_block, trials, tile.words);
+  for (int i = 0; i < trials; ++i)
+    tile.signal[i] = static_cast<float>((tile.words[i] + 0.5) * 0x1p-32 * signal_e_per_s);
+}
+
+void DepthTrials::draw_measurements(const TrialStreams& streams, std::size_t point, int trials,
+                                    TrialTile& tile) const {
+  expect_electrons(model_, mean_floor_e_[point], trials, tile);
+  if (model_.conversion().is_poisson)
+    for (int k = 0; k < model_.taps(); ++k) {
+      std::array<double, trials_per_tile> mean, count;
+      float* const row = tile.taps + k * trials_per_tile;
+      std::copy_n(row, trials, mean.begin());
+      draw_poisson(streams, k, trials, mean.data(), count.data());
+      for (std::size_t i = 0; i < static_cast<std::size_t>(trials); ++i)
+        row[i] = static_cast<float>(count[i]);
+    }
+  read_out_taps(model_, most_e_[point], trials, tile);
 }
 
 }  // namespace tofsmith

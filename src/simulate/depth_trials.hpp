@@ -2,72 +2,122 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
-#include <optional>
+#include <algorithm>
 #include <span>
+#include <vector>
 
-#include "tofsmith/camera/second_returns.hpp"
+#include "decode/trial_decoder.hpp"
+#include "simulate/trial_kernel.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/core/random.hpp"
-#include "tofsmith/decode/decode_method.hpp"
-#include "tofsmith/decode/two_return_decoder.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
-#include "tofsmith/simulate/fine_correlation.hpp"
-#include "tofsmith/simulate/noise.hpp"
 
 namespace tofsmith {
 
-/// True and decoded positions of some trials, [bin] in [0, N).
+/// True and decoded positions of an even number of trials that follow one another, [bin] in [0, N).
 struct TrialBlock {
-  std::int64_t block = 0;  ///< number of the block, 0 .. blocks() - 1
   std::span<const double> true_bin;
   std::span<const double> decoded_bin;
 };
 
-/// The Monte Carlo loop behind every depth error: draw depth and noise, decode.
+/// Trials first .. first + trials - 1 of an operating point, one in each of as many equal slices of
+/// the range.
+struct TrialRound {
+  std::size_t point = 0;
+  std::int64_t first = 0;
+  std::int64_t trials = 0;  ///< even
+};
+
+/// The Monte Carlo loop behind every depth error: draw depth and noise, decode. What a trial draws
+/// depends on the seed, its point and its number alone. A tile of trials stays in the innermost
+/// caches from its random numbers to its errors.
 class DepthTrials {
  public:
   DepthTrials(const ForwardModel& model, const Camera& camera, const EvaluateOptions& options);
   /// Decoded by what a decoder believes of the camera, of as many measurements and samples.
   DepthTrials(const ForwardModel& model, const Camera& camera, const EvaluateOptions& options,
               DecodingTable believed);
+  /// Of a table that is taken for the truth, at one light level.
+  DepthTrials(const DecodingTable& table, const OperatingPoint& light,
+              const EvaluateOptions& options);
 
-  /// From now on every trial has a second return, too.
-  void add_second_returns(const SecondReturns& later) { later_ = later; }
-  /// From now on trials are decoded as two returns.
-  void decode_as(TwoReturnDecoder decoder) { two_return_.emplace(std::move(decoder)); }
-
-  int samples() const { return samples_; }
-  int measurements() const { return noise_.measurements(correlation_.tap_values()); }
-  std::int64_t trials() const { return options_.trials; }
-  std::int64_t blocks() const;
+  int samples() const { return model_.samples(); }
+  int measurements() const { return model_.measurements(); }
   const std::vector<OperatingPoint>& points() const { return points_; }
+  /// Whether noise is drawn in the plane in which the decoder looks, not by measurement.
+  bool draws_in_plane() const { return !plane_noise_.empty(); }
 
-  /// Runs all trials of a point on all threads and hands them over block by block, an even number
-  /// of trials in each; blocks may come at the same time and in any order.
-  void run(std::size_t point, const std::function<void(const TrialBlock&)>& use,
-           const Progress& progress) const;
+  /// The trials that the options ask for at first, of every point.
+  std::vector<TrialRound> first_rounds() const;
+
+  /// What `add(sums, block)` makes of all trials of each round, on all threads. Blocks are added
+  /// within runs of trials, and runs merged by `merge(other)`, in their order whatever the threads.
+  /// @param runs_at_once  that many sums are kept
+  template <typename Sums, typename Add>
+  std::vector<Sums> sum(std::span<const TrialRound> rounds, const Sums& none, const Add& add,
+                        const Progress& progress, std::int64_t runs_at_once = 512) const;
+
+  /// Runs trials [begin, end) of a round, at most trials_per_tile and an even number, in a
+  /// workspace.
+  TrialBlock run(const TrialRound& round, IndexRange trials, TrialTile& tile) const;
 
  private:
-  void run_block(std::size_t point, IndexRange trials, std::vector<double>& true_bin,
-                 std::vector<double>& decoded_bin) const;
-  void add_second_return(double true_bin, RandomStream& random, std::vector<double>& value,
-                         std::vector<double>& second) const;
-  void decode(const std::vector<float>& raw, std::vector<double>& decoded_bin) const;
+  static constexpr std::int64_t trials_per_run = 4 * trials_per_tile;
+
+  void draw_signal(const TrialStreams& streams, std::size_t point, int trials,
+                   TrialTile& tile) const;
+  void draw_normals(const TrialStreams& streams, int count, int trials, TrialTile& tile) const;
+  void draw_measurements(const TrialStreams& streams, std::size_t point, int trials,
+                         TrialTile& tile) const;
 
   EvaluateOptions options_;
-  int samples_;
-  bool uniform_albedo_;
-  double albedo_;
-  double dark_e_per_s_;
+  bool uniform_albedo_ = false;
+  double albedo_ = 1.0;
   std::vector<OperatingPoint> points_;
-  FineCorrelation correlation_;
-  PixelNoise noise_;
-  AnyDecoder decoder_;
-  std::optional<TwoReturnDecoder> two_return_;  ///< instead of decoder_
-  std::optional<SecondReturns> later_;
-  double range_m_;
-  Eigen::VectorXd exposure_s_, ambient_gain_;  // of the tap values
+  TrialModel model_;
+  TrialDecoder decoder_;
+  std::vector<PlaneNoise> plane_noise_;  // of every point; none where it is not exact
+  std::vector<std::vector<float>> mean_floor_e_, most_e_;  // of every point: (taps)
 };
+
+template <typename Sums, typename Add>
+std::vector<Sums> DepthTrials::sum(std::span<const TrialRound> rounds, const Sums& none,
+                                   const Add& add, const Progress& progress,
+                                   std::int64_t runs_at_once) const {
+  struct Run {
+    std::size_t round;
+    IndexRange trials;
+  };
+  std::vector<Sums> total(rounds.size(), none);
+  std::vector<Run> runs;
+  std::vector<Sums> of_run;
+  std::int64_t done = 0, all = 0;
+  for (const TrialRound& round : rounds) all += round.trials;
+  const auto finish = [&] {
+    report(progress, static_cast<double>(done) / static_cast<double>(all), "depth error");
+    of_run.assign(runs.size(), none);
+    parallel_for(std::ssize(runs), [&](std::int64_t i) {
+      const Run& run_of = runs[static_cast<std::size_t>(i)];
+      Sums& sums = of_run[static_cast<std::size_t>(i)];
+      TrialTile tile;
+      for (std::int64_t begin = run_of.trials.begin; begin < run_of.trials.end;
+           begin += trials_per_tile)
+        add(sums,
+            run(rounds[run_of.round],
+                {begin, std::min<std::int64_t>(run_of.trials.end, begin + trials_per_tile)}, tile));
+    });
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      total[runs[i].round].merge(of_run[i]);
+      done += runs[i].trials.end - runs[i].trials.begin;
+    }
+    runs.clear();
+  };
+  for (std::size_t r = 0; r < rounds.size(); ++r)
+    for (std::int64_t begin = 0; begin < rounds[r].trials; begin += trials_per_run) {
+      runs.push_back({r, {begin, std::min(rounds[r].trials, begin + trials_per_run)}});
+      if (std::ssize(runs) == runs_at_once) finish();
+    }
+  if (!runs.empty()) finish();
+  return total;
+}
 
 }  // namespace tofsmith

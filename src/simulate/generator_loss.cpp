@@ -44,7 +44,7 @@ GeneratorLoss generator_loss(const CodeSet& code, const Camera& camera,
                       played_table = make_decoding_table(played, camera);
   const auto error = [&](const ForwardModel& model, const DecodingTable& believed, int part) {
     const DepthTrials trials(model, camera, options, believed);
-    return trial_errors(trials, code, camera.bin_m(), options,
+    return trial_errors(trials, code, camera, options,
                         part_of(progress, part / 3.0, (part + 1) / 3.0));
   };
   return {.told = error(told, told_table, 0),

@@ -158,7 +158,7 @@ Waveform on_clock(const Waveform& waveform, double clock_s, const Camera& camera
 
 Waveform within_power(const Waveform& modulation) {
   const double mean = modulation.mean();
-  if (mean <= 1.0) return modulation;
+  if (mean <= 1.0 + 1e-9) return modulation;  // as exactly as a code is checked
   return modulation.is_binary() && !modulation.on_intervals().empty()
              ? Waveform::binary(modulation.on_intervals(), modulation.level() / mean)
              : Waveform::sampled(modulation.cell_averages(

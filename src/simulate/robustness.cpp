@@ -26,9 +26,7 @@ class Judge {
   Estimate error_m(const CodeSet& code, const Camera& camera, const ForwardModel& model,
                    const DecodingTable& believed, const Progress& progress) const {
     const DepthTrials trials(model, camera, options_, believed);
-    return trial_errors(trials, code, camera.bin_m(), options_, progress)
-        .of(kind_)
-        .geometric_mean_m;
+    return trial_errors(trials, code, camera, options_, progress).of(kind_).geometric_mean_m;
   }
 
  private:

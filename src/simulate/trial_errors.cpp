@@ -9,67 +9,9 @@ namespace tofsmith {
 
 namespace {
 
-/// Sum of values whose order follows depth, and of the squared differences of neighbours in pairs:
-/// the variance of a mean over slices of depth (collapsed strata).
-class SlicedSum {
- public:
-  void add_pair(double first, double second) {
-    sum_ += first + second;
-    squared_differences_ += (first - second) * (first - second);
-  }
-  void merge(const SlicedSum& other) {
-    sum_ += other.sum_;
-    squared_differences_ += other.squared_differences_;
-  }
-  Estimate mean(std::int64_t count, double scale = 1.0) const {
-    const double per_value = scale / static_cast<double>(count);
-    return {sum_ * per_value, std::sqrt(squared_differences_) * per_value};
-  }
-
- private:
-  double sum_ = 0.0;
-  double squared_differences_ = 0.0;
-};
-
-struct ErrorSums {
-  SlicedSum linear, circular, outliers;
-
-  void merge(const ErrorSums& other) {
-    linear.merge(other.linear);
-    circular.merge(other.circular);
-    outliers.merge(other.outliers);
-  }
-};
-
-ErrorSums errors_of(const TrialBlock& trials, double samples, double threshold_bin) {
-  ErrorSums sums;
-  const auto linear = [&](std::size_t t) {
-    return std::abs(trials.decoded_bin[t] - trials.true_bin[t]);
-  };
-  for (std::size_t t = 0; t + 1 < trials.true_bin.size(); t += 2) {
-    const double a = linear(t), b = linear(t + 1);
-    const double circular_a = std::min(a, samples - a), circular_b = std::min(b, samples - b);
-    sums.linear.add_pair(a, b);
-    sums.circular.add_pair(circular_a, circular_b);
-    sums.outliers.add_pair(circular_a > threshold_bin, circular_b > threshold_bin);
-  }
-  return sums;
-}
-
-/// Blocks are summed in their order, whichever thread made them.
-ErrorSums sum_errors(const DepthTrials& trials, std::size_t point, double threshold_bin,
-                     const Progress& progress) {
-  std::vector<ErrorSums> of_block(static_cast<std::size_t>(trials.blocks()));
-  trials.run(
-      point,
-      [&](const TrialBlock& block) {
-        of_block[static_cast<std::size_t>(block.block)] =
-            errors_of(block, trials.samples(), threshold_bin);
-      },
-      progress);
-  ErrorSums total;
-  for (const ErrorSums& sums : of_block) total.merge(sums);
-  return total;
+Estimate mean_of_sum(double sum, double squared_differences, std::int64_t trials, double scale) {
+  const double per_trial = scale / static_cast<double>(trials);
+  return {sum * per_trial, std::sqrt(squared_differences) * per_trial};
 }
 
 DepthErrorMean mean_over_points(const std::vector<PointDepthError>& points,
@@ -79,34 +21,139 @@ DepthErrorMean mean_over_points(const std::vector<PointDepthError>& points,
   return {geometric_mean_of(errors), mean_of(errors)};
 }
 
-Progress part_for(const Progress& progress, std::size_t point, std::size_t points) {
-  const auto count = static_cast<double>(points);
-  return part_of(progress, static_cast<double>(point) / count,
-                 static_cast<double>(point + 1) / count);
+/// How many trials each point needs, round by round.
+class AdaptiveTrials {
+ public:
+  AdaptiveTrials(const Camera& camera, const EvaluateOptions& options)
+      : camera_(camera), options_(options) {}
+
+  bool is_met(const ErrorSums& sums) const {
+    const Estimate error = judged(sums);
+    return sums.trials >= foreseen_trials(sums) &&
+           error.standard_error <= options_.target_standard_error * error.value;
+  }
+
+  /// Trials to add to those of a point that does not meet the target; 0 if it may have no more.
+  std::int64_t more_trials(const ErrorSums& sums) const {
+    constexpr double margin = 1.1, least_growth = 1.5, most_growth = 16.0;
+    const auto made = static_cast<double>(sums.trials);
+    const Estimate error = judged(sums);
+    const double miss = error.standard_error / (options_.target_standard_error * error.value);
+    const double needed =
+        std::max(margin * made * miss * miss, static_cast<double>(foreseen_trials(sums)));
+    const double next = std::isfinite(needed)
+                            ? std::clamp(needed, least_growth * made, most_growth * made)
+                            : most_growth * made;
+    const auto total = std::min(static_cast<double>(options_.most_trials), next);
+    return std::max<std::int64_t>(0, static_cast<std::int64_t>((total - made) / 2)) * 2;
+  }
+
+ private:
+  Estimate judged(const ErrorSums& sums) const {
+    return camera_.operating.error == DepthErrorKind::linear ? sums.linear(camera_.bin_m())
+                                                             : sums.circular(camera_.bin_m());
+  }
+
+  /// Few trials may have met no wrap at all, and know nothing of the scatter it brings. With depths
+  /// anywhere in the range, the share that wraps is (circular error) / (2 range) at each end, and
+  /// each costs about the range: the linear error is about twice the circular one, its variance
+  /// about (circular error) x range.
+  std::int64_t foreseen_trials(const ErrorSums& sums) const {
+    if (camera_.operating.error != DepthErrorKind::linear) return 0;
+    const double circular_m = sums.circular(camera_.bin_m()).value;
+    const double target = options_.target_standard_error;
+    if (!(circular_m > 0.0)) return 0;
+    return static_cast<std::int64_t>(
+        std::min(static_cast<double>(options_.most_trials),
+                 camera_.range_m() / (4 * circular_m * target * target)));
+  }
+
+  const Camera& camera_;
+  const EvaluateOptions& options_;
+};
+
+/// Adds rounds of trials where the target is not met. @returns how many points stay short of it
+int refine(const DepthTrials& trials, const AdaptiveTrials& plan, double threshold_bin,
+           const Progress& progress, std::vector<ErrorSums>& of_point) {
+  for (double left = 1.0;; left /= 2) {
+    std::vector<TrialRound> rounds;
+    int short_of_target = 0;
+    for (std::size_t p = 0; p < of_point.size(); ++p) {
+      if (plan.is_met(of_point[p])) continue;
+      ++short_of_target;
+      if (const std::int64_t more = plan.more_trials(of_point[p]); more > 0)
+        rounds.push_back({p, of_point[p].trials, more});
+    }
+    if (rounds.empty()) return short_of_target;
+    const auto added =
+        sum_errors(trials, rounds, threshold_bin, part_of(progress, 1.0 - left, 1.0 - left / 2));
+    for (std::size_t r = 0; r < rounds.size(); ++r) of_point[rounds[r].point].merge(added[r]);
+  }
 }
 
 }  // namespace
 
-DepthErrorReport trial_errors(const DepthTrials& trials, const CodeSet& code, double bin_m,
+void ErrorSums::merge(const ErrorSums& other) {
+  sums.linear += other.sums.linear;
+  sums.circular += other.sums.circular;
+  sums.outliers += other.sums.outliers;
+  sums.linear_squares += other.sums.linear_squares;
+  sums.circular_squares += other.sums.circular_squares;
+  sums.outlier_squares += other.sums.outlier_squares;
+  trials += other.trials;
+}
+
+Estimate ErrorSums::linear(double bin_m) const {
+  return mean_of_sum(sums.linear, sums.linear_squares, trials, bin_m);
+}
+Estimate ErrorSums::circular(double bin_m) const {
+  return mean_of_sum(sums.circular, sums.circular_squares, trials, bin_m);
+}
+Estimate ErrorSums::outlier_rate() const {
+  return mean_of_sum(sums.outliers, sums.outlier_squares, trials, 1.0);
+}
+
+std::vector<ErrorSums> sum_errors(const DepthTrials& trials, std::span<const TrialRound> rounds,
+                                  double threshold_bin, const Progress& progress) {
+  return trials.sum(
+      rounds, ErrorSums{},
+      [&](ErrorSums& total, const TrialBlock& block) {
+        const auto count = static_cast<int>(block.true_bin.size());
+        total.merge({sum_errors(block.true_bin.data(), block.decoded_bin.data(), count,
+                                trials.samples(), threshold_bin),
+                     count});
+      },
+      progress);
+}
+
+DepthErrorReport trial_errors(const DepthTrials& trials, const CodeSet& code, const Camera& camera,
                               const EvaluateOptions& options, const Progress& progress) {
+  const double bin_m = camera.bin_m(), threshold_bin = options.outlier_threshold_m / bin_m;
+  const bool is_adaptive = options.target_standard_error > 0.0;
+  std::vector<ErrorSums> of_point =
+      sum_errors(trials, trials.first_rounds(), threshold_bin,
+                 is_adaptive ? part_of(progress, 0.0, 0.1) : progress);
+
   DepthErrorReport result;
+  if (is_adaptive)
+    result.points_short_of_target = refine(trials, AdaptiveTrials(camera, options), threshold_bin,
+                                           part_of(progress, 0.1, 1.0), of_point);
   result.code = code.name();
   result.exposures = code.exposures();
   result.taps = code.taps();
   result.measurements = trials.measurements();
   result.samples = code.samples();
-  result.trials = trials.trials();
   result.seed = options.seed;
   result.outlier_threshold_m = options.outlier_threshold_m;
-
-  for (std::size_t p = 0; p < trials.points().size(); ++p) {
-    const ErrorSums sums = sum_errors(trials, p, options.outlier_threshold_m / bin_m,
-                                      part_for(progress, p, trials.points().size()));
+  for (std::size_t p = 0; p < of_point.size(); ++p) {
+    const ErrorSums& sums = of_point[p];
     PointDepthError error;
     error.point = trials.points()[p];
-    error.linear_mde_m = sums.linear.mean(trials.trials(), bin_m);
-    error.circular_mde_m = sums.circular.mean(trials.trials(), bin_m);
-    error.outlier_rate = sums.outliers.mean(trials.trials());
+    error.trials = sums.trials;
+    error.linear_mde_m = sums.linear(bin_m);
+    error.circular_mde_m = sums.circular(bin_m);
+    error.outlier_rate = sums.outlier_rate();
+    result.trials = std::max(result.trials, sums.trials);
     result.points.push_back(error);
   }
   result.linear = mean_over_points(result.points, &PointDepthError::linear_mde_m);

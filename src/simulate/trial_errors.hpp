@@ -6,9 +6,25 @@
 
 namespace tofsmith {
 
+/// Sums of errors over trials in pairs of neighbouring slices: means, and their variance (collapsed
+/// strata).
+struct ErrorSums {
+  TileSums sums;
+  std::int64_t trials = 0;
+
+  void merge(const ErrorSums& other);
+  Estimate linear(double bin_m) const;
+  Estimate circular(double bin_m) const;
+  Estimate outlier_rate() const;
+};
+
+/// Errors of every round; outliers are circular errors beyond the threshold.
+std::vector<ErrorSums> sum_errors(const DepthTrials& trials, std::span<const TrialRound> rounds,
+                                  double threshold_bin, const Progress& progress);
+
 /// Depth errors at every point of the trials, and their means; bounds are left at 0.
-/// @param code  the one the trials are of
-DepthErrorReport trial_errors(const DepthTrials& trials, const CodeSet& code, double bin_m,
+/// @param code, camera  those that the trials are of
+DepthErrorReport trial_errors(const DepthTrials& trials, const CodeSet& code, const Camera& camera,
                               const EvaluateOptions& options, const Progress& progress);
 
 }  // namespace tofsmith

@@ -67,6 +67,10 @@ std::string item_key(std::string_view setup, const OperatingRange& light,
                                  unwraps ? name_of(options.unwrap_weights) : std::string_view(),
                                  options.trials, options.seed, setup);
   append(text, "outlier ", {&options.outlier_threshold_m, 1});
+  if (options.target_standard_error > 0.0) {
+    const double goal[] = {options.target_standard_error, static_cast<double>(options.most_trials)};
+    append(text, "target ", goal);
+  }
   append(text, "signal ", light.signal_e_per_s);
   append(text, "ambient ", light.ambient_e_per_s);
   append(text, "albedo ", {&light.albedo, 1});

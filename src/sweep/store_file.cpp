@@ -139,7 +139,8 @@ SqliteDatabase open_store_file(const std::filesystem::path& path, const std::str
     throw IoError(path.string(),
                   fmt::format("is in WAL mode, which breaks on a network file system ({}); copy it "
                               "to a disk of this machine, or merge it there into a store that can "
-                              "be used here: tofsmith sweep merge NEW.sqlite {}",
+                              "be used here: tofsmith sweep merge NEW.sqlite {}; or give every "
+                              "machine a store and a part of the work: --shard i/n",
                               network, path.filename().string()));
   SqliteDatabase database(path, SqliteDatabase::Access::write);
   create_if_empty(database, target);

@@ -27,14 +27,20 @@ constexpr std::array combinations = {CombineWord{"product", SweepCombination::pr
                                      CombineWord{"zip", SweepCombination::zip}};
 
 void read_options(TableReader& table, EvaluateOptions& options) {
-  std::uint64_t trials = static_cast<std::uint64_t>(options.trials);
+  auto trials = static_cast<std::uint64_t>(options.trials);
+  auto most_trials = static_cast<std::uint64_t>(options.most_trials);
   table.choice("method", options.method, Choices<DecodeMethod>(methods));
   table.choice("unwrap_weights", options.unwrap_weights, Choices<UnwrapWeights>(weights));
   table.value("trials", trials);
+  table.value("target_standard_error", options.target_standard_error);
+  table.value("most_trials", most_trials);
   table.value("seed", options.seed);
   table.value("outlier_threshold_m", options.outlier_threshold_m);
   options.trials = static_cast<std::int64_t>(trials);
-  for (const std::string_view key : {"trials", "outlier_threshold_m"}) try {
+  options.most_trials = static_cast<std::int64_t>(most_trials);
+  for (const std::string_view key :
+       {"trials", "target_standard_error", "most_trials", "outlier_threshold_m"})
+    try {
       options.validate();
     } catch (const std::invalid_argument& error) {
       if (std::string_view(error.what()).starts_with(key)) table.fail(key, error.what());

@@ -57,7 +57,7 @@ class Export(CommandLineTest):
 
     def test_wrong_usage(self):
         for arguments, code, words in (
-                (["--format", "tek-wmf", "-o", "d"], 1, ["tek-wfm", "did you mean tek-wfm?"]),
+                (["--format", "tek-wmf", "-o", "d"], 2, ["tek-wfm", "did you mean tek-wfm?"]),
                 (["--format", "tek-tfw", "--samples", "999999", "-o", "d"], 1, ["131072"]),
                 (["--format", "tek-tfw", "--bits", "99", "-o", "d"], 1, ["bits = 99", "[1, 14]"]),
                 (["--format", "tek-wfm", "--samples", "301", "--periods", "1", "-o", "d"], 1,

@@ -16,7 +16,10 @@ Estimate error_of(const char* code, const char* camera_name, OperatingPoint poin
   camera.operating.signal_e_per_s = {point.signal_e_per_s};
   camera.operating.ambient_e_per_s = {point.ambient_e_per_s};
   return evaluate(build_family(code, camera), camera,
-                  {.trials = 20000, .method = method, .unwrap_weights = weights})
+                  {.trials = 20000,
+                   .method = method,
+                   .unwrap_weights = weights,
+                   .draw_every_measurement = true})
       .points[0]
       .circular_mde_m;
 }

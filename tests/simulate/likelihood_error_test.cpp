@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "simulate/depth_trials.hpp"
 #include "tofsmith/core/statistics.hpp"
@@ -20,20 +21,20 @@ Camera camera_at(OperatingPoint point, std::vector<double> exposure_s = {}) {
   return camera;
 }
 
-/// Circular error [bin] of every trial of the camera's first operating point.
+/// Circular error [bin] of every trial of the camera's first operating point, on the same noise.
 std::vector<double> errors_bin(const CodeSet& code, const Camera& camera, DecodeMethod method) {
+  constexpr std::int64_t count = 10240;
   const ForwardModel model(code, camera);
-  const DepthTrials trials(model, camera, {.trials = 10240, .method = method});
-  std::vector<double> errors(10240);
-  trials.run(0,
-             [&](const TrialBlock& block) {
-               const std::size_t first = static_cast<std::size_t>(block.block) * 512;
-               for (std::size_t i = 0; i < block.true_bin.size(); ++i)
-                 errors[first + i] =
-                     std::abs(circular_difference(block.decoded_bin[i], block.true_bin[i],
-                                                  static_cast<double>(trials.samples())));
-             },
-             {});
+  const DepthTrials trials(model, camera,
+                           {.trials = count, .method = method, .draw_every_measurement = true});
+  std::vector<double> errors;
+  const auto tile = std::make_unique<TrialTile>();
+  for (std::int64_t first = 0; first < count; first += trials_per_tile) {
+    const TrialBlock block = trials.run({0, 0, count}, {first, first + trials_per_tile}, *tile);
+    for (std::size_t i = 0; i < block.true_bin.size(); ++i)
+      errors.push_back(std::abs(circular_difference(block.decoded_bin[i], block.true_bin[i],
+                                                    static_cast<double>(trials.samples()))));
+  }
   return errors;
 }
 

@@ -42,7 +42,9 @@ TEST(WorkList, AKeyDependsOnAllThatDeterminesTheResult) {
       axis("light.peak_factor", "12"),
       axis("sensor.read_noise_e", "5"),
       axis("light.impulse_response.f_max_hz", "1e8"),
-      "outlier_threshold_m = 0.25\n"};
+      "outlier_threshold_m = 0.25\n",
+      "target_standard_error = 0.01\n",
+      "target_standard_error = 0.01\nmost_trials = 1000\n"};
   std::set<std::string> keys;
   for (const std::string& text : texts) keys.insert(key_of(text));
   EXPECT_EQ(keys.size(), texts.size());
@@ -51,6 +53,7 @@ TEST(WorkList, AKeyDependsOnAllThatDeterminesTheResult) {
 TEST(WorkList, AKeyDependsOnNothingElse) {
   EXPECT_EQ(key_of(""), key_of("camera = \"paper-10f0\"\nseed = 1\n"));
   EXPECT_EQ(key_of(""), key_of(axis("name", "\"other\"")));
+  EXPECT_EQ(key_of(""), key_of("most_trials = 1000\n"));  // without a target
   EXPECT_EQ(key_of(""), key_of(axis("unwrap_weights", "\"frequency\"")));
   EXPECT_EQ(key_of(axis("signal_e_per_s", "5e3")), key_of(axis("signal_e_per_s", "5000, 1")));
 }

@@ -21,7 +21,8 @@ enum class DepthSampling {
 
 /// How depth error is measured.
 struct EvaluateOptions {
-  std::int64_t trials = 20000;       ///< per operating point, 2 .. 4e9; odd numbers are rounded up
+  /// Per operating point, 2 .. 4e9; odd numbers are rounded up. With a target: at first.
+  std::int64_t trials = 20000;
   std::uint64_t seed = 1;            ///< of all trials
   double outlier_threshold_m = 0.5;  ///< circular errors beyond are outliers [m], >= 0
   bool sub_bin = true;               ///< decode between bins; else to the nearest bin
@@ -30,6 +31,13 @@ struct EvaluateOptions {
   bool clip_to_open_sensor = false;
   DecodeMethod method = DecodeMethod::zncc;
   UnwrapWeights unwrap_weights = UnwrapWeights::variance;  ///< of DecodeMethod::unwrap
+  /// Trials go on at a point, in rounds, until the standard error of the error that the camera is
+  /// judged by (linear or circular) is at most this share of it, [0, 1); 0: no target.
+  double target_standard_error = 0.0;
+  std::int64_t most_trials = 50'000'000;  ///< per operating point with a target, >= 2, <= 4e9
+  /// Draw the noise of every measurement even where it could be drawn in the plane that ZNCC looks
+  /// at: methods are so compared on the same noise.
+  bool draw_every_measurement = false;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
@@ -38,6 +46,7 @@ struct EvaluateOptions {
 /// Depth error at one operating point.
 struct PointDepthError {
   OperatingPoint point;
+  std::int64_t trials = 0;              ///< made
   Estimate linear_mde_m;                ///< mean |decoded - true|
   Estimate circular_mde_m;              ///< mean of the shorter way round the range
   Estimate outlier_rate;                ///< share of circular errors beyond the threshold
@@ -59,7 +68,8 @@ struct DepthErrorReport {
   int taps = 0;
   int measurements = 0;  ///< that leave the sensor
   int samples = 0;
-  std::int64_t trials = 0;  ///< made, per operating point
+  std::int64_t trials = 0;         ///< made per operating point, with a target: at most
+  int points_short_of_target = 0;  ///< that reached most_trials first
   std::uint64_t seed = 0;
   double outlier_threshold_m = 0.0;
   std::vector<PointDepthError> points;  ///< in the order of OperatingRange::points()
@@ -72,14 +82,20 @@ struct DepthErrorReport {
 
 /// Monte Carlo depth error at every operating point of the camera, with bounds beside it.
 ///
-/// Trial t of point p draws from the stream (seed, p, t): first its depth, uniform on the t-th of
-/// `trials` equal slices of the range, then its albedo if that is uniform, then the noise of one
-/// tap after the other. Codes are so compared on the same depths and the same noise. Standard
-/// errors come from the differences of trials in neighbouring slices; they hold for the sliced
-/// depths (and err on the large side).
+/// Trial t of point p draws from the stream (seed, p, t) alone: its depth, uniform on the t-th of
+/// `trials` equal slices of the range, its albedo if that is uniform, and its noise. Codes are so
+/// compared on the same depths. Noise is normal or Poisson as the sensor says, of the variance of
+/// that depth. Where all that follows is linear and ZNCC decodes, normal noise is drawn in the
+/// plane that ZNCC looks at, with the covariance it has there: the same distribution from fewer
+/// numbers. Standard errors come from the differences of trials in neighbouring slices; they hold
+/// for the sliced depths (and err on the large side).
+///
+/// With a target, a point gets further rounds of trials, each sliced by itself, at least half as
+/// many again as it has. Where the error is linear, as many are made as the wraps foreseen from the
+/// circular error need, whether or not any were met.
 /// @throws std::invalid_argument if the camera or the options are invalid, the code does not fit or
 ///         the method cannot decode it; Interrupted if progress says so
-/// @note same bits for any number of threads
+/// @note same bits for any number of threads, on one dispatch_target()
 DepthErrorReport evaluate(const CodeSet& code, const Camera& camera,
                           const EvaluateOptions& options = {}, const Progress& progress = {});
 

@@ -7,18 +7,28 @@
 
 namespace tofsmith {
 
-/// evaluate() where every trial has a second return: error of the direct depth, decoded as if there
-/// were one return. Depths are those of evaluate(); bounds are left at 0.
-/// @throws std::invalid_argument as evaluate(); Interrupted
-DepthErrorReport second_return_error(const CodeSet& code, const Camera& camera,
-                                     const SecondReturns& later,
-                                     const EvaluateOptions& options = {},
-                                     const Progress& progress = {});
+/// Error of the direct depth [m]: geometric means over the operating points of mean |error|.
+struct SecondReturnError {
+  Estimate linear_m, circular_m;
 
-/// The same decoded as two returns: geometric mean of the circular error over the operating points
-/// [m].
+  const Estimate& of(DepthErrorKind kind) const {
+    return kind == DepthErrorKind::linear ? linear_m : circular_m;
+  }
+};
+
+/// Error where every pixel has a second return, decoded as if there were one, by zncc. Trial t of a
+/// point draws depth, uniform on the t-th slice of the range, albedo, return and noise from a
+/// stream of its own. Of the options, trials (per point) and seed count.
+/// @throws std::invalid_argument as evaluate(); Interrupted
+SecondReturnError second_return_error(const CodeSet& code, const Camera& camera,
+                                      const SecondReturns& later,
+                                      const EvaluateOptions& options = {},
+                                      const Progress& progress = {});
+
+/// The same trials, decoded as two returns.
 /// @throws std::invalid_argument also for codes that cannot tell two returns
-Estimate two_return_error_m(const CodeSet& code, const Camera& camera, const SecondReturns& later,
-                            const EvaluateOptions& options = {}, const Progress& progress = {});
+SecondReturnError two_return_error(const CodeSet& code, const Camera& camera,
+                                   const SecondReturns& later, const EvaluateOptions& options = {},
+                                   const Progress& progress = {});
 
 }  // namespace tofsmith

@@ -16,7 +16,7 @@ namespace tofsmith {
 /// @param light   S in multiples of what the table was measured with, A in e/s
 /// @param trials  >= 2; odd numbers are rounded up
 /// @throws std::invalid_argument if the table or the number of trials is invalid
-/// @note same bits for any number of threads
+/// @note same bits for any number of threads, on one dispatch_target()
 Estimate table_depth_error_m(const DecodingTable& table, const OperatingPoint& light,
                              std::int64_t trials = 20000, std::uint64_t seed = 1);
 

@@ -35,7 +35,7 @@ enum class SweepCombination {
 ///     set = ["samples=120"]        # keys of the camera that are other than there
 ///     codes = ["hamiltonian-k4", "mine.code.json"]   # or code = "hamiltonian-k{exposures}"
 ///     method = "zncc"
-///     trials = 20000
+///     trials = 20000               # or target_standard_error = 0.01, most_trials = 50000000
 ///     seed = 1
 ///     outlier_threshold_m = 0.5
 ///     combine = "product"

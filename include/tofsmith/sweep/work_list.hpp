@@ -12,7 +12,7 @@
 namespace tofsmith {
 
 /// Changes whenever the same settings give other results, so that old stores are not trusted.
-inline constexpr int sweep_result_version = 1;
+inline constexpr int sweep_result_version = 2;
 
 /// One depth error to find.
 struct WorkItem {

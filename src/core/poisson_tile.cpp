@@ -1,0 +1,250 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Random123/philox.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/random_tile.hpp"
+
+#ifndef TOFSMITH_CORE_POISSON_TILE_CONSTANTS
+#define TOFSMITH_CORE_POISSON_TILE_CONSTANTS
+namespace tofsmith {
+namespace {
+constexpr double least_rejection_mean = 10.0;
+constexpr double least_stirling_count = 16.0;
+}  // namespace
+}  // namespace tofsmith
+#endif
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/poisson_tile.cpp"
+#include <hwy/foreach_target.h>
+// Highway asks for its own headers after foreach_target.
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace tofsmith {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Doubles = hn::CappedTag<double, 8>;
+using Double = hn::Vec<Doubles>;
+
+HWY_INLINE Double all(double value) { return hn::Set(Doubles(), value); }
+
+/// Uniform in (0, 1).
+HWY_INLINE Double open_uniform(const std::uint32_t* word) {
+  const Doubles d;
+  const hn::Rebind<std::uint32_t, Doubles> narrow;
+  const auto wide = hn::PromoteTo(hn::RebindToUnsigned<Doubles>(), hn::LoadU(narrow, word));
+  const Double number = hn::ConvertTo(d, hn::BitCast(hn::RebindToSigned<Doubles>(), wide));
+  return hn::Mul(hn::Add(number, all(0.5)), all(0x1p-32));
+}
+
+/// A vector of attempts of PTRS.
+struct Attempt {
+  HWY_INLINE Attempt(const std::uint32_t* u_word, const std::uint32_t* v_word, const double* means)
+      : mean(hn::Max(hn::LoadU(Doubles(), means), all(least_rejection_mean))),
+        b(hn::MulAdd(all(2.53), hn::Sqrt(mean), all(0.931))),
+        a(hn::MulAdd(all(0.02483), b, all(-0.059))),
+        v(open_uniform(v_word)) {
+    const Double u = hn::Sub(open_uniform(u_word), all(0.5));
+    us = hn::Sub(all(0.5), hn::Abs(u));
+    const Double slope = hn::Add(hn::Div(hn::Add(a, a), us), b);
+    k = hn::Floor(hn::Add(hn::MulAdd(slope, u, mean), all(0.43)));
+  }
+  /// Accepted without looking at the density, v <= 0.9277 - 3.6224 / (b - 2): four in five.
+  HWY_INLINE auto is_quick() const {
+    const Double room = hn::Sub(b, all(2.0));
+    const auto is_low = hn::Le(hn::Mul(v, room), hn::MulAdd(all(0.9277), room, all(-3.6224)));
+    return hn::And(hn::Ge(us, all(0.07)), is_low);
+  }
+  /// Accepted by the density; for k >= 16, where Stirling's series is exact in double precision.
+  HWY_INLINE auto is_below_density() const {
+    const Doubles d;
+    const Double inverse_alpha = hn::Add(all(1.1239), hn::Div(all(1.1328), hn::Sub(b, all(3.4))));
+    const Double hat = hn::Add(hn::Div(a, hn::Mul(us, us)), b);
+    const Double height = hn::Div(hn::Mul(v, inverse_alpha), hat);
+    const Double n = hn::Max(k, all(16.0)), r = hn::Div(all(1.0), n), r2 = hn::Mul(r, r);
+    Double series = hn::MulAdd(r2, all(-1.0 / 1680), all(1.0 / 1260));
+    series = hn::NegMulAdd(r2, series, all(1.0 / 360));
+    series = hn::Mul(r, hn::NegMulAdd(r2, series, all(1.0 / 12)));
+    // ln height <= n ln(mean / n) - mean + n - ln(2 pi n) / 2 - series
+    const Double scaled = hn::Mul(height, hn::Sqrt(n));
+    Double right = hn::MulAdd(n, hn::Log(d, hn::Mul(mean, r)), hn::Sub(n, mean));
+    right = hn::Sub(hn::Sub(right, all(0.91893853320467274178)), series);
+    return hn::Le(hn::Log(d, scaled), right);
+  }
+
+  Double mean, b, a, v, us, k;
+};
+
+template <typename Mask>
+HWY_INLINE void store_mask(Mask mask, std::uint8_t* is_so) {
+  alignas(64) double one[8];
+  hn::Store(hn::IfThenElseZero(mask, all(1.0)), Doubles(), one);
+  for (std::size_t lane = 0; lane < hn::Lanes(Doubles()); ++lane) is_so[lane] = one[lane] > 0.0;
+}
+
+/// First attempts of all; means below 10 come out as some number, to be drawn otherwise.
+void quick_poisson(const std::uint32_t* u_word, const std::uint32_t* v_word, int trials,
+                   const double* mean, double* count, std::uint8_t* is_accepted) {
+  for (int i = 0; i < trials; i += static_cast<int>(hn::Lanes(Doubles()))) {
+    const Attempt attempt(u_word + i, v_word + i, mean + i);
+    hn::StoreU(attempt.k, Doubles(), count + i);
+    store_mask(attempt.is_quick(), is_accepted + i);
+  }
+}
+
+/// Attempts and whether they are accepted; where the count is below 16, that is not known.
+void full_poisson(const std::uint32_t* u_word, const std::uint32_t* v_word, int trials,
+                  const double* mean, double* count, std::uint8_t* is_accepted) {
+  for (int i = 0; i < trials; i += static_cast<int>(hn::Lanes(Doubles()))) {
+    const Attempt attempt(u_word + i, v_word + i, mean + i);
+    hn::StoreU(attempt.k, Doubles(), count + i);
+    const auto is_out = hn::And(hn::Lt(attempt.us, all(0.013)), hn::Gt(attempt.v, attempt.us));
+    store_mask(hn::Or(attempt.is_quick(), hn::AndNot(is_out, attempt.is_below_density())),
+               is_accepted + i);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tofsmith
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tofsmith {
+
+HWY_EXPORT(quick_poisson);
+HWY_EXPORT(full_poisson);
+
+namespace {
+
+constexpr std::uint32_t first_poisson_block = 1u << 30;
+constexpr std::uint32_t blocks_per_draw = 1u << 18;
+
+std::uint32_t block_of(int draw, std::uint32_t number) {
+  return first_poisson_block + static_cast<std::uint32_t>(draw) * blocks_per_draw + number;
+}
+
+/// ln n! of n < 16.
+double log_factorial(double n) {
+  static const std::array<double, 16> table = [] {
+    std::array<double, 16> values{};
+    for (std::size_t i = 2; i < values.size(); ++i)
+      values[i] = values[i - 1] + std::log(static_cast<double>(i));
+    return values;
+  }();
+  return table[static_cast<std::size_t>(n)];
+}
+
+double open_uniform(std::uint32_t word) { return (word + 0.5) * 0x1p-32; }
+
+/// Whether an attempt that came out at k < 16 is accepted.
+bool is_few_accepted(double mean, double k, std::uint32_t u_word, std::uint32_t v_word) {
+  const double us = 0.5 - std::abs(open_uniform(u_word) - 0.5), v = open_uniform(v_word);
+  const double b = 0.931 + 2.53 * std::sqrt(mean), a = -0.059 + 0.02483 * b;
+  if (us >= 0.07 && v <= 0.9277 - 3.6224 / (b - 2)) return true;
+  if (k < 0.0 || (us < 0.013 && v > us)) return false;
+  const double inverse_alpha = 1.1239 + 1.1328 / (b - 3.4);
+  return std::log(v * inverse_alpha / (a / (us * us) + b)) <=
+         k * std::log(mean) - mean - log_factorial(k);
+}
+
+/// Words of one stream, scalar.
+std::array<std::uint32_t, 4> words_of(const TrialStreams& streams, std::uint32_t block, int i) {
+  const r123::Philox4x32::ctr_type counter = {
+      {block, streams.first_trial + static_cast<std::uint32_t>(i),
+       static_cast<std::uint32_t>(streams.work_item),
+       static_cast<std::uint32_t>(streams.work_item >> 32)}};
+  const r123::Philox4x32::key_type key = {
+      {static_cast<std::uint32_t>(streams.seed), static_cast<std::uint32_t>(streams.seed >> 32)}};
+  const auto words = r123::Philox4x32()(counter, key);
+  return {words[0], words[1], words[2], words[3]};
+}
+
+/// Smallest k whose distribution function reaches a uniform number of 53 bits.
+double by_inversion(double mean, std::uint32_t high, std::uint32_t low) {
+  const double u = static_cast<double>(((std::uint64_t{high} << 32) | low) >> 11) * 0x1p-53;
+  double probability = std::exp(-mean), rest = u - probability, k = 0.0;
+  while (rest >= 0.0 && k < 200.0) {
+    probability *= mean / ++k;
+    rest -= probability;
+  }
+  return k;
+}
+
+/// Trials whose count is still open, side by side.
+struct OpenTrials {
+  int size = 0;
+  std::array<int, trials_per_tile> trial;
+  std::array<double, trials_per_tile> mean, count;
+  alignas(64) std::array<std::uint32_t, trials_per_tile> u_word, v_word;
+  std::array<std::uint8_t, trials_per_tile> is_accepted;
+
+  void add(int i, double mean_) {
+    trial[static_cast<std::size_t>(size)] = i;
+    mean[static_cast<std::size_t>(size++)] = mean_;
+  }
+  /// One attempt of each; what is accepted goes to `counts`, the others stay.
+  void attempt(double* counts) {
+    for (std::size_t i = static_cast<std::size_t>(size); i % 8 != 0; ++i) {
+      mean[i] = least_rejection_mean;  // whole vectors
+      u_word[i] = v_word[i] = 0;
+    }
+    HWY_DYNAMIC_DISPATCH(full_poisson)
+    (u_word.data(), v_word.data(), size, mean.data(), count.data(), is_accepted.data());
+    const int before = size;
+    size = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(before); ++i) {
+      const bool is_few = count[i] < least_stirling_count;
+      if (is_few ? is_few_accepted(mean[i], count[i], u_word[i], v_word[i]) : is_accepted[i] != 0)
+        counts[trial[i]] = count[i];
+      else
+        add(trial[i], mean[i]);
+    }
+  }
+};
+
+}  // namespace
+
+void draw_poisson(const TrialStreams& streams, int draw, int trials, const double* mean,
+                  double* count) {
+  alignas(64) std::uint32_t words[4 * trials_per_tile];
+  std::uint8_t is_accepted[trials_per_tile];
+  draw_words(streams, block_of(draw, 0), trials, words);
+  HWY_DYNAMIC_DISPATCH(quick_poisson)
+  (words, words + trials_per_tile, trials, mean, count, is_accepted);
+
+  OpenTrials open;
+  for (int i = 0; i < trials; ++i) {
+    if (mean[i] < least_rejection_mean)
+      count[i] = mean[i] > 0.0 ? by_inversion(mean[i], words[i], words[trials_per_tile + i]) : 0.0;
+    else if (is_accepted[i] == 0)
+      open.add(i, mean[i]);
+  }
+  for (std::uint32_t attempt = 0; open.size > 0; ++attempt) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(open.size); ++i) {
+      const int trial = open.trial[i];
+      const std::uint32_t first = attempt % 2 * 2;
+      const auto word = [&](std::uint32_t w) {
+        return words[static_cast<int>(w) * trials_per_tile + trial];
+      };
+      if (attempt < 2) {
+        open.u_word[i] = word(first);
+        open.v_word[i] = word(first + 1);
+      } else {
+        const auto more = words_of(streams, block_of(draw, attempt / 2), trial);
+        open.u_word[i] = more[first];
+        open.v_word[i] = more[first + 1];
+      }
+    }
+    open.attempt(count);
+  }
+}
+
+}  // namespace tofsmith
+#endif

@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/instrument/generator_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/instrument/scpi_session.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr std::string_view known_families =
+    "Siglent SDG1000X, SDG2000X, SDG6000X; Keysight 33500, 33600; Tektronix AFG3000";
+
+GeneratorModel siglent(std::string name, double rate_hz, double most_hz, double true_arb_hz,
+                       int points) {
+  return {.name = std::move(name),
+          .vendor = "Siglent Technologies",
+          .family = GeneratorFamily::siglent_x,
+          .sample_rate_hz = rate_hz,
+          .most_repetition_hz = most_hz,
+          .true_arb_rate_hz = true_arb_hz,
+          .least_points = 8,
+          .most_points = points,
+          .least_vpp = 0.002,
+          .most_vpp = 10.0};
+}
+
+GeneratorModel keysight(std::string name, int channels, double rate_hz, int least, int points) {
+  return {.name = std::move(name),
+          .vendor = "Keysight Technologies",
+          .family = GeneratorFamily::keysight_trueform,
+          .channels = channels,
+          .sample_rate_hz = rate_hz,
+          .least_points = least,
+          .most_points = points,
+          .least_vpp = 0.001,
+          .most_vpp = 10.0};
+}
+
+GeneratorModel tektronix(std::string name, double rate_hz, double most_hz, double least_vpp,
+                         double most_vpp) {
+  const int channels = name.back() - '0';
+  return {.name = std::move(name),
+          .vendor = "TEKTRONIX",
+          .family = GeneratorFamily::tektronix_afg3000,
+          .channels = channels,
+          .sample_rate_hz = rate_hz,
+          .most_repetition_hz = most_hz,
+          .least_points = 2,
+          .most_points = 131072,
+          .memories = 4,
+          .least_vpp = least_vpp,
+          .most_vpp = most_vpp};
+}
+
+std::vector<GeneratorModel> make_models() {
+  std::vector<GeneratorModel> models;
+  for (const char* name : {"SDG1032X", "SDG1062X"})
+    models.push_back(siglent(name, 150e6, 6e6, 0.0, 16384));
+  for (const char* name : {"SDG2042X", "SDG2082X", "SDG2122X"})
+    models.push_back(siglent(name, 1.2e9, 20e6, 75e6, 8'000'000));
+  for (const char* name : {"SDG6022X", "SDG6032X", "SDG6052X"})
+    models.push_back(siglent(name, 2.4e9, 50e6, 300e6, 20'000'000));
+  for (const char* name : {"33509", "33511", "33510", "33512"})
+    models.push_back(keysight(name, (name[4] - '0') % 2 == 1 ? 1 : 2, 160e6, 8, 1'000'000));
+  for (const char* name : {"33519", "33521", "33520", "33522"})
+    models.push_back(keysight(name, (name[4] - '0') % 2 == 1 ? 1 : 2, 250e6, 8, 1'000'000));
+  for (const char* name : {"33611", "33612"})
+    models.push_back(keysight(name, name[4] - '0', 660e6, 32, 4'000'000));
+  for (const char* name : {"33621", "33622"})
+    models.push_back(keysight(name, name[4] - '0', 1e9, 32, 4'000'000));
+  models.push_back(tektronix("AFG3011", 250e6, 5e6, 0.04, 20.0));
+  for (const char* name : {"AFG3021", "AFG3022"})
+    models.push_back(tektronix(name, 250e6, 12.5e6, 0.02, 10.0));
+  for (const char* name : {"AFG3051", "AFG3052"})
+    models.push_back(tektronix(name, 1e9, 25e6, 0.02, 10.0));
+  for (const char* name : {"AFG3101", "AFG3102"})
+    models.push_back(tektronix(name, 1e9, 50e6, 0.04, 10.0));
+  for (const char* name : {"AFG3151", "AFG3152"})
+    models.push_back(tektronix(name, 1e9, 100e6, 0.04, 10.0));
+  for (const char* name : {"AFG3251", "AFG3252"})
+    models.push_back(tektronix(name, 2e9, 120e6, 0.05, 5.0));
+  return models;
+}
+
+std::string upper(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return result;
+}
+
+/// The letter behind the number is a generation: 33522A and 33522B, AFG3022, AFG3022B, AFG3022C.
+const GeneratorModel* found_model(std::string_view name) {
+  const std::string wanted = upper(name);
+  for (const GeneratorModel& model : generator_models()) {
+    const bool same = wanted == model.name;
+    const bool generation =
+        model.family != GeneratorFamily::siglent_x && wanted.size() == model.name.size() + 1 &&
+        wanted.starts_with(model.name) && wanted.back() >= 'A' && wanted.back() <= 'C';
+    if (same || generation) return &model;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::string GeneratorModel::format() const {
+  switch (family) {
+    case GeneratorFamily::siglent_x:
+      return "siglent-wvdt16";
+    case GeneratorFamily::keysight_trueform:
+      return "keysight-arb";
+    case GeneratorFamily::tektronix_afg3000:
+      break;
+  }
+  return "tek-tfw";
+}
+
+const std::vector<GeneratorModel>& generator_models() {
+  static const std::vector<GeneratorModel> models = make_models();
+  return models;
+}
+
+const GeneratorModel& generator_model(std::string_view name) {
+  if (const GeneratorModel* model = found_model(name)) return *model;
+  std::vector<std::string> names;
+  for (const GeneratorModel& model : generator_models()) names.push_back(model.name);
+  const std::string near = nearest_word(upper(name), names);
+  reject("model", fmt::format("'{}'", name),
+         fmt::format("must be one of {}{}", known_families,
+                     near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+}
+
+InstrumentIdentity parse_identity(std::string_view answer, std::string_view place) {
+  if (answer.starts_with("*IDN ")) answer.remove_prefix(5);
+  std::vector<std::string> fields(1);
+  for (const char c : answer) {
+    if (c == ',')
+      fields.emplace_back();
+    else if (c != ' ' || !fields.back().empty())
+      fields.back() += c;
+  }
+  const bool text = std::ranges::all_of(answer, [](char c) { return c >= ' ' && c <= '~'; });
+  if (fields.size() < 4 || fields[0].empty() || fields[1].empty() || !text)
+    throw IoError(place, fmt::format("answered *IDN? with '{}'; expected vendor, model, serial "
+                                     "number and firmware: is this an instrument?",
+                                     printable(answer)));
+  return {fields[0], fields[1], fields[2], fields[3]};
+}
+
+const GeneratorModel& identified_model(const InstrumentIdentity& identity, std::string_view place) {
+  const GeneratorModel* const model = found_model(identity.model);
+  const std::string vendor = upper(identity.vendor);
+  const bool known_vendor =
+      model != nullptr &&
+      (vendor.starts_with(upper(model->vendor).substr(0, 7)) ||
+       (model->family == GeneratorFamily::keysight_trueform && vendor.starts_with("AGILENT")));
+  if (!known_vendor)
+    throw IoError(place, fmt::format("found the instrument {} of {}; expected one of {} (--model "
+                                     "NAME treats a relative as one of them)",
+                                     identity.model, identity.vendor, known_families));
+  return *model;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,324 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "simulate/trial_kernel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simulate/trial_kernel.cpp"
+#include <hwy/foreach_target.h>
+// Highway asks for its own headers after foreach_target, and for this one first.
+#include <hwy/highway.h>
+
+#include "decode/output_vectors-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tofsmith {
+namespace HWY_NAMESPACE {
+
+using Doubles = hn::CappedTag<double, 8>;
+using DoubleVector = hn::Vec<Doubles>;
+
+void place(const DepthSlices& slices, double rows, double rows_per_bin, int trials,
+           TrialTile& tile) {
+  const Doubles d;
+  const hn::RebindToSigned<Doubles> di;
+  const hn::RebindToUnsigned<Doubles> du;
+  const hn::Rebind<std::uint32_t, Doubles> narrow;
+  const hn::Rebind<std::int32_t, Doubles> narrow_i;
+  const hn::Rebind<float, Doubles> narrow_f;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const double bins_per_row = 1.0 / rows_per_bin;  // exact: a power of two
+  const auto set = [&](double value) { return hn::Set(d, value); };
+  const auto low_byte = hn::Set(narrow, 0xffu);
+  const auto as_double = [&](auto words) {
+    return hn::ConvertTo(d, hn::BitCast(di, hn::PromoteTo(du, words)));
+  };
+  auto number = hn::Add(as_double(hn::Iota(narrow, 0u)), set(static_cast<double>(slices.first)));
+  for (int i = 0; i < trials; i += lanes) {
+    const auto high = hn::And(hn::LoadU(narrow, tile.words + trials_per_tile + i), low_byte);
+    const auto low = hn::And(hn::LoadU(narrow, tile.words + 3 * trials_per_tile + i), low_byte);
+    const auto within =
+        hn::Mul(hn::Add(as_double(hn::Or(hn::ShiftLeft<8>(high), low)), set(0.5)), set(0x1p-16));
+    auto at = hn::Mul(hn::Add(number, within), set(slices.rows_per_trial));
+    at = hn::Min(at, set(rows * (1.0 - 0x1p-50)));
+    if (slices.on_bins) at = hn::Mul(hn::Floor(hn::Mul(at, set(bins_per_row))), set(rows_per_bin));
+    const auto row = hn::Floor(at);
+    hn::StoreU(hn::DemoteTo(narrow_i, row), narrow_i, tile.row + i);
+    hn::StoreU(hn::DemoteTo(narrow_f, hn::Sub(at, row)), narrow_f, tile.share + i);
+    hn::StoreU(hn::Mul(at, set(bins_per_row)), d, tile.true_bin + i);
+    number = hn::Add(number, set(lanes));
+  }
+}
+
+/// Records of a chunk of trials, as rows of pixels_per_chunk.
+struct RecordChunk {
+  alignas(64) std::uint32_t start[pixels_per_chunk];
+  alignas(64) float fields[4 * max_measurements * pixels_per_chunk];
+
+  HWY_INLINE void read(const TrialModel& model, const TrialTile& tile, int first, int trials) {
+    const auto lanes = static_cast<int>(hn::Lanes(Floats()));
+    const int count = model.taps() * (model.has_own_shot_noise() ? 4 : 2);
+    find_rows(model.records(), tile.row + first, trials, start);
+    for (int i = 0; i < trials; i += lanes)
+      gather(model.records().data(), start + i, 0, count, fields + i);
+  }
+  /// Value f + share times change f + taps.
+  HWY_INLINE Vector between(int f, int taps, Vector share, int i) const {
+    return hn::MulAdd(share, load(fields + (f + taps) * pixels_per_chunk, i),
+                      load(fields + f * pixels_per_chunk, i));
+  }
+};
+
+/// L times normals, for the covariance c with rows one after the other; a direction without
+/// variance gets none.
+template <int Rank>
+HWY_INLINE void add_noise(int rank, Vector* c, const float* normals, Vector* q) {
+  const Floats d;
+  Vector inverse[Rank];
+  for (int j = 0; j < rank; ++j) {
+    Vector* const row = c + j * (j + 1) / 2;
+    const Vector whole = row[j];
+    Vector rest = whole;
+    for (int l = 0; l < j; ++l) {
+      const Vector* const other = c + l * (l + 1) / 2;
+      Vector sum = row[l];
+      for (int m = 0; m < l; ++m) sum = hn::NegMulAdd(row[m], other[m], sum);
+      row[l] = hn::Mul(sum, inverse[l]);
+      rest = hn::NegMulAdd(row[l], row[l], rest);
+    }
+    const Mask is_seen = hn::Gt(rest, hn::MulAdd(whole, all(1e-6f), all(1e-30f)));
+    inverse[j] = hn::IfThenElseZero(is_seen, reciprocal_sqrt(hn::Max(rest, all(1e-30f))));
+    row[j] = hn::Mul(rest, inverse[j]);
+    for (int l = 0; l <= j; ++l)
+      q[j] = hn::MulAdd(row[l], hn::Load(d, normals + l * trials_per_tile), q[j]);
+  }
+}
+
+/// `Rank` 0 stands for any rank, known only when running.
+template <int Rank>
+void plane_of_rank(const TrialModel& model, const PlaneNoise& noise, int trials, TrialTile& tile) {
+  constexpr int most_rank = Rank > 0 ? Rank : max_measurements;
+  const int rank = Rank > 0 ? Rank : noise.rank, pairs = rank * (rank + 1) / 2;
+  const Floats d;
+  const int taps = model.taps();
+  const bool has_own = model.has_own_shot_noise();
+  RecordChunk chunk;
+  for (int first = 0; first < trials; first += pixels_per_chunk) {
+    const int count = std::min(pixels_per_chunk, trials - first);
+    chunk.read(model, tile, first, count);
+    for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
+      const Vector share = hn::Load(d, tile.share + first + i);
+      const Vector signal = hn::Load(d, tile.signal + first + i);
+      Vector q[most_rank], c[most_rank * (most_rank + 1) / 2];
+      for (int j = 0; j < rank; ++j) q[j] = all(noise.offset[static_cast<std::size_t>(j)]);
+      for (int p = 0; p < pairs; ++p) c[p] = all(noise.floor[static_cast<std::size_t>(p)]);
+      const float* weight = noise.weight.data();
+      const float* products = noise.products.data();
+      for (int k = 0; k < taps; ++k, weight += rank, products += pairs) {
+        const auto tap = static_cast<std::size_t>(k);
+        Vector mean =
+            hn::MulAdd(signal, chunk.between(k, taps, share, i), all(noise.mean_floor_e[tap]));
+        Vector shot = mean;
+        if (has_own)
+          shot = hn::MulAdd(signal, chunk.between(2 * taps + k, taps, share, i),
+                            all(noise.shot_floor_e2[tap]));
+        else
+          mean = hn::Max(mean, hn::Zero(d));
+        shot = hn::Max(shot, hn::Zero(d));
+        for (int j = 0; j < rank; ++j) q[j] = hn::MulAdd(mean, all(weight[j]), q[j]);
+        for (int p = 0; p < pairs; ++p) c[p] = hn::MulAdd(shot, all(products[p]), c[p]);
+      }
+      add_noise<most_rank>(rank, c, tile.normals + first + i, q);
+      for (int j = 0; j < rank; ++j)
+        hn::Store(q[j], d, tile.pixels.plane + j * trials_per_tile + first + i);
+    }
+  }
+}
+
+void plane(const TrialModel& model, const PlaneNoise& noise, int trials, TrialTile& tile) {
+  switch (noise.rank) {
+    case 2:
+      return plane_of_rank<2>(model, noise, trials, tile);
+    case 3:
+      return plane_of_rank<3>(model, noise, trials, tile);
+    case 4:
+      return plane_of_rank<4>(model, noise, trials, tile);
+    case 5:
+      return plane_of_rank<5>(model, noise, trials, tile);
+    default:
+      return plane_of_rank<0>(model, noise, trials, tile);
+  }
+}
+
+void expect(const TrialModel& model, const float* mean_floor_e, int trials, TrialTile& tile) {
+  const Floats d;
+  RecordChunk chunk;
+  for (int first = 0; first < trials; first += pixels_per_chunk) {
+    const int count = std::min(pixels_per_chunk, trials - first);
+    chunk.read(model, tile, first, count);
+    for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
+      const Vector share = hn::Load(d, tile.share + first + i);
+      const Vector signal = hn::Load(d, tile.signal + first + i);
+      for (int k = 0; k < model.taps(); ++k) {
+        const Vector mean =
+            hn::MulAdd(signal, chunk.between(k, model.taps(), share, i), all(mean_floor_e[k]));
+        hn::Store(hn::Max(mean, hn::Zero(d)), d, tile.taps + k * trials_per_tile + first + i);
+      }
+    }
+  }
+}
+
+void read_out(const TapConversion& sensor, const float* most_e, int taps, int trials,
+              TrialTile& tile) {
+  const Floats d;
+  const Vector zero = hn::Zero(d), sigma = all(sensor.read_noise_e);
+  for (int i = 0; i < trials; i += static_cast<int>(hn::Lanes(d)))
+    for (int k = 0; k < taps; ++k) {
+      float* const value = tile.taps + k * trials_per_tile + i;
+      Vector e = hn::Load(d, value), deviation = sigma;
+      if (!sensor.is_poisson) {
+        const Vector variance = hn::MulAdd(sigma, sigma, e);
+        deviation = hn::Mul(variance, reciprocal_sqrt(variance));
+      }
+      e = hn::MulAdd(deviation, hn::Load(d, tile.normals + k * trials_per_tile + i), e);
+      if (most_e) e = hn::Min(hn::Max(e, zero), all(most_e[k]));
+      e = hn::Min(e, all(sensor.full_well_e));
+      if (sensor.has_adc) {
+        const Vector dn =
+            hn::Round(hn::MulAdd(e, all(sensor.dn_per_e), all(sensor.black_level_dn)));
+        e = hn::Min(hn::Max(dn, zero), all(sensor.largest_dn));
+      }
+      hn::Store(e, d, value);
+    }
+  if (!sensor.is_difference) return;
+  for (int k = 0; k < taps / 2; ++k)
+    for (int i = 0; i < trials; i += static_cast<int>(hn::Lanes(d))) {
+      const float* const pair = tile.taps + 2 * k * trials_per_tile + i;
+      hn::Store(hn::Sub(hn::Load(d, pair), hn::Load(d, pair + trials_per_tile)), d,
+                tile.taps + k * trials_per_tile + i);
+    }
+}
+
+/// Sum of values in pairs, and of the squares of differences in pairs.
+struct PairSums {
+  DoubleVector sum, squares;
+
+  HWY_INLINE void add(DoubleVector even, DoubleVector odd) {
+    const DoubleVector difference = hn::Sub(even, odd);
+    sum = hn::Add(sum, hn::Add(even, odd));
+    squares = hn::MulAdd(difference, difference, squares);
+  }
+};
+
+TileSums sums(const double* true_bin, const double* decoded_bin, int trials, double samples,
+              double threshold_bin) {
+  const Doubles d;
+  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const DoubleVector zero = hn::Zero(d), all_samples = hn::Set(d, samples);
+  const DoubleVector threshold = hn::Set(d, threshold_bin), one = hn::Set(d, 1.0);
+  PairSums linear{zero, zero}, circular{zero, zero}, outliers{zero, zero};
+  const auto add = [&](DoubleVector even, DoubleVector odd) {
+    const DoubleVector even_c = hn::Min(even, hn::Sub(all_samples, even));
+    const DoubleVector odd_c = hn::Min(odd, hn::Sub(all_samples, odd));
+    linear.add(even, odd);
+    circular.add(even_c, odd_c);
+    outliers.add(hn::IfThenElseZero(hn::Gt(even_c, threshold), one),
+                 hn::IfThenElseZero(hn::Gt(odd_c, threshold), one));
+  };
+  int i = 0;
+  for (; i + 2 * lanes <= trials; i += 2 * lanes) {
+    DoubleVector true_even, true_odd, found_even, found_odd;
+    hn::LoadInterleaved2(d, true_bin + i, true_even, true_odd);
+    hn::LoadInterleaved2(d, decoded_bin + i, found_even, found_odd);
+    add(hn::Abs(hn::Sub(found_even, true_even)), hn::Abs(hn::Sub(found_odd, true_odd)));
+  }
+  TileSums total;
+  total.linear = hn::GetLane(hn::SumOfLanes(d, linear.sum));
+  total.circular = hn::GetLane(hn::SumOfLanes(d, circular.sum));
+  total.outliers = hn::GetLane(hn::SumOfLanes(d, outliers.sum));
+  total.linear_squares = hn::GetLane(hn::SumOfLanes(d, linear.squares));
+  total.circular_squares = hn::GetLane(hn::SumOfLanes(d, circular.squares));
+  total.outlier_squares = hn::GetLane(hn::SumOfLanes(d, outliers.squares));
+  for (; i + 1 < trials; i += 2) {
+    const double a = std::abs(decoded_bin[i] - true_bin[i]);
+    const double b = std::abs(decoded_bin[i + 1] - true_bin[i + 1]);
+    const double a_c = std::min(a, samples - a), b_c = std::min(b, samples - b);
+    const double a_o = a_c > threshold_bin ? 1.0 : 0.0, b_o = b_c > threshold_bin ? 1.0 : 0.0;
+    total.linear += a + b;
+    total.circular += a_c + b_c;
+    total.outliers += a_o + b_o;
+    total.linear_squares += (a - b) * (a - b);
+    total.circular_squares += (a_c - b_c) * (a_c - b_c);
+    total.outlier_squares += (a_o - b_o) * (a_o - b_o);
+  }
+  return total;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tofsmith
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tofsmith {
+
+HWY_EXPORT(place);
+HWY_EXPORT(plane);
+HWY_EXPORT(expect);
+HWY_EXPORT(read_out);
+HWY_EXPORT(sums);
+
+namespace {
+
+std::vector<float> in_floats(const Eigen::VectorXd& values) {
+  return {values.begin(), values.end()};
+}
+
+}  // namespace
+
+PlaneNoise::PlaneNoise(const TrialModel& model, const PlaneMap& map, double ambient_e_per_s)
+    : rank(static_cast<int>(map.weight.rows())),
+      mean_floor_e(in_floats(model.mean_floor_e(ambient_e_per_s))),
+      shot_floor_e2(in_floats(model.shot_floor_e2(ambient_e_per_s))),
+      offset(in_floats(map.weight * model.raw_at_zero() + map.offset)) {
+  const Eigen::MatrixXd per_e = map.weight * model.raw_per_e();  // (rank, taps)
+  for (int k = 0; k < model.taps(); ++k) {
+    for (int j = 0; j < rank; ++j) weight.push_back(static_cast<float>(per_e(j, k)));
+    for (int j = 0; j < rank; ++j)
+      for (int l = 0; l <= j; ++l)
+        products.push_back(static_cast<float>(per_e(j, k) * per_e(l, k)));
+  }
+  const Eigen::MatrixXd constant =
+      per_e * model.constant_variance_e2().asDiagonal() * per_e.transpose();
+  for (int j = 0; j < rank; ++j)
+    for (int l = 0; l <= j; ++l) floor.push_back(static_cast<float>(constant(j, l)));
+}
+
+void place_depths(const TrialModel& model, const DepthSlices& slices, int trials, TrialTile& tile) {
+  HWY_DYNAMIC_DISPATCH(place)
+  (slices, static_cast<double>(model.rows()), model.rows_per_bin(), trials, tile);
+}
+
+void draw_plane(const TrialModel& model, const PlaneNoise& noise, int trials, TrialTile& tile) {
+  HWY_DYNAMIC_DISPATCH(plane)(model, noise, trials, tile);
+}
+
+void expect_electrons(const TrialModel& model, const std::vector<float>& mean_floor_e, int trials,
+                      TrialTile& tile) {
+  HWY_DYNAMIC_DISPATCH(expect)(model, mean_floor_e.data(), trials, tile);
+}
+
+void read_out_taps(const TrialModel& model, const std::vector<float>& most_e, int trials,
+                   TrialTile& tile) {
+  HWY_DYNAMIC_DISPATCH(read_out)
+  (model.conversion(), most_e.empty() ? nullptr : most_e.data(), model.taps(), trials, tile);
+}
+
+TileSums sum_errors(const double* true_bin, const double* decoded_bin, int trials, double samples,
+                    double threshold_bin) {
+  return HWY_DYNAMIC_DISPATCH(sums)(true_bin, decoded_bin, trials, samples, threshold_bin);
+}
+
+}  // namespace tofsmith
+#endif

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/random_tile.hpp"
+#include "decode/pixel_tile.hpp"
+#include "decode/trial_decoder.hpp"
+#include "simulate/trial_model.hpp"
+
+namespace tofsmith {
+
+static_assert(trials_per_tile == pixels_per_tile);
+
+/// Where the depths of neighbouring trials lie: trial number n of its round in the n-th of equal
+/// slices of the range.
+struct DepthSlices {
+  std::int64_t first = 0;     ///< number within the round of a tile's first trial
+  double rows_per_trial = 0;  ///< length of a slice, in rows of the records
+  bool on_bins = false;       ///< moved down to the bin
+};
+
+/// Work space of a tile of trials, trial next to trial in rows of trials_per_tile.
+struct TrialTile {
+  alignas(64) std::uint32_t words[4 * trials_per_tile];
+  alignas(64) float normals[max_measurements * trials_per_tile];
+  alignas(64) std::int32_t row[trials_per_tile];  ///< of the records, just below the depth
+  alignas(64) float share[trials_per_tile];       ///< of the way to the next row
+  alignas(64) float signal[trials_per_tile];      ///< S times albedo [e/s]
+  alignas(64) double true_bin[trials_per_tile];   ///< in [0, N)
+  alignas(64) double decoded_bin[trials_per_tile];
+  alignas(64) float taps[max_measurements * trials_per_tile];  ///< electrons; then raw numbers
+  PixelTile pixels;
+};
+
+/// What noise in the plane of ZNCC needs at one ambient light, in single precision: the vector is
+///   q = offset + sum_k weight_k mean_k + L normals,   L L^T = floor + sum_k products_k shot_k
+struct PlaneNoise {
+  PlaneNoise(const TrialModel& model, const PlaneMap& map, double ambient_e_per_s);
+
+  int rank;
+  std::vector<float> mean_floor_e, shot_floor_e2;  // (taps)
+  std::vector<float> weight;                       // [taps][rank]
+  std::vector<float> products;                     // [taps][rank (rank + 1) / 2], w_j w_l, l <= j
+  std::vector<float> offset;                       // (rank)
+  std::vector<float> floor;                        // as products
+};
+
+/// Fills row, share and true_bin from the words of block 0: 16 bits of where in the slice, the
+/// lowest bytes of words 1 and 3.
+void place_depths(const TrialModel& model, const DepthSlices& slices, int trials, TrialTile& tile);
+
+/// Fills pixels.plane from row, share, signal and `rank` rows of normals.
+void draw_plane(const TrialModel& model, const PlaneNoise& noise, int trials, TrialTile& tile);
+
+/// Fills taps with expected electrons.
+void expect_electrons(const TrialModel& model, const std::vector<float>& mean_floor_e, int trials,
+                      TrialTile& tile);
+
+/// Adds normal noise to expected electrons, or read noise to Poisson counts; clips and converts.
+/// @param most_e  electrons beyond [0, most_e] are clipped first (taps); empty: none are
+void read_out_taps(const TrialModel& model, const std::vector<float>& most_e, int trials,
+                   TrialTile& tile);
+
+/// Sums over a tile whose order follows depth.
+struct TileSums {
+  double linear = 0.0, circular = 0.0, outliers = 0.0;
+  /// Of squared differences between neighbours (2 i, 2 i + 1).
+  double linear_squares = 0.0, circular_squares = 0.0, outlier_squares = 0.0;
+};
+
+/// Errors [bin] of an even number of trials.
+TileSums sum_errors(const double* true_bin, const double* decoded_bin, int trials, double samples,
+                    double threshold_bin);
+
+}  // namespace tofsmith

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "simulate/trial_model.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "tofsmith/camera/forward_model.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr int rows_per_bin_of_codes = 16;
+
+TapConversion conversion_of(const Sensor& sensor) {
+  TapConversion c{
+      .is_poisson = sensor.noise == NoiseModel::poisson,
+      .has_adc = sensor.adc_bits.has_value(),
+      .is_difference = sensor.readout == Readout::difference,
+      .read_noise_e = static_cast<float>(sensor.read_noise_e),
+      .full_well_e =
+          static_cast<float>(sensor.full_well_e.value_or(std::numeric_limits<double>::infinity())),
+  };
+  if (c.has_adc) {
+    c.dn_per_e = static_cast<float>(1.0 / *sensor.gain_e_per_dn);
+    c.black_level_dn = static_cast<float>(sensor.black_level_dn.value_or(0.0));
+    c.largest_dn = static_cast<float>(std::exp2(*sensor.adc_bits) - 1.0);
+  }
+  return c;
+}
+
+/// What a table says of shot noise, or that of the means.
+template <typename Values>
+const Values& or_else(const Values& own, const Values& other) {
+  return own.size() > 0 ? own : other;
+}
+
+}  // namespace
+
+TrialModel::TrialModel(const ForwardModel& model, const Camera& camera)
+    : taps_(model.tap_values()),
+      samples_(model.samples()),
+      rows_per_bin_(rows_per_bin_of_codes),
+      has_own_shot_noise_(false),
+      exposure_s_(model.tap_exposure_s()),
+      ambient_e_(exposure_s_.cwiseProduct(model.tap_ambient_gain())),
+      dark_e_(camera.sensor.dark_current_e_per_s * exposure_s_),
+      shot_ambient_e_(ambient_e_),
+      shot_dark_e_(dark_e_),
+      constant_variance_e2_(Eigen::VectorXd::Constant(
+          taps_, camera.sensor.read_noise_e * camera.sensor.read_noise_e)),
+      raw_per_e_(model.readout()),
+      raw_at_zero_(Eigen::VectorXd::Zero(raw_per_e_.rows())),
+      conversion_(conversion_of(camera.sensor)),
+      records_(rows(), 2 * taps_) {
+  fill_records(model.tap_correlation_table(rows()) * exposure_s_.asDiagonal(), {});
+}
+
+TrialModel::TrialModel(const DecodingTable& table)
+    : taps_(table.measurements()),
+      samples_(table.samples()),
+      rows_per_bin_(1),
+      has_own_shot_noise_(true),
+      exposure_s_(table.exposure_s),
+      ambient_e_(exposure_s_.cwiseProduct(table.ambient_gain)),
+      dark_e_(table.dark_electrons),
+      shot_ambient_e_(
+          exposure_s_.cwiseProduct(or_else(table.shot_ambient_gain, table.ambient_gain))),
+      shot_dark_e_(or_else(table.shot_dark_electrons, table.dark_electrons)),
+      constant_variance_e2_(table.constant_variance_e2),
+      raw_per_e_(table.gain_e_per_raw.cwiseInverse().asDiagonal()),
+      raw_at_zero_(table.black_level),
+      conversion_{.full_well_e = std::numeric_limits<float>::infinity()},
+      records_(samples_, 4 * taps_) {
+  fill_records(table.correlation * exposure_s_.asDiagonal(),
+               or_else(table.shot_correlation, table.correlation) * exposure_s_.asDiagonal());
+}
+
+void TrialModel::fill_records(const Eigen::MatrixXd& mean, const Eigen::MatrixXd& shot) {
+  const auto count = static_cast<int>(mean.rows());
+  const auto fill = [&](const Eigen::MatrixXd& x, int row, int first) {
+    const int next = row + 1 < count ? row + 1 : 0;
+    for (int j = 0; j < taps_; ++j) {
+      records_.row(row)[first + j] = static_cast<float>(x(row, j));
+      records_.row(row)[first + taps_ + j] = static_cast<float>(x(next, j) - x(row, j));
+    }
+  };
+  for (int row = 0; row < count; ++row) {
+    fill(mean, row, 0);
+    if (has_own_shot_noise_) fill(shot, row, 2 * taps_);
+  }
+}
+
+bool TrialModel::is_linear() const {
+  return !conversion_.is_poisson && !conversion_.has_adc && std::isinf(conversion_.full_well_e);
+}
+
+Eigen::VectorXd TrialModel::mean_floor_e(double ambient_e_per_s) const {
+  return ambient_e_per_s * ambient_e_ + dark_e_;
+}
+
+Eigen::VectorXd TrialModel::shot_floor_e2(double ambient_e_per_s) const {
+  return ambient_e_per_s * shot_ambient_e_ + shot_dark_e_;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "decode/bin_records.hpp"
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
+
+namespace tofsmith {
+
+/// What happens to the electrons of a tap before they leave the sensor, as PixelNoise says.
+struct TapConversion {
+  bool is_poisson = false;
+  bool has_adc = false;
+  bool is_difference = false;  ///< neighbours leave as A - B
+  float read_noise_e = 0.0f;
+  float full_well_e = 0.0f;  ///< infinite: none
+  float dn_per_e = 0.0f;
+  float black_level_dn = 0.0f;
+  float largest_dn = 0.0f;
+};
+
+/// Electrons of the taps of a pixel at any depth, laid out for trials: of every tap j
+///   mean     S x_j(z) + A a_j + d_j     [e]
+///   variance S x'_j(z) + A a'_j + d'_j + c_j  [e^2]
+/// with x = T chi in records of many rows per bin, linear between rows. A code's shot noise is that
+/// of its means, and both are held to be >= 0; a table of differences has its own.
+class TrialModel {
+ public:
+  /// Of a code on a camera, 16 rows per bin.
+  TrialModel(const ForwardModel& model, const Camera& camera);
+  /// Of a table, which is taken for the truth: normal noise, chords between its rows.
+  explicit TrialModel(const DecodingTable& table);
+
+  int taps() const { return taps_; }
+  int measurements() const { return static_cast<int>(raw_per_e_.rows()); }
+  int samples() const { return samples_; }
+  int rows_per_bin() const { return rows_per_bin_; }
+  int rows() const { return samples_ * rows_per_bin_; }
+  bool has_own_shot_noise() const { return has_own_shot_noise_; }
+  /// x (taps), its change up to the next row (taps), and the same of x' if it is not x.
+  const RecordTable& records() const { return records_; }
+  const TapConversion& conversion() const { return conversion_; }
+  /// Whether raw numbers are affine in normal electrons: the noise of any projection is then normal
+  /// too.
+  bool is_linear() const;
+
+  /// Raw numbers of electrons where is_linear(): raw_per_e (K, taps) and raw_at_zero (K).
+  const Eigen::MatrixXd& raw_per_e() const { return raw_per_e_; }
+  const Eigen::VectorXd& raw_at_zero() const { return raw_at_zero_; }
+  /// A a + d (taps).
+  Eigen::VectorXd mean_floor_e(double ambient_e_per_s) const;
+  /// A a' + d' (taps), without c.
+  Eigen::VectorXd shot_floor_e2(double ambient_e_per_s) const;
+  /// c (taps).
+  const Eigen::VectorXd& constant_variance_e2() const { return constant_variance_e2_; }
+  /// T of every tap [s].
+  const Eigen::VectorXd& exposure_s() const { return exposure_s_; }
+
+ private:
+  void fill_records(const Eigen::MatrixXd& mean, const Eigen::MatrixXd& shot);
+
+  int taps_, samples_, rows_per_bin_;
+  bool has_own_shot_noise_;
+  Eigen::VectorXd exposure_s_, ambient_e_, dark_e_, shot_ambient_e_, shot_dark_e_;
+  Eigen::VectorXd constant_variance_e2_;
+  Eigen::MatrixXd raw_per_e_;
+  Eigen::VectorXd raw_at_zero_;
+  TapConversion conversion_;
+  RecordTable records_;
+};
+
+}  // namespace tofsmith

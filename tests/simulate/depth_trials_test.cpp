@@ -1,0 +1,288 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// The engine of the trials, beside plain references.
+#include "simulate/depth_trials.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "each_target.hpp"
+#include "simulate/trial_errors.hpp"
+#include "tofsmith/simulate/noise.hpp"
+
+namespace tofsmith {
+namespace {
+
+Camera camera_at(double signal_e_per_s, double ambient_e_per_s, int taps = 1,
+                 const char* name = "paper-10f0") {
+  Camera camera = built_in_camera(name);
+  camera.sensor.taps = taps;
+  camera.sensor.noise = NoiseModel::gaussian;
+  camera.operating.signal_e_per_s = {signal_e_per_s};
+  camera.operating.ambient_e_per_s = {ambient_e_per_s};
+  return camera;
+}
+
+double joint(const Estimate& a, const Estimate& b) {
+  return std::hypot(a.standard_error, b.standard_error);
+}
+
+/// Where the first `count` trials of a round are, and where they are found.
+struct Positions {
+  std::vector<double> truth, found;
+};
+Positions positions_of(const DepthTrials& trials, std::int64_t of, std::int64_t count,
+                       int at_once) {
+  const auto tile = std::make_unique<TrialTile>();
+  Positions positions;
+  for (std::int64_t first = 0; first < count; first += at_once) {
+    const TrialBlock block =
+        trials.run({0, 0, of}, {first, std::min<std::int64_t>(count, first + at_once)}, *tile);
+    positions.truth.insert(positions.truth.end(), block.true_bin.begin(), block.true_bin.end());
+    positions.found.insert(positions.found.end(), block.decoded_bin.begin(),
+                           block.decoded_bin.end());
+  }
+  return positions;
+}
+
+TEST(DepthTrials, ATrialDependsOnItsNumberAlone) {
+  for (const bool is_poisson : {false, true}) {
+    Camera camera = camera_at(1e4, 1e4);
+    if (is_poisson) camera.sensor.noise = NoiseModel::poisson;
+    const ForwardModel model(build_family("hamiltonian-k4", camera), camera);
+    const DepthTrials trials(model, camera, {.trials = 1000});
+    EXPECT_EQ(trials.draws_in_plane(), !is_poisson);
+    const Positions whole = positions_of(trials, 1000, 1000, trials_per_tile);
+    for (const int at_once : {2, 30, 128}) {
+      const Positions parts = positions_of(trials, 1000, 400, at_once);
+      for (std::size_t i = 0; i < parts.truth.size(); ++i) {
+        ASSERT_EQ(parts.truth[i], whole.truth[i]) << at_once << " at once, trial " << i;
+        ASSERT_EQ(parts.found[i], whole.found[i]) << at_once << " at once, trial " << i;
+      }
+    }
+  }
+}
+
+TEST(DepthTrials, OneDepthInEverySlice) {
+  const Camera camera = camera_at(1e4, 1e4);
+  const ForwardModel model(build_family("sinusoid-k4", camera), camera);
+  for_each_target([&] {
+    const Positions positions =
+        positions_of(DepthTrials(model, camera, {.trials = 3000}), 3000, 3000, trials_per_tile);
+    RunningStatistics within;
+    for (std::size_t t = 0; t < positions.truth.size(); ++t) {
+      const double slice = positions.truth[t] / camera.samples * 3000 - static_cast<double>(t);
+      EXPECT_GE(slice, 0.0);
+      EXPECT_LT(slice, 1.0);
+      within.add(slice);
+    }
+    EXPECT_NEAR(within.mean(), 0.5, 4 * within.standard_error());
+    EXPECT_NEAR(within.variance(), 1.0 / 12, 0.01);
+  });
+}
+
+/// Mean and covariance of what stands in the plane, at one depth.
+struct PlaneMoments {
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd covariance;
+};
+
+TEST(DepthTrials, NoiseInThePlaneHasTheProjectedCovariance) {
+  for (const auto& [name, taps] :
+       {std::pair("hamiltonian-k3", 1), std::pair("hamiltonian-k5", 1),
+        std::pair("hamiltonian-k4", 2), std::pair("hamiltonian-k8", 1)}) {
+    const Camera camera = camera_at(3e4, 1e3, taps, "paper-30x");
+    Camera fitting = camera;
+    if (std::string_view(name) == "hamiltonian-k8") fitting.samples = 252;
+    const ForwardModel model(build_family(name, fitting), fitting);
+    const TrialModel trial_model(model, fitting);
+    const TrialDecoder decoder(DecodeMethod::zncc, make_decoding_table(model, fitting), {});
+    const PlaneMap& map = *decoder.plane_map();
+    const PlaneNoise noise(trial_model, map, 1e3);
+
+    const double depth_bin = 17.3;
+    const Return seen{3e4, depth_bin};
+    const Eigen::VectorXd mean =
+        map.weight * model.expected_electrons(std::span(&seen, 1), 1e3) + map.offset;
+    const Eigen::MatrixXd covariance = map.weight *
+                                       model.variance_e2(std::span(&seen, 1), 1e3).asDiagonal() *
+                                       map.weight.transpose();
+
+    const auto rank = static_cast<int>(map.weight.rows());
+    const auto tile = std::make_unique<TrialTile>();
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(rank);
+    Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(rank, rank);
+    const int tiles = 160;
+    for (std::uint32_t t = 0; t < tiles; ++t) {
+      for (int pair = 0; 2 * pair < rank; ++pair) {
+        draw_words({3, 0, t * trials_per_tile}, static_cast<std::uint32_t>(pair), trials_per_tile,
+                   tile->words);
+        float* const rows = tile->normals + 2 * pair * trials_per_tile;
+        normals_of(tile->words, tile->words + trials_per_tile, trials_per_tile, rows,
+                   rows + trials_per_tile);
+      }
+      std::fill_n(tile->signal, trials_per_tile, 3e4f);
+      const double row = depth_bin * trial_model.rows_per_bin();
+      std::fill_n(tile->row, trials_per_tile, static_cast<std::int32_t>(row));
+      std::fill_n(tile->share, trials_per_tile, static_cast<float>(row - std::floor(row)));
+      draw_plane(trial_model, noise, trials_per_tile, *tile);
+      for (int i = 0; i < trials_per_tile; ++i) {
+        Eigen::VectorXd q(rank);
+        for (int j = 0; j < rank; ++j) q[j] = tile->pixels.plane[j * trials_per_tile + i];
+        q -= mean;
+        sum += q;
+        squares += q * q.transpose();
+      }
+    }
+    const double count = tiles * trials_per_tile;
+    for (int j = 0; j < rank; ++j) {
+      EXPECT_NEAR(sum[j] / count, 0.0, 5 * std::sqrt(covariance(j, j) / count)) << name;
+      for (int l = 0; l <= j; ++l) {
+        const double deviation = std::sqrt(
+            (covariance(j, j) * covariance(l, l) + covariance(j, l) * covariance(j, l)) / count);
+        EXPECT_NEAR(squares(j, l) / count, covariance(j, l), 5 * deviation) << name;
+      }
+    }
+  }
+}
+
+TEST(DepthTrials, NoiseInThePlaneGivesTheErrorsOfNoiseByMeasurement) {
+  for (const auto& [name, taps] :
+       {std::pair("hamiltonian-k3", 1), std::pair("hamiltonian-k5", 1),
+        std::pair("pulsed-multifrequency-k5", 1), std::pair("hamiltonian-k4", 2)})
+    for (const Readout readout : {Readout::separate, Readout::difference}) {
+      if (readout == Readout::difference && taps == 1) continue;
+      for (const double signal : {2e3, 3e4}) {
+        Camera camera = camera_at(signal, 1e3, taps);
+        camera.sensor.readout = readout;
+        camera.sensor.tap_mismatch = 0.02;
+        const CodeSet code = build_family(name, camera);
+        const PointDepthError plane = evaluate(code, camera, {.trials = 40000}).points[0];
+        const PointDepthError measured =
+            evaluate(code, camera, {.trials = 40000, .seed = 2, .draw_every_measurement = true})
+                .points[0];
+        const auto expect_same = [&](const Estimate& a, const Estimate& b) {
+          EXPECT_NEAR(a.value, b.value, 4 * joint(a, b) + 1e-12) << name << " at " << signal;
+        };
+        expect_same(plane.linear_mde_m, measured.linear_mde_m);
+        expect_same(plane.circular_mde_m, measured.circular_mde_m);
+        expect_same(plane.outlier_rate, measured.outlier_rate);
+      }
+    }
+}
+
+TEST(DepthTrials, PoissonAndNormalNoiseAgreeInPlentyOfLight) {
+  Camera camera = camera_at(1e4, 3e4);
+  const CodeSet code = build_family("hamiltonian-k4", camera);
+  const Estimate normal = evaluate(code, camera).points[0].circular_mde_m;
+  camera.sensor.noise = NoiseModel::poisson;
+  const Estimate poisson = evaluate(code, camera, {.seed = 2}).points[0].circular_mde_m;
+  EXPECT_NEAR(poisson.value, normal.value, 4 * joint(poisson, normal));
+}
+
+TEST(DepthTrials, ClipsAndCountsAsPixelNoiseDoes) {
+  for (const Readout readout : {Readout::separate, Readout::difference}) {
+    Camera camera = camera_at(1e4, 1e4, 2);
+    camera.sensor.readout = readout;
+    camera.sensor.full_well_e = 900.0;
+    camera.sensor.adc_bits = 10;
+    camera.sensor.gain_e_per_dn = 1.5;
+    camera.sensor.black_level_dn = 64.0;
+    const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
+    const TrialModel trial_model(model, camera);
+    const PixelNoise noise(camera.sensor);
+    const auto tile = std::make_unique<TrialTile>();
+    for (int k = 0; k < trial_model.taps(); ++k)
+      for (int i = 0; i < trials_per_tile; ++i) {
+        tile->taps[k * trials_per_tile + i] = static_cast<float>(5 * i + k);
+        tile->normals[k * trials_per_tile + i] = static_cast<float>(i % 7 - 3);
+      }
+    std::vector<std::vector<double>> raw(trials_per_tile);
+    for (std::size_t i = 0; i < raw.size(); ++i) {
+      for (int k = 0; k < trial_model.taps(); ++k) {
+        const double e = 5.0 * static_cast<double>(i) + k;
+        raw[i].push_back(
+            noise.convert(e + std::sqrt(e + 400.0) * (static_cast<double>(i % 7) - 3)));
+      }
+      noise.read_out(raw[i].data(), trial_model.taps());
+    }
+    read_out_taps(trial_model, {}, trials_per_tile, *tile);
+    for (int k = 0; k < trial_model.measurements(); ++k)
+      for (std::size_t i = 0; i < raw.size(); ++i)
+        EXPECT_NEAR(tile->taps[static_cast<std::size_t>(k * trials_per_tile) + i],
+                    raw[i][static_cast<std::size_t>(k)], readout == Readout::separate ? 1.0 : 2.0);
+  }
+}
+
+TEST(AdaptiveTrials, MeetTheTargetOrSaySo) {
+  Camera camera = camera_at(1e4, 1e3);
+  camera.operating.signal_e_per_s = {1e3, 1e4};
+  const CodeSet code = build_family("hamiltonian-k4", camera);
+  for (const DepthErrorKind kind : {DepthErrorKind::linear, DepthErrorKind::circular}) {
+    camera.operating.error = kind;
+    const DepthErrorReport report =
+        evaluate(code, camera, {.trials = 2000, .target_standard_error = 0.03});
+    EXPECT_EQ(report.points_short_of_target, 0);
+    for (const PointDepthError& point : report.points) {
+      const Estimate& error =
+          kind == DepthErrorKind::linear ? point.linear_mde_m : point.circular_mde_m;
+      EXPECT_LE(error.standard_error, 0.03 * error.value);
+      EXPECT_LE(point.trials, report.trials);
+    }
+    EXPECT_GT(report.trials, 2000);
+  }
+  const DepthErrorReport capped =
+      evaluate(code, camera, {.trials = 2000, .target_standard_error = 1e-4, .most_trials = 5000});
+  EXPECT_EQ(capped.points_short_of_target, 2);
+  for (const PointDepthError& point : capped.points) EXPECT_EQ(point.trials, 5000);
+}
+
+TEST(AdaptiveTrials, SameBitsForAnyNumberOfThreads) {
+  Camera camera = camera_at(1e4, 1e3);
+  camera.operating.signal_e_per_s = {1e3, 1e4};
+  const CodeSet code = build_family("hamiltonian-k3", camera);
+  const auto run = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return evaluate(code, camera, {.trials = 1000, .target_standard_error = 0.05});
+  };
+  const DepthErrorReport one = run(1), three = run(3);
+  for (std::size_t p = 0; p < 2; ++p) {
+    EXPECT_EQ(one.points[p].trials, three.points[p].trials);
+    EXPECT_EQ(one.points[p].linear_mde_m.value, three.points[p].linear_mde_m.value);
+    EXPECT_EQ(one.points[p].linear_mde_m.standard_error,
+              three.points[p].linear_mde_m.standard_error);
+  }
+}
+
+TEST(AdaptiveTrials, StandardErrorsAreHonest) {
+  // The spread over seeds is what is stated, though each run chose its trials by what it saw.
+  const Camera camera = camera_at(3e3, 1e3);
+  const CodeSet code = build_family("hamiltonian-k3", camera);
+  RunningStatistics values, variance;
+  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+    const Estimate e =
+        evaluate(code, camera, {.trials = 200, .seed = seed, .target_standard_error = 0.1})
+            .points[0]
+            .linear_mde_m;
+    values.add(e.value);
+    variance.add(e.standard_error * e.standard_error);
+  }
+  EXPECT_NEAR(variance.mean() / values.variance(), 1.0, 0.5);
+  const Estimate truth = evaluate(code, camera, {.trials = 200000}).points[0].linear_mde_m;
+  EXPECT_NEAR(values.mean(), truth.value,
+              4 * std::hypot(values.standard_error(), truth.standard_error) + 0.01 * truth.value);
+}
+
+TEST(AdaptiveTrials, RefuseTargetsThatMakeNoSense) {
+  const Camera camera = camera_at(1e4, 1e4);
+  const CodeSet code = build_family("hamiltonian-k3", camera);
+  for (const double target : {-0.1, 1.0, std::nan("")})
+    EXPECT_THROW(evaluate(code, camera, {.target_standard_error = target}), std::invalid_argument);
+  EXPECT_THROW(evaluate(code, camera, {.target_standard_error = 0.1, .most_trials = 1}),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tofsmith
