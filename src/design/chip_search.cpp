@@ -21,7 +21,6 @@ namespace tofsmith {
 
 namespace {
 
-
 void require_searchable(const Camera& camera, const ChipSearchOptions& options) {
   require_plain(camera);
   const int taps = camera.sensor.taps, values = taps * options.exposures;

@@ -88,8 +88,7 @@ void write_impulse_response(const std::filesystem::path& path, const ImpulseResp
   response.validate("impulse_response");
   std::string text = "time_s,value\n";
   for (std::size_t i = 0; i < response.samples.size(); ++i)
-    text += fmt::format("{:.17g},{:.9g}\n",
-                        response.time_step_s * static_cast<double>(i),
+    text += fmt::format("{:.17g},{:.9g}\n", response.time_step_s * static_cast<double>(i),
                         response.samples[i]);
   write_file_atomically(path, text, policy);
 }

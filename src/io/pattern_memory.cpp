@@ -77,8 +77,10 @@ PatternMemory pattern_memory(std::span<const QuantizedWaveform> waveforms, int e
   for (int e = 0; e < exposures; ++e) {
     put(memory, light[static_cast<std::size_t>(e)], e, memory.fields[0]);
     for (int t = 0; t < taps; ++t)
-      put(memory, sensor[static_cast<std::size_t>(e * taps + t)], e,
-          memory.fields[static_cast<std::size_t>(1 + t)]);
+      put(memory,
+          sensor[static_cast<std::size_t>(e) * static_cast<std::size_t>(taps) +
+                 static_cast<std::size_t>(t)],
+          e, memory.fields[1 + static_cast<std::size_t>(t)]);
     QuantizedWaveform trigger = light[static_cast<std::size_t>(e)];
     for (int j = 0; j < trigger.points(); ++j)
       trigger.codes[static_cast<std::size_t>(j)] = trigger.trigger_at(j) ? 1 : 0;

@@ -23,7 +23,6 @@ Json mean_json(const DepthErrorMean& mean) {
           {"mean_se_m", mean.mean_m.standard_error}};
 }
 
-
 double not_negative(const JsonReader& json, std::string_view member) {
   return json.member(member).number(0.0, infinity, 0.0);
 }

@@ -13,7 +13,6 @@ namespace tofsmith {
 
 namespace {
 
-
 double total_exposure_s(const ExposureTime& exposure) {
   if (exposure.each_s.empty()) return exposure.total_s;
   return std::accumulate(exposure.each_s.begin(), exposure.each_s.end(), 0.0);
