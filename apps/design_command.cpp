@@ -68,12 +68,10 @@ DesignOptions options_for(const DesignArguments& arguments, const Camera& camera
   if (!arguments.target.empty() && options.method != DesignMethod::factorize &&
       options.method != DesignMethod::best)
     throw UsageError("--target goes with --method factorize or best");
-  options.optimize.later = arguments.later.goal(camera);
-  if (options.optimize.later && options.method != DesignMethod::optimize &&
-      options.method != DesignMethod::best)
-    throw UsageError("--second-returns goes with --method optimize or best");
-  if (options.optimize.later && options.robust)
-    throw UsageError("--second-returns: found beside --robust; expected one of them");
+  if (camera.operating.multipath && options.robust)
+    throw UsageError(
+        "--robust: found beside second returns (--second-returns or [operating.multipath]); "
+        "expected one of them");
   options.exposures = arguments.exposures;
   scale_effort(options, arguments.effort);
   options.seed = arguments.seed;
@@ -91,7 +89,8 @@ DesignOptions options_for(const DesignArguments& arguments, const Camera& camera
 }
 
 void run(const DesignArguments& arguments, const Session& session) {
-  const Camera camera = arguments.camera.load();
+  Camera camera = arguments.camera.load();
+  arguments.later.apply_to(camera);
   const DesignOptions options = options_for(arguments, camera);
   if (arguments.output.empty()) {
     const DesignResult result = design(camera, options, terminal_progress("designing"));

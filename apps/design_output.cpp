@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "tofsmith/io/design_directory.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/io/scene_directory.hpp"
@@ -17,6 +15,19 @@ namespace {
 
 std::string estimate_text(const Estimate& e) {
   return fmt::format("{:.1f} +- {:.1f}", 1e3 * e.value, 1e3 * e.standard_error);
+}
+
+/// Columns of what second returns make of the codes, behind those without.
+void add_second_returns(std::vector<std::vector<std::string>>& rows, const DesignResult& result,
+                        DepthErrorKind kind) {
+  rows.front().insert(rows.front().end(), {"second return (mm)", "as two returns (mm)"});
+  const std::vector<const Candidate*> order = by_chosen_error(result, kind);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const SecondReturnReport& report = *order[i]->second_returns;
+    rows[i + 1].push_back(estimate_text(report.single_path.of(kind)));
+    rows[i + 1].push_back(report.two_return ? estimate_text(report.two_return->circular_m)
+                                            : "cannot");
+  }
 }
 
 /// Sentences on who won, by how much and over whom.
@@ -32,7 +43,7 @@ std::string verdict(const Camera& camera, const DesignResult& result) {
     if (&c != &winner && gain.value - 1.0 < 2.0 * gain.standard_error)
       tied += (tied.empty() ? "" : ", ") + c.code.name();
   }
-  if (!tied.empty())
+  if (!tied.empty() && !camera.operating.multipath)
     text += "\n  within two standard errors of it: " + tied + " (more --trials tell them apart)";
   for (const char* name : {"sinusoid-k3", "sinusoid-k4", "square-k4", "pulsed-multifrequency-k5"})
     if (const Candidate* other = result.find(name); other && other != &winner)
@@ -57,15 +68,7 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
                     estimate_text(c->error.linear.geometric_mean_m),
                     estimate_text(c->error.circular.geometric_mean_m),
                     fmt::format("{}", c->rotation_bin), c->method});
-  if (options.optimize.later)
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const Candidate* c = i == 0 ? nullptr : by_chosen_error(result, kind)[i - 1];
-      rows[i].push_back(c ? estimate_text(*c->second_return_error_m) : "second return (mm)");
-      rows[i].push_back(!c ? "as two (mm)"
-                        : std::isfinite(c->two_return_error_m->value)
-                            ? estimate_text(*c->two_return_error_m)
-                            : "");
-    }
+  if (camera.operating.multipath) add_second_returns(rows, result, kind);
   session.say(text_table(rows));
   if (kind == DepthErrorKind::linear)
     session.say(

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <vector>
 
 #include "number_checks.hpp"
@@ -13,45 +14,53 @@ namespace tofsmith::apps {
 namespace {
 
 /// One number, or two with a colon between: least and largest.
-bool read_limits(const std::string& text, double& least, double& largest) {
+bool read_limits(const std::string& text, std::array<double, 2>& limits) {
   const std::vector<std::string> ends = CLI::detail::split(text, ':');
-  return !ends.empty() && ends.size() <= 2 && CLI::detail::lexical_cast(ends.front(), least) &&
-         CLI::detail::lexical_cast(ends.back(), largest);
+  return !ends.empty() && ends.size() <= 2 && CLI::detail::lexical_cast(ends.front(), limits[0]) &&
+         CLI::detail::lexical_cast(ends.back(), limits[1]);
+}
+
+void read_returns(const std::string& text, SecondReturns& returns) {
+  for (const std::string& part : CLI::detail::split(text, ',')) {
+    const std::size_t equals = part.find('=');
+    const std::string key = part.substr(0, equals);
+    const std::string value = equals == std::string::npos ? "" : part.substr(equals + 1);
+    if (!(key == "ratio" && read_limits(value, returns.ratio)) &&
+        !(key == "delta" && read_limits(value, returns.delay_m)))
+      throw UsageError(fmt::format(
+          "--second-returns {}: found '{}'; expected ratio=a:b,delta=a:b (metres)", text, part));
+  }
 }
 
 }  // namespace
 
 void SecondReturnArguments::add_to(CLI::App& command) {
-  CLI::Option* returns =
-      command.add_option("--second-returns", returns_,
-                         "optimize also for pixels with a second return, decoded as single-path: "
-                         "ratio=.1:.5,delta=.5:3 (metres), each uniform between its limits");
+  command.add_option("--second-returns", returns_,
+                     "reckon with pixels that have a second return: ratio=.1:.5,delta=.5:3 "
+                     "(metres), each uniform between its limits; over [operating.multipath]");
   command
       .add_option("--second-return-weight", weight_,
-                  "w of E1^(1-w) E2^w, the error without and with second returns, in (0, 1)")
-      ->check(number_that("in (0, 1)", [](double w) { return w > 0.0 && w < 1.0; }))
-      ->capture_default_str()
-      ->needs(returns);
+                  "w of E1^(1-w) E2^w, the errors without and with second returns, in (0, 1)")
+      ->check(number_that("in (0, 1)", [](double w) { return w > 0.0 && w < 1.0; }));
 }
 
-std::optional<SecondReturnGoal> SecondReturnArguments::goal(const Camera& camera) const {
-  if (returns_.empty()) return std::nullopt;
-  SecondReturnGoal goal{.weight = weight_};
-  for (const std::string& part : CLI::detail::split(returns_, ',')) {
-    const std::size_t equals = part.find('=');
-    const std::string key = part.substr(0, equals);
-    const std::string value = equals == std::string::npos ? "" : part.substr(equals + 1);
-    SecondReturns& its = goal.returns;
-    const bool is_read =
-        (key == "ratio" && read_limits(value, its.least_ratio, its.largest_ratio)) ||
-        (key == "delta" && read_limits(value, its.shortest_delay_m, its.longest_delay_m));
-    if (!is_read)
-      throw UsageError(
-          fmt::format("--second-returns {}: found '{}'; expected ratio=a:b,delta=a:b (metres)",
-                      returns_, part));
+void SecondReturnArguments::apply_to(Camera& camera) const {
+  std::optional<SecondReturns>& multipath = camera.operating.multipath;
+  if (!returns_.empty()) {
+    if (!multipath) multipath.emplace();
+    read_returns(returns_, *multipath);
+    try {
+      multipath->validate(camera.range_m());
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(fmt::format("--second-returns {}: {}", returns_, error.what()));
+    }
   }
-  goal.validate(camera.range_m());
-  return goal;
+  if (!weight_) return;
+  if (!multipath)
+    throw UsageError(
+        "--second-return-weight: found no second returns; expected --second-returns or a camera "
+        "with [operating.multipath]");
+  multipath->weight = *weight_;
 }
 
 }  // namespace tofsmith::apps

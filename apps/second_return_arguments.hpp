@@ -7,7 +7,7 @@
 #include <string>
 
 #include "session.hpp"
-#include "tofsmith/design/optimize.hpp"
+#include "tofsmith/camera/camera.hpp"
 
 namespace tofsmith::apps {
 
@@ -15,13 +15,13 @@ namespace tofsmith::apps {
 class SecondReturnArguments {
  public:
   void add_to(CLI::App& command);
-  /// None if they were not asked for.
-  /// @throws UsageError for what cannot be read; std::invalid_argument as SecondReturnGoal
-  std::optional<SecondReturnGoal> goal(const Camera& camera) const;
+  /// Puts what was asked for into operating.multipath, over what the camera says there.
+  /// @throws UsageError for what cannot be read or be
+  void apply_to(Camera& camera) const;
 
  private:
   std::string returns_;
-  double weight_ = SecondReturnGoal().weight;
+  std::optional<double> weight_;
 };
 
 }  // namespace tofsmith::apps

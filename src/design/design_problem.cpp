@@ -82,8 +82,7 @@ void require_optimizable(const Camera& camera, int exposures) {
 }
 
 /// The camera's points, and the same with second returns where those matter.
-std::vector<LightLevel> levels_of(const Camera& camera,
-                                  const std::optional<SecondReturnGoal>& later) {
+std::vector<LightLevel> levels_of(const Camera& camera, const std::optional<SecondReturns>& later) {
   const std::vector<OperatingPoint> points = training_points(camera);
   std::vector<LightLevel> levels;
   for (const OperatingPoint& point : points)
@@ -135,8 +134,7 @@ double CameraVariant::total_weight() const {
   return total;
 }
 
-DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples,
-                                  const std::optional<SecondReturnGoal>& later) {
+DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples) {
   require(!variants.empty(), "variants", variants.size(), "must hold at least one camera");
   const Camera& camera = variants.front();
   camera.validate();
@@ -147,10 +145,8 @@ DesignProblem make_design_problem(std::span<const Camera> variants, int exposure
   problem.shortest_run_periods = shortest_run_periods(camera);
   problem.binary_modulation = camera.light.binary;
   problem.binary_demodulation = camera.sensor.binary;
-  if (later) {
-    later->validate(camera.range_m());
-    problem.later = LaterTrials{later->returns, camera.range_m()};
-  }
+  if (const auto& later = camera.operating.multipath)
+    problem.later = LaterTrials{*later, camera.range_m()};
   for (const Camera& variant : variants) {
     variant.validate();
     require(variant.sensor.taps == camera.sensor.taps &&
@@ -160,7 +156,7 @@ DesignProblem make_design_problem(std::span<const Camera> variants, int exposure
     const int finer = camera.band_limited() ? 1 : std::clamp(camera.samples / samples_here, 1, 4);
     problem.variants.push_back({SampledCamera(variant, samples_here, exposures),
                                 SampledCamera(variant, finer * samples_here, exposures),
-                                levels_of(variant, later)});
+                                levels_of(variant, camera.operating.multipath)});
   }
   return problem;
 }

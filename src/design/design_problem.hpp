@@ -58,10 +58,9 @@ WaveformSpace waveform_space(const Camera& camera, int exposures, int samples);
 /// that read noise sets.
 std::vector<OperatingPoint> training_points(const Camera& camera);
 
+/// With operating.multipath, levels with second returns stand beside those without.
 /// @throws std::invalid_argument if the camera gives fewer than 3 measurements, has no band limit
 ///         and no shortest pulse, or variants differ in what may be played
-/// @param later  if set, levels with second returns stand beside those without
-DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples,
-                                  const std::optional<SecondReturnGoal>& later = {});
+DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples);
 
 }  // namespace tofsmith

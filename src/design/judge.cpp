@@ -3,9 +3,6 @@
 #include "design/judge.hpp"
 
 #include <algorithm>
-#include <limits>
-
-#include "tofsmith/simulate/second_return_error.hpp"
 
 namespace tofsmith {
 
@@ -27,18 +24,12 @@ void judge(Candidate& candidate, const Camera& camera, const DesignOptions& opti
         best_rotation(candidate.code, camera, search, part_of(progress, 0.0, 0.5)).rotation_bin;
     candidate.code = candidate.code.rotated(candidate.rotation_bin);
   }
-  candidate.error = evaluate(candidate.code, camera, judging, part_of(progress, 0.5, 1.0));
-  if (const auto& later = options.optimize.later) {
-    candidate.second_return_error_m =
-        second_return_error(candidate.code, camera, later->returns, judging)
-            .of(camera.operating.error);
-    try {
-      candidate.two_return_error_m =
-          two_return_error(candidate.code, camera, later->returns, judging).circular_m;
-    } catch (const std::invalid_argument&) {  // too few means to tell two returns
-      candidate.two_return_error_m = Estimate{std::numeric_limits<double>::quiet_NaN(), 0.0};
-    }
-  }
+  const auto& later = camera.operating.multipath;
+  const double evaluated = later ? 0.6 : 1.0;
+  candidate.error = evaluate(candidate.code, camera, judging, part_of(progress, 0.5, evaluated));
+  if (later)
+    candidate.second_returns = second_return_report(candidate.code, camera, *later, judging,
+                                                    part_of(progress, evaluated, 1.0));
   candidate.code.provenance.depth_error_m = chosen_error_m(candidate.error, camera.operating.error);
 }
 

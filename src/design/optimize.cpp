@@ -15,10 +15,10 @@
 #include "design/edge_polish.hpp"
 #include "design/optimize_pool.hpp"
 #include "design/optimize_starts.hpp"
+#include "design/two_return_limit.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
-#include "tofsmith/simulate/second_return_error.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {
@@ -32,23 +32,15 @@ struct Finalist {
   CodeSet code;
   std::string start;
   Estimate error_m;
-  Estimate second_return_error_m, two_return_error_m;  ///< with OptimizeOptions::later
+  std::optional<SecondReturnReport> second_returns = {};  ///< if the camera reckons with them
 };
 
 /// What finalists are compared by [m]: the error, with second returns weighed in.
-double choice_m(const Finalist& finalist, const OptimizeOptions& options) {
-  if (!options.later) return finalist.error_m.value;
-  return std::pow(finalist.error_m.value, 1.0 - options.later->weight) *
-         std::pow(finalist.second_return_error_m.value, options.later->weight);
-}
-
-/// The least error of two-return decoding that a code given has; infinite if none can be decoded
-/// so.
-double least_two_return_m(std::span<const Finalist> given) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Finalist& f : given)
-    if (f.two_return_error_m.value < least) least = f.two_return_error_m.value;
-  return least;
+double choice_m(const Finalist& finalist, const Camera& camera) {
+  if (!finalist.second_returns) return finalist.error_m.value;
+  return camera.operating.multipath->weighed(
+      finalist.error_m.value,
+      finalist.second_returns->single_path.of(camera.operating.error).value);
 }
 
 /// The best of the pool as codes that can be played: switched, and with polished edges too.
@@ -128,39 +120,39 @@ void validate_second_returns(Finalist& finalist, const Camera& camera,
   const auto points = static_cast<std::int64_t>(camera.operating.points().size());
   evaluation.trials = std::clamp<std::int64_t>(options.validation_trials / points, 3000, 40000);
   evaluation.seed = combine_keys(options.seed, validation_key);
-  const SecondReturns& later = options.later->returns;
-  finalist.second_return_error_m =
-      second_return_error(finalist.code, camera, later, evaluation).of(camera.operating.error);
-  try {
-    finalist.two_return_error_m =
-        two_return_error(finalist.code, camera, later, evaluation).circular_m;
-  } catch (const std::invalid_argument&) {  // too few means to tell two returns
-    finalist.two_return_error_m.value = std::numeric_limits<double>::quiet_NaN();
-  }
+  finalist.second_returns =
+      second_return_report(finalist.code, camera, *camera.operating.multipath, evaluation);
 }
 
-std::string describe_second_returns(const Finalist& best, const Finalist* best_given) {
-  const auto errors = [](const Finalist& f) {
-    return fmt::format("{:.4g} / {:.4g} / {:.4g} mm", 1e3 * f.error_m.value,
-                       1e3 * f.second_return_error_m.value, 1e3 * f.two_return_error_m.value);
+std::string describe_second_returns(const Finalist& best, const Finalist* best_given,
+                                    DepthErrorKind kind) {
+  const auto errors = [&](const Finalist& f) {
+    const SecondReturnReport& behind = *f.second_returns;
+    return fmt::format(
+        "{:.4g}, {:.4g}, {}", 1e3 * f.error_m.value, 1e3 * behind.single_path.of(kind).value,
+        behind.two_return ? fmt::format("{:.4g} mm", 1e3 * behind.two_return->circular_m.value)
+                          : "impossible");
   };
-  std::string text = "single returns / behind second ones / decoded as two: " + errors(best);
-  if (best_given) text += fmt::format(" ({}: {})", best_given->code.name(), errors(*best_given));
+  std::string text =
+      "of single returns, behind second ones, and those decoded as two: " + errors(best);
+  if (best_given && best_given != &best)
+    text += fmt::format("; {}: {}", best_given->code.name(), errors(*best_given));
   return text;
 }
 
 std::string describe(const Finalist& best, const Finalist* best_given, bool is_given,
-                     bool ended_early, const OptimizeOptions& options) {
+                     bool ended_early, const Camera& camera) {
   std::string text;
   if (is_given)
     text = fmt::format("no better code found than {}", best.code.name());
   else if (!best_given)
-    text = fmt::format("error {:.4g} mm", 1e3 * choice_m(best, options));
+    text = fmt::format("error {:.4g} mm", 1e3 * choice_m(best, camera));
   else
     text = fmt::format("{:.3g} times better than {}, the best code given",
-                       choice_m(*best_given, options) / choice_m(best, options),
+                       choice_m(*best_given, camera) / choice_m(best, camera),
                        best_given->code.name());
-  if (options.later) text += "; " + describe_second_returns(best, best_given);
+  if (best.second_returns)
+    text += "; " + describe_second_returns(best, best_given, camera.operating.error);
   return text + (ended_early ? "; hops ended early, without gain" : "");
 }
 
@@ -184,13 +176,8 @@ void OptimizeOptions::validate() const {
   at_least(pool_trials, 1000, "pool_trials");
   at_least(polish_steps, 0, "polish_steps");
   at_least(validation_trials, 1000, "validation_trials");
-}
-
-void SecondReturnGoal::validate(double range_m) const {
-  returns.validate(range_m);
-  require(weight > 0.0 && weight < 1.0, "SecondReturnGoal::weight", weight, "must be in (0, 1)");
-  require(most_two_return_loss > 0.0, "SecondReturnGoal::most_two_return_loss",
-          most_two_return_loss, "must be > 0");
+  require(most_two_return_loss > 0.0, "OptimizeOptions::most_two_return_loss", most_two_return_loss,
+          "must be > 0");
 }
 
 OptimizedCode optimize(std::span<const Camera> variants, int exposures,
@@ -198,8 +185,7 @@ OptimizedCode optimize(std::span<const Camera> variants, int exposures,
                        const Progress& progress) {
   const auto begin = std::chrono::steady_clock::now();
   options.validate();
-  const DesignProblem problem =
-      make_design_problem(variants, exposures, options.samples, options.later);
+  const DesignProblem problem = make_design_problem(variants, exposures, options.samples);
   const Camera& camera = variants.front();
 
   // 1. Go downhill from many codes, from changed copies of the best, and once more from the best.
@@ -219,17 +205,14 @@ OptimizedCode optimize(std::span<const Camera> variants, int exposures,
     report(progress, 0.9 + 0.1 * static_cast<double>(i) / static_cast<double>(finalists.size()),
            "validation");
     validate_finalist(finalists[i], variants, options);
-    if (options.later) validate_second_returns(finalists[i], camera, options);
+    if (camera.operating.multipath) validate_second_returns(finalists[i], camera, options);
   }
-  const double most_two_return_m =
-      options.later ? options.later->most_two_return_loss *
-                          least_two_return_m(std::span(finalists).subspan(optimized))
-                    : std::numeric_limits<double>::infinity();
+  TwoReturnLimit two_returns(options.most_two_return_loss);
+  for (const Finalist& f : std::span(finalists).subspan(optimized))
+    two_returns.add_given(f.second_returns);
   // What two-return decoding cannot cope with comes last.
   const auto rank = [&](const Finalist& f) {
-    const bool is_ambiguous =
-        std::isfinite(most_two_return_m) && !(f.two_return_error_m.value <= most_two_return_m);
-    return std::pair(is_ambiguous, choice_m(f, options));
+    return std::pair(two_returns.is_broken_by(f.second_returns), choice_m(f, camera));
   };
   const auto less = [&](const Finalist& a, const Finalist& b) { return rank(a) < rank(b); };
   const auto first_given = finalists.begin() + static_cast<std::ptrdiff_t>(optimized);
@@ -240,10 +223,9 @@ OptimizedCode optimize(std::span<const Camera> variants, int exposures,
   OptimizedCode result{.code = best->code, .error_m = best->error_m};
   result.is_given = best >= first_given;
   result.start = best->start;
-  result.message = describe(*best, rival, result.is_given, pool.ended_early(), options);
+  result.message = describe(*best, rival, result.is_given, pool.ended_early(), camera);
   for (const Finalist& finalist : finalists)
-    result.candidates.push_back({finalist.code.name(), finalist.error_m,
-                                 finalist.second_return_error_m, finalist.two_return_error_m});
+    result.candidates.push_back({finalist.code.name(), finalist.error_m, finalist.second_returns});
   result.history = std::move(pool.history());
   result.steps =
       pool.steps() +

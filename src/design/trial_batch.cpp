@@ -57,8 +57,8 @@ TrialBatch draw_trials(int count, int measurements, const OperatingRange& range,
     if (ends_matter) trial.weight = 1.0 / mixture_density(trial.depth_periods);
     trial.albedo = range.uniform_albedo ? random.uniform() : range.albedo;
     if (later) {
-      trial.later_ratio = later->returns.ratio(random.uniform());
-      trial.later_delay_periods = later->returns.delay_m(random.uniform()) / later->range_m;
+      trial.later_ratio = later->returns.ratio_at(random.uniform());
+      trial.later_delay_periods = later->returns.delay_at_m(random.uniform()) / later->range_m;
     }
   }
   const auto numbers = static_cast<std::size_t>(count) * static_cast<std::size_t>(measurements);

@@ -19,20 +19,16 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-std::string in_mm(double metres) {
-  return std::isfinite(metres) ? fmt::format("{:.1f}", 1e3 * metres) : "";
-}
-
 Row row_of(const DelayClass& its, const std::string& delay) {
   const double gain = std::abs(its.bias_m[0]) / std::abs(its.bias_m[1]);
   return {delay,
           std::to_string(its.pixels),
           fmt::format("{:.3f}", its.ratio),
-          in_mm(its.bias_m[0]),
-          in_mm(its.bias_m[1]),
+          mm_text(its.bias_m[0]),
+          mm_text(its.bias_m[1]),
           std::isfinite(gain) ? fmt::format("{:.1f}", gain) : "",
-          in_mm(its.error_m[0]),
-          in_mm(its.error_m[1]),
+          mm_text(its.error_m[0]),
+          mm_text(its.error_m[1]),
           fmt::format("{:.1f}", 100 * its.two_share),
           fmt::format("{:.1f}", 100 * its.unresolved_share)};
 }
@@ -69,7 +65,7 @@ Figure error_figure(const MultipathScene& scene) {
   std::vector<ValueImage> images;
   for (std::size_t i = 0; i < scene.decodings.size(); ++i)
     images.push_back({.title = fmt::format("{}: mean {} mm", scene.decodings[i].method,
-                                           in_mm(scene.all.bias_m[i])),
+                                           mm_text(scene.all.bias_m[i])),
                       .pixels = in_mm(scene.decodings[i].error_m)});
   const double limit_mm = std::max(1.0, 2e3 * scene.all.error_m[0]);
   return image_figure({.id = "multipath-scene-error",

@@ -14,12 +14,12 @@ namespace tofsmith {
 
 namespace {
 
-constexpr float no_number = std::numeric_limits<float>::quiet_NaN();
+constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
 constexpr std::array delay_edges_m = {0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 1e9};
 
 /// Sums of later light, pixel by pixel.
 void sum_later_light(MultipathScene& scene, const LaterReturns& returns) {
-  scene.later_ratio = {scene.truth.height(), scene.truth.width(), no_number};
+  scene.later_ratio = {scene.truth.height(), scene.truth.width(), no_value};
   scene.later_delay_m = scene.later_ratio;
   for (int row = 0; row < scene.truth.height(); ++row)
     for (int column = 0; column < scene.truth.width(); ++column) {

@@ -40,8 +40,8 @@ TrialFrame draw_frame(const PixelCapture& pixel, const Camera& camera, const Sec
       const double albedo =
           camera.operating.uniform_albedo ? random.uniform() : camera.operating.albedo;
       const double signal_e_per_s = albedo * light.signal_e_per_s;
-      const double ratio = later.ratio(random.uniform());
-      const double delay_m = later.delay_m(random.uniform());
+      const double ratio = later.ratio_at(random.uniform());
+      const double delay_m = later.delay_at_m(random.uniform());
       sum.assign(taps, 0.0);
       pixel.add_light(depth_m, signal_e_per_s, work, sum);
       pixel.add_light(depth_m + delay_m, ratio * signal_e_per_s, work, sum);
@@ -101,11 +101,25 @@ SecondReturnError two_return_error(const CodeSet& code, const Camera& camera,
   const ForwardModel model(code, camera);
   const PixelCapture pixel(model, camera);
   MultipathOptions decoding;
-  decoding.shortest_delay_m = std::min(decoding.shortest_delay_m, later.shortest_delay_m);
-  decoding.longest_delay_m = std::max(later.longest_delay_m, camera.range_m() / 3);
+  decoding.shortest_delay_m = std::min(decoding.shortest_delay_m, later.delay_m[0]);
+  decoding.longest_delay_m = std::max(later.delay_m[1], camera.range_m() / 3);
   const TwoReturnDecoder decoder(make_decoding_table(model, camera), decoding);
   return error_of(pixel, camera, later, options, progress,
                   [&](const RawFrames& raw) { return decoder.decode(raw).direct.depth_m; });
+}
+
+SecondReturnReport second_return_report(const CodeSet& code, const Camera& camera,
+                                        const SecondReturns& later, const EvaluateOptions& options,
+                                        const Progress& progress) {
+  SecondReturnReport result;
+  result.single_path =
+      second_return_error(code, camera, later, options, part_of(progress, 0.0, 0.3));
+  try {
+    result.two_return = two_return_error(code, camera, later, options, part_of(progress, 0.3, 1.0));
+  } catch (const std::invalid_argument&) {  // too few means to tell two returns
+    report(progress, 1.0, "second returns");
+  }
+  return result;
 }
 
 }  // namespace tofsmith

@@ -37,6 +37,23 @@ class Multipath(CommandLineTest):
         self.assertEqual(document["scene"]["all"]["pixels"], 8 * 6)
         self.assertIn(b"seen from above", self.bytes_of("page.html"))
 
+    def test_designs_say_what_second_returns_make_of_codes(self):
+        with open(self.path("mine.toml"), "w", encoding="utf-8") as file:
+            file.write("fundamental_frequency_hz = 15e6\nsamples = 60\n[light]\npeak_factor = 15\n"
+                       "[sensor]\ntaps = 2\n[operating]\nsignal_e_per_s = [1e5]\n"
+                       "ambient_e_per_s = [1e4]\n[operating.multipath]\nratio = [0.3, 0.3]\n"
+                       "delay_m = [1, 2]\n")
+        document = self.do_json("design", "mine.toml", "--method", "factorize", "--exposures", "5",
+                                "--effort", "0.05", "--trials", "1000", "-o", "designed",
+                                "--second-returns", "ratio=.2:.4", "--second-return-weight", ".1")
+        self.assertEqual(document["camera"]["operating"]["multipath"],
+                         {"ratio": [0.2, 0.4], "delay_m": [1.0, 2.0], "weight": 0.1})
+        for code in document["codes"]:
+            errors = code["second_returns"]
+            self.assertGreater(errors["single_path"]["linear_m"], code["linear"]["mean_m"])
+            self.assertIsNotNone(errors["two_return"])
+        self.assertIn(b"And behind second returns?", self.bytes_of("designed/report.html"))
+
     def test_refusals_of_words(self):
         for arguments, words in (
                 (["--bounces", "2"], ["--bounces", "2"]),
@@ -54,9 +71,20 @@ class Multipath(CommandLineTest):
         self.refuse(["simulate", "z.npy", *TWO_BUCKETS, "-o", "r.npy", "--bounces", "1"],
                     "a depth image; expected surfaces", code=2)
         self.refuse(["evaluate", "hamiltonian-k5", "--scene", "corner"], "--multipath", code=2)
-        self.refuse(["design", "--second-returns", "ratio=1", "--method", "factorize"],
-                    "--second-returns goes with --method optimize", code=2)
-        self.refuse(["design", "--second-returns", "ratio=.1:.5:.9"], "found 'ratio=.1:.5:.9'",
+        for value, words in (
+                ("ratio=.1:.5:.9", "found 'ratio=.1:.5:.9'; expected ratio=a:b,delta=a:b"),
+                ("ratio=.1,delay=1", "found 'delay=1'; expected ratio=a:b,delta=a:b"),
+                ("ratio=", "found 'ratio='"),
+                ("ratio=.5:.1", "operating.multipath.ratio = [0.5, 0.1]; must be"),
+                ("ratio=-.1:.5", "operating.multipath.ratio = [-0.1, 0.5]; must be"),
+                ("delta=0:1", "operating.multipath.delay_m = [0, 1]; must be"),
+                ("delta=1:11", "below the unambiguous range, 9.993 m")):
+            self.refuse(["design", "--second-returns", value], "--second-returns " + value, words,
+                        code=2)
+        self.refuse(["design", "--second-return-weight", ".2"], "found no second returns", code=2)
+        self.refuse(["design", "--second-returns", "ratio=.3", "--second-return-weight", "1"],
+                    "--second-return-weight", "in (0, 1)", code=2)
+        self.refuse(["design", "--second-returns", "ratio=.3", "--robust"], "--robust: found beside",
                     code=2)
 
     def test_refusals_of_values(self):
@@ -65,8 +93,8 @@ class Multipath(CommandLineTest):
         self.refuse([*SIMULATE, "--second-return", "delta=11,ratio=.3"], "unambiguous range")
         self.refuse([*SIMULATE, "--second-return", "delta=2,ratio=.3", "--second-return",
                      "delta=1,ratio=.3"], "in order")
-        self.refuse(["design", "--second-returns", "ratio=.5:.1"], "largest_ratio = 0.1")
-        self.refuse(["design", "--second-returns", "delta=0:1"], "shortest_delay_m = 0")
+        self.refuse(["design", "--set", "operating.multipath.ratio=[0.5,0.1]"],
+                    "operating.multipath.ratio = [0.5, 0.1]; must be")
 
     def test_refusals_of_codes(self):
         self.do(*SIMULATE)

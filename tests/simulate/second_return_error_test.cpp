@@ -32,20 +32,38 @@ TEST(SecondReturnError, FollowsTheLawOfCloseReturnsAndTwoReturnDecodingIsBetterF
   const auto single_path = [&](const SecondReturns& later) {
     return second_return_error(code, camera, later, options).circular_m.value;
   };
-  EXPECT_NEAR(single_path({0.3, 0.3, 0.15, 0.15}), single_path_bias_m(0.3, 0.15), 0.005);
-  const SecondReturns far{0.3, 0.3, 1.0, 2.0};
+  EXPECT_NEAR(single_path({{0.3, 0.3}, {0.15, 0.15}}), single_path_bias_m(0.3, 0.15), 0.005);
+  const SecondReturns far{{0.3, 0.3}, {1.0, 2.0}};
   EXPECT_LT(4 * two_return_error(code, camera, far, options).circular_m.value, single_path(far));
-  EXPECT_NEAR(single_path({0.0, 0.0, 1.0, 1.0}),
+  EXPECT_NEAR(single_path({{0.0, 0.0}, {1.0, 1.0}}),
               evaluate(code, camera, options).circular.geometric_mean_m.value, 0.001);
+}
+
+TEST(SecondReturnError, IsReportedWithoutTwoReturnsWhereTheCodeCannotTellThem) {
+  const Camera camera = bright_camera();
+  EvaluateOptions options;
+  options.trials = 200;
+  for (const char* name : {"hamiltonian-k5", "sinusoid-k5"}) {
+    const CodeSet code = build_family(name, camera);
+    const SecondReturnReport report = second_return_report(code, camera, {}, options);
+    EXPECT_EQ(report.single_path.circular_m.value,
+              second_return_error(code, camera, {}, options).circular_m.value);
+    EXPECT_EQ(report.two_return.has_value(), code.name() == "hamiltonian-k5");
+    if (report.two_return) {
+      EXPECT_EQ(report.two_return->linear_m.value,
+                two_return_error(code, camera, {}, options).linear_m.value);
+    }
+  }
 }
 
 TEST(SecondReturnError, RefusesWhatCannotBe) {
   const Camera camera = bright_camera();
   const CodeSet code = build_family("hamiltonian-k5", camera);
   for (const SecondReturns& later :
-       {SecondReturns{-0.1, 0.5}, SecondReturns{0.5, 0.1}, SecondReturns{0.1, 1.5},
-        SecondReturns{0.1, 0.5, 0.0, 1.0}, SecondReturns{0.1, 0.5, 2.0, 1.0},
-        SecondReturns{0.1, 0.5, 2.0, 11.0}})
+       {SecondReturns{.ratio = {-0.1, 0.5}}, SecondReturns{.ratio = {0.5, 0.1}},
+        SecondReturns{.ratio = {0.1, 1.5}}, SecondReturns{.delay_m = {0.0, 1.0}},
+        SecondReturns{.delay_m = {2.0, 1.0}}, SecondReturns{.delay_m = {2.0, 11.0}},
+        SecondReturns{.weight = 1.0}})
     EXPECT_THROW(second_return_error(code, camera, later), std::invalid_argument);
 }
 

@@ -2,23 +2,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 namespace tofsmith {
 
-/// Second returns as a camera meets them: ratio and delay are uniform between their limits.
+/// Second returns as a camera meets them: ratio and delay are uniform between their limits. Field
+/// names are the keys of [operating.multipath] in the TOML file.
 struct SecondReturns {
-  double least_ratio = 0.1, largest_ratio = 0.5;         ///< r = S2 / S1, in [0, 1]
-  double shortest_delay_m = 0.5, longest_delay_m = 3.0;  ///< behind the direct return, > 0 [m]
+  std::array<double, 2> ratio{0.1, 0.5};    ///< r = S2 / S1, least and largest, in [0, 1]
+  std::array<double, 2> delay_m{0.5, 3.0};  ///< behind the direct return, in (0, range) [m]
+  /// How much they count where codes are designed: what is minimized is E1^(1 - weight) E2^weight,
+  /// with E1 the error of single returns and E2 that behind such second ones, decoded as
+  /// single-path; in (0, 1).
+  double weight = 0.1;
 
   /// A ratio and a delay from two numbers uniform on [0, 1).
-  double ratio(double uniform) const {
-    return least_ratio + uniform * (largest_ratio - least_ratio);
-  }
-  double delay_m(double uniform) const {
-    return shortest_delay_m + uniform * (longest_delay_m - shortest_delay_m);
+  double ratio_at(double uniform) const { return ratio[0] + uniform * (ratio[1] - ratio[0]); }
+  double delay_at_m(double uniform) const {
+    return delay_m[0] + uniform * (delay_m[1] - delay_m[0]);
   }
 
-  /// @throws std::invalid_argument naming field, value and rule
+  /// E1^(1 - weight) E2^weight.
+  double weighed(double single_return_error, double second_return_error) const;
+
+  /// @throws std::invalid_argument naming the field as operating.multipath.*, value and rule
   void validate(double range_m) const;
+
+  friend bool operator==(const SecondReturns&, const SecondReturns&) = default;
 };
 
 }  // namespace tofsmith

@@ -97,9 +97,8 @@ struct Candidate {
   /// DesignOptions::robust of all.
   std::optional<RobustnessReport> robustness;
 
-  /// With OptimizeOptions::later: error behind second returns, decoded as single-path and
-  /// (circular) as two returns; the latter NaN where the code cannot.
-  std::optional<Estimate> second_return_error_m, two_return_error_m;
+  /// Error behind second returns; on cameras with operating.multipath.
+  std::optional<SecondReturnReport> second_returns;
 
   /// Made for this camera, by any method; not a family, a reference or a naive code.
   bool is_designed() const { return !per_measurement.empty(); }
@@ -118,8 +117,8 @@ struct DesignResult {
 };
 
 /// What a candidate is chosen by [m]: its depth error by the camera's choice or, where options ask
-/// for robust codes, that on the worst perturbed camera, to which the decoder is calibrated; with
-/// OptimizeOptions::later the error behind second returns is weighed in.
+/// for robust codes, that on the worst perturbed camera, to which the decoder is calibrated; on
+/// cameras with operating.multipath the error behind second returns is weighed in.
 double choice_error_m(const Candidate& candidate, const Camera& camera,
                       const DesignOptions& options);
 

@@ -9,26 +9,12 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
-#include "tofsmith/camera/second_returns.hpp"
 #include "tofsmith/code/code_set.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/statistics.hpp"
+#include "tofsmith/simulate/second_return_error.hpp"
 
 namespace tofsmith {
-
-/// Second returns that codes shall stand while they are decoded as single-path.
-struct SecondReturnGoal {
-  SecondReturns returns;
-  /// What is minimized is E1^(1 - weight) E2^weight, with E1 the error of single returns and E2
-  /// that of pixels with such a second return; in (0, 1).
-  double weight = 0.5;
-  /// Two-return decoding of a code must err at most this many times as much as it does of the best
-  /// code given that can be decoded so, if there is one; > 0.
-  double most_two_return_loss = 1.25;
-
-  /// @throws std::invalid_argument naming field, value and rule
-  void validate(double range_m) const;
-};
 
 /// Options of the direct optimization of codes for depth error.
 struct OptimizeOptions {
@@ -49,7 +35,9 @@ struct OptimizeOptions {
   /// nor more than 40000 per point.
   int validation_trials = 100000;
   std::uint64_t seed = 1;
-  std::optional<SecondReturnGoal> later;  ///< none: light comes back once
+  /// On cameras with operating.multipath: two-return decoding of a code must err at most this many
+  /// times as much as it does of the best code given that can be decoded so, if there is one; > 0.
+  double most_two_return_loss = 1.25;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
@@ -68,9 +56,8 @@ struct OptimizeCandidate {
   std::string name;
   Estimate
       error_m;  ///< fresh trials; geometric mean over the operating points; of the worst variant
-  /// With OptimizeOptions::later: error behind second returns, decoded as single-path, and
-  /// (circular) as two returns, NaN where the code cannot; of the camera itself.
-  Estimate second_return_error_m, two_return_error_m;
+  /// On cameras with operating.multipath; of the camera itself.
+  std::optional<SecondReturnReport> second_returns;
 };
 
 /// What direct optimization found.

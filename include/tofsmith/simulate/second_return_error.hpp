@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "tofsmith/camera/second_returns.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
@@ -30,5 +32,18 @@ SecondReturnError second_return_error(const CodeSet& code, const Camera& camera,
 SecondReturnError two_return_error(const CodeSet& code, const Camera& camera,
                                    const SecondReturns& later, const EvaluateOptions& options = {},
                                    const Progress& progress = {});
+
+/// What second returns make of a code.
+struct SecondReturnReport {
+  SecondReturnError single_path;                ///< decoded as single-path
+  std::optional<SecondReturnError> two_return;  ///< as two returns; none: the code cannot
+};
+
+/// Both, on the same trials.
+/// @throws as second_return_error()
+SecondReturnReport second_return_report(const CodeSet& code, const Camera& camera,
+                                        const SecondReturns& later,
+                                        const EvaluateOptions& options = {},
+                                        const Progress& progress = {});
 
 }  // namespace tofsmith
