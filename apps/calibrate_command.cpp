@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "calibrate_command.hpp"
 #include "calibrate_output.hpp"
+#include "commands.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/version.hpp"

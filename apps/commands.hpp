@@ -16,6 +16,7 @@ void add_export_command(CLI::App& app, Session& session);
 void add_upload_command(CLI::App& app, Session& session);
 void add_scene_command(CLI::App& app, Session& session);
 void add_simulate_command(CLI::App& app, Session& session);
+void add_calibrate_command(CLI::App& app, Session& session);
 void add_decode_command(CLI::App& app, Session& session);
 void add_report_command(CLI::App& app, Session& session);
 void add_sweep_command(CLI::App& app, Session& session);

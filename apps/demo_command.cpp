@@ -17,6 +17,7 @@
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/design_directory.hpp"
 #include "tofsmith/io/file_name.hpp"
+#include "tofsmith/io/output_directory.hpp"
 #include "tofsmith/io/raw_frames_file.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/io/scene_directory.hpp"
@@ -87,7 +88,7 @@ void write_products(const fs::path& directory, const SceneResult& scene, const C
   for (const char* name : depth_files)
     write_decoded(directory / name, image, plane_names(), scene.view, policy);
   write_decoded(directory / "points.ply", image, {"signal", "confidence"}, scene.view, policy);
-  apps::create_directories(directory / "waveforms");
+  make_output_directory(directory / "waveforms");
   for (const Candidate& c : result.candidates) {
     const fs::path path = directory / "waveforms" / (file_name_of(c.code.name()) + ".csv");
     write_file_atomically(path, waveforms_to_csv(c.code, camera.fundamental_frequency_hz), policy);

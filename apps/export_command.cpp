@@ -13,6 +13,7 @@
 #include "tofsmith/camera/generator_report.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/output_directory.hpp"
 #include "tofsmith/io/waveform_export.hpp"
 #include "tofsmith/report/export_report.hpp"
 
@@ -137,7 +138,7 @@ void run(ExportArguments& arguments, const Session& session) {
   } else {
     const std::string page =
         render(export_page(code, played, exported, loss, session.command_line));
-    apps::create_directories(output);
+    make_output_directory(output);
     std::vector<Product> products;
     for (const ExportedFile& file : files)
       products.push_back({output / file.name, text_of(file.bytes)});

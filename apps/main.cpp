@@ -10,7 +10,6 @@
 #include <memory>
 #include <system_error>
 
-#include "calibrate_command.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "tofsmith/core/dispatch_target.hpp"

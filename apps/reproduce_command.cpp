@@ -11,6 +11,7 @@
 #include "fresh_directory.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/mesh_file.hpp"
+#include "tofsmith/io/output_directory.hpp"
 #include "tofsmith/reproduce/reproduction_directory.hpp"
 
 namespace tofsmith::apps {
@@ -47,7 +48,7 @@ void run(ReproduceArguments& arguments, const Session& session) {
   }
   const ReproductionDirectory directory(arguments.output);
   const FreshDirectory cleanup(directory.path());
-  apps::create_directories(directory.path());
+  make_output_directory(directory.path());
   if (!session.force) directory.require_ours(arguments.options);
   CodeShelf shelf(directory.shelf());
   const ReproduceContext context{arguments.options, shelf};

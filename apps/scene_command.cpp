@@ -12,6 +12,7 @@
 #include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/float_image_file.hpp"
 #include "tofsmith/io/npy.hpp"
+#include "tofsmith/io/output_directory.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
 
 namespace tofsmith::apps {
@@ -36,7 +37,7 @@ void write_directory(const fs::path& directory, const LoadedScene& scene, const 
                      const Session& session) {
   const OutputPolicy policy = session.output_policy();
   const FreshDirectory cleanup(directory);
-  apps::create_directories(directory);
+  make_output_directory(directory);
   for (const char* name :
        {"depth.npy", "z.npy", "albedo.npy", "cosine.npy", "beyond_range.npy", "preview.png"})
     session.check_output(directory / name);

@@ -5,19 +5,21 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <vector>
+#include <stdexcept>
 
 #include "number_checks.hpp"
+#include "number_pair.hpp"
 
 namespace tofsmith::apps {
 
 namespace {
 
 /// One number, or two with a colon between: least and largest.
-bool read_limits(const std::string& text, std::array<double, 2>& limits) {
-  const std::vector<std::string> ends = CLI::detail::split(text, ':');
-  return !ends.empty() && ends.size() <= 2 && CLI::detail::lexical_cast(ends.front(), limits[0]) &&
-         CLI::detail::lexical_cast(ends.back(), limits[1]);
+/// @throws std::invalid_argument if it is neither
+void read_limits(const std::string& text, std::array<double, 2>& limits) {
+  if (text.find(':') != std::string::npos) return read_number_pair(text, ':', limits[0], limits[1]);
+  if (!CLI::detail::lexical_cast(text, limits[0])) throw std::invalid_argument("expected a number");
+  limits[1] = limits[0];
 }
 
 void read_returns(const std::string& text, SecondReturns& returns) {
@@ -25,10 +27,13 @@ void read_returns(const std::string& text, SecondReturns& returns) {
     const std::size_t equals = part.find('=');
     const std::string key = part.substr(0, equals);
     const std::string value = equals == std::string::npos ? "" : part.substr(equals + 1);
-    if (!(key == "ratio" && read_limits(value, returns.ratio)) &&
-        !(key == "delta" && read_limits(value, returns.delay_m)))
+    try {
+      if (key != "ratio" && key != "delta") throw std::invalid_argument("expected ratio or delta");
+      read_limits(value, key == "ratio" ? returns.ratio : returns.delay_m);
+    } catch (const std::invalid_argument&) {
       throw UsageError(fmt::format(
           "--second-returns {}: found '{}'; expected ratio=a:b,delta=a:b (metres)", text, part));
+    }
   }
 }
 

@@ -88,15 +88,4 @@ void check_not_input(const std::filesystem::path& output, const std::vector<std:
                                 input));
 }
 
-void create_directories(const std::filesystem::path& directory) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error)
-    throw IoError(directory.string(),
-                  fmt::format("cannot create the directory ({}); expected a writable place",
-                              error.message()));
-  if (!std::filesystem::is_directory(directory))
-    throw IoError(directory.string(), "is a file; expected a directory");
-}
-
 }  // namespace tofsmith::apps

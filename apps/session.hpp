@@ -78,7 +78,4 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows);
 /// @throws IoError naming the output
 void check_not_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
-/// Creates a directory and its parents. @throws IoError naming it
-void create_directories(const std::filesystem::path& directory);
-
 }  // namespace tofsmith::apps

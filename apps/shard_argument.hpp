@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "session.hpp"
+#include "number_pair.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
 
 namespace tofsmith::apps {
@@ -15,12 +15,8 @@ namespace tofsmith::apps {
 inline SweepShard parse_shard(const std::string& text) {
   SweepShard shard;
   if (text.empty()) return shard;
-  const std::size_t slash = text.find('/');
   try {
-    if (slash == std::string::npos ||
-        !CLI::detail::lexical_cast(text.substr(0, slash), shard.index) ||
-        !CLI::detail::lexical_cast(text.substr(slash + 1), shard.count))
-      throw std::invalid_argument("expected two numbers");
+    read_number_pair(text, '/', shard.index, shard.count);
     shard.validate();
   } catch (const std::invalid_argument&) {
     throw UsageError(

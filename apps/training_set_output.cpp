@@ -7,7 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "fresh_directory.hpp"
+#include "number_pair.hpp"
 #include "terminal_progress.hpp"
+#include "tofsmith/io/output_directory.hpp"
 
 namespace tofsmith::apps {
 
@@ -23,12 +25,8 @@ LightRange light_range(const std::string& what, const std::string& range,
   if (range.empty()) return {level.value_or(usual), level.value_or(usual)};
   if (level) throw UsageError(fmt::format("{}: expected no --{} beside it", option, what));
   LightRange parsed;
-  const std::size_t colon = range.find(':');
   try {
-    if (colon == std::string::npos ||
-        !CLI::detail::lexical_cast(range.substr(0, colon), parsed.low_e_per_s) ||
-        !CLI::detail::lexical_cast(range.substr(colon + 1), parsed.high_e_per_s))
-      throw std::invalid_argument("expected two numbers");
+    read_number_pair(range, ':', parsed.low_e_per_s, parsed.high_e_per_s);
     parsed.validate(what);
   } catch (const std::invalid_argument&) {
     throw UsageError(
@@ -49,7 +47,7 @@ void make_training_set(const TrainingSetRequest& request, const CodeSet& code, c
     return LoadedTrainingScene{std::move(loaded.image), loaded.view};
   };
   const FreshDirectory fresh(request.directory);
-  apps::create_directories(request.directory);
+  make_output_directory(request.directory);
   session.directory = request.directory;
   const TrainingSetRun run = write_training_set(request.directory, scenes, code, camera, load,
                                                 request.options, terminal_progress("simulating"));

@@ -112,7 +112,7 @@ UploadRequest request_for(const UploadArguments& arguments, const WaveformExport
 nlohmann::ordered_json channels_json(const UploadRequest& request, const UploadReport& report) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const UploadChannel& channel : request.channels) {
-    const QuantizedWaveform& w = channel.stored[static_cast<std::size_t>(channel.selected)];
+    const QuantizedWaveform& w = channel.selected_waveform();
     nlohmann::ordered_json stored = nlohmann::ordered_json::array(), numbers;
     for (const QuantizedWaveform& waveform : channel.stored) stored.push_back(waveform.name);
     for (const ReadBackNumber& number : report.numbers)
@@ -138,7 +138,7 @@ std::vector<std::vector<std::string>> channel_rows(const UploadRequest& request)
   std::vector<std::vector<std::string>> rows = {
       {"channel", "plays", "points", "periods", "clock [MHz]", "low [V]", "high [V]"}};
   for (const UploadChannel& channel : request.channels) {
-    const QuantizedWaveform& w = channel.stored[static_cast<std::size_t>(channel.selected)];
+    const QuantizedWaveform& w = channel.selected_waveform();
     rows.push_back({fmt::format("{}", channel.channel), w.name, fmt::format("{}", w.points()),
                     fmt::format("{}", w.periods), fmt::format("{:.6g}", w.sample_rate_hz / 1e6),
                     fmt::format("{:.4g}", w.low_v), fmt::format("{:.4g}", w.high_v)});

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tofsmith/instrument/upload_script.hpp"
@@ -29,8 +32,30 @@ AnswerCheck number_check(int channel, std::string quantity, std::string field, d
 AnswerCheck word_check(int channel, std::string quantity, std::string field,
                        std::vector<std::string> texts, bool within = false);
 
+/// Steps that set and check one channel, added to a script.
+class ChannelSteps {
+ public:
+  ChannelSteps(std::vector<UploadStep>& steps, int channel) : steps_(steps), channel_(channel) {}
+  void set(std::string_view what, std::string message);
+  void ask(std::string message, std::vector<AnswerCheck> checks);
+
+ private:
+  std::vector<UploadStep>& steps_;
+  int channel_;
+};
+
+/// Where scripts in plain SCPI (Keysight, Tektronix) begin: outputs off, reset.
+void begin_scpi(std::vector<UploadStep>& steps, const UploadRequest& request);
+/// Where they end: outputs still off; then on, if they shall be.
+void end_scpi(std::vector<UploadStep>& steps, const UploadRequest& request);
+/// A load as SCPI prints it [ohm]: infinity is 9.9e37.
+double scpi_load_ohm(double load_ohm);
+
+std::string text_of(std::span<const std::byte> bytes);
+
 /// How far a frequency that an instrument prints may be from what it was told [Hz].
 double frequency_tolerance_hz(double frequency_hz, double relative);
+inline constexpr double scpi_frequency_tolerance = 1e-6;  ///< relative; Keysight and Tektronix
 inline constexpr double volt_tolerance_v = 1e-3;
 
 /// A name in the generator's memory that no other points have: "M1_1F3A77C2".

@@ -12,20 +12,12 @@ namespace tofsmith {
 
 namespace {
 
-constexpr double scpi_frequency_tolerance = 1e-6;
-constexpr double infinite_load_ohm = 9.9e37;  // as SCPI prints infinity
-
-std::string block_text(const std::vector<std::byte>& data) {
-  const std::vector<std::byte> block = ieee488_block(data);
-  return {reinterpret_cast<const char*>(block.data()), block.size()};
-}
-
 void add_keysight_waveform(std::vector<UploadStep>& steps, const UploadRequest& request,
                            int channel, const QuantizedWaveform& waveform) {
   const std::string name = memory_name(waveform);
   UploadStep load =
       told("load " + waveform.name, fmt::format("SOUR{}:DATA:ARB:DAC {},", channel, name));
-  load.data = block_text(keysight_dac_bytes(waveform));
+  load.data = text_of(ieee488_block(keysight_dac_bytes(waveform)));
   load.more_s = request.patience_s;
   steps.push_back(std::move(load));
   steps.push_back(
@@ -58,61 +50,45 @@ void add_keysight_waveform(std::vector<UploadStep>& steps, const UploadRequest& 
 void set_keysight_channel(std::vector<UploadStep>& steps, const UploadRequest& request,
                           const UploadChannel& channel) {
   const int n = channel.channel;
-  const QuantizedWaveform& w = channel.stored[static_cast<std::size_t>(channel.selected)];
-  const auto set = [&](std::string_view what, std::string message) {
-    steps.push_back(told(fmt::format("set {} of channel {}", what, n), std::move(message)));
-  };
-  set("load",
-      fmt::format("OUTP{}:LOAD {}", n,
-                  std::isinf(request.load_ohm) ? "INF" : fmt::format("{:g}", request.load_ohm)));
-  set("waveform", fmt::format("SOUR{}:FUNC:ARB \"{}\"", n, memory_name(w)));
-  set("function", fmt::format("SOUR{}:FUNC ARB", n));
-  set("filter", fmt::format("SOUR{}:FUNC:ARB:FILT {}", n, request.filter));
-  set("clock", fmt::format("SOUR{}:FUNC:ARB:SRAT {:.12g}", n, w.sample_rate_hz));
-  set("unit", fmt::format("SOUR{}:VOLT:UNIT VPP", n));
-  set("amplitude", fmt::format("SOUR{}:VOLT {:.6g}", n, w.amplitude_vpp()));
-  set("offset", fmt::format("SOUR{}:VOLT:OFFS {:.6g}", n, w.offset_v()));
+  const QuantizedWaveform& w = channel.selected_waveform();
+  ChannelSteps to(steps, n);
+  to.set("load",
+         fmt::format("OUTP{}:LOAD {}", n,
+                     std::isinf(request.load_ohm) ? "INF" : fmt::format("{:g}", request.load_ohm)));
+  to.set("waveform", fmt::format("SOUR{}:FUNC:ARB \"{}\"", n, memory_name(w)));
+  to.set("function", fmt::format("SOUR{}:FUNC ARB", n));
+  to.set("filter", fmt::format("SOUR{}:FUNC:ARB:FILT {}", n, request.filter));
+  to.set("clock", fmt::format("SOUR{}:FUNC:ARB:SRAT {:.12g}", n, w.sample_rate_hz));
+  to.set("unit", fmt::format("SOUR{}:VOLT:UNIT VPP", n));
+  to.set("amplitude", fmt::format("SOUR{}:VOLT {:.6g}", n, w.amplitude_vpp()));
+  to.set("offset", fmt::format("SOUR{}:VOLT:OFFS {:.6g}", n, w.offset_v()));
 }
 
 void check_keysight_channel(std::vector<UploadStep>& steps, const UploadRequest& request,
                             const UploadChannel& channel) {
   const int n = channel.channel;
-  const QuantizedWaveform& w = channel.stored[static_cast<std::size_t>(channel.selected)];
-  const auto ask = [&](std::string message, AnswerCheck check) {
-    steps.push_back(asked(fmt::format("check channel {}", n), std::move(message), {check}));
-  };
-  const double load = std::isinf(request.load_ohm) ? infinite_load_ohm : request.load_ohm;
-  ask(fmt::format("SOUR{}:FUNC?", n), word_check(n, "function", "", {"ARB"}));
-  ask(fmt::format("SOUR{}:FUNC:ARB?", n), word_check(n, "waveform", "", {memory_name(w)}, true));
-  ask(fmt::format("SOUR{}:FUNC:ARB:FILT?", n), word_check(n, "filter", "", {request.filter}));
-  ask(fmt::format("SOUR{}:FUNC:ARB:SRAT?", n),
-      number_check(n, "sample_rate_hz", "", w.sample_rate_hz,
-                   frequency_tolerance_hz(w.sample_rate_hz, scpi_frequency_tolerance)));
-  ask(fmt::format("SOUR{}:VOLT?", n),
-      number_check(n, "amplitude_vpp", "", w.amplitude_vpp(), volt_tolerance_v));
-  ask(fmt::format("SOUR{}:VOLT:OFFS?", n),
-      number_check(n, "offset_v", "", w.offset_v(), volt_tolerance_v));
-  ask(fmt::format("OUTP{}:LOAD?", n), number_check(n, "load_ohm", "", load, 1e-3 * load));
+  const QuantizedWaveform& w = channel.selected_waveform();
+  ChannelSteps to(steps, n);
+  const double load = scpi_load_ohm(request.load_ohm);
+  to.ask(fmt::format("SOUR{}:FUNC?", n), {word_check(n, "function", "", {"ARB"})});
+  to.ask(fmt::format("SOUR{}:FUNC:ARB?", n),
+         {word_check(n, "waveform", "", {memory_name(w)}, true)});
+  to.ask(fmt::format("SOUR{}:FUNC:ARB:FILT?", n), {word_check(n, "filter", "", {request.filter})});
+  to.ask(fmt::format("SOUR{}:FUNC:ARB:SRAT?", n),
+         {number_check(n, "sample_rate_hz", "", w.sample_rate_hz,
+                       frequency_tolerance_hz(w.sample_rate_hz, scpi_frequency_tolerance))});
+  to.ask(fmt::format("SOUR{}:VOLT?", n),
+         {number_check(n, "amplitude_vpp", "", w.amplitude_vpp(), volt_tolerance_v)});
+  to.ask(fmt::format("SOUR{}:VOLT:OFFS?", n),
+         {number_check(n, "offset_v", "", w.offset_v(), volt_tolerance_v)});
+  to.ask(fmt::format("OUTP{}:LOAD?", n), {number_check(n, "load_ohm", "", load, 1e-3 * load)});
 }
 
 }  // namespace
 
 std::vector<UploadStep> keysight_steps(const UploadRequest& request) {
   std::vector<UploadStep> steps;
-  const auto check_outputs = [&](bool on) {
-    for (const UploadChannel& channel : request.channels)
-      steps.push_back(
-          asked(fmt::format("check that output {} is {}", channel.channel, on ? "on" : "off"),
-                fmt::format("OUTP{}?", channel.channel),
-                {word_check(channel.channel, "output", "", {on ? "1" : "0"})}));
-  };
-  for (const std::string& message : scpi_outputs_off(request))
-    steps.push_back(told("switch outputs off", message));
-  if (request.reset) {
-    steps.push_back(told("reset to defaults", "*RST"));
-    steps.back().more_s = request.patience_s;
-  }
-  check_outputs(false);
+  begin_scpi(steps, request);
   steps.push_back(told("send the high byte first", "FORM:BORD NORM"));
   for (const UploadChannel& channel : request.channels) {
     steps.push_back(told(fmt::format("clear the memory of channel {}", channel.channel),
@@ -126,11 +102,7 @@ std::vector<UploadStep> keysight_steps(const UploadRequest& request) {
     steps.push_back(told("start both waveforms at once", "FUNC:ARB:SYNC"));
   for (const UploadChannel& channel : request.channels)
     check_keysight_channel(steps, request, channel);
-  check_outputs(false);
-  if (!request.output_on) return steps;
-  for (const UploadChannel& channel : request.channels)
-    steps.push_back(output_on(fmt::format("OUTP{} ON", channel.channel)));
-  check_outputs(true);
+  end_scpi(steps, request);
   return steps;
 }
 

@@ -63,33 +63,30 @@ void add_siglent_waveform(std::vector<UploadStep>& steps, const UploadRequest& r
 void set_siglent_channel(std::vector<UploadStep>& steps, const UploadRequest& request,
                          const UploadChannel& channel, bool has_rate) {
   const int n = channel.channel;
-  const QuantizedWaveform& w = channel.stored[static_cast<std::size_t>(channel.selected)];
-  const auto set = [&](std::string_view what, std::string message) {
-    steps.push_back(told(fmt::format("set {} of channel {}", what, n), std::move(message)));
-  };
-  set("load and polarity",
-      fmt::format("C{}:OUTP LOAD,{},PLRT,NOR", n,
-                  std::isinf(request.load_ohm) ? "HZ" : fmt::format("{:g}", request.load_ohm)));
-  set("waveform", fmt::format("C{}:ARWV NAME,{}", n, memory_name(w)));
-  set("kind of waveform", fmt::format("C{}:BSWV WVTP,ARB", n));
+  const QuantizedWaveform& w = channel.selected_waveform();
+  ChannelSteps to(steps, n);
+  to.set("load and polarity",
+         fmt::format("C{}:OUTP LOAD,{},PLRT,NOR", n,
+                     std::isinf(request.load_ohm) ? "HZ" : fmt::format("{:g}", request.load_ohm)));
+  to.set("waveform", fmt::format("C{}:ARWV NAME,{}", n, memory_name(w)));
+  to.set("kind of waveform", fmt::format("C{}:BSWV WVTP,ARB", n));
   if (has_rate)
-    set("clock", request.true_arb
-                     ? fmt::format("C{}:SRATE MODE,TARB,VALUE,{:.12g}", n, w.sample_rate_hz)
-                     : fmt::format("C{}:SRATE MODE,DDS", n));
+    to.set("clock", request.true_arb
+                        ? fmt::format("C{}:SRATE MODE,TARB,VALUE,{:.12g}", n, w.sample_rate_hz)
+                        : fmt::format("C{}:SRATE MODE,DDS", n));
   if (!request.true_arb)
-    set("frequency", fmt::format("C{}:BSWV FRQ,{:.12g}", n, w.repetition_hz()));
-  set("amplitude", fmt::format("C{}:BSWV AMP,{:.6g}", n, w.amplitude_vpp()));
-  set("offset", fmt::format("C{}:BSWV OFST,{:.6g}", n, w.offset_v()));
-  set("phase", fmt::format("C{}:BSWV PHSE,0", n));
+    to.set("frequency", fmt::format("C{}:BSWV FRQ,{:.12g}", n, w.repetition_hz()));
+  to.set("amplitude", fmt::format("C{}:BSWV AMP,{:.6g}", n, w.amplitude_vpp()));
+  to.set("offset", fmt::format("C{}:BSWV OFST,{:.6g}", n, w.offset_v()));
+  to.set("phase", fmt::format("C{}:BSWV PHSE,0", n));
 }
 
 void check_siglent_channel(std::vector<UploadStep>& steps, const UploadRequest& request,
                            const UploadChannel& channel, bool has_rate) {
   const int n = channel.channel;
-  const QuantizedWaveform& w = channel.stored[static_cast<std::size_t>(channel.selected)];
-  const std::string what = fmt::format("check channel {}", n);
-  steps.push_back(asked(what, fmt::format("C{}:ARWV?", n),
-                        {word_check(n, "waveform", "NAME", {memory_name(w)}, true)}));
+  const QuantizedWaveform& w = channel.selected_waveform();
+  ChannelSteps to(steps, n);
+  to.ask(fmt::format("C{}:ARWV?", n), {word_check(n, "waveform", "NAME", {memory_name(w)}, true)});
   std::vector<AnswerCheck> checks = {
       word_check(n, "function", "WVTP", {"ARB"}),
       number_check(n, "amplitude_vpp", "AMP", w.amplitude_vpp(), volt_tolerance_v),
@@ -99,7 +96,7 @@ void check_siglent_channel(std::vector<UploadStep>& steps, const UploadRequest& 
     checks.push_back(
         number_check(n, "repetition_hz", "FRQ", w.repetition_hz(),
                      frequency_tolerance_hz(w.repetition_hz(), siglent_frequency_tolerance)));
-  steps.push_back(asked(what, fmt::format("C{}:BSWV?", n), std::move(checks)));
+  to.ask(fmt::format("C{}:BSWV?", n), std::move(checks));
   if (has_rate) {
     std::vector<AnswerCheck> rate = {
         word_check(n, "clock", "MODE", {request.true_arb ? "TARB" : "DDS"})};
@@ -107,7 +104,7 @@ void check_siglent_channel(std::vector<UploadStep>& steps, const UploadRequest& 
       rate.push_back(
           number_check(n, "sample_rate_hz", "VALUE", w.sample_rate_hz,
                        frequency_tolerance_hz(w.sample_rate_hz, siglent_frequency_tolerance)));
-    steps.push_back(asked(what, fmt::format("C{}:SRATE?", n), std::move(rate)));
+    to.ask(fmt::format("C{}:SRATE?", n), std::move(rate));
   }
 }
 

@@ -12,12 +12,6 @@ namespace tofsmith {
 
 namespace {
 
-constexpr double tektronix_frequency_tolerance = 1e-6;
-
-std::string bytes_text(const std::vector<std::byte>& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 /// User memories 1 .. 4 take the waveforms of all channels, one after another; all of them pass
 /// through the one edit memory.
 struct UserMemory {
@@ -34,7 +28,7 @@ std::vector<UserMemory> user_memories(const UploadRequest& request) {
 }
 
 int selected_memory(const UploadRequest& request, const UploadChannel& channel) {
-  const QuantizedWaveform* wanted = &channel.stored[static_cast<std::size_t>(channel.selected)];
+  const QuantizedWaveform* wanted = &channel.selected_waveform();
   for (const UserMemory& memory : user_memories(request))
     if (memory.waveform == wanted) return memory.number;
   return 0;
@@ -43,7 +37,7 @@ int selected_memory(const UploadRequest& request, const UploadChannel& channel) 
 void load_user_memory(std::vector<UploadStep>& steps, const UserMemory& memory, double more_s) {
   const std::string& name = memory.waveform->name;
   UploadStep load = told("load " + name, "TRAC:DATA EMEM,");
-  load.data = bytes_text(ieee488_block(tektronix_afg_bytes(*memory.waveform)));
+  load.data = text_of(ieee488_block(tektronix_afg_bytes(*memory.waveform)));
   load.more_s = more_s;
   steps.push_back(std::move(load));
   steps.push_back(told(fmt::format("keep {} as user memory {}", name, memory.number),
@@ -59,7 +53,7 @@ void check_user_memory(std::vector<UploadStep>& steps, const UserMemory& memory,
   steps.push_back(asked("count the points of " + name, "TRAC:POIN? EMEM",
                         {number_check(0, "points", "", points, 0.0)}));
   if (!read_back) return;
-  const std::string wanted = bytes_text(tektronix_afg_bytes(*memory.waveform));
+  const std::string wanted = text_of(tektronix_afg_bytes(*memory.waveform));
   UploadStep check = told("read back " + name, "TRAC:DATA? EMEM");
   check.answer = UploadStep::Answer::block;
   check.most_bytes = wanted.size() + 65536;
@@ -72,62 +66,46 @@ void check_user_memory(std::vector<UploadStep>& steps, const UserMemory& memory,
 void set_tektronix_channel(std::vector<UploadStep>& steps, const UploadRequest& request,
                            const UploadChannel& channel) {
   const int n = channel.channel;
-  const QuantizedWaveform& w = channel.stored[static_cast<std::size_t>(channel.selected)];
-  const auto set = [&](std::string_view what, std::string message) {
-    steps.push_back(told(fmt::format("set {} of channel {}", what, n), std::move(message)));
-  };
-  set("load",
+  const QuantizedWaveform& w = channel.selected_waveform();
+  ChannelSteps to(steps, n);
+  to.set(
+      "load",
       fmt::format("OUTP{}:IMP {}", n,
                   std::isinf(request.load_ohm) ? "INF" : fmt::format("{:g}OHM", request.load_ohm)));
-  set("waveform", fmt::format("SOUR{}:FUNC USER{}", n, selected_memory(request, channel)));
-  set("frequency", fmt::format("SOUR{}:FREQ {:.12g}", n, w.repetition_hz()));
-  set("unit", fmt::format("SOUR{}:VOLT:UNIT VPP", n));
-  set("amplitude", fmt::format("SOUR{}:VOLT:AMPL {:.6g}", n, w.amplitude_vpp()));
-  set("offset", fmt::format("SOUR{}:VOLT:OFFS {:.6g}", n, w.offset_v()));
-  set("phase", fmt::format("SOUR{}:PHAS:ADJ 0DEG", n));
+  to.set("waveform", fmt::format("SOUR{}:FUNC USER{}", n, selected_memory(request, channel)));
+  to.set("frequency", fmt::format("SOUR{}:FREQ {:.12g}", n, w.repetition_hz()));
+  to.set("unit", fmt::format("SOUR{}:VOLT:UNIT VPP", n));
+  to.set("amplitude", fmt::format("SOUR{}:VOLT:AMPL {:.6g}", n, w.amplitude_vpp()));
+  to.set("offset", fmt::format("SOUR{}:VOLT:OFFS {:.6g}", n, w.offset_v()));
+  to.set("phase", fmt::format("SOUR{}:PHAS:ADJ 0DEG", n));
 }
 
 void check_tektronix_channel(std::vector<UploadStep>& steps, const UploadRequest& request,
                              const UploadChannel& channel) {
   const int n = channel.channel;
-  const QuantizedWaveform& w = channel.stored[static_cast<std::size_t>(channel.selected)];
-  const auto ask = [&](std::string message, AnswerCheck check) {
-    steps.push_back(asked(fmt::format("check channel {}", n), std::move(message), {check}));
-  };
+  const QuantizedWaveform& w = channel.selected_waveform();
+  ChannelSteps to(steps, n);
   const int memory = selected_memory(request, channel);
   std::vector<std::string> names = {fmt::format("USER{}", memory)};
   if (memory == 1) names.emplace_back("USER");
-  ask(fmt::format("SOUR{}:FUNC?", n), word_check(n, "waveform", "", names));
-  ask(fmt::format("SOUR{}:FREQ?", n),
-      number_check(n, "repetition_hz", "", w.repetition_hz(),
-                   frequency_tolerance_hz(w.repetition_hz(), tektronix_frequency_tolerance)));
-  ask(fmt::format("SOUR{}:VOLT:AMPL?", n),
-      number_check(n, "amplitude_vpp", "", w.amplitude_vpp(), volt_tolerance_v));
-  ask(fmt::format("SOUR{}:VOLT:OFFS?", n),
-      number_check(n, "offset_v", "", w.offset_v(), volt_tolerance_v));
-  ask(fmt::format("SOUR{}:PHAS:ADJ?", n), number_check(n, "phase_rad", "", 0.0, 1e-3));
-  const double load = std::isinf(request.load_ohm) ? 9.9e37 : request.load_ohm;
-  ask(fmt::format("OUTP{}:IMP?", n), number_check(n, "load_ohm", "", load, 1e-2 * load));
+  to.ask(fmt::format("SOUR{}:FUNC?", n), {word_check(n, "waveform", "", names)});
+  to.ask(fmt::format("SOUR{}:FREQ?", n),
+         {number_check(n, "repetition_hz", "", w.repetition_hz(),
+                       frequency_tolerance_hz(w.repetition_hz(), scpi_frequency_tolerance))});
+  to.ask(fmt::format("SOUR{}:VOLT:AMPL?", n),
+         {number_check(n, "amplitude_vpp", "", w.amplitude_vpp(), volt_tolerance_v)});
+  to.ask(fmt::format("SOUR{}:VOLT:OFFS?", n),
+         {number_check(n, "offset_v", "", w.offset_v(), volt_tolerance_v)});
+  to.ask(fmt::format("SOUR{}:PHAS:ADJ?", n), {number_check(n, "phase_rad", "", 0.0, 1e-3)});
+  const double load = scpi_load_ohm(request.load_ohm);
+  to.ask(fmt::format("OUTP{}:IMP?", n), {number_check(n, "load_ohm", "", load, 1e-2 * load)});
 }
 
 }  // namespace
 
 std::vector<UploadStep> tektronix_steps(const UploadRequest& request) {
   std::vector<UploadStep> steps;
-  const auto check_outputs = [&](bool on) {
-    for (const UploadChannel& channel : request.channels)
-      steps.push_back(
-          asked(fmt::format("check that output {} is {}", channel.channel, on ? "on" : "off"),
-                fmt::format("OUTP{}?", channel.channel),
-                {word_check(channel.channel, "output", "", {on ? "1" : "0"})}));
-  };
-  for (const std::string& message : scpi_outputs_off(request))
-    steps.push_back(told("switch outputs off", message));
-  if (request.reset) {
-    steps.push_back(told("reset to defaults", "*RST"));
-    steps.back().more_s = request.patience_s;
-  }
-  check_outputs(false);
+  begin_scpi(steps, request);
   const std::vector<UserMemory> memories = user_memories(request);
   for (const UserMemory& memory : memories) load_user_memory(steps, memory, request.patience_s);
   for (const UserMemory& memory : memories) check_user_memory(steps, memory, request.read_back);
@@ -136,11 +114,7 @@ std::vector<UploadStep> tektronix_steps(const UploadRequest& request) {
   steps.push_back(told("start all channels at phase 0", "SOUR1:PHAS:INIT"));
   for (const UploadChannel& channel : request.channels)
     check_tektronix_channel(steps, request, channel);
-  check_outputs(false);
-  if (!request.output_on) return steps;
-  for (const UploadChannel& channel : request.channels)
-    steps.push_back(output_on(fmt::format("OUTP{} ON", channel.channel)));
-  check_outputs(true);
+  end_scpi(steps, request);
   return steps;
 }
 

@@ -16,6 +16,7 @@
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/code_json.hpp"
 #include "tofsmith/io/file_name.hpp"
+#include "tofsmith/io/output_directory.hpp"
 #include "tofsmith/io/read_file.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/version.hpp"
@@ -188,15 +189,6 @@ std::optional<Candidate> read_finished(const fs::path& path, const std::string& 
   return candidate;
 }
 
-void make_directory(const fs::path& directory) {
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error || !fs::is_directory(directory))
-    throw IoError(directory.string(),
-                  fmt::format("cannot create this directory ({}); expected a writable place",
-                              error ? error.message() : "a file is in the way"));
-}
-
 }  // namespace
 
 DesignDirectory::DesignDirectory(fs::path path) : path_(std::move(path)) {}
@@ -204,7 +196,7 @@ DesignDirectory::DesignDirectory(fs::path path) : path_(std::move(path)) {}
 bool DesignDirectory::holds_design() const { return fs::exists(path_ / "design.json"); }
 
 DesignStore DesignDirectory::store(const Camera& camera, const DesignOptions& options) const {
-  make_directory(path_ / "finished");
+  make_output_directory(path_ / "finished");
   const std::string key = design_key(camera, options);
   return {.load = [key, camera,
                    directory = path_](const std::string& name) -> std::optional<Candidate> {
@@ -232,7 +224,7 @@ DesignStore DesignDirectory::store(const Camera& camera, const DesignOptions& op
 
 void DesignDirectory::write(const Camera& camera, const DesignResult& result,
                             const DesignOptions& options, OutputPolicy policy) const {
-  make_directory(path_ / "codes");
+  make_output_directory(path_ / "codes");
   std::error_code
       ignored;  // design.json is gone while the others change: a design in parts is none
   if (policy == OutputPolicy::overwrite) fs::remove(path_ / "design.json", ignored);

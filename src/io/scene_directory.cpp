@@ -13,6 +13,7 @@
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/io/file_name.hpp"
 #include "tofsmith/io/float_image_file.hpp"
+#include "tofsmith/io/output_directory.hpp"
 #include "tofsmith/io/read_file.hpp"
 
 namespace tofsmith {
@@ -88,12 +89,7 @@ SceneDecoding read_decoding(const JsonReader& json, const fs::path& directory,
 }  // namespace
 
 void write_scene_result(const fs::path& directory, const SceneResult& scene, OutputPolicy policy) {
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error)
-    throw IoError(directory.string(), fmt::format("cannot create this directory ({}); expected a "
-                                                  "writable place",
-                                                  error.message()));
+  make_output_directory(directory);
   std::error_code ignored;  // scene.json is gone while the others change
   if (policy == OutputPolicy::overwrite) fs::remove(directory / "scene.json", ignored);
   write_float_image(directory / "true_depth.npy", scene.truth.depth_m, "depth", policy);

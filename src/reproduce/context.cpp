@@ -8,6 +8,7 @@
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/output_directory.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {
@@ -54,7 +55,7 @@ const CodeSet& CodeShelf::redesigned(int exposures, const Camera& camera,
   const CodeSet code =
       result.winner().code.renamed(fmt::format("hamiltonian-k{}-redesigned", exposures));
   if (!directory_.empty()) {
-    std::filesystem::create_directories(directory_);
+    make_output_directory(directory_);
     write_code(file, code, OutputPolicy::overwrite);
   }
   return codes_.emplace(name, code).first->second;

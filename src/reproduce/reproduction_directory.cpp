@@ -8,6 +8,7 @@
 
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/hash.hpp"
+#include "tofsmith/io/output_directory.hpp"
 #include "tofsmith/io/read_file.hpp"
 #include "tofsmith/version.hpp"
 
@@ -134,9 +135,8 @@ std::optional<std::vector<CheckedStatement>> ReproductionDirectory::finished(
 void ReproductionDirectory::write(const PaperItem& item, const Reproduction& reproduction,
                                   const ReproduceOptions& options) const {
   const std::filesystem::path directory = path_ / item.name;
+  make_output_directory(directory);
   std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) throw IoError(directory.string(), "cannot create directory: " + error.message());
   // What is there is out of date: without its findings it counts as unfinished.
   std::filesystem::remove(directory / "findings.json", error);
   if (!reproduction.arrays.empty())

@@ -18,9 +18,6 @@ namespace {
 using MethodWord = std::pair<std::string_view, DecodeMethod>;
 using WeightsWord = std::pair<std::string_view, UnwrapWeights>;
 using CombineWord = std::pair<std::string_view, SweepCombination>;
-constexpr std::array methods = {MethodWord{"zncc", DecodeMethod::zncc},
-                                MethodWord{"ml", DecodeMethod::ml},
-                                MethodWord{"unwrap", DecodeMethod::unwrap}};
 constexpr std::array weights = {WeightsWord{"variance", UnwrapWeights::variance},
                                 WeightsWord{"frequency", UnwrapWeights::frequency}};
 constexpr std::array combinations = {CombineWord{"product", SweepCombination::product},
@@ -29,6 +26,10 @@ constexpr std::array combinations = {CombineWord{"product", SweepCombination::pr
 void read_options(TableReader& table, EvaluateOptions& options) {
   auto trials = static_cast<std::uint64_t>(options.trials);
   auto most_trials = static_cast<std::uint64_t>(options.most_trials);
+  std::array<MethodWord, all_decode_methods.size()> methods;
+  std::ranges::transform(all_decode_methods, methods.begin(), [](DecodeMethod method) {
+    return MethodWord{name_of(method), method};
+  });
   table.choice("method", options.method, Choices<DecodeMethod>(methods));
   table.choice("unwrap_weights", options.unwrap_weights, Choices<UnwrapWeights>(weights));
   table.value("trials", trials);

@@ -20,6 +20,7 @@
 #include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/npz.hpp"
+#include "tofsmith/io/output_directory.hpp"
 #include "tofsmith/simulate/scene_extent.hpp"
 #include "tofsmith/version.hpp"
 
@@ -146,7 +147,7 @@ class TrainingSet {
       ++kept_;
       return entry;
     }
-    create(arrays.parent_path());
+    make_output_directory(arrays.parent_path());
     const RawFrames raw = capture(example.scene.image, code_, camera_, example.capture);
     write_npz(arrays, arrays_of(example, raw, decoder_), OutputPolicy::overwrite);
     // Last: it says that all is there.
@@ -155,15 +156,6 @@ class TrainingSet {
                           OutputPolicy::overwrite);
     ++written_;
     return entry;
-  }
-
-  static void create(const fs::path& directory) {
-    std::error_code error;
-    fs::create_directories(directory, error);
-    if (error)
-      throw IoError(directory.string(), fmt::format("cannot create this directory ({}); expected a "
-                                                    "writable place",
-                                                    error.message()));
   }
 
   Example prepared(const TrainingScene& scene) const {

@@ -13,29 +13,12 @@ import time
 import unittest
 
 from command_line import TOOL, CommandLineTest
+from sweep_text import ITEMS, sweep_text
 
 MPIRUN = sys.argv.pop(1) if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else None
 
-SWEEP = """set = ["samples=60"]
-codes = ["sinusoid-k4", "hamiltonian-k3"]
-trials = 4000
-
-[[axis]]
-key = "light.peak_factor"
-values = [12, 15]
-
-[[axis]]
-key = "signal_e_per_s"
-from = 1e3
-to = 1e5
-count = 5
-
-[[axis]]
-key = "ambient_e_per_s"
-values = [1e4]
-"""
-ITEMS = 20
-LONG = SWEEP.replace("4000", "2000000")
+SWEEP = sweep_text(4000)
+LONG = sweep_text(100_000_000)  # must not end before it is killed
 
 
 class RanksTest(CommandLineTest):
@@ -118,14 +101,14 @@ class Ranks(RanksTest):
             self.assertNotEqual(job.returncode, 0)
             finished = self.status(store)["finished"]
             self.assertLess(finished, ITEMS)
-            self.write("s.toml", LONG.replace("2000000", "2000"))  # others: quick to compute
+            self.write("s.toml", sweep_text(2000))  # others: quick to compute
             out, _ = self.finish(self.ranks(2, "sweep", "s.toml", "--store", store))
             self.assertIn(f"{ITEMS} finished", out)
             self.write("s.toml", LONG)
             self.assertEqual(self.status(store)["finished"], finished)
 
     def test_resumes_to_the_bytes_of_an_uninterrupted_run(self):
-        self.write("s.toml", SWEEP.replace("4000", "100000"))
+        self.write("s.toml", sweep_text(100000))
         whole = self.export("whole.sqlite")
         job = self.ranks(3, "sweep", "s.toml", "--store", "s.sqlite", "--threads", "1")
         for _ in range(1200):

@@ -17,29 +17,13 @@ import unittest
 
 import numpy as np
 
-from command_line import TOOL, CommandLineTest
+from command_line import CommandLineTest
+from sweep_text import sweep_text
 
 KILLS = 6
 NOBODY = 65534
 
-SWEEP = """set = ["samples=60"]
-codes = ["sinusoid-k4", "hamiltonian-k3"]
-trials = 400
-
-[[axis]]
-key = "light.peak_factor"
-values = [12, 15]
-
-[[axis]]
-key = "signal_e_per_s"
-from = 1e3
-to = 1e5
-count = 5
-
-[[axis]]
-key = "ambient_e_per_s"
-values = [1e4]
-"""
+SWEEP = sweep_text(400)
 
 
 class Sweep(CommandLineTest):
@@ -117,7 +101,7 @@ class Sweep(CommandLineTest):
         self.assertEqual(self.export("one.sqlite", "--threads", "1"), whole)
 
     def test_a_kill_at_any_moment_loses_only_unfinished_items(self):
-        self.write("s.toml", SWEEP.replace("trials = 400", "trials = 4000"))
+        self.write("s.toml", sweep_text(4000))
         whole = self.export("whole.sqlite")
         rounds, kills = 0, 0
         while kills < KILLS:
@@ -147,7 +131,7 @@ class Sweep(CommandLineTest):
             print(f"{kills} kills of {rounds} sweeps", file=sys.stderr)
 
     def test_an_interrupt_keeps_what_is_finished(self):
-        self.write("s.toml", SWEEP.replace("trials = 400", "trials = 1000000"))
+        self.write("s.toml", sweep_text(100_000_000))
         process = self.start("sweep", "s.toml", "--store", "s.sqlite")
         while not os.path.exists(self.path("s.sqlite")):
             time.sleep(0.02)

@@ -86,7 +86,7 @@ inline bool plays(const SimulatedGenerator& generator, const UploadRequest& requ
     return std::abs(a - b) <= tolerance;
   };
   for (const UploadChannel& wanted : request.channels) {
-    const QuantizedWaveform& w = wanted.stored[static_cast<std::size_t>(wanted.selected)];
+    const QuantizedWaveform& w = wanted.selected_waveform();
     const SimulatedGenerator::Channel& c = generator.channel(wanted.channel);
     const bool by_rate = model.family == GeneratorFamily::keysight_trueform;
     const double told_hz = by_rate ? w.sample_rate_hz : w.repetition_hz(),

@@ -16,6 +16,9 @@ struct UploadChannel {
   int channel = 1;                        ///< 1, 2
   std::vector<QuantizedWaveform> stored;  ///< tables for its memory, in this order
   int selected = 0;                       ///< index of the one it plays
+
+  /// @throws std::out_of_range if no stored waveform is selected
+  const QuantizedWaveform& selected_waveform() const;
 };
 
 /// How a Siglent is told the waveform; sources disagree, see docs/instruments.md.

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/decode/multipath_decoder.hpp"
+
+#include "decode/multipath_engine.hpp"
+#include "decode/nearest_bins.hpp"
+#include "decode/pixel_output.hpp"
+#include "tofsmith/decode/tail_decoder.hpp"
+#include "tofsmith/decode/two_return_decoder.hpp"
+
+namespace tofsmith {
+
+struct MultipathDecoder::Plan {
+  MultipathEngine engine;
+};
+
+MultipathDecoder::MultipathDecoder(std::unique_ptr<const Plan> plan) : plan_(std::move(plan)) {}
+MultipathDecoder::~MultipathDecoder() = default;
+MultipathDecoder::MultipathDecoder(MultipathDecoder&&) noexcept = default;
+MultipathDecoder& MultipathDecoder::operator=(MultipathDecoder&&) noexcept = default;
+
+TwoReturnDecoder::TwoReturnDecoder(DecodingTable table, const MultipathOptions& options)
+    : MultipathDecoder(std::make_unique<const Plan>(
+          Plan{MultipathEngine(std::move(table), options, LaterLight::second_return)})) {}
+
+TailDecoder::TailDecoder(DecodingTable table, const MultipathOptions& options)
+    : MultipathDecoder(std::make_unique<const Plan>(
+          Plan{MultipathEngine(std::move(table), options, LaterLight::tail)})) {}
+
+const DecodingTable& MultipathDecoder::table() const { return plan_->engine.table(); }
+const MultipathOptions& MultipathDecoder::options() const { return plan_->engine.options(); }
+
+void MultipathDecoder::decode(const RawView& raw, const DecodedView& decoded,
+                              const Progress& progress) const {
+  plan_->engine.decode(raw, decoded, progress);
+}
+
+MultipathImage MultipathDecoder::decode(const RawFrames& raw, int frame,
+                                        const Progress& progress) const {
+  const RawView view = view_of_frame(raw, frame);
+  MultipathImage image(raw.height, raw.width);
+  decode(view, image.view(), progress);
+  return image;
+}
+
+void MultipathDecoder::decode_depth_bins(const float* measurements, std::int64_t pixels,
+                                         double* depth_bin) const {
+  plan_->engine.decode_depth_bins(measurements, pixels, depth_bin);
+}
+
+void MultipathDecoder::decode_bins(const float* measurements, std::int64_t pixels,
+                                   std::int32_t* bin) const {
+  nearest_bins(*this, measurements, pixels, bin);
+}
+
+}  // namespace tofsmith

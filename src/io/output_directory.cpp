@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/output_directory.hpp"
+
+#include <fmt/format.h>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+void make_output_directory(const std::filesystem::path& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error)
+    throw IoError(directory.string(),
+                  fmt::format("cannot create this directory ({}); expected a writable place",
+                              error.message()));
+  if (!std::filesystem::is_directory(directory, error))
+    throw IoError(directory.string(), "is a file; expected a directory");
+}
+
+}  // namespace tofsmith
