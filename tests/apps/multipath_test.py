@@ -38,11 +38,11 @@ class Multipath(CommandLineTest):
         self.assertIn(b"seen from above", self.bytes_of("page.html"))
 
     def test_designs_say_what_second_returns_make_of_codes(self):
-        with open(self.path("mine.toml"), "w", encoding="utf-8") as file:
-            file.write("fundamental_frequency_hz = 15e6\nsamples = 60\n[light]\npeak_factor = 15\n"
-                       "[sensor]\ntaps = 2\n[operating]\nsignal_e_per_s = [1e5]\n"
-                       "ambient_e_per_s = [1e4]\n[operating.multipath]\nratio = [0.3, 0.3]\n"
-                       "delay_m = [1, 2]\n")
+        self.write("mine.toml",
+                   "fundamental_frequency_hz = 15e6\nsamples = 60\n[light]\npeak_factor = 15\n"
+                   "[sensor]\ntaps = 2\n[operating]\nsignal_e_per_s = [1e5]\n"
+                   "ambient_e_per_s = [1e4]\n[operating.multipath]\nratio = [0.3, 0.3]\n"
+                   "delay_m = [1, 2]\n")
         document = self.do_json("design", "mine.toml", "--method", "factorize", "--exposures", "5",
                                 "--effort", "0.05", "--trials", "1000", "-o", "designed",
                                 "--second-returns", "ratio=.2:.4", "--second-return-weight", ".1")
