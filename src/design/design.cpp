@@ -6,7 +6,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "design/explanation.hpp"
 #include "design/factorized_code.hpp"
@@ -165,12 +164,11 @@ void judge_all(const Camera& camera, const DesignOptions& options, DesignResult&
   TwoReturnLimit two_returns(options.optimize.most_two_return_loss);
   for (const Candidate& c : result.candidates)
     if (!c.is_designed()) two_returns.add_given(c.second_returns);
-  const auto rank = [&](const Candidate& c) {
-    return std::pair(two_returns.is_broken_by(c.second_returns),
-                     choice_error_m(c, camera, options));
+  const auto judged_m = [&](const Candidate& c) {
+    return two_returns.excess(c.second_returns) * choice_error_m(c, camera, options);
   };
   for (std::size_t i = 1; i < result.candidates.size(); ++i)
-    if (rank(result.candidates[i]) < rank(result.winner())) result.best = i;
+    if (judged_m(result.candidates[i]) < judged_m(result.winner())) result.best = i;
   Candidate& winner = result.candidates[result.best];
   if (!winner.robustness) judge_robustness(winner, camera, options, part_of(progress, all, 1.0));
 }

@@ -210,11 +210,11 @@ OptimizedCode optimize(std::span<const Camera> variants, int exposures,
   TwoReturnLimit two_returns(options.most_two_return_loss);
   for (const Finalist& f : std::span(finalists).subspan(optimized))
     two_returns.add_given(f.second_returns);
-  // What two-return decoding cannot cope with comes last.
-  const auto rank = [&](const Finalist& f) {
-    return std::pair(two_returns.is_broken_by(f.second_returns), choice_m(f, camera));
+  // What two-return decoding copes with badly counts as so many times worse.
+  const auto less = [&](const Finalist& a, const Finalist& b) {
+    return two_returns.excess(a.second_returns) * choice_m(a, camera) <
+           two_returns.excess(b.second_returns) * choice_m(b, camera);
   };
-  const auto less = [&](const Finalist& a, const Finalist& b) { return rank(a) < rank(b); };
   const auto first_given = finalists.begin() + static_cast<std::ptrdiff_t>(optimized);
   const auto best = std::min_element(finalists.begin(), finalists.end(), less);
   const auto best_given = std::min_element(first_given, finalists.end(), less);

@@ -21,10 +21,12 @@ class TwoReturnLimit {
     if (report && report->two_return)
       least_m_ = std::min(least_m_, report->two_return->circular_m.value);
   }
-  /// Never if no code given can be decoded as two returns.
-  bool is_broken_by(const std::optional<SecondReturnReport>& report) const {
-    if (!report || std::isinf(least_m_)) return false;
-    return !report->two_return || report->two_return->circular_m.value > most_loss_ * least_m_;
+  /// How many times over the limit a code is, 1 within it; infinite if it cannot be decoded as two
+  /// returns. 1 for all if no code given can.
+  double excess(const std::optional<SecondReturnReport>& report) const {
+    if (!report || std::isinf(least_m_)) return 1.0;
+    if (!report->two_return) return std::numeric_limits<double>::infinity();
+    return std::max(1.0, report->two_return->circular_m.value / (most_loss_ * least_m_));
   }
 
  private:

@@ -49,7 +49,7 @@ Table second_return_table(const SecondReturns& returns, const std::vector<Judged
           "Geometric means over the operating points of the {} error of single returns (E1) and "
           "behind a second return of ratio {} to {}, {} to {} m late, decoded as single-path (E2); "
           "the same decoded as two returns (circular). Codes are chosen by E1^{:.3g} E2^{:.3g}; "
-          "those that two-return decoding cannot cope with come last.",
+          "where decoding as two returns errs much more than of standard codes, that counts too.",
           kind, returns.ratio[0], returns.ratio[1], returns.delay_m[0], returns.delay_m[1],
           1.0 - returns.weight, returns.weight),
       .columns = {{"code"},

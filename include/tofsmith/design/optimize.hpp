@@ -35,8 +35,9 @@ struct OptimizeOptions {
   /// nor more than 40000 per point.
   int validation_trials = 100000;
   std::uint64_t seed = 1;
-  /// On cameras with operating.multipath: two-return decoding of a code must err at most this many
-  /// times as much as it does of the best code given that can be decoded so, if there is one; > 0.
+  /// On cameras with operating.multipath: two-return decoding of a code may err this many times as
+  /// much as it does of the best code given that can be decoded so, if there is one; what errs more
+  /// counts as so many times worse in the final choice; > 0.
   double most_two_return_loss = 1.25;
 
   /// @throws std::invalid_argument naming field, value and rule
