@@ -18,6 +18,7 @@
 #include "design/two_return_limit.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/decode/two_return_decoder.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/version.hpp"
 
@@ -43,6 +44,35 @@ double choice_m(const Finalist& finalist, const Camera& camera) {
       finalist.second_returns->single_path.of(camera.operating.error).value);
 }
 
+/// Whether two returns can be told apart, well or badly.
+bool tells_two_returns(const CodeSet& code, const Camera& camera) {
+  try {
+    const TwoReturnDecoder decoder(make_decoding_table(ForwardModel(code, camera), camera));
+    return true;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
+/// Which of the pool are made playable: the best and, on cameras that reckon with second returns,
+/// the best few of the others that can be decoded as two returns.
+std::vector<PoolEntry> entries_to_play(const DesignProblem& problem, const OptimizePool& pool,
+                                       const Camera& camera, const OptimizeOptions& options,
+                                       const Sharpness& sharpness) {
+  constexpr std::size_t most_others = 3;
+  const std::vector<PoolEntry>& all = pool.entries();
+  const std::size_t best = std::min(static_cast<std::size_t>(options.refined), all.size());
+  std::vector<PoolEntry> chosen(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(best));
+  if (!camera.operating.multipath) return chosen;
+  for (std::size_t k = best; k < all.size() && chosen.size() < best + most_others; ++k) {
+    const SwitchedCode code =
+        binarized(problem, render(problem.space, all[k].parameters, sharpness), pool.judge());
+    if (tells_two_returns(code_set("optimized", problem.space, code, camera.samples), camera))
+      chosen.push_back(all[k]);
+  }
+  return chosen;
+}
+
 /// The best of the pool as codes that can be played: switched, and with polished edges too.
 std::vector<Finalist> playable_finalists(const DesignProblem& problem, OptimizePool& pool,
                                          const Camera& camera, const OptimizeOptions& options,
@@ -51,13 +81,14 @@ std::vector<Finalist> playable_finalists(const DesignProblem& problem, OptimizeP
   Sharpness sharpness{6.0, 8.0};
   if (!problem.binary_modulation) sharpness.modulation = 1.0;
   if (!problem.binary_demodulation) sharpness.demodulation = 1.0;
-  const auto count = std::min<std::int64_t>(options.refined, std::ssize(pool.entries()));
+  const std::vector<PoolEntry> entries = entries_to_play(problem, pool, camera, options, sharpness);
+  const auto count = std::ssize(entries);
   std::vector<SwitchedCode> codes(2 * static_cast<std::size_t>(count));
   report(progress, 0.0, "edges");
   parallel_for(count, [&](std::int64_t i) {
     const auto k = static_cast<std::size_t>(i);
     codes[2 * k] =
-        binarized(problem, render(space, pool.entries()[k].parameters, sharpness), pool.judge());
+        binarized(problem, render(space, entries[k].parameters, sharpness), pool.judge());
     codes[2 * k + 1] = codes[2 * k];
     if (options.polish)
       codes[2 * k + 1] =
@@ -68,7 +99,7 @@ std::vector<Finalist> playable_finalists(const DesignProblem& problem, OptimizeP
   for (std::size_t k = 0; k < codes.size(); ++k) {
     const bool polished = k % 2 == 1;
     if (polished && !options.polish) continue;
-    const std::string& start = pool.entries()[k / 2].start;
+    const std::string& start = entries[k / 2].start;
     pool.record(polished ? "polish" : "binary", start,
                 pool.judge().score(sampled_on(space, codes[k])).log_error_bin);
     finalists.push_back({code_set("optimized", space, codes[k], camera.samples), start, {}});
@@ -176,8 +207,8 @@ void OptimizeOptions::validate() const {
   at_least(pool_trials, 1000, "pool_trials");
   at_least(polish_steps, 0, "polish_steps");
   at_least(validation_trials, 1000, "validation_trials");
-  require(most_two_return_loss > 0.0, "OptimizeOptions::most_two_return_loss", most_two_return_loss,
-          "must be > 0");
+  require(most_two_return_loss >= 1.0, "OptimizeOptions::most_two_return_loss",
+          most_two_return_loss, "must be >= 1");
 }
 
 OptimizedCode optimize(std::span<const Camera> variants, int exposures,

@@ -11,7 +11,7 @@
 
 namespace tofsmith {
 
-/// How far two-return decoding of a code may err: a few times as far as of the best code given.
+/// How far two-return decoding of a code may err: a little farther than of the best code given.
 class TwoReturnLimit {
  public:
   /// @param most_loss  OptimizeOptions::most_two_return_loss
@@ -21,12 +21,13 @@ class TwoReturnLimit {
     if (report && report->two_return)
       least_m_ = std::min(least_m_, report->two_return->circular_m.value);
   }
-  /// How many times over the limit a code is, 1 within it; infinite if it cannot be decoded as two
-  /// returns. 1 for all if no code given can.
+  /// How many times worse a code counts: as often as it is over the limit, 1 within it, and no more
+  /// than `most_loss`, also if it cannot be decoded as two returns. 1 for all if no code given can.
   double excess(const std::optional<SecondReturnReport>& report) const {
     if (!report || std::isinf(least_m_)) return 1.0;
-    if (!report->two_return) return std::numeric_limits<double>::infinity();
-    return std::max(1.0, report->two_return->circular_m.value / (most_loss_ * least_m_));
+    if (!report->two_return) return most_loss_;
+    return std::clamp(report->two_return->circular_m.value / (most_loss_ * least_m_), 1.0,
+                      most_loss_);
   }
 
  private:

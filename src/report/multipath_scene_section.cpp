@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "report/level_text.hpp"
+#include "tofsmith/report/colours.hpp"
 #include "tofsmith/report/image_figure.hpp"
 #include "tofsmith/report/line_figure.hpp"
 #include "tofsmith/report/space_figure.hpp"
@@ -105,6 +106,7 @@ Figure returns_figure(const MultipathScene& scene) {
 /// The middle row as it stands before the camera, x against z.
 Figure plan_figure(const MultipathScene& scene, const Image<float>& truth_m) {
   const int row = scene.view.height / 2;
+  ColourAssignment colours;
   const auto series = [&](const std::string& name, const Image<float>& depth_m, Mark mark) {
     Series line{.name = name, .mark = mark};
     for (int column = 0; column < depth_m.width; ++column) {
@@ -116,8 +118,11 @@ Figure plan_figure(const MultipathScene& scene, const Image<float>& truth_m) {
     return line;
   };
   std::vector<Series> lines{series("truth", truth_m, Mark::line)};
-  for (const MultipathSceneDecoding& d : scene.decodings)
+  lines.back().style = reference_style();
+  for (const MultipathSceneDecoding& d : scene.decodings) {
     lines.push_back(series(d.method, d.depth_m, Mark::markers));
+    lines.back().style = colours.style(d.method);
+  }
   return line_figure({.id = "multipath-scene-plan",
                       .title = "The middle row, seen from above",
                       .caption = "Straight walls should look straight."},

@@ -234,8 +234,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"[operating.multipath]\nrato = [0.1, 0.5]",
                 "c.toml:3:1: unknown key operating.multipath.rato; did you mean "
                 "operating.multipath.ratio?"},
-        BadLine{"[operating.multipath]\nratio = 0.3",
-                "c.toml:3:9: operating.multipath.ratio: found 0.3; expected a list of two numbers"},
+        BadLine{"[operating.multipath]\nratio = 0.5",
+                "c.toml:3:9: operating.multipath.ratio: found 0.5; expected a list of two numbers"},
         BadLine{"[operating.multipath]\ndelay_m = [1]",
                 "c.toml:3:11: operating.multipath.delay_m: found 1 numbers; expected a list of two "
                 "numbers"},

@@ -68,7 +68,8 @@ TEST(PublishedScenes, TheGrooveIsTwoWallsWhoseBouncedLightBendsItAsTheLawSays) {
     law_m += single_path_bias_m(scene.later_ratio.pixels[i], scene.later_delay_m.pixels[i]);
   law_m /= static_cast<double>(scene.later_ratio.size());
   EXPECT_GT(law_m, 0.01);
-  EXPECT_NEAR(scene.all.bias_m[0], law_m, 0.1 * law_m);
+  EXPECT_LT(scene.all.bias_m[0], law_m) << "some light comes later than the law reaches";
+  EXPECT_GT(scene.all.bias_m[0], 0.8 * law_m);
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST(MultipathScene, OfACornerIsBentInSinglePathDecodingAndCountsEveryPixel) {
   const Camera camera = bright_camera();
   const StagedScene corner = built_in_scene("corner", 32, 8);
   const SceneImage image = RayCaster(corner.shapes).see(corner.view).image;
-  const LaterReturns returns = bounced_light(corner, {.rays = 64});
+  const LaterReturns returns = bounced_light(corner, {.rays = 64, .range_m = camera.range_m()});
   const MultipathScene scene =
       multipath_scene("corner", image, corner.view, returns, build_family("hamiltonian-k5", camera),
                       camera, {.signal_e_per_s = 1e6, .reference_distance_m = 2.0});

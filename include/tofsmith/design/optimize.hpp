@@ -37,7 +37,7 @@ struct OptimizeOptions {
   std::uint64_t seed = 1;
   /// On cameras with operating.multipath: two-return decoding of a code may err this many times as
   /// much as it does of the best code given that can be decoded so, if there is one; what errs more
-  /// counts as so many times worse in the final choice; > 0.
+  /// counts as so many times worse in the final choice, though no more than by this factor; >= 1.
   double most_two_return_loss = 1.25;
 
   /// @throws std::invalid_argument naming field, value and rule
