@@ -53,8 +53,8 @@ Table second_return_table(const SecondReturns& returns, const std::vector<Judged
           kind, returns.ratio[0], returns.ratio[1], returns.delay_m[0], returns.delay_m[1],
           1.0 - returns.weight, returns.weight),
       .columns = {{"code"},
-                  {"one return, E1 (mm)", true},
-                  {"second return, E2 (mm)", true},
+                  {"E1 (mm)", true},
+                  {"E2 (mm)", true},
                   {"chosen by (mm)", true},
                   {"as two returns (mm)", true}}};
   for (const Judged& j : codes) {
