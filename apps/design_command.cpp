@@ -6,6 +6,7 @@
 #include "design_effort.hpp"
 #include "design_output.hpp"
 #include "fresh_directory.hpp"
+#include "second_return_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
@@ -25,6 +26,7 @@ struct DesignArguments {
   std::vector<int> exposures;  // none: those of DesignOptions
   double effort = 1.0;
   bool robust = false;
+  SecondReturnArguments later;
   std::uint64_t seed = 1;
   int trials = 20000;
   std::string output;
@@ -66,6 +68,10 @@ DesignOptions options_for(const DesignArguments& arguments, const Camera& camera
   if (!arguments.target.empty() && options.method != DesignMethod::factorize &&
       options.method != DesignMethod::best)
     throw UsageError("--target goes with --method factorize or best");
+  if (camera.operating.multipath && options.robust)
+    throw UsageError(
+        "--robust: found beside second returns (--second-returns or [operating.multipath]); "
+        "expected one of them");
   options.exposures = arguments.exposures;
   scale_effort(options, arguments.effort);
   options.seed = arguments.seed;
@@ -83,7 +89,8 @@ DesignOptions options_for(const DesignArguments& arguments, const Camera& camera
 }
 
 void run(const DesignArguments& arguments, const Session& session) {
-  const Camera camera = arguments.camera.load();
+  Camera camera = arguments.camera.load();
+  arguments.later.apply_to(camera);
   const DesignOptions options = options_for(arguments, camera);
   if (arguments.output.empty()) {
     const DesignResult result = design(camera, options, terminal_progress("designing"));
@@ -135,6 +142,7 @@ void add_design_command(CLI::App& app, Session& session) {
   command->add_flag("--robust", arguments->robust,
                     "optimize for the worst of +-20 % bandwidth, +-10 % peak, 50 ps edge jitter "
                     "and 2 % tap mismatch");
+  arguments->later.add_to(*command);
   command->add_option("--seed", arguments->seed, "seed of every random choice")
       ->capture_default_str();
   command->add_option("--trials", arguments->trials, "trials per operating point for final figures")

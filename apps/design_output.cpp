@@ -17,6 +17,19 @@ std::string estimate_text(const Estimate& e) {
   return fmt::format("{:.1f} +- {:.1f}", 1e3 * e.value, 1e3 * e.standard_error);
 }
 
+/// Columns of what second returns make of the codes, behind those without.
+void add_second_returns(std::vector<std::vector<std::string>>& rows, const DesignResult& result,
+                        DepthErrorKind kind) {
+  rows.front().insert(rows.front().end(), {"second return (mm)", "as two returns (mm)"});
+  const std::vector<const Candidate*> order = by_chosen_error(result, kind);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const SecondReturnReport& report = *order[i]->second_returns;
+    rows[i + 1].push_back(estimate_text(report.single_path.of(kind)));
+    rows[i + 1].push_back(report.two_return ? estimate_text(report.two_return->circular_m)
+                                            : "cannot");
+  }
+}
+
 /// Sentences on who won, by how much and over whom.
 std::string verdict(const Camera& camera, const DesignResult& result) {
   const DepthErrorKind kind = camera.operating.error;
@@ -30,7 +43,7 @@ std::string verdict(const Camera& camera, const DesignResult& result) {
     if (&c != &winner && gain.value - 1.0 < 2.0 * gain.standard_error)
       tied += (tied.empty() ? "" : ", ") + c.code.name();
   }
-  if (!tied.empty())
+  if (!tied.empty() && !camera.operating.multipath)
     text += "\n  within two standard errors of it: " + tied + " (more --trials tell them apart)";
   for (const char* name : {"sinusoid-k3", "sinusoid-k4", "square-k4", "pulsed-multifrequency-k5"})
     if (const Candidate* other = result.find(name); other && other != &winner)
@@ -55,6 +68,7 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
                     estimate_text(c->error.linear.geometric_mean_m),
                     estimate_text(c->error.circular.geometric_mean_m),
                     fmt::format("{}", c->rotation_bin), c->method});
+  if (camera.operating.multipath) add_second_returns(rows, result, kind);
   session.say(text_table(rows));
   if (kind == DepthErrorKind::linear)
     session.say(

@@ -4,10 +4,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "number_checks.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/multipath_document.hpp"
+#include "tofsmith/report/multipath_scene_section.hpp"
 #include "tofsmith/report/multipath_section.hpp"
+#include "tofsmith/simulate/scene_result.hpp"
 
 namespace tofsmith::apps {
 
@@ -32,6 +36,39 @@ void MultipathEvaluation::add_to(CLI::App& command) {
       ->check(number_from_0_on())
       ->capture_default_str()
       ->needs(multipath);
+  CLI::Option* scene =
+      command
+          .add_option("--scene", scene_.scene,
+                      "also a scene whose surfaces light each other, decoded by the first code at "
+                      "the highest of --signals: built-in (see `tofsmith scene`), scene file "
+                      "(.toml) or mesh")
+          ->needs(multipath);
+  command.add_option("--width", scene_.width, "columns of a built-in scene or a mesh (320)")
+      ->check(CLI::Range(1, 16384))
+      ->needs(scene);
+  command.add_option("--height", scene_.height, "rows of a built-in scene or a mesh (240)")
+      ->check(CLI::Range(1, 16384))
+      ->needs(scene);
+  command
+      .add_option("--bounce-rays", bounce_.rays, "rays by which each pixel gathers bounced light")
+      ->check(CLI::Range(16, 65536))
+      ->capture_default_str()
+      ->needs(scene);
+}
+
+std::optional<MultipathScene> MultipathEvaluation::scene(
+    const std::vector<CodeSet>& codes, const Camera& camera,
+    const MultipathErrorOptions& options) const {
+  if (scene_.scene.empty()) return std::nullopt;
+  const LoadedScene loaded = load_scene(scene_, camera);
+  const LaterReturns returns =
+      bounced_light_of(loaded, camera, bounce_, terminal_progress("gathering light"));
+  const CaptureOptions light{.signal_e_per_s = std::ranges::max(options.signal_e_per_s),
+                             .ambient_e_per_s = options.ambient_e_per_s,
+                             .reference_distance_m = median_depth_m(loaded.image),
+                             .seed = options.seed};
+  return multipath_scene(loaded.name, loaded.image, loaded.view, returns, codes.front(), camera,
+                         light, options.decoding, terminal_progress("decoding the scene"));
 }
 
 void MultipathEvaluation::run(const std::vector<CodeSet>& codes, const Camera& camera,
@@ -45,6 +82,8 @@ void MultipathEvaluation::run(const std::vector<CodeSet>& codes, const Camera& c
   if (extension == ".csv")
     throw UsageError(
         fmt::format("-o {}: found .csv; expected .json or .html with --multipath", output));
+  const std::optional<MultipathScene> lit = scene(codes, camera, options);
+  const MultipathScene* lit_scene = lit ? &*lit : nullptr;
   std::vector<MultipathErrorReport> reports;
   const Progress progress = terminal_progress("evaluating");
   const double count = static_cast<double>(codes.size());
@@ -53,17 +92,20 @@ void MultipathEvaluation::run(const std::vector<CodeSet>& codes, const Camera& c
         codes[i], camera, options,
         part_of(progress, static_cast<double>(i) / count, static_cast<double>(i + 1) / count)));
   if (extension == ".json")
-    write_file_atomically(output, multipath_document(camera, reports, options) + "\n",
+    write_file_atomically(output, multipath_document(camera, reports, options, lit_scene) + "\n",
                           session.output_policy());
   if (extension == ".html") {
-    const Page page{.title = "Where light comes back twice",
-                    .subtitle = "camera " + camera.name,
-                    .sections = {multipath_section(reports)},
-                    .footer = fmt::format("{} trials per place, seed {}", options.trials, seed)};
+    Page page{.title = "Where light comes back twice",
+              .subtitle = "camera " + camera.name,
+              .sections = {multipath_section(reports)},
+              .footer = fmt::format("{} trials per place, seed {}", options.trials, seed)};
+    if (lit) page.sections.push_back(multipath_scene_section(*lit, camera));
     write_file_atomically(output, render(page), session.output_policy());
   }
-  if (session.json) return session.print_document(multipath_document(camera, reports, options));
+  if (session.json)
+    return session.print_document(multipath_document(camera, reports, options, lit_scene));
   session.say(text_table(multipath_rows(reports)));
+  if (lit) session.say(text_table(multipath_scene_rows(*lit)));
   for (const MultipathErrorReport& report : reports)
     if (!report.why_no_two_returns.empty())
       session.say(

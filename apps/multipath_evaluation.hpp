@@ -3,11 +3,15 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "scene_source.hpp"
 #include "session.hpp"
+#include "tofsmith/scene/bounced_light.hpp"
 #include "tofsmith/simulate/multipath_error.hpp"
+#include "tofsmith/simulate/multipath_scene.hpp"
 
 namespace tofsmith::apps {
 
@@ -23,6 +27,12 @@ class MultipathEvaluation {
 
  private:
   bool asked_ = false;
+  /// What becomes of the scene by the first code; none if there is no scene.
+  std::optional<MultipathScene> scene(const std::vector<CodeSet>& codes, const Camera& camera,
+                                      const MultipathErrorOptions& options) const;
+
+  SceneSource scene_;
+  BounceOptions bounce_;
   MultipathErrorOptions options_;
 };
 

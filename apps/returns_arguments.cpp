@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "number_checks.hpp"
+#include "terminal_progress.hpp"
 #include "tofsmith/io/returns_file.hpp"
 
 namespace tofsmith::apps {
@@ -70,11 +71,33 @@ void ReturnsArguments::add_to(CLI::App& command) {
       ->check(CLI::IsMember({"none", "median"}))
       ->capture_default_str()
       ->needs(transient);
+  CLI::Option* bounces =
+      command
+          .add_option("--bounces", bounces_,
+                      "1: also light that one other surface of the scene sends on, gathered by "
+                      "rays; 0: none")
+          ->check(CLI::Range(0, 1))
+          ->capture_default_str();
+  command
+      .add_option("--bounce-rays", bounce_.rays,
+                  "rays by which each pixel gathers it; noise falls a little faster than their "
+                  "square root")
+      ->check(CLI::Range(16, 65536))
+      ->capture_default_str()
+      ->needs(bounces);
   command.add_option("--truth-returns", truth_,
                      "also write the true distance and signal of every return (.npz)");
 }
 
-SceneLight ReturnsArguments::load(const SceneImage& scene, const Camera& camera) const {
+LaterReturns ReturnsArguments::bounced(const LoadedScene& scene, const Camera& camera) const {
+  if (!second_returns_.empty() || !returns_.empty() || !transient_.empty())
+    throw UsageError(
+        "--bounces: found beside --second-return, --returns or --transient; expected one of them");
+  return bounced_light_of(scene, camera, bounce_, terminal_progress("gathering light"));
+}
+
+SceneLight ReturnsArguments::load(const LoadedScene& loaded, const Camera& camera) const {
+  const SceneImage& scene = loaded.image;
   if (!transient_.empty() && (!second_returns_.empty() || tail_m_ || !returns_.empty()))
     throw UsageError(
         "--transient: found beside --second-return, --tail or --returns; expected alone, as it "
@@ -92,6 +115,7 @@ SceneLight ReturnsArguments::load(const SceneImage& scene, const Camera& camera)
   }
   if (!returns_.empty())
     light.returns = read_later_returns(returns_, scene.height(), scene.width());
+  if (bounces_ > 0) light.returns = bounced(loaded, camera);
   if (tail_m_) light.tail = ExponentialTail{*tail_m_, tail_ratio_};
   if (!transient_.empty())
     light.transients = read_transients(

@@ -7,34 +7,39 @@
 #include <string>
 #include <vector>
 
+#include "scene_source.hpp"
 #include "session.hpp"
 #include "tofsmith/simulate/multipath_capture.hpp"
 
 namespace tofsmith::apps {
 
 /// Light that comes back by longer ways: `--second-return`, `--tail`, `--returns`, `--transient`,
-/// and `--truth-returns` for what was simulated.
+/// `--bounces`, and `--truth-returns` for what was simulated.
 class ReturnsArguments {
  public:
   void add_to(CLI::App& command);
   /// @throws UsageError for words that do not fit each other; IoError as the files' readers;
   ///         std::invalid_argument as SceneLight::validate
-  SceneLight load(const SceneImage& scene, const Camera& camera) const;
+  SceneLight load(const LoadedScene& scene, const Camera& camera) const;
   /// Whether anything was asked for.
   bool is_used() const {
     return !second_returns_.empty() || tail_m_ || !returns_.empty() || !transient_.empty() ||
-           !truth_.empty();
+           bounces_ > 0 || !truth_.empty();
   }
   /// Files that are read.
   std::vector<std::string> inputs() const { return {returns_, transient_}; }
   const std::string& truth() const { return truth_; }
 
  private:
+  LaterReturns bounced(const LoadedScene& scene, const Camera& camera) const;
+
   std::vector<std::string> second_returns_;
   std::optional<double> tail_m_;
   double tail_ratio_ = 0.3;
   std::string returns_, transient_, truth_;
   std::optional<double> transient_bin_s_;
+  int bounces_ = 0;
+  BounceOptions bounce_;
   std::string transient_origin_ = "first", transient_background_ = "none";
 };
 

@@ -89,7 +89,8 @@ LoadedScene depth_image(const SceneSource& source, const Camera& camera) {
   const Image<float> depth_m = read_depth(source.scene);
   LoadedScene scene{fs::path(source.scene).stem().string(),
                     SceneImage(depth_m.height, depth_m.width),
-                    view_of(camera, depth_m.width, depth_m.height)};
+                    view_of(camera, depth_m.width, depth_m.height),
+                    {}};
   scene.image.depth_m = source.kind == "z" ? radial_from_z(depth_m, scene.view) : depth_m;
   if (!source.image.empty()) {
     Image<float> picture = read_albedo(source.image, transfer_of(source));
@@ -101,11 +102,11 @@ LoadedScene depth_image(const SceneSource& source, const Camera& camera) {
 
 LoadedScene load(const SceneSource& source, SceneKind kind, const Camera& camera) {
   if (kind == SceneKind::depth_image) return depth_image(source, camera);
-  const StagedScene staged = staged_scene(source, kind);
+  StagedScene staged = staged_scene(source, kind);
   SceneImage image = ray_cast(staged.shapes, staged.view, staged.camera_to_world);
   check_view(staged, image);
   return {kind == SceneKind::built_in ? source.scene : fs::path(source.scene).stem().string(),
-          std::move(image), staged.view};
+          std::move(image), staged.view, std::move(staged)};
 }
 
 }  // namespace
@@ -156,6 +157,17 @@ LoadedScene load_scene(const SceneSource& source, const Camera& camera) {
   } catch (const std::invalid_argument& error) {  // what files hold, not what was typed
     throw IoError(source.scene, error.what());
   }
+}
+
+LaterReturns bounced_light_of(const LoadedScene& scene, const Camera& camera, BounceOptions options,
+                              const Progress& progress) {
+  if (!scene.staged)
+    throw UsageError(
+        fmt::format("bounced light: found {}, a depth image; expected surfaces that light can meet "
+                    "out of view: a built-in scene, a scene file (.toml) or a mesh",
+                    scene.name));
+  options.range_m = camera.range_m();
+  return bounced_light(*scene.staged, options, progress);
 }
 
 std::string beyond_range_remark(const SceneExtent& extent) {

@@ -5,8 +5,10 @@
 #include <optional>
 
 #include "session.hpp"
+#include "tofsmith/scene/bounced_light.hpp"
 #include "tofsmith/scene/pinhole.hpp"
 #include "tofsmith/scene/scene_image.hpp"
+#include "tofsmith/scene/staged_scene.hpp"
 #include "tofsmith/simulate/scene_extent.hpp"
 
 namespace tofsmith::apps {
@@ -35,6 +37,7 @@ struct LoadedScene {
   std::string name;
   SceneImage image;
   PinholeView view;
+  std::optional<StagedScene> staged;  ///< its surfaces; none: a depth image has none
 };
 
 /// The lens of a view as a setting, to decode what was captured through it: "lens={ fx_px = .. }".
@@ -47,6 +50,11 @@ PinholeView view_of(const Camera& camera, int width, int height);
 /// distance through the camera's lens (without one: a view 60 degrees wide).
 /// @throws IoError, std::invalid_argument; UsageError for options that do not go with the scene
 LoadedScene load_scene(const SceneSource& source, const Camera& camera);
+
+/// Light that bounces once between the scene's surfaces, within the camera's range.
+/// @throws UsageError for a depth image, which has no surfaces; as bounced_light()
+LaterReturns bounced_light_of(const LoadedScene& scene, const Camera& camera, BounceOptions options,
+                              const Progress& progress);
 
 /// "12.5 % of the depths lie beyond the unambiguous range of 9.99 m and wrap"; "" if none do.
 std::string beyond_range_remark(const SceneExtent& extent);

@@ -40,7 +40,8 @@ void simulate_set(const SimulateArguments& arguments, Session& session) {
     throw UsageError("--truth: the truth of many scenes is always written");
   if (arguments.returns.is_used())
     throw UsageError(
-        "--second-return, --tail, --returns, --transient, --truth-returns: found many scenes; "
+        "--second-return, --tail, --returns, --transient, --bounces, --truth-returns: found many "
+        "scenes; "
         "expected one");
   const Camera camera = arguments.camera.load();
   const OperatingPoint middle = camera.operating.middle();
@@ -73,7 +74,7 @@ void run(SimulateArguments& arguments, Session& session) {
   const Camera camera = arguments.camera.load();
   const CodeSet code = load_played_code(arguments.code, camera, arguments.taps);
   const LoadedScene scene = load_scene(arguments.scene, camera);
-  const SceneLight light = arguments.returns.load(scene.image, camera);
+  const SceneLight light = arguments.returns.load(scene, camera);
   std::vector<std::string> inputs = arguments.returns.inputs();
   inputs.insert(inputs.end(),
                 {arguments.scene.scene, arguments.scene.image, arguments.scene.ambient_image,

@@ -75,7 +75,7 @@ void validate_sensor(const Sensor& sensor) {
           "needs sensor.taps = 2");
 }
 
-void validate_operating(const OperatingRange& range) {
+void validate_operating(const OperatingRange& range, double range_m) {
   const auto levels = [](const std::vector<double>& values, const std::string& field, bool zero) {
     require(!values.empty(), field, "[]", "must list at least one level");
     for (const double value : values) {
@@ -87,6 +87,7 @@ void validate_operating(const OperatingRange& range) {
   levels(range.ambient_e_per_s, "operating.ambient_e_per_s", true);
   require(range.albedo > 0.0 && range.albedo <= 1.0, "operating.albedo", range.albedo,
           "must be in (0, 1] or \"uniform\"");
+  if (range.multipath) range.multipath->validate(range_m);
 }
 
 Eigen::VectorXcd arm_transfer(const ImpulseResponse& response, double edge_jitter_s,
@@ -161,7 +162,7 @@ void Camera::validate() const {
     require(std::isfinite(lens->cx_px), "lens.cx_px", lens->cx_px, "must be finite");
     require(std::isfinite(lens->cy_px), "lens.cy_px", lens->cy_px, "must be finite");
   }
-  validate_operating(operating);
+  validate_operating(operating, range_m());
 }
 
 namespace {

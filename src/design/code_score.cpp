@@ -38,14 +38,14 @@ SampledCode rotated(const SampledCode& code, int rotation_bin) {
 
 std::vector<TrialBatch> draw_batches(const DesignProblem& problem, int trials, bool ends_matter,
                                      std::uint64_t seed, std::uint64_t work_item) {
-  std::size_t levels = 0;
+  const CameraVariant* most = &problem.variants.front();
   for (const CameraVariant& variant : problem.variants)
-    levels = std::max(levels, variant.points.size());
+    if (variant.levels.size() > most->levels.size()) most = &variant;
   std::vector<TrialBatch> batches;
-  for (std::size_t p = 0; p < levels; ++p) {
+  for (std::size_t p = 0; p < most->levels.size(); ++p) {
     RandomStream random(seed, work_item, static_cast<std::uint32_t>(2 * p + ends_matter));
-    batches.push_back(
-        draw_trials(trials, problem.measurements(), problem.operating, ends_matter, random));
+    batches.push_back(draw_trials(trials, problem.measurements(), problem.operating, ends_matter,
+                                  random, nullptr, problem.later_of(most->levels[p])));
   }
   return batches;
 }
@@ -86,13 +86,14 @@ double CodeJudge::log_error(const SampledCode& code) const {
     DepthErrorLoss loss(variant.judge, variant.judge.measure(code).table,
                         problem_->operating.error);
     double sum = 0.0;
-    for (std::size_t p = 0; p < variant.points.size(); ++p) {
-      loss.decode(variant.points[p], judging_[p], decoded_bin);
+    for (std::size_t p = 0; p < variant.levels.size(); ++p) {
+      loss.decode(variant.levels[p].point, judging_[p], decoded_bin);
       sum +=
+          variant.levels[p].weight *
           std::log(std::max(least_error_bin, mean_error_bin(judging_[p], decoded_bin,
                                                             code.samples(), problem_->linear())));
     }
-    worst = std::max(worst, sum / static_cast<double>(variant.points.size()));
+    worst = std::max(worst, sum / variant.total_weight());
   }
   return worst;
 }
@@ -104,16 +105,16 @@ int CodeJudge::best_rotation(const SampledCode& code) const {
     DepthErrorLoss loss(variant.judge, variant.judge.measure(code).table,
                         problem_->operating.error);
     std::vector<double> log_error(worst.size(), 0.0);
-    for (std::size_t p = 0; p < variant.points.size(); ++p) {
-      loss.decode(variant.points[p], rotating_[p], decoded_bin);
+    for (std::size_t p = 0; p < variant.levels.size(); ++p) {
+      loss.decode(variant.levels[p].point, rotating_[p], decoded_bin);
       ErrorByRotation errors(samples);
       for (std::size_t t = 0; t < decoded_bin.size(); ++t)  // the end of the last chord is bin 0
         errors.add(rotating_[p].trials[t].depth_periods * samples,
                    std::min(decoded_bin[t], std::nextafter(samples, 0.0)));
       const std::vector<double> sums = errors.sums();
       for (std::size_t r = 0; r < sums.size(); ++r)
-        log_error[r] += std::log(std::max(least_error_bin, sums[r])) /
-                        static_cast<double>(variant.points.size());
+        log_error[r] += variant.levels[p].weight * std::log(std::max(least_error_bin, sums[r])) /
+                        variant.total_weight();
     }
     for (std::size_t r = 0; r < worst.size(); ++r) worst[r] = std::max(worst[r], log_error[r]);
   }

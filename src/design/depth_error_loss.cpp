@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tofsmith/core/units.hpp"
+
 namespace tofsmith {
 
 namespace {
@@ -43,32 +45,36 @@ double DepthErrorLoss::mean_variance_e2(const OperatingPoint& point) const {
   return (camera_->exposure_s().cwiseProduct(light) + camera_->constant_variance_e2()).mean();
 }
 
-void DepthErrorLoss::read(const OperatingPoint& point, const TrialBatch& batch, std::size_t trial) {
+DepthErrorLoss::Place DepthErrorLoss::place_at(double depth_periods, double signal_e_per_s) const {
   const int samples = table_.samples();
-  const double position = batch.trials[trial].depth_periods * samples;
+  const double position = depth_periods * samples;
   const int bin = std::min(static_cast<int>(position), samples - 1);
-  const int next = bin + 1 < samples ? bin + 1 : 0;
-  const double fraction = position - bin;
-  reading_.bin = bin;
-  reading_.fraction = fraction;
-  reading_.signal_e_per_s = batch.trials[trial].albedo * point.signal_e_per_s;
+  return {bin, bin + 1 < samples ? bin + 1 : 0, position - bin, signal_e_per_s};
+}
+
+void DepthErrorLoss::read(const OperatingPoint& point, const TrialBatch& batch, std::size_t trial) {
+  const DepthTrial& truth = batch.trials[trial];
+  const double signal_e_per_s = truth.albedo * point.signal_e_per_s;
+  reading_.places = {place_at(truth.depth_periods, signal_e_per_s)};
+  if (truth.later_ratio > 0.0)
+    reading_.places.push_back(place_at(wrap(truth.depth_periods + truth.later_delay_periods, 1.0),
+                                       truth.later_ratio * signal_e_per_s));
   const double* normals = batch.normals_of(trial);
   const Eigen::MatrixXd& shot = table_.shot();
   const Eigen::VectorXd& shot_ambient = table_.shot_ambient();
-  const auto between = [&](const Eigen::MatrixXd& values, int i) {
-    return (1.0 - fraction) * values(bin, i) + fraction * values(next, i);
-  };
   for (int i = 0; i < table_.measurements(); ++i) {
     const double time_s = camera_->exposure_s()[i];
-    const double mean = time_s * (reading_.signal_e_per_s * between(table_.correlation, i) +
-                                  point.ambient_e_per_s * table_.ambient_gain[i]);
-    const double shot_e2 = time_s * (reading_.signal_e_per_s * between(shot, i) +
-                                     point.ambient_e_per_s * shot_ambient[i]);
+    double light = point.ambient_e_per_s * table_.ambient_gain[i];
+    double shot_light = point.ambient_e_per_s * shot_ambient[i];
+    for (const Place& place : reading_.places) {
+      light += place.signal_e_per_s * place.between(table_.correlation, i);
+      shot_light += place.signal_e_per_s * place.between(shot, i);
+    }
     const double deviation =
-        std::sqrt(std::max(1e-6, shot_e2 + camera_->constant_variance_e2()[i]));
+        std::sqrt(std::max(1e-6, time_s * shot_light + camera_->constant_variance_e2()[i]));
     const auto k = static_cast<std::size_t>(i);
     reading_.deviation_e[k] = deviation;
-    reading_.electrons[k] = static_cast<float>(mean + deviation * normals[i]);
+    reading_.electrons[k] = static_cast<float>(time_s * light + deviation * normals[i]);
   }
 }
 
@@ -80,19 +86,20 @@ void DepthErrorLoss::pull_back_reading(const OperatingPoint& point, const double
       apart ? reading_gradient_.shot_correlation : reading_gradient_.correlation;
   Eigen::VectorXd& by_shot_ambient =
       apart ? reading_gradient_.shot_ambient_gain : reading_gradient_.ambient_gain;
-  const int next = reading_.bin + 1 < table_.samples() ? reading_.bin + 1 : 0;
   for (int i = 0; i < table_.measurements(); ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double by_mean = weight * by_electrons_[k] * camera_->exposure_s()[i];
     const double by_variance = by_mean * normals[i] / (2.0 * reading_.deviation_e[k]);
-    const double lower = reading_.signal_e_per_s * (1.0 - reading_.fraction);
-    const double upper = reading_.signal_e_per_s * reading_.fraction;
-    reading_gradient_.correlation(reading_.bin, i) += by_mean * lower;
-    reading_gradient_.correlation(next, i) += by_mean * upper;
     reading_gradient_.ambient_gain[i] += by_mean * point.ambient_e_per_s;
-    by_shot(reading_.bin, i) += by_variance * lower;
-    by_shot(next, i) += by_variance * upper;
     by_shot_ambient[i] += by_variance * point.ambient_e_per_s;
+    for (const Place& place : reading_.places) {
+      const double lower = place.signal_e_per_s * (1.0 - place.fraction);
+      const double upper = place.signal_e_per_s * place.fraction;
+      reading_gradient_.correlation(place.bin, i) += by_mean * lower;
+      reading_gradient_.correlation(place.next, i) += by_mean * upper;
+      by_shot(place.bin, i) += by_variance * lower;
+      by_shot(place.next, i) += by_variance * upper;
+    }
   }
 }
 

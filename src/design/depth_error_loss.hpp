@@ -14,6 +14,7 @@ namespace tofsmith {
 /// smooth function. The noise itself depends on the code, and the gradient knows.
 ///   mu_i = T_i (S chi_i(z) + A kappa_i),  sigma_i^2 = T_i (S shot_i(z) + A shot_kappa_i) +
 ///   constant
+/// A trial may have a second return, S2 chi_i(z2) beside S chi_i(z): the error is that of z.
 /// chi is linear between the bins of the grid.
 class DepthErrorLoss {
  public:
@@ -36,14 +37,23 @@ class DepthErrorLoss {
   MeasurementTable gradient() const;
 
  private:
-  /// Measurements of one trial: its electrons, and what their gradient needs.
-  struct Reading {
-    int bin = 0;
+  /// A return of a trial: chords of the table it lies on.
+  struct Place {
+    int bin = 0, next = 0;
     double fraction = 0.0;
     double signal_e_per_s = 0.0;
+
+    double between(const Eigen::MatrixXd& values, int i) const {
+      return (1.0 - fraction) * values(bin, i) + fraction * values(next, i);
+    }
+  };
+  /// Measurements of one trial: its electrons, and what their gradient needs.
+  struct Reading {
+    std::vector<Place> places;  ///< direct, and perhaps later
     std::vector<float> electrons;
     std::vector<double> deviation_e;
   };
+  Place place_at(double depth_periods, double signal_e_per_s) const;
   void read(const OperatingPoint& point, const TrialBatch& batch, std::size_t trial);
   void pull_back_reading(const OperatingPoint& point, const double* normals, double weight);
   double sum_errors(const OperatingPoint& point, const TrialBatch& batch, double sharpness,

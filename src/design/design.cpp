@@ -6,7 +6,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "design/explanation.hpp"
 #include "design/factorized_code.hpp"
@@ -14,6 +13,7 @@
 #include "design/optimized_code.hpp"
 #include "design/searched_code.hpp"
 #include "design/shortest_run.hpp"
+#include "design/two_return_limit.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
@@ -161,10 +161,14 @@ void judge_all(const Camera& camera, const DesignOptions& options, DesignResult&
     if (options.robust)
       judge_robustness(result.candidates[i], camera, options, part_of(progress, middle, end));
   }
+  TwoReturnLimit two_returns(options.optimize.most_two_return_loss);
+  for (const Candidate& c : result.candidates)
+    if (!c.is_designed()) two_returns.add_given(c.second_returns);
+  const auto judged_m = [&](const Candidate& c) {
+    return two_returns.excess(c.second_returns) * choice_error_m(c, camera, options);
+  };
   for (std::size_t i = 1; i < result.candidates.size(); ++i)
-    if (choice_error_m(result.candidates[i], camera, options) <
-        choice_error_m(result.winner(), camera, options))
-      result.best = i;
+    if (judged_m(result.candidates[i]) < judged_m(result.winner())) result.best = i;
   Candidate& winner = result.candidates[result.best];
   if (!winner.robustness) judge_robustness(winner, camera, options, part_of(progress, all, 1.0));
 }
@@ -215,7 +219,11 @@ double choice_error_m(const Candidate& candidate, const Camera& camera,
                       const DesignOptions& options) {
   if (options.robust && candidate.robustness)
     return candidate.robustness->worst_calibrated_m().value;
-  return chosen_error_m(candidate.error, camera.operating.error);
+  const DepthErrorKind kind = camera.operating.error;
+  const double error_m = chosen_error_m(candidate.error, kind);
+  if (!camera.operating.multipath || !candidate.second_returns) return error_m;
+  return camera.operating.multipath->weighed(error_m,
+                                             candidate.second_returns->single_path.of(kind).value);
 }
 
 double chosen_error_m(const DepthErrorReport& report, DepthErrorKind kind) {
@@ -242,6 +250,8 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
                     const DesignStore& store) {
   options.validate();
   camera.validate();
+  require(!options.robust || !camera.operating.multipath, "DesignOptions::robust", "true",
+          "must be false where operating.multipath says to reckon with second returns");
   DesignResult result;
 
   // 1. What there is to factorize; baselines compete as they are.

@@ -81,6 +81,17 @@ void require_optimizable(const Camera& camera, int exposures) {
           listed, fmt::format("must equal the {} exposures", exposures));
 }
 
+/// The camera's points, and the same with second returns where those matter.
+std::vector<LightLevel> levels_of(const Camera& camera, const std::optional<SecondReturns>& later) {
+  const std::vector<OperatingPoint> points = training_points(camera);
+  std::vector<LightLevel> levels;
+  for (const OperatingPoint& point : points)
+    levels.push_back({point, false, later ? 1.0 - later->weight : 1.0});
+  if (later)
+    for (const OperatingPoint& point : points) levels.push_back({point, true, later->weight});
+  return levels;
+}
+
 }  // namespace
 
 double suggested_shortest_pulse_s(const Camera& camera) {
@@ -117,6 +128,12 @@ std::vector<OperatingPoint> training_points(const Camera& camera) {
   return fewer.points();
 }
 
+double CameraVariant::total_weight() const {
+  double total = 0.0;
+  for (const LightLevel& level : levels) total += level.weight;
+  return total;
+}
+
 DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples) {
   require(!variants.empty(), "variants", variants.size(), "must hold at least one camera");
   const Camera& camera = variants.front();
@@ -128,6 +145,8 @@ DesignProblem make_design_problem(std::span<const Camera> variants, int exposure
   problem.shortest_run_periods = shortest_run_periods(camera);
   problem.binary_modulation = camera.light.binary;
   problem.binary_demodulation = camera.sensor.binary;
+  if (const auto& later = camera.operating.multipath)
+    problem.later = LaterTrials{*later, camera.range_m()};
   for (const Camera& variant : variants) {
     variant.validate();
     require(variant.sensor.taps == camera.sensor.taps &&
@@ -137,7 +156,7 @@ DesignProblem make_design_problem(std::span<const Camera> variants, int exposure
     const int finer = camera.band_limited() ? 1 : std::clamp(camera.samples / samples_here, 1, 4);
     problem.variants.push_back({SampledCamera(variant, samples_here, exposures),
                                 SampledCamera(variant, finer * samples_here, exposures),
-                                training_points(variant)});
+                                levels_of(variant, camera.operating.multipath)});
   }
   return problem;
 }

@@ -28,10 +28,11 @@ const Candidate* best_baseline(const DesignResult& result, DepthErrorKind kind) 
   return nullptr;
 }
 
-std::string what_it_beats(const DesignResult& result, DepthErrorKind kind) {
+std::string what_it_beats(const Camera& camera, const DesignResult& result, DepthErrorKind kind) {
   const Candidate& winner = result.winner();
   std::string text =
-      fmt::format("{} measures depth best: {} of {} error", winner.code.name(),
+      fmt::format("{} measures depth best{}: {} of {} error", winner.code.name(),
+                  camera.operating.multipath ? " where second returns count too" : "",
                   length_mm(winner.error.of(kind).geometric_mean_m), kind_name(kind));
   const Candidate* baseline = best_baseline(result, kind);
   if (!baseline) return text + ".";
@@ -98,12 +99,34 @@ std::string what_limits_it(const DesignResult& result) {
       describe(*most));
 }
 
+std::string behind_second_returns(const SecondReturns& returns, const DesignResult& result,
+                                  DepthErrorKind kind) {
+  const Candidate& winner = result.winner();
+  const Estimate its = winner.second_returns->single_path.of(kind);
+  std::string text = fmt::format(
+      "Where a second return of ratio {} to {} comes {} to {} m behind, its {} error is {}",
+      returns.ratio[0], returns.ratio[1], returns.delay_m[0], returns.delay_m[1], kind_name(kind),
+      length_mm(its));
+  if (const Candidate* baseline = best_baseline(result, kind)) {
+    const Estimate other = baseline->second_returns->single_path.of(kind);
+    text += fmt::format(", that of {} {}", baseline->code.name(), length_mm(other));
+  }
+  if (const auto& two_return = winner.second_returns->two_return)
+    return text + fmt::format("; decoded as two returns it is {} (circular).",
+                              length_mm(two_return->circular_m));
+  return text + "; it holds too few independent means to be decoded as two returns.";
+}
+
 }  // namespace
 
 std::vector<std::string> explain(const Camera& camera, const DesignResult& result) {
   const DepthErrorKind kind = camera.operating.error;
-  return {what_it_beats(result, kind), why_so_many_exposures(camera, result, kind),
-          what_limits_it(result)};
+  std::vector<std::string> sentences{what_it_beats(camera, result, kind),
+                                     why_so_many_exposures(camera, result, kind),
+                                     what_limits_it(result)};
+  if (camera.operating.multipath)
+    sentences.push_back(behind_second_returns(*camera.operating.multipath, result, kind));
+  return sentences;
 }
 
 }  // namespace tofsmith

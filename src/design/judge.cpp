@@ -24,7 +24,12 @@ void judge(Candidate& candidate, const Camera& camera, const DesignOptions& opti
         best_rotation(candidate.code, camera, search, part_of(progress, 0.0, 0.5)).rotation_bin;
     candidate.code = candidate.code.rotated(candidate.rotation_bin);
   }
-  candidate.error = evaluate(candidate.code, camera, judging, part_of(progress, 0.5, 1.0));
+  const auto& later = camera.operating.multipath;
+  const double evaluated = later ? 0.6 : 1.0;
+  candidate.error = evaluate(candidate.code, camera, judging, part_of(progress, 0.5, evaluated));
+  if (later)
+    candidate.second_returns = second_return_report(candidate.code, camera, *later, judging,
+                                                    part_of(progress, evaluated, 1.0));
   candidate.code.provenance.depth_error_m = chosen_error_m(candidate.error, camera.operating.error);
 }
 

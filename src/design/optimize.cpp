@@ -7,14 +7,18 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <utility>
 
 #include "design/binarization.hpp"
 #include "design/edge_polish.hpp"
 #include "design/optimize_pool.hpp"
 #include "design/optimize_starts.hpp"
+#include "design/two_return_limit.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/decode/two_return_decoder.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/version.hpp"
 
@@ -29,7 +33,45 @@ struct Finalist {
   CodeSet code;
   std::string start;
   Estimate error_m;
+  std::optional<SecondReturnReport> second_returns = {};  ///< if the camera reckons with them
 };
+
+/// What finalists are compared by [m]: the error, with second returns weighed in.
+double choice_m(const Finalist& finalist, const Camera& camera) {
+  if (!finalist.second_returns) return finalist.error_m.value;
+  return camera.operating.multipath->weighed(
+      finalist.error_m.value,
+      finalist.second_returns->single_path.of(camera.operating.error).value);
+}
+
+/// Whether two returns can be told apart, well or badly.
+bool tells_two_returns(const CodeSet& code, const Camera& camera) {
+  try {
+    const TwoReturnDecoder decoder(make_decoding_table(ForwardModel(code, camera), camera));
+    return true;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
+/// Which of the pool are made playable: the best and, on cameras that reckon with second returns,
+/// the best few of the others that can be decoded as two returns.
+std::vector<PoolEntry> entries_to_play(const DesignProblem& problem, const OptimizePool& pool,
+                                       const Camera& camera, const OptimizeOptions& options,
+                                       const Sharpness& sharpness) {
+  constexpr std::size_t most_others = 3;
+  const std::vector<PoolEntry>& all = pool.entries();
+  const std::size_t best = std::min(static_cast<std::size_t>(options.refined), all.size());
+  std::vector<PoolEntry> chosen(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(best));
+  if (!camera.operating.multipath) return chosen;
+  for (std::size_t k = best; k < all.size() && chosen.size() < best + most_others; ++k) {
+    const SwitchedCode code =
+        binarized(problem, render(problem.space, all[k].parameters, sharpness), pool.judge());
+    if (tells_two_returns(code_set("optimized", problem.space, code, camera.samples), camera))
+      chosen.push_back(all[k]);
+  }
+  return chosen;
+}
 
 /// The best of the pool as codes that can be played: switched, and with polished edges too.
 std::vector<Finalist> playable_finalists(const DesignProblem& problem, OptimizePool& pool,
@@ -39,13 +81,14 @@ std::vector<Finalist> playable_finalists(const DesignProblem& problem, OptimizeP
   Sharpness sharpness{6.0, 8.0};
   if (!problem.binary_modulation) sharpness.modulation = 1.0;
   if (!problem.binary_demodulation) sharpness.demodulation = 1.0;
-  const auto count = std::min<std::int64_t>(options.refined, std::ssize(pool.entries()));
+  const std::vector<PoolEntry> entries = entries_to_play(problem, pool, camera, options, sharpness);
+  const auto count = std::ssize(entries);
   std::vector<SwitchedCode> codes(2 * static_cast<std::size_t>(count));
   report(progress, 0.0, "edges");
   parallel_for(count, [&](std::int64_t i) {
     const auto k = static_cast<std::size_t>(i);
     codes[2 * k] =
-        binarized(problem, render(space, pool.entries()[k].parameters, sharpness), pool.judge());
+        binarized(problem, render(space, entries[k].parameters, sharpness), pool.judge());
     codes[2 * k + 1] = codes[2 * k];
     if (options.polish)
       codes[2 * k + 1] =
@@ -56,7 +99,7 @@ std::vector<Finalist> playable_finalists(const DesignProblem& problem, OptimizeP
   for (std::size_t k = 0; k < codes.size(); ++k) {
     const bool polished = k % 2 == 1;
     if (polished && !options.polish) continue;
-    const std::string& start = pool.entries()[k / 2].start;
+    const std::string& start = entries[k / 2].start;
     pool.record(polished ? "polish" : "binary", start,
                 pool.judge().score(sampled_on(space, codes[k])).log_error_bin);
     finalists.push_back({code_set("optimized", space, codes[k], camera.samples), start, {}});
@@ -101,16 +144,46 @@ void validate_finalist(Finalist& finalist, std::span<const Camera> variants,
   }
 }
 
+/// Errors behind second returns of the camera itself, once the code is at its rotation.
+void validate_second_returns(Finalist& finalist, const Camera& camera,
+                             const OptimizeOptions& options) {
+  EvaluateOptions evaluation;
+  const auto points = static_cast<std::int64_t>(camera.operating.points().size());
+  evaluation.trials = std::clamp<std::int64_t>(options.validation_trials / points, 3000, 40000);
+  evaluation.seed = combine_keys(options.seed, validation_key);
+  finalist.second_returns =
+      second_return_report(finalist.code, camera, *camera.operating.multipath, evaluation);
+}
+
+std::string describe_second_returns(const Finalist& best, const Finalist* best_given,
+                                    DepthErrorKind kind) {
+  const auto errors = [&](const Finalist& f) {
+    const SecondReturnReport& behind = *f.second_returns;
+    return fmt::format(
+        "{:.4g}, {:.4g}, {}", 1e3 * f.error_m.value, 1e3 * behind.single_path.of(kind).value,
+        behind.two_return ? fmt::format("{:.4g} mm", 1e3 * behind.two_return->circular_m.value)
+                          : "impossible");
+  };
+  std::string text =
+      "of single returns, behind second ones, and those decoded as two: " + errors(best);
+  if (best_given && best_given != &best)
+    text += fmt::format("; {}: {}", best_given->code.name(), errors(*best_given));
+  return text;
+}
+
 std::string describe(const Finalist& best, const Finalist* best_given, bool is_given,
-                     bool ended_early) {
+                     bool ended_early, const Camera& camera) {
   std::string text;
   if (is_given)
     text = fmt::format("no better code found than {}", best.code.name());
   else if (!best_given)
-    text = fmt::format("error {:.4g} mm", 1e3 * best.error_m.value);
+    text = fmt::format("error {:.4g} mm", 1e3 * choice_m(best, camera));
   else
     text = fmt::format("{:.3g} times better than {}, the best code given",
-                       best_given->error_m.value / best.error_m.value, best_given->code.name());
+                       choice_m(*best_given, camera) / choice_m(best, camera),
+                       best_given->code.name());
+  if (best.second_returns)
+    text += "; " + describe_second_returns(best, best_given, camera.operating.error);
   return text + (ended_early ? "; hops ended early, without gain" : "");
 }
 
@@ -134,6 +207,8 @@ void OptimizeOptions::validate() const {
   at_least(pool_trials, 1000, "pool_trials");
   at_least(polish_steps, 0, "polish_steps");
   at_least(validation_trials, 1000, "validation_trials");
+  require(most_two_return_loss >= 1.0, "OptimizeOptions::most_two_return_loss",
+          most_two_return_loss, "must be >= 1");
 }
 
 OptimizedCode optimize(std::span<const Camera> variants, int exposures,
@@ -161,9 +236,15 @@ OptimizedCode optimize(std::span<const Camera> variants, int exposures,
     report(progress, 0.9 + 0.1 * static_cast<double>(i) / static_cast<double>(finalists.size()),
            "validation");
     validate_finalist(finalists[i], variants, options);
+    if (camera.operating.multipath) validate_second_returns(finalists[i], camera, options);
   }
-  const auto less = [](const Finalist& a, const Finalist& b) {
-    return a.error_m.value < b.error_m.value;
+  TwoReturnLimit two_returns(options.most_two_return_loss);
+  for (const Finalist& f : std::span(finalists).subspan(optimized))
+    two_returns.add_given(f.second_returns);
+  // What two-return decoding copes with badly counts as so many times worse.
+  const auto less = [&](const Finalist& a, const Finalist& b) {
+    return two_returns.excess(a.second_returns) * choice_m(a, camera) <
+           two_returns.excess(b.second_returns) * choice_m(b, camera);
   };
   const auto first_given = finalists.begin() + static_cast<std::ptrdiff_t>(optimized);
   const auto best = std::min_element(finalists.begin(), finalists.end(), less);
@@ -173,9 +254,9 @@ OptimizedCode optimize(std::span<const Camera> variants, int exposures,
   OptimizedCode result{.code = best->code, .error_m = best->error_m};
   result.is_given = best >= first_given;
   result.start = best->start;
-  result.message = describe(*best, rival, result.is_given, pool.ended_early());
+  result.message = describe(*best, rival, result.is_given, pool.ended_early(), camera);
   for (const Finalist& finalist : finalists)
-    result.candidates.push_back({finalist.code.name(), finalist.error_m});
+    result.candidates.push_back({finalist.code.name(), finalist.error_m, finalist.second_returns});
   result.history = std::move(pool.history());
   result.steps =
       pool.steps() +

@@ -17,21 +17,23 @@ StochasticGradient::StochasticGradient(const DesignProblem& problem, int trials,
                                        RandomStream random)
     : problem_(&problem), trials_(trials), noise_(random) {
   for (const CameraVariant& variant : problem.variants)
-    average_error_.emplace_back(variant.points.size(), 0.0);
+    average_error_.emplace_back(variant.levels.size(), 0.0);
 }
 
 double StochasticGradient::mean_log(std::size_t variant) const {
+  const CameraVariant& its = problem_->variants[variant];
   double sum = 0.0;
-  for (const double average : average_error_[variant]) sum += std::log(std::max(1e-12, average));
-  return sum / static_cast<double>(average_error_[variant].size());
+  for (std::size_t p = 0; p < its.levels.size(); ++p)
+    sum += its.levels[p].weight * std::log(std::max(1e-12, average_error_[variant][p]));
+  return sum / its.total_weight();
 }
 
 double StochasticGradient::weight(std::size_t variant, std::size_t point) const {
   double total = 0.0;
   for (std::size_t v = 0; v < average_error_.size(); ++v)
     total += std::exp(worst_case_sharpness * (mean_log(v) - mean_log(variant)));
-  return 1.0 / (total * static_cast<double>(average_error_[variant].size()) *
-                average_error_[variant][point]);
+  const CameraVariant& its = problem_->variants[variant];
+  return its.levels[point].weight / (total * its.total_weight() * average_error_[variant][point]);
 }
 
 void StochasticGradient::add(std::size_t variant, std::size_t point, double error) {
@@ -46,15 +48,16 @@ SampledCode StochasticGradient::at(const SampledCode& code, double doubt, Random
     const CameraVariant& variant = problem_->variants[v];
     const SampledCamera::Measured measured = variant.camera.measure(code);
     DepthErrorLoss loss(variant.camera, measured.table, problem_->operating.error);
-    const auto levels = static_cast<int>(variant.points.size() * problem_->variants.size());
-    for (std::size_t p = 0; p < variant.points.size(); ++p) {
-      const TrialBatch batch =
-          draw_trials(std::max(8, trials_ / levels), variant.camera.measurements(),
-                      problem_->operating, problem_->linear(), random, &noise_);
-      const double sharpness = doubt / loss.mean_variance_e2(variant.points[p]);
+    const auto levels = static_cast<int>(variant.levels.size() * problem_->variants.size());
+    for (std::size_t p = 0; p < variant.levels.size(); ++p) {
+      const LightLevel& level = variant.levels[p];
+      const TrialBatch batch = draw_trials(
+          std::max(8, trials_ / levels), variant.camera.measurements(), problem_->operating,
+          problem_->linear(), random, &noise_, problem_->later_of(level));
+      const double sharpness = doubt / loss.mean_variance_e2(level.point);
       if (average_error_[v][p] == 0.0)
-        add(v, p, std::max(1e-9, loss.soft_error(variant.points[p], batch, sharpness)));
-      add(v, p, std::max(1e-9, loss.soft_error(variant.points[p], batch, sharpness, weight(v, p))));
+        add(v, p, std::max(1e-9, loss.soft_error(level.point, batch, sharpness)));
+      add(v, p, std::max(1e-9, loss.soft_error(level.point, batch, sharpness, weight(v, p))));
     }
     const SampledCode part = variant.camera.pull_back(measured, loss.gradient());
     gradient.modulation += part.modulation;

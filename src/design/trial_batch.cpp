@@ -42,7 +42,7 @@ std::vector<double> NoiseStore::window(std::size_t count, RandomStream& random) 
 }
 
 TrialBatch draw_trials(int count, int measurements, const OperatingRange& range, bool ends_matter,
-                       RandomStream& random, const NoiseStore* store) {
+                       RandomStream& random, const NoiseStore* store, const LaterTrials* later) {
   TrialBatch batch;
   batch.measurements = measurements;
   batch.trials.resize(static_cast<std::size_t>(count));
@@ -56,6 +56,10 @@ TrialBatch draw_trials(int count, int measurements, const OperatingRange& range,
       trial.depth_periods = depth_near_end((t - uniform + u) / (count - uniform), t % 2 == 1);
     if (ends_matter) trial.weight = 1.0 / mixture_density(trial.depth_periods);
     trial.albedo = range.uniform_albedo ? random.uniform() : range.albedo;
+    if (later) {
+      trial.later_ratio = later->returns.ratio_at(random.uniform());
+      trial.later_delay_periods = later->returns.delay_at_m(random.uniform()) / later->range_m;
+    }
   }
   const auto numbers = static_cast<std::size_t>(count) * static_cast<std::size_t>(measurements);
   if (store) {

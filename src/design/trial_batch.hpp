@@ -5,15 +5,18 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/camera/second_returns.hpp"
 #include "tofsmith/core/random.hpp"
 
 namespace tofsmith {
 
 /// One true depth and how much it counts.
 struct DepthTrial {
-  double depth_periods = 0.0;  ///< in [0, 1)
-  double weight = 1.0;         ///< uniform density over the density it was drawn from
-  double albedo = 1.0;         ///< scales the signal
+  double depth_periods = 0.0;        ///< in [0, 1)
+  double weight = 1.0;               ///< uniform density over the density it was drawn from
+  double albedo = 1.0;               ///< scales the signal
+  double later_ratio = 0.0;          ///< of a second return over the direct one
+  double later_delay_periods = 0.0;  ///< behind the direct return, in [0, 1)
 };
 
 /// Standard normal numbers in store: a window of them costs nothing. Windows overlap, so this is
@@ -40,10 +43,18 @@ struct TrialBatch {
   }
 };
 
+/// Second returns of trials, with delays in periods.
+struct LaterTrials {
+  SecondReturns returns;
+  double range_m = 1.0;
+};
+
 /// Draws trials: depths stratified over the range. With ends_matter, half of them lie near the ends
 /// of the range, where a wrap costs the whole of it, with a density that falls as 1 / distance.
 /// @param store  where noise comes from; null: fresh
+/// @param later  every trial has such a second return; null: none
 TrialBatch draw_trials(int count, int measurements, const OperatingRange& range, bool ends_matter,
-                       RandomStream& random, const NoiseStore* store = nullptr);
+                       RandomStream& random, const NoiseStore* store = nullptr,
+                       const LaterTrials* later = nullptr);
 
 }  // namespace tofsmith

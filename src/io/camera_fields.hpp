@@ -102,11 +102,19 @@ void visit_lens(Table& table, Field<Table, Lens>& lens) {
 }
 
 template <typename Table>
+void visit_second_returns(Table& table, Field<Table, SecondReturns>& returns) {
+  table.value("ratio", returns.ratio);
+  table.value("delay_m", returns.delay_m);
+  table.value("weight", returns.weight);
+}
+
+template <typename Table>
 void visit_operating(Table& table, Field<Table, OperatingRange>& range) {
   table.value("signal_e_per_s", range.signal_e_per_s);
   table.value("ambient_e_per_s", range.ambient_e_per_s);
   table.choice("error", range.error, Choices<DepthErrorKind>(depth_errors));
   table.number_or_word("albedo", range.albedo, "uniform", range.uniform_albedo);
+  table.table("multipath", range.multipath, visit_second_returns<Table>);
 }
 
 template <typename Table>

@@ -128,6 +128,7 @@ std::string design_key(const Camera& camera, const DesignOptions& options) {
                      o.polish_steps, o.validation_trials);
   key += fmt::format("|{}|{}|{}|{}|{}|{}", c.margin_sigma, c.separation_periods, c.equal_duty,
                      c.largest_exhaustive, c.annealing_starts, c.annealing_steps);
+  if (camera.operating.multipath) key += fmt::format("|{}", o.most_two_return_loss);
   if (options.target)
     for (const CorrelationTarget& t : options.target->measurements) {
       key += fmt::format("|{}|{}", t.demodulation_mean,
@@ -267,6 +268,8 @@ DesignRecord DesignDirectory::read() const {
     }
     if (const auto robustness = entry.optional_member("robustness"))
       candidate.robustness = robustness_from_json(*robustness);
+    if (record.camera.operating.multipath)
+      candidate.second_returns = second_returns_from_json(entry.member("second_returns"));
     if (name == best) result.best = result.candidates.size();
     result.candidates.push_back(std::move(candidate));
   }

@@ -36,10 +36,35 @@ Json cells_json(const std::vector<MultipathCell>& cells) {
   return all;
 }
 
+Json class_json(const DelayClass& its) {
+  return {{"from_m", its.from_m},
+          {"to_m", its.to_m},
+          {"pixels", its.pixels},
+          {"ratio", its.ratio},
+          {"single_path_bias_m", number(its.bias_m[0])},
+          {"single_path_error_m", number(its.error_m[0])},
+          {"bias_m", number(its.bias_m[1])},
+          {"error_m", number(its.error_m[1])},
+          {"two_share", its.two_share},
+          {"unresolved_share", its.unresolved_share}};
+}
+
+Json scene_json(const MultipathScene& scene) {
+  Json document = {{"scene", scene.name},
+                   {"code", scene.code},
+                   {"signal_e_per_s", scene.light.signal_e_per_s},
+                   {"reference_distance_m", scene.light.reference_distance_m},
+                   {"ambient_e_per_s", scene.light.ambient_e_per_s},
+                   {"delays", Json::array()},
+                   {"all", class_json(scene.all)}};
+  for (const DelayClass& its : scene.classes) document["delays"].push_back(class_json(its));
+  return document;
+}
+
 }  // namespace
 
 std::string multipath_document(const Camera& camera, const std::vector<MultipathErrorReport>& codes,
-                               const MultipathErrorOptions& options) {
+                               const MultipathErrorOptions& options, const MultipathScene* scene) {
   Json document = {{"version", TOFSMITH_VERSION},
                    {"seed", options.seed},
                    {"trials", options.trials},
@@ -59,6 +84,7 @@ std::string multipath_document(const Camera& camera, const std::vector<Multipath
                                   {"tails", cells_json(maps.tails)}});
     document["codes"].push_back(std::move(entry));
   }
+  if (scene) document["scene"] = scene_json(*scene);
   return document.dump(2);
 }
 

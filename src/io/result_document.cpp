@@ -153,6 +153,28 @@ RobustnessReport robustness_from_json(const JsonReader& json) {
   return report;
 }
 
+Json second_returns_json(const SecondReturnReport& report) {
+  const auto error = [](const SecondReturnError& its) -> Json {
+    return {{"linear_m", its.linear_m.value},
+            {"linear_se_m", its.linear_m.standard_error},
+            {"circular_m", its.circular_m.value},
+            {"circular_se_m", its.circular_m.standard_error}};
+  };
+  return {{"single_path", error(report.single_path)},
+          {"two_return", report.two_return ? error(*report.two_return) : Json()}};
+}
+
+SecondReturnReport second_returns_from_json(const JsonReader& json) {
+  const auto error = [](const JsonReader& its) -> SecondReturnError {
+    return {{not_negative(its, "linear_m"), not_negative(its, "linear_se_m")},
+            {not_negative(its, "circular_m"), not_negative(its, "circular_se_m")}};
+  };
+  SecondReturnReport report{.single_path = error(json.member("single_path"))};
+  const JsonReader two_return = json.member("two_return");
+  if (!two_return.is_null()) report.two_return = error(two_return);
+  return report;
+}
+
 Json measurements_json(const Candidate& candidate) {
   Json list = Json::array();
   for (const MeasurementReport& m : candidate.per_measurement) {
@@ -216,6 +238,8 @@ Json design_json(const Camera& camera, const DesignResult& result, const DesignO
       entry["account"] = candidate.search->account;
     }
     if (candidate.robustness) entry["robustness"] = robustness_json(*candidate.robustness);
+    if (candidate.second_returns)
+      entry["second_returns"] = second_returns_json(*candidate.second_returns);
     const Estimate gain = gain_over(result, candidate, camera.operating.error);
     entry["times_best"] = {{"ratio", gain.value}, {"ratio_se", gain.standard_error}};
     document["codes"].push_back(std::move(entry));

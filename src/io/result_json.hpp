@@ -8,6 +8,7 @@
 #include "io/json_reader.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/simulate/robustness.hpp"
+#include "tofsmith/simulate/second_return_error.hpp"
 
 namespace tofsmith {
 
@@ -22,6 +23,11 @@ DepthErrorReport depth_error_from_json(const JsonReader& entry, const JsonReader
 nlohmann::ordered_json robustness_json(const RobustnessReport& report);
 /// The same back.
 RobustnessReport robustness_from_json(const JsonReader& json);
+
+/// A code's errors behind second returns, decoded as single-path and, or null, as two returns.
+nlohmann::ordered_json second_returns_json(const SecondReturnReport& report);
+/// The same back.
+SecondReturnReport second_returns_from_json(const JsonReader& json);
 
 /// The measurements of a designed code and, where it has targets, how they compare with them.
 nlohmann::ordered_json measurements_json(const Candidate& candidate);

@@ -139,15 +139,27 @@ void TableReader::value(std::string_view key, std::vector<SettingValue>& target)
     target.push_back(toml_value_of(element, document_.place_of(element.source())));
 }
 
+std::vector<double> TableReader::numbers(std::string_view key, const toml::node& node,
+                                         std::size_t count, std::string_view expected) const {
+  if (!node.is_array()) mistyped(full(key), node, expected);
+  std::vector<double> list = number_list(full(key), *node.as_array());
+  if (list.size() != count)
+    fail(key, fmt::format("found {} numbers; expected {}", list.size(), expected));
+  return list;
+}
+
 void TableReader::value(std::string_view key, Eigen::Vector3d& target) {
-  constexpr std::string_view expected = "a list of three numbers";
   const toml::node* node = find(key);
   if (!node) return;
-  if (!node->is_array()) mistyped(full(key), *node, expected);
-  const std::vector<double> numbers = number_list(full(key), *node->as_array());
-  if (numbers.size() != 3)
-    fail(key, fmt::format("found {} numbers; expected {}", numbers.size(), expected));
-  target = {numbers[0], numbers[1], numbers[2]};
+  const std::vector<double> list = numbers(key, *node, 3, "a list of three numbers");
+  target = {list[0], list[1], list[2]};
+}
+
+void TableReader::value(std::string_view key, std::array<double, 2>& target) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  const std::vector<double> list = numbers(key, *node, 2, "a list of two numbers");
+  target = {list[0], list[1]};
 }
 
 void TableReader::number_or_list(std::string_view key, double& number, std::vector<double>& list) {

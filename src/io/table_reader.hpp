@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -48,6 +49,8 @@ class TableReader {
   void value(std::string_view key, std::vector<SettingValue>& target);
   /// A list of exactly three numbers.
   void value(std::string_view key, Eigen::Vector3d& target);
+  /// A list of exactly two numbers.
+  void value(std::string_view key, std::array<double, 2>& target);
   template <typename Value>
   void value(std::string_view key, std::optional<Value>& target) {
     if (contains(key)) value(key, target.emplace());
@@ -113,6 +116,8 @@ class TableReader {
   std::vector<TableReader> enter_each(std::string_view key);
   std::optional<std::size_t> index_of_word(std::string_view key,
                                            std::span<const std::string_view> words);
+  std::vector<double> numbers(std::string_view key, const toml::node& node, std::size_t count,
+                              std::string_view expected) const;
   double finite_number(const std::string& name, const toml::node& node,
                        std::string_view expected) const;
   std::vector<double> number_list(const std::string& name, const toml::array& list) const;

@@ -9,6 +9,7 @@
 
 #include "report/error_sections.hpp"
 #include "report/search_sections.hpp"
+#include "report/second_return_section.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/robustness_section.hpp"
 #include "tofsmith/report/scene_section.hpp"
@@ -33,6 +34,10 @@ KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
   numbers.entries.push_back(
       {kind == DepthErrorKind::linear ? "linear depth error" : "circular depth error",
        fmt::format("{:.1f} mm", 1e3 * chosen_error_m(winner.error, kind))});
+  if (winner.second_returns)
+    numbers.entries.push_back(
+        {"behind second returns",
+         fmt::format("{:.1f} mm", 1e3 * winner.second_returns->single_path.of(kind).value)});
   for (const char* baseline : {"sinusoid-k4", "square-k4"})
     if (const std::string gain = gain_over(result, baseline, kind); !gain.empty())
       numbers.entries.push_back({fmt::format("better than {}", baseline), gain});
@@ -42,7 +47,7 @@ KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
 /// Why the winner won. A table, whose cells are set as they are: the names in them are users'.
 Table explanation(const DesignResult& result) {
   constexpr std::array questions = {"What does it beat?", "Why so many exposures?",
-                                    "What limits it?"};
+                                    "What limits it?", "And behind second returns?"};
   Table table{.caption = "Why this code.", .columns = {{"question"}, {"answer"}}};
   for (std::size_t i = 0; i < std::min(questions.size(), result.explanation.size()); ++i)
     table.rows.push_back({questions[i], result.explanation[i]});
@@ -143,6 +148,9 @@ Page design_report(const Camera& camera, const DesignResult& result,
   std::vector<ComparedCode> compared;
   for (const Candidate& c : result.candidates) compared.push_back({&c.error, c.method});
   page.sections.push_back(depth_error_section(camera, compared, result.best));
+  if (camera.operating.multipath)
+    page.sections.push_back(
+        second_return_section(*camera.operating.multipath, result, camera.operating.error));
   page.sections.push_back(gain_section(camera, result));
   std::vector<JudgedCode> perturbed;
   for (const Candidate& c : result.candidates)

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 
+#include "report/level_text.hpp"
 #include "tofsmith/report/heat_map_figure.hpp"
 
 namespace tofsmith {
@@ -17,23 +18,19 @@ namespace {
 using Row = std::vector<std::string>;
 using Cells = std::vector<MultipathCell> MultipathMaps::*;
 
-std::string in_mm(double metres) {
-  return std::isfinite(metres) ? fmt::format("{:.1f}", 1e3 * metres) : "";
-}
-
 Row row(const MultipathErrorReport& code, const MultipathMaps& maps, const std::string& light,
         const MultipathCell& cell) {
   const bool decoded = std::isfinite(cell.error_m.value);
   return {code.code,
           fmt::format("{:.3g}", maps.signal_e_per_s),
           light,
-          in_mm(cell.law_m),
-          in_mm(cell.single_bias_m.value),
-          in_mm(cell.single_error_m.value),
-          in_mm(cell.bias_m.value),
-          in_mm(cell.error_m.value),
+          mm_text(cell.law_m),
+          mm_text(cell.single_bias_m.value),
+          mm_text(cell.single_error_m.value),
+          mm_text(cell.bias_m.value),
+          mm_text(cell.error_m.value),
           decoded ? fmt::format("{:.2f}", cell.gain()) : "",
-          in_mm(cell.cramer_rao_mae_m),
+          mm_text(cell.cramer_rao_mae_m),
           decoded ? fmt::format("{:.1f}", 100 * cell.two_share) : "",
           decoded ? fmt::format("{:.1f}", 100 * cell.unresolved_share) : ""};
 }

@@ -97,6 +97,21 @@ StagedScene wall(int width, int height) {
           .view = PinholeView::centred(width, height, 40 * degrees)};
 }
 
+/// Two walls whose edge is upright, in the middle of the picture.
+StagedScene corner(int width, int height) {
+  const auto half = [](double side) {
+    return Plane{.point = {0, 0, 3}, .normal = {side, 0, -1}, .texture = uniform(0.70)};
+  };
+  return {.shapes = {half(1), half(-1)}, .view = PinholeView::centred(width, height, 70 * degrees)};
+}
+
+StagedScene room(int width, int height) {
+  StagedScene scene = corner(width, height);
+  scene.shapes.emplace_back(
+      Plane{.point = {0, 1, 0}, .normal = {0, -1, 0}, .texture = uniform(0.40)});
+  return scene;
+}
+
 StagedScene hand(int width, int height) {
   // The hand's y axis points up, the camera's down; the palm leans back and turns a little.
   Eigen::Isometry3d hand_to_world = Eigen::Isometry3d::Identity();
@@ -112,10 +127,12 @@ struct Entry {
   std::string_view name;
   StagedScene (*stage)(int width, int height);
 };
-constexpr std::array<Entry, 5> entries = {{{"table-top", table_top_scene},
+constexpr std::array<Entry, 7> entries = {{{"table-top", table_top_scene},
                                            {"books", books},
                                            {"ball", ball},
                                            {"wall", wall},
+                                           {"corner", corner},
+                                           {"room", room},
                                            {"hand", hand}}};
 
 }  // namespace

@@ -36,11 +36,14 @@ struct Setting {
   OperatingPoint point{2e4, 1e4};
 };
 
-TrialBatch trials_for(const Setting& setting, int count, bool ends_matter = false) {
+TrialBatch trials_for(const Setting& setting, int count, bool ends_matter = false,
+                      bool later = false) {
   RandomStream random(7, 2);
   OperatingRange range;
   range.uniform_albedo = true;
-  return draw_trials(count, setting.sampled().measurements(), range, ends_matter, random);
+  const LaterTrials second{{}, setting.camera.range_m()};
+  return draw_trials(count, setting.sampled().measurements(), range, ends_matter, random, nullptr,
+                     later ? &second : nullptr);
 }
 
 const std::vector<Setting>& settings() {
@@ -55,7 +58,8 @@ TEST(DepthErrorLoss, IsThatOfThePlainReferenceOnEveryTarget) {
       for (const DepthErrorKind kind : {DepthErrorKind::linear, DepthErrorKind::circular}) {
         const SampledCamera camera = setting.sampled();
         const MeasurementTable table = camera.measure(setting.code).table;
-        const TrialBatch batch = trials_for(setting, 40, kind == DepthErrorKind::linear);
+        const TrialBatch batch = trials_for(setting, 40, kind == DepthErrorKind::linear,
+                                            kind == DepthErrorKind::circular);
         DepthErrorLoss loss(camera, table, kind);
         const double sharpness = 1.5 / loss.mean_variance_e2(setting.point);
         const double expected = reference_soft_error(camera, table, setting.point, batch, sharpness,
@@ -106,7 +110,7 @@ TEST(DepthErrorLoss, GradientByTheWaveformsMatchesFiniteDifferences) {
     for (const bool circular : {false, true}) {
       const SampledCamera camera = setting.sampled();
       const auto measured = camera.measure(setting.code);
-      const TrialBatch batch = trials_for(setting, 20, !circular);
+      const TrialBatch batch = trials_for(setting, 20, !circular, circular);
       DepthErrorLoss loss(camera, measured.table,
                           circular ? DepthErrorKind::circular : DepthErrorKind::linear);
       const double sharpness = 1.2 / loss.mean_variance_e2(setting.point);

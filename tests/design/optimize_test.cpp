@@ -71,6 +71,30 @@ TEST(Optimize, BeatsTheHamiltonianCodeThatItStartsFrom) {
               5 * std::hypot(error_m.standard_error, found.error_m.standard_error));
 }
 
+TEST(Optimize, ReckonsWithSecondReturnsWhereTheCameraSaysSo) {
+  Camera camera = small_camera();
+  camera.sensor.taps = 2;
+  camera.operating.signal_e_per_s = {1e5};
+  const std::vector<CodeSet> also = {build_family("hamiltonian-k5", camera)};
+  const SecondReturns later{{0.2, 0.5}, {0.5, 3.0}, 0.5};
+  camera.operating.multipath = later;
+  const OptimizedCode found = optimize(camera, 5, small_options(), also);
+  const OptimizeCandidate& given = found.candidates.back();
+  ASSERT_TRUE(given.second_returns && given.second_returns->two_return);
+  EXPECT_THAT(found.message, HasSubstr("behind second ones"));
+  // Fresh trials: less error by what was minimized, and two returns can still be told.
+  EvaluateOptions fresh;
+  fresh.trials = 4000;
+  fresh.seed = 12345;
+  const auto chosen_by = [&](const CodeSet& code) {
+    return later.weighed(evaluate(code, camera, fresh).circular.geometric_mean_m.value,
+                         second_return_error(code, camera, later, fresh).circular_m.value);
+  };
+  EXPECT_LT(chosen_by(found.code), chosen_by(also.front()));
+  EXPECT_LT(two_return_error(found.code, camera, later, fresh).circular_m.value,
+            1.4 * two_return_error(also.front(), camera, later, fresh).circular_m.value);
+}
+
 TEST(Optimize, IsNeverWorseThanTheBestCodeGiven) {
   const Camera camera = small_camera(DepthErrorKind::linear);
   OptimizeOptions poor = small_options();

@@ -46,6 +46,11 @@ signal_e_per_s  = [1e3, 3.1623e3, 1e4, 3.1623e4, 1e5]
 ambient_e_per_s = [1e2, 1e3, 1e4, 3.1623e4, 1e5]
 error = "linear"
 albedo = 1.0
+
+[operating.multipath]
+ratio = [0.1, 0.4]
+delay_m = [0.5, 3]
+weight = 0.2
 )";
 
 constexpr std::string_view shortest = "fundamental_frequency_hz = 20e6\n";
@@ -80,6 +85,7 @@ Camera every_field_set() {
   camera.sensor.readout = Readout::difference;
   camera.lens = Lens{500, 501, -1.5, 0};
   camera.operating = {{1e3}, {0.0, 1e2}, DepthErrorKind::circular, 1.0, true};
+  camera.operating.multipath = SecondReturns{{0.0, 1.0}, {0.25, 1.0 / 3}, 0.125};
   return camera;
 }
 
@@ -100,6 +106,7 @@ TEST(CameraToml, ReadsEveryTableOfTheDocumentation) {
   EXPECT_EQ(camera.lens->cx_px, 319.5);
   EXPECT_THAT(camera.operating.signal_e_per_s, ElementsAre(1e3, 3.1623e3, 1e4, 3.1623e4, 1e5));
   EXPECT_EQ(camera.operating.error, DepthErrorKind::linear);
+  EXPECT_EQ(camera.operating.multipath, (SecondReturns{{0.1, 0.4}, {0.5, 3.0}, 0.2}));
 }
 
 TEST(CameraToml, AllButTheFrequencyHasADefault) {
@@ -220,6 +227,19 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"light.impulse_response = { kind = \"file\", samples = [1, 2] }",
                 "c.toml:2:26: found no light.impulse_response.time_step_s; expected a line such "
                 "as `time_step_s = 1e-9`"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    SecondReturns, CameraTomlRefuses,
+    testing::Values(
+        BadLine{"[operating.multipath]\nrato = [0.1, 0.5]",
+                "c.toml:3:1: unknown key operating.multipath.rato; did you mean "
+                "operating.multipath.ratio?"},
+        BadLine{"[operating.multipath]\nratio = [0.5, 0.1]",
+                "c.toml:3:9: operating.multipath.ratio = [0.5, 0.1]; must be [least, largest] with "
+                "0 <= least <= largest <= 1"},
+        BadLine{"[operating.multipath]\ndelay_m = [1, 8]",
+                "c.toml:3:11: operating.multipath.delay_m = [1, 8]; must be [shortest, longest] "
+                "with 0 < shortest <= longest and below the unambiguous range, 7.495 m"}));
 
 TEST(CameraToml, SaysWhereTextThatIsNoTomlBreaksOff) {
   EXPECT_THAT(refusal("fundamental_frequency_hz = 15e6\n\n[light\n"), HasSubstr("c.toml:3:7: "));

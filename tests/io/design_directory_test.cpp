@@ -103,6 +103,35 @@ TEST(DesignDirectory, ReadingUndoesWriting) {
     expect_same_candidate(record.result.candidates[i], designed().candidates[i]);
 }
 
+TEST(DesignDirectory, KeepsErrorsBehindSecondReturns) {
+  Camera two_buckets = small_camera("paper-10f0", DepthErrorKind::circular);
+  two_buckets.sensor.taps = 2;
+  two_buckets.operating.multipath.emplace();
+  DesignOptions options = small_options();
+  options.baselines = {"sinusoid-k4", "hamiltonian-k5"};
+  options.trials = 1000;
+  const DesignResult result = design(two_buckets, options);
+  EXPECT_EQ(result.winner().code.name(), "hamiltonian-k5") << "others cannot tell two returns";
+  const TemporaryDirectory place;
+  const DesignDirectory directory(place / "d");
+  directory.write(two_buckets, result, options, OutputPolicy::refuse_existing);
+  const DesignRecord record = directory.read();
+  EXPECT_EQ(record.camera, two_buckets);
+  ASSERT_EQ(record.result.candidates.size(), result.candidates.size());
+  for (std::size_t i = 0; i < result.candidates.size(); ++i) {
+    const auto &a = record.result.candidates[i].second_returns,
+               &b = result.candidates[i].second_returns;
+    ASSERT_TRUE(a && b);
+    EXPECT_EQ(a->single_path.linear_m.value, b->single_path.linear_m.value);
+    EXPECT_EQ(a->single_path.circular_m.standard_error, b->single_path.circular_m.standard_error);
+    ASSERT_EQ(a->two_return.has_value(), b->two_return.has_value());
+    EXPECT_EQ(a->two_return.has_value(), record.result.candidates[i].code.exposures() >= 5);
+    if (a->two_return) {
+      EXPECT_EQ(a->two_return->circular_m.value, b->two_return->circular_m.value);
+    }
+  }
+}
+
 TEST(DesignDirectory, FilesInTheWayStayUnlessTheyMayBeReplaced) {
   const TemporaryDirectory place;
   const DesignDirectory directory(place.path());

@@ -86,6 +86,17 @@ TEST(DesignReport, ShowsCamerasOfManyKinds) {
     expect_sound(design_report(camera, design(camera, small_options()), std::nullopt, ""), 5);
 }
 
+TEST(DesignReport, ShowsErrorsBehindSecondReturnsEvenWhereNoCodeCanTellTwo) {
+  Camera camera = small_camera("paper-5f0", DepthErrorKind::circular);
+  camera.operating.multipath = SecondReturns{{0.25, 0.5}, {1.0, 2.0}};
+  const Page page = design_report(camera, design(camera, small_options()), std::nullopt, "");
+  expect_sound(page, 6);
+  const std::string html = render(page);
+  for (const char* words : {"Second returns", "ratio 0.25 to 0.5", "as two returns (mm)", "cannot",
+                            "And behind second returns?", "too few independent means"})
+    EXPECT_THAT(html, HasSubstr(words));
+}
+
 TEST(DesignReport, BearsBoundsWithoutLimit) {
   const Camera camera = small_camera("paper-5f0");
   DesignResult result = design(camera, small_options());

@@ -30,7 +30,12 @@ inline double reference_soft_error(const SampledCamera& camera, const Measuremen
     Eigen::VectorXd y(count);
     for (int i = 0; i < count; ++i) {
       const auto light = [&](const Eigen::MatrixXd& chi, const Eigen::VectorXd& kappa) {
-        const double value = (1 - fraction) * chi(bin, i) + fraction * chi((bin + 1) % samples, i);
+        double value = (1 - fraction) * chi(bin, i) + fraction * chi((bin + 1) % samples, i);
+        const double later = position + batch.trials[t].later_delay_periods * samples;
+        const int its_bin = static_cast<int>(later);
+        const double its_fraction = later - its_bin;
+        value += batch.trials[t].later_ratio * ((1 - its_fraction) * chi(its_bin % samples, i) +
+                                                its_fraction * chi((its_bin + 1) % samples, i));
         return camera.exposure_s()[i] * (batch.trials[t].albedo * point.signal_e_per_s * value +
                                          point.ambient_e_per_s * kappa[i]);
       };

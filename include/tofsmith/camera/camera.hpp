@@ -9,6 +9,7 @@
 
 #include "tofsmith/camera/generator.hpp"
 #include "tofsmith/camera/impulse_response.hpp"
+#include "tofsmith/camera/second_returns.hpp"
 #include "tofsmith/code/code_set.hpp"
 
 namespace tofsmith {
@@ -92,6 +93,8 @@ struct OperatingRange {
   DepthErrorKind error = DepthErrorKind::linear;
   double albedo = 1.0;          ///< scales the signal, (0, 1]
   bool uniform_albedo = false;  ///< instead: a fresh uniform draw in (0, 1) for every trial
+  /// Second returns that designs reckon with; none: light comes back once.
+  std::optional<SecondReturns> multipath = {};
 
   /// All pairs, signal by signal.
   std::vector<OperatingPoint> points() const;

@@ -97,6 +97,9 @@ struct Candidate {
   /// DesignOptions::robust of all.
   std::optional<RobustnessReport> robustness;
 
+  /// Error behind second returns; on cameras with operating.multipath.
+  std::optional<SecondReturnReport> second_returns;
+
   /// Made for this camera, by any method; not a family, a reference or a naive code.
   bool is_designed() const { return !per_measurement.empty(); }
 };
@@ -114,7 +117,8 @@ struct DesignResult {
 };
 
 /// What a candidate is chosen by [m]: its depth error by the camera's choice or, where options ask
-/// for robust codes, that on the worst perturbed camera, to which the decoder is calibrated.
+/// for robust codes, that on the worst perturbed camera, to which the decoder is calibrated; on
+/// cameras with operating.multipath the error behind second returns is weighed in.
 double choice_error_m(const Candidate& candidate, const Camera& camera,
                       const DesignOptions& options);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "tofsmith/code/code_set.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/statistics.hpp"
+#include "tofsmith/simulate/second_return_error.hpp"
 
 namespace tofsmith {
 
@@ -33,6 +35,10 @@ struct OptimizeOptions {
   /// nor more than 40000 per point.
   int validation_trials = 100000;
   std::uint64_t seed = 1;
+  /// On cameras with operating.multipath: two-return decoding of a code may err this many times as
+  /// much as it does of the best code given that can be decoded so, if there is one; what errs more
+  /// counts as so many times worse in the final choice, though no more than by this factor; >= 1.
+  double most_two_return_loss = 1.25;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
@@ -51,6 +57,8 @@ struct OptimizeCandidate {
   std::string name;
   Estimate
       error_m;  ///< fresh trials; geometric mean over the operating points; of the worst variant
+  /// On cameras with operating.multipath; of the camera itself.
+  std::optional<SecondReturnReport> second_returns;
 };
 
 /// What direct optimization found.

@@ -22,6 +22,8 @@ std::vector<std::string> built_in_scene_names();
 /// |           | dark; 3 a wall at 3.2 m; 4 the table they stand on                             |
 /// | ball      | 0 a volleyball of radius 20 cm, centre at 1 m; 1 a wall at 2.5 m               |
 /// | wall      | 0 a wall at 0.5 m that faces the camera                                        |
+/// | corner    | 0 and 1 two walls that meet at a right angle, 3 m ahead, of albedo 0.7         |
+/// | room      | the same, and 2 a floor 1 m below the camera, of albedo 0.4                    |
 /// | hand      | capsules only: an open right hand, palm to the camera, 19 cm from the wrist to |
 /// |           | the tip of the middle finger, about 0.5 m away, with its forearm; no background |
 ///

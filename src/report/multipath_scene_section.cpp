@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/report/multipath_scene_section.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/level_text.hpp"
+#include "tofsmith/report/colours.hpp"
+#include "tofsmith/report/image_figure.hpp"
+#include "tofsmith/report/line_figure.hpp"
+#include "tofsmith/report/space_figure.hpp"
+#include "tofsmith/simulate/scene_error.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+using Row = std::vector<std::string>;
+
+Row row_of(const DelayClass& its, const std::string& delay) {
+  const double gain = std::abs(its.bias_m[0]) / std::abs(its.bias_m[1]);
+  return {delay,
+          std::to_string(its.pixels),
+          fmt::format("{:.3f}", its.ratio),
+          mm_text(its.bias_m[0]),
+          mm_text(its.bias_m[1]),
+          std::isfinite(gain) ? fmt::format("{:.1f}", gain) : "",
+          mm_text(its.error_m[0]),
+          mm_text(its.error_m[1]),
+          fmt::format("{:.1f}", 100 * its.two_share),
+          fmt::format("{:.1f}", 100 * its.unresolved_share)};
+}
+
+/// Smallest and largest finite value.
+ValueRange range_of(const Image<float>& image) {
+  ValueRange range{1e9, -1e9};
+  for (const double value : image.pixels)
+    if (std::isfinite(value)) {
+      range.low = std::min(range.low, value);
+      range.high = std::max(range.high, value);
+    }
+  return range.low < range.high ? range : ValueRange{0.0, 1.0};
+}
+
+Image<float> in_mm(const Image<float>& image) {
+  Image<float> scaled = image;
+  for (float& value : scaled.pixels) value *= 1e3f;
+  return scaled;
+}
+
+Figure depth_figure(const MultipathScene& scene, const Image<float>& truth_m) {
+  std::vector<ValueImage> images{{.title = "true depth", .pixels = truth_m}};
+  for (const MultipathSceneDecoding& d : scene.decodings)
+    images.push_back({.title = d.method, .pixels = d.depth_m});
+  return image_figure({.id = "multipath-scene-depth",
+                       .title = "Depth",
+                       .caption = "All on the scene's own scale.",
+                       .alt_text = "Maps of true and decoded depth"},
+                      images, {.label = "depth", .unit = "m", .range = range_of(truth_m)});
+}
+
+Figure error_figure(const MultipathScene& scene) {
+  std::vector<ValueImage> images;
+  for (std::size_t i = 0; i < scene.decodings.size(); ++i)
+    images.push_back({.title = fmt::format("{}: mean {} mm", scene.decodings[i].method,
+                                           mm_text(scene.all.bias_m[i])),
+                      .pixels = in_mm(scene.decodings[i].error_m)});
+  const double limit_mm = std::max(1.0, 2e3 * scene.all.error_m[0]);
+  return image_figure({.id = "multipath-scene-error",
+                       .title = "Depth error",
+                       .caption = "Decoded minus true depth; its mean where later light falls "
+                                  "beside each name.",
+                       .alt_text = "Maps of depth error"},
+                      images,
+                      {.label = "error",
+                       .unit = "mm",
+                       .map = ColourMap::diverging,
+                       .range = ValueRange{-limit_mm, limit_mm}});
+}
+
+Figure later_light_figure(const MultipathScene& scene) {
+  return image_figure({.id = "multipath-scene-ratio",
+                       .title = "Light that bounced",
+                       .caption = "All later light over the direct light of a pixel.",
+                       .alt_text = "Map of the share of later light"},
+                      {{.title = "later light", .pixels = scene.later_ratio}},
+                      {.label = "ratio", .map = ColourMap::cividis});
+}
+
+Figure returns_figure(const MultipathScene& scene) {
+  Image<float> codes(scene.returns.height, scene.returns.width);
+  for (std::size_t i = 0; i < codes.size(); ++i)
+    codes.pixels[i] = static_cast<float>(scene.returns.pixels[i]);
+  return image_figure({.id = "multipath-scene-returns",
+                       .title = "What two-return decoding found",
+                       .caption = "0 none, 1 single, 2 two returns, 3 unresolved: one return "
+                                  "leaves too much unexplained, a second does not help enough.",
+                       .alt_text = "Map of the number of returns"},
+                      {{.title = "returns", .pixels = std::move(codes)}},
+                      {.label = "returns", .range = ValueRange{0.0, 3.0}});
+}
+
+/// The middle row as it stands before the camera, x against z.
+Figure plan_figure(const MultipathScene& scene, const Image<float>& truth_m) {
+  const int row = scene.view.height / 2;
+  ColourAssignment colours;
+  const auto series = [&](const std::string& name, const Image<float>& depth_m, Mark mark) {
+    Series line{.name = name, .mark = mark};
+    for (int column = 0; column < depth_m.width; ++column) {
+      const Eigen::Vector3d at =
+          scene.view.ray(row, column) * static_cast<double>(depth_m(row, column));
+      line.x.push_back(at.x());
+      line.y.push_back(at.z());
+    }
+    return line;
+  };
+  std::vector<Series> lines{series("truth", truth_m, Mark::line)};
+  lines.back().style = reference_style();
+  for (const MultipathSceneDecoding& d : scene.decodings) {
+    lines.push_back(series(d.method, d.depth_m, Mark::markers));
+    lines.back().style = colours.style(d.method);
+  }
+  return line_figure({.id = "multipath-scene-plan",
+                      .title = "The middle row, seen from above",
+                      .caption = "Straight walls should look straight."},
+                     lines, {.label = "x", .unit = "m"}, {.label = "z", .unit = "m"});
+}
+
+Figure cloud_figure(const MultipathScene& scene, const MultipathSceneDecoding& decoding,
+                    const ValueRange& range) {
+  const auto count = static_cast<Eigen::Index>(decoding.depth_m.size());
+  Eigen::MatrixX3f points(count, 3);
+  Eigen::VectorXf values(count);
+  Eigen::Index i = 0;
+  for (int row = 0; row < decoding.depth_m.height; ++row)
+    for (int column = 0; column < decoding.depth_m.width; ++column, ++i) {
+      values[i] = decoding.depth_m(row, column);
+      points.row(i) =
+          (scene.view.ray(row, column) * static_cast<double>(values[i])).cast<float>().transpose();
+    }
+  return point_cloud_figure({.id = "multipath-scene-cloud-" + decoding.method,
+                             .title = "Point cloud, " + decoding.method,
+                             .caption = "Drag to turn; seen from above, walls should be straight.",
+                             .alt_text = "Point cloud of the decoded scene"},
+                            points, values, {.label = "depth", .unit = "m", .range = range});
+}
+
+}  // namespace
+
+std::vector<Row> multipath_scene_rows(const MultipathScene& scene) {
+  std::vector<Row> rows{{"mean delay (m)", "pixels", "ratio", "bias 1 (mm)", "bias 2 (mm)",
+                         "gain in bias", "error 1 (mm)", "error 2 (mm)", "two (%)",
+                         "unresolved (%)"}};
+  for (const DelayClass& its : scene.classes)
+    rows.push_back(row_of(its, its.to_m > 1e6
+                                   ? fmt::format("{:.3g} and more", its.from_m)
+                                   : fmt::format("{:.3g} to {:.3g}", its.from_m, its.to_m)));
+  if (scene.all.pixels > 0) rows.push_back(row_of(scene.all, "all"));
+  return rows;
+}
+
+Section multipath_scene_section(const MultipathScene& scene, const Camera& camera) {
+  const Image<float> truth_m = wrapped_depth_m(scene.truth, camera);
+  Section section{.title = "A scene that lights itself: " + scene.name};
+  section.blocks.push_back(Paragraph{fmt::format(
+      "Light reaches each surface directly and by way of one other surface. Captured with {}, "
+      "S = {} e/s for albedo 1 at {:.2f} m, A = {} e/s.",
+      scene.code, level_text(scene.light.signal_e_per_s), scene.light.reference_distance_m,
+      level_text(scene.light.ambient_e_per_s))});
+  section.blocks.push_back(depth_figure(scene, truth_m));
+  section.blocks.push_back(error_figure(scene));
+  section.blocks.push_back(plan_figure(scene, truth_m));
+  section.blocks.push_back(later_light_figure(scene));
+  section.blocks.push_back(returns_figure(scene));
+  for (const MultipathSceneDecoding& d : scene.decodings)
+    section.blocks.push_back(cloud_figure(scene, d, range_of(truth_m)));
+  std::vector<Row> rows = multipath_scene_rows(scene);
+  Table table{.id = "multipath-scene",
+              .caption =
+                  "Errors by the mean delay of later light; 1: single-path decoding, 2: of "
+                  "two returns; gain: bias 1 over bias 2."};
+  for (std::size_t i = 0; i < rows.front().size(); ++i)
+    table.columns.push_back({rows.front()[i], i != 0});
+  table.rows.assign(rows.begin() + 1, rows.end());
+  section.blocks.push_back(std::move(table));
+  return section;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/scene/bounced_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scene/rigid.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/random.hpp"
+#include "tofsmith/scene/ray_caster.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Rays leave a surface this far above it, in units of its distance from the camera.
+constexpr double lift = 4e-5;
+/// What stands closer before a point, in units of the point's distance, does not shade it.
+constexpr double shadow_slack = 1e-5;
+constexpr double least_cosine = 1e-6;
+
+/// Light of one direction.
+struct Bounce {
+  double delay_m = 0.0;  ///< behind the direct return
+  double ratio = 0.0;
+
+  auto operator<=>(const Bounce&) const = default;
+};
+
+/// What a pixel's surface needs to gather light.
+struct SeenPoint {
+  Eigen::Vector3d place, normal;  ///< the normal towards the camera
+  double distance_m = 0.0;
+  double per_bounce = 0.0;  ///< d1^2 / cos a1 / rays
+};
+
+class BounceGatherer {
+ public:
+  BounceGatherer(const StagedScene& scene, const BounceOptions& options)
+      : scene_(scene),
+        options_(options),
+        caster_(scene.shapes),
+        light_(scene.camera_to_world.translation()) {}
+
+  /// Later returns of a pixel, by increasing distance.
+  std::vector<LaterReturn> gather(int row, int column) const;
+
+ private:
+  std::optional<SeenPoint> seen_point(int row, int column) const;
+  std::vector<Bounce> bounces(const SeenPoint& seen, RandomStream& random) const;
+  std::optional<Bounce> bounce(const SeenPoint& seen, const Ray& ray, const Hit& hit) const;
+  std::vector<LaterReturn> merged(const std::vector<Bounce>& bounces, float direct_m) const;
+
+  const StagedScene& scene_;
+  const BounceOptions& options_;
+  RayCaster caster_;
+  Eigen::Vector3d light_;
+};
+
+std::optional<SeenPoint> BounceGatherer::seen_point(int row, int column) const {
+  const Ray ray{light_, scene_.camera_to_world.linear() * scene_.view.ray(row, column)};
+  const std::optional<Hit> hit = caster_.nearest(ray);
+  if (!hit || !std::isfinite(static_cast<float>(hit->distance_m))) return std::nullopt;
+  const double along = hit->normal.dot(ray.direction);
+  if (std::abs(along) < least_cosine) return std::nullopt;
+  return SeenPoint{light_ + hit->distance_m * ray.direction,
+                   along > 0.0 ? Eigen::Vector3d(-hit->normal) : hit->normal, hit->distance_m,
+                   hit->distance_m * hit->distance_m / std::abs(along) / options_.rays};
+}
+
+std::optional<Bounce> BounceGatherer::bounce(const SeenPoint& seen, const Ray& ray,
+                                             const Hit& hit) const {
+  const Eigen::Vector3d place = ray.origin + hit.distance_m * ray.direction;
+  const Eigen::Vector3d from_light = place - light_;
+  const double distance_m = from_light.norm();
+  const double along = hit.normal.dot(from_light) / distance_m;
+  // Lit on the side that sends light back.
+  if (!(along * hit.normal.dot(ray.direction) > 0.0) || !std::isfinite(distance_m))
+    return std::nullopt;
+  const std::optional<Hit> first = caster_.nearest({light_, from_light / distance_m});
+  if (first && first->distance_m < distance_m * (1 - shadow_slack)) return std::nullopt;
+  const double way_m = distance_m + (place - seen.place).norm() - seen.distance_m;
+  return Bounce{0.5 * std::max(0.0, way_m),
+                seen.per_bounce * hit.albedo * std::abs(along) / (distance_m * distance_m)};
+}
+
+std::vector<Bounce> BounceGatherer::bounces(const SeenPoint& seen, RandomStream& random) const {
+  const Eigen::Vector3d across = seen.normal.unitOrthogonal();
+  const Eigen::Vector3d other = seen.normal.cross(across);
+  const Eigen::Vector3d start = seen.place + lift * seen.distance_m * seen.normal;
+  const double first_shift = random.uniform(), second_shift = random.uniform();
+  const auto fraction = [](double value) { return value - std::floor(value); };
+  std::vector<Bounce> result;
+  for (int i = 0; i < options_.rays; ++i) {
+    const double area = fraction(static_cast<double>(i) / options_.rays + first_shift);
+    const double angle = 2 * std::numbers::pi * fraction(i * std::numbers::phi + second_shift);
+    const double sine = std::sqrt(area);
+    const Eigen::Vector3d direction = sine * std::cos(angle) * across +
+                                      sine * std::sin(angle) * other +
+                                      std::sqrt(1 - area) * seen.normal;
+    const Ray ray{start, direction};
+    const std::optional<Hit> hit = caster_.nearest(ray);
+    if (!hit) continue;
+    if (const auto light = bounce(seen, ray, *hit); light && light->ratio > 0.0)
+      result.push_back(*light);
+  }
+  return result;
+}
+
+std::vector<LaterReturn> BounceGatherer::merged(const std::vector<Bounce>& bounces,
+                                                float direct_m) const {
+  std::vector<LaterReturn> returns;
+  double bin = -1.0;
+  Bounce sum;  // of the bin; delays weighted by light
+  const auto close_bin = [&] {
+    if (sum.ratio > 0.0)
+      returns.push_back(
+          {direct_m + static_cast<float>(sum.delay_m / sum.ratio), static_cast<float>(sum.ratio)});
+    sum = {};
+  };
+  for (const Bounce& b : bounces) {
+    if (const double its = std::floor(b.delay_m / options_.bin_m); its != bin) {
+      close_bin();
+      bin = its;
+    }
+    sum.ratio += b.ratio;
+    sum.delay_m += b.ratio * b.delay_m;
+  }
+  close_bin();
+  return returns;
+}
+
+std::vector<LaterReturn> BounceGatherer::gather(int row, int column) const {
+  const std::optional<SeenPoint> seen = seen_point(row, column);
+  if (!seen) return {};
+  RandomStream random(options_.seed, static_cast<std::uint64_t>(row) *
+                                             static_cast<std::uint64_t>(scene_.view.width) +
+                                         static_cast<std::uint64_t>(column));
+  std::vector<Bounce> found = bounces(*seen, random);
+  if (std::isfinite(options_.range_m))
+    for (Bounce& b : found)  // a hair less than the range, so that distances rounded stay within
+      b.delay_m = std::min(std::fmod(b.delay_m, options_.range_m), options_.range_m * (1 - 1e-5));
+  std::ranges::sort(found);
+  return merged(found, static_cast<float>(seen->distance_m));
+}
+
+}  // namespace
+
+void BounceOptions::validate() const {
+  require(rays >= 16 && rays <= 65536, "BounceOptions::rays", rays, "must be in [16, 65536]");
+  require(std::isfinite(bin_m) && bin_m > 0.0, "BounceOptions::bin_m", bin_m,
+          "must be finite and > 0");
+  require(range_m > 0.0, "BounceOptions::range_m", range_m, "must be > 0");
+}
+
+LaterReturns bounced_light(const StagedScene& scene, const BounceOptions& options,
+                           const Progress& progress) {
+  options.validate();
+  scene.view.validate();
+  require_rigid(scene.camera_to_world, "camera_to_world");
+  const BounceGatherer gatherer(scene, options);
+  const int height = scene.view.height, width = scene.view.width;
+  LaterReturns result(height, width);
+  std::vector<std::vector<LaterReturn>> of_row(static_cast<std::size_t>(width));
+  for (int row = 0; row < height; ++row) {
+    report(progress, static_cast<double>(row) / height, "gathering bounced light");
+    parallel_for(width, [&](std::int64_t column) {
+      of_row[static_cast<std::size_t>(column)] = gatherer.gather(row, static_cast<int>(column));
+    });
+    for (const std::vector<LaterReturn>& of_pixel : of_row) result.append_pixel(of_pixel);
+  }
+  report(progress, 1.0, "gathering bounced light");
+  return result;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/simulate/second_return_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulate/pixel_capture.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/decode/two_return_decoder.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Trials of one operating point as a frame of one row, and their direct depths.
+struct TrialFrame {
+  RawFrames raw;
+  std::vector<double> true_m;
+};
+
+TrialFrame draw_frame(const PixelCapture& pixel, const Camera& camera, const SecondReturns& later,
+                      const EvaluateOptions& options, std::size_t point) {
+  const OperatingPoint light = camera.operating.points()[point];
+  const std::int64_t trials = options.trials;
+  TrialFrame frame;
+  frame.raw.frames = frame.raw.height = 1;
+  frame.raw.width = static_cast<int>(trials);
+  frame.raw.measurements = pixel.measurements();
+  frame.raw.values.resize(static_cast<std::size_t>(trials * pixel.measurements()));
+  frame.true_m.resize(static_cast<std::size_t>(trials));
+  parallel_for_blocks(trials, 256, [&](IndexRange block) {
+    const auto taps = static_cast<std::size_t>(pixel.tap_values());
+    std::vector<double> work(taps), sum(taps);
+    for (std::int64_t t = block.begin; t < block.end; ++t) {
+      RandomStream random(options.seed, point, static_cast<std::uint32_t>(t));
+      const double depth_m = (static_cast<double>(t) + random.uniform()) /
+                             static_cast<double>(trials) * camera.range_m();
+      const double albedo =
+          camera.operating.uniform_albedo ? random.uniform() : camera.operating.albedo;
+      const double signal_e_per_s = albedo * light.signal_e_per_s;
+      const double ratio = later.ratio_at(random.uniform());
+      const double delay_m = later.delay_at_m(random.uniform());
+      sum.assign(taps, 0.0);
+      pixel.add_light(depth_m, signal_e_per_s, work, sum);
+      pixel.add_light(depth_m + delay_m, ratio * signal_e_per_s, work, sum);
+      pixel.expose(light.ambient_e_per_s, random, sum,
+                   frame.raw.values.data() + t * pixel.measurements());
+      frame.true_m[static_cast<std::size_t>(t)] = depth_m;
+    }
+  });
+  return frame;
+}
+
+/// @param depth_of  decodes a frame
+template <typename DepthOf>
+SecondReturnError error_of(const PixelCapture& pixel, const Camera& camera,
+                           const SecondReturns& later, const EvaluateOptions& options,
+                           const Progress& progress, DepthOf&& depth_of) {
+  const double range_m = camera.range_m();
+  std::vector<Estimate> linear_m, circular_m;
+  const std::size_t points = camera.operating.points().size();
+  for (std::size_t p = 0; p < points; ++p) {
+    report(progress, static_cast<double>(p) / static_cast<double>(points), "second returns");
+    const TrialFrame frame = draw_frame(pixel, camera, later, options, p);
+    const Image<float> depth_m = depth_of(frame.raw);
+    RunningStatistics linear, circular;
+    for (std::size_t t = 0; t < frame.true_m.size(); ++t) {
+      // Nothing decoded is as good as any depth.
+      const double decoded_m = std::isnan(depth_m.pixels[t]) ? 0.0 : depth_m.pixels[t];
+      linear.add(std::abs(decoded_m - frame.true_m[t]));
+      circular.add(std::abs(circular_difference(decoded_m, frame.true_m[t], range_m)));
+    }
+    linear_m.push_back(linear.estimate());
+    circular_m.push_back(circular.estimate());
+  }
+  report(progress, 1.0, "second returns");
+  return {geometric_mean_of(linear_m), geometric_mean_of(circular_m)};
+}
+
+}  // namespace
+
+SecondReturnError second_return_error(const CodeSet& code, const Camera& camera,
+                                      const SecondReturns& later, const EvaluateOptions& options,
+                                      const Progress& progress) {
+  options.validate();
+  later.validate(camera.range_m());
+  const ForwardModel model(code, camera);
+  const PixelCapture pixel(model, camera);
+  const Decoder decoder(make_decoding_table(model, camera));
+  return error_of(pixel, camera, later, options, progress,
+                  [&](const RawFrames& raw) { return decoder.decode(raw).depth_m; });
+}
+
+SecondReturnError two_return_error(const CodeSet& code, const Camera& camera,
+                                   const SecondReturns& later, const EvaluateOptions& options,
+                                   const Progress& progress) {
+  options.validate();
+  later.validate(camera.range_m());
+  const ForwardModel model(code, camera);
+  const PixelCapture pixel(model, camera);
+  MultipathOptions decoding;
+  decoding.shortest_delay_m = std::min(decoding.shortest_delay_m, later.delay_m[0]);
+  decoding.longest_delay_m = std::max(later.delay_m[1], camera.range_m() / 3);
+  const TwoReturnDecoder decoder(make_decoding_table(model, camera), decoding);
+  return error_of(pixel, camera, later, options, progress,
+                  [&](const RawFrames& raw) { return decoder.decode(raw).direct.depth_m; });
+}
+
+SecondReturnReport second_return_report(const CodeSet& code, const Camera& camera,
+                                        const SecondReturns& later, const EvaluateOptions& options,
+                                        const Progress& progress) {
+  SecondReturnReport result;
+  result.single_path =
+      second_return_error(code, camera, later, options, part_of(progress, 0.0, 0.3));
+  try {
+    result.two_return = two_return_error(code, camera, later, options, part_of(progress, 0.3, 1.0));
+  } catch (const std::invalid_argument&) {  // too few means to tell two returns
+    report(progress, 1.0, "second returns");
+  }
+  return result;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/simulate/second_return_error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tofsmith/scene/bounced_light.hpp"
+#include "tofsmith/scene/built_in_scenes.hpp"
+#include "tofsmith/scene/ray_caster.hpp"
+#include "tofsmith/simulate/multipath_bounds.hpp"
+#include "tofsmith/simulate/multipath_scene.hpp"
+
+namespace tofsmith {
+namespace {
+
+Camera bright_camera() {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.sensor.taps = 2;
+  camera.operating.signal_e_per_s = {1e6};
+  camera.operating.ambient_e_per_s = {1e4};
+  camera.operating.error = DepthErrorKind::circular;
+  return camera;
+}
+
+TEST(SecondReturnError, FollowsTheLawOfCloseReturnsAndTwoReturnDecodingIsBetterFarOff) {
+  const Camera camera = bright_camera();
+  const CodeSet code = build_family("hamiltonian-k5", camera);
+  EvaluateOptions options;
+  options.trials = 1000;
+  const auto single_path = [&](const SecondReturns& later) {
+    return second_return_error(code, camera, later, options).circular_m.value;
+  };
+  EXPECT_NEAR(single_path({{0.3, 0.3}, {0.15, 0.15}}), single_path_bias_m(0.3, 0.15), 0.005);
+  const SecondReturns far{{0.3, 0.3}, {1.0, 2.0}};
+  EXPECT_LT(4 * two_return_error(code, camera, far, options).circular_m.value, single_path(far));
+  EXPECT_NEAR(single_path({{0.0, 0.0}, {1.0, 1.0}}),
+              evaluate(code, camera, options).circular.geometric_mean_m.value, 0.001);
+}
+
+TEST(SecondReturnError, IsReportedWithoutTwoReturnsWhereTheCodeCannotTellThem) {
+  const Camera camera = bright_camera();
+  EvaluateOptions options;
+  options.trials = 200;
+  for (const char* name : {"hamiltonian-k5", "sinusoid-k5"}) {
+    const CodeSet code = build_family(name, camera);
+    const SecondReturnReport report = second_return_report(code, camera, {}, options);
+    EXPECT_EQ(report.single_path.circular_m.value,
+              second_return_error(code, camera, {}, options).circular_m.value);
+    EXPECT_EQ(report.two_return.has_value(), code.name() == "hamiltonian-k5");
+    if (report.two_return) {
+      EXPECT_EQ(report.two_return->linear_m.value,
+                two_return_error(code, camera, {}, options).linear_m.value);
+    }
+  }
+}
+
+TEST(SecondReturnError, RefusesWhatCannotBe) {
+  const Camera camera = bright_camera();
+  const CodeSet code = build_family("hamiltonian-k5", camera);
+  for (const SecondReturns& later :
+       {SecondReturns{.ratio = {-0.1, 0.5}}, SecondReturns{.ratio = {0.5, 0.1}},
+        SecondReturns{.ratio = {0.1, 1.5}}, SecondReturns{.delay_m = {0.0, 1.0}},
+        SecondReturns{.delay_m = {2.0, 1.0}}, SecondReturns{.delay_m = {2.0, 11.0}},
+        SecondReturns{.weight = 1.0}})
+    EXPECT_THROW(second_return_error(code, camera, later), std::invalid_argument);
+}
+
+TEST(MultipathScene, OfACornerIsBentInSinglePathDecodingAndCountsEveryPixel) {
+  const Camera camera = bright_camera();
+  const StagedScene corner = built_in_scene("corner", 32, 8);
+  const SceneImage image = RayCaster(corner.shapes).see(corner.view).image;
+  const LaterReturns returns = bounced_light(corner, {.rays = 64, .range_m = camera.range_m()});
+  const MultipathScene scene =
+      multipath_scene("corner", image, corner.view, returns, build_family("hamiltonian-k5", camera),
+                      camera, {.signal_e_per_s = 1e6, .reference_distance_m = 2.0});
+  std::int64_t pixels = 0;
+  for (const DelayClass& its : scene.classes) pixels += its.pixels;
+  EXPECT_EQ(pixels, scene.all.pixels);
+  EXPECT_EQ(scene.all.pixels, 32 * 8) << "every pixel sees the other wall";
+  EXPECT_GT(scene.all.bias_m[0], 0.03) << "light that comes later makes walls look farther";
+  EXPECT_LT(std::abs(scene.all.bias_m[1]), scene.all.bias_m[0]);
+}
+
+}  // namespace
+}  // namespace tofsmith
