@@ -50,6 +50,7 @@ void read_optimize(const py::dict& values, OptimizeOptions& options) {
       .value("polish", options.polish)
       .value("polish_steps", options.polish_steps)
       .value("validation_trials", options.validation_trials)
+      .value("most_two_return_loss", options.most_two_return_loss)
       .finish();
 }
 
@@ -134,6 +135,9 @@ py::dict candidate_dict(const Candidate& candidate, double choice_error_m) {
   dict["message"] = candidate.message;
   dict["robustness"] =
       candidate.robustness ? py::object(robustness_dict(*candidate.robustness)) : py::none();
+  dict["second_returns"] = candidate.second_returns
+                               ? py::object(second_return_dict(*candidate.second_returns))
+                               : py::none();
   return dict;
 }
 

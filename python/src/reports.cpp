@@ -91,4 +91,16 @@ py::dict robustness_dict(const RobustnessReport& report) {
   return dict;
 }
 
+py::dict second_return_dict(const SecondReturnReport& report) {
+  py::dict dict;
+  dict["single_path_linear_m"] = pair_of(report.single_path.linear_m);
+  dict["single_path_circular_m"] = pair_of(report.single_path.circular_m);
+  const auto add = [&](const char* name, Estimate SecondReturnError::*mean) {
+    dict[name] = report.two_return ? py::object(pair_of((*report.two_return).*mean)) : py::none();
+  };
+  add("two_return_linear_m", &SecondReturnError::linear_m);
+  add("two_return_circular_m", &SecondReturnError::circular_m);
+  return dict;
+}
+
 }  // namespace tofsmith::python

@@ -7,6 +7,7 @@
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/simulate/generator_loss.hpp"
 #include "tofsmith/simulate/robustness.hpp"
+#include "tofsmith/simulate/second_return_error.hpp"
 
 namespace tofsmith::python {
 
@@ -15,5 +16,6 @@ namespace tofsmith::python {
 pybind11::dict report_dict(const DepthErrorReport& report);
 pybind11::dict loss_dict(const GeneratorLoss& loss);
 pybind11::dict robustness_dict(const RobustnessReport& report);
+pybind11::dict second_return_dict(const SecondReturnReport& report);
 
 }  // namespace tofsmith::python

@@ -18,7 +18,15 @@ Examples
 from . import _check, _tofsmith
 from ._bounds import CramerRaoBound, DirectTofBound, ReceiverBound
 from ._camera import Camera, built_in_camera_names, camera_keys
-from ._camera_fields import Generator, ImpulseResponse, Lens, Light, Operating, Sensor
+from ._camera_fields import (
+    Generator,
+    ImpulseResponse,
+    Lens,
+    Light,
+    Operating,
+    SecondReturns,
+    Sensor,
+)
 from ._code import (
     CodeSet,
     build_family,
@@ -67,7 +75,13 @@ from ._multipath import (
     multipath_error,
     single_path_bias_m,
 )
-from ._reports import DepthErrorMean, DepthErrorReport, GeneratorLoss, RobustnessReport
+from ._reports import (
+    DepthErrorMean,
+    DepthErrorReport,
+    GeneratorLoss,
+    RobustnessReport,
+    SecondReturnReport,
+)
 from ._scene import (
     Scene,
     built_in_scene,
@@ -126,6 +140,8 @@ __all__ = [
     "RobustnessReport",
     "Scene",
     "SearchRecord",
+    "SecondReturnReport",
+    "SecondReturns",
     "Sensor",
     "SweepResults",
     "Transients",

@@ -14,7 +14,15 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _check, _tofsmith
-from ._camera_fields import Generator, ImpulseResponse, Lens, Light, Operating, Sensor
+from ._camera_fields import (
+    Generator,
+    ImpulseResponse,
+    Lens,
+    Light,
+    Operating,
+    SecondReturns,
+    Sensor,
+)
 from ._check import Path
 
 
@@ -186,7 +194,10 @@ class Camera:
 
     @cached_property
     def operating(self) -> Operating:
-        return Operating(**_tuples(self._fields["operating"]))
+        operating = _tuples(self._fields["operating"])
+        if operating.get("multipath") is not None:
+            operating["multipath"] = SecondReturns(**_tuples(operating["multipath"]))
+        return Operating(**operating)
 
     @property
     def range_m(self) -> float:

@@ -134,6 +134,24 @@ class Lens:
 
 
 @dataclass(frozen=True)
+class SecondReturns:
+    """Second returns as a camera meets them, uniform between limits; see docs/multipath.md.
+
+    Attributes
+    ----------
+    ratio, delay_m : tuple of two floats
+        S2 / S1, in [0, 1], and the delay behind the direct return [m].
+    weight : float
+        Designs minimize E1^(1 - weight) E2^weight, with E1 the error of single returns and E2
+        that behind such second ones; in (0, 1).
+    """
+
+    ratio: tuple[float, float]
+    delay_m: tuple[float, float]
+    weight: float
+
+
+@dataclass(frozen=True)
 class Operating:
     """Where a code is judged: every pair of signal and ambient light.
 
@@ -145,9 +163,12 @@ class Operating:
         linear or circular: which difference between true and decoded depth counts.
     albedo : float or str
         Scales the signal; "uniform": a fresh draw in (0, 1) for every trial.
+    multipath : SecondReturns, optional
+        What designs reckon with; None: light comes back once.
     """
 
     signal_e_per_s: tuple[float, ...]
     ambient_e_per_s: tuple[float, ...]
     error: str
     albedo: Union[float, str]
+    multipath: Optional[SecondReturns] = None

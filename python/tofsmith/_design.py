@@ -16,7 +16,7 @@ from . import _check, _tofsmith
 from ._camera import Camera, CameraLike, camera_of
 from ._check import FloatArray, Path, Progress
 from ._code import CodeSet, load_code
-from ._reports import DepthErrorReport, RobustnessReport, report_of
+from ._reports import DepthErrorReport, RobustnessReport, SecondReturnReport, report_of
 
 
 @dataclass(frozen=True)
@@ -71,6 +71,8 @@ class Candidate:
     message : str
         One line on how it came out.
     robustness : RobustnessReport, optional
+    second_returns : SecondReturnReport, optional
+        On cameras with `operating.multipath`.
     """
 
     code: CodeSet
@@ -85,6 +87,7 @@ class Candidate:
     search: Optional[SearchRecord]
     message: str
     robustness: Optional[RobustnessReport]
+    second_returns: Optional[SecondReturnReport]
 
     @property
     def is_designed(self) -> bool:
@@ -147,6 +150,8 @@ def _candidate(values: dict[str, Any]) -> Candidate:
         values["search"] = SearchRecord(**values["search"])
     if values["robustness"] is not None:
         values["robustness"] = RobustnessReport(**values["robustness"])
+    if values["second_returns"] is not None:
+        values["second_returns"] = SecondReturnReport(**values["second_returns"])
     return Candidate(**values)
 
 

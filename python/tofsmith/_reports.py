@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -117,6 +117,25 @@ class RobustnessReport:
     names: list[str]
     calibrated_m: FloatArray
     uncalibrated_m: FloatArray
+
+
+@dataclass(frozen=True)
+class SecondReturnReport:
+    """Depth error where every pixel has a second return of the camera's `operating.multipath`:
+    geometric means over its operating points [m], each as (value, standard error).
+
+    Attributes
+    ----------
+    single_path_linear_m, single_path_circular_m : tuple of float
+        Decoded as if light came back once.
+    two_return_linear_m, two_return_circular_m : tuple of float, optional
+        Decoded as two returns; None: the code cannot tell them.
+    """
+
+    single_path_linear_m: tuple[float, float]
+    single_path_circular_m: tuple[float, float]
+    two_return_linear_m: Optional[tuple[float, float]]
+    two_return_circular_m: Optional[tuple[float, float]]
 
 
 @dataclass(frozen=True)
