@@ -33,7 +33,7 @@ FittedPlane fit(const Image<float>& depth_m, const PinholeView& view, int first,
       points.row(i++) = view.ray(row, column) * static_cast<double>(depth_m(row, column));
   const Eigen::Vector3d centre = points.colwise().mean();
   points.rowwise() -= centre.transpose();
-  const Eigen::JacobiSVD<Eigen::MatrixX3d> svd(points, Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(points, Eigen::ComputeThinV);
   return {centre, svd.matrixV().col(2),
           svd.singularValues()[2] / std::sqrt(static_cast<double>(points.rows()))};
 }
