@@ -26,9 +26,11 @@ constexpr double least_cosine = 1e-6;
 struct Bounce {
   double delay_m = 0.0;  ///< behind the direct return
   double ratio = 0.0;
-
-  auto operator<=>(const Bounce&) const = default;
 };
+
+bool comes_before(const Bounce& a, const Bounce& b) {
+  return a.delay_m < b.delay_m || (a.delay_m == b.delay_m && a.ratio < b.ratio);
+}
 
 /// What a pixel's surface needs to gather light.
 struct SeenPoint {
@@ -143,7 +145,7 @@ std::vector<LaterReturn> BounceGatherer::gather(int row, int column) const {
   if (std::isfinite(options_.range_m))
     for (Bounce& b : found)  // a hair less than the range, so that distances rounded stay within
       b.delay_m = std::min(std::fmod(b.delay_m, options_.range_m), options_.range_m * (1 - 1e-5));
-  std::ranges::sort(found);
+  std::ranges::sort(found, comes_before);
   return merged(found, static_cast<float>(seen->distance_m));
 }
 
