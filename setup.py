@@ -33,7 +33,7 @@ class CMakeBuild(build_ext):
         build = Path(os.environ.get("TOFSMITH_CMAKE_BUILD", root / "build" / "pip")).resolve()
         options = {
             "CMAKE_BUILD_TYPE": "Release",
-            "TOFSMITH_BUILD_PYTHON": "ON",
+            "TOFSMITH_BUILD_PYTHON": "REQUIRED",
             "TOFSMITH_BUILD_APPS": "OFF",
             "TOFSMITH_BUILD_TESTS": "OFF",
             "BUILD_SHARED_LIBS": "OFF",

@@ -10,12 +10,13 @@
 #include <memory>
 #include <system_error>
 
+#include "command_listing.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "tofsmith/core/build_info.hpp"
 #include "tofsmith/core/dispatch_target.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/version.hpp"
 
 namespace {
 
@@ -51,7 +52,7 @@ std::vector<std::string> known_words(const CLI::App& app, bool options) {
   for (const CLI::App* scope : {&chosen(app), &app})
     for (const CLI::Option* option : scope->get_options())
       for (const std::string& name : option->get_lnames())
-        if (options) words.push_back("--" + name);
+        if (options && !option->get_group().empty()) words.push_back("--" + name);
   if (!options)
     for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
       words.push_back(command->get_name());
@@ -120,7 +121,10 @@ int run(int argc, char** argv) {
   CLI::App app{
       "tofsmith designs, evaluates, simulates and decodes the coding functions of "
       "continuous-wave time-of-flight cameras."};
-  app.set_version_flag("--version", "tofsmith " TOFSMITH_VERSION);
+  app.name("tofsmith");
+  app.set_version_flag("--version", [] { return to_text(build_info()); });
+  bool list_commands = false;
+  app.add_flag("--list-commands", list_commands)->group("");  // manual pages are made from it
   app.require_subcommand(0, 1);
   app.fallthrough();
   app.add_flag("--json", session.json, "print one JSON document on stdout and nothing else there");
@@ -149,7 +153,8 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
     if (interrupted() && !session.follows) throw Interrupted();
-    if (!app.get_subcommands().empty()) return finish_output();
+    if (list_commands) fmt::print("{}\n", command_listing(app).dump(1));
+    if (list_commands || !app.get_subcommands().empty()) return finish_output();
     fmt::print(stderr, "{}", app.help());
     return exit_usage;
   } catch (const CLI::ParseError& error) {

@@ -56,8 +56,16 @@ if(TOFSMITH_BUILD_PYTHON)
     find_package(pybind11)
   endif()
   if(NOT Python_FOUND OR NOT pybind11_FOUND)
-    message(WARNING "The Python package is not built: it needs pybind11-dev, python3-dev and "
-                    "python3-numpy (scripts/packages.sh python)")
+    set(consequence WARNING "The Python package is not built")
+    if(TOFSMITH_BUILD_PYTHON STREQUAL "REQUIRED")  # pip and packages ask for nothing else
+      set(consequence FATAL_ERROR "The Python package cannot be built")
+    endif()
+    set(missing pybind11-dev)
+    if(NOT Python_FOUND)
+      set(missing "python3-dev and python3-numpy for ${Python_EXECUTABLE}")
+    endif()
+    message(${consequence} ": ${missing} is missing. It needs pybind11-dev, python3-dev and "
+                           "python3-numpy: scripts/packages.sh python")
     set(TOFSMITH_BUILD_PYTHON OFF)
   endif()
 endif()

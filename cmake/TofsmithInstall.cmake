@@ -1,22 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# cmake --install: the library with its headers and CMake package, the command line, the licence.
+# cmake --install: the library with its headers, CMake package and pkg-config file, the command line
+# with its manual pages and shell completion, the licence. Components: library, dev, tool, python.
 
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tofsmith)
-
-install(TARGETS tofsmith EXPORT tofsmithTargets)
-install(EXPORT tofsmithTargets NAMESPACE tofsmith:: DESTINATION ${package_dir})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/tofsmith ${PROJECT_BINARY_DIR}/include/tofsmith
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
-
-if(TARGET tofsmith_cli)
-  file(RELATIVE_PATH from_bin_to_lib
-       ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
-  set_target_properties(tofsmith_cli PROPERTIES INSTALL_RPATH "$ORIGIN/${from_bin_to_lib}")
-  install(TARGETS tofsmith_cli)
-endif()
 
 get_target_property(library_type tofsmith TYPE)
 if(library_type STREQUAL "STATIC_LIBRARY")
@@ -24,6 +12,13 @@ if(library_type STREQUAL "STATIC_LIBRARY")
 else()
   set(TOFSMITH_IS_STATIC OFF)
 endif()
+
+install(TARGETS tofsmith EXPORT tofsmithTargets
+        LIBRARY COMPONENT library NAMELINK_COMPONENT dev
+        ARCHIVE COMPONENT dev)
+install(EXPORT tofsmithTargets NAMESPACE tofsmith:: DESTINATION ${package_dir} COMPONENT dev)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/tofsmith ${PROJECT_BINARY_DIR}/include/tofsmith
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev FILES_MATCHING PATTERN "*.hpp")
 configure_package_config_file(
   ${PROJECT_SOURCE_DIR}/cmake/tofsmithConfig.cmake.in ${PROJECT_BINARY_DIR}/tofsmithConfig.cmake
   INSTALL_DESTINATION ${package_dir})
@@ -32,4 +27,16 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/tofsmithConfigVersion.cma
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/tofsmithConfig.cmake
               ${PROJECT_BINARY_DIR}/tofsmithConfigVersion.cmake
-        DESTINATION ${package_dir})
+        DESTINATION ${package_dir} COMPONENT dev)
+include(TofsmithPkgConfig)
+
+# A Debian package has its licence in a file of Debian's form.
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT licence)
+
+if(TARGET tofsmith_cli)
+  file(RELATIVE_PATH from_bin_to_lib
+       ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+  set_target_properties(tofsmith_cli PROPERTIES INSTALL_RPATH "$ORIGIN/${from_bin_to_lib}")
+  install(TARGETS tofsmith_cli COMPONENT tool)
+  include(TofsmithManual)
+endif()

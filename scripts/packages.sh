@@ -5,7 +5,7 @@
 # The Debian packages of the project, in one place. Sourced by the other scripts; run by hand it
 # installs what is missing of the groups named:
 #
-#   scripts/packages.sh build|python|test|benchmark|check ..  install what is missing
+#   scripts/packages.sh build|python|package|test|benchmark|check ..  install what is missing
 #   scripts/packages.sh --list GROUP                  print the names, one a line
 
 # The library and the command line.
@@ -29,6 +29,13 @@ packages_python=(
   pybind11-dev python3-dev python3-numpy
   python3-matplotlib                          # tofsmith.plot
   python3-setuptools python3-wheel python3-pip python3-venv  # pip install
+)
+# Debian packages of all of it, with every optional feature.
+packages_package=(
+  "${packages_python[@]}"
+  libopenmpi-dev             # sweeps of several ranks
+  liblxi-dev libtirpc-dev    # generators by VXI-11
+  dpkg-dev file              # what a package depends on
 )
 packages_test=(
   "${packages_python[@]}"
@@ -58,10 +65,11 @@ packages_of() {
   case "$1" in
     build) printf '%s\n' "${packages_build[@]}" ;;
     python) printf '%s\n' "${packages_python[@]}" ;;
+    package) printf '%s\n' "${packages_package[@]}" ;;
     test) printf '%s\n' "${packages_test[@]}" ;;
     benchmark) printf '%s\n' "${packages_benchmark[@]}" ;;
     check) printf '%s\n' "${packages_check[@]}" ;;
-    *) tofsmith_die "no package group '$1'; there are build, python, test, benchmark and check" ;;
+    *) tofsmith_die "no package group '$1'; there are build, python, package, test, benchmark and check" ;;
   esac
 }
 
@@ -114,9 +122,9 @@ use_debian_tools() {
 
 if [[ "${BASH_SOURCE[0]}" == "$0" ]]; then
   set -euo pipefail
-  (($#)) || tofsmith_die "which group? build, python, test, benchmark or check"
+  (($#)) || tofsmith_die "which group? build, python, package, test, benchmark or check"
   if [[ "$1" == --list ]]; then
-    packages_of "${2:?which group? build, python, test, benchmark or check}"
+    packages_of "${2:?which group? build, python, package, test, benchmark or check}"
   else
     for group in "$@"; do
       install_packages "$group"

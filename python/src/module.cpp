@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include "bindings.hpp"
+#include "tofsmith/core/build_info.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/version.hpp"
@@ -15,6 +16,19 @@ std::string in_words_of_python(std::string message) {
   const std::size_t place = message.find(flag);
   if (place != std::string::npos) message.replace(place, flag.size(), "overwrite=True");
   return message;
+}
+
+py::dict build_info_dict() {
+  const BuildInfo info = build_info();
+  py::dict dict;
+  dict["version"] = info.version;
+  dict["commit"] = info.commit;
+  dict["compiler"] = info.compiler;
+  dict["build_type"] = info.build_type;
+  dict["library"] = info.library;
+  dict["targets"] = info.targets;
+  dict["features"] = info.features;
+  return dict;
 }
 
 /// Holds the number of threads from call to call.
@@ -38,6 +52,7 @@ PYBIND11_MODULE(_tofsmith, module) {
   options.disable_function_signatures();
   module.doc() = "Compiled part of the package tofsmith; use that.";
   module.attr("version") = TOFSMITH_VERSION;
+  module.def("build_info", build_info_dict);
   py::register_exception<Interrupted>(module, "Interrupted", PyExc_RuntimeError);
   py::register_exception_translator([](std::exception_ptr error) {
     try {

@@ -100,6 +100,20 @@ from ._waveform import Waveform
 __version__: str = _tofsmith.version
 
 
+def build_info() -> dict[str, str | list[str]]:
+    """What was built, how and from what: the words of ``tofsmith --version``.
+
+    Returns
+    -------
+    dict
+        ``version``; ``commit``, 12 digits with ``+dirty`` if files differed, or ``unknown``;
+        ``compiler``; ``build_type``; ``library``, ``shared`` or ``static``; ``targets``,
+        instruction sets with kernels of their own, best first; ``features``, what can be left out
+        and was not.
+    """
+    return _tofsmith.build_info()
+
+
 def set_threads(threads: int) -> None:
     """At most so many threads work from now on; 0: as many as there are cores. Results do not
     depend on it."""
@@ -149,6 +163,7 @@ __all__ = [
     "WaveformFormat",
     "best_rotation",
     "build_family",
+    "build_info",
     "built_in_camera_names",
     "built_in_scene",
     "built_in_scene_names",

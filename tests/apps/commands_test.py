@@ -221,7 +221,11 @@ class Commands(CommandLineTest):
         self.do("evaluate", "sinusoid-k4", *FAST, env={})
 
     def test_help_and_version(self):
-        self.assertRegex(self.do("--version"), r"^tofsmith \d+\.\d+\.\d+\n$")
+        self.assertRegex(self.do("--version"),
+                         r"^tofsmith \d+\.\d+\.\d+ \(commit ([0-9a-f]{12}(\+dirty)?|unknown)\)\n"
+                         r"built by \w+ [\d.]+, \w+, (static|shared) library\n"
+                         r"kernels for (\w+ ?)+; here runs \w+\n"
+                         r"with .+\n$")
         for command in ("demo", "codes", "design", "evaluate", "scene", "simulate", "decode",
                         "report"):
             self.assertIn(command, self.do("--help"))

@@ -79,7 +79,7 @@ std::string nearest_word(std::string_view word, const Range& known) {
 #define TOFSMITH_ASSERT_OP(a, op, b)                                              \
   do {                                                                            \
     if (!((a)op(b)))                                                              \
-      ::tofsmith::detail::assertion_failed(#a " " #op " " #b, __FILE__, __LINE__, \
+      ::tofsmith::detail::assertion_failed(#a " " #op " " #b, __FILE_NAME__, __LINE__, \
                                            ::tofsmith::detail::describe(a),       \
                                            ::tofsmith::detail::describe(b));      \
   } while (false)

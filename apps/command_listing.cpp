@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "command_listing.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/scene/built_in_scenes.hpp"
+#include "tofsmith/version.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Words = std::vector<std::string>;
+
+/// {"a", "b"} of "TEXT:{a,b}"; nothing where any value will do.
+Words choices_of(const std::string& type) {
+  Words choices;
+  const std::size_t begin = type.find('{'), end = type.find('}');
+  if (begin == std::string::npos || end == std::string::npos) return choices;
+  for (std::size_t i = begin + 1; i < end;) {
+    const std::size_t comma = std::min(type.find(',', i), end);
+    choices.push_back(type.substr(i, comma - i));
+    i = comma + 1;
+  }
+  return choices;
+}
+
+Words names_of(const CLI::Option& option) {
+  if (option.get_positional()) return {option.get_single_name()};
+  Words names;
+  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+Json argument(const CLI::Option& option) {
+  Json item = {{"names", names_of(option)}, {"help", option.get_description()}};
+  if (option.get_type_size() != 0) {
+    const std::string type = option.get_type_name();
+    item["value"] = type;
+    if (!option.get_default_str().empty()) item["default"] = option.get_default_str();
+    if (const Words choices = choices_of(type); !choices.empty()) item["choices"] = choices;
+    item["required"] = option.get_required();
+    item["many"] = option.get_items_expected_max() > 1;
+  }
+  return item;
+}
+
+/// Names that can be typed as they are: "hamiltonian-k4" for the family "hamiltonian-kK".
+Words code_names() {
+  Words names;
+  for (const FamilyDescription& family : list_families()) {
+    const std::size_t letter = family.name.find_first_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ");
+    if (letter == std::string::npos) {
+      names.push_back(family.name);
+      continue;
+    }
+    for (int number = 2; number <= 8; ++number) {
+      std::string name = family.name;
+      name.replace(letter, 1, std::to_string(number));
+      if (is_family(name)) names.push_back(name);
+    }
+  }
+  return names;
+}
+
+std::vector<const CLI::App*> subcommands_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App*) { return true; });
+}
+
+void list_command(const CLI::App& app, const Words& words, Json& commands) {
+  Json command = {{"words", words}, {"summary", app.get_description()}};
+  // A subcommand without examples of its own has those of the program, which say nothing on it.
+  if (app.get_parent() == nullptr || app.get_footer() != app.get_parent()->get_footer())
+    command["example"] = app.get_footer();
+  Json subcommands = Json::array(), positionals = Json::array(), options = Json::array();
+  for (const CLI::App* sub : subcommands_of(app)) subcommands.push_back(sub->get_name());
+  for (const CLI::Option* option : app.get_options())
+    if (!option->get_group().empty())  // it has no group if it is hidden
+      (option->get_positional() ? positionals : options).push_back(argument(*option));
+  command["subcommands"] = subcommands;
+  command["positionals"] = positionals;
+  command["options"] = options;
+  commands.push_back(std::move(command));
+  for (const CLI::App* sub : subcommands_of(app)) {
+    Words longer = words;
+    longer.push_back(sub->get_name());
+    list_command(*sub, longer, commands);
+  }
+}
+
+}  // namespace
+
+Json command_listing(const CLI::App& app) {
+  Json commands = Json::array();
+  list_command(app, {}, commands);
+  return {{"version", TOFSMITH_VERSION},
+          {"names",
+           {{"camera", built_in_camera_names()},
+            {"code", code_names()},
+            {"scene", built_in_scene_names()}}},
+          {"commands", commands}};
+}
+
+}  // namespace tofsmith::apps

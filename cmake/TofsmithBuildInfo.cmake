@@ -1,0 +1,25 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+# What build_info() and `tofsmith --version` say. The commit is looked up at every build, in a source
+# file of its own: a new commit compiles that file and links, no more. Included from
+# src/CMakeLists.txt.
+
+set(TOFSMITH_COMMIT "" CACHE STRING "The commit to name; empty: ask git")
+set(commit_source "${CMAKE_CURRENT_BINARY_DIR}/build_commit.cpp")
+set(write_commit ${CMAKE_COMMAND} -D "source=${PROJECT_SOURCE_DIR}" -D "output=${commit_source}"
+                 -D "commit=${TOFSMITH_COMMIT}" -P "${PROJECT_SOURCE_DIR}/cmake/build_commit.cmake")
+execute_process(COMMAND ${write_commit} COMMAND_ERROR_IS_FATAL ANY)  # lint reads it unbuilt
+add_custom_target(tofsmith_build_commit BYPRODUCTS "${commit_source}"
+                  COMMAND ${write_commit} COMMENT "Looking up the commit" VERBATIM)
+add_dependencies(tofsmith tofsmith_build_commit)
+target_sources(tofsmith PRIVATE "${commit_source}")
+set_source_files_properties("${commit_source}" PROPERTIES
+  SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
+
+get_target_property(library_type tofsmith TYPE)
+set(library_is_shared OFF)
+if(library_type STREQUAL "SHARED_LIBRARY")
+  set(library_is_shared ON)
+endif()
+set_source_files_properties(core/build_info.cpp PROPERTIES SKIP_PRECOMPILE_HEADERS ON
+  COMPILE_DEFINITIONS "TOFSMITH_BUILD_COMPILER=\"${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}\";TOFSMITH_BUILD_TYPE=\"$<CONFIG>\";TOFSMITH_BUILD_SHARED=$<BOOL:${library_is_shared}>;TOFSMITH_BUILD_MPI=$<BOOL:${TOFSMITH_HAS_MPI}>;TOFSMITH_BUILD_LXI=$<BOOL:${TOFSMITH_HAS_LXI}>;TOFSMITH_BUILD_FFTW=$<BOOL:${TOFSMITH_USE_FFTW}>")

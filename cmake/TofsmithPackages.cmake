@@ -1,0 +1,79 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+# cpack: Debian packages of the library, its headers, the command line and the Python package.
+# scripts/package.sh configures a build for it and runs it.
+
+set(TOFSMITH_MAINTAINER "The tofsmith authors <authors@tofsmith.invalid>" CACHE STRING
+    "Maintainer of the Debian packages")
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_VENDOR "The tofsmith authors")
+set(CPACK_PACKAGE_CONTACT "${TOFSMITH_MAINTAINER}")
+set(CPACK_PACKAGING_INSTALL_PREFIX "${CMAKE_INSTALL_PREFIX}")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE
+    GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_COMPONENTS_ALL library dev)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${PROJECT_BINARY_DIR}/src")
+
+get_target_property(abi_version tofsmith SOVERSION)
+set(library_package "libtofsmith${abi_version}")
+set(same_version "(= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
+set(about "tofsmith finds, judges and uses the coding functions of continuous-wave
+time-of-flight cameras: it designs modulation and demodulation waveforms for a
+camera, simulates scenes with them and decodes raw measurements into depth.")
+
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME "${library_package}")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
+set(CPACK_COMPONENT_LIBRARY_DESCRIPTION
+    "coding functions of time-of-flight cameras (library)\n${about}\n\nThis package is the shared library.")
+
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME libtofsmith-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "${library_package} ${same_version}, libeigen3-dev (>= 3.4)")
+set(CPACK_COMPONENT_DEV_DESCRIPTION
+    "coding functions of time-of-flight cameras (C++ headers)\n${about}\n\nThis package has the headers, the CMake package and the pkg-config file.")
+
+if(TARGET tofsmith_cli)
+  list(APPEND CPACK_COMPONENTS_ALL tool)
+  set(CPACK_DEBIAN_TOOL_PACKAGE_NAME tofsmith)
+  set(CPACK_DEBIAN_TOOL_PACKAGE_SECTION science)
+  set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_TOOL_PACKAGE_DEPENDS "${library_package} ${same_version}")
+  set(CPACK_DEBIAN_TOOL_PACKAGE_SUGGESTS "libtofsmith-dev, python3-tofsmith")
+  set(CPACK_COMPONENT_TOOL_DESCRIPTION
+      "coding functions of time-of-flight cameras (command line)\n${about}\n\nThis package is the command line, with manual pages and shell completion.")
+endif()
+
+if(TARGET _tofsmith)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-tofsmith)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+      "${library_package} ${same_version}, python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-matplotlib)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
+      "${PROJECT_SOURCE_DIR}/cmake/debian/postinst;${PROJECT_SOURCE_DIR}/cmake/debian/prerm")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+      "coding functions of time-of-flight cameras (Python)\n${about}\n\nThis package is the Python module tofsmith.")
+endif()
+
+# Debian's own files, compression and dates are put in between installing and packing.
+foreach(component IN LISTS CPACK_COMPONENTS_ALL)
+  string(TOUPPER "${component}" upper)
+  list(APPEND debian_names "${component}" "${CPACK_DEBIAN_${upper}_PACKAGE_NAME}")
+endforeach()
+configure_file(${PROJECT_SOURCE_DIR}/cmake/debian/stage.cmake.in
+               ${PROJECT_BINARY_DIR}/stage_debian.cmake @ONLY)
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_BINARY_DIR}/stage_debian.cmake)
+include(CPack)

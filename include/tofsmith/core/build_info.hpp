@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tofsmith {
+
+/// What was built, how and from what: for reports of faults. Results do not depend on it, and no
+/// file of results names more of it than the version.
+struct BuildInfo {
+  std::string version;                ///< "0.1.0"
+  std::string commit;                 ///< 12 digits, with "+dirty" if files differ; or "unknown"
+  std::string compiler;               ///< "GNU 12.2.0"
+  std::string build_type;             ///< "Release"
+  std::string library;                ///< "shared" or "static"
+  std::vector<std::string> targets;   ///< instruction sets with kernels of their own, best first
+  std::vector<std::string> features;  ///< what can be left out and was not: "MPI", "VXI-11", "FFTW"
+};
+
+BuildInfo build_info();
+
+/// Four lines, of which the first is "tofsmith 0.1.0 (commit 0123456789ab)".
+std::string to_text(const BuildInfo& info);
+
+}  // namespace tofsmith
