@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 # cmake --install: the library with its headers, CMake package and pkg-config file, the command line
-# with its manual pages and shell completion, the licence. Components: library, dev, tool, python.
+# with its manual pages and shell completion, examples, the licence. Components: library, dev, tool, python.
 
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tofsmith)
@@ -32,6 +32,14 @@ include(TofsmithPkgConfig)
 
 # A Debian package has its licence in a file of Debian's form.
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT licence)
+
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/cpp DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples
+        COMPONENT dev FILES_MATCHING PATTERN "[0-9]*.cpp")
+if(TARGET _tofsmith)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/python
+          DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT python
+          FILES_MATCHING PATTERN "[0-9]*.py")
+endif()
 
 if(TARGET tofsmith_cli)
   file(RELATIVE_PATH from_bin_to_lib

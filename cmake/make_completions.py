@@ -29,6 +29,10 @@ def words_for(command, argument, names):
     return names[kind] if kind else []
 
 
+def one_line(text):
+    return " ".join(text.split())
+
+
 def valued(options):
     return [option for option in options if "value" in option]
 
@@ -120,7 +124,7 @@ def fish(listing):
     """One line for each command, option and positional, with its help."""
 
     def quoted(text):
-        return "'" + text.replace("\\", "\\\\").replace("'", "\\'") + "'"
+        return "'" + one_line(text).replace("\\", "\\\\").replace("'", "\\'") + "'"
 
     lines = [HEAD.format(shell="fish", version=listing["version"])]
     summaries = {tuple(c["words"]): c["summary"] for c in listing["commands"]}
@@ -158,12 +162,14 @@ def zsh(listing):
     """One function for each command, by _arguments."""
 
     def quoted(text):
-        return re.sub(r"([][:\\`$\"])", r"\\\1", text).replace("'", "'\\''")
+        return re.sub(r"([][:\\])", r"\\\1", one_line(text)).replace("'", "'\\''")
 
     def action(command, argument):
         found = " ".join(words_for(command, argument, listing["names"]))
         if "choices" in argument:
             return f":({found})"
+        if argument["value"].startswith(("INT", "UINT", "FLOAT")):
+            return ": "
         return f': _alternative "names\\:name\\:({found})" "files\\:file\\:_files"' if found else ":_files"
 
     def specification(command, option):
