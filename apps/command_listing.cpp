@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "command_listing.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
@@ -63,9 +66,10 @@ Words code_names() {
       continue;
     }
     for (int number = 2; number <= 8; ++number) {
-      std::string name = family.name;
-      name.replace(letter, 1, std::to_string(number));
-      if (is_family(name)) names.push_back(name);
+      const std::string_view pattern = family.name;
+      std::string name =
+          fmt::format("{}{}{}", pattern.substr(0, letter), number, pattern.substr(letter + 1));
+      if (is_family(name)) names.push_back(std::move(name));
     }
   }
   return names;
