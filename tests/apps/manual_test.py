@@ -13,8 +13,8 @@ import unittest
 
 from command_line import CommandLineTest
 
-MANUAL = os.path.abspath(sys.argv.pop(2))
-COMPLETION = os.path.abspath(sys.argv.pop(2))
+MANUAL = os.path.abspath(sys.argv.pop(1))
+COMPLETION = os.path.abspath(sys.argv.pop(1))
 
 # What readline would have done before it calls the function, and what it does after.
 COMPLETE_LINES = r"""
