@@ -8,6 +8,7 @@ set(TOFSMITH_MAINTAINER "The tofsmith authors <authors@tofsmith.invalid>" CACHE 
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "The tofsmith authors")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "coding functions of time-of-flight cameras")
 set(CPACK_PACKAGE_CONTACT "${TOFSMITH_MAINTAINER}")
 set(CPACK_PACKAGING_INSTALL_PREFIX "${CMAKE_INSTALL_PREFIX}")
 set(CPACK_STRIP_FILES ON)
@@ -33,14 +34,15 @@ camera, simulates scenes with them and decodes raw measurements into depth.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME "${library_package}")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA "${PROJECT_SOURCE_DIR}/cmake/debian/triggers")
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION
-    "coding functions of time-of-flight cameras (library)\n${about}\n\nThis package is the shared library.")
+    "${about}\n\nThis package is the shared library.")
 
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libtofsmith-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "${library_package} ${same_version}, libeigen3-dev (>= 3.4)")
 set(CPACK_COMPONENT_DEV_DESCRIPTION
-    "coding functions of time-of-flight cameras (C++ headers)\n${about}\n\nThis package has the headers, the CMake package and the pkg-config file.")
+    "${about}\n\nThis package has the headers, the CMake package and the pkg-config file.")
 
 if(TARGET tofsmith_cli)
   list(APPEND CPACK_COMPONENTS_ALL tool)
@@ -50,7 +52,7 @@ if(TARGET tofsmith_cli)
   set(CPACK_DEBIAN_TOOL_PACKAGE_DEPENDS "${library_package} ${same_version}")
   set(CPACK_DEBIAN_TOOL_PACKAGE_SUGGESTS "libtofsmith-dev, python3-tofsmith")
   set(CPACK_COMPONENT_TOOL_DESCRIPTION
-      "coding functions of time-of-flight cameras (command line)\n${about}\n\nThis package is the command line, with manual pages and shell completion.")
+      "${about}\n\nThis package is the command line, with manual pages and shell completion.")
 endif()
 
 if(TARGET _tofsmith)
@@ -65,7 +67,7 @@ if(TARGET _tofsmith)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
       "${PROJECT_SOURCE_DIR}/cmake/debian/postinst;${PROJECT_SOURCE_DIR}/cmake/debian/prerm")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION
-      "coding functions of time-of-flight cameras (Python)\n${about}\n\nThis package is the Python module tofsmith.")
+      "${about}\n\nThis package is the Python module tofsmith.")
 endif()
 
 # Debian's own files, compression and dates are put in between installing and packing.
