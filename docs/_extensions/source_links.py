@@ -30,9 +30,9 @@ def lead_links_to_lines(app, document):
         if not source_symbols.is_source(target):
             continue
         page = Path(app.env.doc2path(app.env.docname))
-        link = source_symbols.SourceLink(
-            page, target, source_symbols.symbol_in(f"`{node.astext()}`")
-            if node.children and isinstance(node[0], nodes.literal) else None)
+        code = any(node.findall(nodes.literal))
+        symbol = source_symbols.symbol_in(f"`{node.astext()}`") if code else None
+        link = source_symbols.SourceLink(page, target, symbol)
         problem = source_symbols.problem_with(link)
         if problem:
             logger.warning(problem, location=node)
@@ -47,7 +47,7 @@ def lead_links_to_lines(app, document):
 
 
 def pages_of_sources(app):
-    formatter = HtmlFormatter(linenos="inline", lineanchors="line", wrapcode=True)
+    formatter = HtmlFormatter(linenos="inline", lineanchors="line")
     for file in sorted(app.env.tofsmith_sources):
         name = file.relative_to(source_symbols.ROOT)
         try:

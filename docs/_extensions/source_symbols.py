@@ -44,7 +44,7 @@ def line_of(text: str, symbol: str) -> Optional[int]:
 
 def is_source(target: str) -> bool:
     """Whether a link's target is a file of the repository outside the pages."""
-    return target.startswith("../")
+    return target.startswith("../") and ".md" not in target
 
 
 def links_of(page: Path) -> Iterator[SourceLink]:
