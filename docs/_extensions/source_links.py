@@ -47,7 +47,7 @@ def lead_links_to_lines(app, document):
 
 
 def pages_of_sources(app):
-    formatter = HtmlFormatter(linenos="inline", lineanchors="line")
+    formatter = HtmlFormatter(linenos="inline", linespans="line")
     for file in sorted(app.env.tofsmith_sources):
         name = file.relative_to(source_symbols.ROOT)
         try:
