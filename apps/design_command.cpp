@@ -74,6 +74,7 @@ DesignOptions options_for(const DesignArguments& arguments, const Camera& camera
         "expected one of them");
   options.exposures = arguments.exposures;
   scale_effort(options, arguments.effort);
+  arguments.later.apply_to(options.optimize, camera);
   options.seed = arguments.seed;
   options.factorize.seed = arguments.seed;
   options.trials = arguments.trials;

@@ -37,6 +37,14 @@ void read_returns(const std::string& text, SecondReturns& returns) {
   }
 }
 
+void require_second_returns(const Camera& camera, const char* option) {
+  if (!camera.operating.multipath)
+    throw UsageError(
+        fmt::format("{}: found no second returns; expected --second-returns or a camera with "
+                    "[operating.multipath]",
+                    option));
+}
+
 }  // namespace
 
 void SecondReturnArguments::add_to(CLI::App& command) {
@@ -47,6 +55,12 @@ void SecondReturnArguments::add_to(CLI::App& command) {
       .add_option("--second-return-weight", weight_,
                   "w of E1^(1-w) E2^w, the errors without and with second returns, in (0, 1)")
       ->check(number_that("in (0, 1)", [](double w) { return w > 0.0 && w < 1.0; }));
+  command
+      .add_option("--two-return-weight", two_return_weight_,
+                  fmt::format("weight of the error decoded as two returns in the search, so that "
+                              "codes can be decoded so; 0: none (default: {})",
+                              OptimizeOptions{}.two_return_weight))
+      ->check(number_from_0_on());
 }
 
 void SecondReturnArguments::apply_to(Camera& camera) const {
@@ -61,11 +75,14 @@ void SecondReturnArguments::apply_to(Camera& camera) const {
     }
   }
   if (!weight_) return;
-  if (!multipath)
-    throw UsageError(
-        "--second-return-weight: found no second returns; expected --second-returns or a camera "
-        "with [operating.multipath]");
+  require_second_returns(camera, "--second-return-weight");
   multipath->weight = *weight_;
+}
+
+void SecondReturnArguments::apply_to(OptimizeOptions& options, const Camera& camera) const {
+  if (!two_return_weight_) return;
+  require_second_returns(camera, "--two-return-weight");
+  options.two_return_weight = *two_return_weight_;
 }
 
 }  // namespace tofsmith::apps

@@ -5,7 +5,7 @@
 # The Debian packages of the project, in one place. Sourced by the other scripts; run by hand it
 # installs what is missing of the groups named:
 #
-#   scripts/packages.sh build|python|package|test|benchmark|check ..  install what is missing
+#   scripts/packages.sh build|python|package|test|docs|benchmark|check ..  install what is missing
 #   scripts/packages.sh --list GROUP                  print the names, one a line
 
 # The library and the command line.
@@ -45,6 +45,13 @@ packages_test=(
   python3-cvxopt                             # an independent solver of the sub-problem
   chromium chromium-driver python3-selenium  # the report, in a browser
 )
+# The documentation.
+packages_docs=(
+  "${packages_python[@]}"
+  python3-sphinx python3-myst-parser python3-numpydoc python3-sphinx-rtd-theme
+  libjs-katex  # formulas
+  doxygen      # the C++ reference
+)
 packages_benchmark=(
   "${packages_build[@]}"
   libnanoflann-dev  # a peer of the decoder
@@ -67,9 +74,10 @@ packages_of() {
     python) printf '%s\n' "${packages_python[@]}" ;;
     package) printf '%s\n' "${packages_package[@]}" ;;
     test) printf '%s\n' "${packages_test[@]}" ;;
+    docs) printf '%s\n' "${packages_docs[@]}" ;;
     benchmark) printf '%s\n' "${packages_benchmark[@]}" ;;
     check) printf '%s\n' "${packages_check[@]}" ;;
-    *) tofsmith_die "no package group '$1'; there are build, python, package, test, benchmark and check" ;;
+    *) tofsmith_die "no package group '$1'; there are build, python, package, test, docs, benchmark and check" ;;
   esac
 }
 
@@ -122,9 +130,9 @@ use_debian_tools() {
 
 if [[ "${BASH_SOURCE[0]}" == "$0" ]]; then
   set -euo pipefail
-  (($#)) || tofsmith_die "which group? build, python, package, test, benchmark or check"
+  (($#)) || tofsmith_die "which group? build, python, package, test, docs, benchmark or check"
   if [[ "$1" == --list ]]; then
-    packages_of "${2:?which group? build, python, package, test, benchmark or check}"
+    packages_of "${2:?which group? build, python, package, test, docs, benchmark or check}"
   else
     for group in "$@"; do
       install_packages "$group"

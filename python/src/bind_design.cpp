@@ -50,6 +50,7 @@ void read_optimize(const py::dict& values, OptimizeOptions& options) {
       .value("polish", options.polish)
       .value("polish_steps", options.polish_steps)
       .value("validation_trials", options.validation_trials)
+      .value("two_return_weight", options.two_return_weight)
       .value("most_two_return_loss", options.most_two_return_loss)
       .finish();
 }

@@ -82,7 +82,7 @@ class Camera:
     """A continuous-wave time-of-flight camera. Immutable; pickles.
 
     Keys are those of a camera file (TOML): `fundamental_frequency_hz`, `exposure_s`, `samples`,
-    `light`, `sensor`, `lens`, `operating`; see docs/formats.md. Those of light, sensor and
+    `light`, `sensor`, `lens`, `operating`; see docs/file_formats.md. Those of light, sensor and
     operating are dicts, of which keys left out keep what they are.
 
     Parameters

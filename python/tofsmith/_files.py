@@ -149,9 +149,9 @@ def read_impulse_response(
 
     Examples
     --------
-    samples, step = read_impulse_response("response.csv")
-    camera.replace(light={"impulse_response":
-                          {"kind": "file", "samples": samples, "time_step_s": step}})
+    >>> samples, step = read_impulse_response("response.csv")  # doctest: +SKIP
+    >>> response = {"kind": "file", "samples": samples, "time_step_s": step}  # doctest: +SKIP
+    >>> camera = camera.replace(light={"impulse_response": response})  # doctest: +SKIP
     """
     step = None if time_step_s is None else _check.number(time_step_s, "time_step_s")
     return _tofsmith.read_impulse_response(_check.path(path), step)

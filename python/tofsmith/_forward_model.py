@@ -32,7 +32,7 @@ def coding_curve_rank(table: npt.ArrayLike, tolerance: float = 1e-6) -> int:
 
 
 def harmonics_used(table: npt.ArrayLike, share: float = 0.99) -> int:
-    """Lowest harmonic h such that 1 .. h hold `share` of the energy of the table (N, K)."""
+    """Lowest harmonic h such that 1 to h hold `share` of the energy of the table (N, K)."""
     array = _check.finite_array(table, "table", "(N, K)")
     return _tofsmith.harmonics_used(array, _check.number(share, "share"))
 

@@ -42,7 +42,7 @@ class DepthErrorReport:
     signal_e_per_s, ambient_e_per_s : ndarray
         The operating points [e/s].
     linear_mde_m, linear_se_m : ndarray
-        Mean |decoded - true| [m] and its standard error.
+        Mean of the absolute difference of decoded and true depth [m], and its standard error.
     circular_mde_m, circular_se_m : ndarray
         Of the shorter way round the range [m].
     point_trials : ndarray of int64

@@ -44,15 +44,18 @@ std::vector<TrialBatch> draw_batches(const DesignProblem& problem, int trials, b
   std::vector<TrialBatch> batches;
   for (std::size_t p = 0; p < most->levels.size(); ++p) {
     RandomStream random(seed, work_item, static_cast<std::uint32_t>(2 * p + ends_matter));
-    batches.push_back(draw_trials(trials, problem.measurements(), problem.operating, ends_matter,
-                                  random, nullptr, problem.later_of(most->levels[p])));
+    const LightLevel& level = most->levels[p];
+    batches.push_back(draw_trials(DesignProblem::trials_of(level, trials), problem.measurements(),
+                                  problem.operating, ends_matter, random, nullptr,
+                                  problem.later_of(level)));
   }
   return batches;
 }
 
-/// Mean error over the trials [bin].
+/// Mean error over the trials [bin]; circular where two returns are decoded.
 double mean_error_bin(const TrialBatch& batch, const std::vector<double>& decoded_bin, int samples,
                       bool linear) {
+  linear = linear && !batch.two_returns;
   double sum = 0.0;
   for (std::size_t t = 0; t < decoded_bin.size(); ++t) {
     const double error = std::abs(batch.trials[t].depth_periods * samples - decoded_bin[t]);
@@ -106,6 +109,7 @@ int CodeJudge::best_rotation(const SampledCode& code) const {
                         problem_->operating.error);
     std::vector<double> log_error(worst.size(), 0.0);
     for (std::size_t p = 0; p < variant.levels.size(); ++p) {
+      if (rotating_[p].two_returns) continue;  // their error is circular
       loss.decode(variant.levels[p].point, rotating_[p], decoded_bin);
       ErrorByRotation errors(samples);
       for (std::size_t t = 0; t < decoded_bin.size(); ++t)  // the end of the last chord is bin 0

@@ -103,23 +103,34 @@ void DepthErrorLoss::pull_back_reading(const OperatingPoint& point, const double
   }
 }
 
+SoftTwoReturnDecoder& DepthErrorLoss::two_return_decoder(const TwoReturnGrid& grid) {
+  if (!two_returns_) two_returns_.emplace(curve_, table_.samples() / grid.bins, grid.delays);
+  return *two_returns_;
+}
+
 double DepthErrorLoss::sum_errors(const OperatingPoint& point, const TrialBatch& batch,
                                   double sharpness, double weight, bool with_gradient) {
   const double per_trial = 1.0 / static_cast<double>(batch.trials.size());
+  SoftTwoReturnDecoder* const pairs =
+      batch.two_returns ? &two_return_decoder(*batch.two_returns) : nullptr;
   double sum = 0.0;
   for (std::size_t t = 0; t < batch.trials.size(); ++t) {
     read(point, batch, t);
+    const float* const electrons = reading_.electrons.data();
     const SoftQuestion question{batch.trials[t].depth_periods * table_.samples(), sharpness,
                                 circular_};
     const double trial_weight = batch.trials[t].weight * per_trial;
     if (!with_gradient) {
-      sum += trial_weight * decoder_.expected_error(curve_, reading_.electrons.data(), question);
+      sum += trial_weight * (pairs ? pairs->expected_error(electrons, question)
+                                   : decoder_.expected_error(curve_, electrons, question));
       continue;
     }
     const double scale = weight * trial_weight;
-    sum += trial_weight * decoder_.expected_error(curve_, reading_.electrons.data(), question,
-                                                  static_cast<float>(scale), curve_gradient_,
-                                                  by_electrons_.data());
+    const auto by_error = static_cast<float>(scale);
+    sum += trial_weight *
+           (pairs ? pairs->expected_error(electrons, question, by_error, by_electrons_.data())
+                  : decoder_.expected_error(curve_, electrons, question, by_error, curve_gradient_,
+                                            by_electrons_.data()));
     pull_back_reading(point, batch.normals_of(t), scale);
   }
   return sum;
@@ -137,16 +148,21 @@ double DepthErrorLoss::soft_error(const OperatingPoint& point, const TrialBatch&
 
 void DepthErrorLoss::decode(const OperatingPoint& point, const TrialBatch& batch,
                             std::vector<double>& decoded_bin) {
+  SoftTwoReturnDecoder* const pairs =
+      batch.two_returns ? &two_return_decoder(*batch.two_returns) : nullptr;
   decoded_bin.resize(batch.trials.size());
   for (std::size_t t = 0; t < batch.trials.size(); ++t) {
     read(point, batch, t);
-    decoded_bin[t] = decoder_.decode(curve_, reading_.electrons.data());
+    const float* const electrons = reading_.electrons.data();
+    decoded_bin[t] = pairs ? pairs->decode(electrons) : decoder_.decode(curve_, electrons);
   }
 }
 
 MeasurementTable DepthErrorLoss::gradient() const {
   MeasurementTable result = reading_gradient_;
-  curve_gradient_.pull_back(*camera_, table_, curve_, result);
+  CurveGradient by_curve = curve_gradient_;
+  if (two_returns_) two_returns_->pull_back(by_curve);
+  by_curve.pull_back(*camera_, table_, curve_, result);
   return result;
 }
 

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "design/soft_decoder.hpp"
+#include "design/soft_two_return_decoder.hpp"
 #include "design/trial_batch.hpp"
 
 namespace tofsmith {
@@ -14,7 +16,8 @@ namespace tofsmith {
 /// smooth function. The noise itself depends on the code, and the gradient knows.
 ///   mu_i = T_i (S chi_i(z) + A kappa_i),  sigma_i^2 = T_i (S shot_i(z) + A shot_kappa_i) +
 ///   constant
-/// A trial may have a second return, S2 chi_i(z2) beside S chi_i(z): the error is that of z.
+/// A trial may have a second return, S2 chi_i(z2) beside S chi_i(z): the error is that of z, which
+/// a batch has decoded as the only return or as the first of two.
 /// chi is linear between the bins of the grid.
 class DepthErrorLoss {
  public:
@@ -56,6 +59,8 @@ class DepthErrorLoss {
   Place place_at(double depth_periods, double signal_e_per_s) const;
   void read(const OperatingPoint& point, const TrialBatch& batch, std::size_t trial);
   void pull_back_reading(const OperatingPoint& point, const double* normals, double weight);
+  /// Decodes batches of trials with two returns; made when first needed.
+  SoftTwoReturnDecoder& two_return_decoder(const TwoReturnGrid& grid);
   double sum_errors(const OperatingPoint& point, const TrialBatch& batch, double sharpness,
                     double weight, bool with_gradient);
 
@@ -64,6 +69,7 @@ class DepthErrorLoss {
   bool circular_;
   DecodingCurve curve_;
   SoftDecoder decoder_;
+  std::optional<SoftTwoReturnDecoder> two_returns_;
   CurveGradient curve_gradient_;
   MeasurementTable reading_gradient_;  // by the table, through the electrons
   Reading reading_;

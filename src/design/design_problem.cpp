@@ -81,14 +81,42 @@ void require_optimizable(const Camera& camera, int exposures) {
           listed, fmt::format("must equal the {} exposures", exposures));
 }
 
+/// Whether the means of a good code suffice to tell two returns: two strengths and two depths, and
+/// ambient light where it is seen, and one more.
+bool may_tell_two_returns(const Camera& camera, int exposures) {
+  const int taps = camera.sensor.taps;
+  if (camera.sensor.readout == Readout::difference) return exposures >= 5;
+  // Taps that share all charge add up to the same in every exposure.
+  const bool share_all = taps > 1 && !(taps > 2 && camera.sensor.drain);
+  return (share_all ? exposures * (taps - 1) + 1 : exposures * taps) >= 6;
+}
+
+/// Second returns on a grid that is coarse enough to try all pairs of bins.
+LaterTrials decoded_as_two(LaterTrials later, int samples) {
+  constexpr int most_bins = 160;
+  int step = (samples + most_bins - 1) / most_bins;
+  while (samples % step != 0) ++step;
+  const int bins = samples / step;
+  const auto bin_of = [&](double delay_m) {
+    return std::clamp(static_cast<int>(std::lround(delay_m / later.range_m * bins)), 1, bins - 1);
+  };
+  const auto [shortest_m, longest_m] = later.returns.delay_m;
+  later.decoded_as_two =
+      TwoReturnGrid{bins, {bin_of(shortest_m), bin_of(std::max(longest_m, later.range_m / 3.0))}};
+  return later;
+}
+
 /// The camera's points, and the same with second returns where those matter.
-std::vector<LightLevel> levels_of(const Camera& camera, const std::optional<SecondReturns>& later) {
+std::vector<LightLevel> levels_of(const Camera& camera, const std::optional<SecondReturns>& later,
+                                  double two_return_weight) {
   const std::vector<OperatingPoint> points = training_points(camera);
   std::vector<LightLevel> levels;
-  for (const OperatingPoint& point : points)
-    levels.push_back({point, false, later ? 1.0 - later->weight : 1.0});
-  if (later)
-    for (const OperatingPoint& point : points) levels.push_back({point, true, later->weight});
+  const auto add = [&](TrialReturns returns, double weight) {
+    for (const OperatingPoint& point : points) levels.push_back({point, returns, weight});
+  };
+  add(TrialReturns::one, later ? 1.0 - later->weight : 1.0);
+  if (later) add(TrialReturns::two_taken_for_one, later->weight);
+  if (later && two_return_weight > 0.0) add(TrialReturns::two, two_return_weight);
   return levels;
 }
 
@@ -134,7 +162,13 @@ double CameraVariant::total_weight() const {
   return total;
 }
 
-DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples) {
+std::size_t CameraVariant::usual_levels() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      levels, [](const LightLevel& level) { return level.returns != TrialReturns::two; }));
+}
+
+DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples,
+                                  double two_return_weight) {
   require(!variants.empty(), "variants", variants.size(), "must hold at least one camera");
   const Camera& camera = variants.front();
   camera.validate();
@@ -146,7 +180,10 @@ DesignProblem make_design_problem(std::span<const Camera> variants, int exposure
   problem.binary_modulation = camera.light.binary;
   problem.binary_demodulation = camera.sensor.binary;
   if (const auto& later = camera.operating.multipath)
-    problem.later = LaterTrials{*later, camera.range_m()};
+    problem.later = LaterTrials{*later, camera.range_m(), {}};
+  if (!may_tell_two_returns(camera, exposures)) two_return_weight = 0.0;
+  if (problem.later && two_return_weight > 0.0)
+    problem.later_as_two = decoded_as_two(*problem.later, problem.space.samples());
   for (const Camera& variant : variants) {
     variant.validate();
     require(variant.sensor.taps == camera.sensor.taps &&
@@ -156,7 +193,7 @@ DesignProblem make_design_problem(std::span<const Camera> variants, int exposure
     const int finer = camera.band_limited() ? 1 : std::clamp(camera.samples / samples_here, 1, 4);
     problem.variants.push_back({SampledCamera(variant, samples_here, exposures),
                                 SampledCamera(variant, finer * samples_here, exposures),
-                                levels_of(variant, camera.operating.multipath)});
+                                levels_of(variant, camera.operating.multipath, two_return_weight)});
   }
   return problem;
 }

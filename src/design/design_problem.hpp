@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,11 +14,14 @@
 
 namespace tofsmith {
 
+/// What comes back in every trial, and what the decoder takes it for.
+enum class TrialReturns { one, two_taken_for_one, two };
+
 /// Light that a code is judged in.
 struct LightLevel {
   OperatingPoint point;
-  bool has_second_return = false;  ///< in every trial
-  double weight = 1.0;             ///< of its log error among those of all levels
+  TrialReturns returns = TrialReturns::one;
+  double weight = 1.0;  ///< of its log error among those of all levels
 };
 
 /// A camera as the optimizer sees it: on a grid, at the light levels it learns from.
@@ -29,23 +33,32 @@ struct CameraVariant {
   std::vector<LightLevel> levels;
 
   double total_weight() const;
+  /// Without those of two returns.
+  std::size_t usual_levels() const;
 };
 
 /// What is to be optimized: waveforms of a space, for the error of the worst of one or more
 /// variants of a camera; of each, the weighted geometric mean over its light levels.
 struct DesignProblem {
   WaveformSpace space;
-  std::vector<CameraVariant> variants;  ///< the first is the camera itself; never empty
-  OperatingRange operating;             ///< kind of error and albedo
-  double shortest_run_periods = 0.0;    ///< of binary waveforms
-  std::optional<LaterTrials> later;     ///< second returns of the levels that have them
+  std::vector<CameraVariant> variants;      ///< the first is the camera itself; never empty
+  OperatingRange operating;                 ///< kind of error and albedo
+  double shortest_run_periods = 0.0;        ///< of binary waveforms
+  std::optional<LaterTrials> later;         ///< second returns of the levels that have them
+  std::optional<LaterTrials> later_as_two;  ///< the same, decoded as two returns
   bool binary_modulation = true, binary_demodulation = true;
 
   /// Second returns of a level's trials; null: none.
   const LaterTrials* later_of(const LightLevel& level) const {
-    return level.has_second_return ? &*later : nullptr;
+    if (level.returns == TrialReturns::one) return nullptr;
+    return level.returns == TrialReturns::two ? &*later_as_two : &*later;
   }
   int measurements() const { return variants.front().camera.measurements(); }
+  /// How many trials a level takes where one of single returns takes so many: pairs are dear.
+  static int trials_of(const LightLevel& level, int trials) {
+    constexpr int fewest = 8;
+    return std::max(fewest, level.returns == TrialReturns::two ? trials / 4 : trials);
+  }
   bool linear() const { return operating.error == DepthErrorKind::linear; }
 };
 
@@ -58,9 +71,12 @@ WaveformSpace waveform_space(const Camera& camera, int exposures, int samples);
 /// that read noise sets.
 std::vector<OperatingPoint> training_points(const Camera& camera);
 
-/// With operating.multipath, levels with second returns stand beside those without.
+/// With operating.multipath, levels with second returns stand beside those without, taken for one
+/// return and, where the camera gives enough measurements, for two.
+/// @param two_return_weight  OptimizeOptions::two_return_weight
 /// @throws std::invalid_argument if the camera gives fewer than 3 measurements, has no band limit
 ///         and no shortest pulse, or variants differ in what may be played
-DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples);
+DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples,
+                                  double two_return_weight = 0.0);
 
 }  // namespace tofsmith

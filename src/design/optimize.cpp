@@ -207,6 +207,8 @@ void OptimizeOptions::validate() const {
   at_least(pool_trials, 1000, "pool_trials");
   at_least(polish_steps, 0, "polish_steps");
   at_least(validation_trials, 1000, "validation_trials");
+  require(std::isfinite(two_return_weight) && two_return_weight >= 0.0,
+          "OptimizeOptions::two_return_weight", two_return_weight, "must be >= 0");
   require(most_two_return_loss >= 1.0, "OptimizeOptions::most_two_return_loss",
           most_two_return_loss, "must be >= 1");
 }
@@ -216,7 +218,8 @@ OptimizedCode optimize(std::span<const Camera> variants, int exposures,
                        const Progress& progress) {
   const auto begin = std::chrono::steady_clock::now();
   options.validate();
-  const DesignProblem problem = make_design_problem(variants, exposures, options.samples);
+  const DesignProblem problem =
+      make_design_problem(variants, exposures, options.samples, options.two_return_weight);
   const Camera& camera = variants.front();
 
   // 1. Go downhill from many codes, from changed copies of the best, and once more from the best.

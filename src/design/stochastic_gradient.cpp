@@ -48,12 +48,13 @@ SampledCode StochasticGradient::at(const SampledCode& code, double doubt, Random
     const CameraVariant& variant = problem_->variants[v];
     const SampledCamera::Measured measured = variant.camera.measure(code);
     DepthErrorLoss loss(variant.camera, measured.table, problem_->operating.error);
-    const auto levels = static_cast<int>(variant.levels.size() * problem_->variants.size());
+    const int trials =
+        trials_ / static_cast<int>(variant.usual_levels() * problem_->variants.size());
     for (std::size_t p = 0; p < variant.levels.size(); ++p) {
       const LightLevel& level = variant.levels[p];
       const TrialBatch batch = draw_trials(
-          std::max(8, trials_ / levels), variant.camera.measurements(), problem_->operating,
-          problem_->linear(), random, &noise_, problem_->later_of(level));
+          DesignProblem::trials_of(level, trials), variant.camera.measurements(),
+          problem_->operating, problem_->linear(), random, &noise_, problem_->later_of(level));
       const double sharpness = doubt / loss.mean_variance_e2(level.point);
       if (average_error_[v][p] == 0.0)
         add(v, p, std::max(1e-9, loss.soft_error(level.point, batch, sharpness)));

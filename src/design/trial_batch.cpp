@@ -18,6 +18,16 @@ double depth_near_end(double quantile, bool upper) {
   return upper ? std::nextafter(1.0, 0.0) * (1.0 - distance) : distance;
 }
 
+/// Moves a trial's returns to the grid, since the decoder knows no places in between.
+void move_to(const TwoReturnGrid& grid, DepthTrial& trial) {
+  const auto bin_of = [&](double periods) { return std::round(periods * grid.bins); };
+  const double bin = bin_of(trial.depth_periods);
+  trial.depth_periods = (bin < grid.bins ? bin : 0.0) / grid.bins;
+  trial.later_delay_periods = std::clamp<double>(bin_of(trial.later_delay_periods),
+                                                 grid.delays.shortest, grid.delays.longest) /
+                              grid.bins;
+}
+
 /// Density of the even mixture of uniform depths and depths near the ends.
 double mixture_density(double depth_periods) {
   const double distance = std::min(depth_periods, 1.0 - depth_periods);
@@ -45,7 +55,9 @@ TrialBatch draw_trials(int count, int measurements, const OperatingRange& range,
                        RandomStream& random, const NoiseStore* store, const LaterTrials* later) {
   TrialBatch batch;
   batch.measurements = measurements;
+  if (later) batch.two_returns = later->decoded_as_two;
   batch.trials.resize(static_cast<std::size_t>(count));
+  if (batch.two_returns) ends_matter = false;  // they are judged by circular errors
   const int uniform = ends_matter ? count / 2 : count;
   for (int t = 0; t < count; ++t) {
     DepthTrial& trial = batch.trials[static_cast<std::size_t>(t)];
@@ -59,6 +71,7 @@ TrialBatch draw_trials(int count, int measurements, const OperatingRange& range,
     if (later) {
       trial.later_ratio = later->returns.ratio_at(random.uniform());
       trial.later_delay_periods = later->returns.delay_at_m(random.uniform()) / later->range_m;
+      if (later->decoded_as_two) move_to(*later->decoded_as_two, trial);
     }
   }
   const auto numbers = static_cast<std::size_t>(count) * static_cast<std::size_t>(measurements);

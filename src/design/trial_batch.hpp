@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "design/soft_two_return_decoder.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/camera/second_returns.hpp"
 #include "tofsmith/core/random.hpp"
@@ -31,12 +33,19 @@ class NoiseStore {
   std::vector<double> normals_;
 };
 
+/// The grid on which trials are decoded as two returns; its bins divide those of the waveforms.
+struct TwoReturnGrid {
+  int bins = 0;
+  DelayBins delays;  ///< that the decoder looks for
+};
+
 /// Depths and noise to judge a code by; drawn before the code is known, so that codes can be
 /// compared, and gradients taken, on the same ones.
 struct TrialBatch {
   int measurements = 0;
   std::vector<DepthTrial> trials;
-  std::vector<double> normals;  ///< standard normal, (trials, measurements)
+  std::vector<double> normals;               ///< standard normal, (trials, measurements)
+  std::optional<TwoReturnGrid> two_returns;  ///< decode them as two returns; none: as one
 
   const double* normals_of(std::size_t trial) const {
     return normals.data() + trial * static_cast<std::size_t>(measurements);
@@ -47,10 +56,12 @@ struct TrialBatch {
 struct LaterTrials {
   SecondReturns returns;
   double range_m = 1.0;
+  std::optional<TwoReturnGrid> decoded_as_two;  ///< depths and delays lie on this grid then
 };
 
 /// Draws trials: depths stratified over the range. With ends_matter, half of them lie near the ends
-/// of the range, where a wrap costs the whole of it, with a density that falls as 1 / distance.
+/// of the range, where a wrap costs the whole of it, with a density that falls as 1 / distance; not
+/// so where they are decoded as two returns.
 /// @param store  where noise comes from; null: fresh
 /// @param later  every trial has such a second return; null: none
 TrialBatch draw_trials(int count, int measurements, const OperatingRange& range, bool ends_matter,

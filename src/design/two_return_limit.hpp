@@ -22,12 +22,13 @@ class TwoReturnLimit {
       least_m_ = std::min(least_m_, report->two_return->circular_m.value);
   }
   /// How many times worse a code counts: as often as it is over the limit, 1 within it, and no more
-  /// than `most_loss`, also if it cannot be decoded as two returns. 1 for all if no code given can.
+  /// than 1.25, also if it cannot be decoded as two returns. 1 for all if no code given can.
   double excess(const std::optional<SecondReturnReport>& report) const {
     if (!report || std::isinf(least_m_)) return 1.0;
-    if (!report->two_return) return most_loss_;
+    constexpr double most_excess = 1.25;
+    if (!report->two_return) return most_excess;
     return std::clamp(report->two_return->circular_m.value / (most_loss_ * least_m_), 1.0,
-                      most_loss_);
+                      most_excess);
   }
 
  private:

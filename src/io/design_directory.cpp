@@ -128,7 +128,8 @@ std::string design_key(const Camera& camera, const DesignOptions& options) {
                      o.polish_steps, o.validation_trials);
   key += fmt::format("|{}|{}|{}|{}|{}|{}", c.margin_sigma, c.separation_periods, c.equal_duty,
                      c.largest_exhaustive, c.annealing_starts, c.annealing_steps);
-  if (camera.operating.multipath) key += fmt::format("|{}", o.most_two_return_loss);
+  if (camera.operating.multipath)
+    key += fmt::format("|{}|{}", o.two_return_weight, o.most_two_return_loss);
   if (options.target)
     for (const CorrelationTarget& t : options.target->measurements) {
       key += fmt::format("|{}|{}", t.demodulation_mean,

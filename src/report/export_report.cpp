@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "report/level_text.hpp"
 #include "report/waveform_series.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/camera/generator_report.hpp"
@@ -16,10 +17,6 @@ namespace tofsmith {
 namespace {
 
 using Row = std::vector<std::string>;
-
-std::string in_mm(const Estimate& error_m) {
-  return fmt::format("{:.4g} +- {:.2g}", 1e3 * error_m.value, 1e3 * error_m.standard_error);
-}
 
 Table table_of(std::string id, std::string caption, std::vector<Row> rows) {
   Table table{.id = std::move(id), .caption = std::move(caption)};
@@ -107,9 +104,12 @@ std::vector<Row> generator_loss_rows(const GeneratorLoss& loss, DepthErrorKind k
                          "uncalibrated (mm)", "x told"}};
   const auto row = [](std::string name, const Estimate& told, const Estimate& played,
                       const Estimate& uncalibrated) {
-    return Row{std::move(name),     in_mm(told),
-               in_mm(played),       fmt::format("{:.3f}", played.value / told.value),
-               in_mm(uncalibrated), fmt::format("{:.3f}", uncalibrated.value / told.value)};
+    return Row{std::move(name),
+               estimate_mm_text(told),
+               estimate_mm_text(played),
+               fmt::format("{:.3f}", played.value / told.value),
+               estimate_mm_text(uncalibrated),
+               fmt::format("{:.3f}", uncalibrated.value / told.value)};
   };
   const auto error = kind == DepthErrorKind::linear ? &PointDepthError::linear_mde_m
                                                     : &PointDepthError::circular_mde_m;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/error_map.hpp"
 #include "report/level_text.hpp"
 #include "tofsmith/report/colours.hpp"
 #include "tofsmith/report/image_figure.hpp"
@@ -45,12 +46,6 @@ ValueRange range_of(const Image<float>& image) {
   return range.low < range.high ? range : ValueRange{0.0, 1.0};
 }
 
-Image<float> in_mm(const Image<float>& image) {
-  Image<float> scaled = image;
-  for (float& value : scaled.pixels) value *= 1e3f;
-  return scaled;
-}
-
 Figure depth_figure(const MultipathScene& scene, const Image<float>& truth_m) {
   std::vector<ValueImage> images{{.title = "true depth", .pixels = truth_m}};
   for (const MultipathSceneDecoding& d : scene.decodings)
@@ -67,18 +62,14 @@ Figure error_figure(const MultipathScene& scene) {
   for (std::size_t i = 0; i < scene.decodings.size(); ++i)
     images.push_back({.title = fmt::format("{}: mean {} mm", scene.decodings[i].method,
                                            mm_text(scene.all.bias_m[i])),
-                      .pixels = in_mm(scene.decodings[i].error_m)});
+                      .pixels = scaled(scene.decodings[i].error_m, 1e3)});
   const double limit_mm = std::max(1.0, 2e3 * scene.all.error_m[0]);
   return image_figure({.id = "multipath-scene-error",
                        .title = "Depth error",
                        .caption = "Decoded minus true depth; its mean where later light falls "
                                   "beside each name.",
                        .alt_text = "Maps of depth error"},
-                      images,
-                      {.label = "error",
-                       .unit = "mm",
-                       .map = ColourMap::diverging,
-                       .range = ValueRange{-limit_mm, limit_mm}});
+                      images, depth_error_scale(limit_mm));
 }
 
 Figure later_light_figure(const MultipathScene& scene) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "report/level_text.hpp"
 #include "tofsmith/report/bar_figure.hpp"
 #include "tofsmith/report/colours.hpp"
 
@@ -13,10 +14,6 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-std::string in_mm(const Estimate& error_m) {
-  return fmt::format("{:.4g} +- {:.2g}", 1e3 * error_m.value, 1e3 * error_m.standard_error);
-}
-
 /// What both decoders make of one camera.
 Row row(const std::string& code, const std::string& camera, const Estimate& nominal_m,
         const Estimate& calibrated_m, const Estimate& uncalibrated_m) {
@@ -25,9 +22,9 @@ Row row(const std::string& code, const std::string& camera, const Estimate& nomi
   };
   return {code,
           camera,
-          in_mm(calibrated_m),
+          estimate_mm_text(calibrated_m),
           ratio(calibrated_m),
-          in_mm(uncalibrated_m),
+          estimate_mm_text(uncalibrated_m),
           ratio(uncalibrated_m)};
 }
 

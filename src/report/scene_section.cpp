@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/error_map.hpp"
 #include "report/level_text.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/image_figure.hpp"
@@ -73,11 +74,10 @@ Figure error_figure(const SceneResult& scene, const SceneCapture& capture, const
   for (const SceneDecoding& d : capture.decodings) {
     images.push_back(
         {.title = fmt::format("{}: {:.1f} mm", d.code, 1e3 * d.error.mean_m),
-         .pixels = depth_difference_m(d.depth_m, scene.truth, camera, DepthErrorKind::circular)});
+         .pixels = scaled(
+             depth_difference_m(d.depth_m, scene.truth, camera, DepthErrorKind::circular), 1e3)});
     scale_m = std::max(scale_m, d.error.median_m);
   }
-  for (ValueImage& image : images)
-    for (float& value : image.pixels.pixels) value *= 1e3f;
   const double limit_mm = std::max(1.0, 4e3 * scale_m);
   return image_figure(
       {.id = figure_id("error", capture.light),
@@ -85,11 +85,7 @@ Figure error_figure(const SceneResult& scene, const SceneCapture& capture, const
        .caption = "Decoded minus true depth, the shorter way round the range; its mean size beside "
                   "each code's name.",
        .alt_text = "Maps of depth error"},
-      images,
-      {.label = "error",
-       .unit = "mm",
-       .map = ColourMap::diverging,
-       .range = ValueRange{-limit_mm, limit_mm}});
+      images, depth_error_scale(limit_mm));
 }
 
 Table error_table(const SceneResult& scene) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "report/error_map.hpp"
 #include "reproduce/code_styles.hpp"
 #include "reproduce/data_tables.hpp"
 #include "reproduce/fig10_findings.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "report/error_map.hpp"
 #include "report/level_text.hpp"
 #include "reproduce/data_tables.hpp"
 #include "reproduce/figures.hpp"
@@ -211,11 +212,7 @@ Figure error_figure(const SceneResult& hand, const Trial& trial) {
                                             trial.light_text()),
                        .caption = "Decoded less true depth; mean size beside each name. White is "
                                   "right; the scale ends at three times the sinusoid's median."},
-                      images,
-                      {.label = "error",
-                       .unit = "mm",
-                       .map = ColourMap::diverging,
-                       .range = ValueRange{-limit_mm, limit_mm}});
+                      images, depth_error_scale(limit_mm));
 }
 
 Table error_table(const std::vector<Trial>& trials) {

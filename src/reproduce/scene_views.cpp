@@ -33,11 +33,6 @@ Image<float> where_known(Image<float> image, const Image<float>& known) {
   return image;
 }
 
-Image<float> scaled(Image<float> image, double factor) {
-  for (float& value : image.pixels) value = static_cast<float>(value * factor);
-  return image;
-}
-
 std::vector<Eigen::Vector3d> points_of(const Image<float>& depth_m, const PinholeView& view,
                                        const Image<std::uint8_t>& wanted) {
   std::vector<Eigen::Vector3d> points;

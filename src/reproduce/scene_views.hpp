@@ -26,9 +26,6 @@ NpyArray stack(const NpyShape& axes, const std::vector<Image<float>>& images);
 /// The image where `known` is finite, NaN elsewhere.
 Image<float> where_known(Image<float> image, const Image<float>& known);
 
-/// Every value times `factor`, e.g. metres to millimetres.
-Image<float> scaled(Image<float> image, double factor);
-
 /// Where the pixels that `wanted` names stand: row by row, depth along their rays.
 /// @param wanted  (H, W), nonzero = wanted
 std::vector<Eigen::Vector3d> points_of(const Image<float>& depth_m, const PinholeView& view,

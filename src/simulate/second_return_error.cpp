@@ -79,43 +79,63 @@ SecondReturnError error_of(const PixelCapture& pixel, const Camera& camera,
   return {geometric_mean_of(linear_m), geometric_mean_of(circular_m)};
 }
 
+/// What every decoding of a code's trials shares.
+struct SecondReturnTrials {
+  SecondReturnTrials(const CodeSet& code, const Camera& on, const SecondReturns& met,
+                     const EvaluateOptions& how)
+      : camera(on), later(met), options(how), model(checked_model(code)), pixel(model, on) {}
+
+  SecondReturnError single_path(const Progress& progress) const {
+    const Decoder decoder(make_decoding_table(model, camera));
+    return error_of(pixel, camera, later, options, progress,
+                    [&](const RawFrames& raw) { return decoder.decode(raw).depth_m; });
+  }
+
+  /// @throws std::invalid_argument for codes that cannot tell two returns
+  SecondReturnError two_return(const Progress& progress) const {
+    MultipathOptions decoding;
+    decoding.shortest_delay_m = std::min(decoding.shortest_delay_m, later.delay_m[0]);
+    decoding.longest_delay_m = std::max(later.delay_m[1], camera.range_m() / 3);
+    const TwoReturnDecoder decoder(make_decoding_table(model, camera), decoding);
+    return error_of(pixel, camera, later, options, progress,
+                    [&](const RawFrames& raw) { return decoder.decode(raw).direct.depth_m; });
+  }
+
+  ForwardModel checked_model(const CodeSet& code) const {
+    options.validate();
+    later.validate(camera.range_m());
+    return ForwardModel(code, camera);
+  }
+
+  const Camera& camera;
+  const SecondReturns& later;
+  const EvaluateOptions& options;
+  ForwardModel model;
+  PixelCapture pixel;
+};
+
 }  // namespace
 
 SecondReturnError second_return_error(const CodeSet& code, const Camera& camera,
                                       const SecondReturns& later, const EvaluateOptions& options,
                                       const Progress& progress) {
-  options.validate();
-  later.validate(camera.range_m());
-  const ForwardModel model(code, camera);
-  const PixelCapture pixel(model, camera);
-  const Decoder decoder(make_decoding_table(model, camera));
-  return error_of(pixel, camera, later, options, progress,
-                  [&](const RawFrames& raw) { return decoder.decode(raw).depth_m; });
+  return SecondReturnTrials(code, camera, later, options).single_path(progress);
 }
 
 SecondReturnError two_return_error(const CodeSet& code, const Camera& camera,
                                    const SecondReturns& later, const EvaluateOptions& options,
                                    const Progress& progress) {
-  options.validate();
-  later.validate(camera.range_m());
-  const ForwardModel model(code, camera);
-  const PixelCapture pixel(model, camera);
-  MultipathOptions decoding;
-  decoding.shortest_delay_m = std::min(decoding.shortest_delay_m, later.delay_m[0]);
-  decoding.longest_delay_m = std::max(later.delay_m[1], camera.range_m() / 3);
-  const TwoReturnDecoder decoder(make_decoding_table(model, camera), decoding);
-  return error_of(pixel, camera, later, options, progress,
-                  [&](const RawFrames& raw) { return decoder.decode(raw).direct.depth_m; });
+  return SecondReturnTrials(code, camera, later, options).two_return(progress);
 }
 
 SecondReturnReport second_return_report(const CodeSet& code, const Camera& camera,
                                         const SecondReturns& later, const EvaluateOptions& options,
                                         const Progress& progress) {
+  const SecondReturnTrials trials(code, camera, later, options);
   SecondReturnReport result;
-  result.single_path =
-      second_return_error(code, camera, later, options, part_of(progress, 0.0, 0.3));
+  result.single_path = trials.single_path(part_of(progress, 0.0, 0.3));
   try {
-    result.two_return = two_return_error(code, camera, later, options, part_of(progress, 0.3, 1.0));
+    result.two_return = trials.two_return(part_of(progress, 0.3, 1.0));
   } catch (const std::invalid_argument&) {  // too few means to tell two returns
     report(progress, 1.0, "second returns");
   }

@@ -82,6 +82,9 @@ class Multipath(CommandLineTest):
             self.refuse(["design", "--second-returns", value], "--second-returns " + value, words,
                         code=2)
         self.refuse(["design", "--second-return-weight", ".2"], "found no second returns", code=2)
+        self.refuse(["design", "--two-return-weight", ".2"], "found no second returns", code=2)
+        self.refuse(["design", "--second-returns", "ratio=.3", "--two-return-weight", "-1"],
+                    "--two-return-weight", ">= 0", code=2)
         self.refuse(["design", "--second-returns", "ratio=.3", "--second-return-weight", "1"],
                     "--second-return-weight", "in (0, 1)", code=2)
         self.refuse(["design", "--second-returns", "ratio=.3", "--robust"], "--robust: found beside",

@@ -90,19 +90,30 @@ TEST(DepthErrorLoss, DecodesToTheBestPointBesideTheBestBin) {
   }
 }
 
-/// Central difference of the plain reference along a direction.
-double slope_of_reference(const Setting& setting, const SampledCode& direction,
-                          const TrialBatch& batch, double sharpness, bool circular) {
-  const SampledCamera camera = setting.sampled();
-  const double step = 1e-6;
-  const auto at = [&](double s) {
-    SampledCode moved = setting.code;
-    moved.modulation += s * direction.modulation;
-    moved.demodulation += s * direction.demodulation;
-    return reference_soft_error(camera, camera.measure(moved).table, setting.point, batch,
-                                sharpness, circular);
-  };
-  return (at(step) - at(-step)) / (2 * step);
+/// Compares the gradient with central differences of the error along random directions: of light
+/// alone, of gates alone, of both.
+template <typename ErrorOf>
+void expect_slopes(const Setting& setting, const SampledCode& gradient, ErrorOf&& error_of) {
+  RandomStream random(11, 5);
+  for (int direction = 0; direction < 4; ++direction) {
+    SampledCode along = setting.code;
+    for (double& m : along.modulation.reshaped()) m = random.normal();
+    for (double& d : along.demodulation.reshaped()) d = random.normal();
+    if (direction == 0) along.modulation.setZero();
+    if (direction == 1) along.demodulation.setZero();
+    const double slope = gradient.modulation.cwiseProduct(along.modulation).sum() +
+                         gradient.demodulation.cwiseProduct(along.demodulation).sum();
+    const double scale = gradient.modulation.norm() * along.modulation.norm() +
+                         gradient.demodulation.norm() * along.demodulation.norm();
+    constexpr double step = 1e-6;
+    const auto at = [&](double s) {
+      SampledCode moved = setting.code;
+      moved.modulation += s * along.modulation;
+      moved.demodulation += s * along.demodulation;
+      return error_of(moved);
+    };
+    EXPECT_NEAR(slope, (at(step) - at(-step)) / (2 * step), 1e-3 * scale);
+  }
 }
 
 TEST(DepthErrorLoss, GradientByTheWaveformsMatchesFiniteDifferences) {
@@ -116,20 +127,10 @@ TEST(DepthErrorLoss, GradientByTheWaveformsMatchesFiniteDifferences) {
       const double sharpness = 1.2 / loss.mean_variance_e2(setting.point);
       loss.soft_error(setting.point, batch, sharpness, 1.0);
       const SampledCode gradient = camera.pull_back(measured, loss.gradient());
-      RandomStream random(11, 5);
-      for (int direction = 0; direction < 4; ++direction) {
-        SampledCode along = setting.code;
-        for (double& m : along.modulation.reshaped()) m = random.normal();
-        for (double& d : along.demodulation.reshaped()) d = random.normal();
-        if (direction == 0) along.modulation.setZero();
-        if (direction == 1) along.demodulation.setZero();
-        const double slope = gradient.modulation.cwiseProduct(along.modulation).sum() +
-                             gradient.demodulation.cwiseProduct(along.demodulation).sum();
-        const double scale = gradient.modulation.norm() * along.modulation.norm() +
-                             gradient.demodulation.norm() * along.demodulation.norm();
-        EXPECT_NEAR(slope, slope_of_reference(setting, along, batch, sharpness, circular),
-                    1e-3 * scale);
-      }
+      expect_slopes(setting, gradient, [&](const SampledCode& code) {
+        return reference_soft_error(camera, camera.measure(code).table, setting.point, batch,
+                                    sharpness, circular);
+      });
     }
 }
 
@@ -144,6 +145,71 @@ TEST(DepthErrorLoss, WeightsAndPointsAdd) {
   twice.soft_error(setting.point, batch, 1e-3, 2.0);
   EXPECT_LT((once.gradient().correlation - twice.gradient().correlation).norm(),
             1e-4 * once.gradient().correlation.norm());
+}
+
+/// Trials of two returns that are decoded as such.
+TrialBatch two_return_trials(const Setting& setting, int count, TwoReturnGrid grid) {
+  RandomStream random(7, 3);
+  const LaterTrials later{{{0.2, 0.9}, {1.0, 4.0}}, setting.camera.range_m(), grid};
+  return draw_trials(count, setting.sampled().measurements(), {}, true, random, nullptr, &later);
+}
+
+/// Grids as fine as the curve, and coarser.
+constexpr TwoReturnGrid grids[] = {{24, {2, 9}}, {12, {1, 11}}};
+
+TEST(TwoReturnLoss, IsThatOfThePlainReferenceOnEveryTarget) {
+  for_each_target([] {
+    for (const Setting& setting : settings())
+      for (const TwoReturnGrid& grid : grids) {
+        const SampledCamera camera = setting.sampled();
+        const MeasurementTable table = camera.measure(setting.code).table;
+        const TrialBatch batch = two_return_trials(setting, 15, grid);
+        DepthErrorLoss loss(camera, table, DepthErrorKind::linear);
+        const double sharpness = 0.5 / loss.mean_variance_e2(setting.point);
+        const double expected =
+            reference_two_return_error(camera, table, setting.point, batch, sharpness);
+        EXPECT_NEAR(loss.soft_error(setting.point, batch, sharpness), expected, 2e-3 * expected);
+        EXPECT_NEAR(loss.soft_error(setting.point, batch, sharpness, 0.5), expected,
+                    2e-3 * expected);
+      }
+  });
+}
+
+TEST(TwoReturnLoss, DecodesToTheFirstOfTheBestPair) {
+  const Setting setting(2);
+  const SampledCamera camera = setting.sampled();
+  const MeasurementTable table = camera.measure(setting.code).table;
+  for (const TwoReturnGrid& grid : grids) {
+    const TrialBatch batch = two_return_trials(setting, 20, grid);
+    DepthErrorLoss loss(camera, table, DepthErrorKind::circular);
+    std::vector<double> decoded;
+    loss.decode(setting.point, batch, decoded);
+    for (std::size_t t = 0; t < decoded.size(); ++t) {
+      TrialBatch one = batch;
+      one.trials = {batch.trials[t]};
+      one.normals.assign(batch.normals_of(t), batch.normals_of(t) + batch.measurements);
+      double expected = 0.0;
+      reference_two_return_error(camera, table, setting.point, one, 1.0, &expected);
+      EXPECT_EQ(decoded[t], expected) << t;
+    }
+  }
+}
+
+TEST(TwoReturnLoss, GradientByTheWaveformsMatchesFiniteDifferences) {
+  for (const Setting& setting : settings())
+    for (const TwoReturnGrid& grid : grids) {
+      const SampledCamera camera = setting.sampled();
+      const auto measured = camera.measure(setting.code);
+      const TrialBatch batch = two_return_trials(setting, 10, grid);
+      DepthErrorLoss loss(camera, measured.table, DepthErrorKind::circular);
+      const double sharpness = 0.5 / loss.mean_variance_e2(setting.point);
+      loss.soft_error(setting.point, batch, sharpness, 1.0);
+      const SampledCode gradient = camera.pull_back(measured, loss.gradient());
+      expect_slopes(setting, gradient, [&](const SampledCode& code) {
+        return reference_two_return_error(camera, camera.measure(code).table, setting.point, batch,
+                                          sharpness);
+      });
+    }
 }
 
 }  // namespace

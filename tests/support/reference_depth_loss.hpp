@@ -5,11 +5,52 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "design/sampled_camera.hpp"
 #include "design/trial_batch.hpp"
 
 namespace tofsmith {
+
+/// Points of the decoding curve as DecodingCurve defines them, (R, N).
+inline Eigen::MatrixXd reference_points(const SampledCamera& camera,
+                                        const MeasurementTable& table) {
+  const Eigen::VectorXd relative = camera.exposure_s() / camera.exposure_s().mean();
+  const Eigen::VectorXd ambient = relative.cwiseProduct(table.ambient_gain);
+  const auto count = ambient.size();
+  Eigen::MatrixXd projection = Eigen::MatrixXd::Identity(count, count);
+  if (camera.ambient_unknown()) projection -= ambient * ambient.transpose() / ambient.squaredNorm();
+  return projection * relative.asDiagonal() * table.correlation.transpose();
+}
+
+/// What trial t measures.
+inline Eigen::VectorXd reference_electrons(const SampledCamera& camera,
+                                           const MeasurementTable& table,
+                                           const OperatingPoint& point, const TrialBatch& batch,
+                                           std::size_t t) {
+  const int samples = table.samples(), count = table.measurements();
+  const DepthTrial& trial = batch.trials[t];
+  const double position = trial.depth_periods * samples;
+  const double later = position + trial.later_delay_periods * samples;
+  Eigen::VectorXd y(count);
+  for (int i = 0; i < count; ++i) {
+    const auto light = [&](const Eigen::MatrixXd& chi, const Eigen::VectorXd& kappa) {
+      const auto at = [&](double bins) {
+        const int bin = static_cast<int>(bins);
+        const double fraction = bins - bin;
+        return (1 - fraction) * chi(bin % samples, i) + fraction * chi((bin + 1) % samples, i);
+      };
+      return camera.exposure_s()[i] *
+             (trial.albedo * point.signal_e_per_s * (at(position) + trial.later_ratio * at(later)) +
+              point.ambient_e_per_s * kappa[i]);
+    };
+    const double variance =
+        light(table.shot(), table.shot_ambient()) + camera.constant_variance_e2()[i];
+    y[i] =
+        light(table.correlation, table.ambient_gain) + std::sqrt(variance) * batch.normals_of(t)[i];
+  }
+  return y;
+}
 
 /// The differentiable depth error written out in double, trial by trial and chord by chord, with no
 /// thought of speed: what DepthErrorLoss is compared with.
@@ -17,41 +58,17 @@ namespace tofsmith {
 inline double reference_soft_error(const SampledCamera& camera, const MeasurementTable& table,
                                    const OperatingPoint& point, const TrialBatch& batch,
                                    double sharpness, bool circular, double* decoded_bin = nullptr) {
-  const int samples = table.samples(), count = table.measurements();
-  const Eigen::VectorXd relative = camera.exposure_s() / camera.exposure_s().mean();
-  const Eigen::VectorXd ambient = relative.cwiseProduct(table.ambient_gain);
-  Eigen::MatrixXd projection = Eigen::MatrixXd::Identity(count, count);
-  if (camera.ambient_unknown()) projection -= ambient * ambient.transpose() / ambient.squaredNorm();
+  const int samples = table.samples();
+  const Eigen::MatrixXd points = reference_points(camera, table);
   double sum = 0.0;
   for (std::size_t t = 0; t < batch.trials.size(); ++t) {
     const double position = batch.trials[t].depth_periods * samples;
-    const int bin = std::min(static_cast<int>(position), samples - 1);
-    const double fraction = position - bin;
-    Eigen::VectorXd y(count);
-    for (int i = 0; i < count; ++i) {
-      const auto light = [&](const Eigen::MatrixXd& chi, const Eigen::VectorXd& kappa) {
-        double value = (1 - fraction) * chi(bin, i) + fraction * chi((bin + 1) % samples, i);
-        const double later = position + batch.trials[t].later_delay_periods * samples;
-        const int its_bin = static_cast<int>(later);
-        const double its_fraction = later - its_bin;
-        value += batch.trials[t].later_ratio * ((1 - its_fraction) * chi(its_bin % samples, i) +
-                                                its_fraction * chi((its_bin + 1) % samples, i));
-        return camera.exposure_s()[i] * (batch.trials[t].albedo * point.signal_e_per_s * value +
-                                         point.ambient_e_per_s * kappa[i]);
-      };
-      const double variance =
-          light(table.shot(), table.shot_ambient()) + camera.constant_variance_e2()[i];
-      y[i] = light(table.correlation, table.ambient_gain) +
-             std::sqrt(variance) * batch.normals_of(t)[i];
-    }
+    const Eigen::VectorXd y = reference_electrons(camera, table, point, batch, t);
     double best = -1.0, best_bin_score = -1e300, total = 0.0, weighted = 0.0;
     Eigen::VectorXd score(samples), error(samples), place_of(samples);
     int best_bin = 0;
     for (int j = 0; j < samples; ++j) {
-      const auto at = [&](int n) -> Eigen::VectorXd {
-        return projection * relative.cwiseProduct(table.correlation.row(n % samples).transpose());
-      };
-      const Eigen::VectorXd p0 = at(j), p1 = at(j + 1);
+      const Eigen::VectorXd p0 = points.col(j), p1 = points.col((j + 1) % samples);
       const double b0 = y.dot(p0), b1 = y.dot(p1);
       const double q00 = p0.dot(p0) + 1e-10, q01 = p0.dot(p1), q11 = p1.dot(p1) + 1e-10;
       const double u = q11 * b0 - q01 * b1, v = q00 * b1 - q01 * b0;
@@ -80,6 +97,49 @@ inline double reference_soft_error(const SampledCamera& camera, const Measuremen
       weighted += share * error[j];
     }
     sum += batch.trials[t].weight * weighted / total;
+  }
+  return sum / static_cast<double>(batch.trials.size());
+}
+
+/// The same where trials are decoded as two returns, pair by pair of the grid.
+inline double reference_two_return_error(const SampledCamera& camera, const MeasurementTable& table,
+                                         const OperatingPoint& point, const TrialBatch& batch,
+                                         double sharpness, double* decoded_bin = nullptr) {
+  const int samples = table.samples();
+  const TwoReturnGrid grid = *batch.two_returns;
+  const int step = samples / grid.bins;
+  const Eigen::MatrixXd points = reference_points(camera, table);
+  double sum = 0.0;
+  for (std::size_t t = 0; t < batch.trials.size(); ++t) {
+    const Eigen::VectorXd y = reference_electrons(camera, table, point, batch, t);
+    std::vector<double> score, error;
+    for (int j = 0; j < samples; j += step)
+      for (int delay = grid.delays.shortest; delay <= grid.delays.longest; ++delay) {
+        Eigen::MatrixXd pair(y.size(), 2);
+        pair << points.col(j), points.col((j + delay * step) % samples);
+        const Eigen::Vector2d match = pair.transpose() * y;
+        const Eigen::Matrix2d gram = pair.transpose() * pair;
+        Eigen::Vector2d strength = gram.inverse() * match;
+        if (strength[1] < 0.0 || strength[0] < strength[1]) {
+          const Eigen::Vector2d alone(std::max(0.0, match[0]) / gram(0, 0), 0.0);
+          const Eigen::Vector2d equal =
+              Eigen::Vector2d::Constant(std::max(0.0, match.sum()) / gram.sum());
+          strength = match.dot(equal) > match.dot(alone) ? equal : alone;
+        }
+        score.push_back(0.5 * y.squaredNorm() - 0.5 * (y - pair * strength).squaredNorm());
+        const double off = std::abs(j - batch.trials[t].depth_periods * samples);
+        error.push_back(std::min(off, samples - off));
+        if (decoded_bin && score.back() >= *std::max_element(score.begin(), score.end()))
+          *decoded_bin = j;
+      }
+    const double best = *std::max_element(score.begin(), score.end());
+    double total = 0.0, weighted = 0.0;
+    for (std::size_t k = 0; k < score.size(); ++k) {
+      const double share = std::exp(sharpness * (score[k] - best));
+      total += share;
+      weighted += share * error[k];
+    }
+    sum += weighted / total;
   }
   return sum / static_cast<double>(batch.trials.size());
 }

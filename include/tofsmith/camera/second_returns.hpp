@@ -14,7 +14,7 @@ struct SecondReturns {
   /// How much they count where codes are designed: what is minimized is E1^(1 - weight) E2^weight,
   /// with E1 the error of single returns and E2 that behind such second ones, decoded as
   /// single-path; in (0, 1).
-  double weight = 0.1;
+  double weight = 0.2;
 
   /// A ratio and a delay from two numbers uniform on [0, 1).
   double ratio_at(double uniform) const { return ratio[0] + uniform * (ratio[1] - ratio[0]); }

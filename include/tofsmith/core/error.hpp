@@ -11,7 +11,7 @@
 namespace tofsmith {
 
 /// A file, configuration or network problem. The message starts with the place
-/// (`file:line:column`, `file: byte 128`) and says what was found and what was expected.
+/// (`name:line:column`, `name: byte 128`) and says what was found and what was expected.
 class IoError : public std::runtime_error {
  public:
   IoError(std::string_view place, std::string_view problem);

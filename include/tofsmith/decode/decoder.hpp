@@ -26,7 +26,7 @@ struct DecodeOptions {
 /// Depth by zero-mean normalized cross-correlation, with what ambient light explains projected out
 /// instead of the mean:
 ///   y' = electrons - dark,  a = T o kappa,  x(z) = T o chi(z),  P = I - a a^T / |a|^2
-///   z_hat = argmax_z <P y', P x(z)> / |P x(z)|
+///   z_hat = argmax_z (P y') . (P x(z)) / |P x(z)|
 /// over all bins with contrast; scores within 1e-11 |P y'| of the best tie, and the lowest bin
 /// wins. Then the best point on the chords to both neighbour bins. Every pixel gets exactly the bin
 /// of double arithmetic, whatever the type of its raw numbers, the processor and the number of

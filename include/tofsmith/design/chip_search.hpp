@@ -91,7 +91,7 @@ struct ChipSearchResult {
 /// 3
 ///         measurements or with what chip_metric_rms_m leaves out; Interrupted
 /// @note the same result and counts for any number of threads
-/// @see docs/search.md
+/// @see docs/exhaustive_search.md
 ChipSearchResult search_chip_codes(const Camera& camera, const ChipSearchOptions& options = {},
                                    const Progress& progress = {});
 

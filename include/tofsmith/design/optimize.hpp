@@ -35,10 +35,15 @@ struct OptimizeOptions {
   /// nor more than 40000 per point.
   int validation_trials = 100000;
   std::uint64_t seed = 1;
-  /// On cameras with operating.multipath: two-return decoding of a code may err this many times as
+  /// On cameras with operating.multipath and enough measurements: weight of log E3 in the loss,
+  /// beside log E1^(1 - w) E2^w of SecondReturns::weight, with E3 the error of the direct depth
+  /// where pairs of returns are looked for on the bins of a grid. It keeps pairs from looking like
+  /// others, so that two returns can be decoded; >= 0.
+  double two_return_weight = 0.02;
+  /// On such cameras: two-return decoding of a code may err this many times as
   /// much as it does of the best code given that can be decoded so, if there is one; what errs more
-  /// counts as so many times worse in the final choice, though no more than by this factor; >= 1.
-  double most_two_return_loss = 1.25;
+  /// counts as so many times worse in the final choice, up to 1.25 times; >= 1.
+  double most_two_return_loss = 3.0;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;

@@ -55,7 +55,7 @@ class ScpiSession {
   std::string last_sent_;
 };
 
-/// Bytes as they can be printed: at most `most` characters, others than ASCII as \xNN.
+/// Bytes as they can be printed: at most `most` characters, others than ASCII as `\xNN`.
 std::string printable(std::string_view bytes, std::size_t most = 60);
 
 }  // namespace tofsmith

@@ -12,7 +12,7 @@ struct SettingValue {
   std::string toml;              ///< as the right side of `key = ..`, on one line
   std::string text;              ///< the same without the quotes of a text
   std::optional<double> number;  ///< of an integer or a finite number
-  std::string place;             ///< where it was written: file:line:column
+  std::string place;             ///< where it was written, as errors name it
 };
 
 }  // namespace tofsmith

@@ -19,7 +19,7 @@ struct SweepAxis {
   /// signal_e_per_s, ambient_e_per_s, seed, trials.
   std::string key;
   std::vector<SettingValue> values;  ///< at least one
-  std::string place;                 ///< where it was written: file:line:column
+  std::string place;                 ///< where it was written, as errors name it
   bool crossed = false;              ///< with all others, even where those are zipped
 };
 

@@ -1,0 +1,121 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Writes generated/commands: a page for every command of the tool, from its own help."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from command_help import Command, Entry, all_commands
+
+
+def plain(text: str) -> str:
+    """Text that means nothing to Markdown, but for code between backticks."""
+    parts = text.split("`")
+    parts[::2] = [re.sub(r"([\\*_<>\[\]#|~^$])", r"\\\1", part) for part in parts[::2]]
+    return "`".join(parts)
+
+
+def sentence(text: str) -> str:
+    """With a capital, if the first word is one."""
+    return text[0].upper() + text[1:] if re.match(r"[a-z]{2,}\b|a ", text) else text
+
+
+def rule_of(entry: Entry) -> str:
+    """What a value must be, in words."""
+    between = re.fullmatch(r"in \[(.*) - (.*)\]", entry.rule)
+    if between:
+        return f"From {between[1]} to {between[2]}."
+    if entry.rule.startswith("{"):
+        return "One of " + ", ".join(f"`{word}`" for word in entry.rule[1:-1].split(",")) + "."
+    if entry.rule in ("", "SHARE") or entry.rule in entry.description:
+        return ""
+    return f"Must be {plain(entry.rule.lower())}."
+
+
+def facts_of(entry: Entry) -> str:
+    facts = []
+    if entry.required:
+        facts.append("Required.")
+    facts.append(rule_of(entry))
+    if entry.default is not None:
+        facts.append(f"Default: `{entry.default}`.")
+    if entry.repeats and "repeatable" not in entry.description:
+        facts.append("Takes several.")
+    if entry.needs:
+        facts.append(f"Needs `{entry.needs}`.")
+    if entry.excludes:
+        facts.append(f"Not with `{entry.excludes}`.")
+    return " ".join(filter(None, facts))
+
+
+def option_of(entry: Entry) -> str:
+    signature = ", ".join(entry.names)
+    if entry.names[0].startswith("-"):
+        signature += f" {entry.value}".rstrip()
+    body = "\n\n".join(filter(None, [plain(sentence(entry.description)), facts_of(entry)]))
+    return f"````{{option}} {signature}\n{body}\n````\n"
+
+
+def section_of(command: Command, level: int, usual_footer: list[str]) -> str:
+    text = [f"{'#' * level} {command.name}\n", plain(command.description) + "\n",
+            f"```text\n{command.usage}\n```\n", f"```{{program}} {command.name}\n```\n"]
+    for title, entries in command.sections.items():
+        if title == "Subcommands":
+            continue
+        shown = [option_of(entry) for entry in entries if "--help" not in entry.names]
+        if shown:
+            text += [f"**{title}**\n", *shown]
+    if command.footer != usual_footer:
+        text.append("\n".join(["```text", *command.footer, "```\n"]))
+    return "\n".join(text)
+
+
+def front_page(tool: Command, pages: list[Command]) -> str:
+    rows = "\n".join(f"| [{page.name}]({page.words[0]}.md) | {plain(page.description)} |"
+                     for page in pages)
+    names = "\n".join(page.words[0] for page in pages)
+    return f"""# Commands
+
+{plain(tool.description)} These pages are made from what `tofsmith COMMAND --help` says.
+
+| command | does |
+|---|---|
+{rows}
+
+Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted (what is finished is kept). Options below
+go with every command. `TOFSMITH_TARGET` in the environment pins the instruction set, so that machines
+that differ give the same bits.
+
+{section_of(tool, 2, tool.footer)}
+```{{toctree}}
+:hidden:
+
+{names}
+```
+"""
+
+
+def write_pages(tool: str, folder: Path) -> list[str]:
+    """Writes one page per command, subcommands on the page of theirs.
+    @return the names of the pages"""
+    first, *rest = all_commands(tool)
+    folder.mkdir(parents=True, exist_ok=True)
+    for old in folder.glob("*.md"):
+        old.unlink()
+    pages = [command for command in rest if len(command.words) == 1]
+    for page in pages:
+        below = [command for command in rest if command.words[0] == page.words[0]][1:]
+        text = "\n".join([section_of(page, 1, first.footer),
+                          *(section_of(command, 2, first.footer) for command in below)])
+        (folder / f"{page.words[0]}.md").write_text(text)
+    (folder / "index.md").write_text(front_page(first, pages))
+    return [page.words[0] for page in pages]
+
+
+def setup(app):
+    app.add_config_value("tofsmith_tool", "tofsmith", "env")
+    app.connect("builder-inited", lambda app: write_pages(
+        app.config.tofsmith_tool, Path(app.srcdir) / "generated" / "commands"))
+    return {"version": "1", "parallel_read_safe": True}

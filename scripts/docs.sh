@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Installs what is missing, builds tofsmith, makes the documentation and checks its links. Ends with
+# a line that says where the first page is; a warning is a failure.
+#
+#   scripts/docs.sh [--build DIR]
+#
+#   --build DIR   take tofsmith and its Python package from this build instead of build-docs
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# shellcheck source=scripts/packages.sh
+source "$root/scripts/packages.sh"
+
+output="$root/build-docs"
+build=
+while (($#)); do
+  case "$1" in
+    -h | --help)
+      sed -n '/^# Installs/,/^set /s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+      exit 0
+      ;;
+    --build) build=$(realpath "${2:?a directory}") && shift 2 ;;
+    *) tofsmith_die "unknown option '$1'; see --help" ;;
+  esac
+done
+
+install_packages docs
+use_debian_tools
+cd "$root"
+
+if [[ -z "$build" ]]; then
+  build=$output
+  echo "Building tofsmith in $build"
+  cmake --log-level=WARNING -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+    -DTOFSMITH_BUILD_APPS=ON -DTOFSMITH_BUILD_PYTHON=ON -DTOFSMITH_BUILD_TESTS=OFF \
+    -DTOFSMITH_UNITY=ON
+  cmake --build "$build" --target tofsmith_cli tofsmith_python
+fi
+[[ -x "$build/apps/tofsmith" ]] || tofsmith_die "there is no $build/apps/tofsmith"
+[[ -d "$build/python/tofsmith" ]] || tofsmith_die "there is no $build/python/tofsmith"
+
+echo "Making the documentation in $output/html"
+rm -rf "$output/html" docs/generated
+mkdir -p "$output/html/cpp"
+TOFSMITH_CPP_PAGES="$output/html/cpp" doxygen docs/Doxyfile
+PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$build/python" python3 -m sphinx -b html -n -W --keep-going \
+  -E -q -d "$output/doctrees" -D tofsmith_tool="$build/apps/tofsmith" docs "$output/html"
+python3 -B scripts/check_links.py "$output/html"
+
+echo "Done. The first page is $output/html/index.html"
