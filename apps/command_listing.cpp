@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,8 +44,18 @@ Words names_of(const CLI::Option& option) {
   return names;
 }
 
+/// Long names of the options, in order.
+Words names_of(const std::set<CLI::Option*>& options) {
+  Words names;
+  for (const CLI::Option* option : options) names.push_back(names_of(*option).back());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 Json argument(const CLI::Option& option) {
   Json item = {{"names", names_of(option)}, {"help", option.get_description()}};
+  if (!option.get_needs().empty()) item["needs"] = names_of(option.get_needs());
+  if (!option.get_excludes().empty()) item["excludes"] = names_of(option.get_excludes());
   if (option.get_type_size() != 0) {
     const std::string type = option.get_type_name();
     item["value"] = type;

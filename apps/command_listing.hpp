@@ -14,8 +14,8 @@ namespace tofsmith::apps {
 ///    "commands": [{"words": ["calibrate", "noise"], "summary", "example", "subcommands": [..],
 ///                  "positionals": [argument, ..], "options": [argument, ..]}, ..]}
 /// The first command has no words: it is the program itself, whose options hold everywhere. An
-/// argument is {"names": ["-o", "--output"], "help", "value": "TEXT", "default", "choices": [..],
-/// "required", "many"}; a flag has no "value".
+/// argument is {"names": ["-o", "--output"], "help", "needs": [..], "excludes": [..], "value":
+/// "TEXT", "default", "choices": [..], "required", "many"}; a flag has no "value".
 nlohmann::ordered_json command_listing(const CLI::App& app);
 
 }  // namespace tofsmith::apps

@@ -38,12 +38,25 @@ if [[ -z "$output" ]]; then
   set -- -o "$output" "$@"
 fi
 
+# Kernels are compiled once for each instruction set: of the vector ones, this machine's alone.
+targets_of_others() {
+  local flags others=HWY_SSSE3
+  flags=" $(grep -m 1 '^flags' /proc/cpuinfo || true) "
+  if [[ "$flags" == *" avx512bw "* && "$flags" == *" avx512vl "* ]]; then
+    others='(HWY_SSSE3|HWY_SSE4|HWY_AVX2)'
+  elif [[ "$flags" == *" avx2 "* && "$flags" == *" fma "* ]]; then
+    others='(HWY_SSSE3|HWY_SSE4|HWY_AVX3)'
+  fi
+  printf '%s' "$others"
+}
+
 install_packages build
 use_debian_tools
 
 echo "Building tofsmith in $build"
 cmake --log-level=WARNING -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-  -DTOFSMITH_BUILD_APPS=ON -DTOFSMITH_BUILD_TESTS=OFF -DTOFSMITH_BUILD_BENCHMARKS=OFF
+  -DTOFSMITH_BUILD_APPS=ON -DTOFSMITH_BUILD_TESTS=OFF -DTOFSMITH_BUILD_BENCHMARKS=OFF \
+  -DTOFSMITH_UNITY=ON -DTOFSMITH_DISABLED_TARGETS="$(targets_of_others)"
 cmake --build "$build"
 
 tofsmith="$build/apps/tofsmith"

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writes generated/commands: a page for every command of the tool, from its own help."""
+"""Writes generated/commands: a page for every command of the tool, from what it says itself."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ def facts_of(entry: Entry) -> str:
     if entry.repeats and "repeatable" not in entry.description:
         facts.append("Takes several.")
     if entry.needs:
-        facts.append(f"Needs `{entry.needs}`.")
+        facts.append("Needs " + " and ".join(f"`{name}`" for name in entry.needs) + ".")
     if entry.excludes:
-        facts.append(f"Not with `{entry.excludes}`.")
+        facts.append("Not with " + " or ".join(f"`{name}`" for name in entry.excludes) + ".")
     return " ".join(filter(None, facts))
 
 
@@ -58,17 +58,15 @@ def option_of(entry: Entry) -> str:
     return f"````{{option}} {signature}\n{body}\n````\n"
 
 
-def section_of(command: Command, level: int, usual_footer: list[str]) -> str:
+def section_of(command: Command, level: int) -> str:
     text = [f"{'#' * level} {command.name}\n", plain(command.description) + "\n",
             f"```text\n{command.usage}\n```\n", f"```{{program}} {command.name}\n```\n"]
     for title, entries in command.sections.items():
-        if title == "Subcommands":
-            continue
         shown = [option_of(entry) for entry in entries if "--help" not in entry.names]
         if shown:
             text += [f"**{title}**\n", *shown]
-    if command.footer != usual_footer:
-        text.append("\n".join(["```text", *command.footer, "```\n"]))
+    if command.footer and command.words:
+        text.append("\n".join(["```text", command.footer.strip("\n"), "```\n"]))
     return "\n".join(text)
 
 
@@ -88,7 +86,7 @@ Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted (what is finished i
 go with every command. `TOFSMITH_TARGET` in the environment pins the instruction set, so that machines
 that differ give the same bits.
 
-{section_of(tool, 2, tool.footer)}
+{section_of(tool, 2)}
 ```{{toctree}}
 :hidden:
 
@@ -107,8 +105,7 @@ def write_pages(tool: str, folder: Path) -> list[str]:
     pages = [command for command in rest if len(command.words) == 1]
     for page in pages:
         below = [command for command in rest if command.words[0] == page.words[0]][1:]
-        text = "\n".join([section_of(page, 1, first.footer),
-                          *(section_of(command, 2, first.footer) for command in below)])
+        text = "\n".join([section_of(page, 1), *(section_of(command, 2) for command in below)])
         (folder / f"{page.words[0]}.md").write_text(text)
     (folder / "index.md").write_text(front_page(first, pages))
     return [page.words[0] for page in pages]
