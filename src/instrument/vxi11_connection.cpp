@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/instrument/instrument_connection.hpp"
 
 #ifdef TOFSMITH_HAS_LXI
 #include <csignal>
@@ -37,12 +38,26 @@ class WithoutBrokenPipeSignal {
   void (*before_)(int);
 };
 
+/// Whether something listens where VXI-11 asks for its service first. liblxi must not be asked
+/// where nothing does: it may wait for its own thread for ever when that gives up just at the
+/// deadline.
+bool port_mapper_answers(const std::string& host, double deadline_s) {
+  constexpr int port_mapper = 111;
+  try {
+    connect_instrument({InstrumentAddress::Protocol::raw_socket, host, port_mapper}, deadline_s);
+    return true;
+  } catch (const IoError&) {
+    return false;
+  }
+}
+
 class Vxi11Connection : public InstrumentConnection {
  public:
   Vxi11Connection(const InstrumentAddress& address, double deadline_s) : name_(address.text()) {
     lxi_init();
     const WithoutBrokenPipeSignal guard;
-    device_ = lxi_connect(address.host.c_str(), 0, nullptr, milliseconds(deadline_s), VXI11);
+    if (port_mapper_answers(address.host, deadline_s))
+      device_ = lxi_connect(address.host.c_str(), 0, nullptr, milliseconds(deadline_s), VXI11);
     if (device_ < 0)
       throw IoError(name_, fmt::format("no instrument answers VXI-11 within {:g} s; check its "
                                        "address and that its VXI-11 (LXI) service is on",
