@@ -67,14 +67,8 @@ void check_is_of_one_scene(const SimulateArguments& arguments) {
       throw UsageError(fmt::format("{}: needs a folder, a list (.txt) or several scenes", option));
 }
 
-void run(SimulateArguments& arguments, Session& session) {
-  if (are_many_scenes(arguments.scenes)) return simulate_set(arguments, session);
-  check_is_of_one_scene(arguments);
-  arguments.scene.scene = arguments.scenes.front();
-  const Camera camera = arguments.camera.load();
-  const CodeSet code = load_played_code(arguments.code, camera, arguments.taps);
-  const LoadedScene scene = load_scene(arguments.scene, camera);
-  const SceneLight light = arguments.returns.load(scene, camera);
+/// Before the work: no output is an input, or there already.
+void check_outputs(const SimulateArguments& arguments, const Session& session) {
   std::vector<std::string> inputs = arguments.returns.inputs();
   inputs.insert(inputs.end(),
                 {arguments.scene.scene, arguments.scene.image, arguments.scene.ambient_image,
@@ -84,6 +78,17 @@ void run(SimulateArguments& arguments, Session& session) {
   session.check_output(arguments.output);
   for (const std::string& truth : {arguments.truth, arguments.returns.truth()})
     if (!truth.empty()) session.check_output(truth);
+}
+
+void run(SimulateArguments& arguments, Session& session) {
+  if (are_many_scenes(arguments.scenes)) return simulate_set(arguments, session);
+  check_is_of_one_scene(arguments);
+  arguments.scene.scene = arguments.scenes.front();
+  const Camera camera = arguments.camera.load();
+  const CodeSet code = load_played_code(arguments.code, camera, arguments.taps);
+  check_outputs(arguments, session);
+  const LoadedScene scene = load_scene(arguments.scene, camera);
+  const SceneLight light = arguments.returns.load(scene, camera);
   const OperatingPoint middle = camera.operating.middle();
   arguments.options.signal_e_per_s = arguments.signal_e_per_s.value_or(middle.signal_e_per_s);
   arguments.options.ambient_e_per_s = arguments.ambient_e_per_s.value_or(middle.ambient_e_per_s);

@@ -45,10 +45,14 @@ KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
 }
 
 /// Why the winner won. A table, whose cells are set as they are: the names in them are users'.
-Table explanation(const DesignResult& result) {
+Table explanation(const DesignResult& result, DepthErrorKind kind) {
   constexpr std::array questions = {"What does it beat?", "Why so many exposures?",
                                     "What limits it?", "And behind second returns?"};
   Table table{.caption = "Why this code.", .columns = {{"question"}, {"answer"}}};
+  if (kind == DepthErrorKind::linear)
+    table.caption +=
+        " Every code is judged at its best origin of depth; evaluate takes it as it is, "
+        "or moves it with --best-rotation.";
   for (std::size_t i = 0; i < std::min(questions.size(), result.explanation.size()); ++i)
     table.rows.push_back({questions[i], result.explanation[i]});
   return table;
@@ -141,7 +145,7 @@ Page design_report(const Camera& camera, const DesignResult& result,
                 camera.operating.error == DepthErrorKind::linear ? "linear" : "circular"),
             .footer = fmt::format("tofsmith {}, seed {}", TOFSMITH_VERSION, winner.error.seed)};
   Section first{"Result", {headline(result, camera.operating.error)}};
-  first.blocks.push_back(explanation(result));
+  first.blocks.push_back(explanation(result, camera.operating.error));
   page.sections.push_back(std::move(first));
   page.sections.push_back({"Camera", {camera_description(camera)}});
 
