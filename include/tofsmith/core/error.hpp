@@ -76,12 +76,12 @@ std::string nearest_word(std::string_view word, const Range& known) {
 }  // namespace tofsmith
 
 /// Our own bug, not the user's: aborts and prints both operands.
-#define TOFSMITH_ASSERT_OP(a, op, b)                                              \
-  do {                                                                            \
-    if (!((a)op(b)))                                                              \
+#define TOFSMITH_ASSERT_OP(a, op, b)                                                   \
+  do {                                                                                 \
+    if (!((a)op(b)))                                                                   \
       ::tofsmith::detail::assertion_failed(#a " " #op " " #b, __FILE_NAME__, __LINE__, \
-                                           ::tofsmith::detail::describe(a),       \
-                                           ::tofsmith::detail::describe(b));      \
+                                           ::tofsmith::detail::describe(a),            \
+                                           ::tofsmith::detail::describe(b));           \
   } while (false)
 #define TOFSMITH_ASSERT_EQ(a, b) TOFSMITH_ASSERT_OP(a, ==, b)
 #define TOFSMITH_ASSERT_LT(a, b) TOFSMITH_ASSERT_OP(a, <, b)
