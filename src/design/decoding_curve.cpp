@@ -8,12 +8,8 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int widest_vector = 16;
-
 /// Whole vectors for N + 1 points, and one more for what reads a point ahead.
-int padded_stride(int samples) {
-  return (samples + 1 + widest_vector - 1) / widest_vector * widest_vector + widest_vector;
-}
+int padded_stride(int samples) { return whole_vectors(samples + 1) + widest_vector; }
 
 /// g_i of DecodingCurve.
 Eigen::VectorXd relative_exposure(const SampledCamera& camera) {

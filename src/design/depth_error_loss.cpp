@@ -103,16 +103,17 @@ void DepthErrorLoss::pull_back_reading(const OperatingPoint& point, const double
   }
 }
 
-SoftTwoReturnDecoder& DepthErrorLoss::two_return_decoder(const TwoReturnGrid& grid) {
+SoftTwoReturnDecoder* DepthErrorLoss::two_return_decoder(const TrialBatch& batch) {
+  if (!batch.two_returns) return nullptr;
+  const TwoReturnGrid& grid = *batch.two_returns;
   if (!two_returns_) two_returns_.emplace(curve_, table_.samples() / grid.bins, grid.delays);
-  return *two_returns_;
+  return &*two_returns_;
 }
 
 double DepthErrorLoss::sum_errors(const OperatingPoint& point, const TrialBatch& batch,
                                   double sharpness, double weight, bool with_gradient) {
   const double per_trial = 1.0 / static_cast<double>(batch.trials.size());
-  SoftTwoReturnDecoder* const pairs =
-      batch.two_returns ? &two_return_decoder(*batch.two_returns) : nullptr;
+  SoftTwoReturnDecoder* const pairs = two_return_decoder(batch);
   double sum = 0.0;
   for (std::size_t t = 0; t < batch.trials.size(); ++t) {
     read(point, batch, t);
@@ -148,8 +149,7 @@ double DepthErrorLoss::soft_error(const OperatingPoint& point, const TrialBatch&
 
 void DepthErrorLoss::decode(const OperatingPoint& point, const TrialBatch& batch,
                             std::vector<double>& decoded_bin) {
-  SoftTwoReturnDecoder* const pairs =
-      batch.two_returns ? &two_return_decoder(*batch.two_returns) : nullptr;
+  SoftTwoReturnDecoder* const pairs = two_return_decoder(batch);
   decoded_bin.resize(batch.trials.size());
   for (std::size_t t = 0; t < batch.trials.size(); ++t) {
     read(point, batch, t);

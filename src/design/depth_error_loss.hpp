@@ -59,8 +59,8 @@ class DepthErrorLoss {
   Place place_at(double depth_periods, double signal_e_per_s) const;
   void read(const OperatingPoint& point, const TrialBatch& batch, std::size_t trial);
   void pull_back_reading(const OperatingPoint& point, const double* normals, double weight);
-  /// Decodes batches of trials with two returns; made when first needed.
-  SoftTwoReturnDecoder& two_return_decoder(const TwoReturnGrid& grid);
+  /// What decodes a batch as two returns, made when first needed; null: it is decoded as one.
+  SoftTwoReturnDecoder* two_return_decoder(const TrialBatch& batch);
   double sum_errors(const OperatingPoint& point, const TrialBatch& batch, double sharpness,
                     double weight, bool with_gradient);
 

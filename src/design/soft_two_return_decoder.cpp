@@ -135,8 +135,6 @@ HWY_EXPORT(differentiate_all_pairs);
 
 namespace {
 
-constexpr int widest_vector = 16;
-
 Eigen::MatrixXf points_on_grid(const DecodingCurve& curve, int step) {
   Eigen::MatrixXf points(curve.samples / step, curve.measurements);
   for (Eigen::Index j = 0; j < points.rows(); ++j)
@@ -153,9 +151,7 @@ void repeat(const Eigen::VectorXf& values, AlignedFloats& twice) {
 }  // namespace
 
 SoftTwoReturnDecoder::Pairs::Pairs(int bin_count, DelayBins delay_bins)
-    : bins(bin_count),
-      delays(delay_bins),
-      stride((bin_count + widest_vector - 1) / widest_vector * widest_vector) {
+    : bins(bin_count), delays(delay_bins), stride(whole_vectors(bin_count)) {
   const auto one = static_cast<std::size_t>(stride);
   const std::size_t all = one * static_cast<std::size_t>(delays.longest - delays.shortest + 1);
   for (AlignedFloats* values : {&squares, &match, &by_match, &by_squares})
@@ -192,7 +188,8 @@ double SoftTwoReturnDecoder::decode(const float* electrons) {
   return static_cast<double>((best - pairs_.score.begin()) % pairs_.stride) * step_;
 }
 
-double SoftTwoReturnDecoder::expected_error(const float* electrons, const SoftQuestion& question) {
+SoftTwoReturnDecoder::Shares SoftTwoReturnDecoder::weigh(const float* electrons,
+                                                         const SoftQuestion& question) {
   set_match(electrons);
   const float largest = HWY_DYNAMIC_DISPATCH(score_all_pairs)(pairs_);
   HWY_DYNAMIC_DISPATCH(weigh_all_pairs)(static_cast<float>(question.sharpness), largest, pairs_);
@@ -206,15 +203,19 @@ double SoftTwoReturnDecoder::expected_error(const float* electrons, const SoftQu
     total += pairs_.row[bin];
     error_total += pairs_.row[bin] * error;
   }
-  for (float& row : pairs_.row) row = static_cast<float>(question.sharpness / total);
-  return error_total / total;
+  return {total, error_total / total};
+}
+
+double SoftTwoReturnDecoder::expected_error(const float* electrons, const SoftQuestion& question) {
+  return weigh(electrons, question).expected_error;
 }
 
 double SoftTwoReturnDecoder::expected_error(const float* electrons, const SoftQuestion& question,
                                             float weight, float* by_electrons) {
-  const double expected = expected_error(electrons, question);
+  const auto [total, expected] = weigh(electrons, question);
+  const auto by_share = static_cast<float>(question.sharpness / total);
   for (std::size_t j = 0; j < pairs_.row.size(); ++j)
-    pairs_.row[j] *= pairs_.error[j] - static_cast<float>(expected);
+    pairs_.row[j] = by_share * (pairs_.error[j] - static_cast<float>(expected));
   HWY_DYNAMIC_DISPATCH(differentiate_all_pairs)(weight, pairs_);
   const Eigen::Map<const Eigen::VectorXf> twice(pairs_.by_match.data(), 2 * pairs_.bins);
   const Eigen::VectorXf by_match = twice.head(pairs_.bins) + twice.tail(pairs_.bins);

@@ -54,7 +54,14 @@ class SoftTwoReturnDecoder {
   };
 
  private:
+  struct Shares {
+    double total;           ///< of pairs_.row, unnormalized
+    double expected_error;  ///< [bins of the curve]
+  };
+
   void set_match(const float* electrons);
+  /// Shares of all pairs, and the errors they stand for.
+  Shares weigh(const float* electrons, const SoftQuestion& question);
 
   int step_, curve_stride_;
   Eigen::MatrixXf points_;  ///< (bins, R)

@@ -46,6 +46,14 @@ TrialBatch trials_for(const Setting& setting, int count, bool ends_matter = fals
                      later ? &second : nullptr);
 }
 
+/// The batch with trial t and no other.
+TrialBatch only(TrialBatch batch, std::size_t t) {
+  const double* normals = batch.normals_of(t);
+  batch.normals = std::vector<double>(normals, normals + batch.measurements);
+  batch.trials = {batch.trials[t]};
+  return batch;
+}
+
 const std::vector<Setting>& settings() {
   static const std::vector<Setting> all = {Setting(), Setting(2),
                                            Setting(2, Readout::difference, 0.8), Setting(3)};
@@ -80,9 +88,7 @@ TEST(DepthErrorLoss, DecodesToTheBestPointBesideTheBestBin) {
     std::vector<double> decoded;
     loss.decode(setting.point, batch, decoded);
     for (std::size_t t = 0; t < decoded.size(); ++t) {
-      TrialBatch one = batch;
-      one.trials = {batch.trials[t]};
-      one.normals.assign(batch.normals_of(t), batch.normals_of(t) + batch.measurements);
+      const TrialBatch one = only(batch, t);
       double expected = 0.0;
       reference_soft_error(camera, table, setting.point, one, 1.0, true, &expected);
       EXPECT_NEAR(decoded[t], expected, 1e-3);
@@ -185,9 +191,7 @@ TEST(TwoReturnLoss, DecodesToTheFirstOfTheBestPair) {
     std::vector<double> decoded;
     loss.decode(setting.point, batch, decoded);
     for (std::size_t t = 0; t < decoded.size(); ++t) {
-      TrialBatch one = batch;
-      one.trials = {batch.trials[t]};
-      one.normals.assign(batch.normals_of(t), batch.normals_of(t) + batch.measurements);
+      const TrialBatch one = only(batch, t);
       double expected = 0.0;
       reference_two_return_error(camera, table, setting.point, one, 1.0, &expected);
       EXPECT_EQ(decoded[t], expected) << t;

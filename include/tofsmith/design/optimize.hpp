@@ -40,7 +40,7 @@ struct OptimizeOptions {
   /// where pairs of returns are looked for on the bins of a grid. It keeps pairs from looking like
   /// others, so that two returns can be decoded; >= 0.
   double two_return_weight = 0.02;
-  /// On such cameras: two-return decoding of a code may err this many times as
+  /// On cameras with operating.multipath: two-return decoding of a code may err this many times as
   /// much as it does of the best code given that can be decoded so, if there is one; what errs more
   /// counts as so many times worse in the final choice, up to 1.25 times; >= 1.
   double most_two_return_loss = 3.0;
