@@ -6,35 +6,10 @@ import unittest
 
 import numpy as np
 
-from command_line import CommandLineTest
-
-RANGE_M = 299792458 / 2 / 15e6
-CAMERA = """fundamental_frequency_hz = 15e6
-exposure_s = 0.004
-samples = 60
-[light]
-impulse_response = { kind = "hann", f_max_hz = 75e6 }
-[sensor]
-impulse_response = { kind = "hann", f_max_hz = 75e6 }
-read_noise_e = 30
-adc_bits = 12
-gain_e_per_dn = 8
-black_level_dn = 100
-[operating]
-signal_e_per_s = [1e6]
-ambient_e_per_s = [1e5]
-"""
+from bench_records import RANGE_M, BenchRecordsTest
 
 
-class Calibrate(CommandLineTest):
-    def record(self, sigma_ns=1.5):
-        """A Gaussian pulse as a scope with German settings writes it."""
-        t = np.arange(400) * 0.1
-        rng = np.random.default_rng(1)
-        v = np.exp(-((t - 20) / sigma_ns) ** 2 / 2) + 0.01 * rng.standard_normal(t.size)
-        rows = "".join(f"{a:.2f};{b:.6f}\n".replace(".", ",") for a, b in zip(t, v))
-        return self.write("scope.csv", "Scope;4711\nTime (ns);Volt\n" + rows)
-
+class Calibrate(BenchRecordsTest):
     def test_a_response_becomes_a_camera(self):
         self.record()
         document = self.do_json("calibrate", "impulse-response", "scope.csv")
@@ -67,22 +42,6 @@ class Calibrate(CommandLineTest):
         self.refuse(["calibrate"], "subcommand", code=2)
         self.refuse(["calibrate", "noise", "--darkk", "x"], "did you mean --dark?", code=2)
 
-    def sweep(self):
-        """A flat target at 61 delays, seen by 6 x 6 pixels."""
-        self.write("camera.toml", CAMERA)
-        frames = []
-        for i in range(61):
-            depth = np.full((6, 6), RANGE_M * ((i % 60) / 60 or 1), np.float32)
-            np.save(self.path("scene.npy"), depth)
-            self.do("simulate", "scene.npy", "--kind", "radial", "--code", "hamiltonian-k4",
-                    "--no-falloff", "--camera", "camera.toml", "--signal", "3e7", "--ambient", "0",
-                    "--seed", str(i), "-o", "raw.npy", "--force")
-            frames.append(np.load(self.path("raw.npy")))
-        frames = np.stack(frames)
-        frames[:, 2, 3, :] = 7
-        np.save(self.path("sweep.npy"), frames)
-        np.savetxt(self.path("shifts.txt"), np.arange(61))
-
     def test_a_sweep_becomes_table_maps_and_camera(self):
         self.sweep()
         arguments = ["calibrate", "correlation", "sweep.npy", "--shifts", "shifts.txt",
@@ -110,15 +69,7 @@ class Calibrate(CommandLineTest):
                      "--shift-unit", "bin", "--camera", "camera.toml"], "whole period", "missing")
 
     def test_pairs_of_frames_become_noise(self):
-        self.write("camera.toml", CAMERA)
-        np.save(self.path("scene.npy"), np.full((32, 32), 2.0, np.float32))
-
-        def frames(ambient, name, seed):
-            self.do("simulate", "scene.npy", "--kind", "radial", "--code", "sinusoid-k4",
-                    "--camera", "camera.toml", "--signal", "0", "--ambient", ambient, "--frames",
-                    "2", "--seed", seed, "-o", name)
-        for i, ambient in enumerate(("0", "4e6", "1e7", "2e7")):
-            frames(ambient, f"{i}.npy", str(i))
+        self.flat_frames()
         command = ["calibrate", "noise", "1.npy", "2.npy", "3.npy", "--camera", "camera.toml"]
         found = self.do_json(*command, "--dark", "0.npy", "-o", "noisy.toml", "--report", "p.html")
         for key, truth in (("gain_e_per_dn", 8), ("read_noise_e", 30), ("black_level_dn", 100)):

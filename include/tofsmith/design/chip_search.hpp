@@ -24,7 +24,7 @@ struct ChipSearchOptions {
   /// One of three taps of equal duty in one exposure counts 1, another 20, for the time it takes.
   double largest_exhaustive = 3e11;
   int finalists = 4;                     ///< best codes by the metric to keep, 1 .. 100
-  int annealing_starts = 24;             ///< 0 .. 10000
+  int annealing_starts = 24;             ///< where not all codes are searched; 0 .. 10000
   std::int64_t annealing_steps = 20000;  ///< per start, >= 1
   std::int64_t trials = 0;               ///< Monte Carlo trials per point and finalist; 0 = none
   std::uint64_t seed = 1;                ///< of annealing and trials

@@ -1,0 +1,59 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a bench records of a camera, simulated, for tests of calibrations."""
+
+import numpy as np
+
+from command_line import CommandLineTest
+
+RANGE_M = 299792458 / 2 / 15e6
+CAMERA = """fundamental_frequency_hz = 15e6
+exposure_s = 0.004
+samples = 60
+[light]
+impulse_response = { kind = "hann", f_max_hz = 75e6 }
+[sensor]
+impulse_response = { kind = "hann", f_max_hz = 75e6 }
+read_noise_e = 30
+adc_bits = 12
+gain_e_per_dn = 8
+black_level_dn = 100
+[operating]
+signal_e_per_s = [1e6]
+ambient_e_per_s = [1e5]
+"""
+
+
+class BenchRecordsTest(CommandLineTest):
+    def record(self, sigma_ns=1.5):
+        """A Gaussian pulse as a scope with German settings writes it."""
+        t = np.arange(400) * 0.1
+        rng = np.random.default_rng(1)
+        v = np.exp(-((t - 20) / sigma_ns) ** 2 / 2) + 0.01 * rng.standard_normal(t.size)
+        rows = "".join(f"{a:.2f};{b:.6f}\n".replace(".", ",") for a, b in zip(t, v))
+        return self.write("scope.csv", "Scope;4711\nTime (ns);Volt\n" + rows)
+
+    def sweep(self):
+        """A flat target at 61 delays, seen by 6 x 6 pixels."""
+        self.write("camera.toml", CAMERA)
+        frames = []
+        for i in range(61):
+            depth = np.full((6, 6), RANGE_M * ((i % 60) / 60 or 1), np.float32)
+            np.save(self.path("scene.npy"), depth)
+            self.do("simulate", "scene.npy", "--kind", "radial", "--code", "hamiltonian-k4",
+                    "--no-falloff", "--camera", "camera.toml", "--signal", "3e7", "--ambient", "0",
+                    "--seed", str(i), "-o", "raw.npy", "--force")
+            frames.append(np.load(self.path("raw.npy")))
+        frames = np.stack(frames)
+        frames[:, 2, 3, :] = 7
+        np.save(self.path("sweep.npy"), frames)
+        np.savetxt(self.path("shifts.txt"), np.arange(61))
+
+    def flat_frames(self):
+        """0.npy .. 3.npy: pairs of frames of a flat target, dark, and by more and more light."""
+        self.write("camera.toml", CAMERA)
+        np.save(self.path("scene.npy"), np.full((32, 32), 2.0, np.float32))
+        for i, ambient in enumerate(("0", "4e6", "1e7", "2e7")):
+            self.do("simulate", "scene.npy", "--kind", "radial", "--code", "sinusoid-k4",
+                    "--camera", "camera.toml", "--signal", "0", "--ambient", ambient, "--frames",
+                    "2", "--seed", str(i), "-o", f"{i}.npy")

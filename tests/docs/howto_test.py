@@ -1,0 +1,148 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Every command of the how-to page runs as it stands there, with the files it names, and leaves what
+it says it writes. Only searches are made shorter.
+
+    howto_test.py TOFSMITH TESTS/APPS DOCS
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+APPS, DOCS = Path(sys.argv.pop(2)), Path(sys.argv.pop(2))
+sys.path.insert(0, str(APPS))
+
+import numpy as np  # noqa: E402
+
+from bench_records import CAMERA, RANGE_M, BenchRecordsTest  # noqa: E402
+from command_line import TOOL  # noqa: E402
+from sweep_text import sweep_text  # noqa: E402
+
+FEWER = {"design": "--effort 0.05 --trials 1000", "reproduce": "--fast"}
+SMALL = "--width 32 --height 24"
+DUMP = """width = 32
+height = 24
+measurements = 4
+bits = 16
+layout = "interleaved"
+"""
+
+
+def commands_of(page):
+    """The commands of the tables, in order."""
+    rows = re.findall(r"^\|[^|]*\|([^|]*)\|", (DOCS / page).read_text(), re.M)
+    return [command for row in rows for command in re.findall(r"`([^`]+)`", row)]
+
+
+def shortened(command):
+    words = command.split()
+    more = FEWER.get(words[words.index("tofsmith") + 1], "") if "tofsmith" in words else ""
+    return f"{command} {more}".strip()
+
+
+class HowTo(BenchRecordsTest):
+    """A file is made for the commands that name it, `name.ext` by make_name_ext."""
+
+    def shell(self, command):
+        # Tests may be root, and there may be fewer cores than ranks; MPI's own leaks are not ours.
+        options = os.environ.get("ASAN_OPTIONS", "")
+        environment = dict(os.environ, PATH=f"{os.path.dirname(TOOL)}:/usr/bin:/bin",
+                           OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                           OMPI_MCA_rmaps_base_oversubscribe="1",
+                           ASAN_OPTIONS=options + ":detect_leaks=0")
+        done = subprocess.run(["bash", "-ec", command], cwd=self.directory, env=environment,
+                              text=True, capture_output=True, timeout=200)
+        self.assertEqual(done.returncode, 0, f"{command}\n{done.stdout}\n{done.stderr}")
+        self.assertNotIn("warning", done.stderr, command)
+
+    def make_raw_npy(self, command):
+        """Measured with the code that the command decodes; a table is hamiltonian-k4's."""
+        code = re.search(r"--code (\S+)", command)[1]
+        code = "hamiltonian-k4" if "." in code else code
+        settings = " ".join(re.findall(r"--(?:camera|set) \S+", command))
+        self.shell(f"tofsmith simulate table-top {SMALL} --code {code} {settings} --signal 3e7 "
+                   "--ambient 1e5 -o raw.npy --force")
+
+    def make_night_npy(self, _):
+        self.shell(f"tofsmith simulate corner {SMALL} --code hamiltonian-k4 --frames 3 -o night.npy")
+
+    def make_dump_bin(self, command):
+        self.make_raw_npy(command)
+        np.load(self.path("raw.npy")).astype("<u2").tofile(self.path("dump.bin"))
+
+    def make_sensor_raw_toml(self, _):
+        self.write("sensor.raw.toml", DUMP)
+
+    def make_table_csv(self, _):
+        """Sawtooths, a third of a period apart."""
+        n = np.arange(60)[:, None] / 60 + np.arange(3) / 3
+        np.savetxt(self.path("table.csv"), n % 1, fmt="%.6f", delimiter=",")
+
+    def make_table_npz(self, _):
+        self.make_sweep_npy("")
+        self.shell("tofsmith calibrate correlation sweep.npy --shifts shifts.txt --shift-unit bin "
+                   "--camera mine.toml --table table.npz")
+
+    def make_fppn_npy(self, _):
+        np.save(self.path("fppn.npy"), np.full(np.load(self.path("raw.npy")).shape[:2], 0.02))
+
+    def make_scope_csv(self, _):
+        self.record()
+
+    def make_sweep_npy(self, _):
+        self.sweep()
+
+    def make_shifts_txt(self, _):
+        np.savetxt(self.path("shifts.txt"), np.arange(61) * RANGE_M / 60)
+
+    def make_dark_npy(self, _):
+        self.flat_frames()
+        os.rename(self.path("0.npy"), self.path("dark.npy"))
+        for i in (1, 2, 3):
+            os.rename(self.path(f"{i}.npy"), self.path(f"level{i}.npy"))
+
+    def make_captures(self, _):
+        os.mkdir(self.path("captures"))
+        for i in (1, 2):
+            np.save(self.path(f"captures/{i}.npy"), np.full((6, 8), 1.0 + i, np.float32))
+
+    def make_sweep_toml(self, _):
+        self.write("sweep.toml", sweep_text(200))
+
+    def make_designed(self, _):
+        self.shell("tofsmith design --method factorize --effort 0.05 --trials 1000 -o designed")
+
+    def prepare(self, command):
+        written = set(re.findall(r"(?:-o|--truth|--store|--export) (\S+)", command))
+        named = dict.fromkeys(word.rstrip("/") for word in command.split())
+        for word in [word for word in named if word not in written and "*" not in word]:
+            make = getattr(self, "make_" + re.sub(r"\W", "_", word), None)
+            if make:
+                make(command)
+            else:
+                file = re.fullmatch(r"[a-z]\S*\.(npy|npz|csv|bin|txt)", word)
+                self.assertIsNone(file, f"{command}: no test file for {word}")
+        return written
+
+    def test_every_command_runs(self):
+        commands = commands_of("howto.md")
+        self.assertGreater(len(commands), 25)
+        for command in commands:
+            if command.startswith("mpirun") and not shutil.which("mpirun"):
+                continue
+            with self.subTest(command):
+                self.setUp()
+                self.write("mine.toml", CAMERA)
+                written = self.prepare(command)
+                self.shell(shortened(command))
+                for name in written:
+                    self.assertTrue(os.path.exists(self.path(name)), f"{command}: no {name}")
+
+
+if __name__ == "__main__":
+    unittest.main()
