@@ -15,8 +15,8 @@ namespace tofsmith {
 
 namespace {
 
-constexpr double peak_factor = 15.0;
-constexpr double f_max_in_f0 = 10.0;
+constexpr double fig2_peak_factor = 15.0;
+constexpr double fig2_f_max_in_f0 = 10.0;
 const std::vector<std::string> families = {"hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5",
                                            "sinusoid-k4",    "square-k4",      "gray-k4"};
 
@@ -28,7 +28,7 @@ WaveformPair trivial_factorization(const CorrelationTarget& target) {
 
 /// What the peak limit leaves of it: the shortest pulse that may be played.
 WaveformPair trivial_within_peak(const CorrelationTarget& target) {
-  return {rectangular_pulse(1.0 / peak_factor), Waveform::sampled(target.samples)};
+  return {rectangular_pulse(1.0 / fig2_peak_factor), Waveform::sampled(target.samples)};
 }
 
 /// Largest residual of the trivial factorization over all targets of all families.
@@ -53,8 +53,8 @@ WaveformPair designed(const CorrelationTarget& target, const Camera& camera,
 
 Reproduction reproduce_fig2(const ReproduceContext& context, const Progress& progress) {
   Reproduction result;
-  const Camera unlimited = paper_camera(peak_factor, 0);
-  const Camera limited = paper_camera(peak_factor, f_max_in_f0);
+  const Camera unlimited = paper_camera(fig2_peak_factor, 0);
+  const Camera limited = paper_camera(fig2_peak_factor, fig2_f_max_in_f0);
   const LineStyle style = style_of_code("hamiltonian-k4");
 
   // 1. The target: a Hamiltonian correlation function, here K = 4, code 3.
@@ -88,16 +88,16 @@ Reproduction reproduce_fig2(const ReproduceContext& context, const Progress& pro
        fmt::format("Largest residual over the targets of {} families: {:.1e} rms.", families.size(),
                    trivial_worst),
        ""},
-      {trivial_peak > peak_factor ? Verdict::holds : Verdict::fails,
+      {trivial_peak > fig2_peak_factor ? Verdict::holds : Verdict::fails,
        "The trivial factorization breaks the peak limit.",
        fmt::format("An impulse of unit mean power on N = {} samples has peak {:g}, {:.0f} times "
                    "p = {:g}. With the strongest pulse that p allows instead, the residual is "
                    "{:.3f} rms.",
-                   chi.size(), trivial_peak, trivial_peak / peak_factor, peak_factor,
+                   chi.size(), trivial_peak, trivial_peak / fig2_peak_factor, fig2_peak_factor,
                    clipped_residual),
        "The peak grows with N: in continuous time it has no bound. The demodulation is not binary "
        "either."},
-      {std::max(free.modulation.peak(), input.modulation.peak()) <= peak_factor + 1e-9 &&
+      {std::max(free.modulation.peak(), input.modulation.peak()) <= fig2_peak_factor + 1e-9 &&
                free_residual < clipped_residual && input_residual < 0.25 * variation &&
                input.modulation.is_binary() && input.demodulation.is_binary()
            ? Verdict::holds
@@ -106,7 +106,7 @@ Reproduction reproduce_fig2(const ReproduceContext& context, const Progress& pro
        fmt::format("Peak {:.3g}, residual {} rms without a band limit; peak {:.3g}, residual "
                    "{:.4f} rms ({:.0f} % of the target's variation) at {:g} f0. Both binary: {}.",
                    free.modulation.peak(), rms_text(free_residual), input.modulation.peak(),
-                   input_residual, 100 * input_residual / variation, f_max_in_f0,
+                   input_residual, 100 * input_residual / variation, fig2_f_max_in_f0,
                    input.modulation.is_binary() && input.demodulation.is_binary() ? "yes" : "no"),
        ""}};
   result.sections = {
@@ -129,10 +129,10 @@ Reproduction reproduce_fig2(const ReproduceContext& context, const Progress& pro
                  "{:g} f0 (problem 7, below). Thin: the input as told to the arms, binary. Thick: "
                  "the smoothed output that leaves them. Sharp corners of the target are lost "
                  "where the band ends.",
-                 peak_factor, f_max_in_f0)},
+                 fig2_peak_factor, fig2_f_max_in_f0)},
             waveform_columns(),
             {pair_row("no limit", free, unlimited, chi, style),
-             pair_row(fmt::format("{:g} f0", f_max_in_f0), input, limited, chi, style)}),
+             pair_row(fmt::format("{:g} f0", fig2_f_max_in_f0), input, limited, chi, style)}),
         Paragraph{"Rows of `pairs_*` in the data: trivial, no limit, 10 f0."}}}};
 
   // 5. The ablation of Sec. 5.1.

@@ -17,8 +17,8 @@ namespace tofsmith {
 
 namespace {
 
-constexpr double peak_factor = 15.0;
-constexpr double f_max_in_f0 = 10.0;
+constexpr double fig6_peak_factor = 15.0;
+constexpr double fig6_f_max_in_f0 = 10.0;
 constexpr int measurements = 5;
 
 /// Largest change from one of 480 points of a period to the next, over the waveform's peak: 1 for
@@ -69,7 +69,7 @@ DesignedCode design_code(const CorrelationTarget& target, const Camera& camera,
 
 Reproduction reproduce_fig6(const ReproduceContext& context, const Progress& progress) {
   Reproduction result;
-  const Camera camera = paper_camera(peak_factor, f_max_in_f0);
+  const Camera camera = paper_camera(fig6_peak_factor, fig6_f_max_in_f0);
   const TargetSet targets = ideal_targets("hamiltonian-k5", camera);
 
   // 1. All five correlation functions, factorized within the band limit.
@@ -138,7 +138,7 @@ Reproduction reproduce_fig6(const ReproduceContext& context, const Progress& pro
       {binary ? Verdict::holds : Verdict::fails, "The inputs are binary.",
        fmt::format("All {} pairs are {}; modulation at peak {:.3g}, the limit being {:g}.",
                    codes.size(), binary ? "switching times" : "not all switching times",
-                   codes[0].pair.modulation.peak(), peak_factor),
+                   codes[0].pair.modulation.peak(), fig6_peak_factor),
        ""},
       {steepest < 0.25 ? Verdict::holds : Verdict::fails,
        "The outputs, smoothed by the arms, are not.",

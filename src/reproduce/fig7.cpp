@@ -28,14 +28,14 @@ constexpr double skin_albedo = 0.6;
 constexpr double hand_m = 0.19;     // from the wrist to the tip of the middle finger
 constexpr double distance_m = 0.5;  // of the hand; where albedo 1 returns the stated signal
 constexpr double clearly = 1.1;     // a gain that counts
-constexpr double outlier_m = 0.1;   // half of the hand
+constexpr double fig7_outlier_m = 0.1;   // half of the hand
 const ValueRange shown_m = {0.35, 0.65};
 
 struct Limits {
   std::string name;
   double peak_factor, f_max_in_f0;
 };
-const std::vector<Limits> all_limits = {{"loose", 20, 20}, {"tight", 5, 5}};
+const std::vector<Limits> fig7_limits = {{"loose", 20, 20}, {"tight", 5, 5}};
 const std::vector<NamedLight> lights = {{"high", {1e6, 1e4}}, {"low", {3e4, 1e4}}};
 const std::vector<std::string> baselines = {"sinusoid-k4", "multifrequency-k5"};
 
@@ -140,7 +140,7 @@ CheckedStatement better_everywhere(const std::vector<Trial>& trials) {
       "code is off by {:.0f} mm in the median, and {:.1f} % of its pixels by more than {:g} m: "
       "not all of a hand's shape. Where in its range the hand lies matters, too; over all depths "
       "the three errors are",
-      worst_median_mm, 100 * worst_outliers, outlier_m);
+      worst_median_mm, 100 * worst_outliers, fig7_outlier_m);
   for (const Trial& trial : trials)
     finding.why += fmt::format("{} {:.1f}, {:.1f} and {:.1f} mm",
                                &trial == trials.data() ? "" : ";", 1e3 * trial.range_error_m[0],
@@ -219,7 +219,7 @@ Table error_table(const std::vector<Trial>& trials) {
   Table table{.id = "errors",
               .caption = fmt::format("Depth errors on the hand; outliers are off by more than {:g} "
                                      "m, half its length, or have no depth.",
-                                     outlier_m),
+                                     fig7_outlier_m),
               .columns = {{"limits"},
                           {"light"},
                           {"code"},
@@ -275,12 +275,12 @@ Reproduction reproduce_fig7(const ReproduceContext& context, const Progress& pro
   //    Coarse runs play the same codes: a poor design would be judged, not the redesign.
   ReproduceOptions design_options = context.options;
   design_options.fast = false;
-  std::vector<SceneResult> results(all_limits.size(), hand);
+  std::vector<SceneResult> results(fig7_limits.size(), hand);
   std::vector<Camera> cameras;
-  std::vector<std::vector<CodeSet>> codes(all_limits.size());
-  for (std::size_t i = 0; i < all_limits.size(); ++i) {
+  std::vector<std::vector<CodeSet>> codes(fig7_limits.size());
+  for (std::size_t i = 0; i < fig7_limits.size(); ++i) {
     const auto share = [&](double done) { return 0.5 * (static_cast<double>(i) + done); };
-    cameras.push_back(paper_camera(all_limits[i].peak_factor, all_limits[i].f_max_in_f0));
+    cameras.push_back(paper_camera(fig7_limits[i].peak_factor, fig7_limits[i].f_max_in_f0));
     codes[i].push_back(context.shelf.redesigned(4, cameras[i], design_options,
                                                 part_of(progress, share(0.0), share(0.8))));
     for (const std::string& name : baselines) codes[i].push_back(build_family(name, cameras[i]));
@@ -288,12 +288,12 @@ Reproduction reproduce_fig7(const ReproduceContext& context, const Progress& pro
                        part_of(progress, share(0.8), share(1.0)));
     for (SceneCapture& capture : results[i].captures)
       for (SceneDecoding& d : capture.decodings)
-        d.error = scene_error(d.depth_m, hand.truth, cameras[i], DepthErrorKind::linear, outlier_m);
+        d.error = scene_error(d.depth_m, hand.truth, cameras[i], DepthErrorKind::linear, fig7_outlier_m);
   }
   std::vector<Trial> trials;
   for (std::size_t i = 0; i < results.size(); ++i)
     for (const SceneCapture& capture : results[i].captures) {
-      trials.push_back({all_limits[i], cameras[i], capture});
+      trials.push_back({fig7_limits[i], cameras[i], capture});
       for (const CodeSet& code : codes[i])
         trials.back().range_error_m.push_back(
             error_over_the_range_m(code, cameras[i], capture.point, context.options.seed));
@@ -307,10 +307,10 @@ Reproduction reproduce_fig7(const ReproduceContext& context, const Progress& pro
   result.sections.push_back(setting(hand, trials));
   for (std::size_t i = 0; i < results.size(); ++i) {
     Section section{fmt::format("{} limits: p = {:g}, f_max = {:g} f0", i == 0 ? "Loose" : "Tight",
-                                all_limits[i].peak_factor, all_limits[i].f_max_in_f0),
-                    {depth_figure(hand, all_limits[i], results[i].captures)}};
+                                fig7_limits[i].peak_factor, fig7_limits[i].f_max_in_f0),
+                    {depth_figure(hand, fig7_limits[i], results[i].captures)}};
     for (const Trial& trial : trials)
-      if (&trial.limits == &all_limits[i]) section.blocks.push_back(error_figure(hand, trial));
+      if (&trial.limits == &fig7_limits[i]) section.blocks.push_back(error_figure(hand, trial));
     result.sections.push_back(std::move(section));
   }
   Section clouds{.title = "The hand in space, tight limits, high light"};
@@ -327,7 +327,7 @@ Reproduction reproduce_fig7(const ReproduceContext& context, const Progress& pro
   for (const Trial& trial : trials)
     for (const SceneDecoding& d : trial.capture.decodings) depths.push_back(d.depth_m);
   result.arrays["true_depth_m"] = stack({}, {hand.truth.depth_m});
-  result.arrays["depth_m"] = stack({all_limits.size(), lights.size(), 3}, depths);
+  result.arrays["depth_m"] = stack({fig7_limits.size(), lights.size(), 3}, depths);
   result.files["errors.csv"] = error_csv(trials);
   return result;
 }

@@ -14,8 +14,8 @@ namespace tofsmith {
 
 namespace {
 
-constexpr double peak_factor = 15;
-constexpr std::array<double, 2> limits_in_f0 = {10, 5};
+constexpr double fig8_peak_factor = 15;
+constexpr std::array<double, 2> fig8_limits_in_f0 = {10, 5};
 
 const std::string paper_code = "hamiltonian-k4-redesigned";
 // Quadrature at f0 and at 7 f0; with the second buckets 4 phases at each.
@@ -36,10 +36,10 @@ std::vector<Contender> contenders(const Camera& camera, const ReproduceContext& 
 
 ErrorSurfaceGroup measure(double f_max_in_f0, const ReproduceContext& context,
                           const Progress& progress) {
-  const Camera camera = with_light_levels(two_bucket_camera(peak_factor, f_max_in_f0), context);
-  ErrorSurfaceGroup group{fmt::format("p = {:g}, {:g} f0", peak_factor, f_max_in_f0), {}};
+  const Camera camera = with_light_levels(two_bucket_camera(fig8_peak_factor, f_max_in_f0), context);
+  ErrorSurfaceGroup group{fmt::format("p = {:g}, {:g} f0", fig8_peak_factor, f_max_in_f0), {}};
   const std::vector<Contender> list =
-      contenders(two_bucket_camera(peak_factor, f_max_in_f0), context);
+      contenders(two_bucket_camera(fig8_peak_factor, f_max_in_f0), context);
   const double steps = static_cast<double>(list.size()) + 1.0;
   double done = 0.0;
   for (const Contender& contender : list) {
@@ -48,7 +48,7 @@ ErrorSurfaceGroup measure(double f_max_in_f0, const ReproduceContext& context,
     done += 1.0;
   }
   // The same light and time with one tap: what the second bucket adds.
-  const Camera single = paper_camera(peak_factor, f_max_in_f0);
+  const Camera single = paper_camera(fig8_peak_factor, f_max_in_f0);
   group.surfaces.push_back(
       measure_surface({one_tap, context.shelf.redesigned(4, single, context.options)},
                       with_light_levels(single, context), surface_precision(context),
@@ -108,9 +108,9 @@ CheckedStatement second_bucket(const std::vector<ErrorSurfaceGroup>& panels) {
 Reproduction reproduce_fig8(const ReproduceContext& context, const Progress& progress) {
   // 1. All codes on both cameras.
   std::vector<ErrorSurfaceGroup> panels;
-  for (std::size_t i = 0; i < limits_in_f0.size(); ++i)
+  for (std::size_t i = 0; i < fig8_limits_in_f0.size(); ++i)
     panels.push_back(
-        measure(limits_in_f0[i], context,
+        measure(fig8_limits_in_f0[i], context,
                 part_of(progress, 0.5 * static_cast<double>(i), 0.5 * static_cast<double>(i + 1))));
 
   // 2. What the paper says.
@@ -135,7 +135,7 @@ Reproduction reproduce_fig8(const ReproduceContext& context, const Progress& pro
            "Hamiltonian ones (6 to 12 values), 4 for the dual-frequency sinusoid, 2 for the "
            "sinusoid. p = {:g}, read noise 20 e for every value, albedo 1, linear error at each "
            "code's best origin; the largest standard error is {:.1f} % of its value.",
-           peak_factor, 100 * worst)}}});
+           fig8_peak_factor, 100 * worst)}}});
   std::vector<std::string> names;
   for (const ErrorSurface& surface : panels.front().surfaces) names.push_back(surface.name);
   result.sections.push_back(
@@ -157,7 +157,7 @@ Reproduction reproduce_fig8(const ReproduceContext& context, const Progress& pro
                                   "code. Below 1 the baseline wins."},
                       ratios, panels.front().surfaces.front(), 2));
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    const std::string id = fmt::format("{:g}f0", limits_in_f0[i]);
+    const std::string id = fmt::format("{:g}f0", fig8_limits_in_f0[i]);
     result.sections.push_back(
         {panels[i].title,
          {surfaces_3d({.id = "surfaces-" + id,
@@ -179,7 +179,7 @@ Reproduction reproduce_fig8(const ReproduceContext& context, const Progress& pro
 
   // 4. The numbers.
   for (std::size_t i = 0; i < panels.size(); ++i)
-    add_arrays(result.arrays, fmt::format("{:g}f0", limits_in_f0[i]), panels[i]);
+    add_arrays(result.arrays, fmt::format("{:g}f0", fig8_limits_in_f0[i]), panels[i]);
   result.files["surfaces.csv"] = surfaces_csv(panels);
   return result;
 }

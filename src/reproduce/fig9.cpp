@@ -20,7 +20,7 @@ namespace tofsmith {
 namespace {
 
 constexpr std::array optical_densities = {1.0, 2.0, 3.0};
-constexpr double ambient_e_per_s = 1e3;
+constexpr double fig9_ambient_e_per_s = 1e3;
 
 /// One code's depth errors behind every filter.
 struct Measured {
@@ -40,7 +40,7 @@ Measured measure(const CodeSet& code, const Camera& camera, const ReproduceConte
   Measured measured{.code = code};
   for (const double density : optical_densities) {
     const OperatingPoint unfiltered = {prototype_settings().front().signal_at_od0_e_per_s,
-                                       ambient_e_per_s};
+                                       fig9_ambient_e_per_s};
     measured.by_density.push_back(emulate_range(code, camera,
                                                 {.target_m = 0.7,
                                                  .shifts = context.pick(20, 5),
@@ -195,7 +195,7 @@ Reproduction reproduce_fig9(const ReproduceContext& context, const Progress& pro
             "estimates each; S = 1e5, 1e4 and 1e3 e/s behind O.D. 1, 2 and 3, "
             "ambient {:g} e/s; zero-mean correlation with sub-bin refinement; N = "
             "{}.",
-            context.pick(20, 5), context.pick(300, 30), ambient_e_per_s, camera.samples)},
+            context.pick(20, 5), context.pick(300, 30), fig9_ambient_e_per_s, camera.samples)},
         camera_description(camera)}}};
   return result;
 }

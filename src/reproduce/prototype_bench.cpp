@@ -15,7 +15,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr double ambient_e_per_s = 1e3;
+constexpr double bench_ambient_e_per_s = 1e3;
 
 // Ten times the power of Table 1's first line as we have it: behind O.D. 3, 1 mW leaves no code
 // anything to measure at 1 m and beyond.
@@ -49,7 +49,7 @@ const std::vector<double>& PrototypeBench::optical_densities() {
 
 OperatingPoint PrototypeBench::light(double optical_density) {
   return attenuated(
-      {setting().signal_at_od0_e_per_s * setting().average_source_power_mw, ambient_e_per_s},
+      {setting().signal_at_od0_e_per_s * setting().average_source_power_mw, bench_ambient_e_per_s},
       optical_density);
 }
 
@@ -77,7 +77,7 @@ Section PrototypeBench::section(const std::string& scan) const {
                  fmt::format("S = {}, {}, {} e/s", level_text(light(1.0).signal_e_per_s),
                              level_text(light(2.0).signal_e_per_s),
                              level_text(light(3.0).signal_e_per_s))},
-                {"ambient light", fmt::format("A = {} e/s", level_text(ambient_e_per_s))},
+                {"ambient light", fmt::format("A = {} e/s", level_text(bench_ambient_e_per_s))},
                 {"generators", "500 MS/s, 14 bits, 150 MHz, one on each arm"},
                 {"exposure", "300 ms per estimate in all; read noise 20 e per measurement"}}},
            std::move(played)}};

@@ -16,7 +16,7 @@ namespace tofsmith {
 namespace {
 
 const std::vector<int> phase_steps = {3, 4, 5, 6, 7, 8};
-constexpr double ambient_e_per_s = 1e4;
+constexpr double sinusoid_ambient_e_per_s = 1e4;
 
 /// Circular depth error of sinusoids of every K, at one light level and read noise.
 struct Curve {
@@ -41,7 +41,7 @@ Curve evaluate_all(double signal_e_per_s, double read_noise_e, const ReproduceCo
   Camera camera = paper_camera(30, 0);
   camera.sensor.read_noise_e = read_noise_e;
   camera.operating.signal_e_per_s = {signal_e_per_s};
-  camera.operating.ambient_e_per_s = {ambient_e_per_s};
+  camera.operating.ambient_e_per_s = {sinusoid_ambient_e_per_s};
   Curve curve{signal_e_per_s, read_noise_e, {}, {}, {}};
   for (const int steps : phase_steps) {
     const DepthErrorReport found =
@@ -79,7 +79,7 @@ void add_sinusoids_of_any_k(Reproduction& result, const ReproduceContext& contex
       drawn.x.push_back(phase_steps[i]);
       drawn.y.push_back(curve.mde_m[i] / curve.mde_m[0]);
       drawn.y_error.push_back(curve.standard_error_m[i] / curve.mde_m[0]);
-      rows.push_back({curve.signal_e_per_s, ambient_e_per_s, curve.read_noise_e,
+      rows.push_back({curve.signal_e_per_s, sinusoid_ambient_e_per_s, curve.read_noise_e,
                       static_cast<double>(phase_steps[i]), curve.mde_m[i],
                       curve.standard_error_m[i], curve.cramer_rao_m[i]});
     }
@@ -118,7 +118,7 @@ void add_sinusoids_of_any_k(Reproduction& result, const ReproduceContext& contex
                          "gives, with T = 300 ms in all, A = 1e{:.0f} e/s, and standard errors. "
                          "Flat without "
                          "read noise, rising with it, the more so the less light there is.",
-                         std::log10(ambient_e_per_s))},
+                         std::log10(sinusoid_ambient_e_per_s))},
                     series, {.label = "measurements K", .unit = ""},
                     {.label = "mean depth error / that of K = 3", .unit = ""})}});
   result.files["sinusoids.csv"] =
