@@ -4,13 +4,10 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <numbers>
 
 namespace tofsmith {
 
 namespace {
-
-constexpr double turn = 2 * std::numbers::pi;
 
 Eigen::MatrixXd basis_at(const std::vector<double>& places, int harmonics) {
   Eigen::MatrixXd basis(static_cast<Eigen::Index>(places.size()), 2 * harmonics + 1);

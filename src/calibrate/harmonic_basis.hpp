@@ -3,9 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <numbers>
 #include <vector>
 
 namespace tofsmith {
+
+inline constexpr double turn = 2 * std::numbers::pi;  ///< radians
 
 /// Curves y(u) = c_0 + 2 Re sum_n c_n exp(2 pi i n u) through values at given places u.
 class HarmonicBasis {

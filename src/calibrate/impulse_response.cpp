@@ -32,7 +32,7 @@ Eigen::VectorXd moving_average(const Eigen::VectorXd& x, Index width) {
   return result;
 }
 
-double median_of(const Eigen::VectorXd& x) {
+double median_of_all(const Eigen::VectorXd& x) {
   return tofsmith::median_of(std::vector<double>(x.begin(), x.end()));
 }
 
@@ -54,7 +54,7 @@ void unroll(CalibratedResponse& result, Eigen::VectorXd& values) {
   Index peak = 0;
   values.maxCoeff(&peak);
   const Index count = values.size(), edge = std::max<Index>(2, count / 50);
-  const double middle = median_of(values), half = middle + 0.05 * (values[peak] - middle);
+  const double middle = median_of_all(values), half = middle + 0.05 * (values[peak] - middle);
   const bool wraps =
       (peak < edge && values.tail(edge).maxCoeff() > half && values[count - 1] > half) ||
       (peak >= count - edge && values[0] > half);
@@ -78,7 +78,7 @@ struct Place {
 /// From the points at which a smoothed pulse passes half its height.
 Place place_of_pulse(const Eigen::VectorXd& values) {
   Place place;
-  const double middle = median_of(values);
+  const double middle = median_of_all(values);
   const double peak = values.maxCoeff(&place.centre), half = middle + 0.5 * (peak - middle);
   Index first = place.centre, last = place.centre;
   while (first > 0 && values[first - 1] > half) --first;
@@ -90,7 +90,7 @@ Place place_of_pulse(const Eigen::VectorXd& values) {
 /// From the points at which a smoothed step passes 10 %, 50 % and 90 %: the width of a Gaussian.
 Place place_of_step(const Eigen::VectorXd& values) {
   const Index tenth = std::max<Index>(1, values.size() / 10);
-  const double base = median_of(values.head(tenth)), top = median_of(values.tail(tenth));
+  const double base = median_of_all(values.head(tenth)), top = median_of_all(values.tail(tenth));
   const auto crossing = [&](double share) {
     Index i = 0;
     while (i + 1 < values.size() && values[i] < base + share * (top - base)) ++i;
@@ -254,7 +254,7 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
   result.excitation = options.excitation.value_or(excitation_of(values));
   const bool is_step = result.excitation == Excitation::step;
   const Index tenth = std::max<Index>(1, values.size() / 10);
-  const double middle = median_of(values);
+  const double middle = median_of_all(values);
   result.falling = is_step ? values.tail(tenth).mean() < values.head(tenth).mean()
                            : middle - values.minCoeff() > values.maxCoeff() - middle;
   const double sign = result.falling ? -1.0 : 1.0;
@@ -268,8 +268,8 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
 
   // Its background and its noise.
   const Eigen::VectorXd quiet = quiet_values(values, result.excitation, place);
-  result.background = result.record.counts ? quiet.mean() : median_of(quiet);
-  result.height = is_step ? median_of(values.tail(tenth)) - result.background
+  result.background = result.record.counts ? quiet.mean() : median_of_all(quiet);
+  result.height = is_step ? median_of_all(values.tail(tenth)) - result.background
                           : smooth.maxCoeff() - result.background;
   result.noise_rms = rms_about_mean(quiet);
   if (result.noise_rms < 1e-5 * result.height) {

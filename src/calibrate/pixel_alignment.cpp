@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "calibrate/harmonic_basis.hpp"
 #include "tofsmith/core/parallel.hpp"
@@ -13,8 +12,6 @@
 
 namespace tofsmith {
 namespace {
-
-constexpr double turn = 2 * std::numbers::pi;
 
 /// Sum over measurements of c conj(C), harmonic by harmonic.
 Eigen::VectorXcd products(const Eigen::MatrixXcd& pixel, const Eigen::MatrixXcd& common) {

@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <limits>
 
+#include "decode/direction_table.hpp"
 #include "decode/expected_noise.hpp"
 
 namespace tofsmith {
 
 namespace {
 
-/// Chords whose ends differ in direction by less are one direction: the square of the sine.
-constexpr double parallel = 1e-14;
 constexpr int floats_per_line = 16;  // of cache
 
 int rounded_up(int size, int multiple) { return (size + multiple - 1) / multiple * multiple; }
@@ -69,7 +68,7 @@ class RecordBuilder {
     const double beta = p.dot(chord) / p.squaredNorm();
     const Eigen::VectorXd across = chord - beta * p;
     const double c = across.norm();
-    if (c * c <= parallel * point(neighbour).squaredNorm()) return;
+    if (c * c <= parallel_chords * point(neighbour).squaredNorm()) return;
     store(across / c, across_to);
     turn[0] = static_cast<float>(beta / c);
     turn[2] = static_cast<float>(1.0 / c);
@@ -91,7 +90,7 @@ class RecordBuilder {
                                  const Eigen::VectorXd& shot) const {
     const Eigen::VectorXd across = slope - slope.dot(p) / p.squaredNorm() * p;
     const double across2 = across.squaredNorm();
-    if (!(across2 > parallel * slope.squaredNorm()))
+    if (!(across2 > parallel_chords * slope.squaredNorm()))
       return {0.0, 0.0, std::numeric_limits<double>::infinity()};
     return noise_along(across * (table_.bin_m() / across2), shot);
   }

@@ -10,7 +10,7 @@ namespace tofsmith {
 namespace {
 constexpr int bins_per_block = 64;
 /// Signal and ambient light that differ in direction by less (square of the sine) are one.
-constexpr double parallel = 1e-13;
+constexpr double parallel_light = 1e-13;
 }  // namespace
 
 DepthScores::DepthScores(const AmbientProjection& projection)
@@ -64,7 +64,7 @@ void DepthScores::weighted_fall(const double* electrons, const double* weight, d
       const double signal = xy[at] * aa - ay * xa[at], ambient = ay * xx[at] - xy[at] * xa[at];
       const double determinant = xx[at] * aa - xa[at] * xa[at];
       const double signal_alone = xy[at] > 0.0 ? xy[at] * xy[at] / xx[at] : 0.0;
-      const bool both = signal > 0.0 && ambient > 0.0 && determinant > parallel * xx[at] * aa;
+      const bool both = signal > 0.0 && ambient > 0.0 && determinant > parallel_light * xx[at] * aa;
       fall[first + i] = both ? (signal * xy[at] + ambient * ay) / determinant
                              : std::max(signal_alone, ambient_alone);
     }

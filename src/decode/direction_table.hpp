@@ -9,6 +9,9 @@
 
 namespace tofsmith {
 
+/// Chords whose ends differ in direction by less are one direction: the square of the sine.
+inline constexpr double parallel_chords = 1e-14;
+
 /// Rows whose components stand side by side.
 inline constexpr int rows_per_block = 8;
 

@@ -11,8 +11,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Chords whose ends differ in direction by less are one direction: the square of the sine.
-constexpr double parallel = 1e-14;
 double dot(const double* a, const double* b, int size) {
   double sum = 0.0;
   for (int i = 0; i < size; ++i) sum += a[i] * b[i];
@@ -47,7 +45,7 @@ double PixelModel::along(const double* plane, std::int32_t bin) const {
 PixelModel::ChordPoint PixelModel::best_inside(std::int32_t bin, double at_bin,
                                                double at_next) const {
   const double q00 = own_[bin], q11 = own_[next(bin)], q01 = with_next_[bin];
-  if (q00 * q11 - q01 * q01 <= parallel * q00 * q11) return {};
+  if (q00 * q11 - q01 * q01 <= parallel_chords * q00 * q11) return {};
   const double u = q11 * at_bin - q01 * at_next;
   const double v = q00 * at_next - q01 * at_bin;
   if (!(u > 0.0 && v > 0.0)) return {};
@@ -116,7 +114,7 @@ PixelEstimate PixelModel::estimate(const double* electrons, const double* plane,
   const double across2 = dot(weight.data(), weight.data(), r);
   const double slope2 = dot(slope.data(), slope.data(), r);
   result.depth_standard_deviation_bin =
-      signal > 0.0 && across2 > parallel * slope2
+      signal > 0.0 && across2 > parallel_chords * slope2
           ? deviation_along(weight.data(), variance_e2) / (signal * across2)
           : std::numeric_limits<double>::infinity();
   return result;

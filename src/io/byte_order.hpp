@@ -10,6 +10,9 @@
 
 namespace tofsmith {
 
+/// The lowest bits of a number, 1 .. 64.
+constexpr std::uint64_t mask_of(int bits) { return ~std::uint64_t{0} >> (64 - bits); }
+
 inline constexpr bool host_is_little_endian = std::endian::native == std::endian::little;
 
 /// Reverses the bytes of each item of `item_size` bytes.

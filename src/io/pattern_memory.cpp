@@ -6,6 +6,7 @@
 
 #include <bit>
 
+#include "io/byte_order.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -13,8 +14,6 @@ namespace tofsmith {
 namespace {
 
 constexpr int most_bits = 64;
-
-std::uint64_t mask_of(int bits) { return ~std::uint64_t{0} >> (most_bits - bits); }
 
 /// Bits of one output; all waveforms have as many.
 int bits_per_output(std::span<const QuantizedWaveform> waveforms) {

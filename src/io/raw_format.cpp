@@ -13,7 +13,7 @@ namespace tofsmith {
 namespace {
 
 constexpr int most_pixels = 1 << 16;  // of a side, as of every image
-constexpr int most_measurements = 256;
+constexpr int most_raw_measurements = 256;
 constexpr std::uint64_t most_gap_bytes = std::uint64_t{1} << 30;
 
 int container_of(const RawFormat& format) {
@@ -114,8 +114,8 @@ void RawFormat::validate() const {
           fmt::format("must be in [1, {}]", most_pixels));
   require(height >= 1 && height <= most_pixels, "height", height,
           fmt::format("must be in [1, {}]", most_pixels));
-  require(measurements >= 1 && measurements <= most_measurements, "measurements", measurements,
-          fmt::format("must be in [1, {}]", most_measurements));
+  require(measurements >= 1 && measurements <= most_raw_measurements, "measurements", measurements,
+          fmt::format("must be in [1, {}]", most_raw_measurements));
   require(frames >= 0, "frames", frames, "must be >= 0 (0: as many as the file holds)");
   for (const auto& [field, value] :
        {std::pair{"header_bytes", header_bytes},

@@ -12,21 +12,22 @@ namespace tofsmith {
 namespace {
 
 template <typename Enum>
-using Words = std::pair<std::string_view, Enum>;
+using EnumWords = std::pair<std::string_view, Enum>;
 
-constexpr std::array number_words = {Words<RawNumbers>{"integer", RawNumbers::integers},
-                                     Words<RawNumbers>{"float", RawNumbers::floats}};
-constexpr std::array packings = {Words<RawPacking>{"plain", RawPacking::plain},
-                                 Words<RawPacking>{"mipi", RawPacking::mipi},
-                                 Words<RawPacking>{"lsb_first", RawPacking::lsb_first},
-                                 Words<RawPacking>{"msb_first", RawPacking::msb_first}};
-constexpr std::array layouts = {Words<RawOrder>{"planar", RawOrder::planar},
-                                Words<RawOrder>{"interleaved", RawOrder::interleaved},
-                                Words<RawOrder>{"by_rows", RawOrder::by_rows}};
-constexpr std::array alignments = {Words<RawAlignment>{"low", RawAlignment::low},
-                                   Words<RawAlignment>{"high", RawAlignment::high}};
-constexpr std::array byte_orders = {Words<bool>{"little", false}, Words<bool>{"big", true}};
-constexpr std::array tap_words = {Words<bool>{"keep", false}, Words<bool>{"subtract", true}};
+constexpr std::array number_words = {EnumWords<RawNumbers>{"integer", RawNumbers::integers},
+                                     EnumWords<RawNumbers>{"float", RawNumbers::floats}};
+constexpr std::array packings = {EnumWords<RawPacking>{"plain", RawPacking::plain},
+                                 EnumWords<RawPacking>{"mipi", RawPacking::mipi},
+                                 EnumWords<RawPacking>{"lsb_first", RawPacking::lsb_first},
+                                 EnumWords<RawPacking>{"msb_first", RawPacking::msb_first}};
+constexpr std::array layouts = {EnumWords<RawOrder>{"planar", RawOrder::planar},
+                                EnumWords<RawOrder>{"interleaved", RawOrder::interleaved},
+                                EnumWords<RawOrder>{"by_rows", RawOrder::by_rows}};
+constexpr std::array alignments = {EnumWords<RawAlignment>{"low", RawAlignment::low},
+                                   EnumWords<RawAlignment>{"high", RawAlignment::high}};
+constexpr std::array byte_orders = {EnumWords<bool>{"little", false}, EnumWords<bool>{"big", true}};
+constexpr std::array tap_words = {EnumWords<bool>{"keep", false},
+                                  EnumWords<bool>{"subtract", true}};
 
 void read_order(TableReader& table, std::vector<int>& order) {
   std::vector<double> numbers;

@@ -20,8 +20,6 @@ double counted(std::uint64_t word, const RawFormat& format) {
   return static_cast<double>(word);
 }
 
-std::uint64_t mask_of(int bits) { return (std::uint64_t{1} << bits) - 1; }
-
 /// Little end first in memory, whatever the file's order.
 template <typename Value>
 Value load(const std::byte* from, bool big_endian) {

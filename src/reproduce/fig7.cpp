@@ -25,10 +25,10 @@ namespace tofsmith {
 namespace {
 
 constexpr double skin_albedo = 0.6;
-constexpr double hand_m = 0.19;     // from the wrist to the tip of the middle finger
-constexpr double distance_m = 0.5;  // of the hand; where albedo 1 returns the stated signal
-constexpr double clearly = 1.1;     // a gain that counts
-constexpr double fig7_outlier_m = 0.1;   // half of the hand
+constexpr double hand_m = 0.19;         // from the wrist to the tip of the middle finger
+constexpr double distance_m = 0.5;      // of the hand; where albedo 1 returns the stated signal
+constexpr double clearly = 1.1;         // a gain that counts
+constexpr double fig7_outlier_m = 0.1;  // half of the hand
 const ValueRange shown_m = {0.35, 0.65};
 
 struct Limits {
@@ -288,7 +288,8 @@ Reproduction reproduce_fig7(const ReproduceContext& context, const Progress& pro
                        part_of(progress, share(0.8), share(1.0)));
     for (SceneCapture& capture : results[i].captures)
       for (SceneDecoding& d : capture.decodings)
-        d.error = scene_error(d.depth_m, hand.truth, cameras[i], DepthErrorKind::linear, fig7_outlier_m);
+        d.error =
+            scene_error(d.depth_m, hand.truth, cameras[i], DepthErrorKind::linear, fig7_outlier_m);
   }
   std::vector<Trial> trials;
   for (std::size_t i = 0; i < results.size(); ++i)

@@ -36,7 +36,8 @@ std::vector<Contender> contenders(const Camera& camera, const ReproduceContext& 
 
 ErrorSurfaceGroup measure(double f_max_in_f0, const ReproduceContext& context,
                           const Progress& progress) {
-  const Camera camera = with_light_levels(two_bucket_camera(fig8_peak_factor, f_max_in_f0), context);
+  const Camera camera =
+      with_light_levels(two_bucket_camera(fig8_peak_factor, f_max_in_f0), context);
   ErrorSurfaceGroup group{fmt::format("p = {:g}, {:g} f0", fig8_peak_factor, f_max_in_f0), {}};
   const std::vector<Contender> list =
       contenders(two_bucket_camera(fig8_peak_factor, f_max_in_f0), context);

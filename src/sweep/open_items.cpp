@@ -14,7 +14,7 @@ namespace tofsmith {
 namespace {
 
 /// Most items that a store is asked about, or told of, at a time.
-constexpr std::size_t most_at_once = 4096;
+constexpr std::size_t most_asked_at_once = 4096;
 
 }  // namespace
 
@@ -28,9 +28,9 @@ OpenItems::OpenItems(std::span<const std::string> keys, const SweepShard& shard)
 void OpenItems::add_to(SweepStore& store, const WorkList& list, const Progress& progress) {
   // In the order of the keys, which is the store's own: then it grows at its end.
   const std::span<const std::int64_t> items(items_);
-  for (std::size_t begin = 0; begin < items.size(); begin += most_at_once) {
+  for (std::size_t begin = 0; begin < items.size(); begin += most_asked_at_once) {
     report(progress, 0.0, fmt::format("adding items: {} of {}", begin, items.size()));
-    const auto part = items.subspan(begin, std::min(most_at_once, items.size() - begin));
+    const auto part = items.subspan(begin, std::min(most_asked_at_once, items.size() - begin));
     store.add(keys_of(part), [&](std::size_t i) { return list.settings_json(part[i]); });
   }
   std::ranges::sort(items_);
@@ -41,7 +41,7 @@ std::vector<ClaimedItem> OpenItems::claim(SweepStore& store, std::size_t most) {
     items_ = std::exchange(taken_, {});
     next_ = 0;
   }
-  const std::size_t some = std::min(most_at_once, items_.size() - next_);
+  const std::size_t some = std::min(most_asked_at_once, items_.size() - next_);
   const std::vector<std::string> keys = keys_of(std::span(items_).subspan(next_, some));
   std::vector<ClaimedItem> ours;
   for (const ClaimAnswer answer : store.claim(keys, most)) {

@@ -3,7 +3,7 @@
 """Every command of the how-to page runs as it stands there, with the files it names, and leaves what
 it says it writes. Only searches are made shorter.
 
-    howto_test.py TOFSMITH TESTS/APPS DOCS
+    howto_test.py TOFSMITH DOCS
 """
 
 import os
@@ -14,12 +14,12 @@ import sys
 import unittest
 from pathlib import Path
 
-APPS, DOCS = Path(sys.argv.pop(2)), Path(sys.argv.pop(2))
-sys.path.insert(0, str(APPS))
+DOCS = Path(sys.argv.pop(2)).resolve()
+sys.path.insert(0, str(DOCS.parent / "tests" / "apps"))
 
 import numpy as np  # noqa: E402
 
-from bench_records import CAMERA, RANGE_M, BenchRecordsTest  # noqa: E402
+from bench_records import CAMERA, BenchRecordsTest  # noqa: E402
 from command_line import TOOL  # noqa: E402
 from sweep_text import sweep_text  # noqa: E402
 
@@ -98,7 +98,7 @@ class HowTo(BenchRecordsTest):
         self.sweep()
 
     def make_shifts_txt(self, _):
-        np.savetxt(self.path("shifts.txt"), np.arange(61) * RANGE_M / 60)
+        np.savetxt(self.path("shifts.txt"), np.arange(61) / 60 / 15e6)
 
     def make_dark_npy(self, _):
         self.flat_frames()
