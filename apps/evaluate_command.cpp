@@ -69,7 +69,7 @@ void print(const Session& session, const Camera& camera, const std::vector<Evalu
   if (const auto judged = judged_codes(codes); !judged.empty())
     session.say(text_table(robustness_rows(judged)));
   session.say(fmt::format(
-      "{} per operating point, seed {}, N = {}, true depths {}, decoded by {}; +- is one "
+      "{} per operating point, seed {}, N = {}, true depths {}, decoded by {}; ± is one "
       "standard error; (x) is the circular error over the bound",
       trials_text(codes, options), options.seed, camera.samples,
       options.depth == DepthSampling::bins ? "on bins" : "anywhere in the range",

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/people_text.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 
 namespace tofsmith::apps {
@@ -60,9 +61,6 @@ struct CameraArguments {
   void add_positional(CLI::App& command);
   Camera load() const;
 };
-
-/// "0.0653" -> "65.3 mm", "1.25" -> "1.25 m".
-std::string length_text(double metres);
 
 /// "13.2 ms", "4.1 s".
 std::string time_text(double seconds);

@@ -18,6 +18,8 @@
 #include "design/two_return_limit.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/people_text.hpp"
+#include "tofsmith/core/shared_progress.hpp"
 #include "tofsmith/decode/two_return_decoder.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/version.hpp"
@@ -159,10 +161,11 @@ std::string describe_second_returns(const Finalist& best, const Finalist* best_g
                                     DepthErrorKind kind) {
   const auto errors = [&](const Finalist& f) {
     const SecondReturnReport& behind = *f.second_returns;
-    return fmt::format(
-        "{:.4g}, {:.4g}, {}", 1e3 * f.error_m.value, 1e3 * behind.single_path.of(kind).value,
-        behind.two_return ? fmt::format("{:.4g} mm", 1e3 * behind.two_return->circular_m.value)
-                          : "impossible");
+    return fmt::format("{}, {}, {}", plain_number(1e3 * f.error_m.value, 4),
+                       plain_number(1e3 * behind.single_path.of(kind).value, 4),
+                       behind.two_return
+                           ? plain_number(1e3 * behind.two_return->circular_m.value, 4) + " mm"
+                           : "impossible");
   };
   std::string text =
       "of single returns, behind second ones, and those decoded as two: " + errors(best);
@@ -177,7 +180,7 @@ std::string describe(const Finalist& best, const Finalist* best_given, bool is_g
   if (is_given)
     text = fmt::format("no better code found than {}", best.code.name());
   else if (!best_given)
-    text = fmt::format("error {:.4g} mm", 1e3 * choice_m(best, camera));
+    text = fmt::format("error {} mm", plain_number(1e3 * choice_m(best, camera), 4));
   else
     text = fmt::format("{:.3g} times better than {}, the best code given",
                        choice_m(*best_given, camera) / choice_m(best, camera),
