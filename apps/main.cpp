@@ -91,15 +91,22 @@ int finish_output() {
   return exit_failed;
 }
 
-int stop_interrupted(const Session& session) {
+/// What work that was interrupted leaves behind.
+std::string what_is_kept(const Session& session) {
   std::error_code ignored;
   const bool kept = std::filesystem::is_directory(session.directory, ignored) &&
                     !std::filesystem::is_empty(session.directory, ignored);
   const bool stored = std::filesystem::is_regular_file(session.directory, ignored);
   fmt::print(stderr, "tofsmith: interrupted{}\n",
-             kept || stored ? fmt::format("; finished {} are kept in {}", kept ? "files" : "items",
-                                          session.directory.string())
-                            : "");
+  if (kept || stored)
+    return fmt::format("; finished {} are kept in {}{}", kept ? "files" : "items",
+                       session.directory.string(),
+                       session.force ? "" : ", and the same command goes on from there");
+  return session.tells_what_is_kept ? "" : "; nothing was written";
+}
+
+int stop_interrupted(const Session& session, bool is_done) {
+             is_done ? ", when all was done" : what_is_kept(session));
   return exit_interrupted;
 }
 
@@ -152,8 +159,10 @@ int run(int argc, char** argv) {
 
   try {
     app.parse(argc, argv);
+  bool is_done = false;
     if (interrupted() && !session.follows) throw Interrupted();
     if (list_commands) fmt::print("{}\n", command_listing(app).dump(1));
+    is_done = true;
     if (list_commands || !app.get_subcommands().empty()) return finish_output();
     fmt::print(stderr, "{}", app.help());
     return exit_usage;
@@ -163,7 +172,7 @@ int run(int argc, char** argv) {
     app.exit(error);  // --help, --version
     return finish_output();
   } catch (const Interrupted&) {
-    return stop_interrupted(session);
+    return stop_interrupted(session, is_done);
   }
 }
 

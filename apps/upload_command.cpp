@@ -163,7 +163,7 @@ void show_dry_run(const UploadArguments& arguments, const Session& session) {
   session.say(text);
 }
 
-void run(const UploadArguments& arguments, const Session& session) {
+void run(const UploadArguments& arguments, Session& session) {
   check_usage(arguments);
   if (arguments.dry_run) return show_dry_run(arguments, session);
   const InstrumentAddress address =
@@ -182,6 +182,7 @@ void run(const UploadArguments& arguments, const Session& session) {
   const UploadRequest request = request_for(arguments, exported_for(arguments, model));
   const UploadScript script = upload_script(model, request);
   const UploadReport report = upload(scpi, script, terminal_progress("uploading"));
+  session.tells_what_is_kept = true;  // an instrument keeps what it was told last
 
   nlohmann::ordered_json steps = nlohmann::ordered_json::array();
   for (const UploadedStep& step : report.steps)

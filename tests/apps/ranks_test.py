@@ -138,8 +138,8 @@ class Ranks(RanksTest):
             job = self.start_long(store)
             os.kill(self.processes_of(job)[rank], signal.SIGTERM)
             _, error = job.communicate(timeout=60)
-            self.assertIn(f"tofsmith: interrupted; finished items are kept in {store}\n",
-                          error.decode())
+            self.assertIn(f"tofsmith: interrupted; finished items are kept in {store}, and the same "
+                          "command goes on from there\n", error.decode())
             self.assertEqual(self.status(store)["running"], 0)
 
     def test_what_fails_on_rank_0_is_told_once(self):
