@@ -10,6 +10,7 @@
 
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/shared_progress.hpp"
 
 namespace tofsmith {
 
@@ -73,15 +74,14 @@ void for_each_block(const RawView& raw, int measurements, const Progress& progre
           "must equal the code's " + std::to_string(measurements));
   require(raw.height >= 0 && raw.width >= 0, "raw height and width",
           std::min(raw.height, raw.width), "must be >= 0");
-  constexpr std::int64_t block_pixels = 16384, blocks_per_report = 64;
+  constexpr std::int64_t block_pixels = 16384;
   const std::int64_t count = raw.pixels();
-  for (std::int64_t done = 0; done < count; done += block_pixels * blocks_per_report) {
-    report(progress, static_cast<double>(done) / static_cast<double>(count), "decoding");
-    const std::int64_t end = std::min(count, done + block_pixels * blocks_per_report);
-    parallel_for_blocks(end - done, block_pixels, [&](IndexRange range) {
-      work({done + range.begin, done + range.end});
-    });
-  }
+  report(progress, 0.0, "decoding");
+  SharedProgress shared(progress, static_cast<double>(count), "decoding");
+  parallel_for_blocks(count, block_pixels, [&](IndexRange range) {
+    work(range);
+    shared.add(static_cast<double>(range.end - range.begin));
+  });
   report(progress, 1.0, "decoding");
 }
 

@@ -39,6 +39,9 @@ class Interrupts(CommandLineTest):
     def test_evaluate_at_the_best_rotation(self):
         self.interrupt("evaluate", "sinusoid-k4", "--best-rotation", *LONG)
 
+    def test_evaluate_by_maximum_likelihood(self):
+        self.interrupt("evaluate", "hamiltonian-k4", "--method", "ml", *LONG)
+
     def test_simulate(self):
         self.interrupt("simulate", "table-top", "--code", "hamiltonian-k5", "--frames", "500",
                        "-o", "raw.npy")
