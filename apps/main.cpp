@@ -13,6 +13,7 @@
 #include "command_listing.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "terminal_progress.hpp"
 #include "tofsmith/core/build_info.hpp"
 #include "tofsmith/core/dispatch_target.hpp"
 #include "tofsmith/core/error.hpp"
@@ -97,7 +98,6 @@ std::string what_is_kept(const Session& session) {
   const bool kept = std::filesystem::is_directory(session.directory, ignored) &&
                     !std::filesystem::is_empty(session.directory, ignored);
   const bool stored = std::filesystem::is_regular_file(session.directory, ignored);
-  fmt::print(stderr, "tofsmith: interrupted{}\n",
   if (kept || stored)
     return fmt::format("; finished {} are kept in {}{}", kept ? "files" : "items",
                        session.directory.string(),
@@ -106,6 +106,7 @@ std::string what_is_kept(const Session& session) {
 }
 
 int stop_interrupted(const Session& session, bool is_done) {
+  fmt::print(stderr, "tofsmith: interrupted{}\n",
              is_done ? ", when all was done" : what_is_kept(session));
   return exit_interrupted;
 }
@@ -135,6 +136,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(0, 1);
   app.fallthrough();
   app.add_flag("--json", session.json, "print one JSON document on stdout and nothing else there");
+  app.add_flag_callback("--quiet", silence_progress, "no progress on standard error");
   app.add_flag("--force", session.force, "overwrite existing output files");
   app.add_option("--threads", session.threads, "threads to use; 0 = every core")
       ->check(CLI::Range(0, 1024));
@@ -157,12 +159,12 @@ int run(int argc, char** argv) {
   add_calibrate_command(app, session);
   add_reproduce_command(app, session);
 
+  bool is_done = false;
   try {
     app.parse(argc, argv);
-  bool is_done = false;
+    is_done = true;
     if (interrupted() && !session.follows) throw Interrupted();
     if (list_commands) fmt::print("{}\n", command_listing(app).dump(1));
-    is_done = true;
     if (list_commands || !app.get_subcommands().empty()) return finish_output();
     fmt::print(stderr, "{}", app.help());
     return exit_usage;

@@ -31,7 +31,8 @@ class RanksTest(CommandLineTest):
         be fewer cores; the MPI library's own leaks are no concern of ours."""
         options = os.environ.get("ASAN_OPTIONS", "")
         return subprocess.Popen(
-            [MPIRUN, "--allow-run-as-root", "--oversubscribe", "-n", str(count), TOOL, *arguments],
+            [MPIRUN, "--allow-run-as-root", "--oversubscribe", "-n", str(count), TOOL,
+             "--quiet", *arguments],
             cwd=self.directory, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
             env={**os.environ, "ASAN_OPTIONS": options + ":detect_leaks=0"})
 
