@@ -14,6 +14,7 @@
 #include "method_arguments.hpp"
 #include "multipath_arguments.hpp"
 #include "number_checks.hpp"
+#include "one_of.hpp"
 #include "scene_source.hpp"
 #include "table_arguments.hpp"
 #include "tap_arguments.hpp"
@@ -174,8 +175,8 @@ void run(const DecodeArguments& arguments, Session& session) {
   const int rows = rows_at_a_time(reader, target, memory_bytes);
   session.tells_what_is_kept = target.frames > 1;
   const DecodeSummary summary = decode_all(reader, rows, decode_rows, output);
-
   if (const auto note = no_depth_note(summary.total())) source.notes.push_back(*note);
+
   nlohmann::ordered_json document = {{"code", source.name},
                                      {"camera", camera.name},
                                      {"range_m", source.table.range_m},
