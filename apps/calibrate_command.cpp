@@ -57,10 +57,6 @@ nlohmann::ordered_json estimate_json(const Estimate& estimate) {
           {"standard_error", number_json(estimate.standard_error)}};
 }
 
-std::string estimate_text(const Estimate& estimate, double unit) {
-  return fmt::format("{:.5g} +- {:.2g}", estimate.value / unit, estimate.standard_error / unit);
-}
-
 std::string note_lines(const std::vector<std::string>& notes) {
   std::string lines;
   for (const std::string& note : notes) lines += fmt::format("note: {}\n", note);

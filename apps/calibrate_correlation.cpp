@@ -9,6 +9,7 @@
 #include "calibrate_correlation_page.hpp"
 #include "calibrate_output.hpp"
 #include "number_checks.hpp"
+#include "one_of.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/calibrate/calibrated_table_file.hpp"
@@ -254,7 +255,7 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
   command
       ->add_option("--shift-unit", arguments->unit,
                    "unit of the delays: s ms us ns ps, m of depth, bin, period")
-      ->check(CLI::IsMember({"s", "ms", "us", "ns", "ps", "m", "bin", "period"}))
+      ->check(one_of({"s", "ms", "us", "ns", "ps", "m", "bin", "period"}))
       ->capture_default_str();
   command->add_option("--dark", arguments->dark, "frames with the light off, room as in the sweep");
   command
@@ -267,10 +268,10 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
                    "codes to compare with: families or files; default: all built-in ones")
       ->delimiter(',');
   command->add_option("--decimal", arguments->decimal, "decimal mark of a text")
-      ->check(CLI::IsMember({"auto", "point", "comma"}))
+      ->check(one_of({"auto", "point", "comma"}))
       ->capture_default_str();
   command->add_option("--table-axes", arguments->axes, "axes of an array: nk or kn")
-      ->check(CLI::IsMember({"nk", "kn"}));
+      ->check(one_of({"nk", "kn"}));
   command->add_flag("--keep-end-point", arguments->keep_end_point,
                     "the last row of an array that repeats the first is one of its own");
   arguments->camera.add_to(*command);

@@ -33,8 +33,6 @@ struct CalibrateOutput {
 nlohmann::ordered_json estimate_json(const Estimate& estimate);
 /// A number, or null where it is none.
 nlohmann::ordered_json number_json(double value);
-/// "90.12 +- 0.08" of value / unit.
-std::string estimate_text(const Estimate& estimate, double unit);
 /// "name: note" lines.
 std::string note_lines(const std::vector<std::string>& notes);
 /// Notes as the last section of a page.

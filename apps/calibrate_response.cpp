@@ -6,6 +6,7 @@
 
 #include "calibrate_output.hpp"
 #include "number_checks.hpp"
+#include "one_of.hpp"
 #include "tofsmith/calibrate/impulse_response.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
@@ -212,7 +213,7 @@ void add_calibrate_response(CLI::App& calibrate, Session& session) {
       ->required();
   arguments->camera.add_to(*command);
   command->add_option("--excitation", arguments->excitation, "what the arm answered to")
-      ->check(CLI::IsMember({"auto", "pulse", "step"}))
+      ->check(one_of({"auto", "pulse", "step"}))
       ->capture_default_str();
   command->add_option("--column", arguments->record.column,
                       "name or number (from 1) of the column that holds the response");
@@ -221,19 +222,19 @@ void add_calibrate_response(CLI::App& calibrate, Session& session) {
                    "seconds between values, for files without times")
       ->check(positive_number());
   command->add_option("--time-unit", arguments->time_unit, "unit of the time column")
-      ->check(CLI::IsMember({"s", "ms", "us", "ns", "ps"}));
+      ->check(one_of({"s", "ms", "us", "ns", "ps"}));
   command->add_option("--decimal", arguments->decimal, "decimal mark of a text")
-      ->check(CLI::IsMember({"auto", "point", "comma"}))
+      ->check(one_of({"auto", "point", "comma"}))
       ->capture_default_str();
   command
       ->add_option("--arm", arguments->arm,
                    "whose response it is; system: that of both together, kept in the light's")
-      ->check(CLI::IsMember({"light", "sensor", "system"}))
+      ->check(one_of({"light", "sensor", "system"}))
       ->capture_default_str();
   command
       ->add_option("--as", arguments->as,
                    "what the camera gets: the measured response in a file beside it, or a fit")
-      ->check(CLI::IsMember({"file", "hann", "gaussian", "lowpass"}))
+      ->check(one_of({"file", "hann", "gaussian", "lowpass"}))
       ->capture_default_str();
   arguments->output.add_to(*command);
   command->callback([arguments, &session] { run(*arguments, session); });

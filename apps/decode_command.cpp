@@ -14,6 +14,7 @@
 #include "method_arguments.hpp"
 #include "multipath_arguments.hpp"
 #include "number_checks.hpp"
+#include "one_of.hpp"
 #include "scene_source.hpp"
 #include "table_arguments.hpp"
 #include "tap_arguments.hpp"
@@ -145,7 +146,7 @@ std::optional<RawFormat> described_format(const DecodeArguments& arguments) {
   return read_raw_format(arguments.raw_format);
 }
 
-void run(const DecodeArguments& arguments, const Session& session) {
+void run(const DecodeArguments& arguments, Session& session) {
   const Camera camera = arguments.camera.load();
   DecodingSource source =
       arguments.table.load(arguments.code, camera, arguments.camera.is_default(), arguments.taps);
@@ -171,9 +172,10 @@ void run(const DecodeArguments& arguments, const Session& session) {
   check_inputs_are_kept(arguments, target);
   check_range_fits(target.path, source.table.range_m);
   DecodeOutput output(target, session);
-  const int rows =
-      rows_at_a_time(reader, target, memory_bytes, arguments.method.method() == DecodeMethod::ml);
+  const int rows = rows_at_a_time(reader, target, memory_bytes);
+  session.tells_what_is_kept = target.frames > 1;
   const DecodeSummary summary = decode_all(reader, rows, decode_rows, output);
+  if (const auto note = no_depth_note(summary.total())) source.notes.push_back(*note);
 
   nlohmann::ordered_json document = {{"code", source.name},
                                      {"camera", camera.name},
@@ -208,7 +210,7 @@ void add_decode_command(CLI::App& app, Session& session) {
           ->add_option(
               "--layout", arguments->layout,
               "how RAW runs: interleaved, or planar for (K,H,W) and (F,K,H,W); never guessed")
-          ->check(CLI::IsMember({"interleaved", "planar"}))
+          ->check(one_of({"interleaved", "planar"}))
           ->capture_default_str();
   command
       ->add_option("--raw-format", arguments->raw_format,
@@ -233,13 +235,13 @@ void add_decode_command(CLI::App& app, Session& session) {
           "many as OUTPUT holds), bin; of two-return and tail also delay, ratio and returns (0 "
           "none, 1 single, 2 two, 3 unresolved); others are not computed")
       ->delimiter(',')
-      ->check(CLI::IsMember(all_plane_names()));
+      ->check(one_of(all_plane_names()));
   command
       ->add_option(
           "--kind", arguments->kind,
           "depth to write: radial distance, as the camera measures it, or z along the axis "
           "(what simulate and demo take a depth image for); .ply holds points either way")
-      ->check(CLI::IsMember({"radial", "z"}))
+      ->check(one_of({"radial", "z"}))
       ->capture_default_str();
   command->add_option("--frame", arguments->frame, "decode this frame only, counted from 0")
       ->check(number_from_0_on());

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 namespace tofsmith::apps {
@@ -51,7 +53,39 @@ std::string stack_lines(const DecodeTarget& target) {
   return lines;
 }
 
+/// What pixels without depth are most likely due to.
+std::string_view likely_cause(PixelStatus status) {
+  switch (status) {
+    case PixelStatus::invalid:
+      return "the raw numbers are NaN or infinite, or the maps mark every pixel as dead: were they "
+             "written, and read with the right --raw-format?";
+    case PixelStatus::saturated:
+      return "every pixel has a raw number at the saturation level: expose less, or correct "
+             "sensor.full_well_e, sensor.adc_bits and sensor.gain_e_per_dn";
+    default:
+      return "no signal is in the raw numbers: is the light on, --code the code that was played, "
+             "--layout how they run, and sensor.black_level_dn what is in the dark?";
+  }
+}
+
 }  // namespace
+
+std::optional<std::string> no_depth_note(const StatusCounts& statuses) {
+  constexpr std::array without_depth = {PixelStatus::invalid, PixelStatus::no_return,
+                                        PixelStatus::saturated};
+  std::int64_t without = 0;
+  std::string counts;
+  for (const PixelStatus status : without_depth) {
+    without += statuses.of(status);
+    if (statuses.of(status) > 0)
+      counts +=
+          fmt::format("{}{} {}", counts.empty() ? "" : ", ", statuses.of(status), name_of(status));
+  }
+  if (without == 0 || without < statuses.pixels()) return std::nullopt;
+  const auto by_count = [&](PixelStatus status) { return statuses.of(status); };
+  return fmt::format("no pixel has a depth ({}); {}", counts,
+                     likely_cause(std::ranges::max(without_depth, {}, by_count)));
+}
 
 std::string decode_lines(const DecodeTarget& target, const DecodeSummary& summary) {
   return (target.stack ? stack_lines(target) : frame_lines(target, summary)) +

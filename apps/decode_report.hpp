@@ -3,12 +3,16 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "decode_output.hpp"
 #include "decode_stream.hpp"
 
 namespace tofsmith::apps {
+
+/// Where no pixel of any frame has a depth: how many have which status, and what to look at.
+std::optional<std::string> no_depth_note(const StatusCounts& statuses);
 
 /// What was written, for people: a line per frame, the first few if there are many, and one with
 /// totals and rate.

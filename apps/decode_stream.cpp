@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <thread>
 #include <utility>
 
 #include "read_ahead.hpp"
@@ -69,8 +68,7 @@ StatusCounts DecodeSummary::total() const {
   return sum;
 }
 
-int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target, double memory_bytes,
-                   bool slowly) {
+int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target, double memory_bytes) {
   const double row_planes =
       static_cast<double>(bytes_per_pixel(target.needed_planes())) * target.view.width;
   const bool in_rows = target.in_rows();
@@ -91,11 +89,7 @@ int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target, do
   constexpr double comfortable_bytes = 32e6;
   const double rows =
       row > 0.0 ? std::min(memory_bytes - whole, comfortable_bytes) / row : target.view.height;
-  // Decoders split bands into blocks of 16384 pixels: one for every core.
-  const int few_rows = 16384 * static_cast<int>(std::max(1U, std::thread::hardware_concurrency())) /
-                       target.view.width;
-  const int most = slowly ? std::clamp(few_rows, 1, target.view.height) : target.view.height;
-  return std::clamp(static_cast<int>(rows), 1, most);
+  return std::clamp(static_cast<int>(rows), 1, target.view.height);
 }
 
 void decode_frames(const RawFramesReader& reader, int rows, const DecodeRows& decode_rows,

@@ -30,9 +30,7 @@ struct DecodeSummary {
 
 /// How many rows are read and decoded at a time so that all buffers together fit.
 /// @throws IoError if a frame of this format, or a single row, takes more
-/// @param slowly  bands are kept small, so that progress shows within a frame
-int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target, double memory_bytes,
-                   bool slowly);
+int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target, double memory_bytes);
 
 /// Decodes the target's frames in bands of at most `rows` rows, in memory that does not grow with
 /// their number.

@@ -150,7 +150,7 @@ void run(const DemoArguments& arguments, const Session& session) {
     if (fs::exists(directory.path() / name)) session.check_output(directory.path() / name);
   for (const char* name : depth_files)
     if (fs::exists(directory.path() / name)) session.check_output(directory.path() / name);
-  const Progress progress = terminal_progress("tofsmith demo");
+  const Progress progress = terminal_progress("demo");
 
   // 2. Design codes and compare them with the standard ones.
   const DesignResult result =

@@ -6,6 +6,7 @@
 #include "design_effort.hpp"
 #include "design_output.hpp"
 #include "fresh_directory.hpp"
+#include "one_of.hpp"
 #include "second_return_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
@@ -127,7 +128,7 @@ void add_design_command(CLI::App& app, Session& session) {
                    "factorize: factorize correlation functions; optimize: minimize depth error "
                    "itself; search: all codes on a chip clock, with proof; best: all that suit the "
                    "camera, with every baseline as a competitor")
-      ->check(CLI::IsMember({"factorize", "optimize", "search", "best"}))
+      ->check(one_of({"factorize", "optimize", "search", "best"}))
       ->capture_default_str();
   command->add_option("--target", arguments->target,
                       "correlation functions to factorize: a family, a code file, or a table "

@@ -13,10 +13,6 @@ namespace tofsmith::apps {
 
 namespace {
 
-std::string estimate_text(const Estimate& e) {
-  return fmt::format("{:.1f} +- {:.1f}", 1e3 * e.value, 1e3 * e.standard_error);
-}
-
 /// Columns of what second returns make of the codes, behind those without.
 void add_second_returns(std::vector<std::vector<std::string>>& rows, const DesignResult& result,
                         DepthErrorKind kind) {
@@ -24,8 +20,8 @@ void add_second_returns(std::vector<std::vector<std::string>>& rows, const Desig
   const std::vector<const Candidate*> order = by_chosen_error(result, kind);
   for (std::size_t i = 0; i < order.size(); ++i) {
     const SecondReturnReport& report = *order[i]->second_returns;
-    rows[i + 1].push_back(estimate_text(report.single_path.of(kind)));
-    rows[i + 1].push_back(report.two_return ? estimate_text(report.two_return->circular_m)
+    rows[i + 1].push_back(estimate_mm_text(report.single_path.of(kind)));
+    rows[i + 1].push_back(report.two_return ? estimate_mm_text(report.two_return->circular_m)
                                             : "cannot");
   }
 }
@@ -65,8 +61,8 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
       {"code", "K", "linear (mm)", "circular (mm)", "rotation (bin)", "made by"}};
   for (const Candidate* c : by_chosen_error(result, kind))
     rows.push_back({c->code.name(), fmt::format("{}", c->error.measurements),
-                    estimate_text(c->error.linear.geometric_mean_m),
-                    estimate_text(c->error.circular.geometric_mean_m),
+                    estimate_mm_text(c->error.linear.geometric_mean_m),
+                    estimate_mm_text(c->error.circular.geometric_mean_m),
                     fmt::format("{}", c->rotation_bin), c->method});
   if (camera.operating.multipath) add_second_returns(rows, result, kind);
   session.say(text_table(rows));

@@ -34,6 +34,7 @@ struct EvaluateArguments {
   MultipathEvaluation multipath;
   const CLI::Option* trials = nullptr;
   std::string perturb;
+  bool every_level = false;
   TapArguments taps;
   std::string output;
 };
@@ -62,18 +63,24 @@ void note_missed_targets(const Session& session, const std::vector<EvaluatedCode
 }
 
 void print(const Session& session, const Camera& camera, const std::vector<EvaluatedCode>& codes,
-           const EvaluateOptions& options) {
+           const EvaluateArguments& arguments) {
+  const EvaluateOptions& options = arguments.options;
   if (session.json) return session.print_document(evaluation_document(camera, codes, options));
-  session.say(text_table(evaluation_rows(codes)));
-  if (is_compared_with_zncc(codes)) session.say(text_table(zncc_comparison_rows(codes)));
+  session.say(text_table(evaluation_rows(codes, camera.operating.error, arguments.every_level)));
+  if (is_compared_with_zncc(codes))
+    session.say(text_table(zncc_comparison_rows(codes, arguments.every_level)));
   if (const auto judged = judged_codes(codes); !judged.empty())
     session.say(text_table(robustness_rows(judged)));
   session.say(fmt::format(
-      "{} per operating point, seed {}, N = {}, true depths {}, decoded by {}; +- is one "
+      "{} per operating point, seed {}, N = {}, true depths {}, decoded by {}; ± is one "
       "standard error; (x) is the circular error over the bound",
       trials_text(codes, options), options.seed, camera.samples,
       options.depth == DepthSampling::bins ? "on bins" : "anywhere in the range",
       name_of(options.method)));
+  if (const std::size_t levels = codes.front().error.points.size();
+      levels > 2 && !arguments.every_level)
+    session.say(
+        fmt::format("all {} light levels: --every-level, or -o FILE (.csv .json .html)", levels));
   note_missed_targets(session, codes, options);
 }
 
@@ -182,7 +189,7 @@ void run(EvaluateArguments& arguments, const Session& session) {
   if (perturbed) judge_robustness(evaluated, codes, camera, arguments.options, *perturbed);
   if (!arguments.output.empty())
     write(arguments.output, session, camera, codes, evaluated, arguments.options);
-  print(session, camera, evaluated, arguments.options);
+  print(session, camera, evaluated, arguments);
   for (const CodeSet& code : codes)
     if (const auto note = ambiguity_note(make_decoding_table(ForwardModel(code, camera), camera)))
       session.say(fmt::format("{}: {}", code.name(), *note));
@@ -238,6 +245,8 @@ void add_evaluate_command(CLI::App& app, Session& session) {
                       "also judge each code on cameras with each of these changes and with all at "
                       "once: jitter=50ps,clock=5ns,droop=3%,bandwidth=20%,peak=10%,mismatch=2%");
   arguments->taps.add_to(*command);
+  command->add_flag("--every-level", arguments->every_level,
+                    "print a row for every light level, not only the mean, the best and the worst");
   command->add_option("-o,--output", arguments->output,
                       "write a table (.csv .json) or page (.html)");
   command->callback([arguments, &session] { run(*arguments, session); });

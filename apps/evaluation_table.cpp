@@ -4,10 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "tofsmith/core/people_text.hpp"
 #include "tofsmith/io/csv.hpp"
-#include "zncc_comparison.hpp"
 
 namespace tofsmith::apps {
 
@@ -17,27 +18,59 @@ namespace {
 std::string bound_text(double bound_m, const Estimate& error_m) {
   if (bound_m == 0.0) return "none";
   if (!std::isfinite(bound_m)) return "inf";
-  return fmt::format("{:.4g} ({:.2f}x)", 1e3 * bound_m, error_m.value / bound_m);
+  return fmt::format("{} ({:.2f}x)", plain_number(1e3 * bound_m, 4), error_m.value / bound_m);
+}
+
+using Row = std::vector<std::string>;
+
+Row point_row(const DepthErrorReport& error, std::string_view which, const PointDepthError& p) {
+  return {error.code,
+          fmt::format("{}", error.measurements),
+          std::string(which),
+          fmt::format("{:.3g}", p.point.signal_e_per_s),
+          fmt::format("{:.3g}", p.point.ambient_e_per_s),
+          estimate_mm_text(p.linear_mde_m),
+          estimate_mm_text(p.circular_mde_m),
+          fmt::format("{:.2f}", 100 * p.outlier_rate.value),
+          bound_text(p.cramer_rao_mae_m, p.circular_mde_m),
+          bound_text(p.receiver_bound_mae_m, p.circular_mde_m),
+          bound_text(p.direct_tof_bound_mae_m, p.circular_mde_m)};
+}
+
+Row mean_row(const DepthErrorReport& error) {
+  return {error.code,
+          fmt::format("{}", error.measurements),
+          fmt::format("mean of {}", error.points.size()),
+          "",
+          "",
+          estimate_mm_text(error.linear.geometric_mean_m),
+          estimate_mm_text(error.circular.geometric_mean_m),
+          "",
+          "",
+          "",
+          ""};
 }
 
 }  // namespace
 
-std::vector<std::vector<std::string>> evaluation_rows(const std::vector<EvaluatedCode>& codes) {
-  std::vector<std::vector<std::string>> rows{
-      {"code", "K", "signal (e/s)", "ambient (e/s)", "linear (mm)", "circular (mm)", "outliers (%)",
-       "Cramer-Rao (mm)", "receiver (mm)", "direct ToF (mm)"}};
+std::vector<std::vector<std::string>> evaluation_rows(const std::vector<EvaluatedCode>& codes,
+                                                      DepthErrorKind kind, bool every_level) {
+  std::vector<Row> rows{{"code", "K", "light", "signal (e/s)", "ambient (e/s)", "linear (mm)",
+                         "circular (mm)", "outliers (%)", "Cramer-Rao (mm)", "receiver (mm)",
+                         "direct ToF (mm)"}};
+  const auto error_m = [kind](const PointDepthError& p) {
+    return (kind == DepthErrorKind::linear ? p.linear_mde_m : p.circular_mde_m).value;
+  };
   for (const EvaluatedCode& code : codes) {
-    for (const PointDepthError& p : code.error.points)
-      rows.push_back({code.error.code, fmt::format("{}", code.error.measurements),
-                      fmt::format("{:.3g}", p.point.signal_e_per_s),
-                      fmt::format("{:.3g}", p.point.ambient_e_per_s), in_mm(p.linear_mde_m),
-                      in_mm(p.circular_mde_m), fmt::format("{:.2f}", 100 * p.outlier_rate.value),
-                      bound_text(p.cramer_rao_mae_m, p.circular_mde_m),
-                      bound_text(p.receiver_bound_mae_m, p.circular_mde_m),
-                      bound_text(p.direct_tof_bound_mae_m, p.circular_mde_m)});
-    rows.push_back({code.error.code, "", "geometric", "mean",
-                    in_mm(code.error.linear.geometric_mean_m),
-                    in_mm(code.error.circular.geometric_mean_m), "", "", "", ""});
+    const std::vector<PointDepthError>& points = code.error.points;
+    const auto [best, worst] = std::ranges::minmax_element(points, {}, error_m);
+    rows.push_back(mean_row(code.error));
+    if (every_level || points.size() < 2) {
+      for (const PointDepthError& p : points) rows.push_back(point_row(code.error, "", p));
+    } else {
+      rows.push_back(point_row(code.error, "best", *best));
+      rows.push_back(point_row(code.error, "worst", *worst));
+    }
   }
   return rows;
 }

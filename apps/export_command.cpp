@@ -12,6 +12,7 @@
 #include "terminal_progress.hpp"
 #include "tofsmith/camera/generator_report.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/instrument/generator_model.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/output_directory.hpp"
 #include "tofsmith/io/waveform_export.hpp"
@@ -106,6 +107,19 @@ void say_report(const Session& session, const std::vector<GeneratorReport>& repo
                           text_table(generator_loss_rows(*loss, kind))));
 }
 
+/// Where nobody said how fast the hardware is: files that no generator known here could play.
+std::vector<std::string> rate_notes(const WaveformExport& exported, const Camera& camera,
+                                    const ExportOptions& options) {
+  const double most_hz = fastest_sample_rate_hz(exported.format.name);
+  const double rate_hz = std::max(camera.light.generator ? 0.0 : exported.light.sample_rate_hz,
+                                  camera.sensor.generator ? 0.0 : exported.sensor.sample_rate_hz);
+  if (options.sample_rate_hz || rate_hz <= most_hz) return {};
+  return {fmt::format(
+      "the sample rate is {} MHz, and the fastest generator known here that could play these files "
+      "has {} MHz; say how fast yours is with --rate, such as --rate {:g}",
+      plain_number(1e-6 * rate_hz, 4), plain_number(1e-6 * most_hz, 4), most_hz)};
+}
+
 void run(ExportArguments& arguments, const Session& session) {
   const WaveformFormat& format = chosen_format(arguments.options.format);
   if (!arguments.volts.empty()) {
@@ -151,12 +165,15 @@ void run(ExportArguments& arguments, const Session& session) {
                                      {"manifest", nlohmann::ordered_json::parse(manifest)},
                                      {"generators", generators_json(reports)}};
   if (loss) document["depth_error"] = loss_json(*loss, played.operating.error);
+  const std::vector<std::string> notes = rate_notes(exported, camera, arguments.options);
+  document["notes"] = notes;
   session.print_json(document);
   say_report(session, reports, loss, played);
   session.say(one_file ? fmt::format("wrote {}", arguments.output)
                        : fmt::format("wrote {} file{} of {}, manifest.json and report.html to {}",
                                      files.size(), files.size() == 1 ? "" : "s", format.name,
                                      arguments.output));
+  for (const std::string& note : notes) session.say("note: " + note);
 }
 
 std::string format_list() {

@@ -13,6 +13,7 @@
 #include "command_listing.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "terminal_progress.hpp"
 #include "tofsmith/core/build_info.hpp"
 #include "tofsmith/core/dispatch_target.hpp"
 #include "tofsmith/core/error.hpp"
@@ -91,15 +92,22 @@ int finish_output() {
   return exit_failed;
 }
 
-int stop_interrupted(const Session& session) {
+/// What work that was interrupted leaves behind.
+std::string what_is_kept(const Session& session) {
   std::error_code ignored;
   const bool kept = std::filesystem::is_directory(session.directory, ignored) &&
                     !std::filesystem::is_empty(session.directory, ignored);
   const bool stored = std::filesystem::is_regular_file(session.directory, ignored);
+  if (kept || stored)
+    return fmt::format("; finished {} are kept in {}{}", kept ? "files" : "items",
+                       session.directory.string(),
+                       session.force ? "" : ", and the same command goes on from there");
+  return session.tells_what_is_kept ? "" : "; nothing was written";
+}
+
+int stop_interrupted(const Session& session, bool is_done) {
   fmt::print(stderr, "tofsmith: interrupted{}\n",
-             kept || stored ? fmt::format("; finished {} are kept in {}", kept ? "files" : "items",
-                                          session.directory.string())
-                            : "");
+             is_done ? ", when all was done" : what_is_kept(session));
   return exit_interrupted;
 }
 
@@ -128,6 +136,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(0, 1);
   app.fallthrough();
   app.add_flag("--json", session.json, "print one JSON document on stdout and nothing else there");
+  app.add_flag_callback("--quiet", silence_progress, "no progress on standard error");
   app.add_flag("--force", session.force, "overwrite existing output files");
   app.add_option("--threads", session.threads, "threads to use; 0 = every core")
       ->check(CLI::Range(0, 1024));
@@ -150,8 +159,10 @@ int run(int argc, char** argv) {
   add_calibrate_command(app, session);
   add_reproduce_command(app, session);
 
+  bool is_done = false;
   try {
     app.parse(argc, argv);
+    is_done = true;
     if (interrupted() && !session.follows) throw Interrupted();
     if (list_commands) fmt::print("{}\n", command_listing(app).dump(1));
     if (list_commands || !app.get_subcommands().empty()) return finish_output();
@@ -163,7 +174,7 @@ int run(int argc, char** argv) {
     app.exit(error);  // --help, --version
     return finish_output();
   } catch (const Interrupted&) {
-    return stop_interrupted(session);
+    return stop_interrupted(session, is_done);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "one_of.hpp"
 #include "tofsmith/decode/decode_method.hpp"
 
 namespace tofsmith::apps {
@@ -20,13 +21,13 @@ class MethodArguments {
                                           "for sinusoids of one or more frequencies; two-return "
                                           "and tail where light comes back twice or trails off, "
                                           "for codes of many independent means")
-                              ->check(CLI::IsMember({"zncc", "ml", "unwrap", "two-return", "tail"}))
+                              ->check(one_of({"zncc", "ml", "unwrap", "two-return", "tail"}))
                               ->capture_default_str();
     command
         .add_option("--unwrap-weights", weights_,
                     "how unwrapping weighs frequencies: by the variance of their depth on this "
                     "camera, or by f^2, as is classical")
-        ->check(CLI::IsMember({"variance", "frequency"}))
+        ->check(one_of({"variance", "frequency"}))
         ->capture_default_str()
         ->needs(method);
   }

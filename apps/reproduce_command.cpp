@@ -52,7 +52,7 @@ void run(ReproduceArguments& arguments, const Session& session) {
   if (!session.force) directory.require_ours(arguments.options);
   CodeShelf shelf(directory.shelf());
   const ReproduceContext context{arguments.options, shelf};
-  const Progress progress = terminal_progress("tofsmith reproduce");
+  const Progress progress = terminal_progress("reproducing");
 
   const double whole =
       std::accumulate(items.begin(), items.end(), 0.0,

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include "returns_arguments.hpp"
+#include "one_of.hpp"
 
 #include <fmt/format.h>
 
@@ -62,13 +63,13 @@ void ReturnsArguments::add_to(CLI::App& command) {
   command
       .add_option("--transient-origin", transient_origin_,
                   "what is at the pixel's depth: the histogram's first bin, or its peak")
-      ->check(CLI::IsMember({"first", "peak"}))
+      ->check(one_of({"first", "peak"}))
       ->capture_default_str()
       ->needs(transient);
   command
       .add_option("--transient-background", transient_background_,
                   "constant counts to take off each histogram first")
-      ->check(CLI::IsMember({"none", "median"}))
+      ->check(one_of({"none", "median"}))
       ->capture_default_str()
       ->needs(transient);
   CLI::Option* bounces =

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include "scene_source.hpp"
+#include "one_of.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -118,7 +119,7 @@ void SceneSource::add_to(CLI::App& command) {
   command.add_flag("--linear-image", linear_image, "PNG images hold linear light, not sRGB");
   command
       .add_option("--kind", kind, "what a depth image holds: z along the axis, or radial distance")
-      ->check(CLI::IsMember({"z", "radial"}))
+      ->check(one_of({"z", "radial"}))
       ->capture_default_str();
   command.add_option("--width", width, "columns of a built-in scene or a mesh (320)")
       ->check(CLI::Range(1, 16384));

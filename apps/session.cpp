@@ -45,26 +45,23 @@ void CameraArguments::add_positional(CLI::App& command) {
 
 Camera CameraArguments::load() const { return load_camera(name, settings); }
 
-std::string length_text(double metres) {
-  const double size = std::abs(metres);
-  if (size < 1e-3) return fmt::format("{:.3g} um", metres * 1e6);
-  if (size < 1.0) return fmt::format("{:.3g} mm", metres * 1e3);
-  return fmt::format("{:.3g} m", metres);
-}
-
 std::string time_text(double seconds) {
   return seconds < 1.0 ? fmt::format("{:.3g} ms", seconds * 1e3) : fmt::format("{:.3g} s", seconds);
 }
 
-std::string rate_text(double per_second) {
-  return per_second < 100 ? fmt::format("{:.3g}", per_second) : fmt::format("{:.0f}", per_second);
+std::string rate_text(double per_second) { return plain_number(per_second, 3); }
+
+/// Characters of UTF-8 text.
+std::size_t width_of(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
 std::string text_table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
   }
   std::string text;
   for (const auto& row : rows) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/people_text.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 
 namespace tofsmith::apps {
@@ -26,6 +27,7 @@ struct Session {
   bool json = false;                ///< one JSON document on stdout and nothing else there
   bool force = false;               ///< overwrite output files
   bool follows = false;             ///< another process of the same job speaks for this one
+  bool tells_what_is_kept = false;  ///< the command says what an interrupt leaves, if anything
   int threads = 0;                  ///< 0 = every core
   std::string command_line;         ///< as typed, for reports
   std::filesystem::path directory;  ///< or store in which finished work is kept, if it is
@@ -60,9 +62,6 @@ struct CameraArguments {
   void add_positional(CLI::App& command);
   Camera load() const;
 };
-
-/// "0.0653" -> "65.3 mm", "1.25" -> "1.25 m".
-std::string length_text(double metres);
 
 /// "13.2 ms", "4.1 s".
 std::string time_text(double seconds);

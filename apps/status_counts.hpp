@@ -16,6 +16,8 @@ class StatusCounts {
  public:
   void add(std::span<const PixelStatus> statuses);
   void add(const StatusCounts& other);
+  std::int64_t of(PixelStatus status) const { return counts_[static_cast<std::size_t>(status)]; }
+  std::int64_t pixels() const;
   /// "ok 76.10 %, low_signal 3.20 %, .."; "" without pixels.
   std::string text() const;
 

@@ -97,10 +97,6 @@ Figure axis_figure(const WorkList& list, std::span<const SweepResult> results, s
       {column("linear"), column("circular")}, {row});
 }
 
-std::string in_mm(const Estimate& error_m) {
-  return fmt::format("{:.4g} +- {:.2g}", 1e3 * error_m.value, 1e3 * error_m.standard_error);
-}
-
 Table results_table(const WorkList& list, std::span<const SweepResult> results) {
   const SweepSpec& spec = list.spec();
   Table table{.caption = "Geometric means over the operating points of each item."};
@@ -119,8 +115,8 @@ Table results_table(const WorkList& list, std::span<const SweepResult> results) 
       if (spec.axes[a].key != "code") row.push_back(spec.axes[a].values[indices[a]].text);
     double outliers = 0.0;
     for (const PointDepthError& point : result.error.points) outliers += point.outlier_rate.value;
-    row.push_back(in_mm(result.error.linear.geometric_mean_m));
-    row.push_back(in_mm(result.error.circular.geometric_mean_m));
+    row.push_back(estimate_mm_text(result.error.linear.geometric_mean_m));
+    row.push_back(estimate_mm_text(result.error.circular.geometric_mean_m));
     row.push_back(
         fmt::format("{:.2f}", 100 * outliers / static_cast<double>(result.error.points.size())));
     table.rows.push_back(std::move(row));

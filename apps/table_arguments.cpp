@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include "table_arguments.hpp"
+#include "one_of.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -45,11 +46,11 @@ void TableArguments::add_to(CLI::App& command) {
       .add_option("--ambient", ambient_,
                   "what constant light adds to the columns of a measured table: as much to each "
                   "(unless the file says), as much as their mean, or nothing")
-      ->check(CLI::IsMember({"equal", "mean", "none"}));
+      ->check(one_of({"equal", "mean", "none"}));
   command
       .add_option("--table-axes", axes_,
                   "axes of a measured table: samples by measurements (nk), or the other way (kn)")
-      ->check(CLI::IsMember({"nk", "kn"}));
+      ->check(one_of({"nk", "kn"}));
   command.add_flag("--keep-end-point", keep_end_point_,
                    "keep a measured table's last sample though it equals the first");
 }

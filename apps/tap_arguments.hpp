@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "one_of.hpp"
 #include "tofsmith/io/code_file.hpp"
 
 namespace tofsmith::apps {
@@ -18,7 +19,7 @@ struct TapArguments {
   void add_to(CLI::App& command) {
     command.add_option("--taps", taps, "taps of an NPZ code (the camera's)");
     command.add_option("--tap-order", order, "how an NPZ code's columns run; never guessed")
-        ->check(CLI::IsMember({"blocked", "interleaved"}));
+        ->check(one_of({"blocked", "interleaved"}));
   }
   std::optional<TapOrder> tap_order() const {
     return order.empty() ? std::nullopt : std::optional(parse_tap_order(order));

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "interrupt.hpp"
+#include "tofsmith/core/remaining_time.hpp"
 
 namespace tofsmith::apps {
 
@@ -34,22 +35,40 @@ std::size_t line_width() {
   return std::min(widest, (known ? size.ws_col : usual_columns) - 1);
 }
 
+/// What both ways of telling share: when the work began, and what there is to say.
+class Told {
+ public:
+  explicit Told(std::string_view title) : title_(title) {}
+
+  double passed_s() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  std::string text(double fraction, std::string_view step) {
+    remaining_.add(passed_s(), fraction);
+    std::string text = fmt::format("{} {:.0f} %  {}", title_, 100 * fraction, step);
+    if (const auto left_s = remaining_.seconds())
+      text += fmt::format(", {} left", duration_text(*left_s));
+    return text;
+  }
+
+ private:
+  std::string title_;
+  Clock::time_point start_ = Clock::now();
+  RemainingTime remaining_;
+};
+
+/// One line of a terminal, drawn over and over.
 class Line {
  public:
-  explicit Line(std::string_view title) : title_(title) {}
+  explicit Line(std::string_view title) : told_(title) {}
   ~Line() { clear(); }
   Line(const Line&) = delete;
   Line& operator=(const Line&) = delete;
 
-  void draw(double fraction, std::string_view step) {
+  void tell(double fraction, std::string_view step) {
     if (fraction >= 1.0) return clear();  // what comes next may write where the line is
-    const auto now = Clock::now();
-    if (now - drawn_at_ < std::chrono::milliseconds(100)) return;
-    drawn_at_ = now;
-    const double passed_s = std::chrono::duration<double>(now - start_).count();
-    std::string text = fmt::format("{} {:3.0f} %  {}", title_, 100 * fraction, step);
-    if (fraction > 0.02 && passed_s > 1)
-      text += fmt::format(", {} left", duration_text(passed_s * (1 - fraction) / fraction));
+    constexpr double pause_s = 0.1;
+    if (told_.passed_s() < next_s_) return;
+    next_s_ = told_.passed_s() + pause_s;
+    std::string text = told_.text(fraction, step);
     text.resize(line_width(), ' ');  // a line that wraps could not be drawn over
     fmt::print(stderr, "\r{}", text);
     std::fflush(stderr);
@@ -64,20 +83,50 @@ class Line {
     visible_ = false;
   }
 
-  std::string title_;
-  Clock::time_point start_ = Clock::now();
-  Clock::time_point drawn_at_{};
+  Told told_;
+  double next_s_ = 0.0;
   bool visible_ = false;
 };
+
+/// Plain lines in a log or a pipe.
+class Log {
+ public:
+  explicit Log(std::string_view title) : told_(title) {}
+
+  void tell(double fraction, std::string_view step) {
+    constexpr double pause_s = 30.0;
+    if (fraction >= 1.0) return;  // what comes next says so
+    const std::string text = told_.text(fraction, step);
+    if (told_.passed_s() < next_s_) return;
+    next_s_ = told_.passed_s() + pause_s;
+    fmt::print(stderr, "tofsmith: {}\n", text);
+    std::fflush(stderr);
+  }
+
+ private:
+  static constexpr double short_s = 5.0;  // of work that nobody needs to be told of
+
+  Told told_;
+  double next_s_ = short_s;
+};
+
+template <typename Teller>
+Progress told_by(std::string_view title) {
+  return [teller = std::make_shared<Teller>(title)](double fraction, std::string_view step) {
+    teller->tell(fraction, step);
+    return !interrupted();
+  };
+}
+
+bool is_silent = false;
 
 }  // namespace
 
 Progress terminal_progress(std::string_view title) {
-  if (!isatty(STDERR_FILENO)) return [](double, std::string_view) { return !interrupted(); };
-  return [line = std::make_shared<Line>(title)](double fraction, std::string_view step) {
-    line->draw(fraction, step);
-    return !interrupted();
-  };
+  if (is_silent) return [](double, std::string_view) { return !interrupted(); };
+  return isatty(STDERR_FILENO) ? told_by<Line>(title) : told_by<Log>(title);
 }
+
+void silence_progress() { is_silent = true; }
 
 }  // namespace tofsmith::apps

@@ -6,9 +6,13 @@
 
 namespace tofsmith::apps {
 
-/// A progress callback that draws one line on stderr (only on a terminal): what is done, share,
-/// time left. It asks the work to stop after Ctrl-C, terminal or not. The line is cleared when the
-/// work is done.
+/// A progress callback that tells on stderr what is done, what share, and the time left once that
+/// is known: on a terminal in one line, which is drawn over and cleared when the work is done;
+/// elsewhere in plain lines, now and then, and only of work that takes longer than some seconds.
+/// It asks the work to stop after Ctrl-C.
 Progress terminal_progress(std::string_view title);
+
+/// From now on progress says nothing; Ctrl-C stops work all the same.
+void silence_progress();
 
 }  // namespace tofsmith::apps

@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "number_checks.hpp"
+#include "one_of.hpp"
 #include "played_code.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
@@ -163,7 +164,7 @@ void show_dry_run(const UploadArguments& arguments, const Session& session) {
   session.say(text);
 }
 
-void run(const UploadArguments& arguments, const Session& session) {
+void run(const UploadArguments& arguments, Session& session) {
   check_usage(arguments);
   if (arguments.dry_run) return show_dry_run(arguments, session);
   const InstrumentAddress address =
@@ -181,6 +182,7 @@ void run(const UploadArguments& arguments, const Session& session) {
   const GeneratorModel& model = given ? *given : identified_model(identity, scpi.name());
   const UploadRequest request = request_for(arguments, exported_for(arguments, model));
   const UploadScript script = upload_script(model, request);
+  session.tells_what_is_kept = true;  // an instrument keeps what it was told last
   const UploadReport report = upload(scpi, script, terminal_progress("uploading"));
 
   nlohmann::ordered_json steps = nlohmann::ordered_json::array();
@@ -238,10 +240,10 @@ void add_family_options(CLI::App& command, UploadArguments& arguments) {
   command
       .add_option("--wave-header", arguments.header,
                   "Siglent: how a waveform is announced; sources disagree")
-      ->check(CLI::IsMember({"length", "plain", "minimal"}))
+      ->check(one_of({"length", "plain", "minimal"}))
       ->capture_default_str();
   command.add_option("--filter", arguments.filter, "Keysight: of the output")
-      ->check(CLI::IsMember({"step", "normal", "off"}))
+      ->check(one_of({"step", "normal", "off"}))
       ->capture_default_str();
 }
 

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "tofsmith/core/people_text.hpp"
+
 namespace tofsmith::apps {
 
 namespace {
@@ -14,37 +16,35 @@ std::string ratio(const Estimate& error, const Estimate& other) {
 
 }  // namespace
 
-std::string in_mm(const Estimate& error_m) {
-  return fmt::format("{:.4g} +- {:.2g}", 1e3 * error_m.value, 1e3 * error_m.standard_error);
-}
-
 bool is_compared_with_zncc(std::span<const EvaluatedCode> codes) {
   return !codes.empty() && codes.front().zncc_error;
 }
 
-std::vector<std::vector<std::string>> zncc_comparison_rows(std::span<const EvaluatedCode> codes) {
+std::vector<std::vector<std::string>> zncc_comparison_rows(std::span<const EvaluatedCode> codes,
+                                                           bool every_level) {
   std::vector<std::vector<std::string>> rows{{"code", "signal (e/s)", "ambient (e/s)",
                                               "zncc linear (mm)", "ml / zncc", "zncc circular (mm)",
                                               "ml / zncc"}};
   for (const EvaluatedCode& code : codes) {
     const DepthErrorReport &own = code.error, &zncc = *code.zncc_error;
-    for (std::size_t i = 0; i < own.points.size(); ++i) {
-      const PointDepthError &p = own.points[i], &other = zncc.points[i];
-      rows.push_back({own.code, fmt::format("{:.3g}", p.point.signal_e_per_s),
-                      fmt::format("{:.3g}", p.point.ambient_e_per_s), in_mm(other.linear_mde_m),
-                      ratio(p.linear_mde_m, other.linear_mde_m), in_mm(other.circular_mde_m),
-                      ratio(p.circular_mde_m, other.circular_mde_m)});
-    }
-    rows.push_back({own.code, "geometric", "mean", in_mm(zncc.linear.geometric_mean_m),
+    rows.push_back({own.code, "geometric", "mean", estimate_mm_text(zncc.linear.geometric_mean_m),
                     ratio(own.linear.geometric_mean_m, zncc.linear.geometric_mean_m),
-                    in_mm(zncc.circular.geometric_mean_m),
+                    estimate_mm_text(zncc.circular.geometric_mean_m),
                     ratio(own.circular.geometric_mean_m, zncc.circular.geometric_mean_m)});
+    for (std::size_t i = 0; every_level && i < own.points.size(); ++i) {
+      const PointDepthError &p = own.points[i], &other = zncc.points[i];
+      rows.push_back(
+          {own.code, fmt::format("{:.3g}", p.point.signal_e_per_s),
+           fmt::format("{:.3g}", p.point.ambient_e_per_s), estimate_mm_text(other.linear_mde_m),
+           ratio(p.linear_mde_m, other.linear_mde_m), estimate_mm_text(other.circular_mde_m),
+           ratio(p.circular_mde_m, other.circular_mde_m)});
+    }
   }
   return rows;
 }
 
 Section zncc_comparison(std::span<const EvaluatedCode> codes) {
-  std::vector<std::vector<std::string>> rows = zncc_comparison_rows(codes);
+  std::vector<std::vector<std::string>> rows = zncc_comparison_rows(codes, true);
   Table table{.id = "zncc",
               .caption =
                   "Depth error of the same trials decoded by zero-mean normalized "

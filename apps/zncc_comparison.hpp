@@ -11,15 +11,13 @@
 
 namespace tofsmith::apps {
 
-/// A depth error and its standard error, as they are printed.
-std::string in_mm(const Estimate& error_m);
-
 /// Whether codes were decoded by zncc too.
 bool is_compared_with_zncc(std::span<const EvaluatedCode> codes);
 
 /// What zncc makes of the same trials, and how many times as large the errors by maximum likelihood
-/// are; headings first.
-std::vector<std::vector<std::string>> zncc_comparison_rows(std::span<const EvaluatedCode> codes);
+/// are, as geometric means and, if asked, at every light level; headings first.
+std::vector<std::vector<std::string>> zncc_comparison_rows(std::span<const EvaluatedCode> codes,
+                                                           bool every_level);
 /// The same for a page.
 Section zncc_comparison(std::span<const EvaluatedCode> codes);
 

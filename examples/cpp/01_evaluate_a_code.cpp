@@ -13,7 +13,7 @@ int main() {
     const CodeSet code = build_family(name, camera);
     const DepthErrorReport report = evaluate(code, camera, {.trials = 1000});
     const Estimate error_m = report.linear.geometric_mean_m;
-    std::printf("%s: %.1f +- %.1f mm\n", name, 1e3 * error_m.value, 1e3 * error_m.standard_error);
+    std::printf("%s: %.1f ± %.1f mm\n", name, 1e3 * error_m.value, 1e3 * error_m.standard_error);
     const PointDepthError& brightest = *std::max_element(
         report.points.begin(), report.points.end(), [](const auto& a, const auto& b) {
           return a.point.signal_e_per_s < b.point.signal_e_per_s;

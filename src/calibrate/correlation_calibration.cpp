@@ -236,8 +236,8 @@ void add_notes(const Workbench& bench, const CorrelationCalibrationOptions& opti
         "drift of light or level cannot be told: measure the first delay again at the end");
   else if (result.drift_corrected)
     notes.push_back(
-        fmt::format("over the sweep the light changed by {:+.3g} +- {:.1g} % and the level by "
-                    "{:+.3g} +- {:.1g} "
+        fmt::format("over the sweep the light changed by {:+.3g} ± {:.1g} % and the level by "
+                    "{:+.3g} ± {:.1g} "
                     "raw numbers: taken out as straight lines",
                     100 * result.light_drift.value, 100 * result.light_drift.standard_error,
                     result.level_drift.value, result.level_drift.standard_error));

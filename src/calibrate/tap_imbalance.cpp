@@ -26,7 +26,7 @@ std::vector<Estimate> tap_imbalance(const Eigen::MatrixXd& table, const Eigen::M
     const Estimate& m = mismatch.back();
     if (std::abs(m.value) > 3 * m.standard_error && std::abs(m.value) > 1e-3)
       notes.push_back(fmt::format(
-          "taps of exposure {}: the first is {:+.3g} +- {:.1g} % more sensitive than the second",
+          "taps of exposure {}: the first is {:+.3g} ± {:.1g} % more sensitive than the second",
           exposure, 100 * m.value, 100 * m.standard_error));
     const double left = std::sqrt((b + ratio * a).squaredNorm() / size2);
     if (left > 0.02)

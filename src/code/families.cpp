@@ -77,6 +77,25 @@ std::optional<Builder> builder_for(std::string_view name) {
   return std::nullopt;
 }
 
+/// The name that is built of each family.
+std::vector<std::string> examples() {
+  std::vector<std::string> names;
+  for (const FamilyDescription& family : list_families()) names.push_back(family.example);
+  return names;
+}
+
+/// What the family refuses, a number out of its range or a grid that it does not fit, under the
+/// name that was asked for.
+CodeSet built(std::string_view name, const Builder& builder, const FamilyOptions& options) {
+  try {
+    return builder(options);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(
+        fmt::format("code = {}; {}; `tofsmith codes` lists what there is, such as {}", name,
+                    error.what(), nearest_word(name, examples())));
+  }
+}
+
 }  // namespace
 
 std::vector<FamilyDescription> list_families() {
@@ -102,12 +121,12 @@ bool is_family(std::string_view name) { return builder_for(name).has_value(); }
 
 CodeSet make_family(std::string_view name, const FamilyOptions& options) {
   if (const auto builder = builder_for(name)) {
-    CodeSet code = (*builder)(options);
+    CodeSet code = built(name, *builder, options);
     code.provenance.method = "family";
     return code;
   }
-  std::vector<std::string> known = {"hamiltonian-k3", "hamiltonian-k5", "sinusoid-k3", "square-k3"};
-  for (const FamilyDescription& family : list_families()) known.push_back(family.example);
+  std::vector<std::string> known = examples();
+  known.insert(known.end(), {"hamiltonian-k3", "hamiltonian-k5", "sinusoid-k3", "square-k3"});
   const std::string near = nearest_word(name, known);
   reject("code", name,
          near.empty() ? "is not a built-in family; `tofsmith codes` lists them"

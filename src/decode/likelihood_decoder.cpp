@@ -69,13 +69,16 @@ void LikelihoodDecoder::decode_bins(const float* measurements, std::int64_t pixe
 
 void LikelihoodDecoder::decode(const RawView& raw, const DecodedView& decoded,
                                const Progress& progress) const {
-  decode_frame(raw, decoded, measurements(), progress,
-               [&](const float* values, std::int64_t pixels, const DecodedView& block) {
-                 std::vector<double> fall = plan_->work_space();
-                 for (std::int64_t i = 0; i < pixels; ++i)
-                   plan_->decode_pixel(values + i * measurements(), static_cast<std::size_t>(i),
-                                       block, fall);
-               });
+  constexpr std::int64_t block_pixels = usual_block_pixels / 16;
+  decode_frame(
+      raw, decoded, measurements(), progress,
+      [&](const float* values, std::int64_t pixels, const DecodedView& block) {
+        std::vector<double> fall = plan_->work_space();
+        for (std::int64_t i = 0; i < pixels; ++i)
+          plan_->decode_pixel(values + i * measurements(), static_cast<std::size_t>(i), block,
+                              fall);
+      },
+      block_pixels);
 }
 
 DepthImage LikelihoodDecoder::decode(const RawFrames& raw, int frame,

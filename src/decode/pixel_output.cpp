@@ -10,6 +10,7 @@
 
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/shared_progress.hpp"
 
 namespace tofsmith {
 
@@ -68,33 +69,35 @@ double confidence_of(double lead, double deviation) {
 }
 
 void for_each_block(const RawView& raw, int measurements, const Progress& progress,
-                    const std::function<void(IndexRange pixels)>& work) {
+                    const std::function<void(IndexRange pixels)>& work, std::int64_t block_pixels) {
   require(raw.measurements == measurements, "raw measurements", raw.measurements,
           "must equal the code's " + std::to_string(measurements));
   require(raw.height >= 0 && raw.width >= 0, "raw height and width",
           std::min(raw.height, raw.width), "must be >= 0");
-  constexpr std::int64_t block_pixels = 16384, blocks_per_report = 64;
   const std::int64_t count = raw.pixels();
-  for (std::int64_t done = 0; done < count; done += block_pixels * blocks_per_report) {
-    report(progress, static_cast<double>(done) / static_cast<double>(count), "decoding");
-    const std::int64_t end = std::min(count, done + block_pixels * blocks_per_report);
-    parallel_for_blocks(end - done, block_pixels, [&](IndexRange range) {
-      work({done + range.begin, done + range.end});
-    });
-  }
+  report(progress, 0.0, "decoding");
+  SharedProgress shared(progress, static_cast<double>(count), "decoding");
+  parallel_for_blocks(count, block_pixels, [&](IndexRange range) {
+    work(range);
+    shared.add(static_cast<double>(range.end - range.begin));
+  });
   report(progress, 1.0, "decoding");
 }
 
 void decode_frame(const RawView& raw, const DecodedView& decoded, int measurements,
                   const Progress& progress,
                   const std::function<void(const float* raw, std::int64_t pixels,
-                                           const DecodedView& decoded)>& decode_block) {
-  for_each_block(raw, measurements, progress, [&](IndexRange block) {
-    const std::int64_t pixels = block.end - block.begin;
-    std::vector<float> values(static_cast<std::size_t>(pixels * measurements));
-    copy_pixels(raw, block.begin, pixels, values.data());
-    decode_block(values.data(), pixels, decoded.from(static_cast<std::size_t>(block.begin)));
-  });
+                                           const DecodedView& decoded)>& decode_block,
+                  std::int64_t block_pixels) {
+  for_each_block(
+      raw, measurements, progress,
+      [&](IndexRange block) {
+        const std::int64_t pixels = block.end - block.begin;
+        std::vector<float> values(static_cast<std::size_t>(pixels * measurements));
+        copy_pixels(raw, block.begin, pixels, values.data());
+        decode_block(values.data(), pixels, decoded.from(static_cast<std::size_t>(block.begin)));
+      },
+      block_pixels);
 }
 
 }  // namespace tofsmith

@@ -30,17 +30,22 @@ void store_invalid(std::size_t at, const DecodedView& decoded);
 /// Normal probability that a lead is not noise of this deviation.
 double confidence_of(double lead, double deviation);
 
+/// As many as fast decoders take at a time; slow ones take fewer, so that progress can stop them.
+inline constexpr std::int64_t usual_block_pixels = 16384;
+
 /// Calls `work` for blocks of the pixels of a frame, on all threads, with progress.
 /// @throws std::invalid_argument if the frame's measurements are not as many; Interrupted if
 ///         progress says so
 void for_each_block(const RawView& raw, int measurements, const Progress& progress,
-                    const std::function<void(IndexRange pixels)>& work);
+                    const std::function<void(IndexRange pixels)>& work,
+                    std::int64_t block_pixels = usual_block_pixels);
 
 /// The same with the raw numbers of a block, (pixels, K), their number, and where to store them.
 void decode_frame(const RawView& raw, const DecodedView& decoded, int measurements,
                   const Progress& progress,
                   const std::function<void(const float* raw, std::int64_t pixels,
-                                           const DecodedView& decoded)>& decode_block);
+                                           const DecodedView& decoded)>& decode_block,
+                  std::int64_t block_pixels = usual_block_pixels);
 
 /// A new image, filled by `decode(view, planes)` from one frame of several.
 template <typename Decode>

@@ -9,6 +9,7 @@
 
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/random.hpp"
+#include "tofsmith/core/shared_progress.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
@@ -29,8 +30,10 @@ class Annealing {
         best_(finalists),
         cost_(cost(start, infinity)) {}
 
-  void run(std::int64_t steps, ChipSearchCounts& counts) {
+  void run(std::int64_t steps, ChipSearchCounts& counts, SharedProgress& progress) {
+    constexpr std::int64_t steps_told = 64;  // at a time
     for (std::int64_t step = 0; step < steps; ++step) {
+      if (step % steps_told == 0) progress.add(steps_told);
       const double share = static_cast<double>(step) / static_cast<double>(steps);
       const double temperature = hottest * std::pow(coldest / hottest, share);
       ChipCode changed = code_;
@@ -143,8 +146,12 @@ BestCodes anneal_chip_codes(const ChipJudge& judge, const std::vector<ChipCode>&
   if (starts.codes().empty()) return best;
 
   constexpr int chains_at_once = 8;
+  report(progress, 0.0, "codes annealed");
+  SharedProgress shared(
+      progress,
+      static_cast<double>(options.annealing_starts) * static_cast<double>(options.annealing_steps),
+      "codes annealed");
   for (int begin = 0; begin < options.annealing_starts; begin += chains_at_once) {
-    report(progress, static_cast<double>(begin) / options.annealing_starts, "codes annealed");
     const int count = std::min(chains_at_once, options.annealing_starts - begin);
     std::vector<Annealing> chains;
     for (int i = begin; i < begin + count; ++i)
@@ -154,7 +161,7 @@ BestCodes anneal_chip_codes(const ChipJudge& judge, const std::vector<ChipCode>&
     std::vector<ChipSearchCounts> counted(chains.size());
     parallel_for(count, [&](std::int64_t i) {
       const auto at = static_cast<std::size_t>(i);
-      chains[at].run(options.annealing_steps, counted[at]);
+      chains[at].run(options.annealing_steps, counted[at], shared);
     });
     for (std::size_t i = 0; i < chains.size(); ++i) {
       best.merge(chains[i].best());

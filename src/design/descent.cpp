@@ -27,12 +27,13 @@ constexpr std::uint32_t noise_in_store = 0xffffffffu;
 
 WaveformParameters descend(const DesignProblem& problem, WaveformParameters parameters,
                            const DescentSchedule& schedule, std::uint64_t seed,
-                           std::uint64_t work_item) {
+                           std::uint64_t work_item, SharedProgress* progress) {
   constexpr double largest_modulation = 4.0, largest_demodulation = 3.0;
   StochasticGradient objective(problem, schedule.trials_per_step,
                                RandomStream(seed, work_item, noise_in_store));
   Adam modulation, demodulation;
   for (int step = 0; step < schedule.steps; ++step) {
+    if (progress) progress->add();
     const double done = static_cast<double>(step) / schedule.steps;
     const Sharpness sharpness = sharpness_at(schedule, done);
     const double doubt =

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "design/design_problem.hpp"
+#include "tofsmith/core/shared_progress.hpp"
 
 namespace tofsmith {
 
@@ -19,8 +20,9 @@ struct DescentSchedule {
 };
 
 /// Parameters of lower error. Draws from the streams (seed, work item, step).
+/// @param progress  told of every step
 WaveformParameters descend(const DesignProblem& problem, WaveformParameters parameters,
                            const DescentSchedule& schedule, std::uint64_t seed,
-                           std::uint64_t work_item);
+                           std::uint64_t work_item, SharedProgress* progress = nullptr);
 
 }  // namespace tofsmith

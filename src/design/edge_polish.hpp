@@ -6,6 +6,7 @@
 
 #include "design/design_problem.hpp"
 #include "design/switched_code.hpp"
+#include "tofsmith/core/shared_progress.hpp"
 
 namespace tofsmith {
 
@@ -14,8 +15,10 @@ namespace tofsmith {
 /// the problem's shortest, and no pulse exceeds the peak. Gates of equal duties stay where they
 /// are.
 /// @param steps, trials_per_step  as in DescentSchedule
+/// @param progress  told of every step
 SwitchedCode polish_edges(const DesignProblem& problem, SwitchedCode code, int steps,
-                          int trials_per_step, std::uint64_t seed, std::uint64_t work_item);
+                          int trials_per_step, std::uint64_t seed, std::uint64_t work_item,
+                          SharedProgress* progress = nullptr);
 
 /// Gradient by the switching times, arm by arm and exposure by exposure, of a function whose
 /// gradient by the samples is given: [arm][exposure][edge], light first.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/shared_progress.hpp"
 
 namespace tofsmith {
 
@@ -42,15 +43,17 @@ void look_at(const ChipCode& code, const std::vector<FisherMatrix>& nodes,
 void search_in_rounds(std::int64_t items, std::int64_t items_at_once, ExhaustiveFinding& finding,
                       const SearchShare& share, const Progress& progress) {
   std::int64_t round = std::min<std::int64_t>(4, items_at_once);
+  report(progress, 0.0, "codes searched");
+  SharedProgress shared(progress, static_cast<double>(items), "codes searched");
   for (std::int64_t begin = 0; begin < items;
        begin += round, round = std::min(2 * round, items_at_once)) {
-    report(progress, static_cast<double>(begin) / static_cast<double>(items), "codes searched");
     const std::int64_t count = std::min(round, items - begin);
     std::vector<ExhaustiveFinding> parts(static_cast<std::size_t>(count),
                                          ExhaustiveFinding{finding.best, {}});
     parallel_for(count, [&](std::int64_t i) {
       ExhaustiveFinding& part = parts[static_cast<std::size_t>(i)];
       share(begin + i, part.best, part.counts);
+      shared.add();
     });
     for (const ExhaustiveFinding& part : parts) {
       finding.best.merge(part.best);

@@ -8,14 +8,13 @@
 #include <map>
 
 #include "design/exposure_sweep.hpp"
+#include "tofsmith/core/people_text.hpp"
 
 namespace tofsmith {
 
 namespace {
 
-std::string length_mm(const Estimate& e) {
-  return fmt::format("{:.4g} +- {:.2g} mm", 1e3 * e.value, 1e3 * e.standard_error);
-}
+std::string length_mm(const Estimate& e) { return estimate_mm_text(e) + " mm"; }
 
 std::string_view kind_name(DepthErrorKind kind) {
   return kind == DepthErrorKind::linear ? "linear" : "circular";
@@ -37,7 +36,7 @@ std::string what_it_beats(const Camera& camera, const DesignResult& result, Dept
   const Candidate* baseline = best_baseline(result, kind);
   if (!baseline) return text + ".";
   const Estimate gain = gain_over(result, *baseline, kind);
-  text += fmt::format(", {:.2f} +- {:.2f} times less than {}", gain.value, gain.standard_error,
+  text += fmt::format(", {:.2f} ± {:.2f} times less than {}", gain.value, gain.standard_error,
                       baseline->code.name());
   if (!winner.is_designed())
     return text + ": a standard code, which nothing that was designed here improves on.";
@@ -60,8 +59,8 @@ std::string why_so_many_exposures(const Camera& camera, const DesignResult& resu
   std::string others;
   for (const auto& [exposures, error_m] : error_by_exposures(result, kind))
     if (exposures != winner.exposures)
-      others += fmt::format("{}{} would give {:.3g} mm", others.empty() ? "" : ", ", exposures,
-                            1e3 * error_m);
+      others += fmt::format("{}{} would give {} mm", others.empty() ? "" : ", ", exposures,
+                            plain_number(1e3 * error_m, 3));
   const int harmonics = useful_harmonics(camera);
   const std::string band = harmonics == 0
                                ? std::string("no band limit")
@@ -81,7 +80,7 @@ std::string what_limits_it(const DesignResult& result) {
   };
   const auto [least, most] = std::ranges::minmax_element(points, by_error);
   const auto describe = [](const PointDepthError& p) {
-    std::string text = fmt::format("{:.3g} mm", 1e3 * p.circular_mde_m.value);
+    std::string text = plain_number(1e3 * p.circular_mde_m.value, 3) + " mm";
     if (p.cramer_rao_mae_m > 0.0)
       text += fmt::format(", {:.2f} times its Cramer-Rao bound",
                           p.circular_mde_m.value / p.cramer_rao_mae_m);

@@ -13,6 +13,7 @@
 #include "design/start_pool.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/shared_progress.hpp"
 
 namespace tofsmith {
 
@@ -49,9 +50,11 @@ bool by_residual(const PairCandidate& a, const PairCandidate& b) {
 
 /// Moves the switching times of the most promising candidates; each keeps the better version.
 void refine_best(const PairModel& model, const FactorizeOptions& options,
-                 std::vector<PairCandidate>& candidates) {
+                 std::vector<PairCandidate>& candidates, const Progress& progress) {
   const auto count = std::min<std::int64_t>(options.refined, std::ssize(candidates));
+  SharedProgress shared(progress, static_cast<double>(count), "refining switching times");
   parallel_for(count, [&](std::int64_t i) {
+    shared.add();
     PairCandidate& c = candidates[static_cast<std::size_t>(i)];
     if (c.residual_rms < 1e-9 || c.start == "naive")
       return;  // nothing to gain; naive stays as it is
@@ -133,7 +136,10 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
 
   // 2. Alternate the convex steps from random starts, each with its best binary projection.
   std::vector<StartResult> runs(static_cast<std::size_t>(options.random_starts));
+  SharedProgress shared(part_of(progress, 0.0, 0.6), options.random_starts,
+                        "alternating convex steps");
   parallel_for(std::ssize(runs), [&](std::int64_t i) {
+    shared.add();
     runs[static_cast<std::size_t>(i)] = run_start(model, options, static_cast<int>(i));
   });
   for (const StartResult& run : runs) {
@@ -148,7 +154,8 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
   drop_repeats(result.candidates);
 
   // 4. Move switching times continuously.
-  if (options.refine_edges) refine_best(model, options, result.candidates);
+  if (options.refine_edges)
+    refine_best(model, options, result.candidates, part_of(progress, 0.6, 1.0));
   if (options.keep_naive)
     std::ranges::move(naive_start(model), std::back_inserter(result.candidates));
   const bool playable = drop_short_pulses(model, result.candidates);

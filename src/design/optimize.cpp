@@ -18,6 +18,8 @@
 #include "design/two_return_limit.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/people_text.hpp"
+#include "tofsmith/core/shared_progress.hpp"
 #include "tofsmith/decode/two_return_decoder.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/version.hpp"
@@ -85,15 +87,16 @@ std::vector<Finalist> playable_finalists(const DesignProblem& problem, OptimizeP
   const auto count = std::ssize(entries);
   std::vector<SwitchedCode> codes(2 * static_cast<std::size_t>(count));
   report(progress, 0.0, "edges");
+  SharedProgress shared(progress, static_cast<double>(count) * options.polish_steps, "edges");
   parallel_for(count, [&](std::int64_t i) {
     const auto k = static_cast<std::size_t>(i);
     codes[2 * k] =
         binarized(problem, render(space, entries[k].parameters, sharpness), pool.judge());
     codes[2 * k + 1] = codes[2 * k];
     if (options.polish)
-      codes[2 * k + 1] =
-          polish_edges(problem, codes[2 * k], options.polish_steps, options.trials_per_step,
-                       options.seed, combine_keys(polish_key, static_cast<std::uint64_t>(i)));
+      codes[2 * k + 1] = polish_edges(
+          problem, codes[2 * k], options.polish_steps, options.trials_per_step, options.seed,
+          combine_keys(polish_key, static_cast<std::uint64_t>(i)), &shared);
   });
   std::vector<Finalist> finalists;
   for (std::size_t k = 0; k < codes.size(); ++k) {
@@ -123,7 +126,7 @@ std::vector<Finalist> given_finalists(std::span<const CodeSet> also, const Camer
 
 /// Error on fresh trials, at the rotation that other trials chose; of the worst variant.
 void validate_finalist(Finalist& finalist, std::span<const Camera> variants,
-                       const OptimizeOptions& options) {
+                       const OptimizeOptions& options, const Progress& progress) {
   const Camera& camera = variants.front();
   EvaluateOptions evaluation;
   const auto points = static_cast<std::int64_t>(camera.operating.points().size());
@@ -132,13 +135,18 @@ void validate_finalist(Finalist& finalist, std::span<const Camera> variants,
     evaluation.seed = combine_keys(options.seed, rotation_key);
     std::vector<double> log_error;
     for (const double error_m :
-         best_rotation(finalist.code, camera, evaluation).linear_geometric_mean_m)
+         best_rotation(finalist.code, camera, evaluation, part_of(progress, 0.0, 0.5))
+             .linear_geometric_mean_m)
       log_error.push_back(std::log(std::max(1e-12, error_m)));
     finalist.code = finalist.code.rotated(smoothed_minimum(log_error));
   }
   evaluation.seed = combine_keys(options.seed, validation_key);
-  for (const Camera& variant : variants) {
-    const DepthErrorReport report = evaluate(finalist.code, variant, evaluation);
+  const double count = static_cast<double>(variants.size());
+  for (std::size_t i = 0; i < variants.size(); ++i) {
+    const double done = static_cast<double>(i);
+    const DepthErrorReport report =
+        evaluate(finalist.code, variants[i], evaluation,
+                 part_of(progress, 0.5 + 0.5 * done / count, 0.5 + 0.5 * (done + 1) / count));
     const Estimate error_m = report.of(camera.operating.error).geometric_mean_m;
     if (error_m.value > finalist.error_m.value) finalist.error_m = error_m;
   }
@@ -146,23 +154,24 @@ void validate_finalist(Finalist& finalist, std::span<const Camera> variants,
 
 /// Errors behind second returns of the camera itself, once the code is at its rotation.
 void validate_second_returns(Finalist& finalist, const Camera& camera,
-                             const OptimizeOptions& options) {
+                             const OptimizeOptions& options, const Progress& progress) {
   EvaluateOptions evaluation;
   const auto points = static_cast<std::int64_t>(camera.operating.points().size());
   evaluation.trials = std::clamp<std::int64_t>(options.validation_trials / points, 3000, 40000);
   evaluation.seed = combine_keys(options.seed, validation_key);
-  finalist.second_returns =
-      second_return_report(finalist.code, camera, *camera.operating.multipath, evaluation);
+  finalist.second_returns = second_return_report(finalist.code, camera, *camera.operating.multipath,
+                                                 evaluation, progress);
 }
 
 std::string describe_second_returns(const Finalist& best, const Finalist* best_given,
                                     DepthErrorKind kind) {
   const auto errors = [&](const Finalist& f) {
     const SecondReturnReport& behind = *f.second_returns;
-    return fmt::format(
-        "{:.4g}, {:.4g}, {}", 1e3 * f.error_m.value, 1e3 * behind.single_path.of(kind).value,
-        behind.two_return ? fmt::format("{:.4g} mm", 1e3 * behind.two_return->circular_m.value)
-                          : "impossible");
+    return fmt::format("{}, {}, {}", plain_number(1e3 * f.error_m.value, 4),
+                       plain_number(1e3 * behind.single_path.of(kind).value, 4),
+                       behind.two_return
+                           ? plain_number(1e3 * behind.two_return->circular_m.value, 4) + " mm"
+                           : "impossible");
   };
   std::string text =
       "of single returns, behind second ones, and those decoded as two: " + errors(best);
@@ -177,7 +186,7 @@ std::string describe(const Finalist& best, const Finalist* best_given, bool is_g
   if (is_given)
     text = fmt::format("no better code found than {}", best.code.name());
   else if (!best_given)
-    text = fmt::format("error {:.4g} mm", 1e3 * choice_m(best, camera));
+    text = fmt::format("error {} mm", plain_number(1e3 * choice_m(best, camera), 4));
   else
     text = fmt::format("{:.3g} times better than {}, the best code given",
                        choice_m(*best_given, camera) / choice_m(best, camera),
@@ -235,11 +244,16 @@ OptimizedCode optimize(std::span<const Camera> variants, int exposures,
   for (Finalist& given : given_finalists(also, camera)) finalists.push_back(std::move(given));
 
   // 3. Judge all on the same fresh trials.
+  const Progress validation = part_of(progress, 0.9, 1.0);
+  const double count = static_cast<double>(finalists.size());
+  const double single = camera.operating.multipath ? 0.3 : 1.0;  // of a finalist's time
   for (std::size_t i = 0; i < finalists.size(); ++i) {
-    report(progress, 0.9 + 0.1 * static_cast<double>(i) / static_cast<double>(finalists.size()),
-           "validation");
-    validate_finalist(finalists[i], variants, options);
-    if (camera.operating.multipath) validate_second_returns(finalists[i], camera, options);
+    const double done = static_cast<double>(i);
+    validate_finalist(finalists[i], variants, options,
+                      part_of(validation, done / count, (done + single) / count));
+    if (camera.operating.multipath)
+      validate_second_returns(finalists[i], camera, options,
+                              part_of(validation, (done + single) / count, (done + 1) / count));
   }
   TwoReturnLimit two_returns(options.most_two_return_loss);
   for (const Finalist& f : std::span(finalists).subspan(optimized))

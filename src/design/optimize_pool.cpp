@@ -15,7 +15,7 @@ namespace {
 
 // Work items of one seed: no two phases share their random numbers.
 enum Phase : std::uint64_t { judging = 1, starting, hopping, refining, drawing_starts };
-constexpr std::size_t together = 10;  // descents between two reports
+constexpr std::size_t together = 10;  // descents before the pool is sorted
 constexpr std::size_t hops_together = 5;
 constexpr std::size_t largest_pool = 24;
 constexpr double refinement_softness = 1.5;
@@ -49,7 +49,8 @@ void OptimizePool::record(const std::string& phase, const std::string& start,
 
 /// Replaces every entry by where a descent from it leads; its origin moves to the best rotation.
 void OptimizePool::descend_all(std::vector<PoolEntry>& entries, int steps, double rate,
-                               std::uint64_t phase, std::size_t first_item) const {
+                               std::uint64_t phase, std::size_t first_item,
+                               SharedProgress& progress) const {
   DescentSchedule schedule;
   schedule.steps = steps;
   schedule.rate = rate;
@@ -58,8 +59,9 @@ void OptimizePool::descend_all(std::vector<PoolEntry>& entries, int steps, doubl
   if (!problem_->binary_demodulation) schedule.final_sharpness.demodulation = 1.0;
   parallel_for(std::ssize(entries), [&](std::int64_t i) {
     PoolEntry& entry = entries[static_cast<std::size_t>(i)];
-    entry.parameters = descend(*problem_, std::move(entry.parameters), schedule, options_.seed,
-                               work_item(phase, first_item + static_cast<std::size_t>(i)));
+    entry.parameters =
+        descend(*problem_, std::move(entry.parameters), schedule, options_.seed,
+                work_item(phase, first_item + static_cast<std::size_t>(i)), &progress);
     entry.score = judge_.score(render(problem_->space, entry.parameters, schedule.final_sharpness));
     entry.parameters = rotated(problem_->space, entry.parameters, entry.score.rotation_bin);
     entry.score.rotation_bin = 0;
@@ -79,15 +81,16 @@ void OptimizePool::keep(const std::string& phase, std::vector<PoolEntry> entries
 
 void OptimizePool::run_starts(std::span<const CodeSet> also, const Progress& progress) {
   const auto count = static_cast<std::size_t>(options_.starts);
+  report(progress, 0.0, "starts");
+  SharedProgress shared(progress, static_cast<double>(count) * options_.steps_per_start, "starts");
   for (std::size_t first = 0; first < count; first += together) {
-    report(progress, static_cast<double>(first) / static_cast<double>(count), "starts");
     std::vector<PoolEntry> entries;
     for (std::size_t i = first; i < std::min(count, first + together); ++i) {
       RandomStream random(options_.seed, work_item(Phase::drawing_starts, i));
       OptimizeStart start = optimize_start(*problem_, also, static_cast<int>(i), random);
       entries.push_back({std::move(start.parameters), {}, std::move(start.name)});
     }
-    descend_all(entries, options_.steps_per_start, 0.08, Phase::starting, first);
+    descend_all(entries, options_.steps_per_start, 0.08, Phase::starting, first, shared);
     steps_ += std::ssize(entries) * options_.steps_per_start;
     keep("start", std::move(entries));
   }
@@ -96,14 +99,15 @@ void OptimizePool::run_starts(std::span<const CodeSet> also, const Progress& pro
 void OptimizePool::run_hops(const Progress& progress) {
   const auto count = static_cast<std::size_t>(options_.hops);
   int without_gain = 0;
+  report(progress, 0.0, "hops");
+  SharedProgress shared(progress, static_cast<double>(count) * options_.steps_per_hop, "hops");
   for (std::size_t first = 0; first < count; first += hops_together) {
-    report(progress, static_cast<double>(first) / static_cast<double>(count), "hops");
     std::vector<PoolEntry> entries;
     for (std::size_t i = first; i < std::min(count, first + hops_together); ++i) {
       RandomStream random(options_.seed, work_item(Phase::hopping, i), 1u << 30);
       entries.push_back(hop(*problem_, entries_, random));
     }
-    descend_all(entries, options_.steps_per_hop, 0.08, Phase::hopping, first);
+    descend_all(entries, options_.steps_per_hop, 0.08, Phase::hopping, first, shared);
     steps_ += std::ssize(entries) * options_.steps_per_hop;
     without_gain += static_cast<int>(entries.size());
     const double best_before = entries_.front().score.log_error_bin;
@@ -125,7 +129,9 @@ void OptimizePool::refine(const Progress& progress) {
       entries_.begin() + std::min<std::ptrdiff_t>(options_.refined, std::ssize(entries_)));
   for (PoolEntry& entry : entries)
     entry.parameters = softened(std::move(entry.parameters), refinement_softness);
-  descend_all(entries, options_.refinement_steps, 0.03, Phase::refining, 0);
+  SharedProgress shared(progress, static_cast<double>(entries.size()) * options_.refinement_steps,
+                        "refinement");
+  descend_all(entries, options_.refinement_steps, 0.03, Phase::refining, 0, shared);
   steps_ += std::ssize(entries) * options_.refinement_steps;
   keep("refinement", std::move(entries));
 }

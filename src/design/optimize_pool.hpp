@@ -5,6 +5,7 @@
 #include <span>
 
 #include "design/basin_hops.hpp"
+#include "tofsmith/core/shared_progress.hpp"
 #include "tofsmith/design/optimize.hpp"
 
 namespace tofsmith {
@@ -31,7 +32,7 @@ class OptimizePool {
 
  private:
   void descend_all(std::vector<PoolEntry>& entries, int steps, double rate, std::uint64_t phase,
-                   std::size_t first_item) const;
+                   std::size_t first_item, SharedProgress& progress) const;
   void keep(const std::string& phase, std::vector<PoolEntry> entries);
 
   const DesignProblem* problem_;

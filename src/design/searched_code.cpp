@@ -7,6 +7,7 @@
 #include "design/designed_code.hpp"
 #include "design/judge.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/people_text.hpp"
 
 namespace tofsmith {
 
@@ -55,14 +56,14 @@ Candidate searched_candidate(const Camera& camera, int exposures, const DesignOp
   require(!found.finalists.empty(), "exposures", exposures,
           "no code on the camera's chip clock tells all depths apart");
   const ChipFinalist& best = found.finalists.front();
-  Candidate candidate{
-      .code = signed_by(to_code_set(best.code, camera, searched_name(exposures)), "search", camera,
-                        options),
-      .method = "search",
-      .seconds = found.log.seconds,
-      .search = record_of(found),
-      .message = fmt::format("{}: {:.4g} mm rms, {}", best.code.text(), 1e3 * best.rms_m,
-                             found.proved ? "proven optimal" : "not proven")};
+  Candidate candidate{.code = signed_by(to_code_set(best.code, camera, searched_name(exposures)),
+                                        "search", camera, options),
+                      .method = "search",
+                      .seconds = found.log.seconds,
+                      .search = record_of(found),
+                      .message = fmt::format("{}: {} mm rms, {}", best.code.text(),
+                                             plain_number(1e3 * best.rms_m, 4),
+                                             found.proved ? "proven optimal" : "not proven")};
   candidate.per_measurement = reports_of(candidate.code, "search");
   return candidate;
 }

@@ -137,6 +137,15 @@ const GeneratorModel& generator_model(std::string_view name) {
                      near.empty() ? "" : fmt::format("; did you mean {}?", near)));
 }
 
+double fastest_sample_rate_hz(std::string_view format) {
+  double of_format_hz = 0.0, of_all_hz = 0.0;
+  for (const GeneratorModel& model : generator_models()) {
+    of_all_hz = std::max(of_all_hz, model.sample_rate_hz);
+    if (model.format() == format) of_format_hz = std::max(of_format_hz, model.sample_rate_hz);
+  }
+  return of_format_hz > 0.0 ? of_format_hz : of_all_hz;
+}
+
 InstrumentIdentity parse_identity(std::string_view answer, std::string_view place) {
   if (answer.starts_with("*IDN ")) answer.remove_prefix(5);
   std::vector<std::string> fields(1);

@@ -27,10 +27,6 @@ std::vector<std::size_t> by_error(std::span<const ComparedCode> codes, DepthErro
   return order;
 }
 
-std::string estimate_mm(const Estimate& e) {
-  return fmt::format("{:.1f} ± {:.1f}", 1e3 * e.value, 1e3 * e.standard_error);
-}
-
 Table comparison_table(const Camera& camera, std::span<const ComparedCode> codes,
                        const std::vector<std::size_t>& order, std::size_t best) {
   const DepthErrorReport& first = *codes[0].error;
@@ -56,8 +52,8 @@ Table comparison_table(const Camera& camera, std::span<const ComparedCode> codes
     if (i == best) table.highlighted_row = static_cast<int>(table.rows.size());
     table.rows.push_back(
         {e.code, codes[i].method, fmt::format("{}", e.measurements),
-         estimate_mm(e.linear.geometric_mean_m), estimate_mm(e.circular.geometric_mean_m),
-         estimate_mm(e.circular.mean_m),
+         estimate_mm_text(e.linear.geometric_mean_m), estimate_mm_text(e.circular.geometric_mean_m),
+         estimate_mm_text(e.circular.mean_m),
          fmt::format("{:.1f}", 100 * outliers / static_cast<double>(e.points.size()))});
   }
   return table;

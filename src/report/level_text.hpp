@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "tofsmith/core/statistics.hpp"
+#include "tofsmith/core/people_text.hpp"
 
 namespace tofsmith {
 
@@ -21,11 +21,6 @@ inline std::string level_text(double electrons_per_s) {
 /// A length in mm; "" if it is not finite.
 inline std::string mm_text(double metres) {
   return std::isfinite(metres) ? fmt::format("{:.1f}", 1e3 * metres) : "";
-}
-
-/// An error in mm and its standard error.
-inline std::string estimate_mm_text(const Estimate& error_m) {
-  return fmt::format("{:.4g} +- {:.2g}", 1e3 * error_m.value, 1e3 * error_m.standard_error);
 }
 
 }  // namespace tofsmith

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "tofsmith/core/people_text.hpp"
 #include "tofsmith/report/bar_figure.hpp"
 #include "tofsmith/report/colours.hpp"
 
@@ -40,9 +41,6 @@ std::vector<Judged> by_weighed_error(const SecondReturns& returns, const DesignR
 
 Table second_return_table(const SecondReturns& returns, const std::vector<Judged>& codes,
                           const Candidate& winner, std::string_view kind) {
-  const auto in_mm = [](const Estimate& e) {
-    return fmt::format("{:.1f} ± {:.1f}", 1e3 * e.value, 1e3 * e.standard_error);
-  };
   Table table{
       .id = "second-returns",
       .caption = fmt::format(
@@ -59,9 +57,9 @@ Table second_return_table(const SecondReturns& returns, const std::vector<Judged
                   {"as two returns (mm)", true}}};
   for (const Judged& j : codes) {
     if (j.candidate == &winner) table.highlighted_row = static_cast<int>(table.rows.size());
-    table.rows.push_back({j.candidate->code.name(), in_mm(j.single_m), in_mm(j.behind_m),
-                          fmt::format("{:.1f}", 1e3 * j.weighed_m),
-                          j.two_return_m ? in_mm(*j.two_return_m) : "cannot"});
+    table.rows.push_back({j.candidate->code.name(), estimate_mm_text(j.single_m),
+                          estimate_mm_text(j.behind_m), fmt::format("{:.1f}", 1e3 * j.weighed_m),
+                          j.two_return_m ? estimate_mm_text(*j.two_return_m) : "cannot"});
   }
   return table;
 }

@@ -27,14 +27,17 @@ struct SceneScans {
 void scan_with_every_code(SceneScans& scans, const PrototypeBench& bench, int estimates,
                           std::uint64_t seed, const Progress& progress) {
   std::vector<Reference> references;
-  const auto say = [&](double done, const std::string& code) {
+  const auto say = [&](double done, double share, const std::string& code) {
     report(progress, done, fmt::format("{}, {}", scans.scene.name, code));
+    return part_of(progress, done, done + share);
   };
+  const double references_share = 0.25 / static_cast<double>(bench.codes.size());
   for (const CodeSet& code : bench.codes) {
-    say(0.25 * static_cast<double>(references.size()) / static_cast<double>(bench.codes.size()),
-        code.name());
+    const Progress part = say(references_share * static_cast<double>(references.size()),
+                              references_share, code.name());
     // Noise of its own: what is compared must not be what it is compared with.
-    references.push_back(fit_reference(scans.scene, code, bench.camera, estimates, seed + 0x5eed));
+    references.push_back(
+        fit_reference(scans.scene, code, bench.camera, estimates, seed + 0x5eed, part));
     scans.fits.insert(scans.fits.end(), references.back().fits.begin(),
                       references.back().fits.end());
   }
@@ -42,9 +45,10 @@ void scan_with_every_code(SceneScans& scans, const PrototypeBench& bench, int es
   const auto count = static_cast<double>(densities.size() * bench.codes.size());
   for (const double density : densities)
     for (std::size_t c = 0; c < bench.codes.size(); ++c) {
-      say(0.25 + 0.75 * static_cast<double>(scans.scans.size()) / count, bench.codes[c].name());
+      const Progress part = say(0.25 + 0.75 * static_cast<double>(scans.scans.size()) / count,
+                                0.75 / count, bench.codes[c].name());
       scans.scans.push_back(scan_objects(scans.scene, bench.codes[c], bench.camera, references[c],
-                                         density, estimates, seed));
+                                         density, estimates, seed, part));
     }
 }
 

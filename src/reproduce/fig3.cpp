@@ -57,11 +57,18 @@ OrderResult factorize_order(int order, const ReproduceContext& context, const Pr
   result.between = context.pick(peaks_between, {12.0});
   for (const CorrelationTarget& target : result.targets.measurements) {
     const auto codes = static_cast<double>(result.targets.measurements.size());
-    report(progress, static_cast<double>(result.solutions.size()) / codes,
-           fmt::format("fig3: K = {}", order));
+    const double before = static_cast<double>(result.solutions.size()) / codes;
+    report(progress, before, fmt::format("fig3: K = {}", order));
+    const double share = 1.0 / (codes * static_cast<double>(peaks.size() + result.between.size()));
+    double done = before;
+    const auto factorized = [&](double peak) {
+      const Progress part = part_of(progress, done, done + share);
+      done += share;
+      return factorize(target, paper_camera(peak, 0), options, part);
+    };
     std::vector<PairCandidate> solutions;
     for (const double peak : peaks) {
-      const Factorization found = factorize(target, paper_camera(peak, 0), options);
+      const Factorization found = factorized(peak);
       solutions.push_back(found.best());
       solutions.back().pair = centred(found.best().pair);
       if (result.solutions.empty()) result.variation_rms = found.target_variation_rms;
@@ -69,7 +76,7 @@ OrderResult factorize_order(int order, const ReproduceContext& context, const Pr
     result.solutions.push_back(std::move(solutions));
     std::vector<double> residuals;
     for (const double peak : result.between)
-      residuals.push_back(factorize(target, paper_camera(peak, 0), options).best().residual_rms);
+      residuals.push_back(factorized(peak).best().residual_rms);
     result.residuals_between.push_back(std::move(residuals));
   }
   return result;

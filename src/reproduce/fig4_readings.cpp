@@ -27,11 +27,12 @@ Camera camera_for(const Limits& limits, const Reading& reading, const ReproduceC
 
 /// Codes that compete on a camera; one that is decoded in another way is one more contender. Codes
 /// are redesigned for the limits alone, whatever light and noise are read as.
-std::vector<Contender> contenders(const Limits& limits, const ReproduceContext& context) {
+std::vector<Contender> contenders(const Limits& limits, const ReproduceContext& context,
+                                  const Progress& progress) {
   const Camera camera = paper_camera(limits.peak_factor, limits.f_max_in_f0);
   std::vector<Contender> list;
   for (const int exposures : {3, 4, 5}) {
-    const CodeSet& code = context.shelf.redesigned(exposures, camera, context.options);
+    const CodeSet& code = context.shelf.redesigned(exposures, camera, context.options, progress);
     list.push_back({code.name(), code});
   }
   for (const char* name :
@@ -162,7 +163,10 @@ ReadingResult measure_reading(const Reading& reading, const ReproduceContext& co
   ideal = measure_all(ideal_contenders(), all_limits.front(), first);
   for (const Limits& limits : all_limits) {
     const bool drawn = first && &limits < all_limits.data() + drawn_limits;
-    ErrorSurfaceGroup group{limits.title, measure_all(contenders(limits, context), limits, drawn)};
+    // The fraction waits where codes are not on the shelf yet.
+    const std::vector<Contender> list =
+        contenders(limits, context, part_of(progress, done / steps, done / steps));
+    ErrorSurfaceGroup group{limits.title, measure_all(list, limits, drawn)};
     group.surfaces.insert(group.surfaces.end(), ideal.begin(), ideal.end());
     result.of_limits.push_back(std::move(group));
   }

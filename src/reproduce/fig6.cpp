@@ -41,11 +41,11 @@ struct DesignedCode {
 };
 
 DesignedCode design_code(const CorrelationTarget& target, const Camera& camera,
-                         const ReproduceContext& context) {
+                         const ReproduceContext& context, const Progress& progress) {
   FactorizeOptions options;
   options.seed = context.options.seed;
   options.random_starts = context.pick(30, 10);
-  const Factorization found = factorize(target, camera, options);
+  const Factorization found = factorize(target, camera, options, progress);
   DesignedCode code{.pair = centred(found.best().pair)};
   code.residual_rms = found.best().residual_rms;
   code.residual_share = code.residual_rms / found.target_variation_rms;
@@ -76,8 +76,9 @@ Reproduction reproduce_fig6(const ReproduceContext& context, const Progress& pro
   std::vector<DesignedCode> codes;
   for (int i = 0; i < measurements; ++i) {
     report(progress, static_cast<double>(i) / measurements, "fig6: factorizing");
-    codes.push_back(
-        design_code(targets.measurements[static_cast<std::size_t>(i)], camera, context));
+    codes.push_back(design_code(targets.measurements[static_cast<std::size_t>(i)], camera, context,
+                                part_of(progress, static_cast<double>(i) / measurements,
+                                        static_cast<double>(i + 1) / measurements)));
   }
 
   // 2. Two of them: the slowest, and the fastest that still follows its target.

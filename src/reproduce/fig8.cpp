@@ -23,10 +23,13 @@ const std::string dual_frequency = "multifrequency-1x2-7x2";
 const std::string single_frequency = "sinusoid-k2";
 const std::string one_tap = "hamiltonian-k4-one-tap";
 
-std::vector<Contender> contenders(const Camera& camera, const ReproduceContext& context) {
+std::vector<Contender> contenders(const Camera& camera, const ReproduceContext& context,
+                                  const Progress& progress) {
   std::vector<Contender> list;
   for (const int exposures : {3, 4, 5, 6}) {
-    const CodeSet& code = context.shelf.redesigned(exposures, camera, context.options);
+    const CodeSet& code =
+        context.shelf.redesigned(exposures, camera, context.options,
+                                 part_of(progress, (exposures - 3) / 4.0, (exposures - 2) / 4.0));
     list.push_back({code.name(), code});
   }
   for (const std::string& name : {single_frequency, dual_frequency})
@@ -39,21 +42,23 @@ ErrorSurfaceGroup measure(double f_max_in_f0, const ReproduceContext& context,
   const Camera camera =
       with_light_levels(two_bucket_camera(fig8_peak_factor, f_max_in_f0), context);
   ErrorSurfaceGroup group{fmt::format("p = {:g}, {:g} f0", fig8_peak_factor, f_max_in_f0), {}};
-  const std::vector<Contender> list =
-      contenders(two_bucket_camera(fig8_peak_factor, f_max_in_f0), context);
+  const std::vector<Contender> list = contenders(two_bucket_camera(fig8_peak_factor, f_max_in_f0),
+                                                 context, part_of(progress, 0.0, 0.4));
+  const Progress measuring = part_of(progress, 0.5, 1.0);
   const double steps = static_cast<double>(list.size()) + 1.0;
   double done = 0.0;
   for (const Contender& contender : list) {
     group.surfaces.push_back(measure_surface(contender, camera, surface_precision(context),
-                                             part_of(progress, done / steps, (done + 1) / steps)));
+                                             part_of(measuring, done / steps, (done + 1) / steps)));
     done += 1.0;
   }
   // The same light and time with one tap: what the second bucket adds.
   const Camera single = paper_camera(fig8_peak_factor, f_max_in_f0);
-  group.surfaces.push_back(
-      measure_surface({one_tap, context.shelf.redesigned(4, single, context.options)},
-                      with_light_levels(single, context), surface_precision(context),
-                      part_of(progress, done / steps, 1.0)));
+  const CodeSet& code =
+      context.shelf.redesigned(4, single, context.options, part_of(progress, 0.4, 0.5));
+  group.surfaces.push_back(measure_surface({one_tap, code}, with_light_levels(single, context),
+                                           surface_precision(context),
+                                           part_of(measuring, done / steps, 1.0)));
   return group;
 }
 

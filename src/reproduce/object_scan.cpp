@@ -85,9 +85,9 @@ ScannedScene scanned_ball(int width, int height) {
 }
 
 Reference fit_reference(const ScannedScene& scene, const CodeSet& code, const Camera& camera,
-                        int estimates, std::uint64_t seed) {
-  const RepeatedDepth depth =
-      repeated_depth(scene.truth, code, camera, capture_options(0.0, estimates, seed));
+                        int estimates, std::uint64_t seed, const Progress& progress) {
+  const RepeatedDepth depth = repeated_depth(scene.truth, code, camera,
+                                             capture_options(0.0, estimates, seed), {}, progress);
   Reference reference{.depth_m = Image<float>(scene.truth.height(), scene.truth.width(),
                                               std::numeric_limits<float>::quiet_NaN()),
                       .fits = {}};
@@ -121,11 +121,11 @@ Reference fit_reference(const ScannedScene& scene, const CodeSet& code, const Ca
 
 ObjectScan scan_objects(const ScannedScene& scene, const CodeSet& code, const Camera& camera,
                         const Reference& reference, double optical_density, int estimates,
-                        std::uint64_t seed) {
+                        std::uint64_t seed, const Progress& progress) {
   const CaptureOptions light = capture_options(optical_density, estimates, seed);
-  const RepeatedDepth depth =
-      repeated_depth(scene.truth, code, camera, light,
-                     {.reference_m = reference.depth_m, .outlier_threshold_m = scan_outlier_m});
+  const RepeatedDepth depth = repeated_depth(
+      scene.truth, code, camera, light,
+      {.reference_m = reference.depth_m, .outlier_threshold_m = scan_outlier_m}, progress);
   CaptureOptions once = light;
   once.frames = 1;
   ObjectScan scan{.code = code.name(),

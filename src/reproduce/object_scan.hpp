@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "reproduce/prototype_bench.hpp"
+#include "tofsmith/core/progress.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 #include "tofsmith/scene/staged_scene.hpp"
 
@@ -49,7 +50,7 @@ struct Reference {
   std::vector<ReferenceFit> fits;
 };
 Reference fit_reference(const ScannedScene& scene, const CodeSet& code, const Camera& camera,
-                        int estimates, std::uint64_t seed);
+                        int estimates, std::uint64_t seed, const Progress& progress = {});
 
 /// An object's errors in one scan.
 struct ObjectError {
@@ -68,6 +69,6 @@ struct ObjectScan {
 };
 ObjectScan scan_objects(const ScannedScene& scene, const CodeSet& code, const Camera& camera,
                         const Reference& reference, double optical_density, int estimates,
-                        std::uint64_t seed);
+                        std::uint64_t seed, const Progress& progress = {});
 
 }  // namespace tofsmith

@@ -18,11 +18,14 @@ namespace tofsmith {
 namespace {
 
 /// What the generators cost a code: its depth error with them over that without.
-double cost_of_generators(const CodeSet& code, Camera camera, const EvaluateOptions& options) {
-  const double with = evaluate(code, camera, options).circular.geometric_mean_m.value;
+double cost_of_generators(const CodeSet& code, Camera camera, const EvaluateOptions& options,
+                          const Progress& progress) {
+  const double with =
+      evaluate(code, camera, options, part_of(progress, 0.0, 0.5)).circular.geometric_mean_m.value;
   camera.light.generator.reset();
   camera.sensor.generator.reset();
-  return with / evaluate(code, camera, options).circular.geometric_mean_m.value;
+  return with / evaluate(code, camera, options, part_of(progress, 0.5, 1.0))
+                    .circular.geometric_mean_m.value;
 }
 
 /// Farthest that the generators move a switching time of a code [s].
@@ -89,14 +92,19 @@ Reproduction reproduce_table1(const ReproduceContext& context, const Progress& p
                              "hamiltonian-k4", "hamiltonian-k5"})
     codes.push_back(build_family(family, camera));
   for (const int exposures : {4, 5})
-    codes.push_back(context.shelf.redesigned(exposures, camera, context.options));
+    codes.push_back(
+        context.shelf.redesigned(exposures, camera, context.options,
+                                 part_of(progress, 0.4 * (exposures - 4), 0.4 * (exposures - 3))));
+  const Progress measuring = part_of(progress, 0.8, 1.0);
   std::vector<std::string> spoiled;
   double worst_of_others = 1.0;
   for (const CodeSet& code : codes) {
-    report(progress, static_cast<double>(played.rows.size()) / static_cast<double>(codes.size()),
-           "table1: " + code.name());
+    const double done = static_cast<double>(played.rows.size());
+    const double count = static_cast<double>(codes.size());
+    report(measuring, done / count, "table1: " + code.name());
     const double cost = cost_of_generators(
-        code, camera, {.trials = context.pick(40000, 2000), .seed = context.options.seed});
+        code, camera, {.trials = context.pick(40000, 2000), .seed = context.options.seed},
+        part_of(measuring, done / count, (done + 1) / count));
     if (cost > 1.1)
       spoiled.push_back(fmt::format("{} by {:.0f} %", code.name(), 100 * (cost - 1)));
     else

@@ -130,8 +130,12 @@ void add_zero_error_at_p30(Reproduction& result, const ReproduceContext& context
     report(progress, (order - 3) / 3.0, "text: p = 30");
     double residual = 0.0, peak = 0.0;
     const std::string family = fmt::format("hamiltonian-k{}", order);
+    double done = 0.0;
     for (const CorrelationTarget& target : ideal_targets(family, camera).measurements) {
-      const Factorization found = factorize(target, camera, options);
+      const Progress part = part_of(progress, (order - 3 + done / order) / 3.0,
+                                    (order - 3 + (done + 1) / order) / 3.0);
+      const Factorization found = factorize(target, camera, options, part);
+      done += 1.0;
       residual = std::max(residual, found.best().residual_rms);
       peak = std::max(peak, found.best().pair.modulation.peak());
     }

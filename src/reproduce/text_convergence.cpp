@@ -39,7 +39,7 @@ const std::vector<Rule> rules = {
 
 /// Iterations of every random start on every Hamiltonian target of K = 3, 4, 5, sorted.
 std::vector<int> count_iterations(const Claim& claim, const Rule& rule,
-                                  const ReproduceContext& context) {
+                                  const ReproduceContext& context, const Progress& progress) {
   FactorizeOptions options;
   options.seed = context.options.seed;
   options.random_starts = context.pick(20, 4);
@@ -48,11 +48,15 @@ std::vector<int> count_iterations(const Claim& claim, const Rule& rule,
   options.feed_back_projection = rule.feedback;
   options.structured_starts = options.keep_naive = options.refine_edges = false;
   std::vector<int> counts;
+  const double all = 12.0 * static_cast<double>(claim.list.size());  // targets of K = 3, 4, 5
+  double done = 0.0;
   for (const Camera& camera : claim.list)
     for (const int order : {3, 4, 5})
       for (const CorrelationTarget& target :
            ideal_targets(fmt::format("hamiltonian-k{}", order), camera).measurements) {
-        const Factorization found = factorize(target, camera, options);
+        const Factorization found =
+            factorize(target, camera, options, part_of(progress, done / all, (done + 1) / all));
+        done += 1.0;
         counts.insert(counts.end(), found.iterations_per_start.begin(),
                       found.iterations_per_start.end());
       }
@@ -97,8 +101,10 @@ void add_convergence(Reproduction& result, const ReproduceContext& context,
     bool within = true, below = true;
     std::size_t starts = 0;
     for (const Rule& rule : rules) {
-      report(progress, done++ / 6.0, "text: counting iterations");
-      const std::vector<int> counts = count_iterations(claim, rule, context);
+      report(progress, done / 6.0, "text: counting iterations");
+      const std::vector<int> counts =
+          count_iterations(claim, rule, context, part_of(progress, done / 6.0, (done + 1.0) / 6.0));
+      done += 1.0;
       starts = counts.size();
       within = within && share_within(counts, claim.low, claim.high) >= 0.9;
       below = below && share_within(counts, 1, claim.high) >= 0.9;

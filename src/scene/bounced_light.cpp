@@ -10,6 +10,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/random.hpp"
+#include "tofsmith/core/shared_progress.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 
 namespace tofsmith {
@@ -167,10 +168,12 @@ LaterReturns bounced_light(const StagedScene& scene, const BounceOptions& option
   const int height = scene.view.height, width = scene.view.width;
   LaterReturns result(height, width);
   std::vector<std::vector<LaterReturn>> of_row(static_cast<std::size_t>(width));
+  report(progress, 0.0, "gathering bounced light");
+  SharedProgress shared(progress, static_cast<double>(height) * width, "gathering bounced light");
   for (int row = 0; row < height; ++row) {
-    report(progress, static_cast<double>(row) / height, "gathering bounced light");
     parallel_for(width, [&](std::int64_t column) {
       of_row[static_cast<std::size_t>(column)] = gatherer.gather(row, static_cast<int>(column));
+      shared.add();
     });
     for (const std::vector<LaterReturn>& of_pixel : of_row) result.append_pixel(of_pixel);
   }

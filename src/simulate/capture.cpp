@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/simulate/capture.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "simulate/captured_rows.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/shared_progress.hpp"
 
 namespace tofsmith {
 
@@ -47,14 +47,13 @@ RawFrames captured_rows(const RowCapture& source, int height, int width, int fra
     source.row(frame, row, raw.frame(frame) + static_cast<std::size_t>(row) * row_values);
   };
 
-  constexpr int rows_between_reports = 64;
-  for (int frame = 0; frame < raw.frames; ++frame) {
-    for (int top = 0; top < raw.height; top += rows_between_reports) {
-      report(progress, (frame + static_cast<double>(top) / raw.height) / raw.frames, "capture");
-      const int rows = std::min(rows_between_reports, raw.height - top);
-      parallel_for(rows, [&](std::int64_t r) { capture_row(frame, top + static_cast<int>(r)); });
-    }
-  }
+  report(progress, 0.0, "capture");
+  SharedProgress shared(progress, static_cast<double>(raw.frames) * raw.height, "capture");
+  for (int frame = 0; frame < raw.frames; ++frame)
+    parallel_for(raw.height, [&](std::int64_t row) {
+      capture_row(frame, static_cast<int>(row));
+      shared.add();
+    });
   report(progress, 1.0, "capture");
   return raw;
 }

@@ -9,6 +9,7 @@
 #include "decode/trial_decoder.hpp"
 #include "simulate/trial_kernel.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/shared_progress.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
@@ -94,21 +95,25 @@ std::vector<Sums> DepthTrials::sum(std::span<const TrialRound> rounds, const Sum
   for (const TrialRound& round : rounds) all += round.trials;
   const auto finish = [&] {
     report(progress, static_cast<double>(done) / static_cast<double>(all), "depth error");
+    std::int64_t after = done;
+    for (const Run& run_of : runs) after += run_of.trials.end - run_of.trials.begin;
+    SharedProgress shared(part_of(progress, static_cast<double>(done) / static_cast<double>(all),
+                                  static_cast<double>(after) / static_cast<double>(all)),
+                          static_cast<double>(after - done), "depth error");
     of_run.assign(runs.size(), none);
     parallel_for(std::ssize(runs), [&](std::int64_t i) {
       const Run& run_of = runs[static_cast<std::size_t>(i)];
       Sums& sums = of_run[static_cast<std::size_t>(i)];
       TrialTile tile;
       for (std::int64_t begin = run_of.trials.begin; begin < run_of.trials.end;
-           begin += trials_per_tile)
-        add(sums,
-            run(rounds[run_of.round],
-                {begin, std::min<std::int64_t>(run_of.trials.end, begin + trials_per_tile)}, tile));
+           begin += trials_per_tile) {
+        const std::int64_t end = std::min<std::int64_t>(run_of.trials.end, begin + trials_per_tile);
+        add(sums, run(rounds[run_of.round], {begin, end}, tile));
+        shared.add(static_cast<double>(end - begin));
+      }
     });
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      total[runs[i].round].merge(of_run[i]);
-      done += runs[i].trials.end - runs[i].trials.begin;
-    }
+    for (std::size_t i = 0; i < runs.size(); ++i) total[runs[i].round].merge(of_run[i]);
+    done = after;
     runs.clear();
   };
   for (std::size_t r = 0; r < rounds.size(); ++r)

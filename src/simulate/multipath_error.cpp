@@ -46,7 +46,8 @@ class CellTrials {
 
   /// @param decoder  of two returns or a tail; null: none
   template <typename AnyDecoder>
-  MultipathCell cell(const CellLight& light, std::uint64_t number, const AnyDecoder* decoder) const;
+  MultipathCell cell(const CellLight& light, std::uint64_t number, const AnyDecoder* decoder,
+                     const Progress& progress) const;
 
  private:
   RawFrames capture(const CellLight& light, std::uint64_t number,
@@ -124,7 +125,7 @@ double CellTrials::cramer_rao_mae_m(const CellLight& light) const {
 
 template <typename AnyDecoder>
 MultipathCell CellTrials::cell(const CellLight& light, std::uint64_t number,
-                               const AnyDecoder* decoder) const {
+                               const AnyDecoder* decoder, const Progress& progress) const {
   MultipathCell result;
   result.ratio = light.ratio;
   result.delay_m = light.delay_m;
@@ -133,9 +134,10 @@ MultipathCell CellTrials::cell(const CellLight& light, std::uint64_t number,
   result.cramer_rao_mae_m = no_number;
   std::vector<double> true_m;
   const RawFrames raw = capture(light, number, true_m);
-  add_errors(single_.decode(raw).depth_m, true_m, result.single_bias_m, result.single_error_m);
+  add_errors(single_.decode(raw, 0, part_of(progress, 0.0, 0.1)).depth_m, true_m,
+             result.single_bias_m, result.single_error_m);
   if (!decoder) return result;
-  const MultipathImage image = decoder->decode(raw);
+  const MultipathImage image = decoder->decode(raw, 0, part_of(progress, 0.1, 1.0));
   add_errors(image.direct.depth_m, true_m, result.bias_m, result.error_m);
   const auto share = [&](ReturnStatus status) {
     return static_cast<double>(std::ranges::count(image.returns.pixels, status)) /
@@ -208,21 +210,22 @@ MultipathErrorReport multipath_error(const CodeSet& code, const Camera& camera,
       options.signal_e_per_s.size() *
       (2 + options.ratio.size() * (options.delay_m.size() + options.tail_m.size()));
   std::uint64_t number = 0;
-  const auto next = [&] {
-    report(progress, static_cast<double>(number) / static_cast<double>(cells), "multi-path");
-    return number++;
+  const auto measure = [&](const CellLight& light, const auto* decoder) {
+    const double done = static_cast<double>(number), count = static_cast<double>(cells);
+    report(progress, done / count, "multi-path");
+    return trials.cell(light, number++, decoder,
+                       part_of(progress, done / count, (done + 1) / count));
   };
   for (const double signal : options.signal_e_per_s) {
     MultipathMaps maps;
     maps.signal_e_per_s = signal;
-    maps.single = trials.cell({signal}, next(), pointer_to(two));
-    maps.single_by_tail = trials.cell({signal}, next(), pointer_to(tails[tails.size() / 2]));
+    maps.single = measure({signal}, pointer_to(two));
+    maps.single_by_tail = measure({signal}, pointer_to(tails[tails.size() / 2]));
     for (const double r : options.ratio) {
       for (const double delay_m : options.delay_m)
-        maps.points.push_back(trials.cell({signal, r, delay_m}, next(), pointer_to(two)));
+        maps.points.push_back(measure({signal, r, delay_m}, pointer_to(two)));
       for (std::size_t i = 0; i < tails.size(); ++i)
-        maps.tails.push_back(
-            trials.cell({signal, r, options.tail_m[i], true}, next(), pointer_to(tails[i])));
+        maps.tails.push_back(measure({signal, r, options.tail_m[i], true}, pointer_to(tails[i])));
     }
     result.maps.push_back(std::move(maps));
   }

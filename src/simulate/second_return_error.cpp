@@ -53,7 +53,7 @@ TrialFrame draw_frame(const PixelCapture& pixel, const Camera& camera, const Sec
   return frame;
 }
 
-/// @param depth_of  decodes a frame
+/// @param depth_of  decodes a frame, with progress
 template <typename DepthOf>
 SecondReturnError error_of(const PixelCapture& pixel, const Camera& camera,
                            const SecondReturns& later, const EvaluateOptions& options,
@@ -62,9 +62,11 @@ SecondReturnError error_of(const PixelCapture& pixel, const Camera& camera,
   std::vector<Estimate> linear_m, circular_m;
   const std::size_t points = camera.operating.points().size();
   for (std::size_t p = 0; p < points; ++p) {
-    report(progress, static_cast<double>(p) / static_cast<double>(points), "second returns");
+    const double done = static_cast<double>(p), count = static_cast<double>(points);
+    report(progress, done / count, "second returns");
     const TrialFrame frame = draw_frame(pixel, camera, later, options, p);
-    const Image<float> depth_m = depth_of(frame.raw);
+    const Image<float> depth_m =
+        depth_of(frame.raw, part_of(progress, done / count, (done + 1) / count));
     RunningStatistics linear, circular;
     for (std::size_t t = 0; t < frame.true_m.size(); ++t) {
       // Nothing decoded is as good as any depth.
@@ -88,7 +90,9 @@ struct SecondReturnTrials {
   SecondReturnError single_path(const Progress& progress) const {
     const Decoder decoder(make_decoding_table(model, camera));
     return error_of(pixel, camera, later, options, progress,
-                    [&](const RawFrames& raw) { return decoder.decode(raw).depth_m; });
+                    [&](const RawFrames& raw, const Progress& part) {
+                      return decoder.decode(raw, 0, part).depth_m;
+                    });
   }
 
   /// @throws std::invalid_argument for codes that cannot tell two returns
@@ -98,7 +102,9 @@ struct SecondReturnTrials {
     decoding.longest_delay_m = std::max(later.delay_m[1], camera.range_m() / 3);
     const TwoReturnDecoder decoder(make_decoding_table(model, camera), decoding);
     return error_of(pixel, camera, later, options, progress,
-                    [&](const RawFrames& raw) { return decoder.decode(raw).direct.depth_m; });
+                    [&](const RawFrames& raw, const Progress& part) {
+                      return decoder.decode(raw, 0, part).direct.depth_m;
+                    });
   }
 
   ForwardModel checked_model(const CodeSet& code) const {

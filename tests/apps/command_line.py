@@ -40,8 +40,9 @@ class CommandLineTest(unittest.TestCase):
             return file.read()
 
     def start(self, *arguments, **options):
-        return subprocess.Popen([TOOL, *arguments], cwd=self.directory, stdout=subprocess.PIPE,
-                                stderr=subprocess.PIPE, **options)
+        """Without progress, which a slow machine would tell."""
+        return subprocess.Popen([TOOL, "--quiet", *arguments], cwd=self.directory,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
 
     def run_tool(self, *arguments, **options):
         """Exit code, standard output, standard error."""

@@ -155,6 +155,21 @@ class Commands(CommandLineTest):
         raw = np.load(self.path("raw.npy"))
         self.assertAlmostEqual(raw[:, 4:].mean() / raw[:, :4].mean(), 3, 1)
 
+    def test_decode_tells_when_no_pixel_has_a_depth(self):
+        adc = ("--set", "sensor.adc_bits=12", "--set", "sensor.gain_e_per_dn=1")
+        for value, more, words in ((np.nan, (), ("20 invalid", "NaN")),
+                                   (0, (), ("20 no_return", "--layout")),
+                                   (4095, adc, ("20 saturated", "expose less"))):
+            np.save(self.path("none.npy"), np.full((4, 5, 4), value, np.float32))
+            decode = ("decode", "none.npy", "--code", "sinusoid-k4", *more, "-o", "d.npy", "--force")
+            (note,) = [n for n in self.do_json(*decode)["notes"] if "no pixel has a depth" in n]
+            for word in words:
+                self.assertIn(word, note)
+            self.assertIn(note, self.do(*decode))
+        self.small_scene()
+        self.simulate()
+        self.assertFalse([n for n in self.decode()["notes"] if "no pixel" in n])
+
     def test_decode_writes_every_format(self):
         self.small_scene()
         self.simulate()

@@ -51,6 +51,23 @@ class Evaluate(CommandLineTest):
         self.assertIn("25 of 25 operating points stay short of a standard error of 0.1 %", text)
         self.assertIn("3000 trials", text)
 
+    def test_evaluate_prints_the_mean_first_and_every_level_if_asked(self):
+        codes = ("sinusoid-k4", "hamiltonian-k4")
+        points = {code["name"]: [point["linear_mde_m"] for point in code["points"]]
+                  for code in self.do_json("evaluate", *codes, *FAST)["codes"]}
+        lines = self.do("evaluate", *codes, *FAST).splitlines()
+        self.assertEqual([line.split()[2] for line in lines[1:7]], ["mean", "best", "worst"] * 2)
+        for code, first in zip(codes, (1, 4)):
+            for line, error_m in ((first + 1, min(points[code])), (first + 2, max(points[code]))):
+                self.assertIn(code, lines[line])
+                self.assertAlmostEqual(float(lines[line].split()[5]) / error_m, 1e3, delta=1)
+        self.assertIn("all 25 light levels: --every-level", lines[-1])
+        full = [lines[i] for i in (0, 2, 3, 5, 6)]  # without means, which have no bounds
+        self.assertEqual(len({len(line) for line in full}), 1)  # columns stand below each other
+        lines = self.do("evaluate", *codes, *FAST, "--every-level").splitlines()
+        self.assertEqual(sum(line.startswith("hamiltonian-k4") for line in lines), 26)
+        self.assertNotIn("--every-level", lines[-1])
+
     def test_evaluate_writes_every_format(self):
         document = self.do_json("evaluate", "sinusoid-k4", *FAST, "-o", "e.json")
         self.assertEqual(document, json.loads(self.bytes_of("e.json")))

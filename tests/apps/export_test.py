@@ -55,6 +55,20 @@ class Export(CommandLineTest):
         rows = np.genfromtxt(self.path("w.csv"), delimiter=",", names=True)
         self.assertEqual(len(rows), 24)
 
+    def test_a_rate_that_nothing_plays_is_told(self):
+        def notes(name, *more):
+            return self.do_json("export", "hamiltonian-k3", "--format", name, "-o", "d", "--force",
+                                "--no-loss", *more)["notes"]
+        (note,) = notes("csv")
+        for words in ("3600 MHz", "2400 MHz", "--rate 2.4e+09"):
+            self.assertIn(words, note)
+        self.assertIn("1000 MHz", notes("keysight-arb")[0])
+        self.assertEqual(notes("csv", "--rate", "3.6e9"), [])  # whoever says so has one
+        self.assertEqual(notes("csv", "--samples", "120"), [])
+        self.assertEqual(notes("csv", "--camera", "prototype"), [])
+        self.assertIn("note: " + note, self.do("export", "hamiltonian-k3", "--format", "csv", "-o",
+                                               "d", "--force", "--no-loss"))
+
     def test_wrong_usage(self):
         for arguments, code, words in (
                 (["--format", "tek-wmf", "-o", "d"], 2, ["tek-wfm", "did you mean tek-wfm?"]),

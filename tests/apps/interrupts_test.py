@@ -20,7 +20,8 @@ class Interrupts(CommandLineTest):
         process.send_signal(signal.SIGINT)
         out, error = process.communicate(timeout=60)
         self.assertEqual((process.returncode, out), (130, b""), error)
-        kept = f"; finished files are kept in {directory}" if directory else ""
+        kept = (f"; finished files are kept in {directory}, and the same command goes on from there"
+                if directory else "; nothing was written")
         self.assertEqual(error.decode(), f"tofsmith: interrupted{kept}\n")
         self.assertFalse([name for name in self.files() if ".tofsmith" in name])
 
@@ -37,6 +38,9 @@ class Interrupts(CommandLineTest):
 
     def test_evaluate_at_the_best_rotation(self):
         self.interrupt("evaluate", "sinusoid-k4", "--best-rotation", *LONG)
+
+    def test_evaluate_by_maximum_likelihood(self):
+        self.interrupt("evaluate", "hamiltonian-k4", "--method", "ml", *LONG)
 
     def test_simulate(self):
         self.interrupt("simulate", "table-top", "--code", "hamiltonian-k5", "--frames", "500",

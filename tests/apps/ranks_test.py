@@ -31,7 +31,8 @@ class RanksTest(CommandLineTest):
         be fewer cores; the MPI library's own leaks are no concern of ours."""
         options = os.environ.get("ASAN_OPTIONS", "")
         return subprocess.Popen(
-            [MPIRUN, "--allow-run-as-root", "--oversubscribe", "-n", str(count), TOOL, *arguments],
+            [MPIRUN, "--allow-run-as-root", "--oversubscribe", "-n", str(count), TOOL,
+             "--quiet", *arguments],
             cwd=self.directory, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
             env={**os.environ, "ASAN_OPTIONS": options + ":detect_leaks=0"})
 
@@ -138,8 +139,8 @@ class Ranks(RanksTest):
             job = self.start_long(store)
             os.kill(self.processes_of(job)[rank], signal.SIGTERM)
             _, error = job.communicate(timeout=60)
-            self.assertIn(f"tofsmith: interrupted; finished items are kept in {store}\n",
-                          error.decode())
+            self.assertIn(f"tofsmith: interrupted; finished items are kept in {store}, and the same "
+                          "command goes on from there\n", error.decode())
             self.assertEqual(self.status(store)["running"], 0)
 
     def test_what_fails_on_rank_0_is_told_once(self):

@@ -50,6 +50,9 @@ class Refusals(CommandLineTest):
                 (["evaluate", "sinusoid-k4", "--unwrap-weights", "frequency"], ["--method"]),
                 (["design", "a", "b"], ["'b'"]),
                 (["design", "--method", "magic"], ["magic", "factorize"]),
+                (["design", "--method", "factorise"], ["did you mean factorize?"]),
+                (["decode", "r.npy", "--code", "c", "--method", "two-returns", "-o", "d.npy"],
+                 ["did you mean two-return?"]),
                 (["design", "--exposures", "9"], ["9"]),
                 (["codes", "-o", "x.npz"], ["NAME"]),
                 (["simulate", "table-top", "--code", "sinusoid-k4"], ["--output"]),
@@ -77,6 +80,9 @@ class Refusals(CommandLineTest):
         self.refuse(["evaluate", "multifrequency-2x3-4x3", "--method", "unwrap"],
                     "frequencies = 2, 4", "repeats after 4.997")
         self.refuse(["evaluate", "hamiltonian-k7"], "multiple of 126", "--set samples=252")
+        self.refuse(["evaluate", "hamiltonian-k40"], "hamiltonian-k40", "must be in [3, 10]",
+                    "`tofsmith codes`", "hamiltonian-k4")
+        self.refuse(["codes", "gray-k99"], "gray-k99", "`tofsmith codes`")
         self.refuse(["evaluate", "nothing-like-it"], "no such file", "codes")
         self.refuse(["evaluate", ""], "empty name")
         self.refuse(["evaluate", "sinusoid-k4", "--camera", "paper-10"], "did you mean paper-10f0?")

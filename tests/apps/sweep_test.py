@@ -140,7 +140,8 @@ class Sweep(CommandLineTest):
         out, error = process.communicate(timeout=60)
         self.assertEqual((process.returncode, out), (130, b""))
         self.assertEqual(error.decode(),
-                         "tofsmith: interrupted; finished items are kept in s.sqlite\n")
+                         "tofsmith: interrupted; finished items are kept in s.sqlite, and the same "
+                         "command goes on from there\n")
         self.assertEqual(self.sweep("s.sqlite", "--status")["running"], 0)
 
     def test_a_full_disk_loses_nothing(self):

@@ -42,6 +42,10 @@ const std::vector<GeneratorModel>& generator_models();
 /// @throws std::invalid_argument that names the nearest, or the families
 const GeneratorModel& generator_model(std::string_view name);
 
+/// The most points per second that any model plays which takes this WaveformFormat, or any model at
+/// all where none of them does.
+double fastest_sample_rate_hz(std::string_view format);
+
 /// What an instrument says of itself.
 struct InstrumentIdentity {
   std::string vendor, model, serial, firmware;

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/core/shared_progress.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+SharedProgress::SharedProgress(Progress progress, double pieces, std::string step)
+    : progress_(std::move(progress)), pieces_(pieces), step_(std::move(step)) {}
+
+void SharedProgress::add(double pieces) {
+  if (!progress_) return;
+  const double done = done_.fetch_add(pieces, std::memory_order_relaxed) + pieces;
+  if (is_stopped_.load(std::memory_order_relaxed)) throw Interrupted();
+  if (std::this_thread::get_id() != caller_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now - told_at_ < std::chrono::milliseconds(50)) return;
+  told_at_ = now;
+  if (progress_(std::min(1.0, done / pieces_), step_)) return;
+  is_stopped_.store(true, std::memory_order_relaxed);
+  throw Interrupted();
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,47 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Long work says how far it is where no terminal is: in a log or a pipe, in plain lines."""
+
+import signal
+import subprocess
+import time
+import unittest
+
+import command_line
+from command_line import CommandLineTest
+
+LONG = ("evaluate", "sinusoid-k4", "--trials", "1000000000")
+
+
+class ProgressLines(CommandLineTest):
+    def start_told(self, *arguments):
+        return subprocess.Popen([command_line.TOOL, *arguments], cwd=self.directory,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+    def end(self, process):
+        process.send_signal(signal.SIGINT)
+        out, error = process.communicate(timeout=60)
+        self.assertEqual((process.returncode, out), (130, b""))
+        return error
+
+    def test_long_work_tells_plain_lines(self):
+        for json in ((), ("--json",)):
+            process = self.start_told(*LONG, *json)
+            first = process.stderr.readline()
+            self.assertRegex(first, rb"^tofsmith: evaluating \d+ %  \w[^\r\x1b]*\n$")
+            self.assertEqual(self.end(process), b"tofsmith: interrupted; nothing was written\n")
+
+    def test_short_work_tells_nothing(self):
+        process = self.start_told("evaluate", "sinusoid-k4", "--trials", "100", "--set",
+                                  "samples=60", "--json")
+        self.assertEqual(process.communicate(timeout=60)[1], b"")
+
+    def test_quiet_work_tells_nothing(self):
+        for arguments in (("--quiet", *LONG), (*LONG, "--quiet")):
+            process = self.start_told(*arguments)
+            time.sleep(7)  # longer than work that is told of
+            self.assertEqual(self.end(process), b"tofsmith: interrupted; nothing was written\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
