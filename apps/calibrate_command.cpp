@@ -33,9 +33,7 @@ void CalibrateOutput::check(const Session& session, const std::vector<std::strin
 
 void CalibrateOutput::write_camera(const Camera& camera, const Session& session) const {
   if (camera_path.empty()) return;
-  Camera named = camera;
-  named.name = std::filesystem::path(camera_path).stem().string();
-  write_file_atomically(camera_path, camera_to_toml(named), session.output_policy());
+  write_camera_toml(camera_path, camera, session.output_policy());
   session.say(
       fmt::format("wrote {}\nnext: tofsmith design {} -o designed", camera_path, camera_path));
 }

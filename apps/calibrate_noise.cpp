@@ -4,7 +4,7 @@
 
 #include "calibrate_output.hpp"
 #include "number_checks.hpp"
-#include "tofsmith/calibrate/photon_transfer.hpp"
+#include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/raw_frames_file.hpp"
 #include "tofsmith/report/colours.hpp"
@@ -93,18 +93,17 @@ void run(const NoiseArguments& arguments, const Session& session) {
   inputs.push_back(arguments.dark);
   inputs.push_back(arguments.camera.name);
   arguments.output.check(session, inputs);
-  if (base.sensor.readout == Readout::difference)
-    throw UsageError(
-        "calibrate noise: the camera reads differences, whose mean does not tell their shot noise; "
-        "expected frames of single taps (--set sensor.readout=separate)");
+  PhotonTransferOptions options;
+  try {
+    options = noise_options(base, !arguments.dark.empty());
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(fmt::format("calibrate noise: {}", error.what()));
+  }
+  if (arguments.black_level_dn) options.black_level_dn = arguments.black_level_dn;
   std::vector<RawFrames> levels;
   for (const std::string& file : arguments.files) levels.push_back(read_raw_frames(file));
   RawFrames dark;
   if (!arguments.dark.empty()) dark = read_raw_frames(arguments.dark);
-  PhotonTransferOptions options{.black_level_dn = arguments.black_level_dn,
-                                .adc_bits = base.sensor.adc_bits};
-  if (arguments.dark.empty() && !options.black_level_dn)
-    options.black_level_dn = base.sensor.black_level_dn;
   if (arguments.dark.empty() && !options.black_level_dn)
     throw UsageError(
         "calibrate noise: the black level is not known; expected --dark FILE, frames "

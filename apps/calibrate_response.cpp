@@ -6,10 +6,9 @@
 
 #include "calibrate_output.hpp"
 #include "number_checks.hpp"
-#include "tofsmith/calibrate/impulse_response.hpp"
+#include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
-#include "tofsmith/io/impulse_response_file.hpp"
 #include "tofsmith/report/colours.hpp"
 #include "tofsmith/report/line_figure.hpp"
 
@@ -24,35 +23,6 @@ struct ResponseArguments {
   ResponseRecordOptions record;
   std::string excitation = "auto", decimal = "auto", time_unit, arm = "light", as = "file";
 };
-
-ImpulseResponse::Kind kind_named(const std::string& name) {
-  for (const auto kind : {ImpulseResponse::Kind::hann, ImpulseResponse::Kind::gaussian,
-                          ImpulseResponse::Kind::lowpass})
-    if (name == name_of(kind)) return kind;
-  return ImpulseResponse::Kind::file;
-}
-
-/// The response that the camera gets; a measured one goes into a file beside the camera's.
-ImpulseResponse written_response(const ResponseArguments& arguments,
-                                 const CalibratedResponse& result) {
-  const auto kind = kind_named(arguments.as);
-  for (const ParametricResponse& fit : result.fits)
-    if (fit.response.kind == kind) return fit.response;
-  return result.response;
-}
-
-std::filesystem::path response_path(const ResponseArguments& arguments) {
-  std::filesystem::path path = arguments.output.camera_path;
-  return path.replace_filename(path.stem().string() + "-response.csv");
-}
-
-Camera camera_with(Camera camera, const ResponseArguments& arguments,
-                   const ImpulseResponse& response) {
-  if (arguments.arm != "sensor") camera.light.impulse_response = response;
-  if (arguments.arm == "sensor") camera.sensor.impulse_response = response;
-  if (arguments.arm == "system") camera.sensor.impulse_response = {};
-  return camera;
-}
 
 std::vector<std::vector<std::string>> fit_rows(const CalibratedResponse& result) {
   std::vector<std::vector<std::string>> rows{
@@ -154,11 +124,13 @@ Page page_of(const CalibratedResponse& result, const std::string& file) {
 void run(ResponseArguments& arguments, const Session& session) {
   const Camera base = arguments.camera.load();
   arguments.output.check(session, {arguments.file, arguments.camera.name});
-  const bool measured = kind_named(arguments.as) == ImpulseResponse::Kind::file;
-  const bool writes_response = measured && !arguments.output.camera_path.empty();
-  if (writes_response) {
-    check_not_input(response_path(arguments), {arguments.file, arguments.camera.name});
-    session.check_output(response_path(arguments));
+  const ImpulseResponse::Kind kind = parse_response_kind(arguments.as);
+  const bool measured = kind == ImpulseResponse::Kind::file;
+  const bool writes_camera = !arguments.output.camera_path.empty();
+  if (measured && writes_camera) {
+    const std::filesystem::path path = response_path(arguments.output.camera_path);
+    check_not_input(path, {arguments.file, arguments.camera.name});
+    session.check_output(path);
   }
   arguments.record.decimal = parse_decimal_mark(arguments.decimal);
   if (!arguments.time_unit.empty())
@@ -179,11 +151,10 @@ void run(ResponseArguments& arguments, const Session& session) {
     throw IoError(arguments.file, error.what());
   }
 
-  ImpulseResponse response = written_response(arguments, result);
-  if (writes_response) {
-    write_impulse_response(response_path(arguments), response, session.output_policy());
-    response.file = response_path(arguments).filename().string();
-  }
+  ImpulseResponse response = response_of(result, kind);
+  if (writes_camera)
+    response = write_response_beside(arguments.output.camera_path, std::move(response),
+                                     session.output_policy());
   session.print_json(document_of(result));
   session.say(fmt::format("{}: a {}{}, {:.1f} dB above its noise\n\n{}", arguments.file,
                           result.falling ? "falling " : "", name_of(result.excitation),
@@ -196,7 +167,8 @@ void run(ResponseArguments& arguments, const Session& session) {
                     length_text(0.5 * speed_of_light_m_per_s * result.response_centre_s)));
   session.say(note_lines(result.notes));
   arguments.output.write_page(page_of(result, arguments.file), session);
-  arguments.output.write_camera(camera_with(base, arguments, response), session);
+  arguments.output.write_camera(with_response(base, response, parse_response_arm(arguments.arm)),
+                                session);
 }
 
 }  // namespace
