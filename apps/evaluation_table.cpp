@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "tofsmith/io/csv.hpp"
-#include "zncc_comparison.hpp"
+#include "tofsmith/report/zncc_comparison.hpp"
 
 namespace tofsmith::apps {
 
@@ -30,14 +30,15 @@ std::vector<std::vector<std::string>> evaluation_rows(const std::vector<Evaluate
     for (const PointDepthError& p : code.error.points)
       rows.push_back({code.error.code, fmt::format("{}", code.error.measurements),
                       fmt::format("{:.3g}", p.point.signal_e_per_s),
-                      fmt::format("{:.3g}", p.point.ambient_e_per_s), in_mm(p.linear_mde_m),
-                      in_mm(p.circular_mde_m), fmt::format("{:.2f}", 100 * p.outlier_rate.value),
+                      fmt::format("{:.3g}", p.point.ambient_e_per_s),
+                      millimetres_text(p.linear_mde_m), millimetres_text(p.circular_mde_m),
+                      fmt::format("{:.2f}", 100 * p.outlier_rate.value),
                       bound_text(p.cramer_rao_mae_m, p.circular_mde_m),
                       bound_text(p.receiver_bound_mae_m, p.circular_mde_m),
                       bound_text(p.direct_tof_bound_mae_m, p.circular_mde_m)});
     rows.push_back({code.error.code, "", "geometric", "mean",
-                    in_mm(code.error.linear.geometric_mean_m),
-                    in_mm(code.error.circular.geometric_mean_m), "", "", "", ""});
+                    millimetres_text(code.error.linear.geometric_mean_m),
+                    millimetres_text(code.error.circular.geometric_mean_m), "", "", "", ""});
   }
   return rows;
 }
@@ -63,13 +64,6 @@ std::string evaluation_csv(const std::vector<EvaluatedCode>& codes) {
       text += "\n";
     }
   return text;
-}
-
-std::vector<JudgedCode> judged_codes(const std::vector<EvaluatedCode>& codes) {
-  std::vector<JudgedCode> judged;
-  for (const EvaluatedCode& code : codes)
-    if (code.robustness) judged.push_back({code.error.code, *code.robustness});
-  return judged;
 }
 
 }  // namespace tofsmith::apps

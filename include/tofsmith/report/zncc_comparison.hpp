@@ -9,10 +9,10 @@
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/report/page.hpp"
 
-namespace tofsmith::apps {
+namespace tofsmith {
 
-/// A depth error and its standard error, as they are printed.
-std::string in_mm(const Estimate& error_m);
+/// A depth error and its standard error in mm, "61.2 +- 0.4".
+std::string millimetres_text(const Estimate& error_m);
 
 /// Whether codes were decoded by zncc too.
 bool is_compared_with_zncc(std::span<const EvaluatedCode> codes);
@@ -23,4 +23,4 @@ std::vector<std::vector<std::string>> zncc_comparison_rows(std::span<const Evalu
 /// The same for a page.
 Section zncc_comparison(std::span<const EvaluatedCode> codes);
 
-}  // namespace tofsmith::apps
+}  // namespace tofsmith

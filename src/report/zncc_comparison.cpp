@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "zncc_comparison.hpp"
+#include "tofsmith/report/zncc_comparison.hpp"
 
 #include <fmt/format.h>
 
-namespace tofsmith::apps {
+namespace tofsmith {
 
 namespace {
 
@@ -14,7 +14,7 @@ std::string ratio(const Estimate& error, const Estimate& other) {
 
 }  // namespace
 
-std::string in_mm(const Estimate& error_m) {
+std::string millimetres_text(const Estimate& error_m) {
   return fmt::format("{:.4g} +- {:.2g}", 1e3 * error_m.value, 1e3 * error_m.standard_error);
 }
 
@@ -30,14 +30,15 @@ std::vector<std::vector<std::string>> zncc_comparison_rows(std::span<const Evalu
     const DepthErrorReport &own = code.error, &zncc = *code.zncc_error;
     for (std::size_t i = 0; i < own.points.size(); ++i) {
       const PointDepthError &p = own.points[i], &other = zncc.points[i];
-      rows.push_back({own.code, fmt::format("{:.3g}", p.point.signal_e_per_s),
-                      fmt::format("{:.3g}", p.point.ambient_e_per_s), in_mm(other.linear_mde_m),
-                      ratio(p.linear_mde_m, other.linear_mde_m), in_mm(other.circular_mde_m),
-                      ratio(p.circular_mde_m, other.circular_mde_m)});
+      rows.push_back(
+          {own.code, fmt::format("{:.3g}", p.point.signal_e_per_s),
+           fmt::format("{:.3g}", p.point.ambient_e_per_s), millimetres_text(other.linear_mde_m),
+           ratio(p.linear_mde_m, other.linear_mde_m), millimetres_text(other.circular_mde_m),
+           ratio(p.circular_mde_m, other.circular_mde_m)});
     }
-    rows.push_back({own.code, "geometric", "mean", in_mm(zncc.linear.geometric_mean_m),
+    rows.push_back({own.code, "geometric", "mean", millimetres_text(zncc.linear.geometric_mean_m),
                     ratio(own.linear.geometric_mean_m, zncc.linear.geometric_mean_m),
-                    in_mm(zncc.circular.geometric_mean_m),
+                    millimetres_text(zncc.circular.geometric_mean_m),
                     ratio(own.circular.geometric_mean_m, zncc.circular.geometric_mean_m)});
   }
   return rows;
@@ -56,4 +57,4 @@ Section zncc_comparison(std::span<const EvaluatedCode> codes) {
   return {"Maximum likelihood against correlation", {std::move(table)}};
 }
 
-}  // namespace tofsmith::apps
+}  // namespace tofsmith
