@@ -60,12 +60,8 @@ class Waveform:
 class CodeSet:
     @staticmethod
     def create(
-        name: str,
-        samples: int,
-        taps: int,
-        modulation: Sequence[Waveform],
-        demodulation: Sequence[Waveform],
-        /,
+        name: str, samples: int, taps: int, modulation: Sequence[Waveform], demodulation:
+        Sequence[Waveform], /
     ) -> CodeSet: ...
     @staticmethod
     def from_arrays(
@@ -125,7 +121,9 @@ class DecodingTable:
     @staticmethod
     def of_code(code: CodeSet, camera: Camera, /) -> DecodingTable: ...
     @staticmethod
-    def of_measured(correlation: _Doubles, camera: Camera, options: _Options, /) -> DecodingTable: ...
+    def of_measured(
+        correlation: _Doubles, camera: Camera, options: _Options, /
+    ) -> DecodingTable: ...
     @staticmethod
     def of_correlation(correlation: _Doubles, range_m: float, /) -> DecodingTable: ...
     def with_range(self, range_m: float, /) -> DecodingTable: ...
@@ -139,14 +137,8 @@ class Decoder:
     def __init__(self, table: DecodingTable, options: _Options, /) -> None: ...
     def table(self) -> DecodingTable: ...
     def decode(
-        self,
-        raw: _Any,
-        is_planar: bool,
-        planes: Mapping[str, _Any],
-        delay_offset_m: Optional[_Floats],
-        gain: Optional[_Floats],
-        progress: _Progress,
-        /,
+        self, raw: _Any, is_planar: bool, planes: Mapping[str, _Any], delay_offset_m:
+        Optional[_Floats], gain: Optional[_Floats], progress: _Progress, /
     ) -> None: ...
     def decode_depth_bins(self, measurements: _Any, /) -> _Doubles: ...
 
@@ -160,13 +152,8 @@ def radial_from_z(z_m: _Any, lens: Sequence[float], /) -> _Floats: ...
 def z_from_radial(radial_m: _Any, lens: Sequence[float], /) -> _Floats: ...
 def centred_lens(width: int, height: int, horizontal_angle_rad: float, /) -> list[float]: ...
 def capture(
-    planes: Mapping[str, Optional[_Any]],
-    returns: Mapping[str, Any],
-    code: CodeSet,
-    camera: Camera,
-    options: _Options,
-    progress: _Progress,
-    /,
+    planes: Mapping[str, Optional[_Any]], returns: Mapping[str, Any], code: CodeSet, camera: Camera,
+    options: _Options, progress: _Progress, /
 ) -> _Floats: ...
 def evaluate(code: CodeSet, camera: Camera, options: _Options, progress: _Progress, /) -> _Dict: ...
 def best_rotation(
@@ -246,13 +233,8 @@ def write_points(
 def read_impulse_response(path: str, time_step_s: Optional[float], /) -> tuple[_Doubles, float]: ...
 def waveform_formats() -> list[_Dict]: ...
 def export_waveforms(
-    code: CodeSet,
-    camera: Camera,
-    directory: str,
-    format: str,
-    options: _Options,
-    overwrite: bool,
-    /,
+    code: CodeSet, camera: Camera, directory: str, format: str, options: _Options, overwrite: bool,
+    /
 ) -> tuple[Camera, list[str], str]: ...
 def run_sweep(sweep: str, is_text: bool, store: str, progress: _Progress, /) -> _Dict: ...
 def read_sweep(sweep: str, is_text: bool, store: str, progress: _Progress, /) -> _Dict: ...
@@ -266,14 +248,8 @@ class CalibratedResponse:
     ) -> None: ...
 
 def calibrate_impulse_response(
-    values: _Doubles,
-    time_step_s: float,
-    start_time_s: float,
-    counts: bool,
-    notes: Sequence[str],
-    camera: Camera,
-    excitation: Optional[str],
-    /,
+    values: _Doubles, time_step_s: float, start_time_s: float, counts: bool, notes: Sequence[str],
+    camera: Camera, excitation: Optional[str], /
 ) -> CalibratedResponse: ...
 
 class PhotonTransfer:
@@ -291,15 +267,8 @@ class CalibratedCorrelation:
     def write_table(self, path: str, overwrite: bool, /) -> None: ...
 
 def calibrate_correlation(
-    delay_periods: _Doubles,
-    frames: _Floats,
-    notes: Sequence[str],
-    camera: Camera,
-    dark: Optional[_Floats],
-    geometry_m: Optional[_Any],
-    options: _Options,
-    progress: _Progress,
-    /,
+    delay_periods: _Doubles, frames: _Floats, notes: Sequence[str], camera: Camera, dark:
+    Optional[_Floats], geometry_m: Optional[_Any], options: _Options, progress: _Progress, /
 ) -> CalibratedCorrelation: ...
 def write_pixel_map(path: str, map: _Floats, name: str, overwrite: bool, /) -> None: ...
 
@@ -312,58 +281,31 @@ def fit_ideal_codes(
 ) -> list[IdealCodeFit]: ...
 def write_directory_report(directory: str, path: str, overwrite: bool, /) -> None: ...
 def write_evaluation_report(
-    path: str,
-    codes: Sequence[CodeSet],
-    camera: Camera,
-    reports: list[_Dict],
-    overwrite: bool,
-    /,
+    path: str, codes: Sequence[CodeSet], camera: Camera, reports: list[_Dict], overwrite: bool, /
 ) -> None: ...
 def paper_items() -> list[tuple[str, str]]: ...
 def reproduce(
     names: Sequence[str], directory: str, options: _Options, overwrite: bool, progress: _Progress, /
 ) -> list[_Dict]: ...
 def write_training_set(
-    directory: str,
-    names: Sequence[str],
-    load: Callable[[str], Mapping[str, Any]],
-    code: CodeSet,
-    camera: Camera,
-    options: _Options,
-    progress: _Progress,
-    /,
+    directory: str, names: Sequence[str], load: Callable[[str], Mapping[str, Any]], code: CodeSet,
+    camera: Camera, options: _Options, progress: _Progress, /
 ) -> _Dict: ...
 def generator_models() -> list[_Dict]: ...
 def upload_script(code: CodeSet, camera: Camera, model: str, options: _Options, /) -> _Dict: ...
 def upload(
-    code: CodeSet,
-    camera: Camera,
-    address: str,
-    model: Optional[str],
-    timeout_s: float,
-    options: _Options,
-    progress: _Progress,
-    /,
+    code: CodeSet, camera: Camera, address: str, model: Optional[str], timeout_s: float, options:
+    _Options, progress: _Progress, /
 ) -> _Dict: ...
 def waveform_figure(title: str, code: CodeSet, camera: Camera, /) -> str: ...
 def coding_curve_figure(title: str, codes: Sequence[CodeSet], camera: Camera, /) -> str: ...
 def curve_figure(
-    title: str,
-    names: Sequence[str],
-    x: Sequence[Sequence[float]],
-    y: Sequence[Sequence[float]],
-    y_error: Sequence[Sequence[float]],
-    x_label: str,
-    x_unit: str,
-    /,
+    title: str, names: Sequence[str], x: Sequence[Sequence[float]], y: Sequence[Sequence[float]],
+    y_error: Sequence[Sequence[float]], x_label: str, x_unit: str, /
 ) -> str: ...
 def heat_map_figure(
-    title: str,
-    names: Sequence[str],
-    values: Sequence[_Doubles],
-    x_ticks: Sequence[str],
-    y_ticks: Sequence[str],
-    /,
+    title: str, names: Sequence[str], values: Sequence[_Doubles], x_ticks: Sequence[str], y_ticks:
+    Sequence[str], /
 ) -> str: ...
 def image_figure(title: str, names: Sequence[str], depths_m: Sequence[_Any], /) -> str: ...
 def point_cloud_figure(
