@@ -8,7 +8,6 @@
 #include "commands.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
-#include "tofsmith/version.hpp"
 
 namespace tofsmith::apps {
 
@@ -38,10 +37,8 @@ void CalibrateOutput::write_camera(const Camera& camera, const Session& session)
       fmt::format("wrote {}\nnext: tofsmith design {} -o designed", camera_path, camera_path));
 }
 
-void CalibrateOutput::write_page(Page page, const Session& session) const {
+void CalibrateOutput::write_page(const Page& page, const Session& session) const {
   if (page_path.empty()) return;
-  page.footer = "tofsmith " TOFSMITH_VERSION;
-  page.sections.push_back({"Command", {CodeBlock{session.command_line}}});
   write_file_atomically(page_path, render(page), session.output_policy());
   session.say(fmt::format("wrote {}", page_path));
 }
@@ -55,21 +52,10 @@ nlohmann::ordered_json estimate_json(const Estimate& estimate) {
           {"standard_error", number_json(estimate.standard_error)}};
 }
 
-std::string estimate_text(const Estimate& estimate, double unit) {
-  return fmt::format("{:.5g} +- {:.2g}", estimate.value / unit, estimate.standard_error / unit);
-}
-
 std::string note_lines(const std::vector<std::string>& notes) {
   std::string lines;
   for (const std::string& note : notes) lines += fmt::format("note: {}\n", note);
   return lines;
-}
-
-Section notes_section(const std::vector<std::string>& notes) {
-  Table table{.caption = "What to know of this calibration.", .columns = {{"note"}}};
-  for (const std::string& note : notes) table.rows.push_back({note});
-  if (notes.empty()) table.rows.push_back({"none"});
-  return {"Notes", {std::move(table)}};
 }
 
 void add_calibrate_command(CLI::App& app, Session& session) {

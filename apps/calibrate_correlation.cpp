@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate_correlation_page.hpp"
 #include "calibrate_output.hpp"
 #include "number_checks.hpp"
 #include "tap_arguments.hpp"
@@ -18,6 +17,7 @@
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/float_image_file.hpp"
 #include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/report/calibration_report.hpp"
 
 namespace tofsmith::apps {
 
@@ -205,7 +205,8 @@ void run(const CorrelationArguments& arguments, const Session& session) {
         arguments.output.camera_path.empty() ? "CAMERA.toml" : arguments.output.camera_path));
   }
   write_maps(arguments, found, session);
-  arguments.output.write_page(correlation_page(found, fits, arguments.file), session);
+  arguments.output.write_page(correlation_report(found, fits, arguments.file, session.command_line),
+                              session);
   if (!arguments.output.camera_path.empty()) {
     if (fits.empty()) throw UsageError("-o: no code was fitted, so that no response is known");
     arguments.output.write_camera(with_fit(base, fits.front(), found.tap_mismatch), session);

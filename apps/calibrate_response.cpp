@@ -2,15 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "calibrate_output.hpp"
 #include "number_checks.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
-#include "tofsmith/report/colours.hpp"
-#include "tofsmith/report/line_figure.hpp"
+#include "tofsmith/report/calibration_report.hpp"
 
 namespace tofsmith::apps {
 
@@ -23,17 +20,6 @@ struct ResponseArguments {
   ResponseRecordOptions record;
   std::string excitation = "auto", decimal = "auto", time_unit, arm = "light", as = "file";
 };
-
-std::vector<std::vector<std::string>> fit_rows(const CalibratedResponse& result) {
-  std::vector<std::vector<std::string>> rows{
-      {"kind", "f_max or cutoff (MHz)", "-3 dB (MHz)", "residual (% of height)"}};
-  for (const ParametricResponse& fit : result.fits)
-    rows.push_back({std::string(name_of(fit.response.kind)), estimate_text(fit.parameter_hz, 1e6),
-                    estimate_text(fit.bandwidth_hz, 1e6),
-                    fmt::format("{:.3g}", 100 * fit.residual_rms)});
-  rows.push_back({"measured", "", estimate_text(result.bandwidth_hz, 1e6), ""});
-  return rows;
-}
 
 nlohmann::ordered_json document_of(const CalibratedResponse& result) {
   nlohmann::ordered_json fits = nlohmann::ordered_json::array();
@@ -60,65 +46,6 @@ nlohmann::ordered_json document_of(const CalibratedResponse& result) {
           {"fit_is_good", result.fit_is_good()},
           {"peaks", peaks},
           {"notes", result.notes}};
-}
-
-std::vector<double> times_ns(Eigen::Index count, double start_s, double step_s) {
-  std::vector<double> times;
-  for (Eigen::Index i = 0; i < count; ++i)
-    times.push_back(1e9 * (start_s + static_cast<double>(i) * step_s));
-  return times;
-}
-
-Page page_of(const CalibratedResponse& result, const std::string& file) {
-  ColourAssignment colours;
-  const ResponseRecord& record = result.record;
-  const std::vector<double> times =
-      times_ns(record.values.size(), record.start_time_s, record.time_step_s);
-  std::vector<Series> recorded{{.name = "record", .x = times, .y = to_values(record.values)}};
-  recorded.back().style = reference_style();
-  const ParametricResponse& best = result.fits.front();
-  recorded.push_back({.name = fmt::format("{} fit", name_of(best.response.kind)),
-                      .x = times,
-                      .y = to_values(best.fit),
-                      .style = colours.style("fit")});
-  const auto count = static_cast<Eigen::Index>(result.response.samples.size());
-  const Series response{
-      .name = "response",
-      .x = times_ns(count, -result.response_centre_s, result.response.time_step_s),
-      .y = result.response.samples,
-      .style = colours.style("response")};
-  Series passed{.name = "measured", .style = colours.style("response")};
-  Series fitted{.name = std::string(name_of(best.response.kind)), .style = colours.style("fit")};
-  for (int i = 0; i <= 200; ++i) {
-    const double f_hz = 4 * best.bandwidth_hz.value * i / 200;
-    for (auto [series, h] : {std::pair{&passed, &result.response}, {&fitted, &best.response}}) {
-      series->x.push_back(f_hz / 1e6);
-      series->y.push_back(std::abs(h->transfer(f_hz)));
-    }
-  }
-  Table table{.id = "fits", .caption = "Fits to the record itself.", .columns = {{"kind"}}};
-  const auto rows = fit_rows(result);
-  for (std::size_t i = 1; i < rows.front().size(); ++i)
-    table.columns.push_back({rows.front()[i], true});
-  table.rows.assign(rows.begin() + 1, rows.end());
-  Section section{"Impulse response", {std::move(table)}};
-  section.blocks.push_back(line_figure({.id = "record",
-                                        .title = "Record and fit",
-                                        .caption = "As measured, with the kind that fits best."},
-                                       recorded, {.label = "time", .unit = "ns"},
-                                       {.label = "record"}));
-  section.blocks.push_back(
-      line_figure({.id = "response",
-                   .title = "Response",
-                   .caption = "De-noised, its centre of gravity at 0, of sum 1."},
-                  {response}, {.label = "time", .unit = "ns"}, {.label = "response"}));
-  section.blocks.push_back(line_figure({.id = "transfer",
-                                        .title = "What passes",
-                                        .caption = "Amplitude by frequency; -3 dB is 0.707."},
-                                       {passed, fitted}, {.label = "frequency", .unit = "MHz"},
-                                       {.label = "amplitude", .from_zero = true}));
-  return {.title = fmt::format("Impulse response of {}", file),
-          .sections = {std::move(section), notes_section(result.notes)}};
 }
 
 void run(ResponseArguments& arguments, const Session& session) {
@@ -158,7 +85,7 @@ void run(ResponseArguments& arguments, const Session& session) {
   session.print_json(document_of(result));
   session.say(fmt::format("{}: a {}{}, {:.1f} dB above its noise\n\n{}", arguments.file,
                           result.falling ? "falling " : "", name_of(result.excitation),
-                          result.snr_db, text_table(fit_rows(result))));
+                          result.snr_db, text_table(response_rows(result))));
   if (measured)
     session.say(
         fmt::format("the response's centre comes {:.4g} ns after its first sample: decoded "
@@ -166,7 +93,8 @@ void run(ResponseArguments& arguments, const Session& session) {
                     1e9 * result.response_centre_s,
                     length_text(0.5 * speed_of_light_m_per_s * result.response_centre_s)));
   session.say(note_lines(result.notes));
-  arguments.output.write_page(page_of(result, arguments.file), session);
+  arguments.output.write_page(response_report(result, arguments.file, session.command_line),
+                              session);
   arguments.output.write_camera(with_response(base, response, parse_response_arm(arguments.arm)),
                                 session);
 }

@@ -9,6 +9,7 @@
 #include "reports.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/io/camera_toml.hpp"
+#include "tofsmith/report/calibration_report.hpp"
 
 namespace tofsmith::python {
 
@@ -146,13 +147,21 @@ void bind_calibrate(py::module_& module) {
   py::class_<CalibratedResponse>(module, "CalibratedResponse")
       .def("fields", &response_dict)
       .def("camera", &responding)
-      .def("write_camera", &write_responding);
+      .def("write_camera", &write_responding)
+      .def("write_report", [](const CalibratedResponse& found, const std::string& path,
+                              const std::string& source, bool overwrite) {
+        write_file_atomically(path, render(response_report(found, source, "")),
+                              policy_of(overwrite));
+      });
   module.def("calibrate_impulse_response", &calibrate_response);
   py::class_<PhotonTransfer>(module, "PhotonTransfer")
       .def("fields", &noise_dict)
-      .def("camera", [](const PhotonTransfer& found, const Camera& camera) {
-        return with_noise(camera, found);
-      });
+      .def("camera", [](const PhotonTransfer& found,
+                        const Camera& camera) { return with_noise(camera, found); })
+      .def("write_report",
+           [](const PhotonTransfer& found, const std::string& path, bool overwrite) {
+             write_file_atomically(path, render(noise_report(found, "")), policy_of(overwrite));
+           });
   module.def("photon_transfer", &measure_noise);
 }
 

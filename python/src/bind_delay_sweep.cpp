@@ -11,6 +11,7 @@
 #include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/calibrate/ideal_code_fit.hpp"
 #include "tofsmith/io/float_image_file.hpp"
+#include "tofsmith/report/calibration_report.hpp"
 
 namespace tofsmith::python {
 
@@ -162,6 +163,12 @@ void bind_delay_sweep(py::module_& module) {
            [](const CalibratedCorrelation& found, const std::string& path, bool overwrite) {
              write_calibrated_table(path, found, policy_of(overwrite));
            });
+  module.def("write_correlation_report",
+             [](const std::string& path, const CalibratedCorrelation& found,
+                const std::vector<IdealCodeFit>& fits, const std::string& source, bool overwrite) {
+               write_file_atomically(path, render(correlation_report(found, fits, source, "")),
+                                     policy_of(overwrite));
+             });
   module.def("calibrate_correlation", &calibrate);
   module.def("write_pixel_map", [](const std::string& path, const py::object& map,
                                    const std::string& name, bool overwrite) {

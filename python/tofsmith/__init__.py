@@ -73,7 +73,12 @@ from ._forward_model import (
     coding_curve_rank,
     harmonics_used,
 )
-from ._ideal_code_fit import HarmonicRatio, IdealCodeFit, fit_ideal_codes
+from ._ideal_code_fit import (
+    HarmonicRatio,
+    IdealCodeFit,
+    fit_ideal_codes,
+    write_correlation_report,
+)
 from ._instrument import (
     GeneratorModel,
     ReadBackNumber,
@@ -264,6 +269,7 @@ __all__ = [
     "upload_script",
     "waveform_formats",
     "write_code",
+    "write_correlation_report",
     "write_depth",
     "write_evaluation_report",
     "write_points",

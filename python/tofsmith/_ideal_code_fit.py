@@ -11,7 +11,7 @@ from typing import Optional
 from . import _check, _tofsmith
 from ._camera import Camera, CameraLike, camera_of
 from ._camera_fields import ImpulseResponse
-from ._check import FloatArray
+from ._check import FloatArray, Path
 from ._code import CodeLike, code_of
 from ._correlation_calibration import CalibratedCorrelation
 from ._reports import Estimate
@@ -109,6 +109,39 @@ def fit_ideal_codes(
         handles = [code_of(code, ideal)._handle for code in codes]
     fits = _tofsmith.fit_ideal_codes(found._handle, camera._handle, handles)
     return [_fit(handle, found) for handle in fits]
+
+
+def write_correlation_report(
+    path: Path,
+    found: CalibratedCorrelation,
+    fits: Sequence[IdealCodeFit] = (),
+    *,
+    source: str = "a sweep",
+    overwrite: bool = False,
+) -> None:
+    """Writes the page of `tofsmith calibrate correlation --report`: table, codes, harmonics, maps.
+
+    Parameters
+    ----------
+    path : str or path
+        .html
+    found : CalibratedCorrelation
+    fits : sequence of IdealCodeFit
+        As fit_ideal_codes() returns them; none: without codes.
+    source : str
+        What its title calls the sweep.
+    overwrite : bool
+
+    Raises
+    ------
+    OSError
+        If the page exists and `overwrite` is not set, or cannot be written.
+    """
+    _check.instance(found, CalibratedCorrelation, "found")
+    handles = [_check.instance(fit, IdealCodeFit, "fits")._handle for fit in fits]
+    _tofsmith.write_correlation_report(
+        _check.path(path), found._handle, handles, _check.text(source, "source"), bool(overwrite)
+    )
 
 
 def _fit(handle: _tofsmith.IdealCodeFit, found: CalibratedCorrelation) -> IdealCodeFit:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from . import _check, _tofsmith
 from ._camera import Camera, CameraLike, camera_of
+from ._check import Path
 from ._reports import Estimate
 
 
@@ -59,6 +60,10 @@ class PhotonTransfer:
     def camera(self, camera: CameraLike) -> Camera:
         """The camera with the gain, read noise, black level, bits and full well found."""
         return Camera._of(self._handle.camera(camera_of(camera)._handle))
+
+    def write_report(self, path: Path, *, overwrite: bool = False) -> None:
+        """Writes the page of `tofsmith calibrate noise --report` (.html)."""
+        self._handle.write_report(_check.path(path), bool(overwrite))
 
 
 def photon_transfer(

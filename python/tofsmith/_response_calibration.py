@@ -152,6 +152,15 @@ class CalibratedResponse:
         self._handle.write_camera(name, base, arm, kind, bool(overwrite))
         return Camera(name)
 
+    def write_report(
+        self, path: Path, *, source: str = "a record", overwrite: bool = False
+    ) -> None:
+        """Writes the page of `tofsmith calibrate impulse-response --report` (.html): record, fits,
+        response and what passes, `source` in its title."""
+        self._handle.write_report(
+            _check.path(path), _check.text(source, "source"), bool(overwrite)
+        )
+
     def __repr__(self) -> str:
         best = self.fits[0]
         return (

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import tofsmith as ts
+from conftest import page_without_command
 
 base = ts.Camera("paper-10f0", samples=60)
 narrow = {"kind": "hann", "f_max_hz": 75e6}
@@ -41,6 +42,10 @@ def same(both, *names):
         assert (both[0] / name).read_bytes() == (both[1] / name).read_bytes(), name
 
 
+def same_page(both, name):
+    assert page_without_command(both[0] / name) == page_without_command(both[1] / name)
+
+
 @pytest.fixture(scope="module")
 def scope(both):
     """A Gaussian pulse in nanoseconds, with noise."""
@@ -52,7 +57,8 @@ def scope(both):
 
 
 def test_a_response_is_that_of_the_command(both, scope, cli):
-    said = told(cli, both[0], "impulse-response", scope, "--camera", "base.toml", "-o", "mine.toml")
+    said = told(cli, both[0], "impulse-response", scope, "--camera", "base.toml", "-o", "mine.toml",
+                "--report", "mine.html")
     found = ts.calibrate_impulse_response(scope, base)
     for name in ("excitation", "background", "height", "snr_db", "delay_s", "fit_is_good", "notes"):
         assert getattr(found, name) == said[name], name
@@ -61,6 +67,8 @@ def test_a_response_is_that_of_the_command(both, scope, cli):
     assert [f.parameter_hz for f in found.fits] == [pair(f["parameter_hz"]) for f in said["fits"]]
     written = found.write_camera(both[1] / "mine.toml", base)
     same(both, "mine.toml", "mine-response.csv")
+    found.write_report(both[1] / "mine.html", source=str(scope))
+    same_page(both, "mine.html")
     np.testing.assert_allclose(written.transfer(9), found.camera(base).transfer(9), rtol=1e-6)
 
 
@@ -97,7 +105,8 @@ def test_a_sweep_gives_what_the_command_writes(both, sweep, cli):
     np.savetxt(both[0] / "shifts.txt", measured.delay_periods, "%.17g")
     said = told(cli, both[0], "correlation", "frames.npy", "--shifts", "shifts.txt",
                 "--shift-unit", "period", "--camera", "base.toml", "--table", "table.npz",
-                "--offset-map", "offset.npy", "--gain-map", "gain.npy", "-o", "fitted.toml")
+                "--offset-map", "offset.npy", "--gain-map", "gain.npy", "-o", "fitted.toml",
+                "--report", "sweep.html")
     read = ts.read_delay_sweep(both[0] / "frames.npy", base, shifts=both[0] / "shifts.txt",
                                unit="period")
     np.testing.assert_array_equal(read.frames, measured.frames)
@@ -108,6 +117,8 @@ def test_a_sweep_gives_what_the_command_writes(both, sweep, cli):
     fits = ts.fit_ideal_codes(found, base)
     fits[0].camera(base).write(both[1] / "fitted.toml")
     same(both, "table.npz", "offset.npy", "gain.npy", "fitted.toml")
+    ts.write_correlation_report(both[1] / "sweep.html", found, fits, source="frames.npy")
+    same_page(both, "sweep.html")
     assert found.light_drift == pair(said["light_drift"])
     for fit, entry in zip(fits, said["ideal_codes"], strict=True):
         assert (fit.code, fit.residual, fit.exposure) == tuple(
@@ -138,10 +149,12 @@ def test_noise_is_that_of_the_command(both, cli):
     for name, frames in zip(names, levels):
         ts.write_raw(both[0] / name, frames)
     said = told(cli, both[0], "noise", *names[1:], "--dark", names[0], "--camera", "base.toml",
-                "-o", "noisy.toml")
+                "-o", "noisy.toml", "--report", "noise.html")
     found = ts.photon_transfer(levels[1:], base, dark=levels[0])
     found.camera(base).write(both[1] / "noisy.toml")
     same(both, "noisy.toml")
+    found.write_report(both[1] / "noise.html")
+    same_page(both, "noise.html")
     assert found.gain_e_per_dn == pair(said["gain_e_per_dn"])
     assert abs(found.gain_e_per_dn.value / 8 - 1) < 0.1
     assert [p.mean_dn for p in found.points] == [p["mean_dn"] for p in said["points"]]

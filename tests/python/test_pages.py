@@ -12,20 +12,13 @@ import threading
 import pytest
 
 import tofsmith as ts
+from conftest import page_without_command
 
 
 def run(cli, directory, *arguments):
     done = subprocess.run([cli, *map(str, arguments)], cwd=directory, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return done.stdout
-
-
-def page_without_command(path):
-    """A page but for its section on the command line, which Python has none of."""
-    text = path.read_text()
-    assert "<h1" in text and text.rstrip().endswith("</html>")
-    text = re.sub(r'<li><a href="#[\w-]+">Command</a></li>\n', "", text)
-    return re.sub(r"<section[^>]*>\s*<h2[^>]*>Command</h2>.*?</section>\n", "", text, flags=re.S)
 
 
 @pytest.fixture(scope="module")
