@@ -10,6 +10,7 @@
 #include "tofsmith/calibrate/calibrated_table_file.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/calibrate/ideal_code_fit.hpp"
+#include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/float_image_file.hpp"
 #include "tofsmith/report/calibration_report.hpp"
 
