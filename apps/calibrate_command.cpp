@@ -8,7 +8,6 @@
 #include "commands.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
-#include "tofsmith/version.hpp"
 
 namespace tofsmith::apps {
 
@@ -33,17 +32,13 @@ void CalibrateOutput::check(const Session& session, const std::vector<std::strin
 
 void CalibrateOutput::write_camera(const Camera& camera, const Session& session) const {
   if (camera_path.empty()) return;
-  Camera named = camera;
-  named.name = std::filesystem::path(camera_path).stem().string();
-  write_file_atomically(camera_path, camera_to_toml(named), session.output_policy());
+  write_camera_toml(camera_path, camera, session.output_policy());
   session.say(
       fmt::format("wrote {}\nnext: tofsmith design {} -o designed", camera_path, camera_path));
 }
 
-void CalibrateOutput::write_page(Page page, const Session& session) const {
+void CalibrateOutput::write_page(const Page& page, const Session& session) const {
   if (page_path.empty()) return;
-  page.footer = "tofsmith " TOFSMITH_VERSION;
-  page.sections.push_back({"Command", {CodeBlock{session.command_line}}});
   write_file_atomically(page_path, render(page), session.output_policy());
   session.say(fmt::format("wrote {}", page_path));
 }
@@ -61,13 +56,6 @@ std::string note_lines(const std::vector<std::string>& notes) {
   std::string lines;
   for (const std::string& note : notes) lines += fmt::format("note: {}\n", note);
   return lines;
-}
-
-Section notes_section(const std::vector<std::string>& notes) {
-  Table table{.caption = "What to know of this calibration.", .columns = {{"note"}}};
-  for (const std::string& note : notes) table.rows.push_back({note});
-  if (notes.empty()) table.rows.push_back({"none"});
-  return {"Notes", {std::move(table)}};
 }
 
 void add_calibrate_command(CLI::App& app, Session& session) {

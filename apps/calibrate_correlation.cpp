@@ -6,20 +6,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate_correlation_page.hpp"
 #include "calibrate_output.hpp"
 #include "number_checks.hpp"
 #include "one_of.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/calibrate/calibrated_table_file.hpp"
-#include "tofsmith/calibrate/correlation_calibration.hpp"
+#include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/calibrate/ideal_code_fit.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/float_image_file.hpp"
 #include "tofsmith/io/raw_frames_file.hpp"
-#include "tofsmith/scene/pinhole.hpp"
+#include "tofsmith/report/calibration_report.hpp"
 
 namespace tofsmith::apps {
 
@@ -51,39 +50,15 @@ DelaySweep load_sweep(const CorrelationArguments& arguments, const Camera& camer
   return read_delay_sweep(arguments.file, options);
 }
 
-/// How much farther a flat target at that distance is in each pixel than on the axis.
-Image<float> geometry_of(double distance_m, const Camera& camera, const RawFrames& frames) {
-  if (!camera.lens)
-    throw UsageError("--target-distance-m needs the camera's [lens], which says where pixels look");
-  const PinholeView view{camera.lens->fx_px, camera.lens->fy_px, camera.lens->cx_px,
-                         camera.lens->cy_px, frames.width,       frames.height};
-  Image<float> geometry(frames.height, frames.width);
-  for (int row = 0; row < frames.height; ++row)
-    for (int column = 0; column < frames.width; ++column)
-      geometry(row, column) =
-          static_cast<float>(distance_m * (view.radial_per_z(row, column) - 1.0));
-  return geometry;
-}
-
 CorrelationCalibrationOptions options_for(const CorrelationArguments& arguments,
                                           const Camera& camera, const DelaySweep& sweep) {
-  CorrelationCalibrationOptions options{.taps = camera.sensor.taps,
-                                        .differences = camera.sensor.readout == Readout::difference,
-                                        .range_m = camera.range_m(),
-                                        .black_level = camera.sensor.black_level_dn.value_or(0.0)};
-  if (options.differences) options.black_level = 0.0;
+  CorrelationCalibrationOptions options = sweep_options(camera, sweep);
   if (!arguments.dark.empty()) options.dark = read_raw_frames(arguments.dark);
-  if (camera.sensor.adc_bits && !options.differences)
-    options.saturation_level = static_cast<float>(std::exp2(*camera.sensor.adc_bits) - 1.0);
-  if (arguments.target_distance_m)
-    options.geometry_m = geometry_of(*arguments.target_distance_m, camera, sweep.frames);
-  if (!camera.exposure_s.each_s.empty()) {
-    const int per_exposure = options.differences ? options.taps / 2 : options.taps;
-    const int exposures = sweep.frames.measurements / per_exposure;
-    options.exposure_s.resize(sweep.frames.measurements);
-    for (int k = 0; k < sweep.frames.measurements; ++k)
-      options.exposure_s[k] = camera.exposure_s.of(k / per_exposure, exposures);
-  }
+  if (!arguments.target_distance_m) return options;
+  if (!camera.lens)
+    throw UsageError("--target-distance-m needs the camera's [lens], which says where pixels look");
+  options.geometry_m = flat_target_geometry_m(*arguments.target_distance_m, camera,
+                                              sweep.frames.height, sweep.frames.width);
   return options;
 }
 
@@ -231,7 +206,8 @@ void run(const CorrelationArguments& arguments, const Session& session) {
         arguments.output.camera_path.empty() ? "CAMERA.toml" : arguments.output.camera_path));
   }
   write_maps(arguments, found, session);
-  arguments.output.write_page(correlation_page(found, fits, arguments.file), session);
+  arguments.output.write_page(correlation_report(found, fits, arguments.file, session.command_line),
+                              session);
   if (!arguments.output.camera_path.empty()) {
     if (fits.empty()) throw UsageError("-o: no code was fitted, so that no response is known");
     arguments.output.write_camera(with_fit(base, fits.front(), found.tap_mismatch), session);

@@ -26,7 +26,7 @@ struct CalibrateOutput {
   /// Looks at the outputs before the work. @throws UsageError, IoError
   void check(const Session& session, const std::vector<std::string>& inputs) const;
   void write_camera(const Camera& camera, const Session& session) const;
-  void write_page(Page page, const Session& session) const;
+  void write_page(const Page& page, const Session& session) const;
 };
 
 /// {"value": .., "standard_error": ..}; null where it is no number.
@@ -35,7 +35,5 @@ nlohmann::ordered_json estimate_json(const Estimate& estimate);
 nlohmann::ordered_json number_json(double value);
 /// "name: note" lines.
 std::string note_lines(const std::vector<std::string>& notes);
-/// Notes as the last section of a page.
-Section notes_section(const std::vector<std::string>& notes);
 
 }  // namespace tofsmith::apps

@@ -2,17 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "calibrate_output.hpp"
 #include "number_checks.hpp"
 #include "one_of.hpp"
-#include "tofsmith/calibrate/impulse_response.hpp"
+#include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
-#include "tofsmith/io/impulse_response_file.hpp"
-#include "tofsmith/report/colours.hpp"
-#include "tofsmith/report/line_figure.hpp"
+#include "tofsmith/report/calibration_report.hpp"
 
 namespace tofsmith::apps {
 
@@ -25,46 +21,6 @@ struct ResponseArguments {
   ResponseRecordOptions record;
   std::string excitation = "auto", decimal = "auto", time_unit, arm = "light", as = "file";
 };
-
-ImpulseResponse::Kind kind_named(const std::string& name) {
-  for (const auto kind : {ImpulseResponse::Kind::hann, ImpulseResponse::Kind::gaussian,
-                          ImpulseResponse::Kind::lowpass})
-    if (name == name_of(kind)) return kind;
-  return ImpulseResponse::Kind::file;
-}
-
-/// The response that the camera gets; a measured one goes into a file beside the camera's.
-ImpulseResponse written_response(const ResponseArguments& arguments,
-                                 const CalibratedResponse& result) {
-  const auto kind = kind_named(arguments.as);
-  for (const ParametricResponse& fit : result.fits)
-    if (fit.response.kind == kind) return fit.response;
-  return result.response;
-}
-
-std::filesystem::path response_path(const ResponseArguments& arguments) {
-  std::filesystem::path path = arguments.output.camera_path;
-  return path.replace_filename(path.stem().string() + "-response.csv");
-}
-
-Camera camera_with(Camera camera, const ResponseArguments& arguments,
-                   const ImpulseResponse& response) {
-  if (arguments.arm != "sensor") camera.light.impulse_response = response;
-  if (arguments.arm == "sensor") camera.sensor.impulse_response = response;
-  if (arguments.arm == "system") camera.sensor.impulse_response = {};
-  return camera;
-}
-
-std::vector<std::vector<std::string>> fit_rows(const CalibratedResponse& result) {
-  std::vector<std::vector<std::string>> rows{
-      {"kind", "f_max or cutoff (MHz)", "-3 dB (MHz)", "residual (% of height)"}};
-  for (const ParametricResponse& fit : result.fits)
-    rows.push_back({std::string(name_of(fit.response.kind)), estimate_text(fit.parameter_hz, 1e6),
-                    estimate_text(fit.bandwidth_hz, 1e6),
-                    fmt::format("{:.3g}", 100 * fit.residual_rms)});
-  rows.push_back({"measured", "", estimate_text(result.bandwidth_hz, 1e6), ""});
-  return rows;
-}
 
 nlohmann::ordered_json document_of(const CalibratedResponse& result) {
   nlohmann::ordered_json fits = nlohmann::ordered_json::array();
@@ -93,73 +49,16 @@ nlohmann::ordered_json document_of(const CalibratedResponse& result) {
           {"notes", result.notes}};
 }
 
-std::vector<double> times_ns(Eigen::Index count, double start_s, double step_s) {
-  std::vector<double> times;
-  for (Eigen::Index i = 0; i < count; ++i)
-    times.push_back(1e9 * (start_s + static_cast<double>(i) * step_s));
-  return times;
-}
-
-Page page_of(const CalibratedResponse& result, const std::string& file) {
-  ColourAssignment colours;
-  const ResponseRecord& record = result.record;
-  const std::vector<double> times =
-      times_ns(record.values.size(), record.start_time_s, record.time_step_s);
-  std::vector<Series> recorded{{.name = "record", .x = times, .y = to_values(record.values)}};
-  recorded.back().style = reference_style();
-  const ParametricResponse& best = result.fits.front();
-  recorded.push_back({.name = fmt::format("{} fit", name_of(best.response.kind)),
-                      .x = times,
-                      .y = to_values(best.fit),
-                      .style = colours.style("fit")});
-  const auto count = static_cast<Eigen::Index>(result.response.samples.size());
-  const Series response{
-      .name = "response",
-      .x = times_ns(count, -result.response_centre_s, result.response.time_step_s),
-      .y = result.response.samples,
-      .style = colours.style("response")};
-  Series passed{.name = "measured", .style = colours.style("response")};
-  Series fitted{.name = std::string(name_of(best.response.kind)), .style = colours.style("fit")};
-  for (int i = 0; i <= 200; ++i) {
-    const double f_hz = 4 * best.bandwidth_hz.value * i / 200;
-    for (auto [series, h] : {std::pair{&passed, &result.response}, {&fitted, &best.response}}) {
-      series->x.push_back(f_hz / 1e6);
-      series->y.push_back(std::abs(h->transfer(f_hz)));
-    }
-  }
-  Table table{.id = "fits", .caption = "Fits to the record itself.", .columns = {{"kind"}}};
-  const auto rows = fit_rows(result);
-  for (std::size_t i = 1; i < rows.front().size(); ++i)
-    table.columns.push_back({rows.front()[i], true});
-  table.rows.assign(rows.begin() + 1, rows.end());
-  Section section{"Impulse response", {std::move(table)}};
-  section.blocks.push_back(line_figure({.id = "record",
-                                        .title = "Record and fit",
-                                        .caption = "As measured, with the kind that fits best."},
-                                       recorded, {.label = "time", .unit = "ns"},
-                                       {.label = "record"}));
-  section.blocks.push_back(
-      line_figure({.id = "response",
-                   .title = "Response",
-                   .caption = "De-noised, its centre of gravity at 0, of sum 1."},
-                  {response}, {.label = "time", .unit = "ns"}, {.label = "response"}));
-  section.blocks.push_back(line_figure({.id = "transfer",
-                                        .title = "What passes",
-                                        .caption = "Amplitude by frequency; -3 dB is 0.707."},
-                                       {passed, fitted}, {.label = "frequency", .unit = "MHz"},
-                                       {.label = "amplitude", .from_zero = true}));
-  return {.title = fmt::format("Impulse response of {}", file),
-          .sections = {std::move(section), notes_section(result.notes)}};
-}
-
 void run(ResponseArguments& arguments, const Session& session) {
   const Camera base = arguments.camera.load();
   arguments.output.check(session, {arguments.file, arguments.camera.name});
-  const bool measured = kind_named(arguments.as) == ImpulseResponse::Kind::file;
-  const bool writes_response = measured && !arguments.output.camera_path.empty();
-  if (writes_response) {
-    check_not_input(response_path(arguments), {arguments.file, arguments.camera.name});
-    session.check_output(response_path(arguments));
+  const ImpulseResponse::Kind kind = parse_response_kind(arguments.as);
+  const bool measured = kind == ImpulseResponse::Kind::file;
+  const bool writes_camera = !arguments.output.camera_path.empty();
+  if (measured && writes_camera) {
+    const std::filesystem::path path = response_path(arguments.output.camera_path);
+    check_not_input(path, {arguments.file, arguments.camera.name});
+    session.check_output(path);
   }
   arguments.record.decimal = parse_decimal_mark(arguments.decimal);
   if (!arguments.time_unit.empty())
@@ -180,15 +79,14 @@ void run(ResponseArguments& arguments, const Session& session) {
     throw IoError(arguments.file, error.what());
   }
 
-  ImpulseResponse response = written_response(arguments, result);
-  if (writes_response) {
-    write_impulse_response(response_path(arguments), response, session.output_policy());
-    response.file = response_path(arguments).filename().string();
-  }
+  ImpulseResponse response = response_of(result, kind);
+  if (writes_camera)
+    response = write_response_beside(arguments.output.camera_path, std::move(response),
+                                     session.output_policy());
   session.print_json(document_of(result));
   session.say(fmt::format("{}: a {}{}, {:.1f} dB above its noise\n\n{}", arguments.file,
                           result.falling ? "falling " : "", name_of(result.excitation),
-                          result.snr_db, text_table(fit_rows(result))));
+                          result.snr_db, text_table(response_rows(result))));
   if (measured)
     session.say(
         fmt::format("the response's centre comes {:.4g} ns after its first sample: decoded "
@@ -196,8 +94,10 @@ void run(ResponseArguments& arguments, const Session& session) {
                     1e9 * result.response_centre_s,
                     length_text(0.5 * speed_of_light_m_per_s * result.response_centre_s)));
   session.say(note_lines(result.notes));
-  arguments.output.write_page(page_of(result, arguments.file), session);
-  arguments.output.write_camera(camera_with(base, arguments, response), session);
+  arguments.output.write_page(response_report(result, arguments.file, session.command_line),
+                              session);
+  arguments.output.write_camera(with_response(base, response, parse_response_arm(arguments.arm)),
+                                session);
 }
 
 }  // namespace

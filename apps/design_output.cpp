@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "tofsmith/io/design_directory.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/io/scene_directory.hpp"
 #include "tofsmith/report/design_report.hpp"
@@ -76,12 +75,9 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
 
 void write_report(const Session& session, const std::filesystem::path& directory,
                   OutputPolicy policy) {
-  const DesignRecord record = DesignDirectory(directory).read();
-  std::optional<SceneResult> scene;
-  if (holds_scene_result(directory / "scene")) scene = read_scene_result(directory / "scene");
   write_file_atomically(
       directory / "report.html",
-      render(design_report(record.camera, record.result, scene, session.command_line)), policy);
+      render(design_report(read_designed_directory(directory), session.command_line)), policy);
 }
 
 }  // namespace tofsmith::apps

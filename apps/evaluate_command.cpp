@@ -17,7 +17,7 @@
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/report/design_report.hpp"
 #include "tofsmith/report/robustness_section.hpp"
-#include "zncc_comparison.hpp"
+#include "tofsmith/report/zncc_comparison.hpp"
 
 namespace tofsmith::apps {
 
@@ -154,13 +154,7 @@ void write(const std::filesystem::path& path, const Session& session, const Came
   } else if (path.extension() == ".json") {
     content = evaluation_document(camera, evaluated, options) + "\n";
   } else {
-    std::vector<DepthErrorReport> errors;
-    for (const EvaluatedCode& code : evaluated) errors.push_back(code.error);
-    Page page = evaluation_report(camera, codes, errors, session.command_line);
-    if (is_compared_with_zncc(evaluated)) page.sections.push_back(zncc_comparison(evaluated));
-    if (const auto judged = judged_codes(evaluated); !judged.empty())
-      page.sections.push_back(robustness_section(judged));
-    content = render(page);
+    content = render(evaluation_report(camera, codes, evaluated, session.command_line));
   }
   write_file_atomically(path, content, session.output_policy());
 }

@@ -98,11 +98,4 @@ std::string evaluation_csv(const std::vector<EvaluatedCode>& codes) {
   return text;
 }
 
-std::vector<JudgedCode> judged_codes(const std::vector<EvaluatedCode>& codes) {
-  std::vector<JudgedCode> judged;
-  for (const EvaluatedCode& code : codes)
-    if (code.robustness) judged.push_back({code.error.code, *code.robustness});
-  return judged;
-}
-
 }  // namespace tofsmith::apps

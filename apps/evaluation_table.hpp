@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "tofsmith/io/result_document.hpp"
-#include "tofsmith/report/robustness_section.hpp"
 
 namespace tofsmith::apps {
 
@@ -18,8 +17,5 @@ std::vector<std::vector<std::string>> evaluation_rows(const std::vector<Evaluate
 
 /// The same as a CSV file, in metres.
 std::string evaluation_csv(const std::vector<EvaluatedCode>& codes);
-
-/// The codes that were judged on perturbed cameras.
-std::vector<JudgedCode> judged_codes(const std::vector<EvaluatedCode>& codes);
 
 }  // namespace tofsmith::apps

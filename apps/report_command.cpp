@@ -7,7 +7,6 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/design_directory.hpp"
 #include "tofsmith/io/scene_directory.hpp"
 #include "tofsmith/report/design_report.hpp"
 
@@ -22,24 +21,17 @@ struct ReportArguments {
 
 void run(const ReportArguments& arguments, const Session& session) {
   const std::filesystem::path directory = arguments.directory;
-  if (!std::filesystem::exists(directory / "design.json"))
-    throw IoError(directory.string(),
-                  "holds no design.json; expected a directory made by `tofsmith design -o` or "
-                  "`tofsmith demo -o`");
-  const DesignRecord record = DesignDirectory(directory).read();
-  std::optional<SceneResult> scene;
-  if (holds_scene_result(directory / "scene")) scene = read_scene_result(directory / "scene");
+  const DesignedDirectory found = read_designed_directory(directory);
   const std::filesystem::path output = arguments.output.empty()
                                            ? directory / "report.html"
                                            : std::filesystem::path(arguments.output);
   if (interrupted()) throw Interrupted();
-  write_file_atomically(
-      output, render(design_report(record.camera, record.result, scene, session.command_line)),
-      session.output_policy());
+  write_file_atomically(output, render(design_report(found, session.command_line)),
+                        session.output_policy());
   session.print_json({{"directory", directory.string()},
-                      {"camera", record.camera.name},
-                      {"best", record.result.winner().code.name()},
-                      {"scene", scene.has_value()},
+                      {"camera", found.design.camera.name},
+                      {"best", found.design.result.winner().code.name()},
+                      {"scene", found.scene.has_value()},
                       {"output", output.string()}});
   session.say(fmt::format("wrote {}", output.string()));
 }

@@ -5,13 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <numeric>
 
 #include "commands.hpp"
 #include "fresh_directory.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/mesh_file.hpp"
-#include "tofsmith/io/output_directory.hpp"
 #include "tofsmith/reproduce/reproduction_directory.hpp"
 
 namespace tofsmith::apps {
@@ -25,58 +23,35 @@ struct ReproduceArguments {
   std::string output = "tofsmith-reproduce";
 };
 
-std::vector<PaperItem> chosen_items(const std::vector<std::string>& names) {
-  std::vector<PaperItem> items;
-  for (const std::string& name : names) {
-    if (name == "all") return {paper_items().begin(), paper_items().end()};
-    try {
-      items.push_back(paper_item(name));
-    } catch (const std::invalid_argument& error) {
-      throw UsageError(error.what());
-    }
+std::vector<const PaperItem*> chosen_items(const std::vector<std::string>& names) {
+  try {
+    return paper_items_named(names);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
   }
-  return items;
 }
 
 void run(ReproduceArguments& arguments, const Session& session) {
-  const std::vector<PaperItem> items = chosen_items(arguments.names);
+  const std::vector<const PaperItem*> items = chosen_items(arguments.names);
   if (!arguments.mesh.empty()) {
-    if (std::ranges::none_of(items, [](const PaperItem& item) { return item.name == "fig7"; }))
+    if (std::ranges::none_of(items, [](const PaperItem* item) { return item->shows_mesh; }))
       throw UsageError("--mesh: only fig7 shows a mesh");
     arguments.options.mesh = read_mesh(arguments.mesh);
     arguments.options.mesh_name = std::filesystem::path(arguments.mesh).filename().string();
   }
   const ReproductionDirectory directory(arguments.output);
   const FreshDirectory cleanup(directory.path());
-  make_output_directory(directory.path());
-  if (!session.force) directory.require_ours(arguments.options);
-  CodeShelf shelf(directory.shelf());
-  const ReproduceContext context{arguments.options, shelf};
-  const Progress progress = terminal_progress("reproducing");
+  const std::vector<ReproducedItem> reproduced = reproduce(
+      directory, items, arguments.options, session.force, terminal_progress("reproducing"));
 
-  const double whole =
-      std::accumulate(items.begin(), items.end(), 0.0,
-                      [](double sum, const PaperItem& item) { return sum + item.share; });
-  double done = 0.0;
   nlohmann::ordered_json documents = nlohmann::ordered_json::array();
   std::vector<std::string> lines;
-  for (const PaperItem& item : items) {
-    auto findings = session.force ? std::nullopt : directory.finished(item, arguments.options);
-    const bool kept = findings.has_value();
-    const Progress part = part_of(progress, done / whole, (done + item.share) / whole);
-    if (!kept) {
-      report(part, 0.0, item.name);
-      const Reproduction reproduction = item.reproduce(context, part);
-      directory.write(item, reproduction, arguments.options);
-      directory.write_index(arguments.options);
-      findings = reproduction.findings;
-    }
-    done += item.share;
-    lines.push_back(fmt::format("{}: {}: {}{}", item.name, item.title,
-                                name_of(overall_verdict(*findings)),
+  for (const auto& [item, findings, kept] : reproduced) {
+    lines.push_back(fmt::format("{}: {}: {}{}", item->name, item->title,
+                                name_of(overall_verdict(findings)),
                                 kept ? " (finished before)" : ""));
     nlohmann::ordered_json statements = nlohmann::ordered_json::array();
-    for (const CheckedStatement& finding : *findings) {
+    for (const CheckedStatement& finding : findings) {
       lines.push_back(fmt::format("  {}: {}\n    {}", name_of(finding.verdict), finding.statement,
                                   finding.measured));
       statements.push_back({{"verdict", name_of(finding.verdict)},
@@ -85,10 +60,8 @@ void run(ReproduceArguments& arguments, const Session& session) {
                             {"why", finding.why}});
     }
     documents.push_back(
-        {{"name", item.name}, {"title", item.title}, {"findings", std::move(statements)}});
+        {{"name", item->name}, {"title", item->title}, {"findings", std::move(statements)}});
   }
-  directory.write_index(arguments.options);
-  report(progress, 1.0, "done");
   session.print_json({{"seed", arguments.options.seed},
                       {"fast", arguments.options.fast},
                       {"output", (directory.path() / "index.html").string()},

@@ -15,7 +15,7 @@
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/instrument/upload.hpp"
-#include "tofsmith/io/waveform_export.hpp"
+#include "tofsmith/instrument/upload_selection.hpp"
 
 namespace tofsmith::apps {
 
@@ -27,10 +27,10 @@ struct UploadArguments {
   TapArguments taps;
   ExportOptions options;
   UploadRequest request;
+  UploadSelection selection;
   std::vector<double> volts;
-  int light_channel = 1, sensor_channel = 2, exposure = 1, tap = 1;
   double timeout_s = 5.0;
-  bool all = false, dry_run = false, no_read_back = false, no_reset = false;
+  bool dry_run = false, no_read_back = false, no_reset = false;
 };
 
 void check_usage(const UploadArguments& arguments) {
@@ -38,7 +38,7 @@ void check_usage(const UploadArguments& arguments) {
     throw UsageError("found no --instrument; expected its address, such as 192.168.1.7");
   if (arguments.dry_run && arguments.model.empty())
     throw UsageError("--dry-run asks no instrument what it is; expected --model NAME with it");
-  if (arguments.light_channel == 0 && arguments.sensor_channel == 0)
+  if (arguments.selection.light_channel == 0 && arguments.selection.sensor_channel == 0)
     throw UsageError("found --channel-light 0 and --channel-sensor 0; expected one to play");
 }
 
@@ -62,51 +62,25 @@ double load_in(const std::string& text) {
 
 WaveformExport exported_for(const UploadArguments& arguments, const GeneratorModel& model) {
   ExportOptions options = arguments.options;
-  options.format = model.format();
-  if (!options.sample_rate_hz)
-    options.sample_rate_hz =
-        arguments.request.true_arb ? model.true_arb_rate_hz : model.sample_rate_hz;
   if (!arguments.volts.empty()) {
     options.low_v = arguments.volts[0];
     options.high_v = arguments.volts[1];
   }
   const Camera camera = arguments.camera.load();
   require_no_measured_table(arguments.code);
-  const CodeSet code =
-      load_code(arguments.code, camera, arguments.taps.file_options()).resampled(camera.samples);
-  return export_waveforms(code, exporting_camera(code, camera, options), options);
+  return export_for_model(load_code(arguments.code, camera, arguments.taps.file_options()), camera,
+                          model, options, arguments.request.true_arb);
 }
 
 /// What the channels get: of one exposure, or of all with one selected.
 UploadRequest request_for(const UploadArguments& arguments, const WaveformExport& exported) {
-  const int taps = exported.shared_taps ? 1 : exported.taps;
-  if (arguments.exposure > exported.exposures || arguments.tap > taps)
-    throw UsageError(
-        fmt::format("found --exposure {} and --tap {}; expected at most {} and {} of {}",
-                    arguments.exposure, arguments.tap, exported.exposures, taps, exported.code));
   UploadRequest request = arguments.request;
   request.load_ohm = load_in(arguments.load);
   request.read_back = !arguments.no_read_back;
   request.reset = !arguments.no_reset;
-  request.filter = arguments.filter == "off"      ? "OFF"
-                   : arguments.filter == "normal" ? "NORM"
-                                                  : "STEP";
-  request.wave_header = arguments.header == "plain"     ? WaveHeader::plain
-                        : arguments.header == "minimal" ? WaveHeader::minimal
-                                                        : WaveHeader::length;
-  const auto add = [&](int channel, auto index_of) {
-    if (channel == 0) return;
-    UploadChannel given{.channel = channel, .stored = {}, .selected = 0};
-    for (int e = 1; e <= exported.exposures; ++e) {
-      if (!arguments.all && e != arguments.exposure) continue;
-      if (e == arguments.exposure) given.selected = static_cast<int>(given.stored.size());
-      given.stored.push_back(exported.waveforms[static_cast<std::size_t>(index_of(e - 1))]);
-    }
-    request.channels.push_back(std::move(given));
-  };
-  add(arguments.light_channel, [](int e) { return e; });
-  add(arguments.sensor_channel,
-      [&](int e) { return exported.exposures + e * taps + arguments.tap - 1; });
+  request.filter = parse_output_filter(arguments.filter);
+  request.wave_header = parse_wave_header(arguments.header);
+  request.channels = as_usage([&] { return selected_channels(exported, arguments.selection); });
   return request;
 }
 
@@ -225,13 +199,16 @@ void add_waveform_options(CLI::App& command, UploadArguments& arguments) {
       ->expected(2);
   command.add_option("--load", arguments.load, "ohms that the volts are for, or inf")
       ->capture_default_str();
-  command.add_option("--exposure", arguments.exposure, "which of the K pairs is played, from 1")
+  command
+      .add_option("--exposure", arguments.selection.exposure,
+                  "which of the K pairs is played, from 1")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command.add_option("--tap", arguments.tap, "tap that the sensor's channel plays, from 1")
+  command
+      .add_option("--tap", arguments.selection.tap, "tap that the sensor's channel plays, from 1")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command.add_flag("--all", arguments.all, "load all K pairs; --exposure is played");
+  command.add_flag("--all", arguments.selection.all, "load all K pairs; --exposure is played");
 }
 
 void add_family_options(CLI::App& command, UploadArguments& arguments) {
@@ -259,12 +236,12 @@ void add_upload_command(CLI::App& app, Session& session) {
                       "host, host:port, tcp://host:port, vxi11://host or "
                       "TCPIP::host::port::SOCKET (port 5025)");
   command
-      ->add_option("--channel-light", arguments->light_channel,
+      ->add_option("--channel-light", arguments->selection.light_channel,
                    "channel that plays the light; 0: none")
       ->check(CLI::Range(0, 8))
       ->capture_default_str();
   command
-      ->add_option("--channel-sensor", arguments->sensor_channel,
+      ->add_option("--channel-sensor", arguments->selection.sensor_channel,
                    "channel that plays the sensor's gain; 0: none")
       ->check(CLI::Range(0, 8))
       ->capture_default_str();

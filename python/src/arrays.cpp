@@ -62,6 +62,26 @@ Image<float> to_image(const py::object& values, const char* argument) {
   return image;
 }
 
+RawFrames to_raw_frames(const py::object& values, const char* argument) {
+  RawFrames raw;
+  if (values.is_none()) return raw;
+  const auto floats = Floats::ensure(values);
+  if (!floats) throw py::error_already_set();
+  if (floats.ndim() != 4) refuse(argument, "shape " + shape_of(floats), "(F, H, W, K)");
+  int* const sizes[] = {&raw.frames, &raw.height, &raw.width, &raw.measurements};
+  for (Stride axis = 0; axis < 4; ++axis) {
+    if (floats.shape(axis) > std::numeric_limits<int>::max())
+      refuse(argument, "shape " + shape_of(floats), "at most 2^31 - 1 along every axis");
+    *sizes[axis] = static_cast<int>(floats.shape(axis));
+  }
+  raw.values.assign(floats.data(), floats.data() + floats.size());
+  return raw;
+}
+
+py::array_t<float> adopt(RawFrames&& raw) {
+  return adopt(std::move(raw.values), {raw.frames, raw.height, raw.width, raw.measurements});
+}
+
 std::string shape_of(const py::array& array) {
   std::string text = "(";
   for (Stride axis = 0; axis < array.ndim(); ++axis) {

@@ -45,6 +45,12 @@ Eigen::MatrixXd to_matrix(const Doubles& values, const char* argument);
 /// @throws std::invalid_argument naming the argument unless it has two axes
 Image<float> to_image(const py::object& values, const char* argument);
 
+/// Frames of shape (F, H, W, K); None is none of them.
+/// @throws std::invalid_argument naming the argument unless it has four axes
+RawFrames to_raw_frames(const py::object& values, const char* argument);
+/// (F, H, W, K): nothing is copied.
+py::array_t<float> adopt(RawFrames&& raw);
+
 /// As Python writes it: "(480, 640, 4)".
 std::string shape_of(const py::array& array);
 

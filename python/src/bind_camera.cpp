@@ -5,6 +5,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "output_policy.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 
@@ -32,6 +33,8 @@ void bind_camera(py::module_& module) {
              const Eigen::VectorXcd transfer = camera.transfer(highest);
              return adopt(std::vector<std::complex<double>>(transfer.begin(), transfer.end()));
            })
+      .def("write", [](const Camera& camera, const std::string& path,
+                       bool overwrite) { write_camera_toml(path, camera, policy_of(overwrite)); })
       .def("is_equal", [](const Camera& a, const Camera& b) { return a == b; });
   module.def("camera_keys", &camera_keys);
   module.def("built_in_camera_names", &built_in_camera_names);

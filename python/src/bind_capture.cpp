@@ -3,13 +3,11 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
-#include "options.hpp"
+#include "capture_arguments.hpp"
 #include "progress.hpp"
 #include "tofsmith/simulate/multipath_capture.hpp"
 
 namespace tofsmith::python {
-
-namespace {
 
 SceneImage scene_of(const py::dict& planes) {
   const Image<float> depth_m = to_image(planes["depth_m"], "depth_m");
@@ -35,6 +33,15 @@ SceneImage scene_of(const py::dict& planes) {
   scene.validate();
   return scene;
 }
+
+void read_capture(OptionReader& reader, CaptureOptions& options) {
+  reader.value("reference_distance_m", options.reference_distance_m)
+      .value("falloff", options.falloff)
+      .value("seed", options.seed)
+      .value("frames", options.frames);
+}
+
+namespace {
 
 std::vector<LaterReturn> later_returns(const Floats& distance_m, const Floats& ratio) {
   if (distance_m.size() != ratio.size())
@@ -94,20 +101,16 @@ py::array_t<float> capture_array(const py::dict& planes, const py::dict& returns
   const OperatingPoint middle = camera.operating.middle();
   options.signal_e_per_s = middle.signal_e_per_s;
   options.ambient_e_per_s = middle.ambient_e_per_s;
-  OptionReader(values, "")
-      .value("signal_e_per_s", options.signal_e_per_s)
-      .value("ambient_e_per_s", options.ambient_e_per_s)
-      .value("reference_distance_m", options.reference_distance_m)
-      .value("falloff", options.falloff)
-      .value("seed", options.seed)
-      .value("frames", options.frames)
-      .finish();
+  OptionReader reader(values, "");
+  reader.value("signal_e_per_s", options.signal_e_per_s)
+      .value("ambient_e_per_s", options.ambient_e_per_s);
+  read_capture(reader, options);
+  reader.finish();
   const SceneImage scene = scene_of(planes);
   const SceneLight light = light_of(returns, scene);
-  RawFrames raw = without_gil(callback, [&](const Progress& progress) {
+  return adopt(without_gil(callback, [&](const Progress& progress) {
     return capture(scene, light, code, camera, options, progress);
-  });
-  return adopt(std::move(raw.values), {raw.frames, raw.height, raw.width, raw.measurements});
+  }));
 }
 
 }  // namespace

@@ -4,9 +4,10 @@
 
 #include "bindings.hpp"
 #include "options.hpp"
+#include "output_policy.hpp"
 #include "progress.hpp"
 #include "reports.hpp"
-#include "tofsmith/design/design.hpp"
+#include "tofsmith/report/design_report.hpp"
 
 namespace tofsmith::python {
 
@@ -142,10 +143,33 @@ py::dict candidate_dict(const Candidate& candidate, double choice_error_m) {
   return dict;
 }
 
+/// A finished design with what it was asked, to be written as the command writes it.
+struct FinishedDesign {
+  Camera camera;
+  DesignOptions options;
+  DesignResult result;
+};
+
+/// The directory of `tofsmith design -o`, with its report.
+void write_design(const FinishedDesign& design, const std::string& path, bool overwrite) {
+  const py::gil_scoped_release release;
+  const DesignDirectory directory(path);
+  directory.write(design.camera, design.result, design.options, policy_of(overwrite));
+  write_file_atomically(directory.path() / "report.html",
+                        render(design_report(read_designed_directory(directory.path()), "")),
+                        policy_of(overwrite));
+}
+
+void write_design_report(const FinishedDesign& design, const std::string& path, bool overwrite) {
+  const py::gil_scoped_release release;
+  write_file_atomically(path, render(design_report(design.camera, design.result, std::nullopt, "")),
+                        policy_of(overwrite));
+}
+
 py::dict design_dict(const Camera& camera, const py::dict& values,
                      const std::optional<TargetSet>& target, const py::object& callback) {
   const DesignOptions options = design_options(values, target);
-  const DesignResult result = without_gil(
+  DesignResult result = without_gil(
       callback, [&](const Progress& progress) { return design(camera, options, progress); });
   py::list candidates;
   for (const Candidate& candidate : result.candidates)
@@ -155,6 +179,7 @@ py::dict design_dict(const Camera& camera, const py::dict& values,
   dict["best"] = result.best;
   dict["left_out"] = result.left_out;
   dict["explanation"] = result.explanation;
+  dict["_handle"] = FinishedDesign{camera, options, std::move(result)};
   return dict;
 }
 
@@ -162,6 +187,9 @@ py::dict design_dict(const Camera& camera, const py::dict& values,
 
 void bind_design(py::module_& module) {
   py::class_<TargetSet>(module, "TargetSet");
+  py::class_<FinishedDesign>(module, "FinishedDesign")
+      .def("write", &write_design)
+      .def("write_report", &write_design_report);
   module.def("targets_of", &targets_of);
   module.def("targets_from_table",
              [](const std::string& name, const Doubles& table, int samples, bool normalize) {

@@ -5,15 +5,14 @@
 #include <filesystem>
 
 #include "bindings.hpp"
+#include "export_options.hpp"
 #include "options.hpp"
+#include "output_policy.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/output_directory.hpp"
-#include "tofsmith/io/waveform_export.hpp"
 
 namespace tofsmith::python {
-
-namespace {
 
 ExportOptions export_options(const std::string& format, const py::dict& values) {
   ExportOptions options;
@@ -30,6 +29,8 @@ ExportOptions export_options(const std::string& format, const py::dict& values) 
       .finish();
   return options;
 }
+
+namespace {
 
 py::dict format_dict(const WaveformFormat& format) {
   std::vector<std::string> variants;
@@ -71,8 +72,7 @@ py::tuple write_export(const CodeSet& code, const Camera& camera, const std::str
     names.push_back(file.name);
   }
   for (const ExportedFile& file : files)
-    write_file_atomically(folder / file.name, file.bytes,
-                          overwrite ? OutputPolicy::overwrite : OutputPolicy::refuse_existing);
+    write_file_atomically(folder / file.name, file.bytes, policy_of(overwrite));
   const std::vector<std::byte>& manifest = files.back().bytes;
   return py::make_tuple(played, names,
                         py::str(reinterpret_cast<const char*>(manifest.data()), manifest.size()));

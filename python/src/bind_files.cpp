@@ -4,6 +4,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "output_policy.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/correlation_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
@@ -16,10 +17,6 @@
 namespace tofsmith::python {
 
 namespace {
-
-OutputPolicy policy_of(bool overwrite) {
-  return overwrite ? OutputPolicy::overwrite : OutputPolicy::refuse_existing;
-}
 
 /// All frames as (F, H, W, K) floats.
 py::array_t<float> read_raw(const std::string& path, const std::optional<int>& measurements,
@@ -44,17 +41,11 @@ py::array_t<float> read_raw(const std::string& path, const std::optional<int>& m
       copy_pixels(view, 0, view.pixels(), all.frame(f));
     }
   }
-  return adopt(std::move(all.values), {all.frames, all.height, all.width, all.measurements});
+  return adopt(std::move(all));
 }
 
-void write_raw(const std::string& path, const Floats& values, bool overwrite) {
-  RawFrames raw;
-  raw.frames = static_cast<int>(values.shape(0));
-  raw.height = static_cast<int>(values.shape(1));
-  raw.width = static_cast<int>(values.shape(2));
-  raw.measurements = static_cast<int>(values.shape(3));
-  raw.values.assign(values.data(), values.data() + values.size());
-  write_raw_frames(path, raw, policy_of(overwrite));
+void write_raw(const std::string& path, const py::object& values, bool overwrite) {
+  write_raw_frames(path, to_raw_frames(values, "raw"), policy_of(overwrite));
 }
 
 py::tuple read_table(const std::string& path, int taps, const std::optional<std::string>& tap_order,

@@ -23,5 +23,11 @@ void bind_files(py::module_& module);
 void bind_export(py::module_& module);
 void bind_sweep(py::module_& module);
 void bind_figures(py::module_& module);
+void bind_calibrate(py::module_& module);
+void bind_delay_sweep(py::module_& module);
+void bind_reports(py::module_& module);
+void bind_reproduce(py::module_& module);
+void bind_training_set(py::module_& module);
+void bind_instrument(py::module_& module);
 
 }  // namespace tofsmith::python

@@ -78,6 +78,12 @@ PYBIND11_MODULE(_tofsmith, module) {
   bind_export(module);
   bind_sweep(module);
   bind_figures(module);
+  bind_calibrate(module);
+  bind_delay_sweep(module);
+  bind_reports(module);
+  bind_reproduce(module);
+  bind_training_set(module);
+  bind_instrument(module);
 }
 
 }  // namespace tofsmith::python

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reports.hpp"
 
+#include <pybind11/stl.h>
+
 #include <type_traits>
 
 #include "arrays.hpp"
@@ -10,55 +12,131 @@ namespace tofsmith::python {
 
 namespace {
 
-py::tuple pair_of(const Estimate& estimate) {
-  return py::make_tuple(estimate.value, estimate.standard_error);
-}
+/// Fields of a report into a dict.
+class FieldWriter {
+ public:
+  template <typename Value>
+  void value(const char* name, const Value& field) {
+    dict[name] = field;
+  }
+  void mean(const char* name, const DepthErrorMean& field) {
+    py::dict of_mean;
+    of_mean["geometric_mean_m"] = field.geometric_mean_m.value;
+    of_mean["geometric_mean_se_m"] = field.geometric_mean_m.standard_error;
+    of_mean["mean_m"] = field.mean_m.value;
+    of_mean["mean_se_m"] = field.mean_m.standard_error;
+    dict[name] = of_mean;
+  }
+  template <typename OfPoint>
+  void column(const char* name, const std::vector<PointDepthError>& points, OfPoint of_point) {
+    using Item = std::remove_cvref_t<std::invoke_result_t<OfPoint, const PointDepthError&>>;
+    std::vector<Item> values;
+    for (const PointDepthError& point : points) values.push_back(of_point(point));
+    dict[name] = adopt(std::move(values));
+  }
 
-py::dict mean_dict(const DepthErrorMean& mean) {
   py::dict dict;
-  dict["geometric_mean_m"] = mean.geometric_mean_m.value;
-  dict["geometric_mean_se_m"] = mean.geometric_mean_m.standard_error;
-  dict["mean_m"] = mean.mean_m.value;
-  dict["mean_se_m"] = mean.mean_m.standard_error;
-  return dict;
-}
+};
 
-template <typename OfPoint>
-py::array column(const DepthErrorReport& report, OfPoint of_point) {
-  std::vector<std::invoke_result_t<OfPoint, const PointDepthError&>> values;
-  for (const PointDepthError& point : report.points) values.push_back(of_point(point));
-  return adopt(std::move(values));
+/// The same fields back from a dict.
+class FieldReader {
+ public:
+  explicit FieldReader(const py::dict& values) : values_(values) {}
+
+  template <typename Value>
+  void value(const char* name, Value& field) {
+    field = py::cast<Value>(values_[name]);
+  }
+  void mean(const char* name, DepthErrorMean& field) {
+    const py::dict of_mean = values_[name];
+    const auto number = [&](const char* key) { return py::cast<double>(of_mean[key]); };
+    field = {{number("geometric_mean_m"), number("geometric_mean_se_m")},
+             {number("mean_m"), number("mean_se_m")}};
+  }
+  template <typename OfPoint>
+  void column(const char* name, std::vector<PointDepthError>& points, OfPoint of_point) {
+    using Item = std::remove_cvref_t<std::invoke_result_t<OfPoint, const PointDepthError&>>;
+    const auto values = py::cast<std::vector<Item>>(values_[name]);
+    if (points.empty()) points.resize(values.size());
+    if (values.size() != points.size())
+      refuse(name, std::to_string(values.size()) + " values",
+             "one for each of " + std::to_string(points.size()) + " operating points");
+    for (std::size_t i = 0; i < values.size(); ++i) of_point(points[i]) = values[i];
+  }
+
+ private:
+  const py::dict& values_;
+};
+
+/// Every field of a report by its name.
+template <typename Fields, typename Report>
+void visit(Fields& fields, Report& report) {
+  fields.value("code", report.code);
+  fields.value("exposures", report.exposures);
+  fields.value("taps", report.taps);
+  fields.value("measurements", report.measurements);
+  fields.value("samples", report.samples);
+  fields.value("trials", report.trials);
+  fields.value("points_short_of_target", report.points_short_of_target);
+  fields.value("seed", report.seed);
+  fields.value("outlier_threshold_m", report.outlier_threshold_m);
+  const auto column = [&](const char* name, auto of_point) {
+    fields.column(name, report.points, of_point);
+  };
+  column(
+      "signal_e_per_s", [](auto& p) -> auto& { return p.point.signal_e_per_s; });
+  column(
+      "ambient_e_per_s", [](auto& p) -> auto& { return p.point.ambient_e_per_s; });
+  column(
+      "point_trials", [](auto& p) -> auto& { return p.trials; });
+  column(
+      "linear_mde_m", [](auto& p) -> auto& { return p.linear_mde_m.value; });
+  column(
+      "linear_se_m", [](auto& p) -> auto& { return p.linear_mde_m.standard_error; });
+  column(
+      "circular_mde_m", [](auto& p) -> auto& { return p.circular_mde_m.value; });
+  column(
+      "circular_se_m", [](auto& p) -> auto& { return p.circular_mde_m.standard_error; });
+  column(
+      "outlier_rate", [](auto& p) -> auto& { return p.outlier_rate.value; });
+  column(
+      "cramer_rao_mae_m", [](auto& p) -> auto& { return p.cramer_rao_mae_m; });
+  column(
+      "receiver_bound_mae_m", [](auto& p) -> auto& { return p.receiver_bound_mae_m; });
+  column(
+      "direct_tof_bound_mae_m", [](auto& p) -> auto& { return p.direct_tof_bound_mae_m; });
+  fields.mean("linear", report.linear);
+  fields.mean("circular", report.circular);
 }
 
 }  // namespace
 
-py::dict report_dict(const DepthErrorReport& report) {
-  using Point = PointDepthError;
+py::tuple pair_of(const Estimate& estimate) {
+  return py::make_tuple(estimate.value, estimate.standard_error);
+}
+
+py::dict impulse_response_dict(const ImpulseResponse& response) {
   py::dict dict;
-  dict["code"] = report.code;
-  dict["exposures"] = report.exposures;
-  dict["taps"] = report.taps;
-  dict["measurements"] = report.measurements;
-  dict["samples"] = report.samples;
-  dict["trials"] = report.trials;
-  dict["points_short_of_target"] = report.points_short_of_target;
-  dict["seed"] = report.seed;
-  dict["outlier_threshold_m"] = report.outlier_threshold_m;
-  const auto add = [&](const char* name, auto of_point) { dict[name] = column(report, of_point); };
-  add("signal_e_per_s", [](const Point& p) { return p.point.signal_e_per_s; });
-  add("ambient_e_per_s", [](const Point& p) { return p.point.ambient_e_per_s; });
-  add("point_trials", [](const Point& p) { return p.trials; });
-  add("linear_mde_m", [](const Point& p) { return p.linear_mde_m.value; });
-  add("linear_se_m", [](const Point& p) { return p.linear_mde_m.standard_error; });
-  add("circular_mde_m", [](const Point& p) { return p.circular_mde_m.value; });
-  add("circular_se_m", [](const Point& p) { return p.circular_mde_m.standard_error; });
-  add("outlier_rate", [](const Point& p) { return p.outlier_rate.value; });
-  add("cramer_rao_mae_m", [](const Point& p) { return p.cramer_rao_mae_m; });
-  add("receiver_bound_mae_m", [](const Point& p) { return p.receiver_bound_mae_m; });
-  add("direct_tof_bound_mae_m", [](const Point& p) { return p.direct_tof_bound_mae_m; });
-  dict["linear"] = mean_dict(report.linear);
-  dict["circular"] = mean_dict(report.circular);
+  dict["kind"] = std::string(name_of(response.kind));
+  if (response.f_max_hz > 0.0) dict["f_max_hz"] = response.f_max_hz;
+  if (response.cutoff_hz > 0.0) dict["cutoff_hz"] = response.cutoff_hz;
+  if (response.samples.empty()) return dict;
+  dict["samples"] = py::tuple(py::cast(response.samples));
+  dict["time_step_s"] = response.time_step_s;
   return dict;
+}
+
+py::dict report_dict(const DepthErrorReport& report) {
+  FieldWriter fields;
+  visit(fields, report);
+  return fields.dict;
+}
+
+DepthErrorReport report_of(const py::dict& values) {
+  DepthErrorReport report;
+  FieldReader fields(values);
+  visit(fields, report);
+  return report;
 }
 
 py::dict loss_dict(const GeneratorLoss& loss) {

@@ -36,6 +36,13 @@ from ._code import (
     require_fits,
     write_code,
 )
+from ._correlation_calibration import (
+    CalibratedCorrelation,
+    DeadPixels,
+    DelaySweep,
+    calibrate_correlation,
+    read_delay_sweep,
+)
 from ._decode import Decoder, decode
 from ._decoding_table import DecodingTable
 from ._depth_image import DepthImage, PixelStatus, ReturnStatus
@@ -66,6 +73,23 @@ from ._forward_model import (
     coding_curve_rank,
     harmonics_used,
 )
+from ._ideal_code_fit import (
+    HarmonicRatio,
+    IdealCodeFit,
+    fit_ideal_codes,
+    write_correlation_report,
+)
+from ._instrument import (
+    GeneratorModel,
+    ReadBackNumber,
+    UploadChannel,
+    UploadMessage,
+    UploadReport,
+    UploadScript,
+    generator_models,
+    upload,
+    upload_script,
+)
 from ._light import ExponentialTail, LaterReturns, Transients
 from ._multipath import (
     MultipathBound,
@@ -75,12 +99,23 @@ from ._multipath import (
     multipath_error,
     single_path_bias_m,
 )
+from ._photon_transfer import PhotonTransfer, PhotonTransferPoint, photon_transfer
+from ._report_pages import write_evaluation_report, write_report
 from ._reports import (
     DepthErrorMean,
     DepthErrorReport,
+    Estimate,
     GeneratorLoss,
     RobustnessReport,
     SecondReturnReport,
+)
+from ._reproduce import CheckedStatement, ReproducedItem, paper_items, reproduce
+from ._response_calibration import (
+    CalibratedResponse,
+    ParametricResponse,
+    ResponseRecord,
+    calibrate_impulse_response,
+    read_response_record,
 )
 from ._scene import (
     Scene,
@@ -95,6 +130,7 @@ from ._scene import (
 )
 from ._sweep import SweepResults, read_sweep, read_sweep_export, run_sweep
 from ._tofsmith import Interrupted
+from ._training_set import TrainingSetRun, write_training_set
 from ._waveform import Waveform
 
 __version__: str = _tofsmith.version
@@ -121,22 +157,31 @@ def set_threads(threads: int) -> None:
 
 
 __all__ = [
+    "CalibratedCorrelation",
+    "CalibratedResponse",
     "Camera",
     "Candidate",
+    "CheckedStatement",
     "CodeSet",
     "CramerRaoBound",
+    "DeadPixels",
     "Decoder",
     "DecodingTable",
+    "DelaySweep",
     "DepthErrorMean",
     "DepthErrorReport",
     "DepthImage",
     "DesignResult",
     "DirectTofBound",
+    "Estimate",
     "ExponentialTail",
     "ExportedCode",
     "ForwardModel",
     "Generator",
     "GeneratorLoss",
+    "GeneratorModel",
+    "HarmonicRatio",
+    "IdealCodeFit",
     "ImpulseResponse",
     "Interrupted",
     "LaterReturns",
@@ -148,8 +193,14 @@ __all__ = [
     "MultipathErrorReport",
     "MultipathMaps",
     "Operating",
+    "ParametricResponse",
+    "PhotonTransfer",
+    "PhotonTransferPoint",
     "PixelStatus",
+    "ReadBackNumber",
     "ReceiverBound",
+    "ReproducedItem",
+    "ResponseRecord",
     "ReturnStatus",
     "RobustnessReport",
     "Scene",
@@ -158,7 +209,12 @@ __all__ = [
     "SecondReturns",
     "Sensor",
     "SweepResults",
+    "TrainingSetRun",
     "Transients",
+    "UploadChannel",
+    "UploadMessage",
+    "UploadReport",
+    "UploadScript",
     "Waveform",
     "WaveformFormat",
     "best_rotation",
@@ -167,6 +223,8 @@ __all__ = [
     "built_in_camera_names",
     "built_in_scene",
     "built_in_scene_names",
+    "calibrate_correlation",
+    "calibrate_impulse_response",
     "camera_keys",
     "capture",
     "centred_lens",
@@ -177,22 +235,29 @@ __all__ = [
     "design",
     "evaluate",
     "export_waveforms",
+    "fit_ideal_codes",
     "generator_loss",
+    "generator_models",
     "harmonics_used",
     "list_families",
     "load_code",
     "multipath_error",
+    "paper_items",
+    "photon_transfer",
     "points_m",
     "radial_from_z",
     "read_code",
     "read_correlation_functions",
+    "read_delay_sweep",
     "read_depth",
     "read_impulse_response",
     "read_measured_table",
     "read_raw",
+    "read_response_record",
     "read_scene",
     "read_sweep",
     "read_sweep_export",
+    "reproduce",
     "require_fits",
     "robustness",
     "run_sweep",
@@ -200,10 +265,16 @@ __all__ = [
     "single_path_bias_m",
     "suggested_exposures",
     "table_depth_error_m",
+    "upload",
+    "upload_script",
     "waveform_formats",
     "write_code",
+    "write_correlation_report",
     "write_depth",
+    "write_evaluation_report",
     "write_points",
     "write_raw",
+    "write_report",
+    "write_training_set",
     "z_from_radial",
 ]

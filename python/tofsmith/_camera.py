@@ -153,6 +153,17 @@ class Camera:
         """The camera as a file says it, every default filled in."""
         return self._handle.to_toml()
 
+    def write(self, path: Path, *, overwrite: bool = False) -> None:
+        """Writes the camera as a file (.toml), named after it, which `design`, `evaluate` and
+        `decode` take.
+
+        Raises
+        ------
+        OSError
+            If the file exists and `overwrite` is not set, or cannot be written.
+        """
+        self._handle.write(_check.path(path), bool(overwrite))
+
     @cached_property
     def _fields(self) -> dict[str, Any]:
         fields: dict[str, Any] = json.loads(self._handle.to_json())

@@ -96,6 +96,11 @@ def finite_array(value: Any, name: str, axes: str) -> FloatArray:
     return array
 
 
+def frames(value: Any, name: str) -> npt.NDArray[np.float32]:
+    """Raw frames as float32; numbers that are not finite stay: they are of dead pixels."""
+    return np.asarray(real_array(value, name, "(F, H, W, K)"), dtype=np.float32)
+
+
 def progress(value: Progress) -> Progress:
     if value is None or callable(value):
         return value

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -117,6 +117,32 @@ class DesignResult:
     best: int
     left_out: list[str]
     explanation: list[str]
+    _handle: Optional[_tofsmith.FinishedDesign] = field(default=None, repr=False, compare=False)
+
+    def write(self, directory: Path, *, overwrite: bool = False) -> None:
+        """Writes the directory that `tofsmith design -o` does: codes, figures and report.html.
+
+        Raises
+        ------
+        OSError
+            If it holds a design and `overwrite` is not set, or cannot be written.
+        ValueError
+            Of a result that was pickled, which keeps its figures only.
+        """
+        self._finished().write(_check.path(directory, "directory"), bool(overwrite))
+
+    def write_report(self, path: Path, *, overwrite: bool = False) -> None:
+        """Writes the report page alone (.html); raises as write()."""
+        self._finished().write_report(_check.path(path), bool(overwrite))
+
+    def _finished(self) -> _tofsmith.FinishedDesign:
+        if self._handle is None:
+            raise ValueError("DesignResult: got one that was pickled or put together; needs one "
+                             "that design() returned")
+        return self._handle
+
+    def __getstate__(self) -> dict[str, Any]:
+        return vars(self) | {"_handle": None}
 
     @property
     def winner(self) -> Candidate:

@@ -5,13 +5,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any, NamedTuple, Optional
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _check
 from ._check import FloatArray
+
+
+class Estimate(NamedTuple):
+    """A figure and the standard deviation of its own uncertainty."""
+
+    value: float
+    standard_error: float
 
 
 @dataclass(frozen=True)
@@ -170,3 +177,8 @@ def report_of(values: dict[str, Any]) -> DepthErrorReport:
     linear = DepthErrorMean(**values.pop("linear"))
     circular = DepthErrorMean(**values.pop("circular"))
     return DepthErrorReport(**values, linear=linear, circular=circular)
+
+
+def fields_of(report: DepthErrorReport) -> dict[str, Any]:
+    """What report_of() makes the report of again."""
+    return vars(report) | {"linear": vars(report.linear), "circular": vars(report.circular)}

@@ -176,16 +176,8 @@ def capture(
         Electrons, or counts if the sensor has an ADC.
     """
     camera = camera_of(camera)
-    seen = _scene_of(scene)
-    planes = {
-        name: None if plane is None else _check.real_array(plane, name, "(H, W)")
-        for name, plane in (
-            ("depth_m", seen.depth_m),
-            ("albedo", seen.albedo),
-            ("cosine", seen.cosine),
-            ("ambient_scale", seen.ambient_scale),
-        )
-    }
+    seen = scene_named(scene)
+    planes = scene_planes(seen)
     options = {
         "signal_e_per_s": signal_e_per_s,
         "ambient_e_per_s": ambient_e_per_s,
@@ -206,7 +198,18 @@ def capture(
     return only
 
 
-def _scene_of(scene: Any) -> Scene:
+def scene_planes(scene: Scene) -> dict[str, Optional[npt.NDArray[Any]]]:
+    """The planes of a scene by name, each (H, W)."""
+    names = ("depth_m", "albedo", "cosine", "ambient_scale")
+    planes = {name: getattr(scene, name) for name in names}
+    return {
+        name: None if plane is None else _check.real_array(plane, name, "(H, W)")
+        for name, plane in planes.items()
+    }
+
+
+def scene_named(scene: Any) -> Scene:
+    """A Scene, or that of a name, a file or depths."""
     if isinstance(scene, np.ndarray):
         return Scene(scene)
     if isinstance(scene, (str, os.PathLike)):

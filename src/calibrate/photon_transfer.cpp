@@ -90,14 +90,14 @@ void add_points(const RawFrames& raw, double limit, bool dark, PhotonTransfer& r
 }
 
 /// variance - 1/12 = a + b (mean - black): weights of the fitted variance, three rounds.
-struct VarianceLine {
+struct FittedLine {
   Eigen::Vector2d value = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
   double reduced_chi2 = 0.0;
 };
 
-VarianceLine fit_line(const PhotonTransfer& result) {
-  VarianceLine line;
+FittedLine fit_line(const PhotonTransfer& result) {
+  FittedLine line;
   for (int round = 0; round < 4; ++round) {
     Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
     Eigen::Vector2d right = Eigen::Vector2d::Zero();
@@ -167,7 +167,7 @@ void set_full_well(bool piled_up, PhotonTransfer& result) {
                                            error_dn * result.gain_e_per_dn.value)};
 }
 
-void set_gain_and_read_noise(const VarianceLine& line, PhotonTransfer& result) {
+void set_gain_and_read_noise(const FittedLine& line, PhotonTransfer& result) {
   const double a = line.value[0], b = line.value[1];
   require(b > 0.0 && b > 3 * std::sqrt(line.covariance(1, 1)), "rise of variance with the mean", b,
           "must be > 0 by 3 standard errors: the levels must differ in light");
@@ -220,7 +220,7 @@ PhotonTransfer photon_transfer(const std::vector<RawFrames>& levels, const RawFr
       std::ranges::count_if(result.points, [](const auto& p) { return !p.saturated; });
   require(fitted >= 3, "pairs below saturation", fitted, "must be >= 3, dark ones included");
 
-  const VarianceLine line = fit_line(result);
+  const FittedLine line = fit_line(result);
   result.reduced_chi2 = line.reduced_chi2;
   set_gain_and_read_noise(line, result);
   set_full_well(piled_up, result);

@@ -32,4 +32,9 @@ std::string camera_to_json(const Camera& camera) {
 
 std::string camera_to_toml(const Camera& camera) { return format_toml(camera_document(camera)); }
 
+void write_camera_toml(const std::filesystem::path& path, Camera camera, OutputPolicy policy) {
+  camera.name = path.stem().string();
+  write_file_atomically(path, camera_to_toml(camera), policy);
+}
+
 }  // namespace tofsmith

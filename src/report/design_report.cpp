@@ -13,6 +13,7 @@
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/robustness_section.hpp"
 #include "tofsmith/report/scene_section.hpp"
+#include "tofsmith/report/zncc_comparison.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {
@@ -171,6 +172,10 @@ Page design_report(const Camera& camera, const DesignResult& result,
   return page;
 }
 
+Page design_report(const DesignedDirectory& found, const std::string& command_line) {
+  return design_report(found.design.camera, found.design.result, found.scene, command_line);
+}
+
 Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
                        const std::vector<DepthErrorReport>& errors,
                        const std::string& command_line) {
@@ -195,6 +200,17 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
                         code, camera));
   page.sections.push_back(std::move(waveforms));
   if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
+  return page;
+}
+
+Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
+                       std::span<const EvaluatedCode> evaluated, const std::string& command_line) {
+  std::vector<DepthErrorReport> errors;
+  for (const EvaluatedCode& code : evaluated) errors.push_back(code.error);
+  Page page = evaluation_report(camera, codes, errors, command_line);
+  if (is_compared_with_zncc(evaluated)) page.sections.push_back(zncc_comparison(evaluated));
+  if (const auto judged = judged_codes(evaluated); !judged.empty())
+    page.sections.push_back(robustness_section(judged));
   return page;
 }
 

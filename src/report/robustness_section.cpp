@@ -55,6 +55,13 @@ Figure ratio_figure(const std::vector<JudgedCode>& codes) {
 
 }  // namespace
 
+std::vector<JudgedCode> judged_codes(std::span<const EvaluatedCode> codes) {
+  std::vector<JudgedCode> judged;
+  for (const EvaluatedCode& code : codes)
+    if (code.robustness) judged.push_back({code.error.code, *code.robustness});
+  return judged;
+}
+
 std::vector<Row> robustness_rows(const std::vector<JudgedCode>& codes) {
   std::vector<Row> rows{
       {"code", "camera", "calibrated (mm)", "x nominal", "uncalibrated (mm)", "x nominal"}};

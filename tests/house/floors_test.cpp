@@ -37,7 +37,7 @@ const std::map<std::string, Folders> may_include = {
     {"sweep", data_types + Folders{"io"}},
     {"calibrate", data_types + Folders{"io"}},
     {"instrument", data_types + Folders{"io"}},
-    {"report", data_types + Folders{"io"}},
+    {"report", data_types + Folders{"io", "calibrate"}},
     {"reproduce", products},
     {"apps", all},
 };

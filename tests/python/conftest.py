@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 import os
+import re
 import sys
 
 import matplotlib
@@ -8,6 +9,14 @@ import pytest
 
 sys.dont_write_bytecode = True
 matplotlib.use("Agg")
+
+
+def page_without_command(path):
+    """A page but for its section on the command line, which Python has none of."""
+    text = path.read_text()
+    assert "<h1" in text and text.rstrip().endswith("</html>")
+    text = re.sub(r'<li><a href="#[\w-]+">Command</a></li>\n', "", text)
+    return re.sub(r"<section[^>]*>\s*<h2[^>]*>Command</h2>.*?</section>\n", "", text, flags=re.S)
 
 
 @pytest.fixture(scope="session")

@@ -33,7 +33,7 @@ def test_twins_run_and_say_the_same(example, tmp_path):
 
 
 def snippets():
-    for page in ("README.md", "docs/python.md"):
+    for page in ("README.md", "docs/python.md", "docs/calibration.md"):
         text = (folder.parent / page).read_text()
         blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
         assert blocks, page

@@ -39,6 +39,17 @@ keywords = [
     ("MultipathErrorOptions", "simulate/multipath_error.hpp", ts.multipath_error, set()),
     ("DecodeOptions", "decode/decoder.hpp", ts.Decoder, set()),
     ("ExportOptions", "io/waveform_export.hpp", ts.export_waveforms, set()),
+    ("ResponseRecordOptions", "calibrate/response_record.hpp", ts.read_response_record, set()),
+    ("ResponseCalibrationOptions", "calibrate/impulse_response.hpp",
+     ts.calibrate_impulse_response, {"fundamental_frequency_hz", "samples"}),
+    ("DelaySweepOptions", "calibrate/delay_sweep.hpp", ts.read_delay_sweep,
+     {"unit_scale", "fundamental_frequency_hz", "samples", "table"}),
+    ("CorrelationCalibrationOptions", "calibrate/correlation_calibration.hpp",
+     ts.calibrate_correlation, {"taps", "differences", "range_m", "exposure_s"}),
+    ("PhotonTransferOptions", "calibrate/photon_transfer.hpp", ts.photon_transfer, set()),
+    ("CaptureOptions", "simulate/capture.hpp", ts.write_training_set,
+     {"signal_e_per_s", "ambient_e_per_s"}),
+    ("ReproduceOptions", "reproduce/context.hpp", ts.reproduce, {"mesh_name"}),
 ]
 
 
@@ -67,6 +78,17 @@ def test_every_option_is_a_keyword(struct, header, of, elsewhere):
 
     parameters = set(inspect.signature(of).parameters)
     assert fields(struct, header) - elsewhere <= parameters
+
+
+uploads = ("UploadRequest", "instrument/upload_script.hpp"), (
+    "UploadSelection", "instrument/upload_selection.hpp")
+
+
+def test_every_option_of_an_upload_can_be_given():
+    with pytest.raises(ValueError, match="the unknown name 'unknown'") as refused:
+        ts.upload_script("square-k4", "paper-10f0", "33522", unknown=1)
+    known = set(re.search(r"needs one of ([\w, ]+)", str(refused.value)).group(1).split(", "))
+    assert known == set.union(*(fields(*struct) for struct in uploads)) - {"channels"} | {"tables"}
 
 
 def test_every_plane_of_a_decoded_image_is_there():

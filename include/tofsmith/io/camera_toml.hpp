@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/io/atomic_file.hpp"
 
 namespace tofsmith {
 
@@ -42,6 +43,8 @@ std::vector<std::string> camera_keys();
 /// The camera as TOML, every default filled in: parse_camera_toml(camera_to_toml(c)) == c.
 /// @throws std::invalid_argument if the camera is invalid
 std::string camera_to_toml(const Camera& camera);
+/// Writes that, named after the file. @throws IoError as AtomicFile does
+void write_camera_toml(const std::filesystem::path& path, Camera camera, OutputPolicy policy);
 /// The same document as JSON.
 std::string camera_to_json(const Camera& camera);
 

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/io/design_directory.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
 
 namespace tofsmith {
@@ -23,5 +25,15 @@ bool holds_scene_result(const std::filesystem::path& directory);
 
 /// @throws IoError naming the file and what is wrong with it
 SceneResult read_scene_result(const std::filesystem::path& directory);
+
+/// A finished design and the scene it was tried on, if there is one.
+struct DesignedDirectory {
+  DesignRecord design;
+  std::optional<SceneResult> scene;
+};
+
+/// Reads what `tofsmith design -o` or `tofsmith demo -o` left in a directory.
+/// @throws IoError naming the directory if it holds no finished design, or the damaged file
+DesignedDirectory read_designed_directory(const std::filesystem::path& directory);
 
 }  // namespace tofsmith

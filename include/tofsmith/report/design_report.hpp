@@ -3,10 +3,13 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "tofsmith/design/design.hpp"
+#include "tofsmith/io/result_document.hpp"
+#include "tofsmith/io/scene_directory.hpp"
 #include "tofsmith/report/page.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
 
@@ -18,9 +21,15 @@ namespace tofsmith {
 Page design_report(const Camera& camera, const DesignResult& result,
                    const std::optional<SceneResult>& scene, const std::string& command_line);
 
+/// The same of a directory that holds a design.
+Page design_report(const DesignedDirectory& found, const std::string& command_line);
+
 /// Codes evaluated on a camera, without any design.
 Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
                        const std::vector<DepthErrorReport>& errors,
                        const std::string& command_line);
+/// The same, with what zncc makes of the same trials and with perturbed cameras where they have it.
+Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
+                       std::span<const EvaluatedCode> evaluated, const std::string& command_line);
 
 }  // namespace tofsmith

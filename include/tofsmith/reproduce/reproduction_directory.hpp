@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,5 +46,25 @@ class ReproductionDirectory {
  private:
   std::filesystem::path path_;
 };
+
+/// What became of one item of reproduce().
+struct ReproducedItem {
+  const PaperItem* item = nullptr;
+  std::vector<CheckedStatement> findings;
+  bool kept = false;  ///< it was finished before
+};
+
+/// The items of these names, in that order; "all" is every item of the paper.
+/// @throws std::invalid_argument with the nearest name there is
+std::vector<const PaperItem*> paper_items_named(std::span<const std::string> names);
+
+/// Makes the items of the paper that are not finished in `directory`, and its index.
+/// @param again  make those too that are finished, and replace pages that something else made
+/// @throws IoError if the directory cannot be written, or holds pages of something else;
+///         Interrupted, then finished items are kept
+std::vector<ReproducedItem> reproduce(const ReproductionDirectory& directory,
+                                      std::span<const PaperItem* const> items,
+                                      const ReproduceOptions& options, bool again,
+                                      const Progress& progress = {});
 
 }  // namespace tofsmith

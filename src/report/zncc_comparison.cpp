@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "zncc_comparison.hpp"
+#include "tofsmith/report/zncc_comparison.hpp"
 
 #include <fmt/format.h>
 
 #include "tofsmith/core/people_text.hpp"
 
-namespace tofsmith::apps {
+namespace tofsmith {
 
 namespace {
 
@@ -56,4 +56,4 @@ Section zncc_comparison(std::span<const EvaluatedCode> codes) {
   return {"Maximum likelihood against correlation", {std::move(table)}};
 }
 
-}  // namespace tofsmith::apps
+}  // namespace tofsmith

@@ -1,15 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "calibrate_correlation_page.hpp"
-
 #include <fmt/format.h>
 
-#include "calibrate_output.hpp"
+#include "report/calibration_page.hpp"
+#include "tofsmith/report/calibration_report.hpp"
 #include "tofsmith/report/colours.hpp"
 #include "tofsmith/report/image_figure.hpp"
 #include "tofsmith/report/line_figure.hpp"
 
-namespace tofsmith::apps {
+namespace tofsmith {
 
 namespace {
 
@@ -80,9 +79,9 @@ Table fits_table(const std::vector<IdealCodeFit>& fits) {
 
 }  // namespace
 
-Page correlation_page(const CalibratedCorrelation& found, const std::vector<IdealCodeFit>& fits,
-                      const std::string& file) {
-  Page page{.title = fmt::format("Correlation functions of {}", file)};
+Page correlation_report(const CalibratedCorrelation& found, const std::vector<IdealCodeFit>& fits,
+                        const std::string& source, const std::string& command_line) {
+  Page page{.title = fmt::format("Correlation functions of {}", source)};
   Section table{"Table", {table_figure(found, fits)}};
   if (!fits.empty()) {
     table.blocks.push_back(fits_table(fits));
@@ -101,8 +100,7 @@ Page correlation_page(const CalibratedCorrelation& found, const std::vector<Idea
         {{"gain", found.maps.gain}}, {.label = "gain", .clip_fraction = 0.01}));
     page.sections.push_back(std::move(maps));
   }
-  page.sections.push_back(notes_section(found.notes));
-  return page;
+  return finished_calibration_page(std::move(page), found.notes, command_line);
 }
 
-}  // namespace tofsmith::apps
+}  // namespace tofsmith

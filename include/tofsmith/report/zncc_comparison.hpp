@@ -9,7 +9,7 @@
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/report/page.hpp"
 
-namespace tofsmith::apps {
+namespace tofsmith {
 
 /// Whether codes were decoded by zncc too.
 bool is_compared_with_zncc(std::span<const EvaluatedCode> codes);
@@ -21,4 +21,4 @@ std::vector<std::vector<std::string>> zncc_comparison_rows(std::span<const Evalu
 /// The same for a page.
 Section zncc_comparison(std::span<const EvaluatedCode> codes);
 
-}  // namespace tofsmith::apps
+}  // namespace tofsmith

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tofsmith/calibrate/correlation_calibration.hpp"
+#include "tofsmith/calibrate/ideal_code_fit.hpp"
+#include "tofsmith/calibrate/impulse_response.hpp"
+#include "tofsmith/calibrate/photon_transfer.hpp"
+#include "tofsmith/report/page.hpp"
+
+namespace tofsmith {
+
+/// "90.12 +- 0.08" of value / unit.
+std::string estimate_text(const Estimate& estimate, double unit);
+
+/// The lines of a table of what fits a record, headings first, and of what a sensor's noise is.
+std::vector<std::vector<std::string>> response_rows(const CalibratedResponse& found);
+std::vector<std::vector<std::string>> noise_rows(const PhotonTransfer& found);
+
+/// Pages of calibrations: what was found, as tables and figures, and the notes.
+/// @param source        what was calibrated, such as the file of a record
+/// @param command_line  as typed, to be shown on the page; may be empty
+Page response_report(const CalibratedResponse& found, const std::string& source,
+                     const std::string& command_line);
+Page correlation_report(const CalibratedCorrelation& found, const std::vector<IdealCodeFit>& fits,
+                        const std::string& source, const std::string& command_line);
+Page noise_report(const PhotonTransfer& found, const std::string& command_line);
+
+}  // namespace tofsmith

@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include "bindings.hpp"
+#include "options.hpp"
+#include "output_policy.hpp"
+#include "progress.hpp"
+#include "reports.hpp"
+#include "tofsmith/calibrate/calibration_camera.hpp"
+#include "tofsmith/io/camera_toml.hpp"
+#include "tofsmith/report/calibration_report.hpp"
+
+namespace tofsmith::python {
+
+namespace {
+
+py::dict record_dict(ResponseRecord record) {
+  py::dict dict;
+  dict["values"] = adopt(std::move(record.values));
+  dict["time_step_s"] = record.time_step_s;
+  dict["start_time_s"] = record.start_time_s;
+  dict["counts"] = record.counts;
+  dict["notes"] = record.notes;
+  return dict;
+}
+
+py::dict read_record(const std::string& path, const py::dict& values) {
+  ResponseRecordOptions options;
+  OptionReader(values, "")
+      .value("time_step_s", options.time_step_s)
+      .value("time_unit_s", options.time_unit_s)
+      .value("column", options.column)
+      .word("decimal", options.decimal, parse_decimal_mark)
+      .finish();
+  return record_dict(read_response_record(path, options));
+}
+
+py::dict fit_dict(const ParametricResponse& fit) {
+  py::dict dict;
+  dict["response"] = impulse_response_dict(fit.response);
+  dict["parameter_hz"] = pair_of(fit.parameter_hz);
+  dict["bandwidth_hz"] = pair_of(fit.bandwidth_hz);
+  dict["residual_rms"] = fit.residual_rms;
+  dict["fit"] = adopt(Eigen::VectorXd(fit.fit));
+  return dict;
+}
+
+py::dict response_dict(const CalibratedResponse& found) {
+  py::list fits, peaks;
+  for (const ParametricResponse& fit : found.fits) fits.append(fit_dict(fit));
+  for (const ResponsePeak& peak : found.peaks)
+    peaks.append(py::make_tuple(peak.time_s, peak.height));
+  py::dict dict;
+  dict["excitation"] = std::string(name_of(found.excitation));
+  dict["falling"] = found.falling;
+  dict["background"] = found.background;
+  dict["height"] = found.height;
+  dict["noise_rms"] = found.noise_rms;
+  dict["snr_db"] = found.snr_db;
+  dict["delay_s"] = found.delay_s;
+  dict["response"] = impulse_response_dict(found.response);
+  dict["response_centre_s"] = found.response_centre_s;
+  dict["bandwidth_hz"] = pair_of(found.bandwidth_hz);
+  dict["fits"] = fits;
+  dict["fit_is_good"] = found.fit_is_good();
+  dict["peaks"] = peaks;
+  dict["record"] = record_dict(found.record);
+  dict["notes"] = found.notes;
+  return dict;
+}
+
+CalibratedResponse calibrate_response(const Doubles& values, double time_step_s,
+                                      double start_time_s, bool counts,
+                                      const std::vector<std::string>& notes, const Camera& camera,
+                                      const std::optional<std::string>& excitation) {
+  ResponseRecord record{.values = to_vector(values),
+                        .time_step_s = time_step_s,
+                        .start_time_s = start_time_s,
+                        .counts = counts,
+                        .notes = notes};
+  ResponseCalibrationOptions options{.fundamental_frequency_hz = camera.fundamental_frequency_hz,
+                                     .samples = camera.samples};
+  if (excitation) options.excitation = parse_excitation(*excitation);
+  const py::gil_scoped_release release;
+  return calibrate_impulse_response(std::move(record), options);
+}
+
+Camera responding(const CalibratedResponse& found, const Camera& camera, const std::string& arm,
+                  const std::string& kind) {
+  return with_response(camera, response_of(found, parse_response_kind(kind)),
+                       parse_response_arm(arm));
+}
+
+void write_responding(const CalibratedResponse& found, const std::string& path,
+                      const Camera& camera, const std::string& arm, const std::string& kind,
+                      bool overwrite) {
+  const ResponseArm whose = parse_response_arm(arm);
+  const ImpulseResponse response = write_response_beside(
+      path, response_of(found, parse_response_kind(kind)), policy_of(overwrite));
+  write_camera_toml(path, with_response(camera, response, whose), policy_of(overwrite));
+}
+
+py::dict noise_dict(const PhotonTransfer& found) {
+  py::list points;
+  for (const PhotonTransferPoint& point : found.points) {
+    py::dict dict;
+    dict["mean_dn"] = point.mean_dn;
+    dict["variance_dn2"] = pair_of(point.variance_dn2);
+    dict["dark"] = point.dark;
+    dict["saturated"] = point.saturated;
+    points.append(dict);
+  }
+  py::dict dict;
+  dict["gain_e_per_dn"] = pair_of(found.gain_e_per_dn);
+  dict["read_noise_e"] = pair_of(found.read_noise_e);
+  dict["black_level_dn"] = pair_of(found.black_level_dn);
+  dict["full_well_e"] =
+      found.full_well_e ? py::object(pair_of(*found.full_well_e)) : py::object(py::none());
+  dict["saturation_dn"] = found.saturation_dn;
+  dict["adc_bits"] = found.adc_bits;
+  dict["reduced_chi2"] = found.reduced_chi2;
+  dict["points"] = points;
+  dict["notes"] = found.notes;
+  return dict;
+}
+
+PhotonTransfer measure_noise(const py::list& levels, const py::object& dark, const Camera& camera,
+                             const py::dict& values) {
+  std::vector<RawFrames> frames;
+  for (const py::handle level : levels)
+    frames.push_back(to_raw_frames(py::reinterpret_borrow<py::object>(level), "levels"));
+  const RawFrames dark_frames = to_raw_frames(dark, "dark");
+  PhotonTransferOptions options = noise_options(camera, !dark.is_none());
+  OptionReader(values, "")
+      .value("black_level_dn", options.black_level_dn)
+      .value("adc_bits", options.adc_bits)
+      .finish();
+  const py::gil_scoped_release release;
+  return photon_transfer(frames, dark_frames, options);
+}
+
+}  // namespace
+
+void bind_calibrate(py::module_& module) {
+  module.def("read_response_record", &read_record);
+  py::class_<CalibratedResponse>(module, "CalibratedResponse")
+      .def("fields", &response_dict)
+      .def("camera", &responding)
+      .def("write_camera", &write_responding)
+      .def("write_report", [](const CalibratedResponse& found, const std::string& path,
+                              const std::string& source, bool overwrite) {
+        write_file_atomically(path, render(response_report(found, source, "")),
+                              policy_of(overwrite));
+      });
+  module.def("calibrate_impulse_response", &calibrate_response);
+  py::class_<PhotonTransfer>(module, "PhotonTransfer")
+      .def("fields", &noise_dict)
+      .def("camera", [](const PhotonTransfer& found,
+                        const Camera& camera) { return with_noise(camera, found); })
+      .def("write_report",
+           [](const PhotonTransfer& found, const std::string& path, bool overwrite) {
+             write_file_atomically(path, render(noise_report(found, "")), policy_of(overwrite));
+           });
+  module.def("photon_transfer", &measure_noise);
+}
+
+}  // namespace tofsmith::python

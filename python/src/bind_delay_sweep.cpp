@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include "bindings.hpp"
+#include "options.hpp"
+#include "output_policy.hpp"
+#include "progress.hpp"
+#include "reports.hpp"
+#include "tofsmith/calibrate/calibrated_table_file.hpp"
+#include "tofsmith/calibrate/calibration_camera.hpp"
+#include "tofsmith/calibrate/ideal_code_fit.hpp"
+#include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/float_image_file.hpp"
+#include "tofsmith/report/calibration_report.hpp"
+
+namespace tofsmith::python {
+
+namespace {
+
+py::dict read_sweep(const std::string& path, const Camera& camera, const py::dict& values) {
+  DelaySweepOptions options{.fundamental_frequency_hz = camera.fundamental_frequency_hz,
+                            .samples = camera.samples};
+  std::string shifts, unit = "s", axes, order;
+  OptionReader(values, "")
+      .value("shifts", shifts)
+      .value("unit", unit)
+      .word("decimal", options.decimal, parse_decimal_mark)
+      .value("table_axes", axes)
+      .value("tap_order", order)
+      .value("keep_end_point", options.table.keep_end_point)
+      .finish();
+  options.shifts = shifts;
+  options.unit = parse_delay_unit(unit);
+  if (options.unit == DelayUnit::second) options.unit_scale = seconds_per_unit(unit);
+  if (!axes.empty()) options.table.axes = parse_table_axes(axes);
+  if (!order.empty())
+    options.table.layout = {.taps = camera.sensor.taps, .order = parse_tap_order(order)};
+  DelaySweep sweep = read_delay_sweep(path, options);
+  py::dict dict;
+  dict["delay_periods"] = adopt(std::move(sweep.delay_periods));
+  dict["frames"] = adopt(std::move(sweep.frames));
+  dict["notes"] = sweep.notes;
+  return dict;
+}
+
+CorrelationCalibrationOptions calibration_options(const DelaySweep& sweep, const Camera& camera,
+                                                  const py::object& dark,
+                                                  const py::object& geometry_m,
+                                                  const py::dict& values) {
+  CorrelationCalibrationOptions options = sweep_options(camera, sweep);
+  options.dark = to_raw_frames(dark, "dark");
+  options.geometry_m = to_image(geometry_m, "geometry_m");
+  std::optional<double> target_distance_m;
+  OptionReader(values, "")
+      .value("black_level", options.black_level)
+      .value("saturation_level", options.saturation_level)
+      .value("target_distance_m", target_distance_m)
+      .finish();
+  if (target_distance_m)
+    options.geometry_m =
+        flat_target_geometry_m(*target_distance_m, camera, sweep.frames.height, sweep.frames.width);
+  return options;
+}
+
+CalibratedCorrelation calibrate(const Doubles& delay_periods, const py::object& frames,
+                                const std::vector<std::string>& notes, const Camera& camera,
+                                const py::object& dark, const py::object& geometry_m,
+                                const py::dict& values, const py::object& callback) {
+  DelaySweep sweep{.frames = to_raw_frames(frames, "sweep.frames"), .notes = notes};
+  sweep.delay_periods.assign(delay_periods.data(), delay_periods.data() + delay_periods.size());
+  const CorrelationCalibrationOptions options =
+      calibration_options(sweep, camera, dark, geometry_m, values);
+  return without_gil(callback, [&](const Progress& progress) {
+    return calibrate_correlation(sweep, options, progress);
+  });
+}
+
+py::dict dead_dict(const DeadPixels& dead) {
+  py::dict dict;
+  dict["not_a_number"] = dead.not_a_number;
+  dict["constant"] = dead.constant;
+  dict["saturated"] = dead.saturated;
+  dict["low"] = dead.low;
+  return dict;
+}
+
+py::list pairs_of(const std::vector<Estimate>& estimates) {
+  py::list pairs;
+  for (const Estimate& estimate : estimates) pairs.append(pair_of(estimate));
+  return pairs;
+}
+
+py::dict correlation_dict(const CalibratedCorrelation& found) {
+  const auto or_none = [](bool known, const Estimate& estimate) {
+    return known ? py::object(pair_of(estimate)) : py::object(py::none());
+  };
+  py::dict dict;
+  dict["correlation"] = adopt(Eigen::MatrixXd(found.table.correlation));
+  dict["standard_error"] = adopt(Eigen::MatrixXd(found.standard_error));
+  dict["ambient_gain"] = adopt(Eigen::VectorXd(found.table.ambient_gain));
+  dict["exposure_s"] = adopt(Eigen::VectorXd(found.table.exposure_s));
+  dict["black_level"] = adopt(Eigen::VectorXd(found.table.black_level));
+  dict["taps"] = found.table.taps;
+  dict["delay_offset_m"] = adopt(Image<float>(found.maps.delay_offset_m));
+  dict["gain"] = adopt(Image<float>(found.maps.gain));
+  dict["delay_error_m"] = found.delay_error_m;
+  dict["gain_error"] = found.gain_error;
+  dict["dead"] = dead_dict(found.dead);
+  dict["drift_corrected"] = found.drift_corrected;
+  dict["light_drift"] = or_none(found.drift_known, found.light_drift);
+  dict["level_drift"] = or_none(found.drift_known, found.level_drift);
+  dict["tap_mismatch"] = pairs_of(found.tap_mismatch);
+  dict["noise_rms"] = found.noise_rms;
+  dict["noise_source"] = found.noise_source;
+  dict["notes"] = found.notes;
+  return dict;
+}
+
+py::dict ideal_fit_dict(const IdealCodeFit& fit) {
+  py::list harmonics;
+  for (const HarmonicRatio& h : fit.harmonics) {
+    py::dict dict;
+    dict["harmonic"] = h.harmonic;
+    dict["measured"] = h.measured;
+    dict["ideal"] = h.ideal;
+    dict["ratio"] = pair_of(h.ratio);
+    harmonics.append(dict);
+  }
+  py::dict dict;
+  dict["code"] = fit.code;
+  dict["delay_periods"] = fit.delay_periods;
+  dict["reversed"] = fit.reversed;
+  dict["inverted"] = fit.inverted;
+  dict["exposure"] = fit.exposure;
+  dict["scale"] = fit.scale;
+  dict["ideal_residual"] = fit.ideal_residual;
+  dict["residual"] = fit.residual;
+  dict["response"] = impulse_response_dict(fit.response);
+  dict["parameter_hz"] = pair_of(fit.parameter_hz);
+  dict["fitted"] = adopt(Eigen::MatrixXd(fit.fitted));
+  dict["harmonics"] = harmonics;
+  return dict;
+}
+
+std::vector<IdealCodeFit> fits_of(const CalibratedCorrelation& found, const Camera& camera,
+                                  const std::optional<std::vector<CodeSet>>& codes) {
+  const py::gil_scoped_release release;
+  return fit_ideal_codes(found.table.correlation, found.standard_error, camera,
+                         codes ? *codes : ideal_codes(camera, found.table.columns()));
+}
+
+}  // namespace
+
+void bind_delay_sweep(py::module_& module) {
+  module.def("read_delay_sweep", &read_sweep);
+  py::class_<CalibratedCorrelation>(module, "CalibratedCorrelation")
+      .def("fields", &correlation_dict)
+      .def("decoding_table",
+           [](const CalibratedCorrelation& found, const Camera& camera) {
+             return make_decoding_table(found.table, camera);
+           })
+      .def("write_table",
+           [](const CalibratedCorrelation& found, const std::string& path, bool overwrite) {
+             write_calibrated_table(path, found, policy_of(overwrite));
+           });
+  module.def("write_correlation_report",
+             [](const std::string& path, const CalibratedCorrelation& found,
+                const std::vector<IdealCodeFit>& fits, const std::string& source, bool overwrite) {
+               write_file_atomically(path, render(correlation_report(found, fits, source, "")),
+                                     policy_of(overwrite));
+             });
+  module.def("calibrate_correlation", &calibrate);
+  module.def("write_pixel_map", [](const std::string& path, const py::object& map,
+                                   const std::string& name, bool overwrite) {
+    write_float_image(path, to_image(map, name.c_str()), name, policy_of(overwrite));
+  });
+  py::class_<IdealCodeFit>(module, "IdealCodeFit")
+      .def("fields", &ideal_fit_dict)
+      .def("camera",
+           [](const IdealCodeFit& fit, const Camera& camera, const CalibratedCorrelation& found) {
+             return with_fit(camera, fit, found.tap_mismatch);
+           });
+  module.def("fit_ideal_codes", &fits_of);
+}
+
+}  // namespace tofsmith::python

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "options.hpp"
+#include "tofsmith/simulate/capture.hpp"
+
+namespace tofsmith::python {
+
+/// A scene from its planes by name, each (H, W) or None.
+/// @throws std::invalid_argument naming the plane that does not fit
+SceneImage scene_of(const py::dict& planes);
+
+/// What every capture can be given but light levels.
+void read_capture(OptionReader& reader, CaptureOptions& options);
+
+}  // namespace tofsmith::python

@@ -1,0 +1,267 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Impulse responses from records of a bench; see docs/calibration.md."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import Any, Optional, Union
+
+import numpy.typing as npt
+
+from . import _check, _tofsmith
+from ._camera import Camera, CameraLike, camera_of
+from ._camera_fields import ImpulseResponse
+from ._check import FloatArray, Path
+from ._reports import Estimate
+
+
+@dataclass(frozen=True)
+class ResponseRecord:
+    """What an instrument recorded of a response, equally spaced in time.
+
+    Attributes
+    ----------
+    values : ndarray, shape (T,)
+        In units of the instrument, T >= 16.
+    time_step_s : float
+        [s], > 0.
+    start_time_s : float
+        Of the first value [s].
+    counts : bool
+        Values are numbers of photons, whose variance is their mean.
+    notes : list of str
+    """
+
+    values: npt.NDArray[Any]
+    time_step_s: float
+    start_time_s: float = 0.0
+    counts: bool = False
+    notes: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class ParametricResponse:
+    """A parametric kind of response fitted to a record.
+
+    Attributes
+    ----------
+    response : ImpulseResponse
+        hann, gaussian or lowpass.
+    parameter_hz, bandwidth_hz : Estimate
+        Its f_max_hz or cutoff_hz, and where it is down by 3 dB [Hz].
+    residual_rms : float
+        Of the record less the fit, over the height of the record.
+    fit : ndarray, shape (T,)
+        At the times of the record, in its units.
+    """
+
+    response: ImpulseResponse
+    parameter_hz: Estimate
+    bandwidth_hz: Estimate
+    residual_rms: float
+    fit: FloatArray
+
+
+@dataclass(frozen=True)
+class CalibratedResponse:
+    """What a record tells of an arm.
+
+    Attributes
+    ----------
+    excitation : str
+        What the arm answered to: pulse or step.
+    falling : bool
+        The pulse points down, or the step is a switch off.
+    background, height, noise_rms : float
+        In units of the record: ahead of the response, of pulse or step above it, where nothing
+        happens.
+    snr_db : float
+        20 log10(height / noise).
+    delay_s : float
+        Where the response's centre of gravity was in the record [s].
+    response : ImpulseResponse
+        De-noised, of kind file; its centre of gravity comes `response_centre_s` [s] after its first
+        sample.
+    response_centre_s : float
+    bandwidth_hz : Estimate
+        -3 dB of the measured response itself [Hz].
+    fits : list of ParametricResponse
+        The least residual first.
+    fit_is_good : bool
+        The best fit describes the record to its noise.
+    peaks : list of (time_s, height)
+        From the highest and over its height, the highest first.
+    record : ResponseRecord
+        As it was used.
+    notes : list of str
+    """
+
+    excitation: str
+    falling: bool
+    background: float
+    height: float
+    noise_rms: float
+    snr_db: float
+    delay_s: float
+    response: ImpulseResponse
+    response_centre_s: float
+    bandwidth_hz: Estimate
+    fits: list[ParametricResponse]
+    fit_is_good: bool
+    peaks: list[tuple[float, float]]
+    record: ResponseRecord
+    notes: list[str]
+    _handle: _tofsmith.CalibratedResponse = field(repr=False, compare=False)
+
+    def camera(self, camera: CameraLike, *, arm: str = "light", kind: str = "file") -> Camera:
+        """The camera whose arm responds like this.
+
+        Parameters
+        ----------
+        camera : Camera or its name
+            The rest of it.
+        arm : {"light", "sensor", "system"}
+            Whose response it is; system: of both together, kept in the light's.
+        kind : {"file", "hann", "gaussian", "lowpass"}
+            The measured response, or a fit.
+        """
+        handle = self._handle.camera(camera_of(camera)._handle, arm, kind)
+        return Camera._of(handle)
+
+    def write_camera(
+        self,
+        path: Path,
+        camera: CameraLike,
+        *,
+        arm: str = "light",
+        kind: str = "file",
+        overwrite: bool = False,
+    ) -> Camera:
+        """Writes that camera (.toml) and, of kind file, NAME-response.csv beside it, as
+        `tofsmith calibrate impulse-response -o` does; returns what the file says.
+
+        Raises
+        ------
+        OSError
+            If a file exists and `overwrite` is not set, or cannot be written.
+        """
+        name = _check.path(path)
+        base = camera_of(camera)._handle
+        self._handle.write_camera(name, base, arm, kind, bool(overwrite))
+        return Camera(name)
+
+    def write_report(
+        self, path: Path, *, source: str = "a record", overwrite: bool = False
+    ) -> None:
+        """Writes the page of `tofsmith calibrate impulse-response --report` (.html): record, fits,
+        response and what passes, `source` in its title."""
+        self._handle.write_report(
+            _check.path(path), _check.text(source, "source"), bool(overwrite)
+        )
+
+    def __repr__(self) -> str:
+        best = self.fits[0]
+        return (
+            f"<CalibratedResponse: a {self.excitation}, -3 dB at "
+            f"{self.bandwidth_hz.value / 1e6:.4g} MHz; best fit {best.response.kind}, "
+            f"{100 * best.residual_rms:.2g} % left>"
+        )
+
+
+def read_response_record(
+    path: Path,
+    *,
+    time_step_s: Optional[float] = None,
+    time_unit_s: Optional[float] = None,
+    column: Optional[str] = None,
+    decimal: Optional[str] = None,
+) -> ResponseRecord:
+    """A record of an oscilloscope (text of times and values), or a histogram (.npy, values alone).
+
+    Parameters
+    ----------
+    path : str or path
+    time_step_s : float, optional
+        Of files without times [s].
+    time_unit_s : float, optional
+        Of the column of times [s], such as 1e-9; what its name says unless given, or 1.
+    column : str, optional
+        Name or number (from 1) of the values, where there are several.
+    decimal : {"auto", "point", "comma"}, optional
+
+    Raises
+    ------
+    OSError
+        Naming file and line for what is no record.
+    """
+    options = {
+        "time_step_s": time_step_s,
+        "time_unit_s": time_unit_s,
+        "column": column,
+        "decimal": decimal,
+    }
+    return ResponseRecord(**_tofsmith.read_response_record(_check.path(path), options))
+
+
+def calibrate_impulse_response(
+    record: Union[ResponseRecord, Path],
+    camera: CameraLike,
+    *,
+    excitation: Optional[str] = None,
+) -> CalibratedResponse:
+    """Impulse response of an arm from a record of how it answers to a pulse or a step.
+
+    Parameters
+    ----------
+    record : ResponseRecord, str or path
+    camera : Camera or its name
+        Gives f0 and N: the response comes out in steps of a period over a multiple of N.
+    excitation : {"pulse", "step"}, optional
+        None: found from the record.
+
+    Raises
+    ------
+    ValueError
+        If nothing stands out of the noise, or the record is none.
+    OSError
+        If a file cannot be read.
+
+    Examples
+    --------
+    >>> found = calibrate_impulse_response("scope.csv", "paper-10f0")  # doctest: +SKIP
+    >>> camera = found.camera("paper-10f0", arm="light")  # doctest: +SKIP
+    """
+    if isinstance(record, (str, os.PathLike)):
+        record = read_response_record(record)
+    _check.instance(record, ResponseRecord, "record")
+    camera = camera_of(camera)
+    values = _check.finite_array(record.values, "record.values", "(T,)")
+    step_s = _check.number(record.time_step_s, "record.time_step_s")
+    period_s = 1 / camera.fundamental_frequency_hz
+    if not 0 < step_s <= period_s:
+        raise ValueError(
+            f"record.time_step_s: got {step_s:.4g} s; needs > 0 and at most the camera's period of "
+            f"{period_s:.4g} s (time_unit_s=1e-9 reads nanoseconds)"
+        )
+    start_s = _check.number(record.start_time_s, "record.start_time_s")
+    handle = _tofsmith.calibrate_impulse_response(
+        values, step_s, start_s, bool(record.counts), record.notes, camera._handle, excitation
+    )
+    fields = handle.fields()
+    fields["response"] = ImpulseResponse(**fields["response"])
+    fields["bandwidth_hz"] = Estimate(*fields["bandwidth_hz"])
+    fields["fits"] = [_fit(fit) for fit in fields["fits"]]
+    fields["record"] = ResponseRecord(**fields["record"])
+    return CalibratedResponse(**fields, _handle=handle)
+
+
+def _fit(values: dict[str, Any]) -> ParametricResponse:
+    return ParametricResponse(
+        ImpulseResponse(**values["response"]),
+        Estimate(*values["parameter_hz"]),
+        Estimate(*values["bandwidth_hz"]),
+        values["residual_rms"],
+        values["fit"],
+    )

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/calibrate/calibration_camera.hpp"
+
+#include <cmath>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/impulse_response_file.hpp"
+#include "tofsmith/scene/pinhole.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// T [s] of every column (K); empty where the camera has one exposure for all.
+Eigen::VectorXd column_exposures_s(const Camera& camera, int columns, int columns_per_exposure) {
+  Eigen::VectorXd exposure_s;
+  if (camera.exposure_s.each_s.empty()) return exposure_s;
+  exposure_s.resize(columns);
+  for (int k = 0; k < columns; ++k)
+    exposure_s[k] = camera.exposure_s.of(k / columns_per_exposure, columns / columns_per_exposure);
+  return exposure_s;
+}
+
+}  // namespace
+
+CorrelationCalibrationOptions sweep_options(const Camera& camera, const DelaySweep& sweep) {
+  CorrelationCalibrationOptions options{.taps = camera.sensor.taps,
+                                        .differences = camera.sensor.readout == Readout::difference,
+                                        .range_m = camera.range_m()};
+  if (!options.differences) {
+    options.black_level = camera.sensor.black_level_dn.value_or(0.0);
+    if (camera.sensor.adc_bits)
+      options.saturation_level = static_cast<float>(std::exp2(*camera.sensor.adc_bits) - 1.0);
+  }
+  options.exposure_s = column_exposures_s(camera, sweep.frames.measurements,
+                                          options.differences ? options.taps / 2 : options.taps);
+  return options;
+}
+
+Image<float> flat_target_geometry_m(double distance_m, const Camera& camera, int height,
+                                    int width) {
+  if (!camera.lens)
+    throw std::invalid_argument(
+        "target_distance_m needs the camera's [lens], which says where pixels look");
+  const PinholeView view{camera.lens->fx_px,
+                         camera.lens->fy_px,
+                         camera.lens->cx_px,
+                         camera.lens->cy_px,
+                         width,
+                         height};
+  Image<float> geometry_m(height, width);
+  for (int row = 0; row < height; ++row)
+    for (int column = 0; column < width; ++column)
+      geometry_m(row, column) =
+          static_cast<float>(distance_m * (view.radial_per_z(row, column) - 1.0));
+  return geometry_m;
+}
+
+PhotonTransferOptions noise_options(const Camera& camera, bool has_dark_frames) {
+  if (camera.sensor.readout == Readout::difference)
+    throw std::invalid_argument(
+        "the camera reads differences, whose mean does not tell their shot noise; expected frames "
+        "of single taps (sensor.readout=separate)");
+  PhotonTransferOptions options{.adc_bits = camera.sensor.adc_bits};
+  if (!has_dark_frames) options.black_level_dn = camera.sensor.black_level_dn;
+  return options;
+}
+
+ResponseArm parse_response_arm(std::string_view word) {
+  if (word == "light") return ResponseArm::light;
+  if (word == "sensor") return ResponseArm::sensor;
+  if (word == "system") return ResponseArm::system;
+  reject("arm", word, "must be light, sensor or system");
+}
+
+ImpulseResponse::Kind parse_response_kind(std::string_view word) {
+  using Kind = ImpulseResponse::Kind;
+  for (const Kind kind : {Kind::file, Kind::hann, Kind::gaussian, Kind::lowpass})
+    if (word == name_of(kind)) return kind;
+  reject("kind", word, "must be file, hann, gaussian or lowpass");
+}
+
+ImpulseResponse response_of(const CalibratedResponse& found, ImpulseResponse::Kind kind) {
+  for (const ParametricResponse& fit : found.fits)
+    if (fit.response.kind == kind) return fit.response;
+  return found.response;
+}
+
+Camera with_response(Camera camera, const ImpulseResponse& response, ResponseArm arm) {
+  if (arm == ResponseArm::sensor) {
+    camera.sensor.impulse_response = response;
+    return camera;
+  }
+  camera.light.impulse_response = response;
+  if (arm == ResponseArm::system) camera.sensor.impulse_response = {};
+  return camera;
+}
+
+std::filesystem::path response_path(const std::filesystem::path& camera_path) {
+  std::filesystem::path path = camera_path;
+  return path.replace_filename(camera_path.stem().string() + "-response.csv");
+}
+
+ImpulseResponse write_response_beside(const std::filesystem::path& camera_path,
+                                      ImpulseResponse response, OutputPolicy policy) {
+  if (response.kind != ImpulseResponse::Kind::file) return response;
+  const std::filesystem::path path = response_path(camera_path);
+  write_impulse_response(path, response, policy);
+  response.file = path.filename().string();
+  return response;
+}
+
+}  // namespace tofsmith

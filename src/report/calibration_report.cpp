@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/report/calibration_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "report/calibration_page.hpp"
+#include "tofsmith/report/colours.hpp"
+#include "tofsmith/report/line_figure.hpp"
+#include "tofsmith/version.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Notes as a section of a page.
+Section notes_section(const std::vector<std::string>& notes) {
+  Table table{.caption = "What to know of this calibration.", .columns = {{"note"}}};
+  for (const std::string& note : notes) table.rows.push_back({note});
+  if (notes.empty()) table.rows.push_back({"none"});
+  return {"Notes", {std::move(table)}};
+}
+
+std::vector<double> times_ns(Eigen::Index count, double start_s, double step_s) {
+  std::vector<double> times;
+  for (Eigen::Index i = 0; i < count; ++i)
+    times.push_back(1e9 * (start_s + static_cast<double>(i) * step_s));
+  return times;
+}
+
+}  // namespace
+
+Page finished_calibration_page(Page page, const std::vector<std::string>& notes,
+                               const std::string& command_line) {
+  page.footer = "tofsmith " TOFSMITH_VERSION;
+  page.sections.push_back(notes_section(notes));
+  if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
+  return page;
+}
+
+std::string estimate_text(const Estimate& estimate, double unit) {
+  return fmt::format("{:.5g} +- {:.2g}", estimate.value / unit, estimate.standard_error / unit);
+}
+
+std::vector<std::vector<std::string>> response_rows(const CalibratedResponse& found) {
+  std::vector<std::vector<std::string>> rows{
+      {"kind", "f_max or cutoff (MHz)", "-3 dB (MHz)", "residual (% of height)"}};
+  for (const ParametricResponse& fit : found.fits)
+    rows.push_back({std::string(name_of(fit.response.kind)), estimate_text(fit.parameter_hz, 1e6),
+                    estimate_text(fit.bandwidth_hz, 1e6),
+                    fmt::format("{:.3g}", 100 * fit.residual_rms)});
+  rows.push_back({"measured", "", estimate_text(found.bandwidth_hz, 1e6), ""});
+  return rows;
+}
+
+std::vector<std::vector<std::string>> noise_rows(const PhotonTransfer& found) {
+  std::vector<std::vector<std::string>> rows{{"quantity", "found"}};
+  rows.push_back({"sensor.gain_e_per_dn", estimate_text(found.gain_e_per_dn, 1)});
+  rows.push_back({"sensor.read_noise_e", estimate_text(found.read_noise_e, 1)});
+  rows.push_back({"sensor.black_level_dn", estimate_text(found.black_level_dn, 1)});
+  rows.push_back({"sensor.full_well_e",
+                  found.full_well_e ? estimate_text(*found.full_well_e, 1) : "not reached"});
+  rows.push_back({"sensor.adc_bits", fmt::format("{}", found.adc_bits)});
+  rows.push_back({"chi^2 per freedom", fmt::format("{:.3g}", found.reduced_chi2)});
+  return rows;
+}
+
+Page response_report(const CalibratedResponse& found, const std::string& source,
+                     const std::string& command_line) {
+  ColourAssignment colours;
+  const ResponseRecord& record = found.record;
+  const std::vector<double> times =
+      times_ns(record.values.size(), record.start_time_s, record.time_step_s);
+  std::vector<Series> recorded{{.name = "record", .x = times, .y = to_values(record.values)}};
+  recorded.back().style = reference_style();
+  const ParametricResponse& best = found.fits.front();
+  recorded.push_back({.name = fmt::format("{} fit", name_of(best.response.kind)),
+                      .x = times,
+                      .y = to_values(best.fit),
+                      .style = colours.style("fit")});
+  const auto count = static_cast<Eigen::Index>(found.response.samples.size());
+  const Series response{.name = "response",
+                        .x = times_ns(count, -found.response_centre_s, found.response.time_step_s),
+                        .y = found.response.samples,
+                        .style = colours.style("response")};
+  Series passed{.name = "measured", .style = colours.style("response")};
+  Series fitted{.name = std::string(name_of(best.response.kind)), .style = colours.style("fit")};
+  for (int i = 0; i <= 200; ++i) {
+    const double f_hz = 4 * best.bandwidth_hz.value * i / 200;
+    for (auto [series, h] : {std::pair{&passed, &found.response}, {&fitted, &best.response}}) {
+      series->x.push_back(f_hz / 1e6);
+      series->y.push_back(std::abs(h->transfer(f_hz)));
+    }
+  }
+  Table table{.id = "fits", .caption = "Fits to the record itself.", .columns = {{"kind"}}};
+  const auto rows = response_rows(found);
+  for (std::size_t i = 1; i < rows.front().size(); ++i)
+    table.columns.push_back({rows.front()[i], true});
+  table.rows.assign(rows.begin() + 1, rows.end());
+  Section section{"Impulse response", {std::move(table)}};
+  section.blocks.push_back(line_figure({.id = "record",
+                                        .title = "Record and fit",
+                                        .caption = "As measured, with the kind that fits best."},
+                                       recorded, {.label = "time", .unit = "ns"},
+                                       {.label = "record"}));
+  section.blocks.push_back(
+      line_figure({.id = "response",
+                   .title = "Response",
+                   .caption = "De-noised, its centre of gravity at 0, of sum 1."},
+                  {response}, {.label = "time", .unit = "ns"}, {.label = "response"}));
+  section.blocks.push_back(line_figure({.id = "transfer",
+                                        .title = "What passes",
+                                        .caption = "Amplitude by frequency; -3 dB is 0.707."},
+                                       {passed, fitted}, {.label = "frequency", .unit = "MHz"},
+                                       {.label = "amplitude", .from_zero = true}));
+  return finished_calibration_page(
+      {.title = fmt::format("Impulse response of {}", source), .sections = {std::move(section)}},
+      found.notes, command_line);
+}
+
+Page noise_report(const PhotonTransfer& found, const std::string& command_line) {
+  ColourAssignment colours;
+  Series used{.name = "pairs of frames", .mark = Mark::markers, .style = colours.style("pairs")};
+  Series left{.name = "saturated", .mark = Mark::markers, .style = colours.style("saturated")};
+  double brightest = found.black_level_dn.value;
+  for (const PhotonTransferPoint& p : found.points) {
+    Series& series = p.saturated ? left : used;
+    series.x.push_back(p.mean_dn);
+    series.y.push_back(p.variance_dn2.value);
+    series.y_error.push_back(p.variance_dn2.standard_error);
+    brightest = std::max(brightest, p.mean_dn);
+  }
+  Series line{.name = "fit", .style = reference_style()};
+  const double gain = found.gain_e_per_dn.value, read_dn = found.read_noise_e.value / gain;
+  for (const double mean : {found.black_level_dn.value, brightest}) {
+    line.x.push_back(mean);
+    line.y.push_back(read_dn * read_dn + (mean - found.black_level_dn.value) / gain + 1.0 / 12);
+  }
+  std::vector<Series> series{used, line};
+  if (!left.x.empty()) series.push_back(left);
+  Table table{.caption = "Found, with standard errors.", .columns = {{"key"}, {"value", true}}};
+  const auto rows = noise_rows(found);
+  table.rows.assign(rows.begin() + 1, rows.end());
+  Section section{"Noise", {std::move(table)}};
+  section.blocks.push_back(line_figure(
+      {.id = "photon-transfer",
+       .title = "Photon transfer",
+       .caption = "Variance in time of each pair and measurement over its mean. The slope is one "
+                  "over the gain, the height at black the read noise."},
+      series, {.label = "mean", .unit = "DN"},
+      {.label = "variance", .unit = "DN^2", .from_zero = true}));
+  return finished_calibration_page({.title = "Noise of a sensor", .sections = {section}},
+                                   found.notes, command_line);
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/output_directory.hpp"
+#include "tofsmith/reproduce/reproduction_directory.hpp"
+
+namespace tofsmith {
+
+std::vector<const PaperItem*> paper_items_named(std::span<const std::string> names) {
+  std::vector<const PaperItem*> items;
+  for (const std::string& name : names) {
+    if (name == "all") {
+      items.clear();
+      for (const PaperItem& item : paper_items()) items.push_back(&item);
+      return items;
+    }
+    items.push_back(&paper_item(name));
+  }
+  return items;
+}
+
+std::vector<ReproducedItem> reproduce(const ReproductionDirectory& directory,
+                                      std::span<const PaperItem* const> items,
+                                      const ReproduceOptions& options, bool again,
+                                      const Progress& progress) {
+  make_output_directory(directory.path());
+  if (!again) directory.require_ours(options);
+  CodeShelf shelf(directory.shelf());
+  const ReproduceContext context{options, shelf};
+  double whole = 0.0, done = 0.0;
+  for (const PaperItem* item : items) whole += item->share;
+  std::vector<ReproducedItem> reproduced;
+  for (const PaperItem* item : items) {
+    const Progress part = part_of(progress, done / whole, (done + item->share) / whole);
+    auto findings = again ? std::nullopt : directory.finished(*item, options);
+    const bool kept = findings.has_value();
+    if (!kept) {
+      report(part, 0.0, item->name);
+      Reproduction reproduction = item->reproduce(context, part);
+      directory.write(*item, reproduction, options);
+      directory.write_index(options);
+      findings = std::move(reproduction.findings);
+    }
+    done += item->share;
+    reproduced.push_back({item, std::move(*findings), kept});
+  }
+  directory.write_index(options);
+  report(progress, 1.0, "done");
+  return reproduced;
+}
+
+}  // namespace tofsmith

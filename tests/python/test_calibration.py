@@ -1,0 +1,213 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Calibrations say and write what the command line does, and decoding takes what they found."""
+
+import json
+import re
+import subprocess
+
+import numpy as np
+import pytest
+
+import tofsmith as ts
+from conftest import page_without_command
+
+base = ts.Camera("paper-10f0", samples=60)
+narrow = {"kind": "hann", "f_max_hz": 75e6}
+sensor = {"impulse_response": narrow, "adc_bits": 12, "gain_e_per_dn": 8, "black_level_dn": 100}
+
+
+def told(cli, directory, *arguments):
+    """What the command line prints with --json, run in a directory."""
+    done = subprocess.run([cli, "--json", "calibrate", *map(str, arguments)], cwd=directory,
+                          capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def pair(values):
+    return tuple(np.nan if v is None else v for v in (values["value"], values["standard_error"]))
+
+
+@pytest.fixture(scope="module")
+def both(tmp_path_factory):
+    """A folder for the command's files and one for Python's."""
+    folders = tmp_path_factory.mktemp("command"), tmp_path_factory.mktemp("python")
+    base.write(folders[0] / "base.toml")
+    return folders
+
+
+def same(both, *names):
+    for name in names:
+        assert (both[0] / name).read_bytes() == (both[1] / name).read_bytes(), name
+
+
+def same_page(both, name):
+    assert page_without_command(both[0] / name) == page_without_command(both[1] / name)
+
+
+@pytest.fixture(scope="module")
+def scope(both):
+    """A Gaussian pulse in nanoseconds, with noise."""
+    t = np.arange(400) * 0.1
+    values = np.exp(-((t - 20) / 1.5) ** 2 / 2) + 0.01 * np.random.default_rng(1).normal(size=400)
+    path = both[0] / "scope.csv"
+    np.savetxt(path, np.stack([t, values], 1), "%.6f", ",", header="time_ns,volt", comments="")
+    return path
+
+
+def test_a_response_is_that_of_the_command(both, scope, cli):
+    said = told(cli, both[0], "impulse-response", scope, "--camera", "base.toml", "-o", "mine.toml",
+                "--report", "mine.html")
+    found = ts.calibrate_impulse_response(scope, base)
+    for name in ("excitation", "background", "height", "snr_db", "delay_s", "fit_is_good", "notes"):
+        assert getattr(found, name) == said[name], name
+    assert found.bandwidth_hz == pair(said["bandwidth_hz"])
+    assert [f.response.kind for f in found.fits] == [f["kind"] for f in said["fits"]]
+    assert [f.parameter_hz for f in found.fits] == [pair(f["parameter_hz"]) for f in said["fits"]]
+    written = found.write_camera(both[1] / "mine.toml", base)
+    same(both, "mine.toml", "mine-response.csv")
+    found.write_report(both[1] / "mine.html", source=str(scope))
+    same_page(both, "mine.html")
+    np.testing.assert_allclose(written.transfer(9), found.camera(base).transfer(9), rtol=1e-6)
+
+
+def test_a_response_of_values_in_memory_and_every_arm(scope):
+    record = ts.read_response_record(scope)
+    found = ts.calibrate_impulse_response(
+        ts.ResponseRecord(list(record.values), record.time_step_s), base)
+    true_hz = np.sqrt(np.log(2)) / (2 * np.pi * 1.5e-9)
+    assert abs(found.fits[0].bandwidth_hz.value / true_hz - 1) < 0.02
+    fit = found.camera(base, arm="sensor", kind="gaussian")
+    assert fit.light == base.light
+    assert fit.sensor.impulse_response == found.fits[0].response
+    whole = found.camera(base, arm="system")
+    assert whole.light.impulse_response.kind == "file"
+    assert whole.sensor.impulse_response.kind == "none"
+
+
+@pytest.fixture(scope="module")
+def sweep():
+    """A flat target at 60 delays and the first again, through arms of 75 MHz, on 3 x 4 pixels."""
+    camera = base.replace(light={"impulse_response": narrow}, sensor={"impulse_response": narrow})
+    model = ts.ForwardModel("hamiltonian-k4", camera)
+    rng = np.random.default_rng(2)
+    offset_bin, gain = rng.normal(0, 0.3, (3, 4)), 1 + 0.1 * rng.normal(size=(3, 4))
+    bins = np.append(np.arange(60), 0)
+    clean = np.stack([model.expected_electrons(bins + o, 1e6, 0) for o in offset_bin.ravel()], 1)
+    frames = gain[..., None] * clean.reshape(61, 3, 4, 4) + rng.normal(0, 10, (61, 3, 4, 4))
+    return ts.DelaySweep(bins / 60, frames.astype(np.float32)), offset_bin * base.bin_m, gain
+
+
+def test_a_sweep_gives_what_the_command_writes(both, sweep, cli):
+    measured = sweep[0]
+    ts.write_raw(both[0] / "frames.npy", measured.frames)
+    np.savetxt(both[0] / "shifts.txt", measured.delay_periods, "%.17g")
+    said = told(cli, both[0], "correlation", "frames.npy", "--shifts", "shifts.txt",
+                "--shift-unit", "period", "--camera", "base.toml", "--table", "table.npz",
+                "--offset-map", "offset.npy", "--gain-map", "gain.npy", "-o", "fitted.toml",
+                "--report", "sweep.html")
+    read = ts.read_delay_sweep(both[0] / "frames.npy", base, shifts=both[0] / "shifts.txt",
+                               unit="period")
+    np.testing.assert_array_equal(read.frames, measured.frames)
+    np.testing.assert_array_equal(read.delay_periods, measured.delay_periods)
+    found = ts.calibrate_correlation(measured, base)
+    found.write_table(both[1] / "table.npz")
+    found.write_maps(both[1] / "offset.npy", both[1] / "gain.npy")
+    fits = ts.fit_ideal_codes(found, base)
+    fits[0].camera(base).write(both[1] / "fitted.toml")
+    same(both, "table.npz", "offset.npy", "gain.npy", "fitted.toml")
+    ts.write_correlation_report(both[1] / "sweep.html", found, fits, source="frames.npy")
+    same_page(both, "sweep.html")
+    assert found.light_drift == pair(said["light_drift"])
+    for fit, entry in zip(fits, said["ideal_codes"], strict=True):
+        assert (fit.code, fit.residual, fit.exposure) == tuple(
+            entry[name] for name in ("code", "residual", "exposure"))
+        assert np.array_equal([h.ratio for h in fit.harmonics],
+                              [pair(h["ratio"]) for h in entry["harmonics"]], equal_nan=True)
+    assert fits[0].code == "hamiltonian-k4"
+
+
+def test_what_a_sweep_found_decodes(sweep):
+    measured, offset_m, gain = sweep
+    found = ts.calibrate_correlation(measured, base)
+    assert abs(found.delay_offset_m - (offset_m - offset_m.mean())).max() < 6 * found.delay_error_m
+    assert abs(found.gain / (gain / gain.mean()) - 1).max() < 6 * found.gain_error
+    decoder = ts.Decoder(found.decoding_table(base))
+    image = decoder.decode(measured.frames[10], delay_offset_m=found.delay_offset_m)
+    # The mean offset is in the table: where depth is zero is what the delays say.
+    np.testing.assert_allclose(image.depth_m, 10 * base.bin_m, atol=0.02)
+    other = ts.fit_ideal_codes(found, base, ["sinusoid-k4", "hamiltonian-k4"])
+    assert [fit.code for fit in other] == ["hamiltonian-k4", "sinusoid-k4"]
+
+
+def test_noise_is_that_of_the_command(both, cli):
+    rng = np.random.default_rng(3)
+    levels = [np.round(100 + rng.poisson(e, (2, 32, 32, 1)) / 8 + rng.normal(0, 2.5, (2, 32, 32, 1)))
+              for e in (0, 800, 4000, 12000)]
+    names = ["dark.npy", "a.npy", "b.npy", "c.npy"]
+    for name, frames in zip(names, levels):
+        ts.write_raw(both[0] / name, frames)
+    said = told(cli, both[0], "noise", *names[1:], "--dark", names[0], "--camera", "base.toml",
+                "-o", "noisy.toml", "--report", "noise.html")
+    found = ts.photon_transfer(levels[1:], base, dark=levels[0])
+    found.camera(base).write(both[1] / "noisy.toml")
+    same(both, "noisy.toml")
+    found.write_report(both[1] / "noise.html")
+    same_page(both, "noise.html")
+    assert found.gain_e_per_dn == pair(said["gain_e_per_dn"])
+    assert abs(found.gain_e_per_dn.value / 8 - 1) < 0.1
+    assert [p.mean_dn for p in found.points] == [p["mean_dn"] for p in said["points"]]
+    assert found.full_well_e is None
+    assert ts.photon_transfer(levels[1:], base.replace(sensor=sensor)).black_level_dn.value == 100
+
+
+frames = np.ones((4, 2, 2, 4))
+delays = np.arange(4) / 4
+
+
+def calibrated(*arguments, **options):
+    return lambda: ts.calibrate_correlation(ts.DelaySweep(*arguments), base, **options)
+
+
+refusals = [
+    (lambda: ts.calibrate_impulse_response([1, 2], base), TypeError, "record: got list [1, 2]; needs a tofsmith.ResponseRecord"),
+    (lambda: ts.calibrate_impulse_response(ts.ResponseRecord(np.ones(40), 1.0), base), ValueError, "record.time_step_s: got 1 s; needs > 0 and at most the camera's period of 6.667e-08 s"),
+    (lambda: ts.calibrate_impulse_response(ts.ResponseRecord(np.ones((4, 4)), 1e-10), base), ValueError, "record.values: got shape (4, 4); needs (T,)"),
+    (lambda: ts.calibrate_impulse_response(ts.ResponseRecord(np.ones(40), 1e-10), base), ValueError, "record = constant; must hold a response"),
+    (lambda: ts.calibrate_impulse_response(ts.ResponseRecord(np.r_[np.zeros(30), 1, np.zeros(30)], 1e-10), base, excitation="ramp"), ValueError, "ramp"),
+    (lambda: ts.read_response_record("/nowhere/a.csv"), OSError, "/nowhere/a.csv"),
+    (lambda: ts.read_response_record("a.csv", decimal="dot"), ValueError, "dot"),
+    (lambda: ts.read_delay_sweep("a.csv", base, unit="h"), ValueError, "h"),
+    (calibrated(delays, frames[0]), ValueError, "sweep.frames: got shape (2, 2, 4); needs (F, H, W, K)"),
+    (calibrated(delays[:3], frames), ValueError, "3"),
+    (calibrated(delays / 9, frames), ValueError, "period"),
+    (calibrated(delays * np.nan, frames), ValueError, "sweep.delay_periods: got nan at 0; needs finite numbers"),
+    (calibrated(delays, frames, target_distance_m=1.0), ValueError, "target_distance_m needs the camera's [lens]"),
+    (calibrated(delays, frames, dark=frames[0]), ValueError, "dark: got shape (2, 2, 4); needs (F, H, W, K)"),
+    (calibrated(delays, frames, geometry_m=frames), ValueError, "geometry_m: got shape (4, 2, 2, 4); needs (H, W)"),
+    (lambda: ts.calibrate_correlation(3, base), TypeError, "sweep: got int 3; needs a tofsmith.DelaySweep"),
+    (lambda: ts.fit_ideal_codes(frames, base), TypeError, "found: got an array of shape"),
+    (lambda: ts.photon_transfer([np.ones((2, 4, 4, 1))], base), ValueError, "dark frames = 0; must be given, or the black level"),
+    (lambda: ts.photon_transfer([frames[0]], base), ValueError, "levels[0]: got shape (2, 2, 4); needs (F, H, W, K)"),
+    (lambda: ts.photon_transfer([frames], base, black_level_dn="0"), TypeError, "black_level_dn: got str '0'; needs a number"),
+    (lambda: ts.photon_transfer([frames], base.replace(sensor={"taps": 2, "readout": "difference"})), ValueError, "reads differences"),
+]
+
+
+@pytest.mark.parametrize("call, kind, message", refusals, ids=[r[2][:50] for r in refusals])
+def test_bad_input_is_refused_by_name(call, kind, message):
+    with pytest.raises(kind, match=re.escape(message)):
+        call()
+
+
+def test_existing_files_stay(both, scope, sweep):
+    found = ts.calibrate_impulse_response(scope, base)
+    path = both[1] / "kept.toml"
+    found.write_camera(path, base)
+    for write in (lambda: found.write_camera(path, base), lambda: base.write(path)):
+        with pytest.raises(OSError, match="exists already; .* overwrite=True"):
+            write()
+    means = ts.DelaySweep(sweep[0].delay_periods, sweep[0].frames.mean((1, 2), keepdims=True))
+    with pytest.raises(ValueError, match="a table of means, which has no pixels"):
+        ts.calibrate_correlation(means, base).write_maps(both[1] / "map.npy")
