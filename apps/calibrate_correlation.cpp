@@ -15,6 +15,7 @@
 #include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/calibrate/ideal_code_fit.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/people_text.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/float_image_file.hpp"
 #include "tofsmith/io/raw_frames_file.hpp"

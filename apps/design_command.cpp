@@ -142,7 +142,7 @@ void add_design_command(CLI::App& app, Session& session) {
       ->check(CLI::Range(1, 8));
   add_effort(*command, arguments->effort);
   command->add_flag("--robust", arguments->robust,
-                    "optimize for the worst of +-20 % bandwidth, +-10 % peak, 50 ps edge jitter "
+                    "optimize for the worst of ±20 % bandwidth, ±10 % peak, 50 ps edge jitter "
                     "and 2 % tap mismatch");
   arguments->later.add_to(*command);
   command->add_option("--seed", arguments->seed, "seed of every random choice")

@@ -232,7 +232,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
   command->add_flag("--best-rotation", arguments->best_rotation,
                     "move each code's origin of depth to where its linear error is least");
   command->add_flag("--robustness", arguments->robustness,
-                    "also judge each code on perturbed cameras: bandwidth +-20 %, peak +-10 %, "
+                    "also judge each code on perturbed cameras: bandwidth ±20 %, peak ±10 %, "
                     "50 ps edge jitter, 2 % tap mismatch");
   arguments->multipath.add_to(*command);
   command->add_option("--perturb", arguments->perturb,

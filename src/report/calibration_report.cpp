@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "report/calibration_page.hpp"
+#include "tofsmith/core/people_text.hpp"
 #include "tofsmith/report/colours.hpp"
 #include "tofsmith/report/line_figure.hpp"
 #include "tofsmith/version.hpp"
@@ -38,10 +39,6 @@ Page finished_calibration_page(Page page, const std::vector<std::string>& notes,
   page.sections.push_back(notes_section(notes));
   if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
   return page;
-}
-
-std::string estimate_text(const Estimate& estimate, double unit) {
-  return fmt::format("{:.5g} +- {:.2g}", estimate.value / unit, estimate.standard_error / unit);
 }
 
 std::vector<std::vector<std::string>> response_rows(const CalibratedResponse& found) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "report/calibration_page.hpp"
+#include "tofsmith/core/people_text.hpp"
 #include "tofsmith/report/calibration_report.hpp"
 #include "tofsmith/report/colours.hpp"
 #include "tofsmith/report/image_figure.hpp"

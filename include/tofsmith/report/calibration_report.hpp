@@ -13,9 +13,6 @@
 
 namespace tofsmith {
 
-/// "90.12 +- 0.08" of value / unit.
-std::string estimate_text(const Estimate& estimate, double unit);
-
 /// The lines of a table of what fits a record, headings first, and of what a sensor's noise is.
 std::vector<std::vector<std::string>> response_rows(const CalibratedResponse& found);
 std::vector<std::vector<std::string>> noise_rows(const PhotonTransfer& found);
