@@ -87,7 +87,7 @@ class Bash(CommandLineTest):
         lines = [" ".join(["tofsmith", *c["words"]]) for c in commands]
         for command, found in zip(commands, self.complete(*(line + " " for line in lines))):
             self.assertLessEqual(set(command["subcommands"]), found, command["words"])
-        general = {"--json", "--force", "--threads"}
+        general = {"--json", "--force", "--quiet", "--threads"}
         for command, found in zip(commands, self.complete(*(line + " -" for line in lines))):
             options = {name for option in command["options"] for name in option["names"]}
             self.assertEqual(found, options | general, command["words"])

@@ -97,7 +97,8 @@ TEST(LikelihoodDecoder, AllocatesNothingPerPixel) {
     return allocations_of([&] { setup.decoder.decode(frame); });
   };
   of_frame(64);  // the first use of threads allocates
-  EXPECT_LE(of_frame(4000), of_frame(400) + 2);
+  // Work space and raw numbers of every block of 1024 pixels, of which there are 3 more.
+  EXPECT_LE(of_frame(4000), of_frame(400) + 2 + 2 * 3);
 }
 
 TEST(Decoder, AllocatesNothingPerPixelInFrames) {
