@@ -235,7 +235,10 @@ def calibrate_impulse_response(
     """
     if isinstance(record, (str, os.PathLike)):
         record = read_response_record(record)
-    _check.instance(record, ResponseRecord, "record")
+    if not isinstance(record, ResponseRecord):
+        raise TypeError(
+            f"record: got {_check.shown(record)}; needs a tofsmith.ResponseRecord or its file"
+        )
     camera = camera_of(camera)
     values = _check.finite_array(record.values, "record.values", "(T,)")
     step_s = _check.number(record.time_step_s, "record.time_step_s")
