@@ -180,7 +180,7 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
                        const std::vector<DepthErrorReport>& errors,
                        const std::string& command_line) {
   Page page{.title = fmt::format("Depth error on {}", camera.name),
-            .subtitle = fmt::format("{} codes", codes.size()),
+            .subtitle = fmt::format("{} code{}", codes.size(), codes.size() == 1 ? "" : "s"),
             .footer = "tofsmith " TOFSMITH_VERSION};
   page.sections.push_back({"Camera", {camera_description(camera)}});
   std::vector<ComparedCode> compared;

@@ -120,10 +120,11 @@ Figure curves(const Camera& camera, std::span<const ComparedCode> codes,
   return line_figure(
       {.id = "error-by-signal",
        .title = "Circular depth error by signal",
-       .caption = fmt::format("At ambient light of {} e/s; the {} best codes. The bounds hold "
+       .caption = fmt::format("At ambient light of {} e/s{}. The bounds hold "
                               "for estimators without bias and know no wrap, so a code may come "
                               "below them where it is little better than guessing.",
-                              level_text(ambient), std::min(most, order.size()))},
+                              level_text(ambient),
+                              order.size() > most ? fmt::format("; the {} best codes", most) : "")},
       series, {.label = "signal", .unit = "e/s", .logarithmic = true},
       {.label = "mean circular depth error", .unit = "mm", .logarithmic = true});
 }
