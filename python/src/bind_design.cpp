@@ -11,80 +11,25 @@
 
 namespace tofsmith::python {
 
-namespace {
-
-DesignMethod parse_design_method(const std::string& word) {
-  for (const DesignMethod method :
+void parse(const std::string& word, DesignMethod& method) {
+  for (const DesignMethod known :
        {DesignMethod::factorize, DesignMethod::optimize, DesignMethod::search, DesignMethod::best})
-    if (word == name_of(method)) return method;
+    if (word == name_of(known)) {
+      method = known;
+      return;
+    }
   refuse("method", "'" + word + "'", "factorize, optimize, search or best");
 }
 
-void read_factorize(const py::dict& values, FactorizeOptions& options) {
-  OptionReader(values, "factorize")
-      .value("total_variation_weights", options.total_variation_weights)
-      .value("max_iterations", options.max_iterations)
-      .value("objective_tolerance", options.objective_tolerance)
-      .value("feed_back_projection", options.feed_back_projection)
-      .value("random_starts", options.random_starts)
-      .value("structured_starts", options.structured_starts)
-      .value("keep_naive", options.keep_naive)
-      .value("refine_edges", options.refine_edges)
-      .value("refined", options.refined)
-      .value("kept", options.kept)
-      .value("seed", options.seed)
-      .finish();
-}
-
-void read_optimize(const py::dict& values, OptimizeOptions& options) {
-  OptionReader(values, "optimize")
-      .value("samples", options.samples)
-      .value("starts", options.starts)
-      .value("steps_per_start", options.steps_per_start)
-      .value("hops", options.hops)
-      .value("steps_per_hop", options.steps_per_hop)
-      .value("patience", options.patience)
-      .value("refined", options.refined)
-      .value("refinement_steps", options.refinement_steps)
-      .value("trials_per_step", options.trials_per_step)
-      .value("pool_trials", options.pool_trials)
-      .value("polish", options.polish)
-      .value("polish_steps", options.polish_steps)
-      .value("validation_trials", options.validation_trials)
-      .value("two_return_weight", options.two_return_weight)
-      .value("most_two_return_loss", options.most_two_return_loss)
-      .finish();
-}
-
-void read_search(const py::dict& values, ChipSearchOptions& options) {
-  OptionReader(values, "search")
-      .value("margin_sigma", options.margin_sigma)
-      .value("separation_periods", options.separation_periods)
-      .value("equal_duty", options.equal_duty)
-      .value("largest_exhaustive", options.largest_exhaustive)
-      .value("finalists", options.finalists)
-      .value("annealing_starts", options.annealing_starts)
-      .value("annealing_steps", options.annealing_steps)
-      .value("trials", options.trials)
-      .finish();
-}
+namespace {
 
 DesignOptions design_options(const py::dict& values, const std::optional<TargetSet>& target) {
+  double effort = 1.0;
   DesignOptions options;
+  OptionReader(values, "").value("effort", effort).value("seed", options.factorize.seed);
+  options = with_effort(std::move(options), effort);
   OptionReader reader(values, "");
-  reader.word("method", options.method, parse_design_method)
-      .value("exposures", options.exposures)
-      .value("robust", options.robust)
-      .value("baselines", options.baselines)
-      .value("best_rotation", options.best_rotation)
-      .value("search_trials", options.search_trials)
-      .value("trials", options.trials)
-      .value("seed", options.seed);
-  options.factorize.seed = options.seed;
-  read_factorize(reader.table("factorize"), options.factorize);
-  read_optimize(reader.table("optimize"), options.optimize);
-  read_search(reader.table("search"), options.search);
-  reader.finish();
+  reader.value("effort", effort).fields(options, {"target"}).finish();
   options.target = target;
   options.validate();
   return options;
@@ -195,8 +140,10 @@ void bind_design(py::module_& module) {
              [](const std::string& name, const Doubles& table, int samples, bool normalize) {
                return targets_from_table(name, to_matrix(table, "target"), samples, normalize);
              });
-  module.def("suggested_exposures", [](const Camera& camera, const std::string& method) {
-    return suggested_exposures(camera, parse_design_method(method));
+  module.def("suggested_exposures", [](const Camera& camera, const std::string& word) {
+    DesignMethod method{};
+    parse(word, method);
+    return suggested_exposures(camera, method);
   });
   module.def("design", &design_dict);
 }

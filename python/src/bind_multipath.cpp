@@ -16,13 +16,7 @@ namespace {
 MultipathErrorOptions error_options(const py::dict& values, double range_m) {
   MultipathErrorOptions options;
   OptionReader reader(values, "");
-  reader.value("delay_m", options.delay_m)
-      .value("ratio", options.ratio)
-      .value("tail_m", options.tail_m)
-      .value("signal_e_per_s", options.signal_e_per_s)
-      .value("ambient_e_per_s", options.ambient_e_per_s)
-      .value("trials", options.trials)
-      .value("seed", options.seed);
+  reader.fields(options, {"decoding"});
   options.decoding = multipath_options(reader.table("decoding"), "decoding", range_m);
   reader.finish();
   options.validate(range_m);

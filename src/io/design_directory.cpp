@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "io/field_key.hpp"
 #include "io/json_reader.hpp"
 #include "io/json_text.hpp"
 #include "io/result_json.hpp"
@@ -101,43 +102,13 @@ Camera self_contained(Camera camera) {
   return camera;
 }
 
-std::string waveform_key(const Waveform& waveform) {
-  std::string key = fmt::format("{}", waveform.level());
-  for (const OnInterval& on : waveform.on_intervals())
-    key += fmt::format(";{}-{}", on.rise, on.fall);
-  const Eigen::VectorXd& samples = waveform.samples();
-  key += fmt::format(";{}", fmt::join(samples.begin(), samples.end(), ","));
-  return key;
-}
-
 /// Everything that determines a designed code, as text.
-std::string design_key(const Camera& camera, const DesignOptions& options) {
-  const FactorizeOptions& f = options.factorize;
-  std::string key =
-      fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", TOFSMITH_VERSION,
-                  camera_to_json(self_contained(camera)), options.seed, options.search_trials,
-                  options.best_rotation, fmt::join(f.total_variation_weights, ","),
-                  f.max_iterations, f.objective_tolerance, f.feed_back_projection, f.random_starts,
-                  f.structured_starts, f.keep_naive, f.refine_edges, f.refined, f.kept, f.seed);
-  const OptimizeOptions& o = options.optimize;
-  const ChipSearchOptions& c = options.search;
-  key += fmt::format("|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", name_of(options.method),
-                     options.robust, options.exposures.empty(), fmt::join(options.baselines, ","),
-                     o.samples, o.starts, o.steps_per_start, o.hops, o.steps_per_hop, o.patience,
-                     o.refined, o.refinement_steps, o.trials_per_step, o.pool_trials, o.polish,
-                     o.polish_steps, o.validation_trials);
-  key += fmt::format("|{}|{}|{}|{}|{}|{}", c.margin_sigma, c.separation_periods, c.equal_duty,
-                     c.largest_exhaustive, c.annealing_starts, c.annealing_steps);
-  if (camera.operating.multipath)
-    key += fmt::format("|{}|{}", o.two_return_weight, o.most_two_return_loss);
-  if (options.target)
-    for (const CorrelationTarget& t : options.target->measurements) {
-      key += fmt::format("|{}|{}", t.demodulation_mean,
-                         fmt::join(t.samples.begin(), t.samples.end(), ","));
-      if (t.ideal)
-        key += fmt::format("|{}|{}", waveform_key(t.ideal->modulation),
-                           waveform_key(t.ideal->demodulation));
-    }
+std::string design_key(const Camera& camera, DesignOptions options) {
+  // Codes are judged afresh, and are called by how many exposures they have.
+  options.trials = 0;
+  if (!options.exposures.empty()) options.exposures = {0};
+  std::string key = TOFSMITH_VERSION + camera_to_json(self_contained(camera));
+  append_key(key, options);
   return fmt::format("{:016x}", fnv1a_64(key));
 }
 

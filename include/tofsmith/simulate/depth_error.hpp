@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/decode/decode_method.hpp"
@@ -42,6 +43,17 @@ struct EvaluateOptions {
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
+  return std::tuple(Field("trials", o.trials, "in [2, 4e9]"), Field("seed", o.seed),
+                    Field("outlier_threshold_m", o.outlier_threshold_m, ">= 0"),
+                    Field("sub_bin", o.sub_bin), Field("depth", o.depth),
+                    Field("clip_to_open_sensor", o.clip_to_open_sensor), Field("method", o.method),
+                    Field("unwrap_weights", o.unwrap_weights),
+                    Field("target_standard_error", o.target_standard_error, "in [0, 1)"),
+                    Field("most_trials", o.most_trials, "in [2, 4e9]"),
+                    Field("draw_every_measurement", o.draw_every_measurement));
+}
 
 /// Depth error at one operating point.
 struct PointDepthError {

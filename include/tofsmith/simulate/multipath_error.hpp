@@ -27,6 +27,15 @@ struct MultipathErrorOptions {
   /// @throws std::invalid_argument naming field, value and rule
   void validate(double range_m) const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<MultipathErrorOptions> auto& o) {
+  return std::tuple(Field("delay_m", o.delay_m, "> 0"), Field("ratio", o.ratio, "in [0, 1]"),
+                    Field("tail_m", o.tail_m, "> 0"),
+                    Field("signal_e_per_s", o.signal_e_per_s, "finite and > 0"),
+                    Field("ambient_e_per_s", o.ambient_e_per_s, "finite and >= 0"),
+                    Field("trials", o.trials, "in [2, 1e7]"), Field("seed", o.seed),
+                    Field("decoding", o.decoding));
+}
 
 /// Error of direct depth in one kind of light: all errors the shorter way round the range.
 struct MultipathCell {

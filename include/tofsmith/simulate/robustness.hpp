@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/decode/decode_method.hpp"
@@ -30,6 +31,16 @@ struct RobustnessOptions {
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<RobustnessOptions> auto& o) {
+  return std::tuple(
+      Field("bandwidth", o.bandwidth, "in [0, 1)"), Field("peak", o.peak, "in [0, 1)"),
+      Field("edge_jitter_s", o.edge_jitter_s, "in [0, 1]"),
+      Field("tap_mismatch", o.tap_mismatch, "in [0, 1)"), Field("clock_s", o.clock_s, "in [0, 1]"),
+      Field("droop", o.droop, "in [0, 1)"), Field("together", o.together),
+      Field("trials", o.trials, "in [2, 4e9]"), Field("seed", o.seed), Field("method", o.method),
+      Field("unwrap_weights", o.unwrap_weights));
+}
 
 /// A camera that is not quite what it was said to be.
 struct PerturbedCamera {
