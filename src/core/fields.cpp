@@ -9,6 +9,12 @@
 
 namespace tofsmith {
 
+std::string error_name(std::string_view name) {
+  for (const std::string_view end : {"_m", "_mde"})
+    if (name.ends_with(end)) name.remove_suffix(end.size());
+  return std::string(name) + "_se_m";
+}
+
 bool keeps(double value, std::string_view rule) {
   const auto drop = [&rule](std::string_view beginning) {
     const bool there = rule.starts_with(beginning);

@@ -4,6 +4,7 @@
 
 #include <initializer_list>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <type_traits>
@@ -27,9 +28,12 @@ enum class Mark : unsigned {
   from_above = 1,     ///< the struct that holds this one sets it; not the user's to give
   apart = 2,          ///< not in the struct's own JSON object, but elsewhere in the document
   in_place = 4,       ///< its fields stand among those of the struct that holds it
-  without_error = 8,  ///< an estimate of which documents give the value alone
-  bound = 16          ///< of errors from below; may be infinite
+  without_error = 8,  ///< an estimate of which results give the value alone
+  as_object = 16,     ///< an estimate that is an object of its own in JSON
+  may_be_null = 32,   ///< in JSON
+  bound = 64          ///< a bound of errors, which not every table of them shows
 };
+constexpr unsigned as_bits(Mark mark) { return static_cast<unsigned>(mark); }
 
 /// A count that searching longer or shorter scales, never to below this (scale_by_effort).
 struct ByEffort {
@@ -57,13 +61,13 @@ struct Field {
       : name(its_name), value(its_value) {
     (set(its_marks), ...);
   }
-  bool is(Mark mark) const { return (marks & static_cast<unsigned>(mark)) != 0; }
+  bool is(Mark mark) const { return (marks & as_bits(mark)) != 0; }
 
  private:
   void set(const char* its_rule) { rule = its_rule; }
   void set(ByEffort effort) { by_effort = effort; }
   void set(InDocuments its) { document_name = its.name; }
-  void set(Mark mark) { marks |= static_cast<unsigned>(mark); }
+  void set(Mark mark) { marks |= as_bits(mark); }
 };
 
 /// A struct to read or to write.
@@ -92,6 +96,17 @@ template <typename Struct>
 inline constexpr bool lists_every_field =
     detail::lists_all<Struct, decltype(fields_of(std::declval<Struct&>()))>;
 
+/// Whether a struct is of nothing but doubles.
+template <typename Struct>
+inline constexpr bool is_row =
+    std::is_same_v<decltype(std::apply(
+                       [](const auto&... fields) {
+                         return std::bool_constant<(
+                             std::is_same_v<decltype(fields.value), double&> && ...)>();
+                       },
+                       fields_of(std::declval<Struct&>()))),
+                   std::true_type>;
+
 /// Calls `visit` with the Field of every member.
 template <typename Struct, typename Visit>
 void for_each_field(Struct& its, Visit&& visit) {
@@ -99,6 +114,10 @@ void for_each_field(Struct& its, Visit&& visit) {
                 "fields_of() must list every member in the order of declaration");
   std::apply([&](const auto&... fields) { (visit(fields), ...); }, fields_of(its));
 }
+
+/// What results call the standard error of an estimate: "error_se_m" beside "error_m",
+/// "linear_se_m" beside "linear_mde_m".
+std::string error_name(std::string_view name);
 
 /// Whether a number keeps the rule of a Field; "" is none.
 bool keeps(double value, std::string_view rule);

@@ -64,8 +64,8 @@ auto fields_of(ConstOrNot<DesignOptions> auto& o) {
                     Field("trials", o.trials, ">= 1000"), Field("seed", o.seed));
 }
 
-/// The options to search longer, or shorter, by the factor `effort`: 0.1 for a first look, 3 for the
-/// last percent.
+/// The options to search longer, or shorter, by the factor `effort`: 0.1 for a first look, 3 for
+/// the last percent.
 /// @throws std::invalid_argument unless effort is in [0.01, 100]
 DesignOptions with_effort(DesignOptions options, double effort);
 
@@ -82,12 +82,12 @@ struct MeasurementReport {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<MeasurementReport> auto& m) {
-  return std::tuple(Field("residual_rms", m.residual_rms, "finite and >= 0"),
-                    Field("smallest_residual_rms", m.smallest_residual_rms, "finite and >= 0"),
-                    Field("demodulation_duty", m.demodulation_duty),
-                    Field("modulation_duty", m.modulation_duty), Field("peak", m.peak),
-                    Field("edges", m.edges, ">= 0"), Field("start", m.start),
-                    Field("history", m.history, Mark::apart));
+  return std::tuple(
+      Field("residual_rms", m.residual_rms, "finite and >= 0", Mark::may_be_null),
+      Field("smallest_residual_rms", m.smallest_residual_rms, "finite and >= 0", Mark::may_be_null),
+      Field("demodulation_duty", m.demodulation_duty), Field("modulation_duty", m.modulation_duty),
+      Field("peak", m.peak), Field("edges", m.edges, ">= 0"), Field("start", m.start),
+      Field("history", m.history, Mark::apart));
 }
 
 /// How far a search had come after some work.

@@ -86,6 +86,14 @@ struct PerturbedError {
   Estimate calibrated_m;    ///< by a decoder that knows the perturbed camera
   Estimate uncalibrated_m;  ///< by one that believes the camera to be what it was said to be
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<PerturbedError> auto& e) {
+  return std::tuple(Field("name", e.name),
+                    Field("calibrated_m", e.calibrated_m, "finite and >= 0", Mark::as_object,
+                          InDocuments{"calibrated"}),
+                    Field("uncalibrated_m", e.uncalibrated_m, "finite and >= 0", Mark::as_object,
+                          InDocuments{"uncalibrated"}));
+}
 
 /// Depth error of a code when its camera is not quite what it was said to be.
 struct RobustnessReport {
@@ -99,6 +107,13 @@ struct RobustnessReport {
   Estimate worst_calibrated_m() const;
   Estimate worst_uncalibrated_m() const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<RobustnessReport> auto& r) {
+  return std::tuple(
+      Field("kind", r.kind, InDocuments{"error"}), Field("trials", r.trials), Field("seed", r.seed),
+      Field("nominal_m", r.nominal_m, "finite and >= 0", Mark::as_object, InDocuments{"nominal"}),
+      Field("perturbed", r.perturbed, InDocuments{"perturbations"}));
+}
 
 /// Judges a code on the perturbations of its camera.
 /// @throws std::invalid_argument if the camera or the options are invalid, the code does not fit or
