@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
+#include "field_dicts.hpp"
 #include "options.hpp"
 #include "output_policy.hpp"
 #include "progress.hpp"
@@ -35,35 +36,6 @@ DesignOptions design_options(const py::dict& values, const std::optional<TargetS
   return options;
 }
 
-py::dict measurement_dict(const MeasurementReport& report) {
-  py::dict dict;
-  dict["residual_rms"] = report.residual_rms;
-  dict["smallest_residual_rms"] = report.smallest_residual_rms;
-  dict["demodulation_duty"] = report.demodulation_duty;
-  dict["modulation_duty"] = report.modulation_duty;
-  dict["peak"] = report.peak;
-  dict["edges"] = report.edges;
-  dict["start"] = report.start;
-  return dict;
-}
-
-py::object search_dict(const std::optional<SearchRecord>& search) {
-  if (!search) return py::none();
-  py::dict dict;
-  std::vector<double> work, error_m;
-  for (const SearchStep& step : search->steps) {
-    work.push_back(step.work);
-    error_m.push_back(step.error_m);
-  }
-  dict["work_unit"] = search->work_unit;
-  dict["error_name"] = search->error_name;
-  dict["work"] = adopt(std::move(work));
-  dict["error_m"] = adopt(std::move(error_m));
-  dict["proved"] = search->proved;
-  dict["account"] = search->account;
-  return dict;
-}
-
 py::dict candidate_dict(const Candidate& candidate, double choice_error_m) {
   py::dict dict;
   dict["code"] = candidate.code;
@@ -76,9 +48,9 @@ py::dict candidate_dict(const Candidate& candidate, double choice_error_m) {
   dict["target"] = adopt(Eigen::MatrixXd(candidate.target));
   py::list measurements;
   for (const MeasurementReport& report : candidate.per_measurement)
-    measurements.append(measurement_dict(report));
+    measurements.append(fields_dict(report));
   dict["per_measurement"] = measurements;
-  dict["search"] = search_dict(candidate.search);
+  dict["search"] = candidate.search ? py::object(fields_dict(*candidate.search)) : py::none();
   dict["message"] = candidate.message;
   dict["robustness"] =
       candidate.robustness ? py::object(robustness_dict(*candidate.robustness)) : py::none();

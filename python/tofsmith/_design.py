@@ -21,7 +21,8 @@ from ._reports import DepthErrorReport, RobustnessReport, SecondReturnReport, re
 
 @dataclass(frozen=True)
 class MeasurementReport:
-    """One measurement of a designed code and, if it has one, how it compares with its target."""
+    """One measurement of a designed code and, if it has one, how it compares with its target. The
+    arrays (iterations,) are of the random start that came closest."""
 
     residual_rms: float
     smallest_residual_rms: float
@@ -30,6 +31,9 @@ class MeasurementReport:
     peak: float
     edges: int
     start: str
+    objective: FloatArray
+    relaxed_residual_rms: FloatArray
+    playable_residual_rms: FloatArray
 
 
 @dataclass(frozen=True)
