@@ -53,6 +53,21 @@ struct DesignOptions {
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<DesignOptions> auto& o) {
+  return std::tuple(Field("method", o.method), Field("exposures", o.exposures, "in [1, 8]"),
+                    Field("target", o.target, Mark::apart), Field("factorize", o.factorize),
+                    Field("optimize", o.optimize), Field("search", o.search),
+                    Field("robust", o.robust), Field("baselines", o.baselines),
+                    Field("best_rotation", o.best_rotation),
+                    Field("search_trials", o.search_trials, ">= 100"),
+                    Field("trials", o.trials, ">= 1000"), Field("seed", o.seed));
+}
+
+/// The options to search longer, or shorter, by the factor `effort`: 0.1 for a first look, 3 for
+/// the last percent.
+/// @throws std::invalid_argument unless effort is in [0.01, 100]
+DesignOptions with_effort(DesignOptions options, double effort);
 
 /// One measurement of a designed code and, if it has one, how it compares with its target.
 struct MeasurementReport {
@@ -65,12 +80,25 @@ struct MeasurementReport {
   std::string start;                        ///< which start of the pool it came from
   std::vector<FactorizeIteration> history;  ///< as Factorization::history
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<MeasurementReport> auto& m) {
+  return std::tuple(
+      Field("residual_rms", m.residual_rms, "finite and >= 0", Mark::may_be_null),
+      Field("smallest_residual_rms", m.smallest_residual_rms, "finite and >= 0", Mark::may_be_null),
+      Field("demodulation_duty", m.demodulation_duty), Field("modulation_duty", m.modulation_duty),
+      Field("peak", m.peak), Field("edges", m.edges, ">= 0"), Field("start", m.start),
+      Field("history", m.history, Mark::apart));
+}
 
 /// How far a search had come after some work.
 struct SearchStep {
   double work = 0.0;     ///< in the units of SearchRecord
   double error_m = 0.0;  ///< smallest error until then, as the search measures it
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<SearchStep> auto& s) {
+  return std::tuple(Field("work", s.work), Field("error_m", s.error_m));
+}
 
 /// How a code was searched for.
 struct SearchRecord {
@@ -80,6 +108,12 @@ struct SearchRecord {
   bool proved = false;  ///< no other code of the searched kind is better
   std::string account;  ///< what was searched, counted and ruled out by which test
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<SearchRecord> auto& s) {
+  return std::tuple(Field("work_unit", s.work_unit), Field("error_name", s.error_name),
+                    Field("steps", s.steps), Field("proved", s.proved),
+                    Field("account", s.account));
+}
 
 /// A code that competes for the camera.
 struct Candidate {
