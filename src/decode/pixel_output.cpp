@@ -75,7 +75,6 @@ void for_each_block(const RawView& raw, int measurements, const Progress& progre
   require(raw.height >= 0 && raw.width >= 0, "raw height and width",
           std::min(raw.height, raw.width), "must be >= 0");
   const std::int64_t count = raw.pixels();
-  report(progress, 0.0, "decoding");
   SharedProgress shared(progress, static_cast<double>(count), "decoding");
   parallel_for_blocks(count, block_pixels, [&](IndexRange range) {
     work(range);
