@@ -36,11 +36,4 @@ Progress ProgressParts::operator[](std::size_t i) const {
   };
 }
 
-Progress part_of(const Progress& whole, double begin, double end) {
-  if (!whole) return {};
-  return [whole, begin, end](double fraction, std::string_view step) {
-    return whole(std::lerp(begin, end, fraction), step);
-  };
-}
-
 }  // namespace tofsmith

@@ -36,7 +36,4 @@ class ProgressParts {
   std::vector<double> ends_;  ///< share of the whole that is done with each part
 };
 
-/// The part [begin, end] of `whole`, seen as a progress of its own.
-Progress part_of(const Progress& whole, double begin, double end);
-
 }  // namespace tofsmith
