@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/pixel_runs.hpp"
+#include "core/whole_vectors.hpp"
 
 namespace tofsmith {
 
@@ -32,7 +33,7 @@ void BinMatcher::match(const RawView& view, std::int64_t first, int pixels, bool
 }
 
 void BinMatcher::match_plane(PixelTile& tile) const {
-  std::fill_n(tile.error, (tile.pixels + 15) / 16 * 16, 0.0f);
+  std::fill_n(tile.error, whole_vectors(tile.pixels), 0.0f);
   if (search(false, tile)) return;
   for (int i = 0; i < tile.pixels; ++i) {
     if (tile.bin[i] >= 0) continue;
