@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "decode/nearest_bins.hpp"
 #include "decode/phase_model.hpp"
 #include "decode/phase_unwrapper.hpp"
 #include "decode/pixel_output.hpp"
@@ -113,12 +114,7 @@ void UnwrapDecoder::decode_depth_bins(const float* measurements, std::int64_t pi
 
 void UnwrapDecoder::decode_bins(const float* measurements, std::int64_t pixels,
                                 std::int32_t* bin) const {
-  for (std::int64_t i = 0; i < pixels; ++i) {
-    double position = 0.0;
-    decode_depth_bins(measurements + i * this->measurements(), 1, &position);
-    bin[i] =
-        std::isnan(position) ? -1 : static_cast<std::int32_t>(std::lround(position)) % samples();
-  }
+  nearest_bins(*this, measurements, pixels, bin);
 }
 
 void UnwrapDecoder::decode(const RawView& raw, const DecodedView& decoded,

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstring>
 
+#include "core/bits.hpp"
 #include "io/byte_order.hpp"
 #include "tofsmith/io/raw_format.hpp"
 
