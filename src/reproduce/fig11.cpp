@@ -208,7 +208,8 @@ Reproduction reproduce_fig11(const ReproduceContext& context, const Progress& pr
   std::vector<WallScan> scans;
   std::vector<double> wall_m;
   const std::size_t codes = bench.codes.size();
-  const ProgressParts of_scans(parts[1], codes * PrototypeBench::optical_densities().size());
+  const std::size_t count = codes * PrototypeBench::optical_densities().size();
+  const ProgressParts of_scans(parts[1], count);
   for (const double density : PrototypeBench::optical_densities())
     for (std::size_t c = 0; c < codes; ++c) {
       report(of_scans[scans.size()], 0.0,
