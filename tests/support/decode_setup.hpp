@@ -85,7 +85,8 @@ inline std::vector<float> pixels_at_all_light_levels(const DecodingTable& table,
   return raw;
 }
 
-inline std::vector<std::int32_t> bins_of(const Decoder& decoder, const std::vector<float>& raw) {
+template <typename AnyDecoder>
+std::vector<std::int32_t> bins_of(const AnyDecoder& decoder, const std::vector<float>& raw) {
   std::vector<std::int32_t> bins(raw.size() / static_cast<std::size_t>(decoder.measurements()));
   decoder.decode_bins(raw.data(), static_cast<std::int64_t>(bins.size()), bins.data());
   return bins;
