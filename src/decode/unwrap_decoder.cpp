@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/enum_words.hpp"
 #include "decode/nearest_bins.hpp"
 #include "decode/phase_model.hpp"
 #include "decode/phase_unwrapper.hpp"
@@ -38,17 +39,14 @@ std::vector<double> weights_of(const PhaseModel& phases, int measurements, Unwra
   return weights;
 }
 
+constexpr EnumWords<UnwrapWeights, 2> weights_words("UnwrapWeights", "unwrap weights", "variance",
+                                                    "frequency");
+
 }  // namespace
 
-std::string_view name_of(UnwrapWeights weights) {
-  return weights == UnwrapWeights::variance ? "variance" : "frequency";
-}
+std::string_view name_of(UnwrapWeights weights) { return weights_words.of(weights); }
 
-UnwrapWeights parse_unwrap_weights(std::string_view name) {
-  for (const UnwrapWeights weights : {UnwrapWeights::variance, UnwrapWeights::frequency})
-    if (name == name_of(weights)) return weights;
-  reject("unwrap weights", name, "must be variance or frequency");
-}
+UnwrapWeights parse_unwrap_weights(std::string_view name) { return weights_words.parse(name); }
 
 void UnwrapOptions::validate() const {
   doubt.validate();
