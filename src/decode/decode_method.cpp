@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/decode/decode_method.hpp"
 
-#include <string>
-
 #include "core/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 

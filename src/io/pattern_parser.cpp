@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <optional>
 
 #include "io/line_cursor.hpp"
 #include "tofsmith/core/error.hpp"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "reproduce/fig4_findings.hpp"
 #include "reproduce/fig4_readings.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "reproduce/error_surface_figures.hpp"
 #include "reproduce/fig4_findings.hpp"
