@@ -151,14 +151,14 @@ void run(const DemoArguments& arguments, const Session& session) {
   for (const char* name : depth_files)
     if (fs::exists(directory.path() / name)) session.check_output(directory.path() / name);
   const Progress progress = terminal_progress("demo");
+  const ProgressParts parts(progress, {80, 15, 5});
 
   // 2. Design codes and compare them with the standard ones.
-  const DesignResult result =
-      design(camera, options, part_of(progress, 0.0, 0.8), directory.store(camera, options));
+  const DesignResult result = design(camera, options, parts[0], directory.store(camera, options));
 
   // 3. Capture the scene at three light levels and decode it.
-  const SceneResult scene = capture_scene(std::move(loaded), arguments.seed, camera, result,
-                                          part_of(progress, 0.8, 0.95));
+  const SceneResult scene =
+      capture_scene(std::move(loaded), arguments.seed, camera, result, parts[1]);
 
   // 4. Write everything, the report last.
   const OutputPolicy policy = session.output_policy();

@@ -99,29 +99,22 @@ void check_output(const std::filesystem::path& path, const Session& session) {
 std::vector<EvaluatedCode> evaluate_all(std::vector<CodeSet>& codes, const Camera& camera,
                                         const EvaluateArguments& arguments) {
   std::vector<EvaluatedCode> evaluated;
-  const Progress progress = terminal_progress("evaluating");
-  const double count = static_cast<double>(codes.size());
+  const ProgressParts parts(terminal_progress("evaluating"), codes.size());
+  const bool is_compared = arguments.options.method == DecodeMethod::ml;
   for (std::size_t i = 0; i < codes.size(); ++i) {
-    const double done = static_cast<double>(i);
-    const double middle = arguments.best_rotation ? done + 0.5 : done;
+    const ProgressParts of_code(parts[i], {arguments.best_rotation ? 50.0 : 0.0,
+                                           is_compared ? 40.0 : 50.0, is_compared ? 10.0 : 0.0});
     int rotation = 0;
     if (arguments.best_rotation) {
-      rotation = best_rotation(codes[i], camera, arguments.options,
-                               part_of(progress, done / count, middle / count))
-                     .rotation_bin;
+      rotation = best_rotation(codes[i], camera, arguments.options, of_code[0]).rotation_bin;
       codes[i] = codes[i].rotated(rotation);
     }
-    const bool is_compared = arguments.options.method == DecodeMethod::ml;
-    const double end = is_compared ? middle + 0.8 * (done + 1 - middle) : done + 1;
     EvaluateOptions options = arguments.options;
     options.draw_every_measurement = is_compared;
-    EvaluatedCode code{
-        evaluate(codes[i], camera, options, part_of(progress, middle / count, end / count)),
-        rotation};
+    EvaluatedCode code{evaluate(codes[i], camera, options, of_code[1]), rotation};
     if (is_compared) {
       options.method = DecodeMethod::zncc;
-      code.zncc_error =
-          evaluate(codes[i], camera, options, part_of(progress, end / count, (done + 1) / count));
+      code.zncc_error = evaluate(codes[i], camera, options, of_code[2]);
     }
     evaluated.push_back(std::move(code));
   }
@@ -136,13 +129,9 @@ void judge_robustness(std::vector<EvaluatedCode>& evaluated, const std::vector<C
   perturbed.seed = options.seed;
   perturbed.method = options.method;
   perturbed.unwrap_weights = options.unwrap_weights;
-  const Progress progress = terminal_progress("perturbing");
-  const double count = static_cast<double>(codes.size());
-  for (std::size_t i = 0; i < codes.size(); ++i) {
-    const double done = static_cast<double>(i);
-    evaluated[i].robustness = robustness(codes[i], camera, perturbed,
-                                         part_of(progress, done / count, (done + 1) / count));
-  }
+  const ProgressParts parts(terminal_progress("perturbing"), codes.size());
+  for (std::size_t i = 0; i < codes.size(); ++i)
+    evaluated[i].robustness = robustness(codes[i], camera, perturbed, parts[i]);
 }
 
 void write(const std::filesystem::path& path, const Session& session, const Camera& camera,

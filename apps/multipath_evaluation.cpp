@@ -85,12 +85,9 @@ void MultipathEvaluation::run(const std::vector<CodeSet>& codes, const Camera& c
   const std::optional<MultipathScene> lit = scene(codes, camera, options);
   const MultipathScene* lit_scene = lit ? &*lit : nullptr;
   std::vector<MultipathErrorReport> reports;
-  const Progress progress = terminal_progress("evaluating");
-  const double count = static_cast<double>(codes.size());
+  const ProgressParts parts(terminal_progress("evaluating"), codes.size());
   for (std::size_t i = 0; i < codes.size(); ++i)
-    reports.push_back(multipath_error(
-        codes[i], camera, options,
-        part_of(progress, static_cast<double>(i) / count, static_cast<double>(i + 1) / count)));
+    reports.push_back(multipath_error(codes[i], camera, options, parts[i]));
   if (extension == ".json")
     write_file_atomically(output, multipath_document(camera, reports, options, lit_scene) + "\n",
                           session.output_policy());

@@ -97,12 +97,10 @@ void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_p
   const PixelMaps maps = maps_of(delay_offset_m, gain, raw);
   without_gil(callback, [&](const Progress& progress) {
     const auto pixels = static_cast<std::size_t>(raw.frames.front().pixels());
-    const double count = static_cast<double>(raw.frames.size());
+    const ProgressParts parts(progress, raw.frames.size());
     for (std::size_t f = 0; f < raw.frames.size(); ++f) {
       const DecodedView decoded = planes.view().from(f * pixels);
-      const double done = static_cast<double>(f);
-      const Progress part = part_of(progress, done / count, (done + 1.0) / count);
-      std::visit([&](const auto& d) { d.decode(raw.frames[f], decoded, part); }, decoder.any);
+      std::visit([&](const auto& d) { d.decode(raw.frames[f], decoded, parts[f]); }, decoder.any);
       if (!maps.empty()) apply(maps, table_of(decoder).range_m, decoded, 0, pixels);
     }
   });

@@ -3,7 +3,6 @@
 #include "raw_array.hpp"
 
 #include <limits>
-#include <stdexcept>
 
 namespace tofsmith::python {
 

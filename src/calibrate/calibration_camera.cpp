@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/impulse_response_file.hpp"
 #include "tofsmith/scene/pinhole.hpp"
@@ -21,6 +22,8 @@ Eigen::VectorXd column_exposures_s(const Camera& camera, int columns, int column
     exposure_s[k] = camera.exposure_s.of(k / columns_per_exposure, columns / columns_per_exposure);
   return exposure_s;
 }
+
+constexpr EnumWords<ResponseArm, 3> arm_words("ResponseArm", "arm", "light", "sensor", "system");
 
 }  // namespace
 
@@ -67,12 +70,7 @@ PhotonTransferOptions noise_options(const Camera& camera, bool has_dark_frames) 
   return options;
 }
 
-ResponseArm parse_response_arm(std::string_view word) {
-  if (word == "light") return ResponseArm::light;
-  if (word == "sensor") return ResponseArm::sensor;
-  if (word == "system") return ResponseArm::system;
-  reject("arm", word, "must be light, sensor or system");
-}
+ResponseArm parse_response_arm(std::string_view word) { return arm_words.parse(word); }
 
 ImpulseResponse::Kind parse_response_kind(std::string_view word) {
   using Kind = ImpulseResponse::Kind;

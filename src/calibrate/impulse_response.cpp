@@ -11,6 +11,7 @@
 #include "calibrate/parametric_response.hpp"
 #include "calibrate/response_peaks.hpp"
 #include "calibrate/response_spectrum.hpp"
+#include "core/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/statistics.hpp"
 
@@ -192,6 +193,8 @@ void fit_kinds(CalibratedResponse& result, const Eigen::VectorXd& values,
   std::ranges::stable_sort(result.fits, {}, &ParametricResponse::residual_rms);
 }
 
+constexpr EnumWords<Excitation, 2> excitation_words("Excitation", "excitation", "pulse", "step");
+
 }  // namespace
 
 void ResponseCalibrationOptions::validate() const {
@@ -200,15 +203,9 @@ void ResponseCalibrationOptions::validate() const {
   require(samples >= 8 && samples <= 65536, "samples", samples, "must be in [8, 65536]");
 }
 
-std::string_view name_of(Excitation excitation) {
-  return excitation == Excitation::step ? "step" : "pulse";
-}
+std::string_view name_of(Excitation excitation) { return excitation_words.of(excitation); }
 
-Excitation parse_excitation(std::string_view name) {
-  if (name == "step") return Excitation::step;
-  require(name == "pulse", "excitation", name, "must be pulse or step");
-  return Excitation::pulse;
-}
+Excitation parse_excitation(std::string_view name) { return excitation_words.parse(name); }
 
 bool CalibratedResponse::fit_is_good() const {
   return !fits.empty() && fits.front().residual_rms * height <= 1.3 * noise_rms;

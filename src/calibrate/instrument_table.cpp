@@ -11,6 +11,7 @@
 #include <optional>
 #include <tuple>
 
+#include "core/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/read_file.hpp"
 
@@ -207,14 +208,12 @@ Reading chosen_reading(const std::vector<Line>& lines, std::string_view file, De
   return settle_commas(lines, *point, *comma, file);
 }
 
+constexpr EnumWords<DecimalMark, 3> mark_words("DecimalMark", "decimal mark", "auto", "point",
+                                               "comma");
+
 }  // namespace
 
-DecimalMark parse_decimal_mark(std::string_view word) {
-  if (word == "auto") return DecimalMark::automatic;
-  if (word == "point") return DecimalMark::point;
-  require(word == "comma", "decimal mark", word, "must be auto, point or comma");
-  return DecimalMark::comma;
-}
+DecimalMark parse_decimal_mark(std::string_view word) { return mark_words.parse(word); }
 
 InstrumentTable parse_instrument_table(std::string_view text, std::string_view file,
                                        DecimalMark decimal) {

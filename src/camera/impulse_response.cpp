@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -40,6 +41,9 @@ std::complex<double> measured_transfer(const ImpulseResponse& response, double f
   }
   return sum / total * sinc * sinc;
 }
+constexpr EnumWords<ImpulseResponse::Kind, 5> kind_words("ImpulseResponse::Kind", "kind", "none",
+                                                         "hann", "gaussian", "lowpass", "file");
+
 }  // namespace
 
 std::complex<double> ImpulseResponse::transfer(double frequency_hz) const {
@@ -88,20 +92,6 @@ void ImpulseResponse::validate(std::string_view field) const {
   }
 }
 
-std::string_view name_of(ImpulseResponse::Kind kind) {
-  switch (kind) {
-    case ImpulseResponse::Kind::none:
-      return "none";
-    case ImpulseResponse::Kind::hann:
-      return "hann";
-    case ImpulseResponse::Kind::gaussian:
-      return "gaussian";
-    case ImpulseResponse::Kind::lowpass:
-      return "lowpass";
-    case ImpulseResponse::Kind::file:
-      return "file";
-  }
-  return "none";
-}
+std::string_view name_of(ImpulseResponse::Kind kind) { return kind_words.of(kind); }
 
 }  // namespace tofsmith

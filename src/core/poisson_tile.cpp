@@ -25,15 +25,13 @@ constexpr double least_stirling_count = 16.0;
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include "core/vectors-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-using Doubles = hn::CappedTag<double, 8>;
-using Double = hn::Vec<Doubles>;
-
-HWY_INLINE Double all(double value) { return hn::Set(Doubles(), value); }
+using Double = DoubleVector;
 
 /// Uniform in (0, 1).
 HWY_INLINE Double open_uniform(const std::uint32_t* word) {
@@ -92,7 +90,7 @@ HWY_INLINE void store_mask(Mask mask, std::uint8_t* is_so) {
 /// First attempts of all; means below 10 come out as some number, to be drawn otherwise.
 void quick_poisson(const std::uint32_t* u_word, const std::uint32_t* v_word, int trials,
                    const double* mean, double* count, std::uint8_t* is_accepted) {
-  for (int i = 0; i < trials; i += static_cast<int>(hn::Lanes(Doubles()))) {
+  for (int i = 0; i < trials; i += lanes_of(Doubles())) {
     const Attempt attempt(u_word + i, v_word + i, mean + i);
     hn::StoreU(attempt.k, Doubles(), count + i);
     store_mask(attempt.is_quick(), is_accepted + i);
@@ -102,7 +100,7 @@ void quick_poisson(const std::uint32_t* u_word, const std::uint32_t* v_word, int
 /// Attempts and whether they are accepted; where the count is below 16, that is not known.
 void full_poisson(const std::uint32_t* u_word, const std::uint32_t* v_word, int trials,
                   const double* mean, double* count, std::uint8_t* is_accepted) {
-  for (int i = 0; i < trials; i += static_cast<int>(hn::Lanes(Doubles()))) {
+  for (int i = 0; i < trials; i += lanes_of(Doubles())) {
     const Attempt attempt(u_word + i, v_word + i, mean + i);
     hn::StoreU(attempt.k, Doubles(), count + i);
     const auto is_out = hn::And(hn::Lt(attempt.us, all(0.013)), hn::Gt(attempt.v, attempt.us));

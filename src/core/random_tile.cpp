@@ -52,7 +52,7 @@ HWY_INLINE void philox(std::uint64_t seed, WideVector& x0, WideVector& x1, WideV
 void words(const TrialStreams& streams, std::uint32_t block, int trials, std::uint32_t* to) {
   const Wide d;
   const hn::Rebind<std::uint32_t, Wide> narrow;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int lanes = lanes_of(d);
   const auto draw = hn::Set(d, block);
   const auto item_low = hn::Set(d, streams.work_item & 0xffffffffu);
   const auto item_high = hn::Set(d, streams.work_item >> 32);
@@ -81,7 +81,7 @@ void normals(const std::uint32_t* radius, const std::uint32_t* angle, int trials
              float* second) {
   const Floats d;
   const hn::RebindToUnsigned<Floats> du;
-  for (int i = 0; i < trials; i += static_cast<int>(hn::Lanes(d))) {
+  for (int i = 0; i < trials; i += lanes_of(d)) {
     const auto length = normal_radius(hn::Load(du, radius + i));
     Vector cosine, sine;
     unit_circle(hn::Load(du, angle + i), cosine, sine);

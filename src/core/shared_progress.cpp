@@ -10,7 +10,9 @@
 namespace tofsmith {
 
 SharedProgress::SharedProgress(Progress progress, double pieces, std::string step)
-    : progress_(std::move(progress)), pieces_(pieces), step_(std::move(step)) {}
+    : progress_(std::move(progress)), pieces_(pieces), step_(std::move(step)) {
+  report(progress_, 0.0, step_);
+}
 
 void SharedProgress::add(double pieces) {
   if (!progress_) return;

@@ -13,16 +13,13 @@
 
 #include <cstdint>
 
+#include "core/vectors-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-using Floats = hn::CappedTag<float, 16>;
-using Vector = hn::Vec<Floats>;
 using Words = hn::Vec<hn::RebindToUnsigned<Floats>>;
-
-HWY_INLINE Vector all(float value) { return hn::Set(Floats(), value); }
 
 /// 1 / sqrt(x) of a positive normal x to the last bits: a first guess from the exponent, and
 /// Newton's method. Of 0 it is finite, so that x times it is 0.

@@ -34,7 +34,7 @@ struct MeetRows {
   Vector best, second;
   IndexVector row;
   HWY_INLINE void operator()(std::int32_t block) {
-    for (int i = 0; i < block_lanes; i += lanes()) {
+    for (int i = 0; i < block_lanes; i += lanes_of()) {
       const Vector score = scores<Rank>(q, table.rows(block) + i);
       const auto leads = hn::RebindMask(Indices(), hn::Gt(score, best));
       row = hn::IfThenElse(leads, hn::Set(Indices(), block * block_lanes + i), row);
@@ -47,7 +47,7 @@ struct MeetRows {
 template <int Rank>
 HWY_INLINE void meet_near_rows(const ArcTable& table, const Query& q, const Walk& walk,
                                Leaders& leaders) {
-  MeetRows<Rank> meet{table, q, set(no_score), set(no_score), hn::Zero(Indices())};
+  MeetRows<Rank> meet{table, q, all(no_score), all(no_score), hn::Zero(Indices())};
   for_each_near_rows<Rank>(table, q, walk, meet);
   hn::StoreU(meet.best, Floats(), leaders.best);
   hn::StoreU(meet.second, Floats(), leaders.second);
@@ -58,15 +58,15 @@ HWY_INLINE void meet_near_rows(const ArcTable& table, const Query& q, const Walk
 template <int Rank>
 HWY_INLINE std::int32_t leader_of_window(const float* window, const Query& q, float margin) {
   HWY_ALIGN float score[block_lanes];
-  Vector best = set(no_score);
-  for (int i = 0; i < block_lanes; i += lanes()) {
+  Vector best = all(no_score);
+  for (int i = 0; i < block_lanes; i += lanes_of()) {
     const Vector part = scores<Rank>(q, window + i);
     hn::Store(part, Floats(), score + i);
     best = hn::Max(best, part);
   }
-  const Vector least = set(largest(best) - margin);
+  const Vector least = all(largest(best) - margin);
   std::uint32_t reached = 0;
-  for (int i = 0; i < block_lanes; i += lanes())
+  for (int i = 0; i < block_lanes; i += lanes_of())
     reached |= bits_of(hn::Ge(hn::Load(Floats(), score + i), least)) << i;
   return std::has_single_bit(reached) ? std::countr_zero(reached) : -1;
 }
@@ -80,7 +80,7 @@ HWY_INLINE std::int32_t prove(const ArcTable& table, const Query& q, const Leade
   const Vector best = hn::LoadU(d, leaders.best);
   const float most = largest(best);
   const auto lane = static_cast<std::size_t>(
-      std::max<std::intptr_t>(0, hn::FindFirstTrue(d, hn::Eq(best, set(most)))));
+      std::max<std::intptr_t>(0, hn::FindFirstTrue(d, hn::Eq(best, all(most)))));
   constexpr std::int32_t step = block_lanes / 2;
   const std::int32_t w = std::clamp((leaders.row[lane] - step / 2) / step, 0, table.windows() - 1);
 
@@ -90,7 +90,7 @@ HWY_INLINE std::int32_t prove(const ArcTable& table, const Query& q, const Leade
   const Vector outside = hn::IfThenElse(hn::RebindMask(d, hn::Or(is_below, is_above)), best,
                                         hn::LoadU(d, leaders.second));
   const float lead = margins.lead * q.length + 2.0f * error, tie = margins.tie * q.length;
-  const bool leads = hn::AllTrue(d, hn::Lt(outside, set(most - (lead + tie))));
+  const bool leads = hn::AllTrue(d, hn::Lt(outside, all(most - (lead + tie))));
   const std::int32_t found =
       leader_of_window<Rank>(table.window(w), q, lead * table.window_radius(w) + tie);
   return leads && found >= 0 ? w * step + found : -1;
@@ -156,11 +156,11 @@ struct MeetPositions {
     const std::int32_t row = block * block_lanes;
     if (!within.meets(row) && !within.meets(row + within.samples)) return;
     const Floats d;
-    for (int i = 0; i < block_lanes; i += lanes()) {
+    for (int i = 0; i < block_lanes; i += lanes_of()) {
       const float* directions = table.rows(block) + block_lanes + i;
-      Vector score = hn::Mul(set(q[0]), hn::Load(d, directions));
+      Vector score = hn::Mul(all(q[0]), hn::Load(d, directions));
       for (int j = 1; j < q.rank; ++j)
-        score = hn::Add(score, hn::Mul(set(q[j]), hn::Load(d, directions + j * block_lanes)));
+        score = hn::Add(score, hn::Mul(all(q[j]), hn::Load(d, directions + j * block_lanes)));
       const std::int32_t first = block * block_lanes + i;
       score = within(score, first, 1);
       const auto here = within.positions(first, 1);
@@ -180,10 +180,10 @@ std::int32_t best_position(const ArcTable& table, const float* components, std::
   Walk walk;
   start_walk<0>(table, q, margins.prune + margins.lead, within, walk);
   refine_walk<0>(table, q, margins.prune + margins.lead, within, walk);
-  MeetPositions meet{table, q, within, set(no_score), hn::Set(Indices(), end)};
+  MeetPositions meet{table, q, within, all(no_score), hn::Set(Indices(), end)};
   for_each_near_rows<0>(table, q, walk, meet);
   const Indices di;
-  const auto of_best = hn::RebindMask(di, hn::Eq(meet.best, set(largest(meet.best))));
+  const auto of_best = hn::RebindMask(di, hn::Eq(meet.best, all(largest(meet.best))));
   return hn::GetLane(hn::MinOfLanes(di, hn::IfThenElse(of_best, meet.position, hn::Set(di, end))));
 }
 

@@ -16,25 +16,18 @@
 #include <cstring>
 #include <limits>
 
+#include "core/vectors-inl.hpp"
 #include "decode/arc_table.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-using Floats = hn::CappedTag<float, block_lanes>;
-using Vector = hn::Vec<Floats>;
-using Mask = hn::Mask<Floats>;
-using Indices = hn::RebindToSigned<Floats>;
-using IndexVector = hn::Vec<Indices>;
-
+static_assert(block_lanes == widest_vector);
 constexpr float no_score = -std::numeric_limits<float>::infinity();
 constexpr float unit_roundoff = 0.5f * std::numeric_limits<float>::epsilon();
 constexpr int most_flat_blocks = 16;  // of arcs that are looked at one by one
 
-HWY_INLINE int lanes() { return static_cast<int>(hn::Lanes(Floats())); }
-HWY_INLINE Vector set(float value) { return hn::Set(Floats(), value); }
 HWY_INLINE float largest(Vector v) { return hn::GetLane(hn::MaxOfLanes(Floats(), v)); }
 
 HWY_INLINE std::uint32_t bits_of(Mask mask) {
@@ -61,7 +54,7 @@ HWY_INLINE Vector scores(const Query& q, const float* block) {
   const int rank = Rank > 0 ? Rank : q.rank;
   Vector sum = hn::Load(d, block);
   for (int j = 0; j < rank; ++j)
-    sum = hn::MulAdd(set(q[j]), hn::Load(d, block + (j + 1) * block_lanes), sum);
+    sum = hn::MulAdd(all(q[j]), hn::Load(d, block + (j + 1) * block_lanes), sum);
   return sum;
 }
 
@@ -114,7 +107,7 @@ struct Within {
   }
   HWY_INLINE Vector operator()(Vector score, std::int32_t first, std::int32_t step) const {
     const auto counts = hn::Gt(positions(first, step), hn::Set(Indices(), -1));
-    return hn::IfThenElse(hn::RebindMask(Floats(), counts), score, set(no_score));
+    return hn::IfThenElse(hn::RebindMask(Floats(), counts), score, all(no_score));
   }
 };
 
@@ -127,8 +120,8 @@ HWY_INLINE float threshold_of(float best, float slack) {
 HWY_INLINE std::uint32_t reaching(Vector score, const float* bounds, const Query& q,
                                   float threshold) {
   const Floats d;
-  const Vector needed = hn::NegMulAdd(set(q.length), hn::Load(d, bounds + block_lanes),
-                                      hn::Mul(set(threshold), hn::Load(d, bounds)));
+  const Vector needed = hn::NegMulAdd(all(q.length), hn::Load(d, bounds + block_lanes),
+                                      hn::Mul(all(threshold), hn::Load(d, bounds)));
   return bits_of(hn::Ge(score, needed));
 }
 
@@ -140,7 +133,7 @@ HWY_INLINE std::uint32_t near_in_block(const float* block, const float* score, c
   const float* starts = block + (1 + rank) * block_lanes;
   const float* ends = starts + 2 * block_lanes;
   std::uint32_t by_start = 0, by_end = 0;
-  for (int i = 0; i < block_lanes; i += lanes()) {
+  for (int i = 0; i < block_lanes; i += lanes_of()) {
     const Vector positive = hn::Max(hn::Load(Floats(), score + i), hn::Zero(Floats()));
     by_start |= reaching(positive, starts + i, q, threshold) << i;
     by_end |= reaching(positive, ends + i, q, threshold) << i;
@@ -151,7 +144,7 @@ HWY_INLINE std::uint32_t near_in_block(const float* block, const float* score, c
 template <int Rank, typename Where>
 HWY_INLINE Vector score_knots(const KnotLevel& level, int b, const Query& q, const Where& where,
                               Vector best, float* score) {
-  for (int i = 0; i < block_lanes; i += lanes()) {
+  for (int i = 0; i < block_lanes; i += lanes_of()) {
     const Vector part = scores<Rank>(q, level.block(b) + i);
     hn::Store(part, Floats(), score + i);
     best = hn::Max(
@@ -171,7 +164,7 @@ HWY_INLINE void start_walk(const ArcTable& table, const Query& q, float slack, c
                            Walk& walk) {
   HWY_ALIGN float score[most_bundle_blocks * block_lanes];
   const KnotLevel& level = first_level(table);
-  Vector best = set(no_score);
+  Vector best = all(no_score);
   for (int b = 0; b < level.blocks(); ++b)
     best = score_knots<Rank>(level, b, q, where, best, score + b * block_lanes);
   walk.threshold = threshold_of(largest(best), slack);
@@ -211,7 +204,7 @@ HWY_INLINE void refine_walk(const ArcTable& table, const Query& q, float slack, 
                             Walk& walk) {
   if (is_flat(table)) return;
   HWY_ALIGN float most[block_lanes];
-  hn::Store(set(no_score), Floats(), most);
+  hn::Store(all(no_score), Floats(), most);
   BestKnot<Rank, Where> best{table, q, where, most};
   for_each_near(table, walk, best);
   walk.threshold = std::max(walk.threshold, threshold_of(largest(hn::Load(Floats(), most)), slack));
@@ -239,7 +232,7 @@ struct OfBundle {
   Visit& visit;
   HWY_INLINE void operator()(std::int32_t bundle) {
     HWY_ALIGN float score[block_lanes];
-    score_knots<Rank>(table.arcs(), bundle, q, Anywhere(), set(no_score), score);
+    score_knots<Rank>(table.arcs(), bundle, q, Anywhere(), all(no_score), score);
     std::uint32_t bits = near_in_block<Rank>(table.arcs().block(bundle), score, q, threshold);
     for (; bits != 0; bits &= bits - 1)
       visit_arc(table, bundle * arcs_per_block + std::countr_zero(bits), visit);

@@ -7,8 +7,28 @@
 #include <cmath>
 
 #include "core/pixel_runs.hpp"
+#include "core/whole_vectors.hpp"
 
 namespace tofsmith {
+
+namespace {
+
+/// The vector of a pixel in the plane without its length, whose square it returns; zeros stay so.
+template <typename Value>
+Value normalized(const PixelTile& tile, int pixel, int rank,
+                 std::array<Value, max_measurements>& unit) {
+  Value length2 = 0;
+  for (int j = 0; j < rank; ++j) {
+    const Value q = tile.plane[j * pixels_per_tile + pixel];
+    unit[static_cast<std::size_t>(j)] = q;
+    length2 += q * q;
+  }
+  const Value scale = length2 > 0 ? 1 / std::sqrt(length2) : 0;
+  for (int j = 0; j < rank; ++j) unit[static_cast<std::size_t>(j)] *= scale;
+  return length2;
+}
+
+}  // namespace
 
 BinMatcher::BinMatcher(const DecodingTable& table, const AmbientProjection& projection)
     : directions_(projection),
@@ -32,20 +52,13 @@ void BinMatcher::match(const RawView& view, std::int64_t first, int pixels, bool
 }
 
 void BinMatcher::match_plane(PixelTile& tile) const {
-  std::fill_n(tile.error, (tile.pixels + 15) / 16 * 16, 0.0f);
+  std::fill_n(tile.error, whole_vectors(tile.pixels), 0.0f);
   if (search(false, tile)) return;
   for (int i = 0; i < tile.pixels; ++i) {
     if (tile.bin[i] >= 0) continue;
     std::array<double, max_measurements> unit;
-    double length2 = 0.0;
-    for (int j = 0; j < exact_.rank(); ++j) {
-      const double q = tile.plane[j * pixels_per_tile + i];
-      unit[static_cast<std::size_t>(j)] = q;
-      length2 += q * q;
-    }
+    const double length2 = normalized(tile, i, exact_.rank(), unit);
     if (!std::isfinite(length2)) continue;
-    const double scale = length2 > 0.0 ? 1.0 / std::sqrt(length2) : 0.0;
-    for (int j = 0; j < exact_.rank(); ++j) unit[static_cast<std::size_t>(j)] *= scale;
     tile.bin[i] = length2 > 0.0 ? choose(unit.data()) : distinct_.bin.front();
   }
 }
@@ -85,14 +98,7 @@ void BinMatcher::find_rivals(PixelTile& tile) const {
 /// The rival of one pixel, for its own vector.
 std::int32_t BinMatcher::rival_of(const PixelTile& tile, int pixel) const {
   std::array<float, max_measurements> unit;
-  float length2 = 0.0f;
-  for (int j = 0; j < directions_.rank(); ++j) {
-    const float q = tile.plane[j * pixels_per_tile + pixel];
-    unit[static_cast<std::size_t>(j)] = q;
-    length2 += q * q;
-  }
-  const float scale = length2 > 0.0f ? 1.0f / std::sqrt(length2) : 0.0f;
-  for (int j = 0; j < directions_.rank(); ++j) unit[static_cast<std::size_t>(j)] *= scale;
+  normalized(tile, pixel, directions_.rank(), unit);
   return rivals_.rival(tile.bin[pixel], unit.data());
 }
 

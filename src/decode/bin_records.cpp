@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/whole_vectors.hpp"
 #include "decode/direction_table.hpp"
 #include "decode/expected_noise.hpp"
 
@@ -13,8 +14,6 @@ namespace tofsmith {
 namespace {
 
 constexpr int floats_per_line = 16;  // of cache
-
-int rounded_up(int size, int multiple) { return (size + multiple - 1) / multiple * multiple; }
 
 void store(const Eigen::VectorXd& values, float* to) {
   std::transform(values.begin(), values.end(), to,

@@ -12,18 +12,14 @@
 
 #include <limits>
 
+#include "core/vectors-inl.hpp"
 #include "decode/cell_search.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-using Floats = hn::CappedTag<float, 16>;
-using Ints = hn::RebindToSigned<Floats>;
 using Words = hn::RebindToUnsigned<Floats>;
-using FloatVector = hn::Vec<Floats>;
-using IntVector = hn::Vec<Ints>;
 
 constexpr int tile = pixels_per_tile;
 constexpr int row_floats = 4;  // of a step or a direction
@@ -45,7 +41,7 @@ struct Scratch {
 constexpr float to_whole = 0x1.8p23f;
 
 /// 1 / v to 2^-22; elsewhere than on x86 approximations may be coarser.
-HWY_INLINE FloatVector reciprocal_of(FloatVector v) {
+HWY_INLINE Vector reciprocal_of(Vector v) {
   const Floats d;
 #if HWY_ARCH_X86
   const auto near = hn::ApproximateReciprocal(v);
@@ -61,8 +57,8 @@ template <int Rank>
 HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int padded,
                        Scratch& scratch) {
   const Floats d;
-  const Ints di;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const Indices di;
+  const int lanes = lanes_of(d);
   const int bits = view.root_bits + view.cut_bits;
   const auto sides = static_cast<float>(1 << bits);
   const auto half = hn::Set(d, 0.5f * sides), middle = hn::Set(d, to_whole + 0.5f * sides);
@@ -77,7 +73,7 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
   constexpr float farthest = 1e30f;  // beyond, reciprocals are lost
   constexpr float reach = 8e-6f;     // twice this and rounding is less than CellRecord::overlap
   for (int i = 0; i < padded; i += lanes) {
-    FloatVector q[Rank];
+    Vector q[Rank];
     for (int j = 0; j < Rank; ++j) q[j] = hn::Load(d, pixels.plane + j * tile + i);
     auto largest = hn::Abs(q[0]), signed_largest = q[0];
     auto axis = hn::Zero(di);
@@ -99,7 +95,7 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
 
     const auto is_negative = hn::ShiftRight<31>(hn::BitCast(Words(), signed_largest));
     auto cell = hn::Add(hn::Add(axis, axis), hn::BitCast(di, is_negative)), cut = hn::Zero(di);
-    FloatVector fine_place[3], wide_place[3];
+    Vector fine_place[3], wide_place[3];
     for (int s = 0; s + 1 < Rank; ++s) {
       const auto is_before = hn::RebindMask(d, hn::Gt(axis, hn::Set(di, s)));
       const auto c = hn::Mul(hn::IfThenElse(is_before, q[s], q[s + 1]), scale);
@@ -132,13 +128,13 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
   }
 }
 
-HWY_INLINE IntVector low_half(IntVector v) { return hn::And(v, hn::Set(Ints(), 0xffff)); }
+HWY_INLINE IndexVector low_half(IndexVector v) { return hn::And(v, hn::Set(Indices(), 0xffff)); }
 
 /// Low and high halves of words as numbers.
-HWY_INLINE FloatVector low_number(IntVector words) {
+HWY_INLINE Vector low_number(IndexVector words) {
   return hn::ConvertTo(Floats(), hn::ShiftRight<16>(hn::ShiftLeft<16>(words)));
 }
-HWY_INLINE FloatVector high_number(IntVector words) {
+HWY_INLINE Vector high_number(IndexVector words) {
   return hn::ConvertTo(Floats(), hn::ShiftRight<16>(words));
 }
 
@@ -148,8 +144,8 @@ template <int Rank>
 HWY_INLINE void predict(const CellSearchView& view, int padded, bool wants_rivals,
                         PixelTile& pixels, Scratch& scratch) {
   const Floats d;
-  const Ints di;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const Indices di;
+  const int lanes = lanes_of(d);
   scratch.lists = scratch.unproven_count = 0;
   const auto unit = hn::Set(d, view.fit_unit), half = hn::Set(d, 0.5f),
              whole = hn::Set(d, to_whole);

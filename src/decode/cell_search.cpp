@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -137,8 +136,8 @@ HWY_INLINE void search_lists(const CellSearchView& view, PixelTile& pixels, Scra
 /// @returns whether all pixels are proven
 template <int Rank>
 bool search_tile(const CellSearchView& view, bool wants_rivals, PixelTile& pixels) {
-  const auto lanes = static_cast<int>(hn::Lanes(Floats()));
-  const int padded = (pixels.pixels + lanes - 1) / lanes * lanes;
+  const int lanes = lanes_of();
+  const int padded = rounded_up(pixels.pixels, lanes);
   Scratch scratch;
   locate<Rank>(view, pixels, padded, scratch);
   predict<Rank>(view, padded, wants_rivals, pixels, scratch);

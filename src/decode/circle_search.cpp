@@ -16,19 +16,20 @@
 // Highway asks for its own header after foreach_target.
 #include <hwy/highway.h>
 
+#include "core/vectors-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr float overlap = 2e-5f;   // of pieces, in c
 constexpr float farthest = 1e30f;  // beyond, sums of numbers may be infinite
 
 bool search(const CirclePiece* pieces, int resolution, float margin, PixelTile& tile) {
-  const hn::CappedTag<float, 16> d;
-  const hn::RebindToSigned<decltype(d)> di;
+  const Floats d;
+  const Indices di;
   const hn::RebindToUnsigned<decltype(d)> dw;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int lanes = lanes_of(d);
   const auto half = hn::Set(d, 0.5f * static_cast<float>(resolution));
   const auto zero = hn::Zero(di), last = hn::Set(di, resolution - 1);
   const auto* words = reinterpret_cast<const std::int32_t*>(pieces);

@@ -2,33 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/decode/decode_method.hpp"
 
-#include <string>
-
+#include "core/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 
-std::string_view name_of(DecodeMethod method) {
-  switch (method) {
-    case DecodeMethod::zncc:
-      return "zncc";
-    case DecodeMethod::ml:
-      return "ml";
-    case DecodeMethod::unwrap:
-      return "unwrap";
-    case DecodeMethod::two_return:
-      return "two-return";
-    case DecodeMethod::tail:
-      return "tail";
-  }
-  reject("DecodeMethod", std::to_string(static_cast<int>(method)), "must be in [0, 4]");
-}
+namespace {
+constexpr EnumWords<DecodeMethod, 5> method_words("DecodeMethod", "method", "zncc", "ml", "unwrap",
+                                                  "two-return", "tail");
+}  // namespace
 
-DecodeMethod parse_decode_method(std::string_view name) {
-  for (const DecodeMethod method : all_decode_methods)
-    if (name == name_of(method)) return method;
-  reject("method", name, "must be zncc, ml, unwrap, two-return or tail");
-}
+std::string_view name_of(DecodeMethod method) { return method_words.of(method); }
+
+DecodeMethod parse_decode_method(std::string_view name) { return method_words.parse(name); }
 
 AnyDecoder make_decoder(DecodeMethod method, DecodingTable table, const DecodeOptions& doubt,
                         UnwrapWeights unwrap_weights, const MultipathOptions& multipath) {

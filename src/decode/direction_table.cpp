@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/whole_vectors.hpp"
 #include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
@@ -17,7 +18,7 @@ std::vector<std::int32_t> bins_of_rows(const RowMajorMatrix& curve) {
   std::int32_t current = 0;
   while (!has_contrast(current)) ++current;
   const auto samples = static_cast<std::int32_t>(curve.rows());
-  const std::int32_t rows = (samples + rows_per_block - 1) / rows_per_block * rows_per_block;
+  const std::int32_t rows = rounded_up(samples, rows_per_block);
   std::vector<std::int32_t> bins(static_cast<std::size_t>(rows));
   for (std::int32_t n = 0; n < rows; ++n) {
     if (n < samples && has_contrast(n)) current = n;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "decode/likelihood_search.hpp"
+#include "decode/nearest_bins.hpp"
 #include "decode/pixel_output.hpp"
 #include "decode/raw_scale.hpp"
 
@@ -59,12 +60,7 @@ void LikelihoodDecoder::decode_depth_bins(const float* measurements, std::int64_
 
 void LikelihoodDecoder::decode_bins(const float* measurements, std::int64_t pixels,
                                     std::int32_t* bin) const {
-  std::vector<double> fall = plan_->work_space();
-  for (std::int64_t i = 0; i < pixels; ++i) {
-    const double position = plan_->decode_depth_bin(measurements + i * this->measurements(), fall);
-    bin[i] =
-        std::isnan(position) ? -1 : static_cast<std::int32_t>(std::lround(position)) % samples();
-  }
+  nearest_bins(*this, measurements, pixels, bin);
 }
 
 void LikelihoodDecoder::decode(const RawView& raw, const DecodedView& decoded,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "decode/nearest_bins.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
@@ -116,7 +117,7 @@ MostLikely LikelihoodSearch::most_likely(const LikelihoodPixel& pixel,
 double LikelihoodSearch::confidence(const LikelihoodPixel& pixel, const MostLikely& found,
                                     const std::vector<double>& fall) const {
   const std::int32_t samples = scores_.samples();
-  const auto nearest = static_cast<std::int32_t>(std::lround(depth_bin(found.best))) % samples;
+  const std::int32_t nearest = nearest_bin(depth_bin(found.best), samples);
   const Lobe lobe = directions_.main_lobe(nearest);
   if (lobe.end - lobe.begin >= samples) return 1.0;
 

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "core/enum_words.hpp"
 #include "decode/saturation_level.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -51,25 +52,14 @@ Eigen::VectorXd of_pairs(const Eigen::VectorXd& values, const char* field) {
   return shared;
 }
 
+constexpr EnumWords<MeasuredAmbient, 3> ambient_words("MeasuredAmbient", "ambient", "equal", "mean",
+                                                      "none");
+
 }  // namespace
 
-std::string_view name_of(MeasuredAmbient ambient) {
-  switch (ambient) {
-    case MeasuredAmbient::equal:
-      return "equal";
-    case MeasuredAmbient::mean:
-      return "mean";
-    case MeasuredAmbient::none:
-      return "none";
-  }
-  reject("MeasuredAmbient", std::to_string(static_cast<int>(ambient)), "must be in [0, 2]");
-}
+std::string_view name_of(MeasuredAmbient ambient) { return ambient_words.of(ambient); }
 
-MeasuredAmbient parse_measured_ambient(std::string_view name) {
-  for (const auto ambient : {MeasuredAmbient::equal, MeasuredAmbient::mean, MeasuredAmbient::none})
-    if (name == name_of(ambient)) return ambient;
-  reject("ambient", name, "must be equal, mean or none");
-}
+MeasuredAmbient parse_measured_ambient(std::string_view name) { return ambient_words.parse(name); }
 
 Eigen::VectorXd ambient_gain_of(const Eigen::MatrixXd& correlation, MeasuredAmbient ambient) {
   if (ambient == MeasuredAmbient::mean) return correlation.colwise().mean();

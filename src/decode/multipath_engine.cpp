@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "decode/multipath_support.hpp"
+#include "decode/nearest_bins.hpp"
 #include "decode/pixel_output.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/exponential_average.hpp"
@@ -202,8 +203,7 @@ void MultipathEngine::store(std::int64_t pixel, const PixelGroup& group, const P
     position = posterior.median, deviation = posterior.deviation;
   }
   if (decoded.bin)
-    decoded.bin[at] = static_cast<std::int32_t>(std::lround(position / curve_.points_per_bin)) %
-                      table().samples();
+    decoded.bin[at] = nearest_bin(position / curve_.points_per_bin, table().samples());
   const auto depth_m = static_cast<float>(position * point_m);
   decoded.depth_m[at] = depth_m < static_cast<float>(table().range_m) ? depth_m : 0.0f;
   if (decoded.predicted_standard_deviation_m)

@@ -11,21 +11,18 @@
 
 #include <hwy/highway.h>
 
+#include "core/vectors-inl.hpp"
 #include "decode/multipath_search.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-using Floats = hn::CappedTag<float, pixels_per_group>;
-using Vector = hn::Vec<Floats>;
-using Mask = hn::Mask<Floats>;
+static_assert(pixels_per_group == widest_vector);
 using Row = float[pixels_per_group];
 
 HWY_INLINE Vector load(const float* row) { return hn::Load(Floats(), row); }
 HWY_INLINE void store(Vector value, float* row) { hn::Store(value, Floats(), row); }
-HWY_INLINE Vector all(float value) { return hn::Set(Floats(), value); }
 HWY_INLINE Vector choose(Mask which, Vector yes, Vector no) {
   return hn::IfThenElse(which, yes, no);
 }

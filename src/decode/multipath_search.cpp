@@ -200,7 +200,7 @@ HWY_INLINE void search_lanes(const MultipathCurve& curve, const DelayBounds& del
 template <Fitted What, int Span>
 void search_group(const MultipathCurve& curve, const DelayBounds& delays, const PixelGroup& pixels,
                   PairFits& fits) {
-  for (int lane = 0; lane < pixels_per_group; lane += static_cast<int>(hn::Lanes(Floats())))
+  for (int lane = 0; lane < pixels_per_group; lane += lanes_of())
     search_lanes<What, Span>(curve, delays, pixels, lane, fits);
 }
 
@@ -213,7 +213,7 @@ void pair(const MultipathCurve& curve, const DelayBounds& delays, const PixelGro
 }
 
 void single(const MultipathCurve& curve, const PixelGroup& pixels, SingleFits& fits) {
-  for (int lane = 0; lane < pixels_per_group; lane += static_cast<int>(hn::Lanes(Floats()))) {
+  for (int lane = 0; lane < pixels_per_group; lane += lanes_of()) {
     White white;
     white.make(curve, pixels, lane);
     const Place best = downhill<Fitted::single, 0>(curve, {}, white, load(pixels.guess + lane),

@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/output_kernel.cpp"
@@ -29,7 +28,7 @@ HWY_INLINE void write_chunk(const BinRecords& records, const OutputConstants& c,
   const RecordLayout& layout = records.layout;
   const int rank = Rank > 0 ? Rank : layout.rank;
   find_rows(records.records, chunk.bin, chunk.pixels, chunk.start);
-  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(Floats())))
+  for (int i = 0; i < chunk.pixels; i += lanes_of())
     gather(records.records.data(), chunk.start + i, 0, steps.fields, chunk.record + i);
   refine(layout, rank, chunk);
   if (planes.depth_m) write_depth(c, chunk, planes.depth_m);
@@ -92,12 +91,12 @@ void write(const BinRecords& records, const OutputConstants& c, const OutputStep
 /// Bins and offsets of a chunk as positions in double precision.
 HWY_INLINE void join(const std::int32_t* bin, const OutputChunk& chunk, double samples,
                      double* depth_bin) {
-  const hn::CappedTag<double, 8> d;
+  const Doubles d;
   const hn::Rebind<std::int32_t, decltype(d)> di;
   const hn::Rebind<float, decltype(d)> df;
   const auto zero = hn::Zero(d), all_samples = hn::Set(d, samples);
   const auto none = hn::Set(d, std::numeric_limits<double>::quiet_NaN());
-  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d))) {
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
     const auto whole = hn::PromoteTo(d, hn::LoadU(di, bin + i));
     auto at = hn::Add(whole, hn::PromoteTo(d, hn::LoadU(df, chunk.offset + i)));
     at = hn::Add(at, hn::IfThenElseZero(hn::Lt(at, zero), all_samples));
@@ -115,7 +114,7 @@ HWY_INLINE void find_tile_positions(const BinRecords& records, const OutputConst
     chunk.pixels = std::min(tile.pixels - first, pixels_per_chunk);
     chunk.plane = tile.plane + first;
     find_rows(records.records, tile.bin + first, chunk.pixels, chunk.start);
-    for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(Floats())))
+    for (int i = 0; i < chunk.pixels; i += lanes_of())
       gather(records.records.data(), chunk.start + i, 0, layout.end_of_depth(), chunk.record + i);
     refine(layout, Rank > 0 ? Rank : layout.rank, chunk);
     join(tile.bin + first, chunk, c.samples, depth_bin + first);
@@ -147,10 +146,6 @@ HWY_EXPORT(write);
 HWY_EXPORT(find_positions);
 
 namespace {
-
-std::vector<float> in_floats(const Eigen::VectorXd& values) {
-  return {values.begin(), values.end()};
-}
 
 /// What has so few digits that its product with any of so many integers is exact.
 float with_room_for(double value, int integers) {

@@ -30,7 +30,7 @@ HWY_INLINE Vector variance_of(Vector signal, Vector ambient, Vector per_signal, 
 HWY_INLINE void find_signal_noise(const RecordLayout& layout, OutputChunk& chunk) {
   const Floats d;
   const float* noise = chunk.field(layout.signal_noise());
-  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d)))
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d))
     hn::StoreU(
         variance_of(load(chunk.signal, i), noisy_ambient(chunk, i), load(noise, i),
                     load(noise + pixels_per_chunk, i), load(noise + 2 * pixels_per_chunk, i)),
@@ -40,7 +40,7 @@ HWY_INLINE void find_signal_noise(const RecordLayout& layout, OutputChunk& chunk
 HWY_INLINE void write_depth_noise(const OutputChunk& chunk, float* standard_deviation_m) {
   const Floats d;
   const float* noise = chunk.chord_field(ChordLayout::depth_noise);
-  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d))) {
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
     const Vector signal = load(chunk.signal, i);
     const Vector variance =
         variance_of(signal, noisy_ambient(chunk, i), load(noise, i),
@@ -108,7 +108,7 @@ HWY_INLINE void find_confidence(const OutputConstants& c, const BinRecords& reco
   const Floats d;
   const RecordLayout& layout = records.layout;
   const Vector zero = hn::Zero(d), one = all(1.0f);
-  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d))) {
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
     gather(records.directions.data(), chunk.rival_start + i, 0, rank, chunk.rival_direction + i);
     Vector square;
     const Vector lead = hn::Max(lead_of(layout, rank, chunk, i, square), zero);
@@ -141,7 +141,7 @@ HWY_INLINE void write_status(const OutputConstants& c, const OutputChunk& chunk,
                              const std::uint8_t* saturated, PixelStatus* to) {
   const Floats d;
   const Indices di;
-  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d))) {
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
     const Vector signal = load(chunk.signal, i);
     const Vector least2 = hn::Mul(all(c.low_signal_sigma2), load(chunk.signal_variance, i));
     const auto is_ambiguous =

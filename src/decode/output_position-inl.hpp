@@ -28,7 +28,7 @@ HWY_INLINE Vector along(const OutputChunk& chunk, int rank, int field, int i) {
 HWY_INLINE void refine(const RecordLayout& layout, int rank, OutputChunk& chunk) {
   const Floats d;
   const Vector zero = hn::Zero(d);
-  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d))) {
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
     const Vector at_bin = along(chunk, rank, layout.point(), i);
     const Vector to_left = along(chunk, rank, layout.left(), i);
     const Vector to_right = along(chunk, rank, layout.right(), i);
@@ -55,7 +55,7 @@ HWY_INLINE void find_chords(const RecordTable& chords, OutputChunk& chunk) {
   const auto last = hn::Set(di, ChordLayout::quarters - 1), one = hn::Set(di, 1);
   const auto at_bin = hn::Set(di, ChordLayout::at_bin), blocks = hn::Set(di, ChordLayout::blocks);
   alignas(64) std::uint32_t start[pixels_per_chunk];
-  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d))) {
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
     const Vector offset = load(chunk.offset, i);
     const auto is_left = hn::RebindMask(di, hn::Lt(offset, hn::Zero(d)));
     const auto is_at_bin = hn::RebindMask(di, hn::Eq(offset, hn::Zero(d)));
@@ -67,14 +67,14 @@ HWY_INLINE void find_chords(const RecordTable& chords, OutputChunk& chunk) {
     const auto row = hn::Add(hn::Mul(bin, blocks), block);
     hn::StoreU(hn::BitCast(du, hn::ShiftLeft<2>(row)), du, start + i);
   }
-  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d)))
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d))
     gather(chords.data(), start + i, 0, ChordLayout::fields, chunk.chord + i);
 }
 
 HWY_INLINE void write_depth(const OutputConstants& c, const OutputChunk& chunk, float* depth_m) {
   const Floats d;
   const Vector zero = hn::Zero(d);
-  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d))) {
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
     const Vector offset = load(chunk.offset, i);
     Vector bin = hn::ConvertTo(d, hn::LoadU(Indices(), chunk.bin + i));
     const Mask is_below = hn::And(hn::Eq(bin, zero), hn::Lt(offset, zero));
@@ -90,7 +90,7 @@ HWY_INLINE void write_depth(const OutputConstants& c, const OutputChunk& chunk, 
 /// Copies values, NaN where there is no depth.
 HWY_INLINE void write_values(const OutputChunk& chunk, const float* values, float* plane) {
   const Floats d;
-  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d))) {
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
     const Mask has_depth = hn::Gt(load(chunk.signal, i), hn::Zero(d));
     store_some(d, unless(has_depth, load(values, i)), plane + i, chunk.pixels - i);
   }
@@ -102,7 +102,7 @@ HWY_INLINE void find_ambient(const OutputConstants& c, const RecordLayout& layou
   const Floats d;
   if (!c.sees_ambient) return static_cast<void>(std::fill_n(chunk.ambient, pixels_per_chunk, 0.0f));
   const int count = layout.measurements;
-  for (int i = 0; i < chunk.pixels; i += static_cast<int>(hn::Lanes(d))) {
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
     Vector sum = hn::Mul(load(chunk.electrons, i), all(c.ambient_weight[0]));
     for (int k = 1; k < count; ++k)
       sum = product_plus(load(chunk.electrons + k * pixels_per_tile, i),

@@ -21,8 +21,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
-using Mask = hn::Mask<Floats>;
-using Indices = hn::RebindToSigned<Floats>;
 using Bytes = hn::Rebind<std::uint8_t, Indices>;
 
 /// a b + c, rounded twice: the same with and without fused instructions.
@@ -35,7 +33,7 @@ HWY_INLINE Vector unless(Mask is_so, Vector value) {
 /// Stores the first `room` values of a vector, at most all.
 template <typename Tag, typename Values, typename T>
 HWY_INLINE void store_some(Tag tag, Values values, T* to, int room) {
-  if (room >= static_cast<int>(hn::Lanes(tag))) return hn::StoreU(values, tag, to);
+  if (room >= lanes_of(tag)) return hn::StoreU(values, tag, to);
   alignas(64) T buffer[pixels_per_chunk];
   hn::StoreU(values, tag, buffer);
   std::memcpy(to, buffer, static_cast<std::size_t>(room) * sizeof(T));
@@ -46,7 +44,7 @@ HWY_INLINE void store_some(Tag tag, Values values, T* to, int room) {
 /// `begin` is a multiple of four; up to three more fields are written.
 HWY_INLINE void gather(const float* table, const std::uint32_t* start, int begin, int end,
                        float* rows) {
-  for (int i = 0; i < static_cast<int>(hn::Lanes(Floats())); ++i)
+  for (int i = 0; i < lanes_of(); ++i)
     for (int f = begin; f < end; ++f) rows[f * pixels_per_chunk + i] = table[start[i] + f];
 }
 #else

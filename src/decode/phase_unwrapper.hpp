@@ -28,7 +28,6 @@ class PhaseUnwrapper {
   int count() const { return static_cast<int>(frequencies_.size()); }
   int highest() const { return highest_; }
   double weight(int j) const { return weights_[static_cast<std::size_t>(j)]; }
-  double whole_weight() const { return whole_weight_; }
 
   /// The choice of least weighted distance, of all there are.
   /// @param phase  (count) [periods of the frequency]

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "decode/nearest_bins.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/shared_progress.hpp"
@@ -44,8 +45,7 @@ void store_pixel(const DecodingTable& table, const DecodeOptions& options, const
   // Rounding to float can land on the end of the range, which is its beginning.
   const bool at_end =
       static_cast<float>(pixel.depth_bin * table.bin_m()) >= static_cast<float>(table.range_m);
-  if (decoded.bin)
-    decoded.bin[at] = static_cast<std::int32_t>(std::lround(pixel.depth_bin)) % table.samples();
+  if (decoded.bin) decoded.bin[at] = nearest_bin(pixel.depth_bin, table.samples());
   store(decoded.depth_m, at_end ? 0.0 : pixel.depth_bin * table.bin_m());
   store(decoded.signal_e_per_s, estimate.signal_e_per_s);
   store(decoded.ambient_e_per_s, estimate.ambient_e_per_s);
@@ -75,7 +75,6 @@ void for_each_block(const RawView& raw, int measurements, const Progress& progre
   require(raw.height >= 0 && raw.width >= 0, "raw height and width",
           std::min(raw.height, raw.width), "must be >= 0");
   const std::int64_t count = raw.pixels();
-  report(progress, 0.0, "decoding");
   SharedProgress shared(progress, static_cast<double>(count), "decoding");
   parallel_for_blocks(count, block_pixels, [&](IndexRange range) {
     work(range);

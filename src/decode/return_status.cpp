@@ -2,24 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/decode/return_status.hpp"
 
-#include <string>
-
+#include "core/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 
-std::string_view name_of(ReturnStatus status) {
-  switch (status) {
-    case ReturnStatus::none:
-      return "none";
-    case ReturnStatus::single:
-      return "single";
-    case ReturnStatus::two:
-      return "two";
-    case ReturnStatus::unresolved:
-      return "unresolved";
-  }
-  reject("ReturnStatus", std::to_string(static_cast<int>(status)), "must be in [0, 3]");
-}
+namespace {
+constexpr EnumWords<ReturnStatus, 4> return_status_words("ReturnStatus", "returns", "none",
+                                                         "single", "two", "unresolved");
+}  // namespace
+
+std::string_view name_of(ReturnStatus status) { return return_status_words.of(status); }
 
 }  // namespace tofsmith

@@ -15,13 +15,12 @@
 // Highway asks for its own header after foreach_target.
 #include <hwy/highway.h>
 
+#include "core/vectors-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-using Floats = hn::CappedTag<float, 16>;
-using Vector = hn::Vec<Floats>;
 constexpr int tile_pixels = pixels_per_tile;
 
 /// a b + c. Where outputs follow it is rounded twice, with and without fused instructions, so that
@@ -97,7 +96,7 @@ template <int Rank, bool ForOutputs, int Measurements>
 HWY_INLINE void project_interleaved(const ProjectionView& view, const float* raw, int vectors,
                                     PixelTile& tile) {
   const Floats d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int lanes = lanes_of(d);
   for (int i = 0; i < vectors * lanes; i += lanes) {
     Vector measured[4];
     load_interleaved<Measurements>(raw + i * Measurements, measured);
@@ -118,7 +117,7 @@ HWY_INLINE void project_strided(const ProjectionView& view, const float* raw, in
                                 PixelTile& tile) {
   const Floats d;
   const hn::RebindToSigned<Floats> di;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int lanes = lanes_of(d);
   const auto pixel = hn::Mul(hn::Iota(di, 0), hn::Set(di, view.measurements));
   for (int i = 0; i < vectors * lanes; i += lanes) {
     const float* const first = raw + static_cast<std::ptrdiff_t>(i) * view.measurements;
@@ -135,7 +134,7 @@ template <int Rank, bool ForOutputs>
 HWY_INLINE void project_planes(const ProjectionView& view, const float* raw, std::ptrdiff_t stride,
                                int from, int to, PixelTile& tile) {
   const Floats d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int lanes = lanes_of(d);
   for (int i = from; i < to; i += lanes) {
     const auto load = [&](int k) { return hn::LoadU(d, raw + k * stride + i); };
     project_vector<Rank, ForOutputs, 0>(view, load, load(view.reference), i, tile);
@@ -157,7 +156,7 @@ HWY_INLINE void fill_planes(const TileSource& source, int k_count, int from, int
 template <int Rank, bool ForOutputs>
 void project_rank(const ProjectionView& view, const TileSource& source, int pixels,
                   PixelTile& tile) {
-  const auto lanes = static_cast<int>(hn::Lanes(Floats()));
+  const int lanes = lanes_of();
   const int k_count = view.measurements;
   int done = 0;
   if (source.data && source.pixel_stride == k_count && (k_count == 3 || k_count == 4)) {
@@ -181,7 +180,7 @@ void project_rank(const ProjectionView& view, const TileSource& source, int pixe
     done = pixels / lanes * lanes;
     project_planes<Rank, ForOutputs>(view, source.data, source.measurement_stride, 0, done, tile);
   }
-  const int padded = (pixels + 15) / 16 * 16;
+  const int padded = whole_vectors(pixels);
   if (done == padded) return;
   fill_planes(source, k_count, done, pixels, padded, tile);
   project_planes<Rank, ForOutputs>(view, tile.raw, tile_pixels, done, padded, tile);
@@ -199,8 +198,8 @@ void project(const ProjectionView& view, const TileSource& source, int pixels, P
     default:
       break;
   }
-  const auto lanes = static_cast<int>(hn::Lanes(Floats()));
-  const int padded = (pixels + 15) / 16 * 16;
+  const int lanes = lanes_of();
+  const int padded = whole_vectors(pixels);
   fill_planes(source, view.measurements, 0, pixels, padded, tile);
   for (int i = 0; i < padded; i += lanes) project_any_rank<ForOutputs>(view, tile, i);
 }

@@ -8,6 +8,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/enum_words.hpp"
+#include "decode/nearest_bins.hpp"
 #include "decode/phase_model.hpp"
 #include "decode/phase_unwrapper.hpp"
 #include "decode/pixel_output.hpp"
@@ -37,17 +39,14 @@ std::vector<double> weights_of(const PhaseModel& phases, int measurements, Unwra
   return weights;
 }
 
+constexpr EnumWords<UnwrapWeights, 2> weights_words("UnwrapWeights", "unwrap weights", "variance",
+                                                    "frequency");
+
 }  // namespace
 
-std::string_view name_of(UnwrapWeights weights) {
-  return weights == UnwrapWeights::variance ? "variance" : "frequency";
-}
+std::string_view name_of(UnwrapWeights weights) { return weights_words.of(weights); }
 
-UnwrapWeights parse_unwrap_weights(std::string_view name) {
-  for (const UnwrapWeights weights : {UnwrapWeights::variance, UnwrapWeights::frequency})
-    if (name == name_of(weights)) return weights;
-  reject("unwrap weights", name, "must be variance or frequency");
-}
+UnwrapWeights parse_unwrap_weights(std::string_view name) { return weights_words.parse(name); }
 
 void UnwrapOptions::validate() const {
   doubt.validate();
@@ -113,12 +112,7 @@ void UnwrapDecoder::decode_depth_bins(const float* measurements, std::int64_t pi
 
 void UnwrapDecoder::decode_bins(const float* measurements, std::int64_t pixels,
                                 std::int32_t* bin) const {
-  for (std::int64_t i = 0; i < pixels; ++i) {
-    double position = 0.0;
-    decode_depth_bins(measurements + i * this->measurements(), 1, &position);
-    bin[i] =
-        std::isnan(position) ? -1 : static_cast<std::int32_t>(std::lround(position)) % samples();
-  }
+  nearest_bins(*this, measurements, pixels, bin);
 }
 
 void UnwrapDecoder::decode(const RawView& raw, const DecodedView& decoded,

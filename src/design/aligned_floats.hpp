@@ -27,11 +27,4 @@ struct CacheLineAllocator {
 
 using AlignedFloats = std::vector<float, CacheLineAllocator<float>>;
 
-constexpr int widest_vector = 16;  // floats
-
-/// At least `count` floats that make up whole vectors of any width.
-constexpr int whole_vectors(int count) {
-  return (count + widest_vector - 1) / widest_vector * widest_vector;
-}
-
 }  // namespace tofsmith

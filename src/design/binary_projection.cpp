@@ -3,6 +3,7 @@
 #include "design/binary_projection.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace tofsmith {
 
@@ -28,27 +29,24 @@ BinaryProjection project_to_binary(const PairModel& model, const SampledPair& re
   Eigen::VectorXcd demodulation = model.spectrum(best.pair.demodulation);
   best.residual_rms = model.residual_rms(modulation, demodulation);
 
+  // Keeps a trial of one arm, and its spectrum, if it is better beside what the other arm has.
+  const auto keep_better = [&](Eigen::VectorXd trial, Eigen::VectorXd& kept,
+                               Eigen::VectorXcd& spectrum) {
+    Eigen::VectorXcd other = model.spectrum(trial);
+    std::swap(spectrum, other);
+    const double residual = model.residual_rms(modulation, demodulation);
+    if (residual >= best.residual_rms) return std::swap(spectrum, other);
+    best.residual_rms = residual;
+    kept = std::move(trial);
+  };
   for (int round = 0; round < 2; ++round) {
-    for (int level = 1; level < levels && model.binary_demodulation(); ++level) {
-      Eigen::VectorXd trial =
-          binary_demodulation(relaxed.demodulation, static_cast<double>(level) / levels);
-      const Eigen::VectorXcd spectrum = model.spectrum(trial);
-      const double residual = model.residual_rms(modulation, spectrum);
-      if (residual >= best.residual_rms) continue;
-      best.residual_rms = residual;
-      best.pair.demodulation = std::move(trial);
-      demodulation = spectrum;
-    }
-    for (int level = 1; level < levels && model.binary_modulation(); ++level) {
-      Eigen::VectorXd trial = binary_modulation(
-          relaxed.modulation, static_cast<double>(level) / levels, model.peak_factor());
-      const Eigen::VectorXcd spectrum = model.spectrum(trial);
-      const double residual = model.residual_rms(spectrum, demodulation);
-      if (residual >= best.residual_rms) continue;
-      best.residual_rms = residual;
-      best.pair.modulation = std::move(trial);
-      modulation = spectrum;
-    }
+    for (int level = 1; level < levels && model.binary_demodulation(); ++level)
+      keep_better(binary_demodulation(relaxed.demodulation, static_cast<double>(level) / levels),
+                  best.pair.demodulation, demodulation);
+    for (int level = 1; level < levels && model.binary_modulation(); ++level)
+      keep_better(binary_modulation(relaxed.modulation, static_cast<double>(level) / levels,
+                                    model.peak_factor()),
+                  best.pair.modulation, modulation);
   }
   return best;
 }

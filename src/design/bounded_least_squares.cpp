@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "design/bounded_least_squares.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "tofsmith/core/periodic.hpp"

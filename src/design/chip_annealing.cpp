@@ -146,7 +146,6 @@ BestCodes anneal_chip_codes(const ChipJudge& judge, const std::vector<ChipCode>&
   if (starts.codes().empty()) return best;
 
   constexpr int chains_at_once = 8;
-  report(progress, 0.0, "codes annealed");
   SharedProgress shared(
       progress,
       static_cast<double>(options.annealing_starts) * static_cast<double>(options.annealing_steps),

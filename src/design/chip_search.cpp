@@ -54,13 +54,11 @@ void rank_by_trials(std::vector<ChipFinalist>& finalists, const Camera& camera,
   evaluation.trials = options.trials;
   evaluation.seed = options.seed;
   evaluation.method = DecodeMethod::ml;
+  const ProgressParts parts(progress, finalists.size());
   for (std::size_t i = 0; i < finalists.size(); ++i) {
-    const double count = static_cast<double>(finalists.size());
     const Camera judged = camera_for(finalists[i].code, camera);
     finalists[i].circular_mde_m =
-        evaluate(
-            to_code_set(finalists[i].code, judged, "finalist"), judged, evaluation,
-            part_of(progress, static_cast<double>(i) / count, static_cast<double>(i + 1) / count))
+        evaluate(to_code_set(finalists[i].code, judged, "finalist"), judged, evaluation, parts[i])
             .circular.geometric_mean_m;
   }
   std::ranges::stable_sort(finalists, {},
@@ -126,9 +124,9 @@ ChipSearchResult search_chip_codes(const Camera& camera, const ChipSearchOptions
     annealing.annealing_starts = options.exposures == 1 ? 0 : 8;
     annealing.annealing_steps = 2000;
   }
+  const ProgressParts parts(progress, {is_exhaustive ? 5.0 : 90.0, is_exhaustive ? 85.0 : 0.0, 10});
   ChipSearchCounts annealed;
-  BestCodes best = anneal_chip_codes(judge, seeds, annealing, annealed,
-                                     part_of(progress, 0.0, is_exhaustive ? 0.05 : 0.9));
+  BestCodes best = anneal_chip_codes(judge, seeds, annealing, annealed, parts[0]);
 
   // 3. Then all codes, if there are not too many.
   if (is_exhaustive) {
@@ -136,9 +134,8 @@ ChipSearchResult search_chip_codes(const Camera& camera, const ChipSearchOptions
                               .rules = rules,
                               .finalists = options.finalists,
                               .limit = best.codes().empty() ? infinity : best.limit()};
-    const Progress part = part_of(progress, 0.05, 0.9);
-    ExhaustiveFinding finding = options.exposures == 1 ? search_single_exposures(task, part)
-                                                       : search_exposure_pairs(task, part);
+    ExhaustiveFinding finding = options.exposures == 1 ? search_single_exposures(task, parts[1])
+                                                       : search_exposure_pairs(task, parts[1]);
     best = std::move(finding.best);
     result.log.counts = finding.counts;
     result.proved = true;
@@ -153,8 +150,7 @@ ChipSearchResult search_chip_codes(const Camera& camera, const ChipSearchOptions
     result.finalists.push_back(finalist_of(scored, judge));
   for (const ScoredCode& scored : best.improvements())
     result.log.improvements.push_back({scored.code, judge.rms_m(scored.score), scored.share});
-  if (options.trials > 0)
-    rank_by_trials(result.finalists, camera, options, part_of(progress, 0.9, 1.0));
+  if (options.trials > 0) rank_by_trials(result.finalists, camera, options, parts[2]);
   result.log.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report(progress, 1.0, "codes searched");

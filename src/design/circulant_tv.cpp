@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "core/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/periodic.hpp"
 
@@ -18,6 +19,10 @@ void require_finite(const Eigen::VectorXd& values, const char* field) {
     require(std::isfinite(values[n]), fmt::format("CirculantTvProblem::{}[{}]", field, n),
             values[n], "must be finite");
 }
+
+constexpr EnumWords<CirculantTvMethod, 3> tv_method_words("CirculantTvMethod", "method",
+                                                          "active_set", "admm",
+                                                          "active_set_after_admm");
 
 }  // namespace
 
@@ -50,17 +55,7 @@ void CirculantTvOptions::validate() const {
           "must be finite and > 0");
 }
 
-std::string_view to_string(CirculantTvMethod method) {
-  switch (method) {
-    case CirculantTvMethod::active_set:
-      return "active_set";
-    case CirculantTvMethod::admm:
-      return "admm";
-    case CirculantTvMethod::active_set_after_admm:
-      return "active_set_after_admm";
-  }
-  return "unknown";
-}
+std::string_view to_string(CirculantTvMethod method) { return tv_method_words.of(method); }
 
 bool CirculantTvResult::is_usable() const {
   return termination == Termination::converged || certificate <= 1e-4;

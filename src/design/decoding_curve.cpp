@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/whole_vectors.hpp"
+
 namespace tofsmith {
 
 namespace {

@@ -150,16 +150,12 @@ void leave_out_what_tells_no_depth(const Camera& camera, DesignResult& result) {
 /// Judges all candidates, finds the best and judges it on perturbed cameras too.
 void judge_all(const Camera& camera, const DesignOptions& options, DesignResult& result,
                const Progress& progress) {
-  const double count = static_cast<double>(result.candidates.size());
-  const double all = options.robust ? 1.0 : 0.9;           // of the time, for all but the winner
-  const double unperturbed = options.robust ? 0.15 : 1.0;  // of a candidate's time
+  const ProgressParts parts(progress, {90, options.robust ? 0.0 : 10.0});  // the winner: at last
+  const ProgressParts of_candidates(parts[0], result.candidates.size());
   for (std::size_t i = 0; i < result.candidates.size(); ++i) {
-    const double begin = all * static_cast<double>(i) / count;
-    const double end = all * static_cast<double>(i + 1) / count;
-    const double middle = begin + unperturbed * (end - begin);
-    judge(result.candidates[i], camera, options, part_of(progress, begin, middle));
-    if (options.robust)
-      judge_robustness(result.candidates[i], camera, options, part_of(progress, middle, end));
+    const ProgressParts its(of_candidates[i], {15, options.robust ? 85.0 : 0.0});
+    judge(result.candidates[i], camera, options, its[0]);
+    if (options.robust) judge_robustness(result.candidates[i], camera, options, its[1]);
   }
   TwoReturnLimit two_returns(options.optimize.most_two_return_loss);
   for (const Candidate& c : result.candidates)
@@ -170,7 +166,7 @@ void judge_all(const Camera& camera, const DesignOptions& options, DesignResult&
   for (std::size_t i = 1; i < result.candidates.size(); ++i)
     if (judged_m(result.candidates[i]) < judged_m(result.winner())) result.best = i;
   Candidate& winner = result.candidates[result.best];
-  if (!winner.robustness) judge_robustness(winner, camera, options, part_of(progress, all, 1.0));
+  if (!winner.robustness) judge_robustness(winner, camera, options, parts[1]);
 }
 
 }  // namespace
@@ -244,22 +240,20 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
   // 2. Design codes. What is there by then is where the direct optimization starts, and what it has
   //    to beat.
   const std::vector<Task> tasks = tasks_for(camera, options, targets, result);
-  double effort = 0.0, done = 0.0;
-  for (const Task& task : tasks) effort += task.effort;
-  for (const Task& task : tasks) {
-    const double end = done + task.effort;
-    where_it_serves(task.method, options, result, [&] {
-      result.candidates.push_back(
-          run_or_load(task, store, part_of(progress, 0.8 * done / effort, 0.8 * end / effort)));
+  std::vector<double> efforts;
+  for (const Task& task : tasks) efforts.push_back(task.effort);
+  const ProgressParts parts(progress, {80, 20});
+  const ProgressParts of_tasks(parts[0], efforts);
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    where_it_serves(tasks[i].method, options, result, [&] {
+      result.candidates.push_back(run_or_load(tasks[i], store, of_tasks[i]));
     });
-    done = end;
-  }
   leave_out_what_tells_no_depth(camera, result);
   require(!result.candidates.empty(), "target", fmt::format("{}", fmt::join(result.left_out, "; ")),
           "nothing that was designed can tell depth, and the camera can play no baseline");
 
   // 3. Judge all with the same fresh random numbers and pick by the camera's depth error.
-  judge_all(camera, options, result, part_of(progress, 0.8, 1.0));
+  judge_all(camera, options, result, parts[1]);
   result.explanation = explain(camera, result);
   report(progress, 1.0, "done");
   return result;

@@ -3,7 +3,6 @@
 #include "design/edge_polish.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "design/adam.hpp"
 #include "design/stochastic_gradient.hpp"

@@ -43,7 +43,6 @@ void look_at(const ChipCode& code, const std::vector<FisherMatrix>& nodes,
 void search_in_rounds(std::int64_t items, std::int64_t items_at_once, ExhaustiveFinding& finding,
                       const SearchShare& share, const Progress& progress) {
   std::int64_t round = std::min<std::int64_t>(4, items_at_once);
-  report(progress, 0.0, "codes searched");
   SharedProgress shared(progress, static_cast<double>(items), "codes searched");
   for (std::int64_t begin = 0; begin < items;
        begin += round, round = std::min(2 * round, items_at_once)) {

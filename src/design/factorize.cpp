@@ -128,8 +128,8 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
 
   // 2. Alternate the convex steps from random starts, each with its best binary projection.
   std::vector<StartResult> runs(static_cast<std::size_t>(options.random_starts));
-  SharedProgress shared(part_of(progress, 0.0, 0.6), options.random_starts,
-                        "alternating convex steps");
+  const ProgressParts parts(progress, {60, 40});
+  SharedProgress shared(parts[0], options.random_starts, "alternating convex steps");
   parallel_for(std::ssize(runs), [&](std::int64_t i) {
     shared.add();
     runs[static_cast<std::size_t>(i)] = run_start(model, options, static_cast<int>(i));
@@ -138,7 +138,7 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
     result.candidates.push_back(run.candidate);
     result.iterations_per_start.push_back(run.candidate.iterations);
   }
-  report(progress, 0.6, "alternating convex steps");
+  report(parts[0], 1.0, "alternating convex steps");
 
   // 3. Structured pairs, and the naive one, compete as they stand.
   if (options.structured_starts)
@@ -146,8 +146,7 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
   drop_repeats(result.candidates);
 
   // 4. Move switching times continuously.
-  if (options.refine_edges)
-    refine_best(model, options, result.candidates, part_of(progress, 0.6, 1.0));
+  if (options.refine_edges) refine_best(model, options, result.candidates, parts[1]);
   if (options.keep_naive)
     std::ranges::move(naive_start(model), std::back_inserter(result.candidates));
   const bool playable = drop_short_pulses(model, result.candidates);

@@ -108,24 +108,20 @@ std::optional<CodeSet> naive_code(const TargetSet& targets, const Camera& camera
 
 Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
                                const DesignOptions& options, const Progress& progress) {
-  constexpr double factorizing = 0.4;  // of the time; the rest goes into choosing pairs
+  const ProgressParts parts(progress, {40, 60});  // factorizing, choosing pairs
   const auto begin = std::chrono::steady_clock::now();
   // 1. Factorize every measurement by itself.
   std::vector<Factorization> factorizations;
-  const double count = static_cast<double>(targets.measurements.size());
-  for (const CorrelationTarget& target : targets.measurements) {
-    const double done = static_cast<double>(factorizations.size());
+  const ProgressParts of_targets(parts[0], targets.measurements.size());
+  for (const CorrelationTarget& target : targets.measurements)
     factorizations.push_back(
-        factorize(target, camera, options.factorize,
-                  part_of(progress, factorizing * done / count, factorizing * (done + 1) / count)));
-  }
+        factorize(target, camera, options.factorize, of_targets[factorizations.size()]));
   // 2. Choose among the pairs by the depth error of the whole code.
   EvaluateOptions search;
   search.trials = options.search_trials;
   search.seed = search_seed(options);
   const PairChoice choice =
-      choose_by_depth_error(factorizations, camera, search, rotates(camera, options),
-                            part_of(progress, factorizing, 1.0));
+      choose_by_depth_error(factorizations, camera, search, rotates(camera, options), parts[1]);
   // 3. Put the code together and say how near its target it is.
   Candidate candidate{
       .code = assemble(targets.name + "-factorized", factorizations, choice, camera),

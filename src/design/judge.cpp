@@ -17,19 +17,18 @@ void judge(Candidate& candidate, const Camera& camera, const DesignOptions& opti
   EvaluateOptions judging;
   judging.trials = options.trials;
   judging.seed = options.seed;
+  const auto& later = camera.operating.multipath;
+  const ProgressParts parts(progress, {50, later ? 10.0 : 50.0, later ? 40.0 : 0.0});
   if (rotates(camera, options)) {
     EvaluateOptions search = judging;
     search.seed = search_seed(options);
-    candidate.rotation_bin =
-        best_rotation(candidate.code, camera, search, part_of(progress, 0.0, 0.5)).rotation_bin;
+    candidate.rotation_bin = best_rotation(candidate.code, camera, search, parts[0]).rotation_bin;
     candidate.code = candidate.code.rotated(candidate.rotation_bin);
   }
-  const auto& later = camera.operating.multipath;
-  const double evaluated = later ? 0.6 : 1.0;
-  candidate.error = evaluate(candidate.code, camera, judging, part_of(progress, 0.5, evaluated));
+  candidate.error = evaluate(candidate.code, camera, judging, parts[1]);
   if (later)
-    candidate.second_returns = second_return_report(candidate.code, camera, *later, judging,
-                                                    part_of(progress, evaluated, 1.0));
+    candidate.second_returns =
+        second_return_report(candidate.code, camera, *later, judging, parts[2]);
   candidate.code.provenance.depth_error_m = chosen_error_m(candidate.error, camera.operating.error);
 }
 

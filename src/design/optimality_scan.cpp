@@ -3,7 +3,6 @@
 #include "design/optimality_scan.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tofsmith {
 namespace {

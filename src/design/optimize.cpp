@@ -86,7 +86,6 @@ std::vector<Finalist> playable_finalists(const DesignProblem& problem, OptimizeP
   const std::vector<PoolEntry> entries = entries_to_play(problem, pool, camera, options, sharpness);
   const auto count = std::ssize(entries);
   std::vector<SwitchedCode> codes(2 * static_cast<std::size_t>(count));
-  report(progress, 0.0, "edges");
   SharedProgress shared(progress, static_cast<double>(count) * options.polish_steps, "edges");
   parallel_for(count, [&](std::int64_t i) {
     const auto k = static_cast<std::size_t>(i);
@@ -131,22 +130,20 @@ void validate_finalist(Finalist& finalist, std::span<const Camera> variants,
   EvaluateOptions evaluation;
   const auto points = static_cast<std::int64_t>(camera.operating.points().size());
   evaluation.trials = std::clamp<std::int64_t>(options.validation_trials / points, 3000, 40000);
+  const ProgressParts parts(progress, 2);
   if (camera.operating.error == DepthErrorKind::linear) {
     evaluation.seed = combine_keys(options.seed, rotation_key);
     std::vector<double> log_error;
     for (const double error_m :
-         best_rotation(finalist.code, camera, evaluation, part_of(progress, 0.0, 0.5))
-             .linear_geometric_mean_m)
+         best_rotation(finalist.code, camera, evaluation, parts[0]).linear_geometric_mean_m)
       log_error.push_back(std::log(std::max(1e-12, error_m)));
     finalist.code = finalist.code.rotated(smoothed_minimum(log_error));
   }
   evaluation.seed = combine_keys(options.seed, validation_key);
-  const double count = static_cast<double>(variants.size());
+  const ProgressParts of_variants(parts[1], variants.size());
   for (std::size_t i = 0; i < variants.size(); ++i) {
-    const double done = static_cast<double>(i);
     const DepthErrorReport report =
-        evaluate(finalist.code, variants[i], evaluation,
-                 part_of(progress, 0.5 + 0.5 * done / count, 0.5 + 0.5 * (done + 1) / count));
+        evaluate(finalist.code, variants[i], evaluation, of_variants[i]);
     const Estimate error_m = report.of(camera.operating.error).geometric_mean_m;
     if (error_m.value > finalist.error_m.value) finalist.error_m = error_m;
   }
@@ -213,27 +210,22 @@ OptimizedCode optimize(std::span<const Camera> variants, int exposures,
 
   // 1. Go downhill from many codes, from changed copies of the best, and once more from the best.
   OptimizePool pool(problem, options, camera.range_m() / problem.space.samples());
-  pool.run_starts(also, part_of(progress, 0.0, 0.4));
-  pool.run_hops(part_of(progress, 0.4, 0.75));
-  pool.refine(part_of(progress, 0.75, 0.85));
+  const ProgressParts parts(progress, {40, 35, 10, 5, 10});
+  pool.run_starts(also, parts[0]);
+  pool.run_hops(parts[1]);
+  pool.refine(parts[2]);
 
   // 2. Make them playable, and let all codes given compete.
-  std::vector<Finalist> finalists =
-      playable_finalists(problem, pool, camera, options, part_of(progress, 0.85, 0.9));
+  std::vector<Finalist> finalists = playable_finalists(problem, pool, camera, options, parts[3]);
   const std::size_t optimized = finalists.size();
   for (Finalist& given : given_finalists(also, camera)) finalists.push_back(std::move(given));
 
   // 3. Judge all on the same fresh trials.
-  const Progress validation = part_of(progress, 0.9, 1.0);
-  const double count = static_cast<double>(finalists.size());
-  const double single = camera.operating.multipath ? 0.3 : 1.0;  // of a finalist's time
+  const ProgressParts of_finalists(parts[4], finalists.size());
   for (std::size_t i = 0; i < finalists.size(); ++i) {
-    const double done = static_cast<double>(i);
-    validate_finalist(finalists[i], variants, options,
-                      part_of(validation, done / count, (done + single) / count));
-    if (camera.operating.multipath)
-      validate_second_returns(finalists[i], camera, options,
-                              part_of(validation, (done + single) / count, (done + 1) / count));
+    const ProgressParts its(of_finalists[i], {30, camera.operating.multipath ? 70.0 : 0.0});
+    validate_finalist(finalists[i], variants, options, its[0]);
+    if (camera.operating.multipath) validate_second_returns(finalists[i], camera, options, its[1]);
   }
   TwoReturnLimit two_returns(options.most_two_return_loss);
   for (const Finalist& f : std::span(finalists).subspan(optimized))

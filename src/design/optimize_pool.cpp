@@ -81,7 +81,6 @@ void OptimizePool::keep(const std::string& phase, std::vector<PoolEntry> entries
 
 void OptimizePool::run_starts(std::span<const CodeSet> also, const Progress& progress) {
   const auto count = static_cast<std::size_t>(options_.starts);
-  report(progress, 0.0, "starts");
   SharedProgress shared(progress, static_cast<double>(count) * options_.steps_per_start, "starts");
   for (std::size_t first = 0; first < count; first += together) {
     std::vector<PoolEntry> entries;
@@ -99,7 +98,6 @@ void OptimizePool::run_starts(std::span<const CodeSet> also, const Progress& pro
 void OptimizePool::run_hops(const Progress& progress) {
   const auto count = static_cast<std::size_t>(options_.hops);
   int without_gain = 0;
-  report(progress, 0.0, "hops");
   SharedProgress shared(progress, static_cast<double>(count) * options_.steps_per_hop, "hops");
   for (std::size_t first = 0; first < count; first += hops_together) {
     std::vector<PoolEntry> entries;
@@ -123,7 +121,6 @@ void OptimizePool::run_hops(const Progress& progress) {
 
 void OptimizePool::refine(const Progress& progress) {
   if (options_.refinement_steps == 0) return;
-  report(progress, 0.0, "refinement");
   std::vector<PoolEntry> entries(
       entries_.begin(),
       entries_.begin() + std::min<std::ptrdiff_t>(options_.refined, std::ssize(entries_)));

@@ -8,6 +8,7 @@
 
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/periodic.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
 
 namespace tofsmith {
 
@@ -17,24 +18,6 @@ struct SampledCode {
   Eigen::MatrixXd demodulation;  ///< (N, E x taps)
 
   int samples() const { return static_cast<int>(modulation.rows()); }
-};
-
-/// What leaves the sensor, R values: their means and, apart where buckets are subtracted, the
-/// light behind their shot noise.
-struct MeasurementTable {
-  Eigen::MatrixXd correlation;        ///< chi (N, R), at the bins
-  Eigen::MatrixXd shot_correlation;   ///< (N, R); empty: correlation
-  Eigen::VectorXd ambient_gain;       ///< kappa (R)
-  Eigen::VectorXd shot_ambient_gain;  ///< (R); empty: ambient_gain
-
-  int samples() const { return static_cast<int>(correlation.rows()); }
-  int measurements() const { return static_cast<int>(correlation.cols()); }
-  const Eigen::MatrixXd& shot() const {
-    return shot_correlation.size() > 0 ? shot_correlation : correlation;
-  }
-  const Eigen::VectorXd& shot_ambient() const {
-    return shot_ambient_gain.size() > 0 ? shot_ambient_gain : ambient_gain;
-  }
 };
 
 /// A camera on a grid: from waveforms to correlation functions and back with gradients. Band limit

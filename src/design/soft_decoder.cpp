@@ -11,12 +11,11 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include "core/vectors-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, 16>;
 
 constexpr float smallest_square = 1e-10f;  // |p|^2 of a point without contrast
 constexpr float smallest = 1e-30f;
@@ -25,7 +24,7 @@ constexpr float smallest = 1e-30f;
 HWY_INLINE void match_points(const DecodingCurve& curve, const float* HWY_RESTRICT electrons,
                              SoftDecoder::Scratch& scratch) {
   const Floats d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int lanes = lanes_of(d);
   for (int j = 0; j <= curve.samples; j += lanes) {
     auto sum = hn::Zero(d);
     for (int r = 0; r < curve.measurements; ++r)
@@ -39,7 +38,7 @@ HWY_INLINE void match_points(const DecodingCurve& curve, const float* HWY_RESTRI
 /// @return the largest
 HWY_INLINE float score_chords(const DecodingCurve& curve, SoftDecoder::Scratch& scratch) {
   const Floats d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int lanes = lanes_of(d);
   const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
   const auto least = hn::Set(d, smallest_square);
   auto largest = hn::Set(d, -1.0f);
@@ -79,7 +78,7 @@ HWY_INLINE float score_chords(const DecodingCurve& curve, SoftDecoder::Scratch& 
 /// The bin of the largest correlation. Uses scratch.ratio.
 HWY_INLINE int best_bin(const DecodingCurve& curve, SoftDecoder::Scratch& scratch) {
   const Floats d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int lanes = lanes_of(d);
   auto largest = hn::Set(d, -std::numeric_limits<float>::max());
   for (int j = 0; j < curve.samples; j += lanes) {
     const auto match = hn::Load(d, scratch.match.data() + j);
@@ -121,7 +120,7 @@ HWY_INLINE V chord_error(Floats d, V place, float true_bin, float samples, bool 
 HWY_INLINE void weigh_chords(const DecodingCurve& curve, const SoftQuestion& question,
                              float largest, SoftDecoder::Scratch& scratch, float* sums) {
   const Floats d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int lanes = lanes_of(d);
   const auto sharpness = hn::Set(d, static_cast<float>(question.sharpness));
   const auto shift = hn::Set(d, largest);
   auto total = hn::Zero(d), error_total = hn::Zero(d);
@@ -150,7 +149,7 @@ HWY_INLINE void differentiate_chords(const DecodingCurve& curve, const SoftQuest
                                      float weight, float normalization, float expected,
                                      CurveGradient& gradient, SoftDecoder::Scratch& scratch) {
   const Floats d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int lanes = lanes_of(d);
   const auto one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), zero = hn::Zero(d);
   const auto least = hn::Set(d, smallest_square);
   const auto samples = hn::Set(d, static_cast<float>(curve.samples));
@@ -213,7 +212,7 @@ HWY_INLINE void differentiate_matches(const DecodingCurve& curve, const float* e
                                       float weight, CurveGradient& gradient,
                                       SoftDecoder::Scratch& scratch, float* by_electrons) {
   const Floats d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int lanes = lanes_of(d);
   for (int j = 0; j < curve.samples; j += lanes) {
     const auto sum = hn::Add(hn::Load(d, scratch.by_match.data() + j),
                              hn::Load(d, scratch.by_next_match.data() + j));

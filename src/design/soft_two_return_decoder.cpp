@@ -12,20 +12,19 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include "core/vectors-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using PairFloats = hn::CappedTag<float, 16>;
 using Pairs = SoftTwoReturnDecoder::Pairs;
 
 /// Strengths and scores of all pairs; scores are -1 in the padding. @return the largest
 float score_all_pairs(Pairs& pairs) {
   constexpr float least_square = 1e-10f;      // of a pair whose points cancel
   constexpr float least_determinant = 1e-6f;  // relative: nearer pairs are one return
-  const PairFloats d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const Floats d;
+  const int lanes = lanes_of(d);
   const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
   const auto bins = hn::Set(d, static_cast<float>(pairs.bins));
   auto largest = hn::Set(d, -1.0f);
@@ -70,8 +69,8 @@ float score_all_pairs(Pairs& pairs) {
 
 /// Shares of all pairs, unnormalized, and their sums over delays, by bin.
 void weigh_all_pairs(float sharpness, float largest, Pairs& pairs) {
-  const PairFloats d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const Floats d;
+  const int lanes = lanes_of(d);
   const auto shift = hn::Set(d, largest), scale = hn::Set(d, sharpness);
   const auto bins = hn::Set(d, static_cast<float>(pairs.bins));
   std::fill(pairs.row.begin(), pairs.row.end(), 0.0f);
@@ -92,15 +91,15 @@ void weigh_all_pairs(float sharpness, float largest, Pairs& pairs) {
 
 /// Adds value to the lanes from `values` on.
 template <typename V>
-HWY_INLINE void add_to(PairFloats d, V value, float* values) {
+HWY_INLINE void add_to(Floats d, V value, float* values) {
   hn::StoreU(hn::Add(hn::LoadU(d, values), value), d, values);
 }
 
 /// Gradient by matches, and, with the weight, by squares and products. pairs.row holds what the
 /// expected error changes by with each bin's scores, over the share.
 void differentiate_all_pairs(float weight, Pairs& pairs) {
-  const PairFloats d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const Floats d;
+  const int lanes = lanes_of(d);
   const auto scale = hn::Set(d, weight), half = hn::Set(d, -0.5f * weight);
   std::fill(pairs.by_match.begin(), pairs.by_match.end(), 0.0f);
   for (int delay = pairs.delays.shortest; delay <= pairs.delays.longest; ++delay) {

@@ -115,15 +115,13 @@ std::vector<std::vector<ComparedCode>> compare_chip_codes(const std::vector<Stan
   options.method = DecodeMethod::ml;
   const std::vector<OperatingPoint> points = camera.operating.points();
   std::vector<std::vector<ComparedCode>> table(points.size());
+  const ProgressParts parts(progress, codes.size());
   for (std::size_t i = 0; i < codes.size(); ++i) {
     const CodeSet& code = codes[i].code;
     Camera played = camera;
     played.sensor.taps = code.taps();
     played.samples = code.samples();
-    const double count = static_cast<double>(codes.size());
-    const DepthErrorReport report = evaluate(
-        code, played, options,
-        part_of(progress, static_cast<double>(i) / count, static_cast<double>(i + 1) / count));
+    const DepthErrorReport report = evaluate(code, played, options, parts[i]);
     const CramerRaoBound bound(ForwardModel(code, played), played);
     for (std::size_t p = 0; p < points.size(); ++p) {
       const Eigen::VectorXd sigma_m = bound.sigma_m(points[p]);

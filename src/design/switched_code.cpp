@@ -3,7 +3,6 @@
 #include "design/switched_code.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "tofsmith/core/units.hpp"
 

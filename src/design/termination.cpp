@@ -2,20 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/design/termination.hpp"
 
+#include "core/enum_words.hpp"
+
 namespace tofsmith {
 
-std::string_view to_string(Termination termination) {
-  switch (termination) {
-    case Termination::not_run:
-      return "not_run";
-    case Termination::converged:
-      return "converged";
-    case Termination::stalled:
-      return "stalled";
-    case Termination::iteration_limit:
-      return "iteration_limit";
-  }
-  return "unknown";
-}
+namespace {
+constexpr EnumWords<Termination, 4> termination_words("Termination", "termination", "not_run",
+                                                      "converged", "stalled", "iteration_limit");
+}  // namespace
+
+std::string_view to_string(Termination termination) { return termination_words.of(termination); }
 
 }  // namespace tofsmith

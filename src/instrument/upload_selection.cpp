@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -22,6 +23,9 @@ UploadChannel channel_of(const WaveformExport& exported, const UploadSelection& 
   }
   return given;
 }
+
+constexpr EnumWords<WaveHeader, 3> header_words("WaveHeader", "wave_header", "length", "plain",
+                                                "minimal");
 
 }  // namespace
 
@@ -69,11 +73,6 @@ std::string parse_output_filter(std::string_view word) {
   reject("filter", word, "must be step, normal or off");
 }
 
-WaveHeader parse_wave_header(std::string_view word) {
-  if (word == "length") return WaveHeader::length;
-  if (word == "plain") return WaveHeader::plain;
-  if (word == "minimal") return WaveHeader::minimal;
-  reject("wave_header", word, "must be length, plain or minimal");
-}
+WaveHeader parse_wave_header(std::string_view word) { return header_words.parse(word); }
 
 }  // namespace tofsmith

@@ -10,11 +10,6 @@
 
 namespace tofsmith {
 
-/// The lowest bits of a number, 0 .. 64.
-constexpr std::uint64_t mask_of(int bits) {
-  return bits < 64 ? (std::uint64_t{1} << bits) - 1 : ~std::uint64_t{0};
-}
-
 inline constexpr bool host_is_little_endian = std::endian::native == std::endian::little;
 
 /// Reverses the bytes of each item of `item_size` bytes.

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/enum_words.hpp"
 #include "io/file_kind.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
@@ -26,6 +27,8 @@ std::string near_family(const std::string& name) {
     near = without_number(near) + number;
   return fmt::format("; did you mean {}?", near);
 }
+
+constexpr EnumWords<TapOrder, 2> tap_order_words("TapOrder", "tap order", "blocked", "interleaved");
 
 }  // namespace
 
@@ -56,10 +59,6 @@ CodeSet load_code(const std::string& name_or_path, const Camera& camera,
   return read_code(name_or_path, {options.taps.value_or(camera.sensor.taps), options.tap_order});
 }
 
-TapOrder parse_tap_order(std::string_view word) {
-  if (word == "blocked") return TapOrder::blocked;
-  require(word == "interleaved", "tap order", word, "must be blocked or interleaved");
-  return TapOrder::interleaved;
-}
+TapOrder parse_tap_order(std::string_view word) { return tap_order_words.parse(word); }
 
 }  // namespace tofsmith

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/enum_words.hpp"
 #include "io/correlation_matrix.hpp"
 #include "io/file_kind.hpp"
 #include "io/tap_columns.hpp"
@@ -122,13 +123,11 @@ void sort_columns(MeasuredTable& table, const TapLayout& layout, const std::stri
     if (list->size() > 0) *list = (*list)(source).eval();
 }
 
+constexpr EnumWords<TableAxes, 2> axes_words("TableAxes", "axes of the table", "nk", "kn");
+
 }  // namespace
 
-TableAxes parse_table_axes(std::string_view word) {
-  if (word == "nk") return TableAxes::samples_first;
-  require(word == "kn", "axes of the table", word, "must be nk or kn");
-  return TableAxes::measurements_first;
-}
+TableAxes parse_table_axes(std::string_view word) { return axes_words.parse(word); }
 
 bool is_measured_table(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);

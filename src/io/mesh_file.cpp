@@ -11,7 +11,6 @@
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <string>
 #include <unordered_map>

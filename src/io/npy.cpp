@@ -15,41 +15,24 @@
 namespace tofsmith {
 namespace {
 
-template <typename Item, typename Number>
+template <typename Number, typename... Items>
 std::vector<Number> converted(const NpyArray& array) {
-  const auto* items = reinterpret_cast<const Item*>(array.bytes().data());
   std::vector<Number> numbers(array.size());
-  std::transform(items, items + array.size(), numbers.begin(),
-                 [](Item item) { return static_cast<Number>(item); });
+  const NpyType type = array.type() == NpyType::boolean ? NpyType::uint8 : array.type();
+  const auto convert_if = [&]<typename Item>(Item) {
+    if (type != npy_type_of<Item>) return;
+    const auto* items = reinterpret_cast<const Item*>(array.bytes().data());
+    std::transform(items, items + array.size(), numbers.begin(),
+                   [](Item item) { return static_cast<Number>(item); });
+  };
+  (convert_if(Items()), ...);
   return numbers;
 }
 
 template <typename Number>
 std::vector<Number> to_numbers(const NpyArray& array) {
-  switch (array.type()) {
-    case NpyType::boolean:
-    case NpyType::uint8:
-      return converted<std::uint8_t, Number>(array);
-    case NpyType::int8:
-      return converted<std::int8_t, Number>(array);
-    case NpyType::int16:
-      return converted<std::int16_t, Number>(array);
-    case NpyType::int32:
-      return converted<std::int32_t, Number>(array);
-    case NpyType::int64:
-      return converted<std::int64_t, Number>(array);
-    case NpyType::uint16:
-      return converted<std::uint16_t, Number>(array);
-    case NpyType::uint32:
-      return converted<std::uint32_t, Number>(array);
-    case NpyType::uint64:
-      return converted<std::uint64_t, Number>(array);
-    case NpyType::float32:
-      return converted<float, Number>(array);
-    case NpyType::float64:
-      return converted<double, Number>(array);
-  }
-  return {};
+  return converted<Number, std::int8_t, std::int16_t, std::int32_t, std::int64_t, std::uint8_t,
+                   std::uint16_t, std::uint32_t, std::uint64_t, float, double>(array);
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <list>
-#include <stdexcept>
 #include <utility>
 
 #include "io/byte_order.hpp"

@@ -6,7 +6,7 @@
 
 #include <bit>
 
-#include "io/byte_order.hpp"
+#include "core/bits.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

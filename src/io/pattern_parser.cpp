@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <optional>
 
+#include "core/bits.hpp"
 #include "io/line_cursor.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/pattern_memory.hpp"
@@ -269,29 +269,25 @@ PatternWords parse_c(std::string_view text, const Reader& reader) {
 
 PatternWords parse_pattern(std::string_view text, PatternSyntax syntax, std::string_view file) {
   const Reader reader(file);
-  PatternWords result;
-  switch (syntax) {
-    case PatternSyntax::coe:
-      result = parse_coe(text, reader);
-      break;
-    case PatternSyntax::mif:
-      result = parse_mif(text, reader);
-      break;
-    case PatternSyntax::mem:
-      result = parse_mem(text, reader);
-      break;
-    case PatternSyntax::systemverilog:
-      result = parse_systemverilog(text, reader);
-      break;
-    case PatternSyntax::vhdl:
-      result = parse_vhdl(text, reader);
-      break;
-    case PatternSyntax::c:
-      result = parse_c(text, reader);
-      break;
-  }
-  const std::uint64_t most =
-      result.word_bits == 0 ? ~std::uint64_t{0} : ~std::uint64_t{0} >> (64 - result.word_bits);
+  const auto parse = [syntax] {
+    switch (syntax) {
+      case PatternSyntax::coe:
+        return parse_coe;
+      case PatternSyntax::mif:
+        return parse_mif;
+      case PatternSyntax::mem:
+        return parse_mem;
+      case PatternSyntax::systemverilog:
+        return parse_systemverilog;
+      case PatternSyntax::vhdl:
+        return parse_vhdl;
+      case PatternSyntax::c:
+        return parse_c;
+    }
+    return parse_c;
+  }();
+  const PatternWords result = parse(text, reader);
+  const std::uint64_t most = mask_of(result.word_bits == 0 ? 64 : result.word_bits);
   for (const std::uint64_t word : result.words)
     if (word > most)
       reader.fail(

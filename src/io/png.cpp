@@ -34,41 +34,36 @@ void append_to_vector(png_structp png, png_bytep data, png_size_t count) {
   out.insert(out.end(), bytes, bytes + count);
 }
 
-class PngReader {
+/// What libpng reads or writes a file with.
+template <bool reads>
+class PngFile {
  public:
-  explicit PngReader(std::string& file)
-      : png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &file, throw_error, ignore_warning)),
-        info_(png_ ? png_create_info_struct(png_) : nullptr) {
+  explicit PngFile(std::string& file) : png_(made(&file)) {
+    info_ = png_ ? png_create_info_struct(png_) : nullptr;
     if (!info_) throw std::bad_alloc();
   }
-  ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
-  PngReader(const PngReader&) = delete;
-  PngReader& operator=(const PngReader&) = delete;
+  ~PngFile() {
+    if constexpr (reads)
+      png_destroy_read_struct(&png_, &info_, nullptr);
+    else
+      png_destroy_write_struct(&png_, &info_);
+  }
+  PngFile(const PngFile&) = delete;
+  PngFile& operator=(const PngFile&) = delete;
   png_structp png() { return png_; }
   png_infop info() { return info_; }
 
  private:
-  png_structp png_;
-  png_infop info_;
-};
-
-class PngWriter {
- public:
-  explicit PngWriter(std::string& file)
-      : png_(png_create_write_struct(PNG_LIBPNG_VER_STRING, &file, throw_error, ignore_warning)),
-        info_(png_ ? png_create_info_struct(png_) : nullptr) {
-    if (!info_) throw std::bad_alloc();
+  static png_structp made(std::string* file) {
+    const auto make = reads ? png_create_read_struct : png_create_write_struct;
+    return make(PNG_LIBPNG_VER_STRING, file, throw_error, ignore_warning);
   }
-  ~PngWriter() { png_destroy_write_struct(&png_, &info_); }
-  PngWriter(const PngWriter&) = delete;
-  PngWriter& operator=(const PngWriter&) = delete;
-  png_structp png() { return png_; }
-  png_infop info() { return info_; }
 
- private:
   png_structp png_;
   png_infop info_;
 };
+using PngReader = PngFile<true>;
+using PngWriter = PngFile<false>;
 
 /// Deflate packs at most 1032 bytes into one, so a small file cannot hold a large image.
 void check_unpacked_size(std::size_t unpacked, std::size_t packed, std::string_view file) {

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/io/raw_frames_file.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <string>
 

@@ -9,6 +9,8 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/image_limits.hpp"
 
+#include "core/enum_words.hpp"
+
 namespace tofsmith {
 namespace {
 
@@ -46,6 +48,8 @@ void check_measurements(const NpyShape& shape, const RawReadOptions& options,
                                        : ""));
 }
 
+constexpr EnumWords<RawLayout, 2> layout_words("RawLayout", "layout", "interleaved", "planar");
+
 }  // namespace
 
 RawFrames checked_raw_sizes(NpyType type, const NpyShape& shape, const RawReadOptions& options,
@@ -74,14 +78,8 @@ RawFrames checked_raw_sizes(NpyType type, const NpyShape& shape, const RawReadOp
   return sizes;
 }
 
-std::string_view name_of(RawLayout layout) {
-  return layout == RawLayout::planar ? "planar" : "interleaved";
-}
+std::string_view name_of(RawLayout layout) { return layout_words.of(layout); }
 
-RawLayout parse_raw_layout(std::string_view name) {
-  for (const RawLayout layout : {RawLayout::interleaved, RawLayout::planar})
-    if (name == name_of(layout)) return layout;
-  reject("layout", name, "must be interleaved or planar");
-}
+RawLayout parse_raw_layout(std::string_view name) { return layout_words.parse(name); }
 
 }  // namespace tofsmith

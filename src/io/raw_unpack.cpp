@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // Numbers of a dump out of their bytes.
-#include <algorithm>
 #include <array>
-#include <cstring>
 
+#include "core/bits.hpp"
 #include "io/byte_order.hpp"
 #include "tofsmith/io/raw_format.hpp"
 

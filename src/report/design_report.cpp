@@ -21,11 +21,10 @@ namespace tofsmith {
 namespace {
 
 /// How many times larger another candidate's chosen error is than the winner's.
-std::string gain_over(const DesignResult& result, std::string_view name, DepthErrorKind kind) {
+std::string gain_text(const DesignResult& result, std::string_view name, DepthErrorKind kind) {
   const Candidate* other = result.find(name);
   if (!other || other == &result.winner()) return "";
-  return fmt::format(
-      "{:.2f}x", chosen_error_m(other->error, kind) / chosen_error_m(result.winner().error, kind));
+  return fmt::format("{:.2f}x", gain_over(result, *other, kind).value);
 }
 
 KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
@@ -40,7 +39,7 @@ KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
         {"behind second returns",
          fmt::format("{:.1f} mm", 1e3 * winner.second_returns->single_path.of(kind).value)});
   for (const char* baseline : {"sinusoid-k4", "square-k4"})
-    if (const std::string gain = gain_over(result, baseline, kind); !gain.empty())
+    if (const std::string gain = gain_text(result, baseline, kind); !gain.empty())
       numbers.entries.push_back({fmt::format("better than {}", baseline), gain});
   return numbers;
 }

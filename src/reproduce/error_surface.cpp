@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "tofsmith/core/error.hpp"
@@ -61,8 +60,8 @@ ErrorSurface measure_surface(const Contender& contender, const Camera& camera,
   EvaluateOptions options = contender.decoding;
   options.trials = precision.rotation_trials;
   options.seed = precision.seed + 1;
-  surface.rotation_bin =
-      best_rotation(contender.code, camera, options, part_of(progress, 0.0, 0.1)).rotation_bin;
+  const ProgressParts parts(progress, {10, 90});
+  surface.rotation_bin = best_rotation(contender.code, camera, options, parts[0]).rotation_bin;
   const CodeSet code = contender.code.rotated(surface.rotation_bin);
 
   // 2. Every light level, with as many trials as it needs.
@@ -72,7 +71,7 @@ ErrorSurface measure_surface(const Contender& contender, const Camera& camera,
   options.seed = precision.seed + 2;
   Camera judged = camera;
   judged.operating.error = DepthErrorKind::linear;
-  const DepthErrorReport errors = evaluate(code, judged, options, part_of(progress, 0.1, 1.0));
+  const DepthErrorReport errors = evaluate(code, judged, options, parts[1]);
 
   const auto rows = static_cast<Eigen::Index>(surface.ambient_e_per_s.size());
   const auto columns = static_cast<Eigen::Index>(surface.signal_e_per_s.size());

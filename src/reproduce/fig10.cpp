@@ -27,26 +27,25 @@ struct SceneScans {
 void scan_with_every_code(SceneScans& scans, const PrototypeBench& bench, int estimates,
                           std::uint64_t seed, const Progress& progress) {
   std::vector<Reference> references;
-  const auto say = [&](double done, double share, const std::string& code) {
-    report(progress, done, fmt::format("{}, {}", scans.scene.name, code));
-    return part_of(progress, done, done + share);
+  const auto begun = [&](const Progress& part, const std::string& code) {
+    report(part, 0.0, fmt::format("{}, {}", scans.scene.name, code));
+    return part;
   };
-  const double references_share = 0.25 / static_cast<double>(bench.codes.size());
+  const auto& densities = PrototypeBench::optical_densities();
+  const ProgressParts parts(progress, {25, 75});
+  const ProgressParts of_references(parts[0], bench.codes.size());
+  const ProgressParts of_scans(parts[1], densities.size() * bench.codes.size());
   for (const CodeSet& code : bench.codes) {
-    const Progress part = say(references_share * static_cast<double>(references.size()),
-                              references_share, code.name());
+    const Progress part = begun(of_references[references.size()], code.name());
     // Noise of its own: what is compared must not be what it is compared with.
     references.push_back(
         fit_reference(scans.scene, code, bench.camera, estimates, seed + 0x5eed, part));
     scans.fits.insert(scans.fits.end(), references.back().fits.begin(),
                       references.back().fits.end());
   }
-  const auto& densities = PrototypeBench::optical_densities();
-  const auto count = static_cast<double>(densities.size() * bench.codes.size());
   for (const double density : densities)
     for (std::size_t c = 0; c < bench.codes.size(); ++c) {
-      const Progress part = say(0.25 + 0.75 * static_cast<double>(scans.scans.size()) / count,
-                                0.75 / count, bench.codes[c].name());
+      const Progress part = begun(of_scans[scans.scans.size()], bench.codes[c].name());
       scans.scans.push_back(scan_objects(scans.scene, bench.codes[c], bench.camera, references[c],
                                          density, estimates, seed, part));
     }
@@ -196,7 +195,8 @@ void keep_data(Reproduction& result, const std::vector<SceneScans>& all) {
 
 Reproduction reproduce_fig10(const ReproduceContext& context, const Progress& progress) {
   // 1. The prototype, its codes and two scenes.
-  const PrototypeBench bench = prototype_bench(context, part_of(progress, 0.0, 0.3));
+  const ProgressParts parts(progress, {30, 35, 35});
+  const PrototypeBench bench = prototype_bench(context, parts[0]);
   const int width = context.pick(160, 48), height = 3 * width / 4;
   const int estimates = context.pick(20, 5);
   std::vector<SceneScans> all;
@@ -205,10 +205,8 @@ Reproduction reproduce_fig10(const ReproduceContext& context, const Progress& pr
 
   // 2. Every code scans them without filter, where surfaces are fitted to the objects, and behind
   //    the filters, where it is compared with its own surfaces.
-  scan_with_every_code(all[0], bench, estimates, context.options.seed,
-                       part_of(progress, 0.3, 0.65));
-  scan_with_every_code(all[1], bench, estimates, context.options.seed + 1,
-                       part_of(progress, 0.65, 1.0));
+  scan_with_every_code(all[0], bench, estimates, context.options.seed, parts[1]);
+  scan_with_every_code(all[1], bench, estimates, context.options.seed + 1, parts[2]);
 
   // 3. What the paper says of them.
   Reproduction result;

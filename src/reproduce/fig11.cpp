@@ -196,7 +196,8 @@ CheckedStatement less_scatter(const std::vector<WallScan>& scans, std::size_t co
 
 Reproduction reproduce_fig11(const ReproduceContext& context, const Progress& progress) {
   // 1. A wall in front of the prototype.
-  const PrototypeBench bench = prototype_bench(context, part_of(progress, 0.0, 0.5));
+  const ProgressParts parts(progress, 2);
+  const PrototypeBench bench = prototype_bench(context, parts[0]);
   const int width = context.pick(64, 24), height = 3 * width / 4;
   const int estimates = context.pick(50, 8);
   const StagedScene staged = built_in_scene("wall", width, height);
@@ -208,9 +209,10 @@ Reproduction reproduce_fig11(const ReproduceContext& context, const Progress& pr
   std::vector<double> wall_m;
   const std::size_t codes = bench.codes.size();
   const std::size_t count = codes * PrototypeBench::optical_densities().size();
+  const ProgressParts of_scans(parts[1], count);
   for (const double density : PrototypeBench::optical_densities())
     for (std::size_t c = 0; c < codes; ++c) {
-      report(progress, 0.5 + 0.5 * static_cast<double>(scans.size()) / static_cast<double>(count),
+      report(of_scans[scans.size()], 0.0,
              fmt::format("wall, O.D. {:g}, {}", density, bench.codes[c].name()));
       scans.push_back(scan(wall, staged.view, bench.codes[c], bench.camera, density, estimates,
                            context.options.seed));

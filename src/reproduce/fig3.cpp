@@ -55,16 +55,14 @@ OrderResult factorize_order(int order, const ReproduceContext& context, const Pr
   OrderResult result{.order = order,
                      .targets = ideal_targets(fmt::format("hamiltonian-k{}", order), first)};
   result.between = context.pick(peaks_between, {12.0});
+  const ProgressParts parts(progress, result.targets.measurements.size());
   for (const CorrelationTarget& target : result.targets.measurements) {
-    const auto codes = static_cast<double>(result.targets.measurements.size());
-    const double before = static_cast<double>(result.solutions.size()) / codes;
-    report(progress, before, fmt::format("fig3: K = {}", order));
-    const double share = 1.0 / (codes * static_cast<double>(peaks.size() + result.between.size()));
-    double done = before;
+    const Progress of_target = parts[result.solutions.size()];
+    report(of_target, 0.0, fmt::format("fig3: K = {}", order));
+    const ProgressParts of_peaks(of_target, peaks.size() + result.between.size());
+    std::size_t done = 0;
     const auto factorized = [&](double peak) {
-      const Progress part = part_of(progress, done, done + share);
-      done += share;
-      return factorize(target, paper_camera(peak, 0), options, part);
+      return factorize(target, paper_camera(peak, 0), options, of_peaks[done++]);
     };
     std::vector<PairCandidate> solutions;
     for (const double peak : peaks) {
@@ -294,11 +292,10 @@ void add_data(Reproduction& result, const std::vector<OrderResult>& all) {
 
 Reproduction reproduce_fig3(const ReproduceContext& context, const Progress& progress) {
   // 1. Every code of K = 3, 4, 5, factorized without a band limit at falling peak.
+  const ProgressParts parts(progress, orders.size());
   std::vector<OrderResult> all;
   for (std::size_t i = 0; i < orders.size(); ++i)
-    all.push_back(factorize_order(
-        orders[i], context,
-        part_of(progress, static_cast<double>(i) / 3.0, static_cast<double>(i + 1) / 3.0)));
+    all.push_back(factorize_order(orders[i], context, parts[i]));
 
   // 2. What the paper says of them.
   Reproduction result;

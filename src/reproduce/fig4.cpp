@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "reproduce/fig4_findings.hpp"
 #include "reproduce/fig4_readings.hpp"
@@ -81,10 +80,9 @@ Section comparison_section(const std::vector<ErrorSurfaceGroup>& panels) {
 Reproduction reproduce_fig4(const ReproduceContext& context, const Progress& progress) {
   // 1. Every code on every camera under every reading.
   std::vector<ReadingResult> results;
-  constexpr std::array<double, 5> share = {0.0, 0.38, 0.57, 0.76, 0.95};
+  const ProgressParts parts(progress, {38, 19, 19, 19, 5});  // every reading, unwrapping
   for (std::size_t r = 0; r < all_readings.size(); ++r)
-    results.push_back(
-        measure_reading(all_readings[r], context, part_of(progress, share[r], share[r + 1])));
+    results.push_back(measure_reading(all_readings[r], context, parts[r]));
   const auto& surfaces = results.front().of_limits;
   const std::vector<ErrorSurfaceGroup> panels(surfaces.begin(), surfaces.begin() + drawn_limits);
 
@@ -113,7 +111,7 @@ Reproduction reproduce_fig4(const ReproduceContext& context, const Progress& pro
   for (std::size_t l = 0; l < drawn_limits; ++l)
     result.sections.push_back(panel_section(all_limits[l], panels[l]));
   result.sections.push_back(comparison_section(panels));
-  add_unwrapping(result, context, part_of(progress, 0.95, 1.0));
+  add_unwrapping(result, context, parts[all_readings.size()]);
   result.sections.push_back(stronger_baselines_section(results.front()));
   result.sections.push_back(readings_section(results));
 

@@ -145,28 +145,24 @@ ReadingResult measure_reading(const Reading& reading, const ReproduceContext& co
   const bool first = &reading == all_readings.data();
   ReadingResult result{&reading, {}};
   std::vector<ErrorSurface> ideal;
-  const double steps = 1.0 + all_limits.size();
-  double done = 0.0;
-  const auto measure_all = [&](const std::vector<Contender>& list, const Limits& limits,
-                               bool drawn) {
+  const ProgressParts parts(progress, 1 + all_limits.size());
+  const auto measure_all = [&](const std::vector<Contender>& list, const Limits& limits, bool drawn,
+                               const Progress& part) {
     const Camera camera = camera_for(limits, reading, context);
     std::vector<ErrorSurface> surfaces;
-    const auto count = static_cast<double>(list.size());
+    const ProgressParts of_list(part, list.size());
     for (std::size_t i = 0; i < list.size(); ++i)
       surfaces.push_back(
-          measure_surface(list[i], camera, precision_for(drawn, context),
-                          part_of(progress, (done + static_cast<double>(i) / count) / steps,
-                                  (done + static_cast<double>(i + 1) / count) / steps)));
-    done += 1.0;
+          measure_surface(list[i], camera, precision_for(drawn, context), of_list[i]));
     return surfaces;
   };
-  ideal = measure_all(ideal_contenders(), all_limits.front(), first);
+  ideal = measure_all(ideal_contenders(), all_limits.front(), first, parts[0]);
   for (const Limits& limits : all_limits) {
     const bool drawn = first && &limits < all_limits.data() + drawn_limits;
     // The fraction waits where codes are not on the shelf yet.
-    const std::vector<Contender> list =
-        contenders(limits, context, part_of(progress, done / steps, done / steps));
-    ErrorSurfaceGroup group{limits.title, measure_all(list, limits, drawn)};
+    const ProgressParts of_limits(parts[1 + result.of_limits.size()], {0, 1});
+    const std::vector<Contender> list = contenders(limits, context, of_limits[0]);
+    ErrorSurfaceGroup group{limits.title, measure_all(list, limits, drawn, of_limits[1])};
     group.surfaces.insert(group.surfaces.end(), ideal.begin(), ideal.end());
     result.of_limits.push_back(std::move(group));
   }

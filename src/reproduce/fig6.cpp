@@ -73,12 +73,11 @@ Reproduction reproduce_fig6(const ReproduceContext& context, const Progress& pro
   const TargetSet targets = ideal_targets("hamiltonian-k5", camera);
 
   // 1. All five correlation functions, factorized within the band limit.
+  const ProgressParts parts(progress, measurements);
   std::vector<DesignedCode> codes;
-  for (int i = 0; i < measurements; ++i) {
-    report(progress, static_cast<double>(i) / measurements, "fig6: factorizing");
-    codes.push_back(design_code(targets.measurements[static_cast<std::size_t>(i)], camera, context,
-                                part_of(progress, static_cast<double>(i) / measurements,
-                                        static_cast<double>(i + 1) / measurements)));
+  for (std::size_t i = 0; i < measurements; ++i) {
+    report(parts[i], 0.0, "fig6: factorizing");
+    codes.push_back(design_code(targets.measurements[i], camera, context, parts[i]));
   }
 
   // 2. Two of them: the slowest, and the fastest that still follows its target.

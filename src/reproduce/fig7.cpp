@@ -278,14 +278,14 @@ Reproduction reproduce_fig7(const ReproduceContext& context, const Progress& pro
   std::vector<SceneResult> results(fig7_limits.size(), hand);
   std::vector<Camera> cameras;
   std::vector<std::vector<CodeSet>> codes(fig7_limits.size());
+  const ProgressParts parts(progress, fig7_limits.size());
   for (std::size_t i = 0; i < fig7_limits.size(); ++i) {
-    const auto share = [&](double done) { return 0.5 * (static_cast<double>(i) + done); };
+    const ProgressParts of_limits(parts[i], {80, 20});
     cameras.push_back(paper_camera(fig7_limits[i].peak_factor, fig7_limits[i].f_max_in_f0));
-    codes[i].push_back(context.shelf.redesigned(4, cameras[i], design_options,
-                                                part_of(progress, share(0.0), share(0.8))));
+    codes[i].push_back(context.shelf.redesigned(4, cameras[i], design_options, of_limits[0]));
     for (const std::string& name : baselines) codes[i].push_back(build_family(name, cameras[i]));
     capture_and_decode(results[i], codes[i], cameras[i], lights, context.options.seed,
-                       part_of(progress, share(0.8), share(1.0)));
+                       of_limits[1]);
     for (SceneCapture& capture : results[i].captures)
       for (SceneDecoding& d : capture.decodings)
         d.error =

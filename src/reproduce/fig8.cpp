@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "reproduce/error_surface_figures.hpp"
 #include "reproduce/fig4_findings.hpp"
@@ -25,11 +24,11 @@ const std::string one_tap = "hamiltonian-k4-one-tap";
 
 std::vector<Contender> contenders(const Camera& camera, const ReproduceContext& context,
                                   const Progress& progress) {
+  const ProgressParts parts(progress, 4);
   std::vector<Contender> list;
   for (const int exposures : {3, 4, 5, 6}) {
     const CodeSet& code =
-        context.shelf.redesigned(exposures, camera, context.options,
-                                 part_of(progress, (exposures - 3) / 4.0, (exposures - 2) / 4.0));
+        context.shelf.redesigned(exposures, camera, context.options, parts[list.size()]);
     list.push_back({code.name(), code});
   }
   for (const std::string& name : {single_frequency, dual_frequency})
@@ -42,23 +41,18 @@ ErrorSurfaceGroup measure(double f_max_in_f0, const ReproduceContext& context,
   const Camera camera =
       with_light_levels(two_bucket_camera(fig8_peak_factor, f_max_in_f0), context);
   ErrorSurfaceGroup group{fmt::format("p = {:g}, {:g} f0", fig8_peak_factor, f_max_in_f0), {}};
-  const std::vector<Contender> list = contenders(two_bucket_camera(fig8_peak_factor, f_max_in_f0),
-                                                 context, part_of(progress, 0.0, 0.4));
-  const Progress measuring = part_of(progress, 0.5, 1.0);
-  const double steps = static_cast<double>(list.size()) + 1.0;
-  double done = 0.0;
-  for (const Contender& contender : list) {
-    group.surfaces.push_back(measure_surface(contender, camera, surface_precision(context),
-                                             part_of(measuring, done / steps, (done + 1) / steps)));
-    done += 1.0;
-  }
+  const ProgressParts parts(progress, {40, 10, 50});  // the contenders, the one tap, measuring
+  const std::vector<Contender> list =
+      contenders(two_bucket_camera(fig8_peak_factor, f_max_in_f0), context, parts[0]);
   // The same light and time with one tap: what the second bucket adds.
   const Camera single = paper_camera(fig8_peak_factor, f_max_in_f0);
-  const CodeSet& code =
-      context.shelf.redesigned(4, single, context.options, part_of(progress, 0.4, 0.5));
+  const CodeSet& code = context.shelf.redesigned(4, single, context.options, parts[1]);
+  const ProgressParts measuring(parts[2], list.size() + 1);
+  for (const Contender& contender : list)
+    group.surfaces.push_back(measure_surface(contender, camera, surface_precision(context),
+                                             measuring[group.surfaces.size()]));
   group.surfaces.push_back(measure_surface({one_tap, code}, with_light_levels(single, context),
-                                           surface_precision(context),
-                                           part_of(measuring, done / steps, 1.0)));
+                                           surface_precision(context), measuring[list.size()]));
   return group;
 }
 
@@ -114,10 +108,9 @@ CheckedStatement second_bucket(const std::vector<ErrorSurfaceGroup>& panels) {
 Reproduction reproduce_fig8(const ReproduceContext& context, const Progress& progress) {
   // 1. All codes on both cameras.
   std::vector<ErrorSurfaceGroup> panels;
+  const ProgressParts parts(progress, fig8_limits_in_f0.size());
   for (std::size_t i = 0; i < fig8_limits_in_f0.size(); ++i)
-    panels.push_back(
-        measure(fig8_limits_in_f0[i], context,
-                part_of(progress, 0.5 * static_cast<double>(i), 0.5 * static_cast<double>(i + 1))));
+    panels.push_back(measure(fig8_limits_in_f0[i], context, parts[i]));
 
   // 2. What the paper says.
   Reproduction result;

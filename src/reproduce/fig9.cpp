@@ -102,16 +102,16 @@ Figure error_by_depth(const std::vector<Measured>& all, std::size_t density) {
 Reproduction reproduce_fig9(const ReproduceContext& context, const Progress& progress) {
   // 1. The bench: a single pixel at 0.7 m, range 30 m, p = 15.
   const Camera camera = prototype_camera();
-  report(progress, 0.0, "fig9: design");
-  std::vector<CodeSet> codes = {
-      context.shelf.redesigned(4, camera, context.options, part_of(progress, 0.0, 0.5))};
+  const ProgressParts parts(progress, {4, 1, 1, 1, 1});  // the design, every code
+  report(parts[0], 0.0, "fig9: design");
+  std::vector<CodeSet> codes = {context.shelf.redesigned(4, camera, context.options, parts[0])};
   for (const char* name : {"sinusoid-k4", "square-k4", "multifrequency-k5"})
     codes.push_back(build_family(name, camera));
 
   // 2. The modulation is delayed in steps over the whole period, and every delay measured often.
   std::vector<Measured> all;
   for (const CodeSet& code : codes) {
-    report(progress, 0.5 + 0.5 * static_cast<double>(all.size()) / 4.0, "fig9: " + code.name());
+    report(parts[1 + all.size()], 0.0, "fig9: " + code.name());
     all.push_back(measure(code, camera, context));
   }
 

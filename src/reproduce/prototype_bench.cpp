@@ -88,10 +88,10 @@ PrototypeBench prototype_bench(const ReproduceContext& context, const Progress& 
   // Coarse runs scan the same codes: a poor design would be judged, not the redesign.
   ReproduceOptions options = context.options;
   options.fast = false;
+  const ProgressParts parts(progress, 2);
   for (const int exposures : {4, 5})
     bench.codes.push_back(
-        context.shelf.redesigned(exposures, bench.camera, options,
-                                 part_of(progress, 0.5 * (exposures - 4), 0.5 * (exposures - 3))));
+        context.shelf.redesigned(exposures, bench.camera, options, parts[bench.codes.size()]));
   for (const char* name : {"sinusoid-k4", "multifrequency-k5"})
     bench.codes.push_back(build_family(name, bench.camera));
   return bench;

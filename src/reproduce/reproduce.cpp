@@ -26,11 +26,12 @@ std::vector<ReproducedItem> reproduce(const ReproductionDirectory& directory,
   if (!again) directory.require_ours(options);
   CodeShelf shelf(directory.shelf());
   const ReproduceContext context{options, shelf};
-  double whole = 0.0, done = 0.0;
-  for (const PaperItem* item : items) whole += item->share;
+  std::vector<double> shares;
+  for (const PaperItem* item : items) shares.push_back(item->share);
+  const ProgressParts parts(progress, shares);
   std::vector<ReproducedItem> reproduced;
   for (const PaperItem* item : items) {
-    const Progress part = part_of(progress, done / whole, (done + item->share) / whole);
+    const Progress part = parts[reproduced.size()];
     auto findings = again ? std::nullopt : directory.finished(*item, options);
     const bool kept = findings.has_value();
     if (!kept) {
@@ -40,7 +41,6 @@ std::vector<ReproducedItem> reproduce(const ReproductionDirectory& directory,
       directory.write_index(options);
       findings = std::move(reproduction.findings);
     }
-    done += item->share;
     reproduced.push_back({item, std::move(*findings), kept});
   }
   directory.write_index(options);

@@ -20,12 +20,11 @@ namespace {
 /// What the generators cost a code: its depth error with them over that without.
 double cost_of_generators(const CodeSet& code, Camera camera, const EvaluateOptions& options,
                           const Progress& progress) {
-  const double with =
-      evaluate(code, camera, options, part_of(progress, 0.0, 0.5)).circular.geometric_mean_m.value;
+  const ProgressParts parts(progress, 2);
+  const double with = evaluate(code, camera, options, parts[0]).circular.geometric_mean_m.value;
   camera.light.generator.reset();
   camera.sensor.generator.reset();
-  return with / evaluate(code, camera, options, part_of(progress, 0.5, 1.0))
-                    .circular.geometric_mean_m.value;
+  return with / evaluate(code, camera, options, parts[1]).circular.geometric_mean_m.value;
 }
 
 /// Farthest that the generators move a switching time of a code [s].
@@ -91,20 +90,17 @@ Reproduction reproduce_table1(const ReproduceContext& context, const Progress& p
   for (const char* family : {"sinusoid-k4", "square-k4", "multifrequency-k5", "hamiltonian-k3",
                              "hamiltonian-k4", "hamiltonian-k5"})
     codes.push_back(build_family(family, camera));
-  for (const int exposures : {4, 5})
-    codes.push_back(
-        context.shelf.redesigned(exposures, camera, context.options,
-                                 part_of(progress, 0.4 * (exposures - 4), 0.4 * (exposures - 3))));
-  const Progress measuring = part_of(progress, 0.8, 1.0);
+  const ProgressParts parts(progress, {40, 40, 20});
+  codes.push_back(context.shelf.redesigned(4, camera, context.options, parts[0]));
+  codes.push_back(context.shelf.redesigned(5, camera, context.options, parts[1]));
+  const ProgressParts measuring(parts[2], codes.size());
   std::vector<std::string> spoiled;
   double worst_of_others = 1.0;
   for (const CodeSet& code : codes) {
-    const double done = static_cast<double>(played.rows.size());
-    const double count = static_cast<double>(codes.size());
-    report(measuring, done / count, "table1: " + code.name());
+    const Progress part = measuring[played.rows.size()];
+    report(part, 0.0, "table1: " + code.name());
     const double cost = cost_of_generators(
-        code, camera, {.trials = context.pick(40000, 2000), .seed = context.options.seed},
-        part_of(measuring, done / count, (done + 1) / count));
+        code, camera, {.trials = context.pick(40000, 2000), .seed = context.options.seed}, part);
     if (cost > 1.1)
       spoiled.push_back(fmt::format("{} by {:.0f} %", code.name(), 100 * (cost - 1)));
     else

@@ -6,11 +6,12 @@
 namespace tofsmith {
 
 Reproduction reproduce_text(const ReproduceContext& context, const Progress& progress) {
+  const ProgressParts parts(progress, {30, 10, 55, 5});
   Reproduction result;
-  add_convergence(result, context, part_of(progress, 0.0, 0.3));
-  add_sinusoids_of_any_k(result, context, part_of(progress, 0.3, 0.4));
-  add_kept_bounds(result, context, part_of(progress, 0.4, 0.95));
-  add_zero_error_at_p30(result, context, part_of(progress, 0.95, 1.0));
+  add_convergence(result, context, parts[0]);
+  add_sinusoids_of_any_k(result, context, parts[1]);
+  add_kept_bounds(result, context, parts[2]);
+  add_zero_error_at_p30(result, context, parts[3]);
   return result;
 }
 

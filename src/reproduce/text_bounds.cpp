@@ -65,12 +65,12 @@ void add_kept_bounds(Reproduction& result, const ReproduceContext& context,
                           {"d, most", true}}};
   std::vector<std::string> row_names;
   std::vector<std::vector<double>> rows;
-  double excess = 0.0, change_of_mean = 0.0, done = 0.0;
+  double excess = 0.0, change_of_mean = 0.0;
+  const ProgressParts parts(progress, cameras.size() * orders.size());
+  std::size_t done = 0;
   for (const Camera& camera : cameras)
     for (const int order : orders) {
-      const CodeSet& code = context.shelf.redesigned(
-          order, camera, context.options, part_of(progress, done / 6.0, (done + 1) / 6.0));
-      ++done;
+      const CodeSet& code = context.shelf.redesigned(order, camera, context.options, parts[done++]);
       const OutputBounds b = output_bounds(code, camera);
       excess = std::max({excess, -b.modulation_low, b.modulation_high - camera.light.peak_factor,
                          -b.demodulation_low, b.demodulation_high - 1.0});
@@ -126,16 +126,16 @@ void add_zero_error_at_p30(Reproduction& result, const ReproduceContext& context
   };
 
   // Hamiltonian codes are factorized; the search is not told the answer.
-  for (const int order : {3, 4, 5}) {
-    report(progress, (order - 3) / 3.0, "text: p = 30");
+  const ProgressParts parts(progress, 3);
+  for (const std::size_t order : {3, 4, 5}) {
+    const Progress part = parts[order - 3];
+    report(part, 0.0, "text: p = 30");
     double residual = 0.0, peak = 0.0;
     const std::string family = fmt::format("hamiltonian-k{}", order);
-    double done = 0.0;
+    const ProgressParts of_targets(part, order);
+    std::size_t done = 0;
     for (const CorrelationTarget& target : ideal_targets(family, camera).measurements) {
-      const Progress part = part_of(progress, (order - 3 + done / order) / 3.0,
-                                    (order - 3 + (done + 1) / order) / 3.0);
-      const Factorization found = factorize(target, camera, options, part);
-      done += 1.0;
+      const Factorization found = factorize(target, camera, options, of_targets[done++]);
       residual = std::max(residual, found.best().residual_rms);
       peak = std::max(peak, found.best().pair.modulation.peak());
     }

@@ -48,15 +48,13 @@ std::vector<int> count_iterations(const Claim& claim, const Rule& rule,
   options.feed_back_projection = rule.feedback;
   options.structured_starts = options.keep_naive = options.refine_edges = false;
   std::vector<int> counts;
-  const double all = 12.0 * static_cast<double>(claim.list.size());  // targets of K = 3, 4, 5
-  double done = 0.0;
+  const ProgressParts parts(progress, 12 * claim.list.size());  // targets of K = 3, 4, 5
+  std::size_t done = 0;
   for (const Camera& camera : claim.list)
     for (const int order : {3, 4, 5})
       for (const CorrelationTarget& target :
            ideal_targets(fmt::format("hamiltonian-k{}", order), camera).measurements) {
-        const Factorization found =
-            factorize(target, camera, options, part_of(progress, done / all, (done + 1) / all));
-        done += 1.0;
+        const Factorization found = factorize(target, camera, options, parts[done++]);
         counts.insert(counts.end(), found.iterations_per_start.begin(),
                       found.iterations_per_start.end());
       }
@@ -94,17 +92,17 @@ void add_convergence(Reproduction& result, const ReproduceContext& context,
       {"with one of 10 f0 or 5 f0", {paper_camera(15, 10), paper_camera(15, 5)}, 3, 20}};
   static constexpr std::array colours = {"#0072b2", "#d55e00"};
   std::vector<Series> series;
-  double done = 0.0;
+  const ProgressParts parts(progress, claims.size() * rules.size());
+  std::size_t done = 0;
   for (std::size_t c = 0; c < claims.size(); ++c) {
     const Claim& claim = claims[c];
     std::vector<std::string> lines;
     bool within = true, below = true;
     std::size_t starts = 0;
     for (const Rule& rule : rules) {
-      report(progress, done / 6.0, "text: counting iterations");
-      const std::vector<int> counts =
-          count_iterations(claim, rule, context, part_of(progress, done / 6.0, (done + 1.0) / 6.0));
-      done += 1.0;
+      const Progress part = parts[done++];
+      report(part, 0.0, "text: counting iterations");
+      const std::vector<int> counts = count_iterations(claim, rule, context, part);
       starts = counts.size();
       within = within && share_within(counts, claim.low, claim.high) >= 0.9;
       below = below && share_within(counts, 1, claim.high) >= 0.9;

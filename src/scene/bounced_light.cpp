@@ -168,7 +168,6 @@ LaterReturns bounced_light(const StagedScene& scene, const BounceOptions& option
   const int height = scene.view.height, width = scene.view.width;
   LaterReturns result(height, width);
   std::vector<std::vector<LaterReturn>> of_row(static_cast<std::size_t>(width));
-  report(progress, 0.0, "gathering bounced light");
   SharedProgress shared(progress, static_cast<double>(height) * width, "gathering bounced light");
   for (int row = 0; row < height; ++row) {
     parallel_for(width, [&](std::int64_t column) {

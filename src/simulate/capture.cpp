@@ -41,7 +41,6 @@ RawFrames captured_rows(const RowCapture& source, int height, int width, int fra
     source.row(frame, row, raw.frame(frame) + static_cast<std::size_t>(row) * row_values);
   };
 
-  report(progress, 0.0, "capture");
   SharedProgress shared(progress, static_cast<double>(raw.frames) * raw.height, "capture");
   for (int frame = 0; frame < raw.frames; ++frame)
     parallel_for(raw.height, [&](std::int64_t row) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "core/whole_vectors.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -20,13 +21,6 @@ EvaluateOptions with_even_trials(EvaluateOptions options) {
   options.trials += options.trials % 2;
   options.most_trials += options.most_trials % 2;
   return options;
-}
-
-/// Vector code takes whole vectors; trials past the last are drawn in vain.
-int padded(int trials) { return (trials + 15) / 16 * 16; }
-
-std::vector<float> in_floats(const Eigen::VectorXd& values) {
-  return {values.begin(), values.end()};
 }
 
 }  // namespace
@@ -73,7 +67,7 @@ std::vector<TrialRound> DepthTrials::first_rounds() const {
 
 TrialBlock DepthTrials::run(const TrialRound& round, IndexRange trials, TrialTile& tile) const {
   const auto count = static_cast<int>(trials.end - trials.begin);
-  const int drawn = padded(count);
+  const int drawn = whole_vectors(count);  // those past the last in vain
   const TrialStreams streams{options_.seed, round.point,
                              static_cast<std::uint32_t>(round.first + trials.begin)};
   tile.pixels.pixels = count;

@@ -91,15 +91,10 @@ std::vector<Sums> DepthTrials::sum(std::span<const TrialRound> rounds, const Sum
   std::vector<Sums> total(rounds.size(), none);
   std::vector<Run> runs;
   std::vector<Sums> of_run;
-  std::int64_t done = 0, all = 0;
+  std::int64_t all = 0;
   for (const TrialRound& round : rounds) all += round.trials;
+  SharedProgress shared(progress, static_cast<double>(all), "depth error");
   const auto finish = [&] {
-    report(progress, static_cast<double>(done) / static_cast<double>(all), "depth error");
-    std::int64_t after = done;
-    for (const Run& run_of : runs) after += run_of.trials.end - run_of.trials.begin;
-    SharedProgress shared(part_of(progress, static_cast<double>(done) / static_cast<double>(all),
-                                  static_cast<double>(after) / static_cast<double>(all)),
-                          static_cast<double>(after - done), "depth error");
     of_run.assign(runs.size(), none);
     parallel_for(std::ssize(runs), [&](std::int64_t i) {
       const Run& run_of = runs[static_cast<std::size_t>(i)];
@@ -113,7 +108,6 @@ std::vector<Sums> DepthTrials::sum(std::span<const TrialRound> rounds, const Sum
       }
     });
     for (std::size_t i = 0; i < runs.size(); ++i) total[runs[i].round].merge(of_run[i]);
-    done = after;
     runs.clear();
   };
   for (std::size_t r = 0; r < rounds.size(); ++r)

@@ -47,16 +47,8 @@ double DirectTofBound::information_of(const Waveform& modulation,
                               exposure_s_ * point.ambient_e_per_s);
 }
 
-double DirectTofBound::mae_from_m(double information) const {
-  return range_m_ * mae_per_sigma() / std::sqrt(information);
-}
-
 double DirectTofBound::mae_m(const OperatingPoint& point) const {
-  return mae_from_m(photon_information(point));
-}
-
-double DirectTofBound::mae_of_m(const Waveform& modulation, const OperatingPoint& point) const {
-  return mae_from_m(information_of(modulation, point));
+  return range_m_ * mae_per_sigma() / std::sqrt(photon_information(point));
 }
 
 double DirectTofBound::mae_uniform_albedo_m(const OperatingPoint& point) const {

@@ -42,10 +42,11 @@ GeneratorLoss generator_loss(const CodeSet& code, const Camera& camera,
   const ForwardModel told(code, ideal), played(code, camera);
   const DecodingTable told_table = make_decoding_table(told, ideal),
                       played_table = make_decoding_table(played, camera);
-  const auto error = [&](const ForwardModel& model, const DecodingTable& believed, int part) {
+  const ProgressParts parts(progress, 3);
+  const auto error = [&](const ForwardModel& model, const DecodingTable& believed,
+                         std::size_t part) {
     const DepthTrials trials(model, camera, options, believed);
-    return trial_errors(trials, code, camera, options,
-                        part_of(progress, part / 3.0, (part + 1) / 3.0));
+    return trial_errors(trials, code, camera, options, parts[part]);
   };
   return {.told = error(told, told_table, 0),
           .played = error(played, played_table, 1),

@@ -134,10 +134,11 @@ MultipathCell CellTrials::cell(const CellLight& light, std::uint64_t number,
   result.cramer_rao_mae_m = no_number;
   std::vector<double> true_m;
   const RawFrames raw = capture(light, number, true_m);
-  add_errors(single_.decode(raw, 0, part_of(progress, 0.0, 0.1)).depth_m, true_m,
-             result.single_bias_m, result.single_error_m);
+  const ProgressParts parts(progress, {10, 90});
+  add_errors(single_.decode(raw, 0, parts[0]).depth_m, true_m, result.single_bias_m,
+             result.single_error_m);
   if (!decoder) return result;
-  const MultipathImage image = decoder->decode(raw, 0, part_of(progress, 0.1, 1.0));
+  const MultipathImage image = decoder->decode(raw, 0, parts[1]);
   add_errors(image.direct.depth_m, true_m, result.bias_m, result.error_m);
   const auto share = [&](ReturnStatus status) {
     return static_cast<double>(std::ranges::count(image.returns.pixels, status)) /
@@ -205,12 +206,12 @@ MultipathErrorReport multipath_error(const CodeSet& code, const Camera& camera,
   const std::size_t cells =
       options.signal_e_per_s.size() *
       (2 + options.ratio.size() * (options.delay_m.size() + options.tail_m.size()));
+  const ProgressParts parts(progress, cells);
   std::uint64_t number = 0;
   const auto measure = [&](const CellLight& light, const auto* decoder) {
-    const double done = static_cast<double>(number), count = static_cast<double>(cells);
-    report(progress, done / count, "multi-path");
-    return trials.cell(light, number++, decoder,
-                       part_of(progress, done / count, (done + 1) / count));
+    const Progress part = parts[number];
+    report(part, 0.0, "multi-path");
+    return trials.cell(light, number++, decoder, part);
   };
   for (const double signal : options.signal_e_per_s) {
     MultipathMaps maps;

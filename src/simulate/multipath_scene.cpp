@@ -82,14 +82,14 @@ MultipathScene multipath_scene(std::string name, const SceneImage& truth, const 
   const TwoReturnDecoder two_return(table, decoding);
   SceneLight scene_light;
   scene_light.returns = returns;
-  const RawFrames raw =
-      capture(truth, scene_light, code, camera, light, part_of(progress, 0.0, 0.5));
+  const ProgressParts parts(progress, 2);
+  const RawFrames raw = capture(truth, scene_light, code, camera, light, parts[0]);
   const auto add = [&](const char* method, Image<float> depth_m) {
     Image<float> error_m = depth_difference_m(depth_m, truth, camera, DepthErrorKind::circular);
     scene.decodings.push_back({method, std::move(depth_m), std::move(error_m)});
   };
   add("single-path", Decoder(table).decode(raw).depth_m);
-  MultipathImage decoded = two_return.decode(raw, 0, part_of(progress, 0.5, 1.0));
+  MultipathImage decoded = two_return.decode(raw, 0, parts[1]);
   add("two-return", std::move(decoded.direct.depth_m));
   scene.returns = std::move(decoded.returns);
   for (std::size_t i = 0; i + 1 < delay_edges_m.size(); ++i)

@@ -57,17 +57,14 @@ RobustnessReport robustness(const CodeSet& code, const Camera& camera,
   const std::vector<PerturbedCamera> cameras = perturbations(camera, options);
   const DepthErrorKind kind = camera.operating.error;
   const Judge judge(kind, options);
-  const auto runs = static_cast<double>(2 * cameras.size() + 1);
-  const auto part = [&](std::size_t run) {
-    return part_of(progress, static_cast<double>(run) / runs, static_cast<double>(run + 1) / runs);
-  };
+  const ProgressParts parts(progress, 2 * cameras.size() + 1);
 
   const ForwardModel said(code, camera);
   const DecodingTable said_table = make_decoding_table(said, camera);
   RobustnessReport report{.kind = kind,
                           .trials = options.trials + options.trials % 2,
                           .seed = options.seed,
-                          .nominal_m = judge.error_m(code, camera, said, said_table, part(0)),
+                          .nominal_m = judge.error_m(code, camera, said, said_table, parts[0]),
                           .perturbed = {}};
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const Camera& actual = cameras[i].camera;
@@ -76,8 +73,8 @@ RobustnessReport robustness(const CodeSet& code, const Camera& camera,
     const DecodingTable table = make_decoding_table(model, actual);
     report.perturbed.push_back(
         {.name = cameras[i].name,
-         .calibrated_m = judge.error_m(played, actual, model, table, part(2 * i + 1)),
-         .uncalibrated_m = judge.error_m(played, actual, model, said_table, part(2 * i + 2))});
+         .calibrated_m = judge.error_m(played, actual, model, table, parts[2 * i + 1]),
+         .uncalibrated_m = judge.error_m(played, actual, model, said_table, parts[2 * i + 2])});
   }
   return report;
 }

@@ -19,12 +19,12 @@ void capture_and_decode(SceneResult& scene, std::span<const CodeSet> codes, cons
   std::vector<Decoder> decoders;
   for (const CodeSet& code : codes)
     decoders.emplace_back(make_decoding_table(ForwardModel(code, camera), camera));
-  double done = 0.0;
-  const double count = static_cast<double>(codes.size() * lights.size());
+  const ProgressParts parts(progress, codes.size() * lights.size());
   for (const NamedLight& light : lights) {
     SceneCapture capture_result{light.name, light.point, {}};
     for (std::size_t i = 0; i < codes.size(); ++i) {
-      report(progress, done++ / count, fmt::format("{} at {} light", codes[i].name(), light.name));
+      report(parts[scene.captures.size() * codes.size() + i], 0.0,
+             fmt::format("{} at {} light", codes[i].name(), light.name));
       const CaptureOptions options{.signal_e_per_s = light.point.signal_e_per_s,
                                    .ambient_e_per_s = light.point.ambient_e_per_s,
                                    .reference_distance_m = scene.reference_distance_m,

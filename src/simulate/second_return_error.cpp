@@ -61,12 +61,11 @@ SecondReturnError error_of(const PixelCapture& pixel, const Camera& camera,
   const double range_m = camera.range_m();
   std::vector<Estimate> linear_m, circular_m;
   const std::size_t points = camera.operating.points().size();
+  const ProgressParts parts(progress, points);
   for (std::size_t p = 0; p < points; ++p) {
-    const double done = static_cast<double>(p), count = static_cast<double>(points);
-    report(progress, done / count, "second returns");
+    report(parts[p], 0.0, "second returns");
     const TrialFrame frame = draw_frame(pixel, camera, later, options, p);
-    const Image<float> depth_m =
-        depth_of(frame.raw, part_of(progress, done / count, (done + 1) / count));
+    const Image<float> depth_m = depth_of(frame.raw, parts[p]);
     RunningStatistics linear, circular;
     for (std::size_t t = 0; t < frame.true_m.size(); ++t) {
       // Nothing decoded is as good as any depth.
@@ -138,10 +137,11 @@ SecondReturnReport second_return_report(const CodeSet& code, const Camera& camer
                                         const SecondReturns& later, const EvaluateOptions& options,
                                         const Progress& progress) {
   const SecondReturnTrials trials(code, camera, later, options);
+  const ProgressParts parts(progress, {30, 70});
   SecondReturnReport result;
-  result.single_path = trials.single_path(part_of(progress, 0.0, 0.3));
+  result.single_path = trials.single_path(parts[0]);
   try {
-    result.two_return = trials.two_return(part_of(progress, 0.3, 1.0));
+    result.two_return = trials.two_return(parts[1]);
   } catch (const std::invalid_argument&) {  // too few means to tell two returns
     report(progress, 1.0, "second returns");
   }

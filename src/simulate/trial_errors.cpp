@@ -75,7 +75,7 @@ class AdaptiveTrials {
 /// Adds rounds of trials where the target is not met. @returns how many points stay short of it
 int refine(const DepthTrials& trials, const AdaptiveTrials& plan, double threshold_bin,
            const Progress& progress, std::vector<ErrorSums>& of_point) {
-  for (double left = 1.0;; left /= 2) {
+  for (Progress left = progress;;) {
     std::vector<TrialRound> rounds;
     int short_of_target = 0;
     for (std::size_t p = 0; p < of_point.size(); ++p) {
@@ -85,8 +85,9 @@ int refine(const DepthTrials& trials, const AdaptiveTrials& plan, double thresho
         rounds.push_back({p, of_point[p].trials, more});
     }
     if (rounds.empty()) return short_of_target;
-    const auto added =
-        sum_errors(trials, rounds, threshold_bin, part_of(progress, 1.0 - left, 1.0 - left / 2));
+    const ProgressParts halves(left, 2);
+    const auto added = sum_errors(trials, rounds, threshold_bin, halves[0]);
+    left = halves[1];
     for (std::size_t r = 0; r < rounds.size(); ++r) of_point[rounds[r].point].merge(added[r]);
   }
 }
@@ -130,14 +131,14 @@ DepthErrorReport trial_errors(const DepthTrials& trials, const CodeSet& code, co
                               const EvaluateOptions& options, const Progress& progress) {
   const double bin_m = camera.bin_m(), threshold_bin = options.outlier_threshold_m / bin_m;
   const bool is_adaptive = options.target_standard_error > 0.0;
+  const ProgressParts parts(progress, {10, is_adaptive ? 90.0 : 0.0});
   std::vector<ErrorSums> of_point =
-      sum_errors(trials, trials.first_rounds(), threshold_bin,
-                 is_adaptive ? part_of(progress, 0.0, 0.1) : progress);
+      sum_errors(trials, trials.first_rounds(), threshold_bin, parts[0]);
 
   DepthErrorReport result;
   if (is_adaptive)
-    result.points_short_of_target = refine(trials, AdaptiveTrials(camera, options), threshold_bin,
-                                           part_of(progress, 0.1, 1.0), of_point);
+    result.points_short_of_target =
+        refine(trials, AdaptiveTrials(camera, options), threshold_bin, parts[1], of_point);
   result.code = code.name();
   result.exposures = code.exposures();
   result.taps = code.taps();

@@ -17,9 +17,6 @@ HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
 
-using Doubles = hn::CappedTag<double, 8>;
-using DoubleVector = hn::Vec<Doubles>;
-
 void place(const DepthSlices& slices, double rows, double rows_per_bin, int trials,
            TrialTile& tile) {
   const Doubles d;
@@ -28,7 +25,7 @@ void place(const DepthSlices& slices, double rows, double rows_per_bin, int tria
   const hn::Rebind<std::uint32_t, Doubles> narrow;
   const hn::Rebind<std::int32_t, Doubles> narrow_i;
   const hn::Rebind<float, Doubles> narrow_f;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int lanes = lanes_of(d);
   const double bins_per_row = 1.0 / rows_per_bin;  // exact: a power of two
   const auto set = [&](double value) { return hn::Set(d, value); };
   const auto low_byte = hn::Set(narrow, 0xffu);
@@ -58,7 +55,7 @@ struct RecordChunk {
   alignas(64) float fields[4 * max_measurements * pixels_per_chunk];
 
   HWY_INLINE void read(const TrialModel& model, const TrialTile& tile, int first, int trials) {
-    const auto lanes = static_cast<int>(hn::Lanes(Floats()));
+    const int lanes = lanes_of();
     const int count = model.taps() * (model.has_own_shot_noise() ? 4 : 2);
     find_rows(model.records(), tile.row + first, trials, start);
     for (int i = 0; i < trials; i += lanes)
@@ -108,7 +105,7 @@ void plane_of_rank(const TrialModel& model, const PlaneNoise& noise, int trials,
   for (int first = 0; first < trials; first += pixels_per_chunk) {
     const int count = std::min(pixels_per_chunk, trials - first);
     chunk.read(model, tile, first, count);
-    for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
+    for (int i = 0; i < count; i += lanes_of(d)) {
       const Vector share = hn::Load(d, tile.share + first + i);
       const Vector signal = hn::Load(d, tile.signal + first + i);
       Vector q[most_rank], c[most_rank * (most_rank + 1) / 2];
@@ -158,7 +155,7 @@ void expect(const TrialModel& model, const float* mean_floor_e, int trials, Tria
   for (int first = 0; first < trials; first += pixels_per_chunk) {
     const int count = std::min(pixels_per_chunk, trials - first);
     chunk.read(model, tile, first, count);
-    for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
+    for (int i = 0; i < count; i += lanes_of(d)) {
       const Vector share = hn::Load(d, tile.share + first + i);
       const Vector signal = hn::Load(d, tile.signal + first + i);
       for (int k = 0; k < model.taps(); ++k) {
@@ -174,7 +171,7 @@ void read_out(const TapConversion& sensor, const float* most_e, int taps, int tr
               TrialTile& tile) {
   const Floats d;
   const Vector zero = hn::Zero(d), sigma = all(sensor.read_noise_e);
-  for (int i = 0; i < trials; i += static_cast<int>(hn::Lanes(d)))
+  for (int i = 0; i < trials; i += lanes_of(d))
     for (int k = 0; k < taps; ++k) {
       float* const value = tile.taps + k * trials_per_tile + i;
       Vector e = hn::Load(d, value), deviation = sigma;
@@ -194,7 +191,7 @@ void read_out(const TapConversion& sensor, const float* most_e, int taps, int tr
     }
   if (!sensor.is_difference) return;
   for (int k = 0; k < taps / 2; ++k)
-    for (int i = 0; i < trials; i += static_cast<int>(hn::Lanes(d))) {
+    for (int i = 0; i < trials; i += lanes_of(d)) {
       const float* const pair = tile.taps + 2 * k * trials_per_tile + i;
       hn::Store(hn::Sub(hn::Load(d, pair), hn::Load(d, pair + trials_per_tile)), d,
                 tile.taps + k * trials_per_tile + i);
@@ -215,7 +212,7 @@ struct PairSums {
 TileSums sums(const double* true_bin, const double* decoded_bin, int trials, double samples,
               double threshold_bin) {
   const Doubles d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const int lanes = lanes_of(d);
   const DoubleVector zero = hn::Zero(d), all_samples = hn::Set(d, samples);
   const DoubleVector threshold = hn::Set(d, threshold_bin), one = hn::Set(d, 1.0);
   PairSums linear{zero, zero}, circular{zero, zero}, outliers{zero, zero};
@@ -268,14 +265,6 @@ HWY_EXPORT(plane);
 HWY_EXPORT(expect);
 HWY_EXPORT(read_out);
 HWY_EXPORT(sums);
-
-namespace {
-
-std::vector<float> in_floats(const Eigen::VectorXd& values) {
-  return {values.begin(), values.end()};
-}
-
-}  // namespace
 
 PlaneNoise::PlaneNoise(const TrialModel& model, const PlaneMap& map, double ambient_e_per_s)
     : rank(static_cast<int>(map.weight.rows())),

@@ -30,12 +30,6 @@ TapConversion conversion_of(const Sensor& sensor) {
   return c;
 }
 
-/// What a table says of shot noise, or that of the means.
-template <typename Values>
-const Values& or_else(const Values& own, const Values& other) {
-  return own.size() > 0 ? own : other;
-}
-
 }  // namespace
 
 TrialModel::TrialModel(const ForwardModel& model, const Camera& camera)
@@ -65,16 +59,15 @@ TrialModel::TrialModel(const DecodingTable& table)
       exposure_s_(table.exposure_s),
       ambient_e_(exposure_s_.cwiseProduct(table.ambient_gain)),
       dark_e_(table.dark_electrons),
-      shot_ambient_e_(
-          exposure_s_.cwiseProduct(or_else(table.shot_ambient_gain, table.ambient_gain))),
-      shot_dark_e_(or_else(table.shot_dark_electrons, table.dark_electrons)),
+      shot_ambient_e_(exposure_s_.cwiseProduct(table.shot_ambient())),
+      shot_dark_e_(table.shot_dark()),
       constant_variance_e2_(table.constant_variance_e2),
       raw_per_e_(table.gain_e_per_raw.cwiseInverse().asDiagonal()),
       raw_at_zero_(table.black_level),
       conversion_{.full_well_e = std::numeric_limits<float>::infinity()},
       records_(samples_, 4 * taps_) {
   fill_records(table.correlation * exposure_s_.asDiagonal(),
-               or_else(table.shot_correlation, table.correlation) * exposure_s_.asDiagonal());
+               table.shot() * exposure_s_.asDiagonal());
 }
 
 void TrialModel::fill_records(const Eigen::MatrixXd& mean, const Eigen::MatrixXd& shot) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -16,24 +17,53 @@
 namespace tofsmith {
 namespace {
 
-TEST(Progress, PartsOfPartsCoverTheWhole) {
+/// Keeps what it is told.
+struct Listener {
   std::vector<double> seen;
-  const Progress whole = [&](double fraction, std::string_view step) {
+  Progress progress = [this](double fraction, std::string_view step) {
     EXPECT_EQ(step, "x");
     seen.push_back(fraction);
     return true;
   };
-  const Progress second_half = part_of(whole, 0.5, 1.0);
-  report(second_half, 0.0, "x");
-  report(part_of(second_half, 0.5, 1.0), 0.5, "x");
-  report(second_half, 1.0, "x");
-  EXPECT_EQ(seen, (std::vector<double>{0.5, 0.875, 1.0}));
+};
+
+TEST(Progress, PartsOfPartsCoverTheWhole) {
+  Listener whole;
+  const ProgressParts halves(whole.progress, 2);
+  report(halves[1], 0.0, "x");
+  report(ProgressParts(halves[1], 2)[1], 0.5, "x");
+  report(halves[1], 1.0, "x");
+  EXPECT_EQ(whole.seen, (std::vector<double>{0.5, 0.875, 1.0}));
+}
+
+TEST(Progress, PartsTakeTheSharesOfTheirWeights) {
+  Listener whole;
+  const ProgressParts parts(whole.progress, {3.0, 0.0, 1.0});
+  for (std::size_t i = 0; i < 3; ++i)
+    for (const double fraction : {0.0, 1.0}) report(parts[i], fraction, "x");
+  EXPECT_EQ(whole.seen, (std::vector<double>{0.0, 0.75, 0.75, 0.75, 0.75, 1.0}));
+}
+
+TEST(Progress, OfManyUnevenPartsNeverFallsAndEndsAtOne) {
+  Listener whole;
+  std::vector<double> weights;
+  for (int i = 0; i < 97; ++i) weights.push_back(0.1 + i * i % 7);
+  const ProgressParts parts(whole.progress, weights);
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const ProgressParts thirds(parts[i], 3);
+    for (std::size_t third = 0; third < 3; ++third)
+      for (const double fraction : {0.0, 0.3, 1.0}) report(thirds[third], fraction, "x");
+  }
+  EXPECT_TRUE(std::ranges::is_sorted(whole.seen));
+  EXPECT_EQ(whole.seen.front(), 0.0);
+  EXPECT_EQ(whole.seen.back(), 1.0);
 }
 
 TEST(Progress, StopsWorkWhenItSaysSo) {
   const Progress stop = [](double, std::string_view) { return false; };
   EXPECT_THROW(report(stop, 0.0, "x"), Interrupted);
-  EXPECT_THROW(report(part_of(stop, 0.0, 0.5), 0.0, "x"), Interrupted);
+  EXPECT_THROW(report(ProgressParts(stop, 2)[0], 0.0, "x"), Interrupted);
+  EXPECT_THROW(SharedProgress(stop, 1.0, "x"), Interrupted);
 }
 
 TEST(Progress, IsCalledByTheThreadThatAsksAndStopsEveryThreadBetweenPieces) {
@@ -44,7 +74,7 @@ TEST(Progress, IsCalledByTheThreadThatAsksAndStopsEveryThreadBetweenPieces) {
     EXPECT_EQ(step, "x");
     EXPECT_GE(fraction, last);
     last = fraction;
-    return fraction < 0.01;
+    return fraction == 0.0;
   };
   constexpr int items = 4, pieces = 100'000;
   SharedProgress shared(stop_early, items * pieces, "x");
@@ -65,7 +95,7 @@ TEST(Progress, IsCalledByTheThreadThatAsksAndStopsEveryThreadBetweenPieces) {
 TEST(Progress, NoneIsAskedForNothing) {
   SharedProgress({}, 1.0, "x").add();
   EXPECT_NO_THROW(report({}, 0.0, "x"));
-  EXPECT_FALSE(part_of({}, 0.0, 1.0));
+  EXPECT_FALSE(ProgressParts({}, 2)[0]);
 }
 
 }  // namespace

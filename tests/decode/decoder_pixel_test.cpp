@@ -4,21 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
-#include "decode_setup.hpp"
-#include "tofsmith/core/statistics.hpp"
-#include "tofsmith/core/units.hpp"
+#include "pixel_laws.hpp"
 
 namespace tofsmith {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
-DepthImage decode_pixel(const Decoder& decoder, const std::vector<float>& raw) {
-  return decoder.decode(frame_of(raw, decoder.measurements()));
-}
 
 TEST(PixelStatus, HasAName) {
   for (const PixelStatus status : all_pixel_statuses) EXPECT_FALSE(name_of(status).empty());
@@ -27,76 +17,36 @@ TEST(PixelStatus, HasAName) {
 }
 
 TEST(Decoder, StrongSignalIsOk) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  std::vector<float> raw;
-  setup.append_expected(raw, 1e5, 30.0, 1e3);
-  const DepthImage image = decode_pixel(setup.decoder, raw);
-  EXPECT_EQ(image.status(0, 0), PixelStatus::ok);
-  EXPECT_NEAR(image.depth_m(0, 0), setup.camera.range_m() / 8, 1e-3);
-  EXPECT_NEAR(image.signal_e_per_s(0, 0), 1e5, 10.0);
-  EXPECT_NEAR(image.ambient_e_per_s(0, 0), 1e3, 10.0);
-  EXPECT_GT(image.confidence(0, 0), 0.999);
+  expect_strong_signal_is_ok(DecodeSetup("hamiltonian-k4", camera_with("paper-10f0")), 1e5, 10.0,
+                             10.0);
 }
 
 TEST(Decoder, NotANumberIsInvalidAndDisturbsNoNeighbour) {
-  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
-  std::vector<float> raw = noisy_pixels(setup.decoder.table(), 1e4, 1e4, 300, 1);
-  const DepthImage before = decode_pixel(setup.decoder, raw);
-  raw[4 * 100 + 2] = nan;
-  raw[4 * 101] = infinity;
-  raw[4 * 102 + 3] = -infinity;
-  for (int k = 0; k < 4; ++k) raw[4 * 103 + static_cast<std::size_t>(k)] = infinity;
-  const DepthImage after = decode_pixel(setup.decoder, raw);
-  const auto bins = bins_of(setup.decoder, raw);
-  const auto positions = depth_bins_of(setup.decoder, raw);
-  for (int i = 0; i < 300; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (i >= 100 && i < 104) {
-      EXPECT_EQ(after.status.pixels[at], PixelStatus::invalid);
-      EXPECT_TRUE(std::isnan(after.depth_m.pixels[at]));
-      EXPECT_EQ(bins[at], -1);
-      EXPECT_TRUE(std::isnan(positions[at]));
-    } else {
-      EXPECT_EQ(after.status.pixels[at], before.status.pixels[at]);
-      EXPECT_EQ(after.depth_m.pixels[at], before.depth_m.pixels[at]);
-      EXPECT_EQ(after.confidence.pixels[at], before.confidence.pixels[at]);
-    }
-  }
+  expect_not_a_number_disturbs_no_neighbour(
+      DecodeSetup("hamiltonian-k4", camera_with("paper-10f0")).decoder, 300, 1.0);
 }
 
 TEST(Decoder, HugeNumbersAreDecodedNotOverflown) {
-  const DecodeSetup setup("hamiltonian-k3", camera_with("paper-30x"));
-  std::vector<float> raw;
-  setup.append_expected(raw, 1e4, 50.0, 0.0);
-  for (float& value : raw) value *= 3e34f;
-  EXPECT_NEAR(depth_bins_of(setup.decoder, raw)[0], 50.0, 1e-3);
+  expect_huge_numbers_are_decoded(DecodeSetup("hamiltonian-k3", camera_with("paper-30x")));
 }
 
 TEST(Decoder, AmbientLightAloneIsNoReturn) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   for (const float level : {0.0f, 700.0f, 12345.678f}) {
-    const DepthImage image = decode_pixel(setup.decoder, std::vector<float>(4, level));
+    const DepthImage image = decode_pixels(setup.decoder, std::vector<float>(4, level));
     EXPECT_EQ(image.status(0, 0), PixelStatus::no_return);
     EXPECT_TRUE(std::isnan(image.depth_m(0, 0)));
   }
 }
 
-TEST(Decoder, NegativeSignalIsNoReturn) {
-  // A curve that stays on one side: what points away from all of it fits only negative signal.
-  Eigen::MatrixXd correlation(20, 3);
-  for (int n = 0; n < 20; ++n) correlation.row(n) << 0.0, 1.0, 0.02 * n;
-  const Decoder decoder(make_decoding_table(correlation, 10.0));
-  const DepthImage image = decode_pixel(decoder, {100.0f, 0.0f, 50.0f});
-  EXPECT_EQ(image.status(0, 0), PixelStatus::no_return);
-  EXPECT_EQ(decode_pixel(decoder, {0.0f, 100.0f, 20.0f}).status(0, 0), PixelStatus::ok);
-}
+TEST(Decoder, NegativeSignalIsNoReturn) { expect_negative_signal_is_no_return<Decoder>(); }
 
 TEST(Decoder, NegativeMeasurementsAreData) {
   const DecodeSetup setup("hamiltonian-k3", camera_with("paper-30x"));
   std::vector<float> raw;
   setup.append_expected(raw, 1e5, 100.25, 0.0);
   for (float& value : raw) value -= 20000.0f;
-  const DepthImage image = decode_pixel(setup.decoder, raw);
+  const DepthImage image = decode_pixels(setup.decoder, raw);
   EXPECT_NEAR(image.depth_m(0, 0), 100.25 * setup.camera.bin_m(), 1e-4);
   EXPECT_LT(image.ambient_e_per_s(0, 0), 0.0f);
 }
@@ -108,10 +58,10 @@ TEST(Decoder, ClippedPixelsAreSaturatedButKeepTheirDepth) {
   std::vector<float> raw;
   setup.append_expected(raw, 1e5, 77.0, 1e4);
   for (float& value : raw) value = std::min(value, 5000.0f);
-  const DepthImage image = decode_pixel(setup.decoder, raw);
+  const DepthImage image = decode_pixels(setup.decoder, raw);
   EXPECT_EQ(image.status(0, 0), PixelStatus::saturated);
   EXPECT_TRUE(std::isfinite(image.depth_m(0, 0)));
-  const DepthImage white = decode_pixel(setup.decoder, std::vector<float>(4, 5000.0f));
+  const DepthImage white = decode_pixels(setup.decoder, std::vector<float>(4, 5000.0f));
   EXPECT_EQ(white.status(0, 0), PixelStatus::saturated);
   EXPECT_TRUE(std::isnan(white.depth_m(0, 0)));
 }
@@ -120,7 +70,7 @@ TEST(Decoder, FaintSignalIsLowSignal) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   std::vector<float> raw;
   setup.append_expected(raw, 100.0, 30.0, 1e5);
-  const DepthImage image = decode_pixel(setup.decoder, raw);
+  const DepthImage image = decode_pixels(setup.decoder, raw);
   EXPECT_EQ(image.status(0, 0), PixelStatus::low_signal);
   EXPECT_NEAR(image.depth_m(0, 0), setup.camera.range_m() / 8, 1e-2);
 }
@@ -144,38 +94,25 @@ std::vector<float> between_two_depths(const DecodingTable& table) {
 TEST(Decoder, APixelBetweenTwoDepthsIsAmbiguous) {
   const DecodeSetup setup("hamiltonian-k5", camera_with("paper-30x"));
   const std::vector<float> raw = between_two_depths(setup.decoder.table());
-  const DepthImage image = decode_pixel(setup.decoder, raw);
+  const DepthImage image = decode_pixels(setup.decoder, raw);
   EXPECT_EQ(image.status(0, 0), PixelStatus::ambiguous);
   EXPECT_LT(image.confidence(0, 0), 0.9f);
   EXPECT_TRUE(std::isfinite(image.depth_m(0, 0)));
   DecodeOptions trusting;
   trusting.minimum_confidence = 0.0;
   const DecodeSetup trusting_setup("hamiltonian-k5", camera_with("paper-30x"), trusting);
-  EXPECT_EQ(decode_pixel(trusting_setup.decoder, raw).status(0, 0), PixelStatus::ok);
+  EXPECT_EQ(decode_pixels(trusting_setup.decoder, raw).status(0, 0), PixelStatus::ok);
 }
 
 TEST(Decoder, ConfidentPixelsAreRightAsOftenAsTheySay) {
   // Of pixels sure to 1 - 1e-4, next to none may be far off; of unsure ones many are (far: outside
   // the main lobe, which is up to 2 m wide on each side).
   const DecodeSetup setup("hamiltonian-k5", camera_with("paper-10f0"));
-  const int pixels = 20000;
-  const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 2e3, 1e4, pixels, 11);
-  const DepthImage image = decode_pixel(setup.decoder, raw);
-  RandomStream random(11, 0);
-  int sure = 0, sure_wrong = 0, unsure = 0, unsure_wrong = 0;
-  for (int i = 0; i < pixels; ++i) {
-    const double truth_m = random.uniform() * setup.camera.range_m();
-    for (int k = 0; k < 5; ++k) random.normal();
-    const double error_m = std::abs(circular_difference(static_cast<double>(image.depth_m(0, i)),
-                                                        truth_m, setup.camera.range_m()));
-    const float confidence = image.confidence(0, i);
-    if (confidence > 0.9999f) ++sure, sure_wrong += error_m > 2.0;
-    if (confidence < 0.8f) ++unsure, unsure_wrong += error_m > 2.0;
-  }
-  EXPECT_GT(sure, 100);
-  EXPECT_GT(unsure, 1000);
-  EXPECT_LE(sure_wrong, 0.005 * sure);
-  EXPECT_GE(unsure_wrong, 0.1 * unsure);
+  const SureAndUnsure seen(setup, 2e3, 1e4, 0.9999, 2.0);
+  EXPECT_GT(seen.sure, 100);
+  EXPECT_GT(seen.unsure, 1000);
+  EXPECT_LE(seen.sure_wrong, 0.005 * seen.sure);
+  EXPECT_GE(seen.unsure_wrong, 0.1 * seen.unsure);
 }
 
 struct NoiseCase {
@@ -190,31 +127,15 @@ class EstimatesOf : public testing::TestWithParam<NoiseCase> {};
 TEST_P(EstimatesOf, AgreeWithMonteCarloAtHighSignal) {
   const NoiseCase c = GetParam();
   const DecodeSetup setup(c.code, camera_with("paper-10f0", c.taps, c.readout));
-  const DecodingTable& table = setup.decoder.table();
-  const int k_count = table.measurements(), trials = 4000;
   for (const double truth_bin : {33.3, 121.7, 200.2}) {
-    const Return r{c.signal, truth_bin};
-    const Eigen::VectorXd mean = setup.model.expected_electrons({&r, 1}, c.ambient);
-    const Eigen::VectorXd variance = setup.model.variance_e2({&r, 1}, c.ambient);
-    RandomStream random(3, static_cast<std::uint64_t>(truth_bin));
-    std::vector<float> raw;
-    for (int i = 0; i < trials; ++i)
-      for (int k = 0; k < k_count; ++k)
-        raw.push_back(static_cast<float>(mean[k] + std::sqrt(variance[k]) * random.normal()));
-    const DepthImage image = decode_pixel(setup.decoder, raw);
-    RunningStatistics depth_m, signal, ambient, predicted_m;
-    for (int i = 0; i < trials; ++i) {
-      depth_m.add(image.depth_m(0, i));
-      signal.add(image.signal_e_per_s(0, i));
-      ambient.add(image.ambient_e_per_s(0, i));
-      predicted_m.add(image.predicted_standard_deviation_m(0, i));
-    }
-    EXPECT_NEAR(predicted_m.mean() / std::sqrt(depth_m.variance()), 1.0, 0.1) << truth_bin;
-    EXPECT_NEAR(signal.mean(), c.signal, 4 * signal.standard_error() + 1e-3 * c.signal);
+    const PixelEstimates found = estimates_at(setup, truth_bin, c.signal, c.ambient);
+    EXPECT_NEAR(found.ratio(), 1.0, 0.1) << truth_bin;
+    EXPECT_NEAR(found.signal.mean(), c.signal, 4 * found.signal.standard_error() + 1e-3 * c.signal);
     if (c.readout == Readout::separate) {
-      EXPECT_NEAR(ambient.mean(), c.ambient, 4 * ambient.standard_error() + 1e-3 * c.signal);
+      EXPECT_NEAR(found.ambient.mean(), c.ambient,
+                  4 * found.ambient.standard_error() + 1e-3 * c.signal);
     } else {
-      EXPECT_TRUE(std::isnan(ambient.mean()));
+      EXPECT_TRUE(std::isnan(found.ambient.mean()));
     }
   }
 }

@@ -6,8 +6,6 @@
 
 #include <array>
 #include <cstring>
-#include <limits>
-#include <numeric>
 
 #include "decode_setup.hpp"
 #include "tofsmith/core/error.hpp"

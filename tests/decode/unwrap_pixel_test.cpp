@@ -3,58 +3,24 @@
 // What the unwrapping decoder says of a pixel besides its depth.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
-#include <limits>
 
+#include "pixel_laws.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/core/statistics.hpp"
-#include "tofsmith/core/units.hpp"
 #include "tofsmith/decode/decode_method.hpp"
 #include "unwrap_setup.hpp"
 
 namespace tofsmith {
 namespace {
 
-DepthImage decode_pixels(const UnwrapDecoder& decoder, const std::vector<float>& raw) {
-  return decoder.decode(frame_of(raw, decoder.measurements()));
-}
-
 TEST(UnwrapDecoder, StrongSignalIsOk) {
-  const UnwrapSetup setup("multifrequency-k5", camera_with("paper-10f0"));
-  std::vector<float> raw;
-  setup.append_expected(raw, 1e6, 30.0, 1e3);
-  const DepthImage image = decode_pixels(setup.decoder, raw);
-  EXPECT_EQ(image.status(0, 0), PixelStatus::ok);
-  EXPECT_NEAR(image.depth_m(0, 0), setup.camera.range_m() / 8, 1e-3);
-  EXPECT_NEAR(image.signal_e_per_s(0, 0), 1e6, 2e3);
-  EXPECT_NEAR(image.ambient_e_per_s(0, 0), 1e3, 1e3);
-  EXPECT_GT(image.confidence(0, 0), 0.999);
+  expect_strong_signal_is_ok(UnwrapSetup("multifrequency-k5", camera_with("paper-10f0")), 1e6, 2e3,
+                             1e3);
 }
 
 TEST(UnwrapDecoder, NotANumberIsInvalidAndDisturbsNoNeighbour) {
-  const UnwrapSetup setup("multifrequency-k5", camera_with("paper-10f0"));
-  std::vector<float> raw = noisy_pixels(setup.decoder.table(), 1e4, 1e4, 20, 1);
-  const DepthImage before = decode_pixels(setup.decoder, raw);
-  raw[5 * 10 + 2] = std::numeric_limits<float>::quiet_NaN();
-  raw[5 * 11] = std::numeric_limits<float>::infinity();
-  const DepthImage after = decode_pixels(setup.decoder, raw);
-  const auto positions = depth_bins_of(setup.decoder, raw);
-  std::vector<std::int32_t> bins(20);
-  setup.decoder.decode_bins(raw.data(), 20, bins.data());
-  for (std::size_t i = 0; i < 20; ++i) {
-    if (i == 10 || i == 11) {
-      EXPECT_EQ(after.status.pixels[i], PixelStatus::invalid);
-      EXPECT_TRUE(std::isnan(after.depth_m.pixels[i]));
-      EXPECT_TRUE(std::isnan(positions[i]));
-      EXPECT_EQ(bins[i], -1);
-    } else {
-      EXPECT_EQ(after.status.pixels[i], before.status.pixels[i]);
-      EXPECT_EQ(after.depth_m.pixels[i], before.depth_m.pixels[i]);
-      EXPECT_LE(std::abs(circular_difference(bins[i], positions[i], 240)), 0.5);
-      EXPECT_LT(bins[i], 240);
-    }
-  }
+  expect_not_a_number_disturbs_no_neighbour(
+      UnwrapSetup("multifrequency-k5", camera_with("paper-10f0")).decoder, 20);
 }
 
 TEST(UnwrapDecoder, StatusFollowsTheSameRulesAsZncc) {
@@ -85,25 +51,9 @@ class UnwrapEstimatesOf : public testing::TestWithParam<NoiseCase> {};
 TEST_P(UnwrapEstimatesOf, AgreeWithMonteCarloAtHighSignal) {
   const NoiseCase c = GetParam();
   const UnwrapSetup setup(c.code, camera_with(c.camera, c.taps, c.readout), {.weights = c.weights});
-  const int k_count = setup.decoder.measurements(), trials = 4000;
-  for (const double truth_bin : {33.3, 121.7, 200.2}) {
-    const Return r{1e6, truth_bin};
-    const Eigen::VectorXd mean = setup.model.expected_electrons({&r, 1}, 1e4);
-    const Eigen::VectorXd variance = setup.model.variance_e2({&r, 1}, 1e4);
-    RandomStream random(3, static_cast<std::uint64_t>(truth_bin));
-    std::vector<float> raw;
-    for (int i = 0; i < trials; ++i)
-      for (int k = 0; k < k_count; ++k)
-        raw.push_back(static_cast<float>(mean[k] + std::sqrt(variance[k]) * random.normal()));
-    const DepthImage image = decode_pixels(setup.decoder, raw);
-    RunningStatistics depth_m, predicted_m;
-    for (int i = 0; i < trials; ++i) {
-      depth_m.add(image.depth_m(0, i));
-      predicted_m.add(image.predicted_standard_deviation_m(0, i));
-    }
-    EXPECT_NEAR(predicted_m.mean() / std::sqrt(depth_m.variance()), 1.0, 0.06)
+  for (const double truth_bin : {33.3, 121.7, 200.2})
+    EXPECT_NEAR(estimates_at(setup, truth_bin, 1e6, 1e4).ratio(), 1.0, 0.06)
         << c.code << " at " << truth_bin;
-  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Codes, UnwrapEstimatesOf,
@@ -120,25 +70,11 @@ INSTANTIATE_TEST_SUITE_P(Codes, UnwrapEstimatesOf,
 
 TEST(UnwrapDecoder, ConfidentPixelsAreRightAsOftenAsTheySay) {
   const UnwrapSetup setup("multifrequency-k5", camera_with("paper-30x"));
-  const int pixels = 20000;
-  const std::vector<float> raw = noisy_pixels(setup.decoder.table(), 1e4, 3e4, pixels, 11);
-  const DepthImage image = decode_pixels(setup.decoder, raw);
-  RandomStream random(11, 0);
-  int sure = 0, sure_wrong = 0, unsure = 0, unsure_wrong = 0;
-  const double far_m = setup.camera.range_m() / 14;
-  for (int i = 0; i < pixels; ++i) {
-    const double truth_m = random.uniform() * setup.camera.range_m();
-    for (int k = 0; k < 5; ++k) random.normal();
-    const double error_m = std::abs(circular_difference(static_cast<double>(image.depth_m(0, i)),
-                                                        truth_m, setup.camera.range_m()));
-    const float confidence = image.confidence(0, i);
-    if (confidence > 0.95f) ++sure, sure_wrong += error_m > far_m;
-    if (confidence < 0.8f) ++unsure, unsure_wrong += error_m > far_m;
-  }
-  EXPECT_GT(sure, 1000);
-  EXPECT_GT(unsure, 1000);
-  EXPECT_LE(sure_wrong, 0.02 * sure);
-  EXPECT_GE(unsure_wrong, 0.15 * unsure);
+  const SureAndUnsure seen(setup, 1e4, 3e4, 0.95, setup.camera.range_m() / 14);
+  EXPECT_GT(seen.sure, 1000);
+  EXPECT_GT(seen.unsure, 1000);
+  EXPECT_LE(seen.sure_wrong, 0.02 * seen.sure);
+  EXPECT_GE(seen.unsure_wrong, 0.15 * seen.unsure);
 }
 
 TEST(UnwrapDecoder, GivesTheSameBitsOnAnyNumberOfThreads) {

@@ -48,11 +48,8 @@ inline Camera camera_with(const std::string& name, int taps = 1,
 inline std::vector<float> noisy_pixels(const DecodingTable& table, double signal, double ambient,
                                        int pixels, std::uint64_t seed) {
   const int k_count = table.measurements();
-  const auto& shot = table.shot_correlation.size() > 0 ? table.shot_correlation : table.correlation;
-  const auto& kappa =
-      table.shot_ambient_gain.size() > 0 ? table.shot_ambient_gain : table.ambient_gain;
-  const auto& shot_dark =
-      table.shot_dark_electrons.size() > 0 ? table.shot_dark_electrons : table.dark_electrons;
+  const auto& shot = table.shot();
+  const auto &kappa = table.shot_ambient(), &shot_dark = table.shot_dark();
   std::vector<float> raw;
   raw.reserve(static_cast<std::size_t>(pixels * k_count));
   RandomStream random(seed, 0);
@@ -88,7 +85,8 @@ inline std::vector<float> pixels_at_all_light_levels(const DecodingTable& table,
   return raw;
 }
 
-inline std::vector<std::int32_t> bins_of(const Decoder& decoder, const std::vector<float>& raw) {
+template <typename AnyDecoder>
+std::vector<std::int32_t> bins_of(const AnyDecoder& decoder, const std::vector<float>& raw) {
   std::vector<std::int32_t> bins(raw.size() / static_cast<std::size_t>(decoder.measurements()));
   decoder.decode_bins(raw.data(), static_cast<std::int64_t>(bins.size()), bins.data());
   return bins;

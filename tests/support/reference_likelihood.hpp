@@ -16,12 +16,9 @@ class ReferenceLikelihood {
  public:
   explicit ReferenceLikelihood(const DecodingTable& table)
       : table_(table),
-        shot_(table.shot_correlation.size() > 0 ? table.shot_correlation : table.correlation),
-        shot_ambient_gain_(table.shot_ambient_gain.size() > 0 ? table.shot_ambient_gain
-                                                              : table.ambient_gain),
-        floor_(table.constant_variance_e2 + (table.shot_dark_electrons.size() > 0
-                                                 ? table.shot_dark_electrons
-                                                 : table.dark_electrons)) {
+        shot_(table.shot()),
+        shot_ambient_gain_(table.shot_ambient()),
+        floor_(table.constant_variance_e2 + table.shot_dark()) {
     const Eigen::VectorXd a = table.exposure_s.cwiseProduct(table.ambient_gain);
     sees_ambient_ = a.norm() > 1e-9 * table.exposure_s.norm();
   }

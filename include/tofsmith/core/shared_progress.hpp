@@ -16,7 +16,9 @@ namespace tofsmith {
 /// more often than people can read, so that small pieces cost nothing.
 class SharedProgress {
  public:
+  /// Tells that `step` begins.
   /// @param pieces  how many make the whole
+  /// @throws Interrupted if the callback asks to stop
   SharedProgress(Progress progress, double pieces, std::string step);
 
   /// `pieces` more are done; parts of one count too.

@@ -10,6 +10,26 @@
 
 namespace tofsmith {
 
+/// How K measurements depend on light: what is expected of them and, apart where buckets are
+/// subtracted, the light collected, which makes shot noise.
+struct MeasurementTable {
+  Eigen::MatrixXd correlation;        ///< chi, (N, K), row n at depth_bin = n
+  Eigen::VectorXd ambient_gain;       ///< kappa (K)
+  Eigen::MatrixXd shot_correlation;   ///< (N, K), or empty: correlation
+  Eigen::VectorXd shot_ambient_gain;  ///< (K), or empty: ambient_gain
+
+  int samples() const { return static_cast<int>(correlation.rows()); }
+  int measurements() const { return static_cast<int>(correlation.cols()); }
+  /// Of the light collected: shot_correlation, or what stands for it.
+  const Eigen::MatrixXd& shot() const {
+    return shot_correlation.size() > 0 ? shot_correlation : correlation;
+  }
+  /// Of the ambient light collected: shot_ambient_gain, or what stands for it.
+  const Eigen::VectorXd& shot_ambient() const {
+    return shot_ambient_gain.size() > 0 ? shot_ambient_gain : ambient_gain;
+  }
+};
+
 /// Everything a decoder needs to know of a code on a camera. Measurements are what leaves the
 /// sensor (K of them: one per tap, or the differences of two-bucket pairs):
 ///   expected electrons  mu_i(z) = T_i (S chi_i(z) + A kappa_i) + dark_i
@@ -18,14 +38,10 @@ namespace tofsmith {
 /// The shot terms are those of the light collected; they differ from the expected values where
 /// buckets are subtracted. Left empty they are the same. Duties, exposures, gains and offsets may
 /// differ from measurement to measurement.
-struct DecodingTable {
-  Eigen::MatrixXd correlation;     ///< chi, (N, K), row n at depth_bin = n
-  Eigen::VectorXd ambient_gain;    ///< kappa (K)
+struct DecodingTable : MeasurementTable {
   Eigen::VectorXd exposure_s;      ///< T [s] (K), each > 0
   Eigen::VectorXd dark_electrons;  ///< expected electrons without any light [e] (K)
 
-  Eigen::MatrixXd shot_correlation;      ///< (N, K), or empty: correlation
-  Eigen::VectorXd shot_ambient_gain;     ///< (K), or empty: ambient_gain
   Eigen::VectorXd shot_dark_electrons;   ///< [e] (K), or empty: dark_electrons
   Eigen::VectorXd constant_variance_e2;  ///< of read-out and quantization [e^2] (K), each >= 0
 
@@ -34,8 +50,10 @@ struct DecodingTable {
   std::optional<float> saturation_level;  ///< raw numbers from here on are clipped; none: no limit
   double range_m = 0.0;                   ///< depth of a whole period [m], > 0
 
-  int samples() const { return static_cast<int>(correlation.rows()); }
-  int measurements() const { return static_cast<int>(correlation.cols()); }
+  /// Dark electrons collected [e] (K): shot_dark_electrons, or what stands for them.
+  const Eigen::VectorXd& shot_dark() const {
+    return shot_dark_electrons.size() > 0 ? shot_dark_electrons : dark_electrons;
+  }
   /// Depth of one bin [m].
   double bin_m() const { return range_m / samples(); }
 

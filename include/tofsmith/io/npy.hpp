@@ -39,54 +39,29 @@ using NpyShape = std::vector<std::size_t>;
 /// As Python writes it: "(480, 640, 4)".
 std::string describe_shape(const NpyShape& shape);
 
-namespace detail {
-template <typename Item>
-struct NpyTypeOf;
-template <>
-struct NpyTypeOf<std::int8_t> {
-  static constexpr NpyType value = NpyType::int8;
-};
-template <>
-struct NpyTypeOf<std::int16_t> {
-  static constexpr NpyType value = NpyType::int16;
-};
-template <>
-struct NpyTypeOf<std::int32_t> {
-  static constexpr NpyType value = NpyType::int32;
-};
-template <>
-struct NpyTypeOf<std::int64_t> {
-  static constexpr NpyType value = NpyType::int64;
-};
-template <>
-struct NpyTypeOf<std::uint8_t> {
-  static constexpr NpyType value = NpyType::uint8;
-};
-template <>
-struct NpyTypeOf<std::uint16_t> {
-  static constexpr NpyType value = NpyType::uint16;
-};
-template <>
-struct NpyTypeOf<std::uint32_t> {
-  static constexpr NpyType value = NpyType::uint32;
-};
-template <>
-struct NpyTypeOf<std::uint64_t> {
-  static constexpr NpyType value = NpyType::uint64;
-};
-template <>
-struct NpyTypeOf<float> {
-  static constexpr NpyType value = NpyType::float32;
-};
-template <>
-struct NpyTypeOf<double> {
-  static constexpr NpyType value = NpyType::float64;
-};
-}  // namespace detail
-
 /// The type under which items of C++ type `Item` are stored.
 template <typename Item>
-inline constexpr NpyType npy_type_of = detail::NpyTypeOf<Item>::value;
+inline constexpr NpyType npy_type_of = Item::is_no_type_of_numpy;
+template <>
+inline constexpr NpyType npy_type_of<std::int8_t> = NpyType::int8;
+template <>
+inline constexpr NpyType npy_type_of<std::int16_t> = NpyType::int16;
+template <>
+inline constexpr NpyType npy_type_of<std::int32_t> = NpyType::int32;
+template <>
+inline constexpr NpyType npy_type_of<std::int64_t> = NpyType::int64;
+template <>
+inline constexpr NpyType npy_type_of<std::uint8_t> = NpyType::uint8;
+template <>
+inline constexpr NpyType npy_type_of<std::uint16_t> = NpyType::uint16;
+template <>
+inline constexpr NpyType npy_type_of<std::uint32_t> = NpyType::uint32;
+template <>
+inline constexpr NpyType npy_type_of<std::uint64_t> = NpyType::uint64;
+template <>
+inline constexpr NpyType npy_type_of<float> = NpyType::float32;
+template <>
+inline constexpr NpyType npy_type_of<double> = NpyType::float64;
 
 /// A dense array as NumPy stores it: items of this machine's byte order, last axis fastest.
 class NpyArray {

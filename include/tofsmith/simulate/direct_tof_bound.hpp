@@ -32,12 +32,8 @@ class DirectTofBound {
 
   /// What one modulation carries, exactly [1 / period^2]; infinite without impulse response.
   double information_of(const Waveform& modulation, const OperatingPoint& point) const;
-  /// range sqrt(2 / pi) / sqrt(information_of) [m].
-  double mae_of_m(const Waveform& modulation, const OperatingPoint& point) const;
 
  private:
-  double mae_from_m(double information) const;
-
   double range_m_;
   double exposure_s_;  // of all exposures together, times the sensitivity of the best tap
   double peak_factor_;

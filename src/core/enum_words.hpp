@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+/// The words for the values 0 .. Count - 1 of an enumeration.
+template <typename Enum, std::size_t Count>
+class EnumWords {
+ public:
+  /// @param type   the enumeration's name
+  /// @param field  what users set by one of the words
+  template <typename... Words>
+  constexpr EnumWords(std::string_view type, std::string_view field, Words... words)
+      : type_(type), field_(field), words_{words...} {
+    static_assert(sizeof...(words) == Count, "one word for each value");
+  }
+
+  /// @throws std::invalid_argument if the enumeration has no such value
+  std::string_view of(Enum value) const {
+    const auto at = static_cast<std::size_t>(value);
+    require(at < Count, type_, at, fmt::format("must be in [0, {}]", Count - 1));
+    return words_[at];
+  }
+
+  /// @throws std::invalid_argument for any other word
+  Enum parse(std::string_view word) const {
+    const auto at = std::ranges::find(words_, word);
+    if (at == words_.end()) reject(field_, word, "must be " + listed());
+    return static_cast<Enum>(at - words_.begin());
+  }
+
+ private:
+  /// "a, b or c".
+  std::string listed() const {
+    return fmt::format("{} or {}", fmt::join(words_.begin(), words_.end() - 1, ", "),
+                       words_.back());
+  }
+
+  std::string_view type_, field_;
+  std::array<std::string_view, Count> words_;
+};
+
+}  // namespace tofsmith

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// What holds for the pixels of every decoder.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "decode_setup.hpp"
+#include "tofsmith/core/statistics.hpp"
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+
+inline constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
+inline constexpr float infinite = std::numeric_limits<float>::infinity();
+
+/// Pixels as one row of an image.
+template <typename AnyDecoder>
+DepthImage decode_pixels(const AnyDecoder& decoder, const std::vector<float>& raw) {
+  return decoder.decode(frame_of(raw, decoder.measurements()));
+}
+
+/// An eighth of the way, in ambient light of 1e3 e/s, seen without noise.
+/// @param signal_off, ambient_off  how far estimates may be off [e/s]
+template <typename Setup>
+void expect_strong_signal_is_ok(const Setup& setup, double signal, double signal_off,
+                                double ambient_off) {
+  std::vector<float> raw;
+  setup.append_expected(raw, signal, 30.0, 1e3);
+  const DepthImage image = decode_pixels(setup.decoder, raw);
+  EXPECT_EQ(image.status(0, 0), PixelStatus::ok);
+  EXPECT_NEAR(image.depth_m(0, 0), setup.camera.range_m() / 8, 1e-3);
+  EXPECT_NEAR(image.signal_e_per_s(0, 0), signal, signal_off);
+  EXPECT_NEAR(image.ambient_e_per_s(0, 0), 1e3, ambient_off);
+  EXPECT_GT(image.confidence(0, 0), 0.999);
+}
+
+/// Of so many noisy pixels some in the middle are made NaN or infinite, in one or all measurements.
+/// @param most_apart_bin  how far the positions of others are from their bins
+template <typename AnyDecoder>
+void expect_not_a_number_disturbs_no_neighbour(const AnyDecoder& decoder, int pixels,
+                                               double most_apart_bin = 0.5) {
+  std::vector<float> raw = noisy_pixels(decoder.table(), 1e4, 1e4, pixels, 1);
+  const DepthImage before = decode_pixels(decoder, raw);
+  const auto count = static_cast<std::size_t>(pixels), first = count / 2;
+  const auto measurements = static_cast<std::size_t>(decoder.measurements());
+  float* const bad = raw.data() + first * measurements;
+  bad[2] = not_a_number;
+  bad[measurements] = infinite;
+  bad[3 * measurements - 1] = -infinite;
+  std::fill_n(bad + 3 * measurements, measurements, infinite);
+  const DepthImage after = decode_pixels(decoder, raw);
+  const std::vector<double> positions = depth_bins_of(decoder, raw);
+  const std::vector<std::int32_t> bins = bins_of(decoder, raw);
+  const int samples = decoder.table().samples();
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_bad = i >= first && i < first + 4;
+    EXPECT_EQ(std::isnan(positions[i]), is_bad);
+    EXPECT_EQ(bins[i] == -1, is_bad);
+    if (is_bad) {
+      EXPECT_EQ(after.status.pixels[i], PixelStatus::invalid);
+      EXPECT_TRUE(std::isnan(after.depth_m.pixels[i]));
+      continue;
+    }
+    EXPECT_EQ(after.status.pixels[i], before.status.pixels[i]);
+    EXPECT_EQ(after.depth_m.pixels[i], before.depth_m.pixels[i]);
+    EXPECT_EQ(after.confidence.pixels[i], before.confidence.pixels[i]);
+    EXPECT_LE(std::abs(circular_difference(bins[i], positions[i], samples)), most_apart_bin);
+    EXPECT_LT(bins[i], samples);
+  }
+}
+
+/// Numbers far beyond any sensor's.
+template <typename Setup>
+void expect_huge_numbers_are_decoded(const Setup& setup) {
+  std::vector<float> raw;
+  setup.append_expected(raw, 1e4, 50.0, 0.0);
+  for (float& value : raw) value *= 3e34f;
+  EXPECT_NEAR(depth_bins_of(setup.decoder, raw)[0], 50.0, 1e-3);
+}
+
+/// On a curve that stays on one side, what points away from all of it fits only negative signal.
+template <typename AnyDecoder>
+void expect_negative_signal_is_no_return() {
+  Eigen::MatrixXd correlation(20, 3);
+  for (int n = 0; n < 20; ++n) correlation.row(n) << 0.0, 1.0, 0.02 * n;
+  const AnyDecoder decoder(make_decoding_table(correlation, 10.0));
+  EXPECT_EQ(decode_pixels(decoder, {100.0f, 0.0f, 50.0f}).status(0, 0), PixelStatus::no_return);
+  EXPECT_EQ(decode_pixels(decoder, {0.0f, 100.0f, 20.0f}).status(0, 0), PixelStatus::ok);
+}
+
+/// What estimates of pixels say, over noise of one depth.
+struct PixelEstimates {
+  RunningStatistics depth_m, signal, ambient, predicted_m;
+  /// Predicted over sampled deviation; of n trials it is good to 1 / sqrt(2 n).
+  double ratio() const { return predicted_m.mean() / std::sqrt(depth_m.variance()); }
+};
+
+template <typename Setup>
+PixelEstimates estimates_at(const Setup& setup, double truth_bin, double signal, double ambient) {
+  const int trials = 4000;
+  const Return r{signal, truth_bin};
+  const Eigen::VectorXd mean = setup.model.expected_electrons({&r, 1}, ambient);
+  const Eigen::VectorXd variance = setup.model.variance_e2({&r, 1}, ambient);
+  RandomStream random(3, static_cast<std::uint64_t>(truth_bin));
+  std::vector<float> raw;
+  for (int i = 0; i < trials; ++i)
+    for (int k = 0; k < setup.decoder.measurements(); ++k)
+      raw.push_back(static_cast<float>(mean[k] + std::sqrt(variance[k]) * random.normal()));
+  const DepthImage image = decode_pixels(setup.decoder, raw);
+  PixelEstimates result;
+  for (int i = 0; i < trials; ++i) {
+    result.depth_m.add(image.depth_m(0, i));
+    result.signal.add(image.signal_e_per_s(0, i));
+    result.ambient.add(image.ambient_e_per_s(0, i));
+    result.predicted_m.add(image.predicted_standard_deviation_m(0, i));
+  }
+  return result;
+}
+
+/// 20000 noisy pixels of five measurements at random depths: calls use(confidence, error_m) with
+/// the confidence of each that has a depth and how far that depth is off.
+template <typename Setup, typename Use>
+void for_each_confidence(const Setup& setup, double signal, double ambient, const Use& use) {
+  constexpr int pixels = 20000;
+  const DepthImage image = decode_pixels(
+      setup.decoder, noisy_pixels(setup.decoder.table(), signal, ambient, pixels, 11));
+  RandomStream random(11, 0);  // tells again where the pixels are
+  for (int i = 0; i < pixels; ++i) {
+    const double range_m = setup.camera.range_m(), truth_m = random.uniform() * range_m;
+    for (int k = 0; k < 5; ++k) random.normal();
+    const double depth_m = image.depth_m(0, i);
+    if (std::isnan(depth_m)) continue;
+    use(static_cast<double>(image.confidence(0, i)),
+        std::abs(circular_difference(depth_m, truth_m, range_m)));
+  }
+}
+
+/// Of pixels as sure as `sure` next to none may be off by more than `far_m`; of unsure ones many.
+struct SureAndUnsure {
+  int sure = 0, sure_wrong = 0, unsure = 0, unsure_wrong = 0;
+
+  template <typename Setup>
+  SureAndUnsure(const Setup& setup, double signal, double ambient, double sure_from, double far_m) {
+    for_each_confidence(setup, signal, ambient, [&](double confidence, double error_m) {
+      if (confidence > sure_from) ++sure, sure_wrong += error_m > far_m;
+      if (confidence < 0.8) ++unsure, unsure_wrong += error_m > far_m;
+    });
+  }
+};
+
+}  // namespace tofsmith
