@@ -29,6 +29,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace {
 
 using Doubles = hn::CappedTag<double, 8>;
 using Double = hn::Vec<Doubles>;
@@ -111,6 +112,7 @@ void full_poisson(const std::uint32_t* u_word, const std::uint32_t* v_word, int 
   }
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

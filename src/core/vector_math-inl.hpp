@@ -17,6 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace {
 
 using Floats = hn::CappedTag<float, 16>;
 using Vector = hn::Vec<Floats>;
@@ -93,6 +94,7 @@ HWY_INLINE void unit_circle(Words word, Vector& cosine, Vector& sine) {
   sine = hn::BitCast(d, hn::Xor(hn::BitCast(du, turned_s), sign));
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

@@ -22,6 +22,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace {
 
 using Floats = hn::CappedTag<float, block_lanes>;
 using Vector = hn::Vec<Floats>;
@@ -259,6 +260,7 @@ HWY_INLINE void for_each_near_rows(const ArcTable& table, const Query& q, const 
   }
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

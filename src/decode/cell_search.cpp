@@ -18,6 +18,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 
 /// The vector of one pixel, and how uncertain signs of its products with unit vectors are.
 template <int Rank>
@@ -156,6 +157,7 @@ bool search(const CellSearchView& view, bool wants_rivals, PixelTile& pixels) {
                         : search_tile<4>(view, wants_rivals, pixels);
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

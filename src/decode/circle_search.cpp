@@ -20,6 +20,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace {
 
 constexpr float overlap = 2e-5f;   // of pieces, in c
 constexpr float farthest = 1e30f;  // beyond, sums of numbers may be infinite
@@ -63,6 +64,7 @@ bool search(const CirclePiece* pieces, int resolution, float margin, PixelTile& 
   return hn::AllTrue(di, all_sure);
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

@@ -17,6 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace {
 
 using Floats = hn::CappedTag<float, pixels_per_group>;
 using Vector = hn::Vec<Floats>;
@@ -298,6 +299,7 @@ HWY_INLINE Place downhill(const MultipathCurve& curve, const DelayBounds& delays
   return best;
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

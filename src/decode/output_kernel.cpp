@@ -20,6 +20,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 
 /// One chunk, step by step. `Rank` 0 stands for any rank, known only when running.
 template <int Rank>
@@ -136,6 +137,7 @@ void find_positions(const BinRecords& records, const OutputConstants& c, const M
   }
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

@@ -19,6 +19,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace {
 
 using Floats = hn::CappedTag<float, 16>;
 using Vector = hn::Vec<Floats>;
@@ -212,6 +213,7 @@ void project_tile(const ProjectionView& view, const TileSource& source, int pixe
   project<false>(view, source, pixels, tile);
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

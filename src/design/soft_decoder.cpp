@@ -15,6 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace {
 
 using Floats = hn::CappedTag<float, 16>;
 
@@ -250,6 +251,7 @@ float soft_error(const DecodingCurve& curve, const float* electrons, const SoftQ
   return expected;
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

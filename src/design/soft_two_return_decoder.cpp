@@ -16,6 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace {
 
 using PairFloats = hn::CappedTag<float, 16>;
 using Pairs = SoftTwoReturnDecoder::Pairs;
@@ -122,6 +123,7 @@ void differentiate_all_pairs(float weight, Pairs& pairs) {
   }
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

@@ -16,6 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 
 using Doubles = hn::CappedTag<double, 8>;
 using DoubleVector = hn::Vec<Doubles>;
@@ -256,6 +257,7 @@ TileSums sums(const double* true_bin, const double* decoded_bin, int trials, dou
   return total;
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();
