@@ -140,11 +140,10 @@ SecondReturnReport second_return_report(const CodeSet& code, const Camera& camer
   const SecondReturnTrials trials(code, camera, later, options);
   SecondReturnReport result;
   result.single_path = trials.single_path(part_of(progress, 0.0, 0.3));
-  try {
-    result.two_return = trials.two_return(part_of(progress, 0.3, 1.0));
-  } catch (const std::invalid_argument&) {  // too few means to tell two returns
+  if (TwoReturnDecoder::why_not_decodable(make_decoding_table(trials.model, camera)))
     report(progress, 1.0, "second returns");
-  }
+  else
+    result.two_return = trials.two_return(part_of(progress, 0.3, 1.0));
   return result;
 }
 
