@@ -8,14 +8,13 @@
 
 namespace tofsmith::apps {
 
-/// Reads two numbers parted by a character, such as "3/8" or "1e3:1e5".
-/// @throws std::invalid_argument if that is not what the text holds
+/// Reads two numbers parted by a character, such as "3/8" or "1e3:1e5"; whether the text holds
+/// them.
 template <typename Number>
-void read_number_pair(const std::string& text, char separator, Number& first, Number& second) {
+bool read_number_pair(const std::string& text, char separator, Number& first, Number& second) {
   const std::size_t at = text.find(separator);
-  if (at == std::string::npos || !CLI::detail::lexical_cast(text.substr(0, at), first) ||
-      !CLI::detail::lexical_cast(text.substr(at + 1), second))
-    throw std::invalid_argument("expected two numbers");
+  return at != std::string::npos && CLI::detail::lexical_cast(text.substr(0, at), first) &&
+         CLI::detail::lexical_cast(text.substr(at + 1), second);
 }
 
 }  // namespace tofsmith::apps

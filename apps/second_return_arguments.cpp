@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <stdexcept>
 
 #include "number_checks.hpp"
 #include "number_pair.hpp"
@@ -14,12 +13,12 @@ namespace tofsmith::apps {
 
 namespace {
 
-/// One number, or two with a colon between: least and largest.
-/// @throws std::invalid_argument if it is neither
-void read_limits(const std::string& text, std::array<double, 2>& limits) {
+/// One number, or two with a colon between: least and largest. Whether it is either.
+bool read_limits(const std::string& text, std::array<double, 2>& limits) {
   if (text.find(':') != std::string::npos) return read_number_pair(text, ':', limits[0], limits[1]);
-  if (!CLI::detail::lexical_cast(text, limits[0])) throw std::invalid_argument("expected a number");
+  if (!CLI::detail::lexical_cast(text, limits[0])) return false;
   limits[1] = limits[0];
+  return true;
 }
 
 void read_returns(const std::string& text, SecondReturns& returns) {
@@ -27,13 +26,10 @@ void read_returns(const std::string& text, SecondReturns& returns) {
     const std::size_t equals = part.find('=');
     const std::string key = part.substr(0, equals);
     const std::string value = equals == std::string::npos ? "" : part.substr(equals + 1);
-    try {
-      if (key != "ratio" && key != "delta") throw std::invalid_argument("expected ratio or delta");
-      read_limits(value, key == "ratio" ? returns.ratio : returns.delay_m);
-    } catch (const std::invalid_argument&) {
+    const bool is_known = key == "ratio" || key == "delta";
+    if (!is_known || !read_limits(value, key == "ratio" ? returns.ratio : returns.delay_m))
       throw UsageError(fmt::format(
           "--second-returns {}: found '{}'; expected ratio=a:b,delta=a:b (metres)", text, part));
-    }
   }
 }
 

@@ -15,13 +15,9 @@ namespace tofsmith::apps {
 inline SweepShard parse_shard(const std::string& text) {
   SweepShard shard;
   if (text.empty()) return shard;
-  try {
-    read_number_pair(text, '/', shard.index, shard.count);
-    shard.validate();
-  } catch (const std::invalid_argument&) {
+  if (!read_number_pair(text, '/', shard.index, shard.count) || shard.broken_rule())
     throw UsageError(
         fmt::format("--shard: found {}; expected i/n with i in 1 .. n, such as 3/8", text));
-  }
   return shard;
 }
 

@@ -25,15 +25,12 @@ LightRange light_range(const std::string& what, const std::string& range,
   if (range.empty()) return {level.value_or(usual), level.value_or(usual)};
   if (level) throw UsageError(fmt::format("{}: expected no --{} beside it", option, what));
   LightRange parsed;
-  try {
-    read_number_pair(range, ':', parsed.low_e_per_s, parsed.high_e_per_s);
-    parsed.validate(what);
-  } catch (const std::invalid_argument&) {
+  if (!read_number_pair(range, ':', parsed.low_e_per_s, parsed.high_e_per_s) ||
+      parsed.broken_rule(what))
     throw UsageError(
         fmt::format("{}: found {}; expected a:b in e/s with 0 < a <= b, such as "
                     "1e3:1e5",
                     option, range));
-  }
   return parsed;
 }
 

@@ -18,6 +18,14 @@ std::string in_words_of_python(std::string message) {
   return message;
 }
 
+/// Raises `type` with the message and with what the error speaks of as attributes.
+void raise(PyObject* type, const std::string& message,
+           std::initializer_list<std::pair<const char*, std::string>> attributes) {
+  const py::object error = py::reinterpret_borrow<py::object>(type)(message);
+  for (const auto& [name, value] : attributes) error.attr(name) = value;
+  PyErr_SetObject(type, error.ptr());
+}
+
 py::dict build_info_dict() {
   const BuildInfo info = build_info();
   py::dict dict;
@@ -46,7 +54,8 @@ class ThreadSetting {
 }  // namespace
 
 // The package tofsmith checks classes and documents; here arguments have no names, and options come
-// as dicts. std::invalid_argument becomes ValueError.
+// as dicts. std::invalid_argument becomes ValueError, with field, value and rule where it has them;
+// IoError becomes OSError with its place.
 PYBIND11_MODULE(_tofsmith, module) {
   py::options options;
   options.disable_function_signatures();
@@ -58,7 +67,10 @@ PYBIND11_MODULE(_tofsmith, module) {
     try {
       if (error) std::rethrow_exception(error);
     } catch (const IoError& io) {
-      PyErr_SetString(PyExc_OSError, in_words_of_python(io.what()).c_str());
+      raise(PyExc_OSError, in_words_of_python(io.what()), {{"place", io.place()}});
+    } catch (const InvalidArgument& bad) {
+      raise(PyExc_ValueError, bad.what(),
+            {{"field", bad.field()}, {"value", bad.value()}, {"rule", bad.rule()}});
     }
   });
   auto* const setting = new ThreadSetting;  // lives as long as the module

@@ -252,7 +252,7 @@ def _refused(make: Any) -> _tofsmith.Camera:
         handle: _tofsmith.Camera = make()
         return handle
     except OSError as error:
-        if str(error).startswith("setting "):
+        if getattr(error, "place", "").startswith("setting "):
             raise ValueError(str(error)) from None
         raise
 

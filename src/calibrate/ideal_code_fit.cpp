@@ -183,11 +183,8 @@ std::vector<CodeSet> ideal_codes(const Camera& camera, int measurements) {
   for (const char* pattern :
        {"sinusoid-k{}", "square-k{}", "hamiltonian-k{}", "multifrequency-k{}",
         "pulsed-multifrequency-k{}", "gray-k{}", "single-ramp-k{}", "double-ramp-k{}"}) {
-    try {
-      codes.push_back(build_family(fmt::format(fmt::runtime(pattern), exposures), ideal));
-    } catch (const std::invalid_argument&) {
-      continue;  // no code of that family has so many
-    }
+    const std::string name = fmt::format(fmt::runtime(pattern), exposures);
+    if (!why_no_family(name, ideal)) codes.push_back(build_family(name, ideal));
   }
   return codes;
 }

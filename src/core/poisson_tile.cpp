@@ -30,6 +30,7 @@ constexpr double least_stirling_count = 16.0;
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 
 using Double = DoubleVector;
 
@@ -109,6 +110,7 @@ void full_poisson(const std::uint32_t* u_word, const std::uint32_t* v_word, int 
   }
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

@@ -13,6 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 
 // Philox4x32 (Salmon et al., SC 2011): multipliers of words 0 and 2, what the keys grow by.
 constexpr std::uint32_t multiplier_0 = 0xD2511F53, multiplier_2 = 0xCD9E8D57;
@@ -90,6 +91,7 @@ void normals(const std::uint32_t* radius, const std::uint32_t* angle, int trials
   }
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

@@ -18,6 +18,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 
 using Words = hn::Vec<hn::RebindToUnsigned<Floats>>;
 
@@ -90,6 +91,7 @@ HWY_INLINE void unit_circle(Words word, Vector& cosine, Vector& sine) {
   sine = hn::BitCast(d, hn::Xor(hn::BitCast(du, turned_s), sign));
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

@@ -17,6 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 
 constexpr int group_pixels = 16;  // whose steps are taken together, so that they overlap
 
@@ -246,6 +247,7 @@ std::int32_t choose_row(const ArcTable& table, const DirectionTable& directions,
   return lowest.row;
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

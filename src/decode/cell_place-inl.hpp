@@ -18,6 +18,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 
 using Words = hn::RebindToUnsigned<Floats>;
 
@@ -200,6 +201,7 @@ HWY_INLINE void predict(const CellSearchView& view, int padded, bool wants_rival
   }
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

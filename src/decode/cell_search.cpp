@@ -17,6 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 
 /// The vector of one pixel, and how uncertain signs of its products with unit vectors are.
 template <int Rank>
@@ -155,6 +156,7 @@ bool search(const CellSearchView& view, bool wants_rivals, PixelTile& pixels) {
                         : search_tile<4>(view, wants_rivals, pixels);
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

@@ -21,6 +21,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 
 constexpr float overlap = 2e-5f;   // of pieces, in c
 constexpr float farthest = 1e30f;  // beyond, sums of numbers may be infinite
@@ -64,6 +65,7 @@ bool search(const CirclePiece* pieces, int resolution, float margin, PixelTile& 
   return hn::AllTrue(di, all_sure);
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

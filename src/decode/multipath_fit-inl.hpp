@@ -17,6 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 
 static_assert(pixels_per_group == widest_vector);
 using Row = float[pixels_per_group];
@@ -295,6 +296,7 @@ HWY_INLINE Place downhill(const MultipathCurve& curve, const DelayBounds& delays
   return best;
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

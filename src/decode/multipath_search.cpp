@@ -16,6 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 
 constexpr int most_coarse = 240;
 constexpr int most_starts = 3;
@@ -223,6 +224,7 @@ void single(const MultipathCurve& curve, const PixelGroup& pixels, SingleFits& f
   }
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

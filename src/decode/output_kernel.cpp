@@ -19,6 +19,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 
 /// One chunk, step by step. `Rank` 0 stands for any rank, known only when running.
 template <int Rank>
@@ -135,6 +136,7 @@ void find_positions(const BinRecords& records, const OutputConstants& c, const M
   }
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

@@ -15,6 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 /// Ambient light that makes noise.
 HWY_INLINE Vector noisy_ambient(const OutputChunk& chunk, int i) {
   return hn::Max(load(chunk.ambient, i), hn::Zero(Floats()));
@@ -162,6 +163,7 @@ HWY_INLINE void write_status(const OutputConstants& c, const OutputChunk& chunk,
   }
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

@@ -13,6 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 /// <q, vector> with a vector of the record.
 HWY_INLINE Vector along(const OutputChunk& chunk, int rank, int field, int i) {
   Vector sum = hn::Mul(load(chunk.plane, i), load(chunk.field(field), i));
@@ -119,6 +120,7 @@ HWY_INLINE void write_ambient(const OutputConstants& c, const OutputChunk& chunk
   std::fill_n(plane, chunk.pixels, std::numeric_limits<float>::quiet_NaN());
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

@@ -21,6 +21,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 using Bytes = hn::Rebind<std::uint8_t, Indices>;
 
 /// a b + c, rounded twice: the same with and without fused instructions.
@@ -101,6 +102,7 @@ HWY_INLINE void find_rows(const RecordTable& table, const std::int32_t* numbers,
   std::fill(start + pixels, start + pixels_per_chunk, 0u);
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

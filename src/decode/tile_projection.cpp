@@ -20,6 +20,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 
 constexpr int tile_pixels = pixels_per_tile;
 
@@ -211,6 +212,7 @@ void project_tile(const ProjectionView& view, const TileSource& source, int pixe
   project<false>(view, source, pixels, tile);
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

@@ -12,6 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace {
 
 /// The bits of a mask, put where the lanes of this vector belong.
 template <class D>
@@ -178,6 +179,7 @@ void informed_pairs(const InformationRows& others, std::span<const float> first,
   }
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

@@ -16,6 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 
 constexpr float smallest_square = 1e-10f;  // |p|^2 of a point without contrast
 constexpr float smallest = 1e-30f;
@@ -249,6 +250,7 @@ float soft_error(const DecodingCurve& curve, const float* electrons, const SoftQ
   return expected;
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

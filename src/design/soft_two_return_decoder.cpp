@@ -17,6 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 using Pairs = SoftTwoReturnDecoder::Pairs;
 
 /// Strengths and scores of all pairs; scores are -1 in the padding. @return the largest
@@ -121,6 +122,7 @@ void differentiate_all_pairs(float weight, Pairs& pairs) {
   }
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

@@ -156,9 +156,7 @@ UploadReport upload(ScpiSession& session, const UploadScript& script, const Prog
   } catch (const IoError& error) {
     uploader.switch_outputs_off();
     if (!uploader.is_unsafe()) throw;
-    const std::string what = error.what();
-    throw IoError(session.name(),
-                  what.substr(what.find(": ") + 2) + " OUTPUTS MAY BE ON: check the instrument");
+    throw IoError(session.name(), error.problem() + " OUTPUTS MAY BE ON: check the instrument");
   } catch (...) {
     uploader.switch_outputs_off();
     throw;

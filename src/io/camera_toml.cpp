@@ -39,13 +39,13 @@ namespace {
 
 bool is_part_of_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
-/// Where the field that a message of Camera::validate() begins with was written.
-std::string place_of_field(const std::string& message, const TableReader::Places& places,
+/// Where a field that Camera::validate() names was written, or the key that holds it.
+std::string place_of_field(const std::string& field, const TableReader::Places& places,
                            const std::string& source_name) {
   std::string place = source_name;
   for (const auto& [key, where] : places)  // sorted: a longer key comes after its beginning
-    if (message.starts_with(key) && message.size() > key.size() &&
-        !is_part_of_name(message[key.size()]))
+    if (field.starts_with(key) &&
+        (field.size() == key.size() || !is_part_of_name(field[key.size()])))
       place = where;
   return place;
 }
@@ -65,8 +65,8 @@ Camera parse_camera_toml(std::string_view text, std::string_view source_name, Se
   table.finish();
   try {
     camera.validate();
-  } catch (const std::invalid_argument& error) {
-    throw IoError(place_of_field(error.what(), places, document.source_name()), error.what());
+  } catch (const InvalidArgument& error) {
+    throw IoError(place_of_field(error.field(), places, document.source_name()), error.what());
   }
   return camera;
 }

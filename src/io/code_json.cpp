@@ -105,13 +105,13 @@ void check_format(const JsonReader& json) {
     version.mistyped(fmt::format("{}: a newer tofsmith wrote this file", format_version));
 }
 
-/// The function that a message of CodeSet::create() begins with ("demodulation 3 ..").
-JsonReader place_of_message(const JsonReader& json, std::string_view message) {
+/// The function that a field of CodeSet::create() belongs to ("demodulation 3 minimum").
+JsonReader place_of_field(const JsonReader& json, std::string_view field) {
   for (const std::string_view list : {"modulation", "demodulation"}) {
-    if (!message.starts_with(list)) continue;
+    if (!field.starts_with(list)) continue;
     std::size_t index = 0;
-    const char* digits = message.data() + std::min(list.size() + 1, message.size());
-    std::from_chars(digits, message.data() + message.size(), index);
+    const char* digits = field.data() + std::min(list.size() + 1, field.size());
+    std::from_chars(digits, field.data() + field.size(), index);
     return json.member(list).elements().at(index);
   }
   return json;
@@ -162,8 +162,8 @@ CodeSet parse_code_json(std::string_view text, std::string_view file) {
     if (const auto provenance = json.optional_member("provenance"))
       code.provenance = read_provenance(*provenance);
     return code;
-  } catch (const std::invalid_argument& error) {
-    place_of_message(json, error.what()).fail(error.what());
+  } catch (const InvalidArgument& error) {
+    place_of_field(json, error.field()).fail(error.what());
   }
 }
 

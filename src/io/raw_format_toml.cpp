@@ -75,11 +75,9 @@ RawFormat parse_raw_format(std::string_view text, std::string_view source_name) 
   table.finish();
   try {
     format.validate();
-  } catch (const std::invalid_argument& error) {
-    // "width = 0; must be .." is about the key `width`.
-    const std::string message = error.what();
-    const auto place = places.find(message.substr(0, message.find(' ')));
-    throw IoError(place == places.end() ? document.source_name() : place->second, message);
+  } catch (const InvalidArgument& error) {
+    const auto place = places.find(error.field());
+    throw IoError(place == places.end() ? document.source_name() : place->second, error.what());
   }
   return format;
 }

@@ -36,7 +36,7 @@ std::string mean_times_bound(const DepthErrorReport& error, Bound bound) {
   return count > 0 ? fmt::format("{:.2f}", std::exp(log_sum / count)) : "no bound";
 }
 
-Table distance_table(std::span<const ComparedCode> codes, const std::vector<std::size_t>& order) {
+Table distance_table(std::span<const DepthErrorRow> codes, const std::vector<std::size_t>& order) {
   Table table{.id = "distance-to-bounds",
               .caption =
                   "How many times as large as a bound the circular error is (geometric mean over "
@@ -73,7 +73,7 @@ FigureText map_text(bool is_limited) {
 
 }  // namespace
 
-std::vector<Block> bound_blocks(const Camera& camera, std::span<const ComparedCode> codes,
+std::vector<Block> bound_blocks(const Camera& camera, std::span<const DepthErrorRow> codes,
                                 const std::vector<std::size_t>& order) {
   std::vector<Block> blocks{distance_table(codes, order)};
   const bool is_limited = camera.band_limited();

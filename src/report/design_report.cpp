@@ -149,7 +149,7 @@ Page design_report(const Camera& camera, const DesignResult& result,
   page.sections.push_back(std::move(first));
   page.sections.push_back({"Camera", {camera_description(camera)}});
 
-  std::vector<ComparedCode> compared;
+  std::vector<DepthErrorRow> compared;
   for (const Candidate& c : result.candidates) compared.push_back({&c.error, c.method});
   page.sections.push_back(depth_error_section(camera, compared, result.best));
   if (camera.operating.multipath)
@@ -182,7 +182,7 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
             .subtitle = fmt::format("{} code{}", codes.size(), codes.size() == 1 ? "" : "s"),
             .footer = "tofsmith " TOFSMITH_VERSION};
   page.sections.push_back({"Camera", {camera_description(camera)}});
-  std::vector<ComparedCode> compared;
+  std::vector<DepthErrorRow> compared;
   std::size_t best = 0;
   const DepthErrorKind kind = camera.operating.error;
   for (std::size_t i = 0; i < errors.size(); ++i) {

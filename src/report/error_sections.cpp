@@ -17,7 +17,7 @@ namespace tofsmith {
 
 namespace {
 
-std::vector<std::size_t> by_error(std::span<const ComparedCode> codes, DepthErrorKind kind) {
+std::vector<std::size_t> by_error(std::span<const DepthErrorRow> codes, DepthErrorKind kind) {
   std::vector<std::size_t> order(codes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -27,7 +27,7 @@ std::vector<std::size_t> by_error(std::span<const ComparedCode> codes, DepthErro
   return order;
 }
 
-Table comparison_table(const Camera& camera, std::span<const ComparedCode> codes,
+Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> codes,
                        const std::vector<std::size_t>& order, std::size_t best) {
   const DepthErrorReport& first = *codes[0].error;
   Table table{.id = "comparison",
@@ -59,7 +59,7 @@ Table comparison_table(const Camera& camera, std::span<const ComparedCode> codes
   return table;
 }
 
-Figure bars(std::span<const ComparedCode> codes, const std::vector<std::size_t>& order,
+Figure bars(std::span<const DepthErrorRow> codes, const std::vector<std::size_t>& order,
             ColourAssignment& colours) {
   BarSeries linear{.name = "linear"}, circular{.name = "circular"};
   linear.style = colours.style("linear");
@@ -83,7 +83,7 @@ Figure bars(std::span<const ComparedCode> codes, const std::vector<std::size_t>&
 }
 
 /// Error along signal at the middle ambient level, with the bounds.
-Figure curves(const Camera& camera, std::span<const ComparedCode> codes,
+Figure curves(const Camera& camera, std::span<const DepthErrorRow> codes,
               const std::vector<std::size_t>& order, std::size_t best, ColourAssignment& colours) {
   const double ambient = camera.operating.middle().ambient_e_per_s;
   constexpr std::size_t most = 6;  // more lines hide each other
@@ -129,7 +129,7 @@ Figure curves(const Camera& camera, std::span<const ComparedCode> codes,
       {.label = "mean circular depth error", .unit = "mm", .logarithmic = true});
 }
 
-Figure heat_maps(const Camera& camera, std::span<const ComparedCode> codes,
+Figure heat_maps(const Camera& camera, std::span<const DepthErrorRow> codes,
                  const std::vector<std::size_t>& order, DepthErrorKind kind) {
   const bool is_linear = kind == DepthErrorKind::linear;
   std::vector<HeatMap> maps;
@@ -147,7 +147,7 @@ Figure heat_maps(const Camera& camera, std::span<const ComparedCode> codes,
 
 }  // namespace
 
-Section depth_error_section(const Camera& camera, std::span<const ComparedCode> codes,
+Section depth_error_section(const Camera& camera, std::span<const DepthErrorRow> codes,
                             std::size_t best) {
   const DepthErrorKind kind = camera.operating.error;
   const std::vector<std::size_t> order = by_error(codes, kind);

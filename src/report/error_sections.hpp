@@ -9,15 +9,15 @@
 
 namespace tofsmith {
 
-/// A line of the comparison.
-struct ComparedCode {
+/// A row of the comparison.
+struct DepthErrorRow {
   const DepthErrorReport* error = nullptr;
   std::string method;
 };
 
 /// Figures and table that compare codes by depth error, best first.
 /// @param best  index of the code to stress
-Section depth_error_section(const Camera& camera, std::span<const ComparedCode> codes,
+Section depth_error_section(const Camera& camera, std::span<const DepthErrorRow> codes,
                             std::size_t best);
 
 }  // namespace tofsmith

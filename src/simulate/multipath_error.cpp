@@ -151,14 +151,13 @@ MultipathCell CellTrials::cell(const CellLight& light, std::uint64_t number,
 }
 
 template <typename AnyDecoder>
-std::optional<AnyDecoder> try_decoder(const DecodingTable& table, const MultipathOptions& options,
-                                      std::string& why_not) {
-  try {
-    return AnyDecoder(table, options);
-  } catch (const std::invalid_argument& error) {
-    why_not = error.what();
+std::optional<AnyDecoder> decoder_if_any(const DecodingTable& table,
+                                         const MultipathOptions& options, std::string& why_not) {
+  if (const auto why = AnyDecoder::why_not_decodable(table)) {
+    why_not = *why;
     return std::nullopt;
   }
+  return AnyDecoder(table, options);
 }
 
 template <typename AnyDecoder>
@@ -195,12 +194,12 @@ MultipathErrorReport multipath_error(const CodeSet& code, const Camera& camera,
   result.code = code.name();
   result.measurements = trials.measurements();
   const auto two =
-      try_decoder<TwoReturnDecoder>(trials.table(), options.decoding, result.why_no_two_returns);
+      decoder_if_any<TwoReturnDecoder>(trials.table(), options.decoding, result.why_no_two_returns);
   std::vector<std::optional<TailDecoder>> tails;
   for (const double tail_m : options.tail_m) {
     MultipathOptions decoding = options.decoding;
     decoding.tail_m = tail_m;
-    tails.push_back(try_decoder<TailDecoder>(trials.table(), decoding, result.why_no_tail));
+    tails.push_back(decoder_if_any<TailDecoder>(trials.table(), decoding, result.why_no_tail));
   }
 
   const std::size_t cells =

@@ -140,11 +140,10 @@ SecondReturnReport second_return_report(const CodeSet& code, const Camera& camer
   const ProgressParts parts(progress, {30, 70});
   SecondReturnReport result;
   result.single_path = trials.single_path(parts[0]);
-  try {
-    result.two_return = trials.two_return(parts[1]);
-  } catch (const std::invalid_argument&) {  // too few means to tell two returns
+  if (TwoReturnDecoder::why_not_decodable(make_decoding_table(trials.model, camera)))
     report(progress, 1.0, "second returns");
-  }
+  else
+    result.two_return = trials.two_return(parts[1]);
   return result;
 }
 

@@ -16,6 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
+namespace {
 
 void place(const DepthSlices& slices, double rows, double rows_per_bin, int trials,
            TrialTile& tile) {
@@ -253,6 +254,7 @@ TileSums sums(const double* true_bin, const double* decoded_bin, int trials, dou
   return total;
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
 HWY_AFTER_NAMESPACE();

@@ -171,10 +171,13 @@ bool SweepShard::holds(std::string_view key) const {
          static_cast<std::uint64_t>(index - 1);
 }
 
-void SweepShard::validate() const {
-  require(count >= 1, "shard.count", count, "must be >= 1");
-  require(index >= 1 && index <= count, "shard.index", index, "must be in 1 .. count");
+std::optional<BrokenRule> SweepShard::broken_rule() const {
+  if (count < 1) return broken("shard.count", count, "must be >= 1");
+  if (index < 1 || index > count) return broken("shard.index", index, "must be in 1 .. count");
+  return std::nullopt;
 }
+
+void SweepShard::validate() const { require(broken_rule()); }
 
 void SweepRunOptions::validate() const {
   shard.validate();

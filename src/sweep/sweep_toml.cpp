@@ -39,13 +39,11 @@ void read_options(TableReader& table, EvaluateOptions& options) {
   table.value("outlier_threshold_m", options.outlier_threshold_m);
   options.trials = static_cast<std::int64_t>(trials);
   options.most_trials = static_cast<std::int64_t>(most_trials);
-  for (const std::string_view key :
-       {"trials", "target_standard_error", "most_trials", "outlier_threshold_m"})
-    try {
-      options.validate();
-    } catch (const std::invalid_argument& error) {
-      if (std::string_view(error.what()).starts_with(key)) table.fail(key, error.what());
-    }
+  try {
+    options.validate();
+  } catch (const InvalidArgument& error) {
+    table.fail(error.field(), error.what());
+  }
 }
 
 /// `codes = [..]` is an axis that is crossed with all others.

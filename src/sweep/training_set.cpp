@@ -215,14 +215,17 @@ std::string index_name(const SweepShard& shard) {
 
 }  // namespace
 
-void LightRange::validate(const std::string& which) const {
-  require(std::isfinite(low_e_per_s) && low_e_per_s >= 0.0, which + ".low_e_per_s", low_e_per_s,
-          "must be finite and >= 0");
-  require(std::isfinite(high_e_per_s) && high_e_per_s >= low_e_per_s, which + ".high_e_per_s",
-          high_e_per_s, "must be finite and >= low_e_per_s");
-  require(low_e_per_s > 0.0 || high_e_per_s == low_e_per_s, which + ".low_e_per_s", low_e_per_s,
-          "must be > 0 where levels are drawn");
+std::optional<BrokenRule> LightRange::broken_rule(const std::string& which) const {
+  if (!(std::isfinite(low_e_per_s) && low_e_per_s >= 0.0))
+    return broken(which + ".low_e_per_s", low_e_per_s, "must be finite and >= 0");
+  if (!(std::isfinite(high_e_per_s) && high_e_per_s >= low_e_per_s))
+    return broken(which + ".high_e_per_s", high_e_per_s, "must be finite and >= low_e_per_s");
+  if (!(low_e_per_s > 0.0) && high_e_per_s != low_e_per_s)
+    return broken(which + ".low_e_per_s", low_e_per_s, "must be > 0 where levels are drawn");
+  return std::nullopt;
 }
+
+void LightRange::validate(const std::string& which) const { require(broken_rule(which)); }
 
 void TrainingSetOptions::validate() const {
   signal.validate("signal");

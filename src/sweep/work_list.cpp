@@ -98,15 +98,15 @@ CodeSet load_chosen_code(const SweepSpec& spec, const Choice& choice, const Came
   return code;
 }
 
-/// The place of the axis value that a message about a setting speaks of; "" if it speaks of none.
-std::string place_of_setting(const SweepSpec& spec, std::int64_t item, std::string_view message) {
+/// Where the axis value is that a setting, the place of an error, was made of; "" if of none.
+std::string place_of_setting(const SweepSpec& spec, std::int64_t item, std::string_view setting) {
   const std::vector<std::size_t> indices = spec.value_indices(item);
   for (std::size_t a = 0; a < spec.axes.size(); ++a) {
     const SettingValue& value = spec.axes[a].values[indices[a]];
-    for (const std::string& setting :
-         {fmt::format("'{}={}'", spec.axes[a].key, value.toml),
-          fmt::format("'operating.{}=[{}]'", spec.axes[a].key, value.toml)})
-      if (message.find("setting " + setting) != std::string_view::npos) return value.place;
+    for (const std::string& made :
+         {fmt::format("setting '{}={}'", spec.axes[a].key, value.toml),
+          fmt::format("setting 'operating.{}=[{}]'", spec.axes[a].key, value.toml)})
+      if (setting.starts_with(made)) return value.place;
   }
   return "";
 }
@@ -195,10 +195,11 @@ WorkItem WorkList::item(std::int64_t item) const {
     std::string key = item_key(setup_key(camera, code), camera.operating, choice.options);
     return {std::move(key), camera, std::move(code), choice.options};
   } catch (const std::exception& error) {
-    if (dynamic_cast<const IoError*>(&error) == nullptr &&
-        dynamic_cast<const std::invalid_argument*>(&error) == nullptr)
+    const auto* const file_error = dynamic_cast<const IoError*>(&error);
+    if (file_error == nullptr && dynamic_cast<const std::invalid_argument*>(&error) == nullptr)
       throw;
-    const std::string place = place_of_setting(spec_, item, error.what());
+    const std::string place =
+        file_error == nullptr ? "" : place_of_setting(spec_, item, file_error->place());
     throw IoError(place.empty() ? spec_.source_name : place,
                   fmt::format("{} (in item {} of {}: {})", error.what(), item + 1, size_,
                               settings_json(item)));

@@ -6,6 +6,7 @@
 
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/code/hamiltonian.hpp"
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/core/periodic.hpp"
 #include "tofsmith/core/units.hpp"
 
@@ -137,6 +138,47 @@ TEST(ForwardModel, WithoutADrainEveryElectronGoesToATap) {
   EXPECT_THROW(require_fits(leaky, camera), std::invalid_argument);
   camera.sensor.drain = true;
   EXPECT_NO_THROW(require_fits(leaky, camera));
+}
+
+/// What `check` throws, or none.
+template <typename Check>
+std::optional<std::string> refusal(Check&& check) {
+  try {
+    check();
+    return std::nullopt;
+  } catch (const InvalidArgument& error) {
+    return error.what();
+  }
+}
+
+TEST(WhyNotPlayable, SaysWhatTheCheckThrows) {
+  const Camera camera = built_in_camera("paper-10f0");
+  const CodeSet fits = build_family("hamiltonian-k3", camera);
+  Camera two_taps = camera, coarse = camera, gentle = camera, listed = camera, slow = camera;
+  two_taps.sensor.taps = 2;
+  coarse.samples = 120;
+  gentle.light.peak_factor = 1.5;
+  listed.exposure_s.each_s = {0.1, 0.1};
+  slow.light.generator = Generator{.sample_rate_hz = 2 * camera.fundamental_frequency_hz};
+  EXPECT_EQ(why_not_playable(fits, camera), std::nullopt);
+  for (const Camera& other : {two_taps, coarse, gentle, listed, slow}) {
+    const std::optional<std::string> why = why_not_playable(fits, other);
+    EXPECT_TRUE(why.has_value());
+    EXPECT_EQ(why, refusal([&] { require_fits(fits, other); }));
+    EXPECT_EQ(why, refusal([&] { ForwardModel(fits, other); }));
+  }
+}
+
+TEST(WhyNoFamily, SaysWhatBuildingThrows) {
+  Camera camera = built_in_camera("paper-10f0");
+  for (const char* name : {"hamiltonian-k4", "hamiltonian-k5", "hamiltonian-k11", "hamiltonean-k3",
+                           "gray-k3", "gray-k9", "square-k7", "sinusoid-k1", "multifrequency-k5",
+                           "multifrequency-0x3", "pulsed-multifrequency-k5-q1", "single-ramp-k3"})
+    EXPECT_EQ(why_no_family(name, camera), refusal([&] { build_family(name, camera); })) << name;
+  EXPECT_EQ(why_no_family("hamiltonian-k4", camera), std::nullopt);
+  EXPECT_NE(why_no_family("hamiltonian-k11", camera), std::nullopt);
+  camera.sensor.taps = 3;
+  EXPECT_EQ(why_no_family("gray-k3", camera), refusal([&] { build_family("gray-k3", camera); }));
 }
 
 TEST(ImpulseResponse, HannAttenuatesByFiveAtItsLimit) {

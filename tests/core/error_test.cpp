@@ -21,6 +21,32 @@ TEST(Require, NamesFieldValueAndRule) {
       testing::ThrowsMessage<std::invalid_argument>("DesignOptions::trials = -3; must be >= 1000"));
 }
 
+TEST(InvalidArgument, KeepsFieldValueAndRule) {
+  try {
+    require(false, "sensor.taps", 17, "must be in [1, 16]");
+    FAIL();
+  } catch (const InvalidArgument& error) {
+    EXPECT_EQ(error.field(), "sensor.taps");
+    EXPECT_EQ(error.value(), "17");
+    EXPECT_EQ(error.rule(), "must be in [1, 16]");
+    EXPECT_STREQ(error.what(), "sensor.taps = 17; must be in [1, 16]");
+  }
+}
+
+TEST(BrokenRule, IsWhatACheckThrows) {
+  const std::optional<BrokenRule> none, taps = broken("taps", 17, "must be in [1, 16]");
+  EXPECT_NO_THROW(require(none));
+  EXPECT_EQ(text_of(none), std::nullopt);
+  EXPECT_EQ(text_of(taps), "taps = 17; must be in [1, 16]");
+  EXPECT_THROW(require(taps), InvalidArgument);
+}
+
+TEST(IoError, KeepsPlaceAndProblem) {
+  const IoError error("camera.toml:3:1", "found 17: expected 1 .. 16");
+  EXPECT_EQ(error.place(), "camera.toml:3:1");
+  EXPECT_EQ(error.problem(), "found 17: expected 1 .. 16");
+}
+
 TEST(IoError, StartsWithThePlace) {
   EXPECT_THAT(IoError("camera.toml:3:1", "found a; expected b").what(),
               StrEq("camera.toml:3:1: found a; expected b"));

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "decode_setup.hpp"
+#include "tofsmith/decode/two_return_decoder.hpp"
 
 namespace tofsmith {
 namespace {
@@ -65,6 +66,25 @@ TEST(DecodingTable, NeedsDepthToShowInTwoDimensions) {
   EXPECT_THAT([&] { make_decoding_table(Eigen::MatrixXd::Ones(60, 4), 10.0).validate(); },
               testing::ThrowsMessage<std::invalid_argument>(HasSubstr("rank")));
   EXPECT_THROW(make_decoding_table(Eigen::MatrixXd(), 10.0).validate(), std::invalid_argument);
+}
+
+TEST(WhyNotDecodable, SaysWhatTheChecksThrow) {
+  const auto flatten = [](DecodingTable& table) { table.correlation.setConstant(0.25); };
+  DecodingTable flat = good_table();
+  flatten(flat);
+  EXPECT_EQ(why_not_decodable(good_table()), std::nullopt);
+  EXPECT_EQ(why_not_decodable(flat), complaint(flatten));
+  EXPECT_EQ(TwoReturnDecoder::why_not_decodable(flat), complaint(flatten));
+
+  // Four means tell depth, and too little of a second return.
+  const std::optional<std::string> why_one = TwoReturnDecoder::why_not_decodable(good_table());
+  ASSERT_TRUE(why_one.has_value());
+  try {
+    const TwoReturnDecoder decoder(good_table());
+    FAIL();
+  } catch (const InvalidArgument& error) {
+    EXPECT_EQ(*why_one, error.what());
+  }
 }
 
 TEST(DecodingTable, TwoDifferencesAreEnoughWhereAmbientLightCancels) {

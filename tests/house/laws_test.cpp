@@ -1,9 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // What every C++ file of the house keeps to.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <regex>
+#include <set>
 
 #include "source_files.hpp"
 
@@ -43,6 +47,57 @@ std::vector<std::string> printing_and_exiting(const SourceFile& file) {
   return found;
 }
 
+/// Kernels of one name are in many files, compiled with options of their own: what stands in
+/// HWY_NAMESPACE stands in an anonymous namespace there.
+std::vector<std::string> shared_kernels(const SourceFile& file) {
+  const auto& lines = file.lines;
+  const auto is_aside = [](const std::string& line) {
+    return line.empty() || line.starts_with("//") || line.starts_with("namespace hn = ");
+  };
+  std::vector<std::string> found;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (lines[i] == "namespace HWY_NAMESPACE {") {
+      std::size_t next = i + 1;
+      while (next < lines.size() && is_aside(lines[next])) ++next;
+      if (next == lines.size() || lines[next] != "namespace {")
+        found.push_back(violation(file, i, "must open an anonymous namespace at once"));
+    }
+    if (lines[i] == "}  // namespace HWY_NAMESPACE" &&
+        (i == 0 || lines[i - 1] != "}  // namespace"))
+      found.push_back(violation(file, i, "must close an anonymous namespace just before"));
+  }
+  return found;
+}
+
+/// Types of named namespaces that a file defines, such as `tofsmith Camera`.
+std::set<std::string> types_defined_in(const SourceFile& file) {
+  static const std::regex definition(
+      R"((?:struct|class|union|enum(?: class)?) ([\w:]+)(?: final)?(?: : .*)? \{.*)");
+  std::vector<std::string> spaces;
+  std::set<std::string> types;
+  for (const std::string& line : file.lines) {
+    if (line.starts_with("namespace ") && line.ends_with("{"))
+      spaces.push_back(line.substr(10, line.size() - 11));
+    else if (line.starts_with("}  // namespace") && !spaces.empty())
+      spaces.pop_back();
+    const bool is_shared = std::ranges::find(spaces, "") == spaces.end();
+    std::smatch match;
+    if (!spaces.empty() && is_shared && std::regex_match(line, match, definition))
+      types.insert(spaces.back() + match.str(1));
+  }
+  return types;
+}
+
+std::vector<std::string> types_defined_twice(const std::vector<SourceFile>& files) {
+  std::map<std::string, std::string> home;
+  std::vector<std::string> found;
+  for (const SourceFile& file : files)
+    for (const std::string& type : types_defined_in(file))
+      if (const auto [entry, is_new] = home.try_emplace(type, file.path); !is_new)
+        found.push_back(violation(file, 0, type + " is also defined in " + entry->second));
+  return found;
+}
+
 TEST(House, EveryFileNamesItsLicence) {
   EXPECT_EQ(violations_in(read_sources(everywhere), missing_licence), "");
 }
@@ -53,6 +108,25 @@ TEST(House, NoFileIsTwoConceptsLong) {
 
 TEST(House, TheLibraryNeverPrintsAndNeverExits) {
   EXPECT_EQ(violations_in(read_sources({"include", "src"}), printing_and_exiting), "");
+}
+
+TEST(House, KernelsAreOfTheirFileAlone) {
+  EXPECT_EQ(violations_in(read_sources({"src"}), shared_kernels), "");
+}
+
+TEST(House, EveryTypeHasOneDefinition) {
+  const auto files = read_sources({"include", "src", "apps", "python"});
+  EXPECT_THAT(types_defined_twice(files), testing::IsEmpty());
+}
+
+TEST(House, FindsASecondDefinition) {
+  const SourceFile first{"src/a.hpp", {"namespace tofsmith {", "struct Match {", "};"}};
+  const SourceFile second{"src/b.hpp", {"namespace tofsmith {", "class Match : Base {", "};"}};
+  const SourceFile hidden{"src/c.cpp", {"namespace tofsmith {", "namespace {", "struct Match {}"}};
+  const SourceFile declared{"src/d.hpp", {"namespace tofsmith {", "struct Match;"}};
+  const SourceFile elsewhere{"src/e.hpp", {"namespace tofsmith::apps {", "struct Match {"}};
+  EXPECT_EQ(types_defined_twice({first, second}).size(), 1u);
+  EXPECT_EQ(types_defined_twice({first, hidden, declared, elsewhere}).size(), 0u);
 }
 
 TEST(House, LawsFindWhatBreaksThem) {
@@ -68,6 +142,14 @@ TEST(House, LawsFindWhatBreaksThem) {
 
   EXPECT_FALSE(breaks(too_long, std::vector<std::string>(350)));
   EXPECT_TRUE(breaks(too_long, std::vector<std::string>(351)));
+
+  const std::string opens = "namespace HWY_NAMESPACE {", closes = "}  // namespace HWY_NAMESPACE";
+  EXPECT_FALSE(breaks(shared_kernels, {opens, "namespace hn = hwy::HWY_NAMESPACE;", "namespace {",
+                                       "int f();", "}  // namespace", closes}));
+  EXPECT_TRUE(
+      breaks(shared_kernels, {opens, "int f();", "namespace {", "}  // namespace", closes}));
+  EXPECT_TRUE(
+      breaks(shared_kernels, {opens, "namespace {", "}  // namespace", "int f();", closes}));
 
   for (const char* line :
        {"std::cout << x;", "  std::cerr << x;", "printf(\"x\");", "std::fprintf(stderr, \"x\");",

@@ -134,6 +134,26 @@ def test_bad_input_is_refused_by_name(call, kind, message):
         call()
 
 
+def test_errors_keep_what_they_speak_of():
+    with pytest.raises(ValueError) as refused:
+        ts.build_family("square-k1", "paper-10f0")
+    assert refused.value.field == "code"
+    assert refused.value.value == "square-k1"
+    assert refused.value.rule.startswith("phase steps = 1; must be >= 2")
+    with pytest.raises(OSError) as missing:
+        ts.read_depth("/none/depth.npy")
+    assert str(missing.value).startswith(missing.value.place)
+
+
+def test_what_cannot_be_played_is_said_or_raised():
+    code = ts.build_family("hamiltonian-k3", "paper-10f0")
+    assert ts.why_not_playable(code, "paper-10f0") is None
+    two_taps = ts.Camera("paper-10f0", sensor={"taps": 2})
+    with pytest.raises(ValueError) as refused:
+        ts.require_fits(code, two_taps)
+    assert ts.why_not_playable(code, two_taps) == str(refused.value)
+
+
 def test_existing_files_stay(tmp_path):
     path = tmp_path / "depth.npy"
     ts.write_depth(path, depth)

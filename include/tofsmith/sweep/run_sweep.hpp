@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/sweep/sweep_ranks.hpp"
 #include "tofsmith/sweep/sweep_store.hpp"
@@ -23,7 +25,9 @@ struct SweepShard {
   /// Whether an item belongs to this part. That depends on its key alone, so it stays where it is
   /// when axes grow.
   bool holds(std::string_view key) const;
-  /// @throws std::invalid_argument naming field, value and rule
+  /// The rule that it breaks; none: it is a part of count.
+  std::optional<BrokenRule> broken_rule() const;
+  /// @throws InvalidArgument of broken_rule(), if there is one
   void validate() const;
 };
 

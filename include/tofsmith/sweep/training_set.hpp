@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,9 +33,11 @@ std::vector<TrainingScene> training_scenes(std::span<const std::string> inputs);
 struct LightRange {
   double low_e_per_s = 0.0, high_e_per_s = 0.0;
 
+  /// The rule that it breaks; none if both are finite, 0 <= low <= high, and low > 0 if they
+  /// differ.
   /// @param which  how errors call it
-  /// @throws std::invalid_argument unless both are finite, 0 <= low <= high, and low > 0 if they
-  ///         differ
+  std::optional<BrokenRule> broken_rule(const std::string& which) const;
+  /// @throws InvalidArgument of broken_rule(), if there is one
   void validate(const std::string& which) const;
 };
 
