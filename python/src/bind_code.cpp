@@ -136,6 +136,7 @@ void bind_code(py::module_& module) {
     return build_family(name, camera);
   });
   module.def("require_fits", &require_fits);
+  module.def("why_not_playable", &why_not_playable);
   module.def("load_code",
              [](const std::string& name, const Camera& camera, const std::optional<int>& taps,
                 const std::optional<std::string>& tap_order) {

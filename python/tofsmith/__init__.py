@@ -34,6 +34,7 @@ from ._code import (
     load_code,
     read_code,
     require_fits,
+    why_not_playable,
     write_code,
 )
 from ._correlation_calibration import (
@@ -268,6 +269,7 @@ __all__ = [
     "upload",
     "upload_script",
     "waveform_formats",
+    "why_not_playable",
     "write_code",
     "write_correlation_report",
     "write_depth",

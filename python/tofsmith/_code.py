@@ -228,6 +228,13 @@ def require_fits(code: CodeSet, camera: CameraLike) -> None:
     )
 
 
+def why_not_playable(code: CodeSet, camera: CameraLike) -> Optional[str]:
+    """Why `code` cannot be played and read out on `camera`; None: it can."""
+    return _tofsmith.why_not_playable(
+        _check.instance(code, CodeSet, "code")._handle, camera_of(camera)._handle
+    )
+
+
 def load_code(
     name_or_path: Path,
     camera: CameraLike,

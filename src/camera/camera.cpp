@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tofsmith/camera/played_code.hpp"
 #include "tofsmith/camera/prototype.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
@@ -166,32 +167,49 @@ void Camera::validate() const {
 }
 
 namespace {
+
 /// Without a drain every electron goes to one of the taps.
-void require_taps_fill(const CodeSet& code, const std::string& what) {
+std::optional<BrokenRule> unfilled_taps(const CodeSet& code, const std::string& what) {
   const Eigen::MatrixXd gain = code.demodulation_samples();
   for (int first = 0; first < code.measurements(); first += code.taps()) {
     const double least = gain.middleCols(first, code.taps()).rowwise().sum().minCoeff();
-    require(least > 1.0 - 1e-6,
-            fmt::format("{} sum over the taps of exposure {}", what, first / code.taps()), least,
-            "must be 1 on a camera with sensor.drain = false");
+    if (!(least > 1.0 - 1e-6))
+      return broken(fmt::format("{} sum over the taps of exposure {}", what, first / code.taps()),
+                    least, "must be 1 on a camera with sensor.drain = false");
   }
+  return std::nullopt;
 }
+
+std::optional<BrokenRule> what_does_not_fit(const CodeSet& code, const Camera& camera) {
+  const std::string what = "code " + code.name();
+  if (code.taps() != camera.sensor.taps)
+    return broken(what + " taps", code.taps(),
+                  fmt::format("must equal the camera's sensor.taps = {}", camera.sensor.taps));
+  if (code.samples() != camera.samples)
+    return broken(what + " samples", code.samples(),
+                  fmt::format("must equal the camera's samples = {}; give the camera samples={}",
+                              camera.samples, code.samples()));
+  if (!(code.peak() <= camera.light.peak_factor * (1 + 1e-9)))
+    return broken(
+        what + " peak", code.peak(),
+        fmt::format("must be <= the camera's light.peak_factor = {}", camera.light.peak_factor));
+  if (!camera.sensor.drain)
+    if (auto unfilled = unfilled_taps(code, what)) return unfilled;
+  const std::vector<double>& each_s = camera.exposure_s.each_s;
+  if (!each_s.empty() && each_s.size() != static_cast<std::size_t>(code.exposures()))
+    return broken("number of exposure_s", each_s.size(),
+                  fmt::format("must equal the {} exposures of {}", code.exposures(), what));
+  return pulse_not_generated(code, camera);
+}
+
 }  // namespace
 
+std::optional<std::string> why_not_playable(const CodeSet& code, const Camera& camera) {
+  return text_of(what_does_not_fit(code, camera));
+}
+
 void require_fits(const CodeSet& code, const Camera& camera) {
-  const std::string what = "code " + code.name();
-  require(code.taps() == camera.sensor.taps, what + " taps", code.taps(),
-          fmt::format("must equal the camera's sensor.taps = {}", camera.sensor.taps));
-  require(code.samples() == camera.samples, what + " samples", code.samples(),
-          fmt::format("must equal the camera's samples = {}; give the camera samples={}",
-                      camera.samples, code.samples()));
-  require(code.peak() <= camera.light.peak_factor * (1 + 1e-9), what + " peak", code.peak(),
-          fmt::format("must be <= the camera's light.peak_factor = {}", camera.light.peak_factor));
-  if (!camera.sensor.drain) require_taps_fill(code, what);
-  if (!camera.exposure_s.each_s.empty())
-    require(camera.exposure_s.each_s.size() == static_cast<std::size_t>(code.exposures()),
-            "number of exposure_s", camera.exposure_s.each_s.size(),
-            fmt::format("must equal the {} exposures of {}", code.exposures(), what));
+  require(what_does_not_fit(code, camera));
 }
 
 CodeSet build_family(std::string_view name, const Camera& camera) {

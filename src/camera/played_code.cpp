@@ -17,6 +17,17 @@ Waveform scaled(const Waveform& waveform, double factor) {
                               : Waveform::sampled(factor * waveform.samples());
 }
 
+/// `points` is what the generator makes of modulation e.
+std::optional<BrokenRule> lost_pulse(const CodeSet& code, int e, const Waveform& points,
+                                     const Generator& generator, double frequency_hz) {
+  const Waveform& told = code.modulation(e);
+  if (points.mean() > 0.0 || told.mean() == 0.0) return std::nullopt;
+  return broken(fmt::format("code {} modulation {} duty", code.name(), e), told.duty(),
+                fmt::format("has no pulse that light.generator can play: its points are 1/{} of a "
+                            "period",
+                            generator.points_per_period(frequency_hz)));
+}
+
 }  // namespace
 
 double average_power_scale(const Waveform& modulation) {
@@ -25,6 +36,17 @@ double average_power_scale(const Waveform& modulation) {
 
 bool taps_share_a_generator(const CodeSet& code, const Camera& camera) {
   return code.taps() == 2 && !camera.sensor.drain;
+}
+
+std::optional<BrokenRule> pulse_not_generated(const CodeSet& code, const Camera& camera) {
+  if (!camera.light.generator) return std::nullopt;
+  const Generator& generator = *camera.light.generator;
+  const double frequency_hz = camera.fundamental_frequency_hz;
+  for (int e = 0; e < code.exposures(); ++e)
+    if (auto lost = lost_pulse(code, e, generated(code.modulation(e), generator, frequency_hz),
+                               generator, frequency_hz))
+      return lost;
+  return std::nullopt;
 }
 
 PlayedCode played_code(const CodeSet& code, const Camera& camera) {
@@ -37,11 +59,7 @@ PlayedCode played_code(const CodeSet& code, const Camera& camera) {
       continue;
     }
     const Waveform points = generated(told, *camera.light.generator, frequency_hz);
-    require(points.mean() > 0.0 || told.mean() == 0.0,
-            fmt::format("code {} modulation {} duty", code.name(), e), told.duty(),
-            fmt::format("has no pulse that light.generator can play: its points are 1/{} of a "
-                        "period",
-                        camera.light.generator->points_per_period(frequency_hz)));
+    require(lost_pulse(code, e, points, *camera.light.generator, frequency_hz));
     const double scale = average_power_scale(points);
     played.modulation.push_back(scale < 1.0 ? scaled(points, scale) : points);
   }

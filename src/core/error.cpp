@@ -7,15 +7,30 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 #include <vector>
 
 namespace tofsmith {
 
 IoError::IoError(std::string_view place, std::string_view problem)
-    : std::runtime_error(fmt::format("{}: {}", place, problem)) {}
+    : std::runtime_error(fmt::format("{}: {}", place, problem)), place_(place), problem_(problem) {}
+
+std::string BrokenRule::text() const { return fmt::format("{} = {}; {}", field, value, rule); }
+
+InvalidArgument::InvalidArgument(BrokenRule broken)
+    : std::invalid_argument(broken.text()), broken_(std::move(broken)) {}
 
 void reject(std::string_view field, std::string_view value, std::string_view rule) {
-  throw std::invalid_argument(fmt::format("{} = {}; {}", field, value, rule));
+  throw InvalidArgument({std::string(field), std::string(value), std::string(rule)});
+}
+
+void require(const std::optional<BrokenRule>& broken) {
+  if (broken) throw InvalidArgument(*broken);
+}
+
+std::optional<std::string> text_of(const std::optional<BrokenRule>& broken) {
+  if (!broken) return std::nullopt;
+  return broken->text();
 }
 
 int edit_distance(std::string_view a, std::string_view b) {

@@ -37,13 +37,34 @@ void require_list(const Eigen::VectorXd& values, const char* field, double minim
   }
 }
 
+std::optional<BrokenRule> count_not_decodable(const DecodingTable& table) {
+  if (table.measurements() >= 2 && table.measurements() <= max_measurements) return std::nullopt;
+  return broken("measurements", table.measurements(),
+                "must be in [3, 64] (2 are enough where ambient light cancels)");
+}
+
+std::optional<BrokenRule> correlation_not_decodable(const DecodingTable& table) {
+  const AmbientProjection projection(table);
+  if (table.measurements() < 3 && !projection.ambient.isZero(0.0))
+    return broken("measurements", table.measurements(),
+                  "must be >= 3: signal, ambient light and depth are unknown");
+  if (projection.rank() < 2)
+    return broken("rank of correlation without ambient light", projection.rank(),
+                  "must be >= 2, or depth cannot be told from signal");
+  return std::nullopt;
+}
+
 }  // namespace
+
+std::optional<std::string> why_not_decodable(const DecodingTable& table) {
+  if (const auto count = count_not_decodable(table)) return count->text();
+  return text_of(correlation_not_decodable(table));
+}
 
 void DecodingTable::validate() const {
   constexpr double any = std::numeric_limits<double>::lowest();
   require(samples() >= 2, "correlation", shape_of(correlation), "must have at least 2 rows");
-  require(measurements() >= 2 && measurements() <= max_measurements, "measurements", measurements(),
-          "must be in [3, 64] (2 are enough where ambient light cancels)");
+  require(count_not_decodable(*this));
   require_table(correlation, "correlation", *this);
   require_list(ambient_gain, "ambient_gain", any, *this);
   require_list(exposure_s, "exposure_s", 0.0, *this);
@@ -63,12 +84,7 @@ void DecodingTable::validate() const {
     require(!std::isnan(*saturation_level), "saturation_level", *saturation_level,
             "must be a number");
   require(std::isfinite(range_m) && range_m > 0.0, "range_m", range_m, "must be finite and > 0");
-
-  const AmbientProjection projection(*this);
-  require(measurements() >= 3 || projection.ambient.isZero(0.0), "measurements", measurements(),
-          "must be >= 3: signal, ambient light and depth are unknown");
-  require(projection.rank() >= 2, "rank of correlation without ambient light", projection.rank(),
-          "must be >= 2, or depth cannot be told from signal");
+  require(correlation_not_decodable(*this));
 }
 
 DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camera) {

@@ -3,6 +3,7 @@
 #include "tofsmith/decode/multipath_decoder.hpp"
 
 #include "decode/multipath_engine.hpp"
+#include "decode/multipath_support.hpp"
 #include "decode/nearest_bins.hpp"
 #include "decode/pixel_output.hpp"
 #include "tofsmith/decode/tail_decoder.hpp"
@@ -26,6 +27,23 @@ TwoReturnDecoder::TwoReturnDecoder(DecodingTable table, const MultipathOptions& 
 TailDecoder::TailDecoder(DecodingTable table, const MultipathOptions& options)
     : MultipathDecoder(std::make_unique<const Plan>(
           Plan{MultipathEngine(std::move(table), options, LaterLight::tail)})) {}
+
+namespace {
+
+std::optional<std::string> why_not(const DecodingTable& table, LaterLight later) {
+  if (auto no_depth = why_not_decodable(table)) return no_depth;
+  return text_of(missing_support(AmbientProjection(table), later));
+}
+
+}  // namespace
+
+std::optional<std::string> TwoReturnDecoder::why_not_decodable(const DecodingTable& table) {
+  return why_not(table, LaterLight::second_return);
+}
+
+std::optional<std::string> TailDecoder::why_not_decodable(const DecodingTable& table) {
+  return why_not(table, LaterLight::tail);
+}
 
 const DecodingTable& MultipathDecoder::table() const { return plan_->engine.table(); }
 const MultipathOptions& MultipathDecoder::options() const { return plan_->engine.options(); }

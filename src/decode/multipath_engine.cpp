@@ -53,7 +53,7 @@ MultipathEngine::MultipathEngine(DecodingTable table, const MultipathOptions& op
       ambient_(projection.ambient),
       gated_(projection.gated),
       curve_(single_.table(), projection, later == LaterLight::tail ? options.tail_m : 0.0) {
-  require_support(projection, later);
+  require(missing_support(projection, later));
   const DecodingTable& known = single_.table();
   const double points_per_m = curve_.points / known.range_m;
   const double longest_m = options.longest_delay_m.value_or(known.range_m / 3);

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "decode/multipath_engine.hpp"
-#include "tofsmith/core/error.hpp"
 #include "tofsmith/core/periodic.hpp"
 
 namespace tofsmith {
@@ -28,11 +27,11 @@ int harmonics_of(const AmbientProjection& projection) {
 
 }  // namespace
 
-void require_support(const AmbientProjection& projection, LaterLight later) {
+std::optional<BrokenRule> missing_support(const AmbientProjection& projection, LaterLight later) {
   const bool sees_ambient = !projection.ambient.isZero(0.0);
   const int means = independent_directions(projection) + (sees_ambient ? 1 : 0);
   const int needed = (later == LaterLight::tail ? 5 : 6) - (sees_ambient ? 0 : 1);
-  if (means >= needed) return;
+  if (means >= needed) return std::nullopt;
   const int harmonics = harmonics_of(projection);
   std::string rule = "must be >= " + std::to_string(needed) + " to tell ";
   rule += later == LaterLight::tail ? "a tail" : "two returns";
@@ -45,7 +44,7 @@ void require_support(const AmbientProjection& projection, LaterLight later) {
   rule +=
       "; decode it with zncc or ml, or play a code with more means: hamiltonian-k5 on a sensor of "
       "two taps (--set sensor.taps=2), which gives 10 measurements in 5 exposures";
-  reject("independent means", std::to_string(means), rule);
+  return broken("independent means", means, rule);
 }
 
 }  // namespace tofsmith

@@ -147,8 +147,13 @@ struct Camera {
   friend bool operator==(const Camera&, const Camera&) = default;
 };
 
-/// Whether `code` can be played and read out on `camera`.
-/// @throws std::invalid_argument naming what does not fit: peak, taps, exposures, samples
+/// Why `code` cannot be played and read out on `camera`, a valid one: taps, samples, peak,
+/// exposures, what a sensor without drain leaves to no tap, or pulses too short for the light's
+/// generator. None: it can.
+std::optional<std::string> why_not_playable(const CodeSet& code, const Camera& camera);
+
+/// The same as a check.
+/// @throws InvalidArgument with the text of why_not_playable(), if there is one
 void require_fits(const CodeSet& code, const Camera& camera);
 
 /// The family `name`, built for the camera: within its peak, on its samples, with the second bucket

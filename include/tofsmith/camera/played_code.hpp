@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 
@@ -22,6 +24,10 @@ struct PlayedCode {
 ///     is what the first leaves, 1 - d.
 /// @throws std::invalid_argument if a modulation has no pulse that the generator can play
 PlayedCode played_code(const CodeSet& code, const Camera& camera);
+
+/// The first modulation of which the light's generator plays nothing: every pulse falls between
+/// its points.
+std::optional<BrokenRule> pulse_not_generated(const CodeSet& code, const Camera& camera);
 
 /// What a generated modulation is scaled by to keep the source's average power: 1 / mean above a
 /// mean of 1, else 1.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -15,6 +16,38 @@ namespace tofsmith {
 class IoError : public std::runtime_error {
  public:
   IoError(std::string_view place, std::string_view problem);
+
+  /// Where: a file, `name:line:column`, `name: byte 128`, a setting as it was given.
+  const std::string& place() const { return place_; }
+  /// What was found there and what was expected: the message without its place.
+  const std::string& problem() const { return problem_; }
+
+ private:
+  std::string place_, problem_;
+};
+
+/// A rule, and the value that breaks it. What can be asked, such as why_not_playable(), answers
+/// with it or with its text; what has to hold throws it as InvalidArgument.
+struct BrokenRule {
+  std::string field;  ///< as a user writes it: `sensor.taps`, `DesignOptions::trials`
+  std::string value;  ///< what was found
+  std::string rule;   ///< what must hold
+
+  /// "`field` = `value`; `rule`"
+  std::string text() const;
+};
+
+/// A bad argument, shape or option. The message is the text of the rule that it breaks.
+class InvalidArgument : public std::invalid_argument {
+ public:
+  explicit InvalidArgument(BrokenRule broken);
+
+  const std::string& field() const { return broken_.field; }
+  const std::string& value() const { return broken_.value; }
+  const std::string& rule() const { return broken_.rule; }
+
+ private:
+  BrokenRule broken_;
 };
 
 /// Work stopped because the caller's progress callback asked for it.
@@ -22,27 +55,6 @@ class Interrupted : public std::runtime_error {
  public:
   Interrupted() : std::runtime_error("interrupted") {}
 };
-
-/// Throws std::invalid_argument "`field` = `value`; `rule`".
-[[noreturn]] void reject(std::string_view field, std::string_view value, std::string_view rule);
-
-/// Checks one setting and names field, value and rule when it is broken.
-/// @throws std::invalid_argument "`field` = `value`; `rule`" unless `holds`
-template <typename Value>
-void require(bool holds, std::string_view field, const Value& value, std::string_view rule) {
-  if (holds) return;
-  std::ostringstream text;
-  text << value;
-  reject(field, text.str(), rule);
-}
-
-/// The entry of `known` closest to `word` in edit distance, or "" when none is near enough to be
-/// what the user meant. Of equally close ones, the one with the longer common beginning.
-template <typename Range>
-std::string nearest_word(std::string_view word, const Range& known);
-
-/// Levenshtein distance between two words, counting a swap of neighbours as one edit.
-int edit_distance(std::string_view a, std::string_view b);
 
 namespace detail {
 [[noreturn]] void assertion_failed(const char* expression, const char* file, int line,
@@ -54,6 +66,37 @@ std::string describe(const Value& value) {
   return text.str();
 }
 }  // namespace detail
+
+/// Throws InvalidArgument "`field` = `value`; `rule`".
+[[noreturn]] void reject(std::string_view field, std::string_view value, std::string_view rule);
+
+/// The answer of a question: `value`, as it is printed, breaks a rule.
+template <typename Value>
+BrokenRule broken(std::string_view field, const Value& value, std::string_view rule) {
+  return {std::string(field), detail::describe(value), std::string(rule)};
+}
+
+/// Checks one setting and names field, value and rule when it is broken.
+/// @throws InvalidArgument "`field` = `value`; `rule`" unless `holds`
+template <typename Value>
+void require(bool holds, std::string_view field, const Value& value, std::string_view rule) {
+  if (!holds) reject(field, detail::describe(value), rule);
+}
+
+/// Makes a check of a question.
+/// @throws InvalidArgument of the rule that is broken, if one is
+void require(const std::optional<BrokenRule>& broken);
+
+/// The text of an answer; none where no rule is broken.
+std::optional<std::string> text_of(const std::optional<BrokenRule>& broken);
+
+/// The entry of `known` closest to `word` in edit distance, or "" when none is near enough to be
+/// what the user meant. Of equally close ones, the one with the longer common beginning.
+template <typename Range>
+std::string nearest_word(std::string_view word, const Range& known);
+
+/// Levenshtein distance between two words, counting a swap of neighbours as one edit.
+int edit_distance(std::string_view a, std::string_view b);
 
 template <typename Range>
 std::string nearest_word(std::string_view word, const Range& known) {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "tofsmith/camera/forward_model.hpp"
@@ -55,6 +56,11 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
 /// exposures, so that the mean over measurements is what ambient light explains. Signal and ambient
 /// are then in raw numbers, of which noise is taken as if they were electrons.
 DecodingTable make_decoding_table(const Eigen::MatrixXd& correlation, double range_m);
+
+/// Why no depth can be told from what `table` measures, though its numbers are in order: too few
+/// measurements or too many, or a correlation that leaves depth, signal and ambient light mixed up.
+/// None: depth can be told.
+std::optional<std::string> why_not_decodable(const DecodingTable& table);
 
 /// Two depths that look the same in every measurement once ambient light is unknown.
 struct AmbiguousDepths {

@@ -17,6 +17,9 @@ class TailDecoder : public MultipathDecoder {
   /// @throws std::invalid_argument if table or options are invalid, or the code holds too few
   ///         independent means: fewer than 5 (4 where ambient light cancels)
   explicit TailDecoder(DecodingTable table, const MultipathOptions& options = {});
+
+  /// As TwoReturnDecoder::why_not_decodable(), of a tail.
+  static std::optional<std::string> why_not_decodable(const DecodingTable& table);
 };
 
 }  // namespace tofsmith

@@ -28,6 +28,10 @@ class TwoReturnDecoder : public MultipathDecoder {
   ///         independent means: fewer than 6 (5 where ambient light cancels), as codes of two
   ///         frequencies do
   explicit TwoReturnDecoder(DecodingTable table, const MultipathOptions& options = {});
+
+  /// Why two returns cannot be told apart with a table whose numbers are in order: no depth can be
+  /// told at all, or there are too few independent means. None: they can, well or badly.
+  static std::optional<std::string> why_not_decodable(const DecodingTable& table);
 };
 
 }  // namespace tofsmith
