@@ -212,11 +212,28 @@ void require_fits(const CodeSet& code, const Camera& camera) {
   require(what_does_not_fit(code, camera));
 }
 
+namespace {
+
+FamilyOptions family_options(const Camera& camera) {
+  return {.samples = camera.samples, .peak_factor = camera.light.peak_factor};
+}
+
+std::optional<BrokenRule> taps_beyond_families(const Camera& camera) {
+  if (camera.sensor.taps <= 2) return std::nullopt;
+  return broken("sensor.taps", camera.sensor.taps,
+                "built-in families are for one tap or two buckets");
+}
+
+}  // namespace
+
+std::optional<std::string> why_no_family(std::string_view name, const Camera& camera) {
+  if (auto none = why_no_family(name, family_options(camera))) return none;
+  return text_of(taps_beyond_families(camera));
+}
+
 CodeSet build_family(std::string_view name, const Camera& camera) {
-  CodeSet code =
-      make_family(name, {.samples = camera.samples, .peak_factor = camera.light.peak_factor});
-  require(camera.sensor.taps <= 2, "sensor.taps", camera.sensor.taps,
-          "built-in families are for one tap or two buckets");
+  CodeSet code = make_family(name, family_options(camera));
+  require(taps_beyond_families(camera));
   if (camera.sensor.taps == 2) code = code.with_two_buckets();
   code.provenance.camera = camera.name;
   return code;

@@ -8,16 +8,20 @@
 #include <functional>
 #include <optional>
 
+#include "code/family_rules.hpp"
 #include "tofsmith/code/hamiltonian.hpp"
 #include "tofsmith/code/ramp.hpp"
 #include "tofsmith/code/square.hpp"
-#include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 
 namespace {
 
-using Builder = std::function<CodeSet(const FamilyOptions&)>;
+/// A member of a family, such as hamiltonian-k4.
+struct Member {
+  std::function<std::optional<BrokenRule>(const FamilyOptions&)> misfit;
+  std::function<CodeSet(const FamilyOptions&)> build;
+};
 
 std::optional<int> integer(std::string_view text) {
   int value = 0;
@@ -48,32 +52,52 @@ std::optional<std::vector<FrequencySteps>> frequency_list(std::string_view text)
   return list;
 }
 
-std::optional<Builder> builder_for(std::string_view name) {
+Member multi_frequency(const std::vector<FrequencySteps>& list) {
+  return {[list](const FamilyOptions& o) { return multi_frequency_misfit(list, o); },
+          [list](const FamilyOptions& o) { return multi_frequency_code(list, o); }};
+}
+
+Member pulsed_multi_frequency(int low_steps, int high_frequency) {
+  return {[=](const FamilyOptions& o) {
+            return pulsed_multi_frequency_misfit(low_steps, high_frequency, o);
+          },
+          [=](const FamilyOptions& o) {
+            return pulsed_multi_frequency_code(low_steps, high_frequency, o);
+          }};
+}
+
+std::optional<Member> member_named(std::string_view name) {
+  // What says whether a code of `number` can be built, and what builds it.
+  const auto numbered = [](auto misfit, auto build, int number) {
+    return Member{[=](const FamilyOptions& o) { return misfit(number, o); },
+                  [=](const FamilyOptions& o) { return build(number, o); }};
+  };
   if (const auto k = number_after(name, "sinusoid-k"))
-    return [k](const FamilyOptions& o) { return sinusoid_code(*k, o); };
+    return Member{multi_frequency({{1, *k}}).misfit,
+                  [k](const FamilyOptions& o) { return sinusoid_code(*k, o); }};
   if (const auto k = number_after(name, "square-k"))
-    return [k](const FamilyOptions& o) { return square_code(*k, o); };
+    return numbered(square_misfit, square_code, *k);
   if (const auto k = number_after(name, "hamiltonian-k"))
-    return [k](const FamilyOptions& o) { return hamiltonian_code(*k, o); };
-  if (const auto k = number_after(name, "gray-k"))
-    return [k](const FamilyOptions& o) { return gray_code(*k, o); };
+    return numbered(hamiltonian_misfit, hamiltonian_code, *k);
+  if (const auto k = number_after(name, "gray-k")) return numbered(gray_misfit, gray_code, *k);
   for (const int k : {4, 5}) {
     const std::string pulsed = fmt::format("pulsed-multifrequency-k{}", k);
-    if (const auto q = number_after(name, pulsed + "-q"))
-      return [k, q](const FamilyOptions& o) { return pulsed_multi_frequency_code(k - 2, *q, o); };
-    if (name == pulsed)
-      return [k](const FamilyOptions& o) { return pulsed_multi_frequency_code(k - 2, 3, o); };
+    if (const auto q = number_after(name, pulsed + "-q")) return pulsed_multi_frequency(k - 2, *q);
+    if (name == pulsed) return pulsed_multi_frequency(k - 2, 3);
   }
-  if (name == "multifrequency-k5")
-    return [](const FamilyOptions& o) {
-      return multi_frequency_code({{1, 3}, {7, 2}}, o).renamed("multifrequency-k5");
+  if (name == "multifrequency-k5") {
+    Member member = multi_frequency({{1, 3}, {7, 2}});
+    member.build = [build = member.build](const FamilyOptions& o) {
+      return build(o).renamed("multifrequency-k5");
     };
-  constexpr std::string_view multi_frequency = "multifrequency-";
-  if (name.starts_with(multi_frequency))
-    if (const auto list = frequency_list(name.substr(multi_frequency.size())); list)
-      return [list](const FamilyOptions& o) { return multi_frequency_code(*list, o); };
-  if (name == "single-ramp-k3") return single_ramp_code;
-  if (name == "double-ramp-k3") return double_ramp_code;
+    return member;
+  }
+  constexpr std::string_view frequencies = "multifrequency-";
+  if (name.starts_with(frequencies))
+    if (const auto list = frequency_list(name.substr(frequencies.size())); list)
+      return multi_frequency(*list);
+  if (name == "single-ramp-k3") return Member{options_misfit, single_ramp_code};
+  if (name == "double-ramp-k3") return Member{options_misfit, double_ramp_code};
   return std::nullopt;
 }
 
@@ -84,16 +108,24 @@ std::vector<std::string> examples() {
   return names;
 }
 
+BrokenRule unknown_family(std::string_view name) {
+  std::vector<std::string> known = examples();
+  known.insert(known.end(), {"hamiltonian-k3", "hamiltonian-k5", "sinusoid-k3", "square-k3"});
+  const std::string near = nearest_word(name, known);
+  return broken("code", name,
+                near.empty() ? "is not a built-in family; `tofsmith codes` lists them"
+                             : fmt::format("is not a built-in family; did you mean {}?", near));
+}
+
 /// What the family refuses, a number out of its range or a grid that it does not fit, under the
 /// name that was asked for.
-CodeSet built(std::string_view name, const Builder& builder, const FamilyOptions& options) {
-  try {
-    return builder(options);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(
-        fmt::format("code = {}; {}; `tofsmith codes` lists what there is, such as {}", name,
-                    error.what(), nearest_word(name, examples())));
-  }
+std::optional<BrokenRule> misfit_of(std::string_view name, const Member& member,
+                                    const FamilyOptions& options) {
+  const std::optional<BrokenRule> misfit = member.misfit(options);
+  if (!misfit) return std::nullopt;
+  return broken("code", name,
+                fmt::format("{}; `tofsmith codes` lists what there is, such as {}", misfit->text(),
+                            nearest_word(name, examples())));
 }
 
 }  // namespace
@@ -117,20 +149,19 @@ std::vector<FamilyDescription> list_families() {
   };
 }
 
-bool is_family(std::string_view name) { return builder_for(name).has_value(); }
+bool is_family(std::string_view name) { return member_named(name).has_value(); }
+
+std::optional<std::string> why_no_family(std::string_view name, const FamilyOptions& options) {
+  const auto member = member_named(name);
+  return text_of(member ? misfit_of(name, *member, options) : unknown_family(name));
+}
 
 CodeSet make_family(std::string_view name, const FamilyOptions& options) {
-  if (const auto builder = builder_for(name)) {
-    CodeSet code = built(name, *builder, options);
-    code.provenance.method = "family";
-    return code;
-  }
-  std::vector<std::string> known = examples();
-  known.insert(known.end(), {"hamiltonian-k3", "hamiltonian-k5", "sinusoid-k3", "square-k3"});
-  const std::string near = nearest_word(name, known);
-  reject("code", name,
-         near.empty() ? "is not a built-in family; `tofsmith codes` lists them"
-                      : fmt::format("is not a built-in family; did you mean {}?", near));
+  const auto member = member_named(name);
+  require(member ? misfit_of(name, *member, options) : unknown_family(name));
+  CodeSet code = member->build(options);
+  code.provenance.method = "family";
+  return code;
 }
 
 }  // namespace tofsmith

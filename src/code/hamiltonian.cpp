@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "code/grid.hpp"
-#include "tofsmith/core/error.hpp"
+#include "code/family_rules.hpp"
 #include "tofsmith/core/random.hpp"
 
 namespace tofsmith {
@@ -100,20 +99,15 @@ std::optional<std::vector<std::uint32_t>> search_cycle(int measurements, std::ui
   return std::nullopt;
 }
 
-void require_measurements(int measurements) {
-  require(measurements >= 3 && measurements <= 10, "measurements of a Hamiltonian code",
-          measurements, "must be in [3, 10]");
-}
-
 }  // namespace
 
 int hamiltonian_length(int measurements) {
-  require_measurements(measurements);
+  require(walk_misfit(measurements));
   return (1 << measurements) - (measurements % 2 == 0 ? 4 : 2);
 }
 
 std::vector<std::uint32_t> hamiltonian_walk(int measurements) {
-  require_measurements(measurements);
+  require(walk_misfit(measurements));
   if (measurements <= 5)
     return walk_of_runs(published_runs(measurements), hamiltonian_length(measurements));
   for (std::uint64_t attempt = 0;; ++attempt)
@@ -121,11 +115,9 @@ std::vector<std::uint32_t> hamiltonian_walk(int measurements) {
 }
 
 CodeSet hamiltonian_code(int measurements, const FamilyOptions& options) {
-  options.validate();
+  require(hamiltonian_misfit(measurements, options));
   const std::vector<std::uint32_t> walk = hamiltonian_walk(measurements);
-  const std::string name = fmt::format("hamiltonian-k{}", measurements);
   const int length = static_cast<int>(walk.size());
-  require_grid(name, length, options);
   const Waveform pulse =
       rectangular_pulse(std::max(1.0 / options.peak_factor, 1.0 / static_cast<double>(length)));
   std::vector<Waveform> demodulation;
@@ -134,7 +126,7 @@ CodeSet hamiltonian_code(int measurements, const FamilyOptions& options) {
     for (int n = 0; n < length; ++n) on[n] = (walk[static_cast<std::size_t>(n)] >> k) & 1u;
     demodulation.push_back(Waveform::binary_from_samples(on, 1.0));
   }
-  return CodeSet::create(name, options.samples, 1,
+  return CodeSet::create(fmt::format("hamiltonian-k{}", measurements), options.samples, 1,
                          std::vector<Waveform>(static_cast<std::size_t>(measurements), pulse),
                          std::move(demodulation));
 }

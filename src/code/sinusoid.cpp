@@ -8,19 +8,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "tofsmith/core/error.hpp"
+#include "code/family_rules.hpp"
 
 namespace tofsmith {
 
-void FamilyOptions::validate() const {
-  require(samples >= 4, "samples", samples, "must be >= 4");
-  require(peak_factor >= 1.0, "peak_factor", peak_factor, "must be >= 1");
-}
+void FamilyOptions::validate() const { require(options_misfit(*this)); }
 
 CodeSet multi_frequency_code(const std::vector<FrequencySteps>& frequencies,
                              const FamilyOptions& options) {
-  options.validate();
-  require(!frequencies.empty(), "number of frequencies", 0, "must be >= 1");
+  require(multi_frequency_misfit(frequencies, options));
   const double depth_of_modulation = std::min(1.0, options.peak_factor - 1.0);
   const int count = options.samples;
   const auto cosine = [count](int frequency, double phase, double mean, double amplitude) {
@@ -35,10 +31,6 @@ CodeSet multi_frequency_code(const std::vector<FrequencySteps>& frequencies,
   std::vector<Waveform> modulation, demodulation;
   std::string name = "multifrequency";
   for (const auto& [frequency, steps] : frequencies) {
-    require(frequency >= 1, "frequency", frequency, "must be >= 1");
-    require(steps >= 2, "phase steps", steps, "must be >= 2");
-    require(4 * frequency <= count, "samples", count,
-            fmt::format("must be >= 4 x the highest frequency, {}", 4 * frequency));
     name += fmt::format("-{}x{}", frequency, steps);
     for (int step = 0; step < steps; ++step) {
       const double phase = 2 * std::numbers::pi * step / (steps == 2 ? 4 : steps);

@@ -5,38 +5,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 
-#include "code/grid.hpp"
-#include "tofsmith/core/error.hpp"
+#include "code/family_rules.hpp"
 
 namespace tofsmith {
 
 CodeSet square_code(int phase_steps, const FamilyOptions& options) {
-  options.validate();
-  require(phase_steps >= 2, "phase steps", phase_steps, "must be >= 2");
-  const std::string name = fmt::format("square-k{}", phase_steps);
-  require_grid(name, std::lcm(2, phase_steps), options);
+  require(square_misfit(phase_steps, options));
   const double duty = std::max(0.5, 1.0 / options.peak_factor);
   std::vector<Waveform> modulation, demodulation;
   for (int step = 0; step < phase_steps; ++step) {
     modulation.push_back(rectangular_pulse(duty));
     demodulation.push_back(square_wave(1, static_cast<double>(step) / phase_steps));
   }
-  return CodeSet::create(name, options.samples, 1, std::move(modulation), std::move(demodulation));
+  return CodeSet::create(fmt::format("square-k{}", phase_steps), options.samples, 1,
+                         std::move(modulation), std::move(demodulation));
 }
 
 CodeSet pulsed_multi_frequency_code(int low_steps, int high_frequency,
                                     const FamilyOptions& options) {
-  options.validate();
-  require(low_steps == 2 || low_steps == 3, "low steps", low_steps, "must be 2 or 3");
-  require(high_frequency >= 2, "high frequency", high_frequency, "must be >= 2");
-  std::string name = fmt::format("pulsed-multifrequency-k{}", low_steps + 2);
-  if (high_frequency != 3) name += fmt::format("-q{}", high_frequency);
+  require(pulsed_multi_frequency_misfit(low_steps, high_frequency, options));
   // Quadrature or thirds of a period, and pulses as short as the steps leave use for.
   const double low_step = low_steps == 2 ? 1.0 / 4.0 : 1.0 / 3.0;
   const double low_pulse = low_steps == 2 ? 1.0 / 4.0 : 1.0 / 6.0;
-  require_grid(name, std::lcm(low_steps == 2 ? 4 : 6, 4 * high_frequency), options);
   const double low_duty = std::max(1.0 / options.peak_factor, low_pulse);
   const double high_duty = std::max(1.0 / options.peak_factor, 1.0 / 4.0);
   std::vector<Waveform> modulation, demodulation;
@@ -48,15 +39,13 @@ CodeSet pulsed_multi_frequency_code(int low_steps, int high_frequency,
     modulation.push_back(pulse_train(high_frequency, high_duty));
     demodulation.push_back(square_wave(high_frequency, 0.25 * step / high_frequency));
   }
-  return CodeSet::create(name, options.samples, 1, std::move(modulation), std::move(demodulation));
+  return CodeSet::create(pulsed_multi_frequency_name(low_steps, high_frequency), options.samples, 1,
+                         std::move(modulation), std::move(demodulation));
 }
 
 CodeSet gray_code(int bits, const FamilyOptions& options) {
-  options.validate();
-  require(bits >= 3 && bits <= 10, "bits", bits, "must be in [3, 10]");
-  const std::string name = fmt::format("gray-k{}", bits);
+  require(gray_misfit(bits, options));
   const int cells = 1 << bits;
-  require_grid(name, cells, options);
   const double duty = std::max(1.0 / options.peak_factor, 1.0 / cells);
   std::vector<Waveform> modulation, demodulation;
   for (int bit = bits - 1; bit >= 0; --bit) {
@@ -65,7 +54,8 @@ CodeSet gray_code(int bits, const FamilyOptions& options) {
     modulation.push_back(rectangular_pulse(duty));
     demodulation.push_back(Waveform::binary_from_samples(word, 1.0));
   }
-  return CodeSet::create(name, options.samples, 1, std::move(modulation), std::move(demodulation));
+  return CodeSet::create(fmt::format("gray-k{}", bits), options.samples, 1, std::move(modulation),
+                         std::move(demodulation));
 }
 
 }  // namespace tofsmith

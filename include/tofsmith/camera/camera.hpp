@@ -156,9 +156,12 @@ std::optional<std::string> why_not_playable(const CodeSet& code, const Camera& c
 /// @throws InvalidArgument with the text of why_not_playable(), if there is one
 void require_fits(const CodeSet& code, const Camera& camera);
 
+/// Why no family `name` can be built for the camera; none: build_family() does.
+std::optional<std::string> why_no_family(std::string_view name, const Camera& camera);
+
 /// The family `name`, built for the camera: within its peak, on its samples, with the second bucket
 /// of every measurement where the sensor has two taps.
-/// @throws std::invalid_argument for an unknown family or one the camera cannot play
+/// @throws InvalidArgument with the text of why_no_family(), if there is one
 CodeSet build_family(std::string_view name, const Camera& camera);
 
 /// Cameras that need no file: paper-30x, paper-10f0, paper-5f0, prototype (prototype.hpp) and
