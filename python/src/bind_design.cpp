@@ -7,6 +7,7 @@
 #include "output_policy.hpp"
 #include "progress.hpp"
 #include "reports.hpp"
+#include "tofsmith/io/correlation_file.hpp"
 #include "tofsmith/report/design_report.hpp"
 
 namespace tofsmith::python {
@@ -32,7 +33,6 @@ void read_factorize(const py::dict& values, FactorizeOptions& options) {
       .value("refine_edges", options.refine_edges)
       .value("refined", options.refined)
       .value("kept", options.kept)
-      .value("seed", options.seed)
       .finish();
 }
 
@@ -50,7 +50,6 @@ void read_optimize(const py::dict& values, OptimizeOptions& options) {
       .value("pool_trials", options.pool_trials)
       .value("polish", options.polish)
       .value("polish_steps", options.polish_steps)
-      .value("validation_trials", options.validation_trials)
       .value("two_return_weight", options.two_return_weight)
       .value("most_two_return_loss", options.most_two_return_loss)
       .finish();
@@ -65,7 +64,6 @@ void read_search(const py::dict& values, ChipSearchOptions& options) {
       .value("finalists", options.finalists)
       .value("annealing_starts", options.annealing_starts)
       .value("annealing_steps", options.annealing_steps)
-      .value("trials", options.trials)
       .finish();
 }
 
@@ -80,7 +78,6 @@ DesignOptions design_options(const py::dict& values, const std::optional<TargetS
       .value("search_trials", options.search_trials)
       .value("trials", options.trials)
       .value("seed", options.seed);
-  options.factorize.seed = options.seed;
   read_factorize(reader.table("factorize"), options.factorize);
   read_optimize(reader.table("optimize"), options.optimize);
   read_search(reader.table("search"), options.search);
@@ -119,11 +116,11 @@ py::object search_dict(const std::optional<SearchRecord>& search) {
   return dict;
 }
 
-py::dict candidate_dict(const Candidate& candidate, double choice_error_m) {
+py::dict candidate_dict(const Candidate& candidate, double ranking_error_m) {
   py::dict dict;
   dict["code"] = candidate.code;
   dict["method"] = candidate.method;
-  dict["choice_error_m"] = choice_error_m;
+  dict["ranking_error_m"] = ranking_error_m;
   dict["error"] = report_dict(candidate.error);
   dict["rotation_bin"] = candidate.rotation_bin;
   dict["iterations"] = candidate.iterations;
@@ -173,7 +170,7 @@ py::dict design_dict(const Camera& camera, const py::dict& values,
       callback, [&](const Progress& progress) { return design(camera, options, progress); });
   py::list candidates;
   for (const Candidate& candidate : result.candidates)
-    candidates.append(candidate_dict(candidate, choice_error_m(candidate, camera, options)));
+    candidates.append(candidate_dict(candidate, ranking_error_m(candidate, camera, options)));
   py::dict dict;
   dict["candidates"] = candidates;
   dict["best"] = result.best;
@@ -191,6 +188,7 @@ void bind_design(py::module_& module) {
       .def("write", &write_design)
       .def("write_report", &write_design_report);
   module.def("targets_of", &targets_of);
+  module.def("load_target", &load_target);
   module.def("targets_from_table",
              [](const std::string& name, const Doubles& table, int samples, bool normalize) {
                return targets_from_table(name, to_matrix(table, "target"), samples, normalize);

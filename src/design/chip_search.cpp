@@ -9,27 +9,16 @@
 #include <cmath>
 
 #include "design/chip_annealing.hpp"
+#include "design/chip_light.hpp"
 #include "design/chip_margin.hpp"
 #include "design/exhaustive_search.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/design/standard_chip_codes.hpp"
-#include "tofsmith/simulate/depth_error.hpp"
-#include "tofsmith/version.hpp"
 
 namespace tofsmith {
 
 namespace {
-
-void require_searchable(const Camera& camera, const ChipSearchOptions& options) {
-  require_plain(camera);
-  const int taps = camera.sensor.taps, values = taps * options.exposures;
-  require(values >= 3 && values <= most_chip_measurements, "exposures x sensor.taps", values,
-          "must be in [3, 16]: signal, ambient light and depth are unknown");
-  require(taps <= chips_of(camera), "sensor.taps", taps, "must not exceed the chips of the clock");
-  require(!camera.operating.uniform_albedo, "operating.albedo", "uniform",
-          "must be a number to search codes by their metric");
-}
 
 /// Whether all codes can be tried, and how many about that is.
 bool can_be_exhaustive(const AssignmentRules& rules, const ChipSearchOptions& options) {
@@ -43,28 +32,7 @@ bool can_be_exhaustive(const AssignmentRules& rules, const ChipSearchOptions& op
 ChipFinalist finalist_of(const ScoredCode& scored, const ChipJudge& judge) {
   return {.code = scored.code,
           .rms_m = judge.rms_m(scored.score),
-          .margin_sigma = judge.proven_margin_sigma(scored.code),
-          .circular_mde_m = {}};
-}
-
-/// Monte Carlo has the last word on the order.
-void rank_by_trials(std::vector<ChipFinalist>& finalists, const Camera& camera,
-                    const ChipSearchOptions& options, const Progress& progress) {
-  EvaluateOptions evaluation;
-  evaluation.trials = options.trials;
-  evaluation.seed = options.seed;
-  evaluation.method = DecodeMethod::ml;
-  for (std::size_t i = 0; i < finalists.size(); ++i) {
-    const double count = static_cast<double>(finalists.size());
-    const Camera judged = camera_for(finalists[i].code, camera);
-    finalists[i].circular_mde_m =
-        evaluate(
-            to_code_set(finalists[i].code, judged, "finalist"), judged, evaluation,
-            part_of(progress, static_cast<double>(i) / count, static_cast<double>(i + 1) / count))
-            .circular.geometric_mean_m;
-  }
-  std::ranges::stable_sort(finalists, {},
-                           [](const ChipFinalist& f) { return f.circular_mde_m.value; });
+          .margin_sigma = judge.proven_margin_sigma(scored.code)};
 }
 
 std::string proof_text(const ChipSearchCounts& counts, const AssignmentRules& rules,
@@ -81,6 +49,26 @@ std::string proof_text(const ChipSearchCounts& counts, const AssignmentRules& ru
 
 }  // namespace
 
+std::optional<BrokenRule> why_not_searchable(const Camera& camera, int exposures) {
+  if (exposures < 1 || exposures > 4)
+    return broken("ChipSearchOptions::exposures", exposures, "must be in [1, 4]");
+  if (auto reason = why_not_plain(camera)) return reason;
+  const int taps = camera.sensor.taps, values = taps * exposures;
+  if (values < 3 || values > most_chip_measurements)
+    return broken("exposures x sensor.taps", values,
+                  "must be in [3, 16]: signal, ambient light and depth are unknown");
+  if (auto reason = why_no_chip_clock(camera)) return reason;
+  if (taps > chips_of(camera))
+    return broken("sensor.taps", taps, "must not exceed the chips of the clock");
+  if (camera.operating.uniform_albedo)
+    return broken("operating.albedo", "uniform",
+                  "must be a number to search codes by their metric");
+  const std::size_t listed = camera.exposure_s.each_s.size();
+  if (listed != 0 && listed != static_cast<std::size_t>(exposures))
+    return broken("number of exposure_s", listed, "must equal the exposures");
+  return std::nullopt;
+}
+
 void ChipSearchOptions::validate() const {
   require(exposures >= 1 && exposures <= 4, "ChipSearchOptions::exposures", exposures,
           "must be in [1, 4]");
@@ -96,7 +84,6 @@ void ChipSearchOptions::validate() const {
           annealing_starts, "must be in [0, 10000]");
   require(annealing_steps >= 1, "ChipSearchOptions::annealing_steps", annealing_steps,
           "must be >= 1");
-  require(trials == 0 || trials >= 2, "ChipSearchOptions::trials", trials, "must be 0 or >= 2");
 }
 
 ChipSearchCounts& ChipSearchCounts::operator+=(const ChipSearchCounts& other) {
@@ -116,7 +103,8 @@ ChipSearchCounts& ChipSearchCounts::operator+=(const ChipSearchCounts& other) {
 ChipSearchResult search_chip_codes(const Camera& camera, const ChipSearchOptions& options,
                                    const Progress& progress) {
   options.validate();
-  require_searchable(camera, options);
+  camera.validate();
+  require(why_not_searchable(camera, options.exposures));
   const auto begin = std::chrono::steady_clock::now();
   const AssignmentRules rules{.chips = chips_of(camera),
                               .taps = camera.sensor.taps,
@@ -162,13 +150,11 @@ ChipSearchResult search_chip_codes(const Camera& camera, const ChipSearchOptions
     result.proof = "Not proven: there are too many codes to try them all; these were annealed.";
   }
 
-  // 4. The finalists, with proven margins and, if asked, judged by Monte Carlo.
+  // 4. The finalists, with proven margins.
   for (const ScoredCode& scored : best.codes())
     result.finalists.push_back(finalist_of(scored, judge));
   for (const ScoredCode& scored : best.improvements())
     result.log.improvements.push_back({scored.code, judge.rms_m(scored.score), scored.share});
-  if (options.trials > 0)
-    rank_by_trials(result.finalists, camera, options, part_of(progress, 0.9, 1.0));
   result.log.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report(progress, 1.0, "codes searched");

@@ -38,4 +38,10 @@ class ErrorByRotation {
   std::vector<double> jumps_;
 };
 
+/// The best origin of depth: of all rotations by their errors, or monotone functions of them, the
+/// first of the least. Wherever a code is given an origin, this is how it is chosen.
+inline int best_of_rotations(const std::vector<double>& errors) {
+  return static_cast<int>(std::min_element(errors.begin(), errors.end()) - errors.begin());
+}
+
 }  // namespace tofsmith

@@ -121,7 +121,7 @@ TEST(DesignMethods, RobustCodesAreChosenByTheWorstPerturbedCamera) {
     ASSERT_TRUE(c.robustness) << c.code.name();
     EXPECT_LE(result.winner().robustness->worst_calibrated_m().value,
               c.robustness->worst_calibrated_m().value);
-    EXPECT_EQ(choice_error_m(c, camera, options), c.robustness->worst_calibrated_m().value);
+    EXPECT_EQ(ranking_error_m(c, camera, options), c.robustness->worst_calibrated_m().value);
   }
 }
 
@@ -162,8 +162,9 @@ TEST(GainOver, IsTheRatioOfChosenErrorsWithItsUncertainty) {
     const Estimate gain = gain_over(result, c, DepthErrorKind::linear);
     EXPECT_GE(gain.value, 1.0);
     EXPECT_GT(gain.standard_error, 0.0);
-    EXPECT_DOUBLE_EQ(gain.value, chosen_error_m(c.error, DepthErrorKind::linear) /
-                                     chosen_error_m(result.winner().error, DepthErrorKind::linear));
+    EXPECT_DOUBLE_EQ(gain.value,
+                     geometric_mean_error_m(c.error, DepthErrorKind::linear) /
+                         geometric_mean_error_m(result.winner().error, DepthErrorKind::linear));
   }
 }
 
