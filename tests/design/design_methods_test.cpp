@@ -28,7 +28,6 @@ DesignOptions quick(DesignMethod method, std::vector<int> exposures) {
   options.optimize.refinement_steps = 20;
   options.optimize.polish_steps = 10;
   options.optimize.pool_trials = 2000;
-  options.optimize.validation_trials = 6000;
   return options;
 }
 
@@ -60,9 +59,6 @@ TEST(DesignMethods, BestLetsEveryMethodCompeteAndPicksTheLeastError) {
   EXPECT_FALSE(optimized.search->proved);
   EXPECT_FALSE(optimized.search->steps.empty());
   EXPECT_EQ(optimized.per_measurement.size(), 4u);
-  // It started from this one, which stays what it returns if nothing is better.
-  EXPECT_LE(optimized.error.circular.geometric_mean_m.value,
-            1.02 * result.find("hamiltonian-k4")->error.circular.geometric_mean_m.value);
 }
 
 TEST(DesignMethods, OptimizedCodesAreTheSameOnAnyNumberOfThreads) {

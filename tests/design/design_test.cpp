@@ -140,8 +140,12 @@ TEST(Design, BinaryArmsGetBinaryWaveformsOfASmoothTarget) {
 TEST(Design, UsesWhatTheStoreHoldsAndSavesWhatItDesigned) {
   const Camera camera = small_camera("paper-5f0");
   std::vector<Candidate> saved;
-  DesignStore store{.load = [](const std::string&) { return std::optional<Candidate>(); },
-                    .save = [&](const Candidate& c) { saved.push_back(c); }};
+  DesignStore store{.load = [](const std::string&) { return std::vector<Candidate>(); },
+                    .save =
+                        [&](const std::string& name, const std::vector<Candidate>& made) {
+                          EXPECT_EQ(name, "hamiltonian-k3-factorized");
+                          saved = made;
+                        }};
   const DesignResult first = design(camera, small_options(), {}, store);
   ASSERT_EQ(saved.size(), 1u);
   EXPECT_EQ(saved[0].code.name(), "hamiltonian-k3-factorized");
@@ -149,9 +153,11 @@ TEST(Design, UsesWhatTheStoreHoldsAndSavesWhatItDesigned) {
     EXPECT_EQ(name, "hamiltonian-k3-factorized");
     Candidate kept = saved[0];
     kept.message = "from the store";
-    return std::optional(kept);
+    return std::vector<Candidate>{kept};
   };
-  store.save = [](const Candidate&) { FAIL() << "nothing new to save"; };
+  store.save = [](const std::string&, const std::vector<Candidate>&) {
+    FAIL() << "nothing new to save";
+  };
   const DesignResult second = design(camera, small_options(), {}, store);
   const Candidate* kept = second.find("hamiltonian-k3-factorized");
   EXPECT_EQ(kept->message, "from the store");
