@@ -51,7 +51,7 @@ DesignOptions design_options(const DemoArguments& arguments) {
   DesignOptions options;
   options.seed = arguments.seed;
   options.trials = arguments.trials;
-  scale_effort(options, arguments.effort);
+  options = with_effort(std::move(options), arguments.effort);
   return options;
 }
 

@@ -58,7 +58,7 @@ DesignOptions options_for(const DesignArguments& arguments, const Camera& camera
         "--robust: found beside second returns (--second-returns or [operating.multipath]); "
         "expected one of them");
   options.exposures = arguments.exposures;
-  scale_effort(options, arguments.effort);
+  options = with_effort(std::move(options), arguments.effort);
   arguments.later.apply_to(options.optimize, camera);
   options.seed = arguments.seed;
   options.trials = arguments.trials;

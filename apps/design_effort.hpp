@@ -4,14 +4,15 @@
 
 #include <CLI/CLI.hpp>
 
-#include "tofsmith/design/design.hpp"
-
 namespace tofsmith::apps {
 
-/// The option `--effort`.
-void add_effort(CLI::App& command, double& effort);
-
-/// Searches longer, or shorter, by the factor `effort`.
-void scale_effort(DesignOptions& options, double effort);
+/// The option `--effort`: see with_effort().
+inline void add_effort(CLI::App& command, double& effort) {
+  command
+      .add_option("--effort", effort,
+                  "how long to search: 0.1 for a first look, 3 for the last percent")
+      ->check(CLI::Range(0.01, 100.0))
+      ->capture_default_str();
+}
 
 }  // namespace tofsmith::apps

@@ -34,13 +34,6 @@ SceneImage scene_of(const py::dict& planes) {
   return scene;
 }
 
-void read_capture(OptionReader& reader, CaptureOptions& options) {
-  reader.value("reference_distance_m", options.reference_distance_m)
-      .value("falloff", options.falloff)
-      .value("seed", options.seed)
-      .value("frames", options.frames);
-}
-
 namespace {
 
 std::vector<LaterReturn> later_returns(const Floats& distance_m, const Floats& ratio) {
@@ -101,11 +94,7 @@ py::array_t<float> capture_array(const py::dict& planes, const py::dict& returns
   const OperatingPoint middle = camera.operating.middle();
   options.signal_e_per_s = middle.signal_e_per_s;
   options.ambient_e_per_s = middle.ambient_e_per_s;
-  OptionReader reader(values, "");
-  reader.value("signal_e_per_s", options.signal_e_per_s)
-      .value("ambient_e_per_s", options.ambient_e_per_s);
-  read_capture(reader, options);
-  reader.finish();
+  read_options(values, "", options);
   const SceneImage scene = scene_of(planes);
   const SceneLight light = light_of(returns, scene);
   return adopt(without_gil(callback, [&](const Progress& progress) {

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
+#include "field_dicts.hpp"
 #include "options.hpp"
 #include "output_policy.hpp"
 #include "progress.hpp"
@@ -12,108 +13,28 @@
 
 namespace tofsmith::python {
 
-namespace {
-
-DesignMethod parse_design_method(const std::string& word) {
-  for (const DesignMethod method :
+void parse(const std::string& word, DesignMethod& method) {
+  for (const DesignMethod known :
        {DesignMethod::factorize, DesignMethod::optimize, DesignMethod::search, DesignMethod::best})
-    if (word == name_of(method)) return method;
+    if (word == name_of(known)) {
+      method = known;
+      return;
+    }
   refuse("method", "'" + word + "'", "factorize, optimize, search or best");
 }
 
-void read_factorize(const py::dict& values, FactorizeOptions& options) {
-  OptionReader(values, "factorize")
-      .value("total_variation_weights", options.total_variation_weights)
-      .value("max_iterations", options.max_iterations)
-      .value("objective_tolerance", options.objective_tolerance)
-      .value("feed_back_projection", options.feed_back_projection)
-      .value("random_starts", options.random_starts)
-      .value("structured_starts", options.structured_starts)
-      .value("keep_naive", options.keep_naive)
-      .value("refine_edges", options.refine_edges)
-      .value("refined", options.refined)
-      .value("kept", options.kept)
-      .finish();
-}
-
-void read_optimize(const py::dict& values, OptimizeOptions& options) {
-  OptionReader(values, "optimize")
-      .value("samples", options.samples)
-      .value("starts", options.starts)
-      .value("steps_per_start", options.steps_per_start)
-      .value("hops", options.hops)
-      .value("steps_per_hop", options.steps_per_hop)
-      .value("patience", options.patience)
-      .value("refined", options.refined)
-      .value("refinement_steps", options.refinement_steps)
-      .value("trials_per_step", options.trials_per_step)
-      .value("pool_trials", options.pool_trials)
-      .value("polish", options.polish)
-      .value("polish_steps", options.polish_steps)
-      .value("two_return_weight", options.two_return_weight)
-      .value("most_two_return_loss", options.most_two_return_loss)
-      .finish();
-}
-
-void read_search(const py::dict& values, ChipSearchOptions& options) {
-  OptionReader(values, "search")
-      .value("margin_sigma", options.margin_sigma)
-      .value("separation_periods", options.separation_periods)
-      .value("equal_duty", options.equal_duty)
-      .value("largest_exhaustive", options.largest_exhaustive)
-      .value("finalists", options.finalists)
-      .value("annealing_starts", options.annealing_starts)
-      .value("annealing_steps", options.annealing_steps)
-      .finish();
-}
+namespace {
 
 DesignOptions design_options(const py::dict& values, const std::optional<TargetSet>& target) {
+  double effort = 1.0;
   DesignOptions options;
+  OptionReader(values, "").value("effort", effort);
+  options = with_effort(std::move(options), effort);
   OptionReader reader(values, "");
-  reader.word("method", options.method, parse_design_method)
-      .value("exposures", options.exposures)
-      .value("robust", options.robust)
-      .value("baselines", options.baselines)
-      .value("best_rotation", options.best_rotation)
-      .value("search_trials", options.search_trials)
-      .value("trials", options.trials)
-      .value("seed", options.seed);
-  read_factorize(reader.table("factorize"), options.factorize);
-  read_optimize(reader.table("optimize"), options.optimize);
-  read_search(reader.table("search"), options.search);
-  reader.finish();
+  reader.value("effort", effort).fields(options, {"target"}).finish();
   options.target = target;
   options.validate();
   return options;
-}
-
-py::dict measurement_dict(const MeasurementReport& report) {
-  py::dict dict;
-  dict["residual_rms"] = report.residual_rms;
-  dict["smallest_residual_rms"] = report.smallest_residual_rms;
-  dict["demodulation_duty"] = report.demodulation_duty;
-  dict["modulation_duty"] = report.modulation_duty;
-  dict["peak"] = report.peak;
-  dict["edges"] = report.edges;
-  dict["start"] = report.start;
-  return dict;
-}
-
-py::object search_dict(const std::optional<SearchRecord>& search) {
-  if (!search) return py::none();
-  py::dict dict;
-  std::vector<double> work, error_m;
-  for (const SearchStep& step : search->steps) {
-    work.push_back(step.work);
-    error_m.push_back(step.error_m);
-  }
-  dict["work_unit"] = search->work_unit;
-  dict["error_name"] = search->error_name;
-  dict["work"] = adopt(std::move(work));
-  dict["error_m"] = adopt(std::move(error_m));
-  dict["proved"] = search->proved;
-  dict["account"] = search->account;
-  return dict;
 }
 
 py::dict candidate_dict(const Candidate& candidate, double ranking_error_m) {
@@ -128,9 +49,9 @@ py::dict candidate_dict(const Candidate& candidate, double ranking_error_m) {
   dict["target"] = adopt(Eigen::MatrixXd(candidate.target));
   py::list measurements;
   for (const MeasurementReport& report : candidate.per_measurement)
-    measurements.append(measurement_dict(report));
+    measurements.append(fields_dict(report));
   dict["per_measurement"] = measurements;
-  dict["search"] = search_dict(candidate.search);
+  dict["search"] = candidate.search ? py::object(fields_dict(*candidate.search)) : py::none();
   dict["message"] = candidate.message;
   dict["robustness"] =
       candidate.robustness ? py::object(robustness_dict(*candidate.robustness)) : py::none();
@@ -193,8 +114,10 @@ void bind_design(py::module_& module) {
              [](const std::string& name, const Doubles& table, int samples, bool normalize) {
                return targets_from_table(name, to_matrix(table, "target"), samples, normalize);
              });
-  module.def("suggested_exposures", [](const Camera& camera, const std::string& method) {
-    return suggested_exposures(camera, parse_design_method(method));
+  module.def("suggested_exposures", [](const Camera& camera, const std::string& word) {
+    DesignMethod method{};
+    parse(word, method);
+    return suggested_exposures(camera, method);
   });
   module.def("design", &design_dict);
 }

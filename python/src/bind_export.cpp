@@ -17,16 +17,7 @@ namespace tofsmith::python {
 ExportOptions export_options(const std::string& format, const py::dict& values) {
   ExportOptions options;
   options.format = format;
-  OptionReader(values, "")
-      .value("variant", options.variant)
-      .value("samples", options.samples)
-      .value("bits", options.bits)
-      .value("sample_rate_hz", options.sample_rate_hz)
-      .value("edge_grid_s", options.edge_grid_s)
-      .value("periods", options.periods)
-      .value("low_v", options.low_v)
-      .value("high_v", options.high_v)
-      .finish();
+  OptionReader(values, "").fields(options, {"format"}).finish();
   return options;
 }
 

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include "bindings.hpp"
+#include "field_dicts.hpp"
 #include "multipath_options.hpp"
 #include "options.hpp"
 #include "progress.hpp"
@@ -16,13 +17,7 @@ namespace {
 MultipathErrorOptions error_options(const py::dict& values, double range_m) {
   MultipathErrorOptions options;
   OptionReader reader(values, "");
-  reader.value("delay_m", options.delay_m)
-      .value("ratio", options.ratio)
-      .value("tail_m", options.tail_m)
-      .value("signal_e_per_s", options.signal_e_per_s)
-      .value("ambient_e_per_s", options.ambient_e_per_s)
-      .value("trials", options.trials)
-      .value("seed", options.seed);
+  reader.fields(options, {"decoding"});
   options.decoding = multipath_options(reader.table("decoding"), "decoding", range_m);
   reader.finish();
   options.validate(range_m);
@@ -31,24 +26,7 @@ MultipathErrorOptions error_options(const py::dict& values, double range_m) {
 
 py::dict cells_dict(const std::vector<MultipathCell>& cells) {
   py::dict dict;
-  const auto add = [&](const char* name, auto of_cell) {
-    std::vector<double> values;
-    for (const MultipathCell& cell : cells) values.push_back(of_cell(cell));
-    dict[name] = adopt(std::move(values));
-  };
-  using Cell = MultipathCell;
-  add("ratio", [](const Cell& c) { return c.ratio; });
-  add("delay_m", [](const Cell& c) { return c.delay_m; });
-  add("single_bias_m", [](const Cell& c) { return c.single_bias_m.value; });
-  add("single_error_m", [](const Cell& c) { return c.single_error_m.value; });
-  add("single_error_se_m", [](const Cell& c) { return c.single_error_m.standard_error; });
-  add("bias_m", [](const Cell& c) { return c.bias_m.value; });
-  add("error_m", [](const Cell& c) { return c.error_m.value; });
-  add("error_se_m", [](const Cell& c) { return c.error_m.standard_error; });
-  add("two_share", [](const Cell& c) { return c.two_share; });
-  add("unresolved_share", [](const Cell& c) { return c.unresolved_share; });
-  add("cramer_rao_mae_m", [](const Cell& c) { return c.cramer_rao_mae_m; });
-  add("law_m", [](const Cell& c) { return c.law_m; });
+  add_columns(dict, cells);
   return dict;
 }
 

@@ -31,7 +31,7 @@ TrainingSetOptions set_options(const py::dict& values, const Camera& camera) {
   OptionReader reader(values, "");
   read_range(reader, "signal_range", options.signal);
   read_range(reader, "ambient_range", options.ambient);
-  read_capture(reader, options.capture);
+  reader.fields(options.capture, {"signal_e_per_s", "ambient_e_per_s"});
   std::vector<int> shard;
   reader.value("shard", shard);
   reader.finish();

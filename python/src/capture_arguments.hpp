@@ -11,7 +11,4 @@ namespace tofsmith::python {
 /// @throws std::invalid_argument naming the plane that does not fit
 SceneImage scene_of(const py::dict& planes);
 
-/// What every capture can be given but light levels.
-void read_capture(OptionReader& reader, CaptureOptions& options);
-
 }  // namespace tofsmith::python

@@ -4,6 +4,7 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <string>
@@ -11,13 +12,23 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "tofsmith/core/fields.hpp"
+#include "tofsmith/decode/decode_method.hpp"
+#include "tofsmith/decode/unwrap_decoder.hpp"
+#include "tofsmith/design/design.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith::python {
 
-template <typename Value>
-inline constexpr bool is_optional = false;
-template <typename Value>
-inline constexpr bool is_optional<std::optional<Value>> = true;
+/// Words of enumerations. @throws std::invalid_argument for others, with those there are
+void parse(const std::string& word, DesignMethod& method);
+void parse(const std::string& word, DepthSampling& depth);
+inline void parse(const std::string& word, DecodeMethod& method) {
+  method = parse_decode_method(word);
+}
+inline void parse(const std::string& word, UnwrapWeights& weights) {
+  weights = parse_unwrap_weights(word);
+}
 
 /// What a Python value must be to become a `Value`, in words.
 template <typename Value>
@@ -46,6 +57,9 @@ std::string needed() {
 /// How a refusal shows what was given: "str 'abc'".
 std::string shown(py::handle value);
 
+template <typename Options>
+void read_options(const py::dict& values, const std::string& owner, Options& options);
+
 /// Sets fields of an options struct from a dict of their names. None leaves the default.
 class OptionReader {
  public:
@@ -70,12 +84,42 @@ class OptionReader {
     if (!text.empty()) field = parse(text);
     return *this;
   }
+  /// All fields of a struct that are the user's to give, but those named.
+  template <typename Options>
+  OptionReader& fields(Options& options, std::initializer_list<std::string_view> but = {}) {
+    for_each_field(options, [&](const auto& field) {
+      if (std::ranges::find(but, field.name) == but.end() && !field.is(Mark::from_above))
+        read(field.name, field.value);
+    });
+    return *this;
+  }
   /// The entry, a dict of its own, or an empty one.
   py::dict table(const char* name);
   /// @throws std::invalid_argument for names that no field has, with the nearest that one has
   void finish() const;
 
  private:
+  template <typename Value>
+  void read(const char* name, Value& field) {
+    if constexpr (HasFields<Value>) {
+      read_options(table(name), full_name(name), field);
+    } else if constexpr (std::is_enum_v<Value>) {
+      word(name, field, [](const std::string& text) {
+        Value parsed{};
+        parse(text, parsed);
+        return parsed;
+      });
+    } else if constexpr (is_optional<Value>) {
+      if constexpr (HasFields<typename Value::value_type>) {
+        const py::dict given = table(name);
+        if (!given.empty()) read_options(given, full_name(name), field.emplace());
+      } else {
+        value(name, field);
+      }
+    } else {
+      value(name, field);
+    }
+  }
   py::object take(const char* name);
   [[noreturn]] void wrong_type(const char* name, py::handle given, const std::string& needs) const;
   std::string full_name(const std::string& name) const;
@@ -84,5 +128,12 @@ class OptionReader {
   std::string owner_;
   std::vector<std::string> known_;
 };
+
+/// All fields of an options struct from a dict.
+/// @throws as OptionReader, also for names that no field has
+template <typename Options>
+void read_options(const py::dict& values, const std::string& owner, Options& options) {
+  OptionReader(values, owner).fields(options).finish();
+}
 
 }  // namespace tofsmith::python

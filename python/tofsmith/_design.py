@@ -21,7 +21,8 @@ from ._reports import DepthErrorReport, RobustnessReport, SecondReturnReport, re
 
 @dataclass(frozen=True)
 class MeasurementReport:
-    """One measurement of a designed code and, if it has one, how it compares with its target."""
+    """One measurement of a designed code and, if it has one, how it compares with its target. The
+    arrays (iterations,) are of the random start that came closest."""
 
     residual_rms: float
     smallest_residual_rms: float
@@ -30,6 +31,9 @@ class MeasurementReport:
     peak: float
     edges: int
     start: str
+    objective: FloatArray
+    relaxed_residual_rms: FloatArray
+    playable_residual_rms: FloatArray
 
 
 @dataclass(frozen=True)
@@ -211,6 +215,7 @@ def design(
     trials: Optional[int] = None,
     search_trials: Optional[int] = None,
     seed: Optional[int] = None,
+    effort: Optional[float] = None,
     factorize: Optional[Mapping[str, Any]] = None,
     optimize: Optional[Mapping[str, Any]] = None,
     search: Optional[Mapping[str, Any]] = None,
@@ -244,6 +249,9 @@ def design(
         Per operating point, for final figures (20000) and while pairs are chosen (600).
     seed : int, optional
         Of every random choice (1).
+    effort : float, optional
+        How long to search, 0.01 .. 100 (1): 0.1 for a first look, 3 for the last percent; options
+        of the methods below are not scaled.
     factorize, optimize, search : dict, optional
         Options of the methods by the names of FactorizeOptions, OptimizeOptions and
         ChipSearchOptions, such as `optimize={"starts": 4, "hops": 0}` for a quick look.
@@ -268,6 +276,7 @@ def design(
         "trials": trials,
         "search_trials": search_trials,
         "seed": seed,
+        "effort": effort,
         "factorize": None if factorize is None else dict(factorize),
         "optimize": None if optimize is None else dict(optimize),
         "search": None if search is None else dict(search),

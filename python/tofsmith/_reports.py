@@ -111,7 +111,7 @@ class RobustnessReport:
         that does not.
     names : list of str
         What was changed.
-    calibrated_m, uncalibrated_m : ndarray
+    calibrated_m, calibrated_se_m, uncalibrated_m, uncalibrated_se_m : ndarray
         Of each change.
     """
 
@@ -123,7 +123,9 @@ class RobustnessReport:
     worst_uncalibrated_m: tuple[float, float]
     names: list[str]
     calibrated_m: FloatArray
+    calibrated_se_m: FloatArray
     uncalibrated_m: FloatArray
+    uncalibrated_se_m: FloatArray
 
 
 @dataclass(frozen=True)

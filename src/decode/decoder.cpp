@@ -40,10 +40,7 @@ RawView column_of(const float* measurements, std::int64_t pixels, int count) {
 }  // namespace
 
 void DecodeOptions::validate() const {
-  require(std::isfinite(low_signal_sigma) && low_signal_sigma >= 0.0,
-          "DecodeOptions::low_signal_sigma", low_signal_sigma, "must be finite and >= 0");
-  require(minimum_confidence >= 0.0 && minimum_confidence <= 1.0,
-          "DecodeOptions::minimum_confidence", minimum_confidence, "must be in [0, 1]");
+  check_fields(*this, "DecodeOptions::");
 }
 
 struct Decoder::Plan {

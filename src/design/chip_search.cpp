@@ -69,22 +69,7 @@ std::optional<BrokenRule> why_not_searchable(const Camera& camera, int exposures
   return std::nullopt;
 }
 
-void ChipSearchOptions::validate() const {
-  require(exposures >= 1 && exposures <= 4, "ChipSearchOptions::exposures", exposures,
-          "must be in [1, 4]");
-  require(std::isfinite(margin_sigma) && margin_sigma >= 0.0, "ChipSearchOptions::margin_sigma",
-          margin_sigma, "must be finite and >= 0");
-  require(separation_periods > 0.0 && separation_periods < 0.5,
-          "ChipSearchOptions::separation_periods", separation_periods, "must be in (0, 1/2)");
-  require(largest_exhaustive >= 0.0, "ChipSearchOptions::largest_exhaustive", largest_exhaustive,
-          "must be >= 0");
-  require(finalists >= 1 && finalists <= 100, "ChipSearchOptions::finalists", finalists,
-          "must be in [1, 100]");
-  require(annealing_starts >= 0 && annealing_starts <= 10000, "ChipSearchOptions::annealing_starts",
-          annealing_starts, "must be in [0, 10000]");
-  require(annealing_steps >= 1, "ChipSearchOptions::annealing_steps", annealing_steps,
-          "must be >= 1");
-}
+void ChipSearchOptions::validate() const { check_fields(*this, "ChipSearchOptions::"); }
 
 ChipSearchCounts& ChipSearchCounts::operator+=(const ChipSearchCounts& other) {
   raw += other.raw;

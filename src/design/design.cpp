@@ -150,27 +150,6 @@ std::string_view name_of(DesignMethod method) {
   return "";
 }
 
-void DesignOptions::validate() const {
-  for (const int e : exposures) {
-    require(e >= 1 && e <= 8, "DesignOptions::exposures", e, "each must be in [1, 8]");
-    require(std::ranges::count(exposures, e) == 1, "DesignOptions::exposures", e,
-            "must be listed once");
-    require(method != DesignMethod::factorize || (e >= 3 && e <= 6), "DesignOptions::exposures", e,
-            "must be in [3, 6] to aim at Hamiltonian codes");
-  }
-  if (baselines)
-    for (const std::string& name : *baselines)
-      require(std::ranges::count(*baselines, name) == 1, "DesignOptions::baselines", name,
-              "must be listed once");
-  require(!target || !target->measurements.empty(), "DesignOptions::target", "[]",
-          "must hold at least one correlation function");
-  require(search_trials >= 100, "DesignOptions::search_trials", search_trials, "must be >= 100");
-  require(trials >= 1000, "DesignOptions::trials", trials, "must be >= 1000");
-  factorize.validate();
-  optimize.validate();
-  search.validate();
-}
-
 const Candidate* DesignResult::find(std::string_view name) const {
   for (const Candidate& c : candidates)
     if (c.code.name() == name) return &c;

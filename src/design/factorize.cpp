@@ -107,17 +107,9 @@ std::string describe(const Factorization& f, const CorrelationTarget& target) {
 void FactorizeOptions::validate() const {
   require(!total_variation_weights.empty(), "FactorizeOptions::total_variation_weights", "[]",
           "must list at least one weight");
-  for (const double weight : total_variation_weights)
-    require(weight >= 1e-7 && weight <= 1e-2, "FactorizeOptions::total_variation_weights", weight,
-            "must be in [1e-7, 1e-2]");
-  require(max_iterations >= 1, "FactorizeOptions::max_iterations", max_iterations, "must be >= 1");
-  require(objective_tolerance >= 0, "FactorizeOptions::objective_tolerance", objective_tolerance,
-          "must be >= 0");
-  require(random_starts >= 0, "FactorizeOptions::random_starts", random_starts, "must be >= 0");
+  check_fields(*this, "FactorizeOptions::");
   require(random_starts > 0 || structured_starts, "FactorizeOptions::random_starts", random_starts,
           "must be >= 1 without structured starts");
-  require(refined >= 1, "FactorizeOptions::refined", refined, "must be >= 1");
-  require(kept >= 1, "FactorizeOptions::kept", kept, "must be >= 1");
 }
 
 Factorization factorize(const CorrelationTarget& target, const Camera& camera,

@@ -103,28 +103,7 @@ std::vector<Candidate> playable_candidates(const DesignProblem& problem, Optimiz
 
 }  // namespace
 
-void OptimizeOptions::validate() const {
-  const auto at_least = [](int value, int least, const char* field) {
-    require(value >= least, std::string("OptimizeOptions::") + field, value,
-            fmt::format("must be >= {}", least));
-  };
-  require(samples >= 24 && samples <= 960, "OptimizeOptions::samples", samples,
-          "must be in [24, 960]");
-  at_least(starts, 1, "starts");
-  at_least(steps_per_start, 1, "steps_per_start");
-  at_least(hops, 0, "hops");
-  at_least(steps_per_hop, 1, "steps_per_hop");
-  at_least(patience, 0, "patience");
-  at_least(refined, 1, "refined");
-  at_least(refinement_steps, 0, "refinement_steps");
-  at_least(trials_per_step, 8, "trials_per_step");
-  at_least(pool_trials, 1000, "pool_trials");
-  at_least(polish_steps, 0, "polish_steps");
-  require(std::isfinite(two_return_weight) && two_return_weight >= 0.0,
-          "OptimizeOptions::two_return_weight", two_return_weight, "must be >= 0");
-  require(most_two_return_loss >= 1.0, "OptimizeOptions::most_two_return_loss",
-          most_two_return_loss, "must be >= 1");
-}
+void OptimizeOptions::validate() const { check_fields(*this, "OptimizeOptions::"); }
 
 std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
                                 const OptimizeOptions& options, std::span<const CodeSet> also,

@@ -7,6 +7,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "io/field_json.hpp"
+#include "io/field_key.hpp"
 #include "io/json_reader.hpp"
 #include "io/json_text.hpp"
 #include "io/result_json.hpp"
@@ -28,32 +30,10 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-Json search_json(const SearchRecord& search) {
-  Json steps = Json::array();
-  for (const SearchStep& step : search.steps) steps.push_back({step.work, step.error_m});
-  return {{"work_unit", search.work_unit},
-          {"error_name", search.error_name},
-          {"steps", std::move(steps)},
-          {"proved", search.proved},
-          {"account", search.account}};
-}
-
-SearchRecord search_from_json(const JsonReader& json) {
-  SearchRecord search{.work_unit = json.member("work_unit").text(),
-                      .error_name = json.member("error_name").text(),
-                      .proved = json.member("proved").boolean(),
-                      .account = json.member("account").text()};
-  for (const JsonReader& entry : json.member("steps").elements()) {
-    const auto step = entry.elements(2, "work and error");
-    search.steps.push_back({step[0].number(), step[1].number()});
-  }
-  return search;
-}
-
 /// Targets, histories and messages of a designed code: what only reports need.
 Json details_json(const Candidate& candidate) {
   Json details = {{"message", candidate.message}};
-  if (candidate.search) details["search"] = search_json(*candidate.search);
+  if (candidate.search) details["search"] = fields_json(*candidate.search);
   for (Eigen::Index k = 0; k < candidate.target.cols(); ++k) {
     const Eigen::VectorXd column = candidate.target.col(k);
     details["target"].push_back(std::vector<double>(column.begin(), column.end()));
@@ -61,8 +41,7 @@ Json details_json(const Candidate& candidate) {
   if (candidate.target.size() == 0) return details;
   for (const MeasurementReport& m : candidate.per_measurement) {
     Json history = Json::array();
-    for (const FactorizeIteration& i : m.history)
-      history.push_back({i.objective, i.relaxed_residual_rms, i.playable_residual_rms});
+    for (const FactorizeIteration& iteration : m.history) history.push_back(row_json(iteration));
     details["histories"].push_back(std::move(history));
   }
   return details;
@@ -74,7 +53,7 @@ void read_details(const JsonReader& details, int samples, Candidate& candidate) 
   const std::size_t measurements = candidate.per_measurement.size();
   if (measurements == 0) return;
   if (const auto search = details.optional_member("search"))
-    candidate.search = search_from_json(*search);
+    candidate.search = fields_from_json<SearchRecord>(*search);
   if (!details.optional_member("target")) return;
   const auto columns = details.member("target").elements(measurements, "one per measurement");
   candidate.target.resize(samples, std::ssize(columns));
@@ -87,11 +66,8 @@ void read_details(const JsonReader& details, int samples, Candidate& candidate) 
   }
   const auto histories = details.member("histories").elements(measurements, "one per measurement");
   for (std::size_t k = 0; k < histories.size(); ++k)
-    for (const JsonReader& entry : histories[k].elements()) {
-      const auto step = entry.elements(3, "objective, relaxed and playable residual");
-      candidate.per_measurement[k].history.push_back(
-          {step[0].number(), step[1].number(), step[2].number()});
-    }
+    for (const JsonReader& entry : histories[k].elements())
+      candidate.per_measurement[k].history.push_back(row_from_json<FactorizeIteration>(entry));
 }
 
 /// The camera with its measured responses as samples: what it takes to know it without their files.
@@ -101,44 +77,14 @@ Camera self_contained(Camera camera) {
   return camera;
 }
 
-std::string waveform_key(const Waveform& waveform) {
-  std::string key = fmt::format("{}", waveform.level());
-  for (const OnInterval& on : waveform.on_intervals())
-    key += fmt::format(";{}-{}", on.rise, on.fall);
-  const Eigen::VectorXd& samples = waveform.samples();
-  key += fmt::format(";{}", fmt::join(samples.begin(), samples.end(), ","));
-  return key;
-}
-
 /// Everything that determines a designed code, as text.
-std::string design_key(const Camera& camera, const DesignOptions& options) {
-  const FactorizeOptions& f = options.factorize;
-  std::string key =
-      fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", TOFSMITH_VERSION,
-                  camera_to_json(self_contained(camera)), options.seed, options.search_trials,
-                  options.best_rotation, fmt::join(f.total_variation_weights, ","),
-                  f.max_iterations, f.objective_tolerance, f.feed_back_projection, f.random_starts,
-                  f.structured_starts, f.keep_naive, f.refine_edges, f.refined, f.kept);
-  const OptimizeOptions& o = options.optimize;
-  const ChipSearchOptions& c = options.search;
-  key += fmt::format(
-      "|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", name_of(options.method), options.robust,
-      options.exposures.empty(),
-      fmt::join(options.baselines.value_or(suggested_baselines(camera, options)), ","), o.samples,
-      o.starts, o.steps_per_start, o.hops, o.steps_per_hop, o.patience, o.refined,
-      o.refinement_steps, o.trials_per_step, o.pool_trials, o.polish, o.polish_steps);
-  key += fmt::format("|{}|{}|{}|{}|{}|{}", c.margin_sigma, c.separation_periods, c.equal_duty,
-                     c.largest_exhaustive, c.annealing_starts, c.annealing_steps);
-  if (camera.operating.multipath)
-    key += fmt::format("|{}|{}", o.two_return_weight, o.most_two_return_loss);
-  if (options.target)
-    for (const CorrelationTarget& t : options.target->measurements) {
-      key += fmt::format("|{}|{}", t.demodulation_mean,
-                         fmt::join(t.samples.begin(), t.samples.end(), ","));
-      if (t.ideal)
-        key += fmt::format("|{}|{}", waveform_key(t.ideal->modulation),
-                           waveform_key(t.ideal->demodulation));
-    }
+std::string design_key(const Camera& camera, DesignOptions options) {
+  options.baselines = options.baselines.value_or(suggested_baselines(camera, options));
+  // Codes are judged afresh, and are called by how many exposures they have.
+  options.trials = 0;
+  if (!options.exposures.empty()) options.exposures = {0};
+  std::string key = TOFSMITH_VERSION + camera_to_json(self_contained(camera));
+  append_key(key, options);
   return fmt::format("{:016x}", fnv1a_64(key));
 }
 
@@ -260,6 +206,10 @@ DesignRecord DesignDirectory::read() const {
   const nlohmann::json document_json = read_json(path), details_json = read_json(details_path);
   const std::string file = path.string(), details_file = details_path.string();
   const JsonReader document(document_json, file), details(details_json, details_file);
+  if (const JsonReader version = document.member("tofsmith"); version.text() != TOFSMITH_VERSION)
+    version.mistyped("\"" TOFSMITH_VERSION
+                     "\"; another version's design is read by that version, "
+                     "or designed again");
   DesignRecord record{read_camera_toml(path_ / "camera.toml"), {}};
   DesignResult& result = record.result;
   const std::string best = document.member("best").text();
@@ -283,9 +233,10 @@ DesignRecord DesignDirectory::read() const {
       read_details(details.member(name), record.camera.samples, candidate);
     }
     if (const auto robustness = entry.optional_member("robustness"))
-      candidate.robustness = robustness_from_json(*robustness);
+      candidate.robustness = fields_from_json<RobustnessReport>(*robustness);
     if (record.camera.operating.multipath)
-      candidate.second_returns = second_returns_from_json(entry.member("second_returns"));
+      candidate.second_returns =
+          fields_from_json<SecondReturnReport>(entry.member("second_returns"));
     if (name == best) result.best = result.candidates.size();
     result.candidates.push_back(std::move(candidate));
   }

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/io/multipath_document.hpp"
 
-#include <cmath>
-
 #include "io/camera_json.hpp"
+#include "io/field_json.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {
@@ -13,38 +12,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json cell_json(const MultipathCell& cell) {
-  return {{"ratio", cell.ratio},
-          {"delay_m", cell.delay_m},
-          {"law_m", cell.law_m},
-          {"single_path_bias_m", number(cell.single_bias_m.value)},
-          {"single_path_error_m", number(cell.single_error_m.value)},
-          {"single_path_error_se_m", number(cell.single_error_m.standard_error)},
-          {"bias_m", number(cell.bias_m.value)},
-          {"error_m", number(cell.error_m.value)},
-          {"error_se_m", number(cell.error_m.standard_error)},
-          {"cramer_rao_mae_m", number(cell.cramer_rao_mae_m)},
-          {"two_share", cell.two_share},
-          {"unresolved_share", cell.unresolved_share}};
-}
-
-Json cells_json(const std::vector<MultipathCell>& cells) {
-  Json all = Json::array();
-  for (const MultipathCell& cell : cells) all.push_back(cell_json(cell));
-  return all;
-}
-
 Json class_json(const DelayClass& its) {
   return {{"from_m", its.from_m},
           {"to_m", its.to_m},
           {"pixels", its.pixels},
           {"ratio", its.ratio},
-          {"single_path_bias_m", number(its.bias_m[0])},
-          {"single_path_error_m", number(its.error_m[0])},
-          {"bias_m", number(its.bias_m[1])},
-          {"error_m", number(its.error_m[1])},
+          {"single_path_bias_m", its.bias_m[0]},
+          {"single_path_error_m", its.error_m[0]},
+          {"bias_m", its.bias_m[1]},
+          {"error_m", its.error_m[1]},
           {"two_share", its.two_share},
           {"unresolved_share", its.unresolved_share}};
 }
@@ -76,12 +52,7 @@ std::string multipath_document(const Camera& camera, const std::vector<Multipath
     Json entry = {{"code", code.code}, {"measurements", code.measurements}};
     if (!code.why_no_two_returns.empty()) entry["why_no_two_returns"] = code.why_no_two_returns;
     if (!code.why_no_tail.empty()) entry["why_no_tail"] = code.why_no_tail;
-    for (const MultipathMaps& maps : code.maps)
-      entry["signals"].push_back({{"signal_e_per_s", maps.signal_e_per_s},
-                                  {"single_return", cell_json(maps.single)},
-                                  {"single_return_by_tail", cell_json(maps.single_by_tail)},
-                                  {"second_returns", cells_json(maps.points)},
-                                  {"tails", cells_json(maps.tails)}});
+    for (const MultipathMaps& maps : code.maps) entry["signals"].push_back(fields_json(maps));
     document["codes"].push_back(std::move(entry));
   }
   if (scene) document["scene"] = scene_json(*scene);

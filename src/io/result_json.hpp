@@ -21,13 +21,9 @@ DepthErrorReport depth_error_from_json(const JsonReader& entry, const JsonReader
 
 /// A code's depth error on perturbed cameras, each beside its ratio to the nominal one.
 nlohmann::ordered_json robustness_json(const RobustnessReport& report);
-/// The same back.
-RobustnessReport robustness_from_json(const JsonReader& json);
 
-/// A code's errors behind second returns, decoded as single-path and, or null, as two returns.
-nlohmann::ordered_json second_returns_json(const SecondReturnReport& report);
-/// The same back.
-SecondReturnReport second_returns_from_json(const JsonReader& json);
+/// @throws IoError where the text is no kind's name
+DepthErrorKind parse_word(const JsonReader& json, DepthErrorKind);
 
 /// The measurements of a designed code and, where it has targets, how they compare with them.
 nlohmann::ordered_json measurements_json(const Candidate& candidate);

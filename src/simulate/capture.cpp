@@ -12,13 +12,7 @@
 namespace tofsmith {
 
 void CaptureOptions::validate() const {
-  require(std::isfinite(signal_e_per_s) && signal_e_per_s >= 0.0, "signal_e_per_s", signal_e_per_s,
-          "must be finite and >= 0");
-  require(std::isfinite(ambient_e_per_s) && ambient_e_per_s >= 0.0, "ambient_e_per_s",
-          ambient_e_per_s, "must be finite and >= 0");
-  require(std::isfinite(reference_distance_m) && reference_distance_m > 0.0, "reference_distance_m",
-          reference_distance_m, "must be finite and > 0");
-  require(frames >= 1, "frames", frames, "must be >= 1");
+  check_fields(*this);
 }
 
 double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,

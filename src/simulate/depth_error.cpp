@@ -21,12 +21,7 @@ double bound_mae_m(const Bound& bound, const Camera& camera, const OperatingPoin
 }  // namespace
 
 void EvaluateOptions::validate() const {
-  require(trials >= 2 && trials <= 4'000'000'000, "trials", trials, "must be in [2, 4e9]");
-  require(target_standard_error >= 0.0 && target_standard_error < 1.0, "target_standard_error",
-          target_standard_error, "must be in [0, 1)");
-  require(most_trials >= 2 && most_trials <= 4'000'000'000, "most_trials", most_trials,
-          "must be in [2, 4e9]");
-  require(outlier_threshold_m >= 0.0, "outlier_threshold_m", outlier_threshold_m, "must be >= 0");
+  check_fields(*this);
 }
 
 DepthErrorReport evaluate(const CodeSet& code, const Camera& camera, const EvaluateOptions& options,

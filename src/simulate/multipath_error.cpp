@@ -168,23 +168,19 @@ const AnyDecoder* pointer_to(const std::optional<AnyDecoder>& decoder) {
 }  // namespace
 
 void MultipathErrorOptions::validate(double range_m) const {
-  const auto require_each = [](const std::vector<double>& values, const char* field, double least,
-                               double most, const std::string& rule) {
-    require(!values.empty(), field, "nothing", "must have at least one entry");
-    for (const double value : values) require(value >= least && value <= most, field, value, rule);
+  const auto below_range = [range_m](const std::vector<double>& values, const char* field) {
+    for (const double value : values)
+      require(value < range_m, field, value,
+              "must be > 0 and below the range, " + std::to_string(range_m) + " m");
   };
-  const std::string within = "must be > 0 and below the range, " + std::to_string(range_m) + " m";
-  const double tiny = std::numeric_limits<double>::min();
-  require_each(delay_m, "MultipathErrorOptions::delay_m", tiny, std::nextafter(range_m, 0.0),
-               within);
-  require_each(tail_m, "MultipathErrorOptions::tail_m", tiny, std::nextafter(range_m, 0.0), within);
-  require_each(ratio, "MultipathErrorOptions::ratio", 0.0, 1.0, "must be in [0, 1]");
-  require_each(signal_e_per_s, "MultipathErrorOptions::signal_e_per_s", tiny,
-               std::numeric_limits<double>::max(), "must be finite and > 0");
-  require(std::isfinite(ambient_e_per_s) && ambient_e_per_s >= 0.0,
-          "MultipathErrorOptions::ambient_e_per_s", ambient_e_per_s, "must be finite and >= 0");
-  require(trials >= 2 && trials <= 10'000'000, "MultipathErrorOptions::trials", trials,
-          "must be in [2, 1e7]");
+  for_each_field(*this, [](const auto& field) {
+    if constexpr (requires { field.value.empty(); })
+      require(!field.value.empty(), std::string("MultipathErrorOptions::") + field.name, "nothing",
+              "must have at least one entry");
+  });
+  check_fields(*this, "MultipathErrorOptions::");
+  below_range(delay_m, "MultipathErrorOptions::delay_m");
+  below_range(tail_m, "MultipathErrorOptions::tail_m");
   decoding.validate(range_m);
 }
 

@@ -37,17 +37,7 @@ class Judge {
 }  // namespace
 
 void RobustnessOptions::validate() const {
-  const auto is_share = [](double value, std::string_view field) {
-    require(value >= 0.0 && value < 1.0, field, value, "must be in [0, 1)");
-  };
-  is_share(bandwidth, "bandwidth");
-  is_share(peak, "peak");
-  is_share(tap_mismatch, "tap_mismatch");
-  is_share(droop, "droop");
-  require(clock_s >= 0.0 && clock_s <= 1.0, "clock_s", clock_s, "must be in [0, 1]");
-  require(edge_jitter_s >= 0.0 && edge_jitter_s <= 1.0, "edge_jitter_s", edge_jitter_s,
-          "must be in [0, 1]");
-  EvaluateOptions{.trials = trials}.validate();
+  check_fields(*this);
 }
 
 Estimate RobustnessReport::worst_calibrated_m() const {

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "design/pair_choice.hpp"
 #include "same_code.hpp"
 #include "small_design.hpp"
@@ -203,6 +205,21 @@ std::string refusal(const Camera& camera, const DesignOptions& options) {
     return error.what();
   }
   return "accepted";
+}
+
+TEST(Design, EffortScalesSearchesAndLeavesTheRest) {
+  const DesignOptions full, quick = with_effort(full, 0.05), longer = with_effort(full, 3);
+  EXPECT_EQ(quick.optimize.starts, 2);
+  EXPECT_EQ(quick.optimize.hops, 2);
+  EXPECT_EQ(quick.optimize.refinement_steps, 50);
+  EXPECT_EQ(quick.factorize.random_starts, 2);
+  EXPECT_EQ(quick.search.annealing_starts, 2);
+  EXPECT_EQ(quick.optimize.steps_per_start, full.optimize.steps_per_start);
+  EXPECT_EQ(quick.trials, full.trials);
+  EXPECT_EQ(longer.optimize.starts, 60);
+  EXPECT_EQ(longer.factorize.random_starts, 90);
+  for (const double effort : {0.0, 101.0, std::nan("")})
+    EXPECT_THROW(with_effort(full, effort), std::invalid_argument) << effort;
 }
 
 TEST(Design, RefusesWhatCannotBeDesignedBeforeAnyWork) {

@@ -188,6 +188,7 @@ TEST(DesignStore, ReturnsWhatItSavedForTheSameInputsAlone) {
   EXPECT_FALSE(reused([](Camera&, DesignOptions& o) { o.best_rotation = false; }));
   EXPECT_TRUE(reused([](Camera&, DesignOptions& o) { o.factorize.seed = 9; })) << "not used";
   EXPECT_FALSE(reused([](Camera&, DesignOptions& o) { o.factorize.kept = 4; }));
+  EXPECT_FALSE(reused([](Camera&, DesignOptions& o) { o.search.finalists = 9; }));
   EXPECT_FALSE(
       reused([](Camera&, DesignOptions& o) { o.target->measurements[0].samples[3] += 1e-9; }));
   EXPECT_FALSE(reused([](Camera&, DesignOptions& o) { o.target->measurements[0].ideal.reset(); }));
@@ -272,6 +273,13 @@ TEST(DesignDirectory, PartsThatDoNotBelongTogetherAreRefused) {
   };
   EXPECT_THAT(refusal("design.json", "\"best\": \"", "\"best\": \"not-"),
               AllOf(HasSubstr("design.json: /best"), HasSubstr("one of the codes")));
+  EXPECT_THAT(refusal("design.json", "\"tofsmith\": \"", "\"tofsmith\": \"0.0.1-"),
+              AllOf(HasSubstr("design.json: /tofsmith: found \"0.0.1-"),
+                    HasSubstr("read by that version, or designed again")));
+  EXPECT_THAT(refusal("details.json", "\"message\"", "\"massage\""),
+              AllOf(HasSubstr("details.json"), HasSubstr("message")));
+  EXPECT_THAT(refusal("design.json", "\"smallest_residual_rms\"", "\"residual\""),
+              AllOf(HasSubstr("design.json"), HasSubstr("smallest_residual_rms")));
   EXPECT_THAT(refusal("design.json", "\"rotation_bin\": ", "\"rotation_bin\": 1e300, \"x\": "),
               HasSubstr("/codes/0/rotation_bin"));
   EXPECT_THAT(refusal("design.json", "square-k4", "sinusoid-k4"), HasSubstr("again"));

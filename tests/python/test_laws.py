@@ -198,6 +198,8 @@ def test_design_keeps_baselines_and_reports_itself(camera):
     assert result.winner is result.by_ranking_error()[0]
     designed = next(c for c in result.candidates if c.method == "factorize")
     assert designed.is_designed and len(designed.per_measurement) == 3
+    for measurement in designed.per_measurement:
+        assert len(measurement.objective) == len(measurement.playable_residual_rms)
     assert result["hamiltonian-k3"].error.trials == 1000
     again = ts.evaluate(designed.code, camera, trials=1000)
     assert again.linear.geometric_mean_m == designed.error.linear.geometric_mean_m

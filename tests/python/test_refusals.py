@@ -90,6 +90,8 @@ refusals = [
     (lambda: ts.capture(3, "square-k4", "paper-10f0"), TypeError, "scene: got int 3; needs a tofsmith.Scene"),
     (lambda: ts.capture("bookz", "square-k4", "paper-10f0"), ValueError, "books"),
     (lambda: ts.design("paper-10f0", method="guess"), ValueError, "method: got 'guess'; needs factorize"),
+    (lambda: ts.design("paper-10f0", effort=0), ValueError, "effort = 0; must be in [0.01, 100]"),
+    (lambda: ts.design("paper-10f0", optimize={"seed": 3}), ValueError, "optimize: got the unknown name 'seed'"),
     (lambda: ts.design("paper-10f0", optimize={"start": 3}), ValueError, "optimize: got the unknown name 'start'"),
     (lambda: ts.design("paper-10f0", target=np.ones((5, 2, 2))), ValueError, "target: got shape (5, 2, 2); needs (N, K)"),
     (lambda: ts.DecodingTable.of_measured(np.ones((16, 4))), ValueError, "range_m: got None"),

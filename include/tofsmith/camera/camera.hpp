@@ -11,6 +11,7 @@
 #include "tofsmith/camera/impulse_response.hpp"
 #include "tofsmith/camera/second_returns.hpp"
 #include "tofsmith/code/code_set.hpp"
+#include "tofsmith/core/fields.hpp"
 
 namespace tofsmith {
 
@@ -25,6 +26,10 @@ enum class DepthErrorKind {
   linear,    ///< |decoded - true|, as in the paper: a wrap at the end of the range costs all of it
   circular,  ///< the shorter way round the range
 };
+/// The enumerator's name.
+constexpr std::string_view name_of(DepthErrorKind kind) {
+  return kind == DepthErrorKind::linear ? "linear" : "circular";
+}
 
 /// How the values of an exposure's taps leave the sensor.
 enum class Readout {
@@ -85,6 +90,11 @@ struct OperatingPoint {
 
   friend bool operator==(const OperatingPoint&, const OperatingPoint&) = default;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<OperatingPoint> auto& p) {
+  return std::tuple(Field("signal_e_per_s", p.signal_e_per_s, "finite and >= 0"),
+                    Field("ambient_e_per_s", p.ambient_e_per_s, "finite and >= 0"));
+}
 
 /// Where a code is judged: every pair of signal and ambient.
 struct OperatingRange {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/raw_view.hpp"
 #include "tofsmith/decode/decoded_view.hpp"
@@ -22,6 +23,11 @@ struct DecodeOptions {
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<DecodeOptions> auto& o) {
+  return std::tuple(Field("low_signal_sigma", o.low_signal_sigma, "finite and >= 0"),
+                    Field("minimum_confidence", o.minimum_confidence, "in [0, 1]"));
+}
 
 /// Depth by zero-mean normalized cross-correlation, with what ambient light explains projected out
 /// instead of the mean:

@@ -15,6 +15,12 @@ struct ReturnPrior {
   double mean_delay_m = 0.5;        ///< delays are exponential with this mean [m], > 0
   double largest_ratio = 0.5;       ///< ratios are uniform from 0 to this, in (0, 1]
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<ReturnPrior> auto& p) {
+  return std::tuple(Field("single_probability", p.single_probability, "in [0, 1)"),
+                    Field("mean_delay_m", p.mean_delay_m, "finite and > 0"),
+                    Field("largest_ratio", p.largest_ratio, "in (0, 1]"));
+}
 
 /// How returns beside the direct one are looked for.
 struct MultipathOptions {
@@ -34,5 +40,12 @@ struct MultipathOptions {
   /// @throws std::invalid_argument naming field, value and rule
   void validate(double range_m) const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<MultipathOptions> auto& o) {
+  return std::tuple(Field("threshold", o.threshold, "finite and >= 0"),
+                    Field("shortest_delay_m", o.shortest_delay_m, "> 0"),
+                    Field("longest_delay_m", o.longest_delay_m), Field("tail_m", o.tail_m, "> 0"),
+                    Field("prior", o.prior), Field("doubt", o.doubt));
+}
 
 }  // namespace tofsmith

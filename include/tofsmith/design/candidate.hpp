@@ -26,12 +26,25 @@ struct MeasurementReport {
   std::string start;                        ///< which start of the pool it came from
   std::vector<FactorizeIteration> history;  ///< as Factorization::history
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<MeasurementReport> auto& m) {
+  return std::tuple(
+      Field("residual_rms", m.residual_rms, "finite and >= 0", Mark::may_be_null),
+      Field("smallest_residual_rms", m.smallest_residual_rms, "finite and >= 0", Mark::may_be_null),
+      Field("demodulation_duty", m.demodulation_duty), Field("modulation_duty", m.modulation_duty),
+      Field("peak", m.peak), Field("edges", m.edges, ">= 0"), Field("start", m.start),
+      Field("history", m.history, Mark::apart));
+}
 
 /// How far a search had come after some work.
 struct SearchStep {
   double work = 0.0;     ///< in the units of SearchRecord
   double error_m = 0.0;  ///< smallest error until then, as the search measures it
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<SearchStep> auto& s) {
+  return std::tuple(Field("work", s.work), Field("error_m", s.error_m));
+}
 
 /// How a code was searched for.
 struct SearchRecord {
@@ -41,6 +54,12 @@ struct SearchRecord {
   bool proved = false;  ///< no other code of the searched kind is better
   std::string account;  ///< what was searched, counted and ruled out by which test
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<SearchRecord> auto& s) {
+  return std::tuple(Field("work_unit", s.work_unit), Field("error_name", s.error_name),
+                    Field("steps", s.steps), Field("proved", s.proved),
+                    Field("account", s.account));
+}
 
 /// A code that competes for a camera. Makers fill in the code and how it came to be; origin, errors
 /// and robustness are the judge's (judge() in design/design.hpp).

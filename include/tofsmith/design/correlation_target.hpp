@@ -9,6 +9,7 @@
 
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/code/code_set.hpp"
+#include "tofsmith/core/fields.hpp"
 
 namespace tofsmith {
 
@@ -17,6 +18,10 @@ struct WaveformPair {
   Waveform modulation;
   Waveform demodulation;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<WaveformPair> auto& p) {
+  return std::tuple(Field("modulation", p.modulation), Field("demodulation", p.demodulation));
+}
 
 /// The correlation function that one measurement should have.
 struct CorrelationTarget {
@@ -25,6 +30,11 @@ struct CorrelationTarget {
   /// Waveforms that have this correlation function on a camera without limits, if known.
   std::optional<WaveformPair> ideal;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<CorrelationTarget> auto& t) {
+  return std::tuple(Field("samples", t.samples), Field("demodulation_mean", t.demodulation_mean),
+                    Field("ideal", t.ideal));
+}
 
 /// The correlation functions of a whole code.
 struct TargetSet {
@@ -33,6 +43,10 @@ struct TargetSet {
 
   int samples() const { return static_cast<int>(measurements.front().samples.size()); }
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<TargetSet> auto& t) {
+  return std::tuple(Field("name", t.name), Field("measurements", t.measurements));
+}
 
 /// The correlation functions of a one-tap code without impulse responses. Of a family built without
 /// a peak limit these are the ideal ones.

@@ -50,6 +50,21 @@ struct DesignOptions {
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<DesignOptions> auto& o) {
+  return std::tuple(Field("method", o.method), Field("exposures", o.exposures, "in [1, 8]"),
+                    Field("target", o.target, Mark::apart), Field("factorize", o.factorize),
+                    Field("optimize", o.optimize), Field("search", o.search),
+                    Field("robust", o.robust), Field("baselines", o.baselines),
+                    Field("best_rotation", o.best_rotation),
+                    Field("search_trials", o.search_trials, ">= 100"),
+                    Field("trials", o.trials, ">= 1000"), Field("seed", o.seed));
+}
+
+/// The options to search longer, or shorter, by the factor `effort`: 0.1 for a first look, 3 for
+/// the last percent.
+/// @throws std::invalid_argument unless effort is in [0.01, 100]
+DesignOptions with_effort(DesignOptions options, double effort);
 
 /// All candidates of a camera, each name once, and which one is best.
 struct DesignResult {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/design/correlation_target.hpp"
 
@@ -33,6 +34,18 @@ struct FactorizeOptions {
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<FactorizeOptions> auto& o) {
+  return std::tuple(Field("total_variation_weights", o.total_variation_weights, "in [1e-7, 1e-2]"),
+                    Field("max_iterations", o.max_iterations, ">= 1"),
+                    Field("objective_tolerance", o.objective_tolerance, ">= 0"),
+                    Field("feed_back_projection", o.feed_back_projection),
+                    Field("random_starts", o.random_starts, ">= 0", ByEffort{2}),
+                    Field("structured_starts", o.structured_starts),
+                    Field("keep_naive", o.keep_naive), Field("refine_edges", o.refine_edges),
+                    Field("refined", o.refined, ">= 1"), Field("kept", o.kept, ">= 1"),
+                    Field("seed", o.seed, Mark::from_above));
+}
 
 /// One pair of convex steps.
 struct FactorizeIteration {
@@ -40,6 +53,12 @@ struct FactorizeIteration {
   double relaxed_residual_rms = 0.0;   ///< before projection
   double playable_residual_rms = 0.0;  ///< after projection to what the arms can play
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<FactorizeIteration> auto& i) {
+  return std::tuple(Field("objective", i.objective),
+                    Field("relaxed_residual_rms", i.relaxed_residual_rms),
+                    Field("playable_residual_rms", i.playable_residual_rms));
+}
 
 /// A playable pair and how far its correlation function is from the target.
 struct PairCandidate {

@@ -8,6 +8,7 @@
 
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/code/code_set.hpp"
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/design/candidate.hpp"
 
@@ -42,6 +43,20 @@ struct OptimizeOptions {
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
+  return std::tuple(
+      Field("samples", o.samples, "in [24, 960]"), Field("starts", o.starts, ">= 1", ByEffort{2}),
+      Field("steps_per_start", o.steps_per_start, ">= 1"),
+      Field("hops", o.hops, ">= 0", ByEffort{0}), Field("steps_per_hop", o.steps_per_hop, ">= 1"),
+      Field("patience", o.patience, ">= 0"), Field("refined", o.refined, ">= 1"),
+      Field("refinement_steps", o.refinement_steps, ">= 0", ByEffort{50}),
+      Field("trials_per_step", o.trials_per_step, ">= 8"),
+      Field("pool_trials", o.pool_trials, ">= 1000"), Field("polish", o.polish),
+      Field("polish_steps", o.polish_steps, ">= 0"), Field("seed", o.seed, Mark::from_above),
+      Field("two_return_weight", o.two_return_weight, "finite and >= 0"),
+      Field("most_two_return_loss", o.most_two_return_loss, ">= 1"));
+}
 
 /// Optimizes all pairs of modulation and demodulation together for the depth error of a camera:
 /// geometric mean over its operating points, linear or circular as the camera asks.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/io/quantized_waveform.hpp"
 #include "tofsmith/io/waveform_format.hpp"
 
@@ -26,6 +27,14 @@ struct ExportOptions {
   double low_v = 0.0;                    ///< output at no light and at no gain [V]
   double high_v = 1.0;  ///< output at the highest peak of the light, and at a gain of 1 [V]
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<ExportOptions> auto& o) {
+  return std::tuple(Field("format", o.format), Field("variant", o.variant),
+                    Field("samples", o.samples), Field("bits", o.bits),
+                    Field("sample_rate_hz", o.sample_rate_hz), Field("edge_grid_s", o.edge_grid_s),
+                    Field("periods", o.periods), Field("low_v", o.low_v),
+                    Field("high_v", o.high_v));
+}
 
 /// All waveforms of a code, ready for a format's writer.
 struct WaveformExport {

@@ -6,6 +6,7 @@
 
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/array.hpp"
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/scene/scene_image.hpp"
 
@@ -23,6 +24,14 @@ struct CaptureOptions {
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<CaptureOptions> auto& o) {
+  return std::tuple(Field("signal_e_per_s", o.signal_e_per_s, "finite and >= 0"),
+                    Field("ambient_e_per_s", o.ambient_e_per_s, "finite and >= 0"),
+                    Field("reference_distance_m", o.reference_distance_m, "finite and > 0"),
+                    Field("falloff", o.falloff), Field("seed", o.seed),
+                    Field("frames", o.frames, ">= 1"));
+}
 
 /// Signal of a pixel, were the sensor fully open [e/s]; 0 where nothing returns (NaN depth).
 double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,

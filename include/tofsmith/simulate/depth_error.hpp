@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/decode/decode_method.hpp"
@@ -42,6 +43,17 @@ struct EvaluateOptions {
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
+  return std::tuple(Field("trials", o.trials, "in [2, 4e9]"), Field("seed", o.seed),
+                    Field("outlier_threshold_m", o.outlier_threshold_m, ">= 0"),
+                    Field("sub_bin", o.sub_bin), Field("depth", o.depth),
+                    Field("clip_to_open_sensor", o.clip_to_open_sensor), Field("method", o.method),
+                    Field("unwrap_weights", o.unwrap_weights),
+                    Field("target_standard_error", o.target_standard_error, "in [0, 1)"),
+                    Field("most_trials", o.most_trials, "in [2, 4e9]"),
+                    Field("draw_every_measurement", o.draw_every_measurement));
+}
 
 /// Depth error at one operating point.
 struct PointDepthError {
@@ -54,12 +66,27 @@ struct PointDepthError {
   double receiver_bound_mae_m = 0.0;    ///< ReceiverBound of the camera, with the code's exposures
   double direct_tof_bound_mae_m = 0.0;  ///< DirectTofBound of the camera's light
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<PointDepthError> auto& p) {
+  return std::tuple(Field("point", p.point, Mark::in_place), Field("trials", p.trials, Mark::apart),
+                    Field("linear_mde_m", p.linear_mde_m, "finite and >= 0"),
+                    Field("circular_mde_m", p.circular_mde_m, "finite and >= 0"),
+                    Field("outlier_rate", p.outlier_rate, "in [0, 1]", Mark::without_error),
+                    Field("cramer_rao_mae_m", p.cramer_rao_mae_m, ">= 0", Mark::bound),
+                    Field("receiver_bound_mae_m", p.receiver_bound_mae_m, ">= 0", Mark::bound),
+                    Field("direct_tof_bound_mae_m", p.direct_tof_bound_mae_m, ">= 0", Mark::bound));
+}
 
 /// One figure for all operating points.
 struct DepthErrorMean {
   Estimate geometric_mean_m;
   Estimate mean_m;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<DepthErrorMean> auto& m) {
+  return std::tuple(Field("geometric_mean_m", m.geometric_mean_m, "finite and >= 0"),
+                    Field("mean_m", m.mean_m, "finite and >= 0"));
+}
 
 /// Depth error of a code on a camera.
 struct DepthErrorReport {
@@ -72,13 +99,24 @@ struct DepthErrorReport {
   int points_short_of_target = 0;  ///< that reached most_trials first
   std::uint64_t seed = 0;
   double outlier_threshold_m = 0.0;
-  std::vector<PointDepthError> points;  ///< in the order of OperatingRange::points()
   DepthErrorMean linear, circular;
+  std::vector<PointDepthError> points;  ///< in the order of OperatingRange::points()
 
   const DepthErrorMean& of(DepthErrorKind kind) const {
     return kind == DepthErrorKind::linear ? linear : circular;
   }
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<DepthErrorReport> auto& r) {
+  return std::tuple(
+      Field("code", r.code, InDocuments{"name"}), Field("exposures", r.exposures, ">= 1"),
+      Field("taps", r.taps, ">= 1"), Field("measurements", r.measurements, ">= 1"),
+      Field("samples", r.samples, ">= 1"), Field("trials", r.trials, Mark::apart),
+      Field("points_short_of_target", r.points_short_of_target, Mark::apart),
+      Field("seed", r.seed, Mark::apart),
+      Field("outlier_threshold_m", r.outlier_threshold_m, Mark::apart), Field("linear", r.linear),
+      Field("circular", r.circular), Field("points", r.points));
+}
 
 /// Monte Carlo depth error at every operating point of the camera, with bounds beside it.
 ///

@@ -27,30 +27,57 @@ struct MultipathErrorOptions {
   /// @throws std::invalid_argument naming field, value and rule
   void validate(double range_m) const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<MultipathErrorOptions> auto& o) {
+  return std::tuple(Field("delay_m", o.delay_m, "> 0"), Field("ratio", o.ratio, "in [0, 1]"),
+                    Field("tail_m", o.tail_m, "> 0"),
+                    Field("signal_e_per_s", o.signal_e_per_s, "finite and > 0"),
+                    Field("ambient_e_per_s", o.ambient_e_per_s, "finite and >= 0"),
+                    Field("trials", o.trials, "in [2, 1e7]"), Field("seed", o.seed),
+                    Field("decoding", o.decoding));
+}
 
 /// Error of direct depth in one kind of light: all errors the shorter way round the range.
 struct MultipathCell {
   double ratio = 0.0;
-  double delay_m = 0.0;      ///< of the second return, or mean delay of the tail
-  Estimate single_bias_m;    ///< mean of decoded - true, single-path (zncc)
-  Estimate single_error_m;   ///< mean of |decoded - true|
-  Estimate bias_m, error_m;  ///< of two-return (tail) decoding; NaN where the code cannot
-  double two_share = 0.0;    ///< of pixels found to hold two returns
-  double unresolved_share = 0.0;
-  double cramer_rao_mae_m = 0.0;  ///< MultipathBound
+  double delay_m = 0.0;           ///< of the second return, or mean delay of the tail
   double law_m = 0.0;             ///< r delta / (1 + r)
+  Estimate single_bias_m;         ///< mean of decoded - true, single-path (zncc)
+  Estimate single_error_m;        ///< mean of |decoded - true|
+  Estimate bias_m, error_m;       ///< of two-return (tail) decoding; NaN where the code cannot
+  double cramer_rao_mae_m = 0.0;  ///< MultipathBound
+  double two_share = 0.0;         ///< of pixels found to hold two returns
+  double unresolved_share = 0.0;
 
   double gain() const { return single_error_m.value / error_m.value; }
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<MultipathCell> auto& c) {
+  return std::tuple(Field("ratio", c.ratio), Field("delay_m", c.delay_m), Field("law_m", c.law_m),
+                    Field("single_bias_m", c.single_bias_m, Mark::without_error,
+                          InDocuments{"single_path_bias_m"}),
+                    Field("single_error_m", c.single_error_m, InDocuments{"single_path_error_m"}),
+                    Field("bias_m", c.bias_m, Mark::without_error), Field("error_m", c.error_m),
+                    Field("cramer_rao_mae_m", c.cramer_rao_mae_m), Field("two_share", c.two_share),
+                    Field("unresolved_share", c.unresolved_share));
+}
 
 /// Maps at one signal.
 struct MultipathMaps {
   double signal_e_per_s = 0.0;
-  std::vector<MultipathCell> points;  ///< ratio by ratio, each delay by delay
-  std::vector<MultipathCell> tails;   ///< the same of tails
   MultipathCell single;               ///< no second return: what two-return decoding loses
   MultipathCell single_by_tail;       ///< the same by tail decoding, of the middle tail
+  std::vector<MultipathCell> points;  ///< ratio by ratio, each delay by delay
+  std::vector<MultipathCell> tails;   ///< the same of tails
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<MultipathMaps> auto& m) {
+  return std::tuple(Field("signal_e_per_s", m.signal_e_per_s),
+                    Field("single", m.single, InDocuments{"single_return"}),
+                    Field("single_by_tail", m.single_by_tail, InDocuments{"single_return_by_tail"}),
+                    Field("points", m.points, InDocuments{"second_returns"}),
+                    Field("tails", m.tails));
+}
 
 /// What a code does where light comes back twice.
 struct MultipathErrorReport {

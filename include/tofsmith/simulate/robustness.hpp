@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/decode/decode_method.hpp"
@@ -30,6 +31,16 @@ struct RobustnessOptions {
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<RobustnessOptions> auto& o) {
+  return std::tuple(
+      Field("bandwidth", o.bandwidth, "in [0, 1)"), Field("peak", o.peak, "in [0, 1)"),
+      Field("edge_jitter_s", o.edge_jitter_s, "in [0, 1]"),
+      Field("tap_mismatch", o.tap_mismatch, "in [0, 1)"), Field("clock_s", o.clock_s, "in [0, 1]"),
+      Field("droop", o.droop, "in [0, 1)"), Field("together", o.together),
+      Field("trials", o.trials, "in [2, 4e9]"), Field("seed", o.seed), Field("method", o.method),
+      Field("unwrap_weights", o.unwrap_weights));
+}
 
 /// A camera that is not quite what it was said to be.
 struct PerturbedCamera {
@@ -75,6 +86,14 @@ struct PerturbedError {
   Estimate calibrated_m;    ///< by a decoder that knows the perturbed camera
   Estimate uncalibrated_m;  ///< by one that believes the camera to be what it was said to be
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<PerturbedError> auto& e) {
+  return std::tuple(Field("name", e.name),
+                    Field("calibrated_m", e.calibrated_m, "finite and >= 0", Mark::as_object,
+                          InDocuments{"calibrated"}),
+                    Field("uncalibrated_m", e.uncalibrated_m, "finite and >= 0", Mark::as_object,
+                          InDocuments{"uncalibrated"}));
+}
 
 /// Depth error of a code when its camera is not quite what it was said to be.
 struct RobustnessReport {
@@ -88,6 +107,13 @@ struct RobustnessReport {
   Estimate worst_calibrated_m() const;
   Estimate worst_uncalibrated_m() const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<RobustnessReport> auto& r) {
+  return std::tuple(
+      Field("kind", r.kind, InDocuments{"error"}), Field("trials", r.trials), Field("seed", r.seed),
+      Field("nominal_m", r.nominal_m, "finite and >= 0", Mark::as_object, InDocuments{"nominal"}),
+      Field("perturbed", r.perturbed, InDocuments{"perturbations"}));
+}
 
 /// Judges a code on the perturbations of its camera.
 /// @throws std::invalid_argument if the camera or the options are invalid, the code does not fit or

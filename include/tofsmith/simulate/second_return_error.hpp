@@ -17,6 +17,11 @@ struct SecondReturnError {
     return kind == DepthErrorKind::linear ? linear_m : circular_m;
   }
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<SecondReturnError> auto& e) {
+  return std::tuple(Field("linear_m", e.linear_m, "finite and >= 0"),
+                    Field("circular_m", e.circular_m, "finite and >= 0"));
+}
 
 /// Error where every pixel has a second return, decoded as if there were one, by zncc. Trial t of a
 /// point draws depth, uniform on the t-th slice of the range, albedo, return and noise from a
@@ -38,6 +43,10 @@ struct SecondReturnReport {
   SecondReturnError single_path;                ///< decoded as single-path
   std::optional<SecondReturnError> two_return;  ///< as two returns; none: the code cannot
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<SecondReturnReport> auto& r) {
+  return std::tuple(Field("single_path", r.single_path), Field("two_return", r.two_return));
+}
 
 /// Both, on the same trials.
 /// @throws as second_return_error()

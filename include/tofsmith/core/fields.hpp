@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "tofsmith/core/error.hpp"
+
+// The fields of an options or result struct, listed once beside it, in the order of declaration:
+//
+//   auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
+//     return std::tuple(Field("starts", o.starts, ">= 1", ByEffort{2}), Field("polish", o.polish));
+//   }
+//
+// Validation, keys of finished work, JSON, Python and effort go through for_each_field(), which
+// does not compile where a field is missing.
+namespace tofsmith {
+
+/// What uses of a field must know besides its type.
+enum class Mark : unsigned {
+  from_above = 1,     ///< the struct that holds this one sets it; not the user's to give
+  apart = 2,          ///< not in the struct's own JSON object, but elsewhere in the document
+  in_place = 4,       ///< its fields stand among those of the struct that holds it
+  without_error = 8,  ///< an estimate of which results give the value alone
+  as_object = 16,     ///< an estimate that is an object of its own in JSON
+  may_be_null = 32,   ///< in JSON
+  bound = 64          ///< a bound of errors, which not every table of them shows
+};
+constexpr unsigned as_bits(Mark mark) { return static_cast<unsigned>(mark); }
+
+/// A count that searching longer or shorter scales, never to below this (scale_by_effort).
+struct ByEffort {
+  int least = 0;
+};
+
+/// What JSON documents call a field, where that is not its name.
+struct InDocuments {
+  std::string_view name;
+};
+
+/// A field of a struct: its name, itself, and as marks the rule that numbers keep, such as
+/// "finite and >= 0", "> 0", "in [24, 960]", "in (0, 1/2)" or "0 or >= 2", and what else is known.
+template <typename Value>
+struct Field {
+  const char* name;
+  Value& value;
+  const char* rule = "";
+  std::optional<ByEffort> by_effort = {};
+  std::string_view document_name = name;
+  unsigned marks = 0;
+
+  template <typename... Marks>
+  Field(const char* its_name, Value& its_value, Marks... its_marks)
+      : name(its_name), value(its_value) {
+    (set(its_marks), ...);
+  }
+  bool is(Mark mark) const { return (marks & as_bits(mark)) != 0; }
+
+ private:
+  void set(const char* its_rule) { rule = its_rule; }
+  void set(ByEffort effort) { by_effort = effort; }
+  void set(InDocuments its) { document_name = its.name; }
+  void set(Mark mark) { marks |= as_bits(mark); }
+};
+
+/// A struct to read or to write.
+template <typename Type, typename Struct>
+concept ConstOrNot = std::is_same_v<std::remove_const_t<Type>, Struct>;
+
+/// A struct whose fields are listed.
+template <typename Struct>
+concept HasFields = requires(Struct& its) {
+  fields_of(its);
+};
+
+namespace detail {
+template <typename Struct, typename Listed>
+inline constexpr bool lists_all = false;
+/// Listed values make the whole struct, in their order, and leave no member over.
+template <typename Struct, typename... Values>
+inline constexpr bool lists_all<Struct, std::tuple<Field<Values>...>> = requires {
+  Struct{std::declval<Values>()...};
+}
+&&!requires { Struct{std::declval<Values>()..., {}}; };
+}  // namespace detail
+
+/// Whether fields_of() lists every member of an aggregate, in the order of declaration.
+template <typename Struct>
+inline constexpr bool lists_every_field =
+    detail::lists_all<Struct, decltype(fields_of(std::declval<Struct&>()))>;
+
+/// Whether a struct is of nothing but doubles.
+template <typename Struct>
+inline constexpr bool is_row =
+    std::is_same_v<decltype(std::apply(
+                       [](const auto&... fields) {
+                         return std::bool_constant<(
+                             std::is_same_v<decltype(fields.value), double&> && ...)>();
+                       },
+                       fields_of(std::declval<Struct&>()))),
+                   std::true_type>;
+
+/// Calls `visit` with the Field of every member.
+template <typename Struct, typename Visit>
+void for_each_field(Struct& its, Visit&& visit) {
+  static_assert(lists_every_field<std::remove_const_t<Struct>>,
+                "fields_of() must list every member in the order of declaration");
+  std::apply([&](const auto&... fields) { (visit(fields), ...); }, fields_of(its));
+}
+
+/// What results call the standard error of an estimate: "error_se_m" beside "error_m",
+/// "linear_se_m" beside "linear_mde_m".
+std::string error_name(std::string_view name);
+
+/// Whether a number keeps the rule of a Field; "" is none.
+bool keeps(double value, std::string_view rule);
+
+template <typename Value>
+inline constexpr bool is_list = false;
+template <typename Item>
+inline constexpr bool is_list<std::vector<Item>> = true;
+template <typename Value>
+inline constexpr bool is_optional = false;
+template <typename Value>
+inline constexpr bool is_optional<std::optional<Value>> = true;
+
+namespace detail {
+template <typename Value>
+void check(const char* name, const Value& value, std::string_view rule, std::string_view owner,
+           std::string_view which = "must be ") {
+  if constexpr (std::is_arithmetic_v<Value>) {
+    if (!keeps(static_cast<double>(value), rule))
+      require(false, std::string(owner) + name, value, std::string(which) + std::string(rule));
+  } else if constexpr (is_list<Value>) {
+    for (const auto& item : value) check(name, item, rule, owner, "each must be ");
+  } else if constexpr (is_optional<Value>) {
+    if (value) check(name, *value, rule, owner);
+  }
+}
+}  // namespace detail
+
+/// Checks the rule of every field; members that are structs check their own.
+/// @param owner  before the names in errors: "OptimizeOptions::"
+/// @throws std::invalid_argument "OptimizeOptions::starts = -3; must be >= 1"
+template <typename Struct>
+void check_fields(const Struct& its, std::string_view owner = "") {
+  for_each_field(
+      its, [&](const auto& field) { detail::check(field.name, field.value, field.rule, owner); });
+}
+
+/// A count times `effort`, rounded, and at least as large as it must stay.
+int scaled_count(int count, double effort, ByEffort by_effort);
+
+/// Searches longer, or shorter, by the factor `effort`: scales counts marked ByEffort, also of
+/// members that are structs.
+template <typename Struct>
+void scale_by_effort(Struct& its, double effort) {
+  for_each_field(its, [&](const auto& field) {
+    using Value = std::remove_reference_t<decltype(field.value)>;
+    if constexpr (HasFields<Value>)
+      scale_by_effort(field.value, effort);
+    else if constexpr (std::is_same_v<Value, int>)
+      if (field.by_effort) field.value = scaled_count(field.value, effort, *field.by_effort);
+  });
+}
+
+}  // namespace tofsmith

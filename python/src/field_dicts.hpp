@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/stl.h>
+
+#include <string>
+#include <vector>
+
+#include "arrays.hpp"
+#include "reports.hpp"
+#include "tofsmith/core/fields.hpp"
+
+// Results as dicts of numbers and arrays, by the names of their fields, and back. An estimate x_m
+// is that and x_se_m beside it. A list of structs is an array, or a list of texts, for each of
+// their fields; one whose name is taken has "point_" before it.
+namespace tofsmith::python {
+
+/// Calls `visit` with the name and value of every number and text of a struct.
+template <typename Struct, typename Visit>
+void for_each_entry(Struct& its, Visit&& visit) {
+  for_each_field(its, [&](const auto& field) {
+    using Value = std::remove_cvref_t<decltype(field.value)>;
+    if constexpr (std::is_same_v<Value, Estimate>) {
+      visit(std::string(field.name), field.value.value);
+      if (!field.is(Mark::without_error)) visit(error_name(field.name), field.value.standard_error);
+    } else if constexpr (HasFields<Value>) {
+      for_each_entry(field.value, visit);
+    } else {
+      visit(std::string(field.name), field.value);
+    }
+  });
+}
+
+/// Entry number `index` of every struct; each has the type `Value`.
+template <typename Value, typename Structs, typename Visit>
+void for_each_of_column(Structs& items, int index, Visit&& visit) {
+  for (auto& item : items) {
+    int i = 0;
+    for_each_entry(item, [&](const std::string&, auto& value) {
+      if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, Value>)
+        if (i == index) visit(value);
+      ++i;
+    });
+  }
+}
+
+template <typename Struct>
+void add_columns(py::dict& dict, const std::vector<Struct>& items) {
+  const Struct blank{};
+  int index = 0;
+  for_each_entry(blank, [&](const std::string& name, const auto& any) {
+    using Value = std::remove_cvref_t<decltype(any)>;
+    std::vector<Value> column;
+    for_each_of_column<Value>(items, index++, [&](const Value& value) { column.push_back(value); });
+    const py::str key = dict.contains(name) ? "point_" + name : name;
+    if constexpr (std::is_same_v<Value, std::string>)
+      dict[py::str(name + "s")] = column;
+    else
+      dict[key] = adopt(std::move(column));
+  });
+}
+
+template <typename Struct>
+py::dict fields_dict(const Struct& its) {
+  py::dict dict;
+  for_each_field(its, [&](const auto& field) {
+    using Value = std::remove_cvref_t<decltype(field.value)>;
+    if constexpr (std::is_same_v<Value, Estimate>) {
+      if (field.is(Mark::as_object)) {
+        dict[field.name] = pair_of(field.value);
+      } else {
+        dict[field.name] = field.value.value;
+        dict[py::str(error_name(field.name))] = field.value.standard_error;
+      }
+    } else if constexpr (HasFields<Value>) {
+      dict[field.name] = fields_dict(field.value);
+    } else if constexpr (is_list<Value>) {
+      add_columns(dict, field.value);
+    } else if constexpr (std::is_enum_v<Value>) {
+      dict[field.name] = std::string(name_of(field.value));
+    } else {
+      dict[field.name] = field.value;
+    }
+  });
+  return dict;
+}
+
+/// @throws std::invalid_argument naming a column that is of another length than those before it
+template <typename Struct>
+void read_columns(const py::dict& values, std::vector<Struct>& items) {
+  Struct blank{};
+  int index = 0;
+  for_each_entry(blank, [&](const std::string& name, const auto& any) {
+    using Value = std::remove_cvref_t<decltype(any)>;
+    const std::string point_name = "point_" + name;
+    const py::str key = values.contains(point_name) ? point_name : name;
+    const auto column = py::cast<std::vector<Value>>(values[key]);
+    if (index == 0) items.resize(column.size());
+    if (column.size() != items.size())
+      refuse(name, std::to_string(column.size()) + " values",
+             "one for each of " + std::to_string(items.size()) + " operating points");
+    std::size_t i = 0;
+    for_each_of_column<Value>(items, index++, [&](Value& value) { value = column[i++]; });
+  });
+}
+
+/// The struct that fields_dict() made such a dict of. @throws pybind11 errors for what is missing
+/// or of another type
+template <typename Struct>
+Struct fields_from_dict(const py::dict& values) {
+  Struct its;
+  for_each_field(its, [&](const auto& field) {
+    using Value = std::remove_cvref_t<decltype(field.value)>;
+    if constexpr (std::is_same_v<Value, Estimate>)
+      field.value = {py::cast<double>(values[field.name]),
+                     py::cast<double>(values[py::str(error_name(field.name))])};
+    else if constexpr (HasFields<Value>)
+      field.value = fields_from_dict<Value>(values[field.name]);
+    else if constexpr (is_list<Value>)
+      read_columns(values, field.value);
+    else
+      field.value = py::cast<Value>(values[field.name]);
+  });
+  return its;
+}
+
+}  // namespace tofsmith::python

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/design/design.hpp"
+
+namespace tofsmith {
+
+void DesignOptions::validate() const {
+  check_fields(*this, "DesignOptions::");
+  for (const int e : exposures) {
+    require(std::ranges::count(exposures, e) == 1, "DesignOptions::exposures", e,
+            "must be listed once");
+    require(method != DesignMethod::factorize || (e >= 3 && e <= 6), "DesignOptions::exposures", e,
+            "must be in [3, 6] to aim at Hamiltonian codes");
+  }
+  if (baselines)
+    for (const std::string& name : *baselines)
+      require(std::ranges::count(*baselines, name) == 1, "DesignOptions::baselines", name,
+              "must be listed once");
+  require(!target || !target->measurements.empty(), "DesignOptions::target", "[]",
+          "must hold at least one correlation function");
+  factorize.validate();
+  optimize.validate();
+  search.validate();
+}
+
+DesignOptions with_effort(DesignOptions options, double effort) {
+  require(effort >= 0.01 && effort <= 100.0, "effort", effort, "must be in [0.01, 100]");
+  scale_by_effort(options, effort);
+  return options;
+}
+
+}  // namespace tofsmith

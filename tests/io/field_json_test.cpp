@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/field_json.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "damaged_files.hpp"
+#include "io/field_key.hpp"
+#include "io/json_text.hpp"
+#include "tofsmith/design/design.hpp"
+
+namespace tofsmith {
+
+struct Step {
+  double work = 0.0, error_m = 0.0;
+};
+auto fields_of(ConstOrNot<Step> auto& s) {
+  return std::tuple(Field("work", s.work), Field("error_m", s.error_m));
+}
+
+struct Finding {
+  std::string name;
+  int starts = 4;
+  Estimate error_m;
+  std::vector<Step> steps;
+  std::optional<OperatingPoint> point;
+  double bound_m = 0.0;
+};
+auto fields_of(ConstOrNot<Finding> auto& f) {
+  return std::tuple(Field("name", f.name), Field("starts", f.starts, ">= 1", ByEffort{1}),
+                    Field("error_m", f.error_m, "finite and >= 0"), Field("steps", f.steps),
+                    Field("point", f.point), Field("bound_m", f.bound_m, ">= 0"));
+}
+
+/// A Finding to which a field was added, and listed, and nothing else was done.
+struct Grown {
+  int starts = 4;
+  int added = 8;
+};
+auto fields_of(ConstOrNot<Grown> auto& g) {
+  return std::tuple(Field("starts", g.starts, ">= 1"),
+                    Field("added", g.added, "in [3, 16]", ByEffort{3}));
+}
+
+namespace {
+
+using testing::HasSubstr;
+
+template <typename Struct>
+Struct read_back(const nlohmann::ordered_json& json) {
+  const nlohmann::json document = parse_json(json.dump(), "a.json");
+  return fields_from_json<Struct>(JsonReader(document, "a.json"));
+}
+
+template <typename Struct>
+std::string key_of(const Struct& its) {
+  std::string key;
+  append_key(key, its);
+  return key;
+}
+
+Finding finding() {
+  return {.name = "a",
+          .starts = 7,
+          .error_m = {1.5, 0.25},
+          .steps = {{1.0, 0.5}, {2.0, 0.25}},
+          .point = OperatingPoint{1e4, 2e4},
+          .bound_m = std::numeric_limits<double>::infinity()};
+}
+
+TEST(FieldJson, IsAnObjectOfTheFields) {
+  EXPECT_EQ(fields_json(finding()).dump(),
+            R"({"name":"a","starts":7,"error_m":1.5,"error_se_m":0.25,"steps":[[1.0,0.5],)"
+            R"([2.0,0.25]],"point":{"signal_e_per_s":10000.0,"ambient_e_per_s":20000.0},)"
+            R"("bound_m":null})");
+}
+
+TEST(FieldJson, ReadingUndoesWriting) {
+  for (const Finding& written : {finding(), Finding{}})
+    EXPECT_EQ(fields_json(read_back<Finding>(fields_json(written))), fields_json(written));
+}
+
+TEST(FieldJson, RefusesWhatIsMissingOrBreaksTheRule) {
+  const auto refusal = [](const char* name, const nlohmann::ordered_json& value) {
+    nlohmann::ordered_json json = fields_json(finding());
+    if (value.is_discarded())
+      json.erase(name);
+    else
+      json[name] = value;
+    return io_error_of([&] { read_back<Finding>(json); });
+  };
+  const nlohmann::ordered_json missing(nlohmann::ordered_json::value_t::discarded);
+  const Finding whole = finding();
+  for_each_field(whole, [&](const auto& field) {
+    EXPECT_THAT(refusal(field.name, missing), HasSubstr(field.name));
+  });
+  EXPECT_EQ(refusal("starts", 0), "a.json: /starts: found 0; expected an integer >= 1");
+  EXPECT_EQ(refusal("error_m", -1),
+            "a.json: /error_m: found -1; expected a number finite and >= 0");
+  EXPECT_EQ(refusal("steps", nlohmann::ordered_json::array({{1.0}})),
+            "a.json: /steps/0: found a list of 1; expected a list of 2: work, error_m");
+}
+
+TEST(Fields, OneThatIsAddedIsInEveryUse) {
+  EXPECT_THROW(check_fields(Grown{.added = 2}), std::invalid_argument);
+  EXPECT_NE(key_of(Grown{}), key_of(Grown{.added = 9}));
+  EXPECT_EQ(fields_json(Grown{.added = 9})["added"], 9);
+  EXPECT_EQ(read_back<Grown>(fields_json(Grown{.added = 9})).added, 9);
+  Grown scaled;
+  scale_by_effort(scaled, 0.5);
+  EXPECT_EQ(scaled.added, 4);
+  EXPECT_EQ(scaled.starts, 4) << "not marked";
+}
+
+/// Changes any one field, of members too, and calls `visit` with it changed.
+template <typename Struct, typename Visit>
+void for_each_change(Struct& its, const Visit& visit, const std::string& owner = "") {
+  for_each_field(its, [&](const auto& field) {
+    auto& value = field.value;
+    using Value = std::remove_reference_t<decltype(value)>;
+    const std::string name = owner + field.name;
+    const Value before = value;
+    if constexpr (HasFields<Value>)
+      for_each_change(value, visit, name + ".");
+    else if constexpr (is_optional<Value>)
+      value.emplace();
+    else if constexpr (is_list<Value>)
+      value.emplace_back();
+    else if constexpr (std::is_enum_v<Value>)
+      value = Value{};
+    else if constexpr (std::is_same_v<Value, bool>)
+      value = !value;
+    else
+      value += 1;
+    visit(name);
+    value = before;
+  });
+}
+
+TEST(FieldKey, DiffersWhereAnyFieldOfADesignsOptionsDoes) {
+  DesignOptions options;
+  const std::string key = key_of(options);
+  int changed = 0;
+  for_each_change(options, [&](const std::string& name) {
+    if (name == "factorize" || name == "optimize" || name == "search") return;
+    EXPECT_NE(key_of(options), key) << name;
+    ++changed;
+  });
+  EXPECT_GT(changed, 40);
+  EXPECT_EQ(key_of(options), key);
+}
+
+TEST(FieldKey, TellsListsApart) {
+  DesignOptions a, b;
+  a.baselines = {"x", "y"};
+  b.baselines = {"x,y"};
+  EXPECT_NE(key_of(a), key_of(b));
+}
+
+}  // namespace
+}  // namespace tofsmith
