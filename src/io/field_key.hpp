@@ -35,6 +35,7 @@ void append_key(std::string& key, const Value& value) {
   } else if constexpr (std::is_enum_v<Value>) {
     append_key(key, static_cast<int>(value));
   } else if constexpr (is_optional<Value>) {
+    key += value ? '+' : '-';
     if (value) append_key(key, *value);
   } else if constexpr (std::is_arithmetic_v<Value>) {
     fmt::format_to(std::back_inserter(key), "{}", value);

@@ -158,6 +158,8 @@ TEST(FieldKey, TellsListsApart) {
   a.baselines = {"x", "y"};
   b.baselines = {"x,y"};
   EXPECT_NE(key_of(a), key_of(b));
+  EXPECT_NE(key_of(std::optional<std::vector<int>>()),
+            key_of(std::make_optional<std::vector<int>>()));
 }
 
 }  // namespace
