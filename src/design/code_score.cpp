@@ -122,7 +122,7 @@ int CodeJudge::best_rotation(const SampledCode& code) const {
     }
     for (std::size_t r = 0; r < worst.size(); ++r) worst[r] = std::max(worst[r], log_error[r]);
   }
-  return best_of_rotations(worst);
+  return best_of_rotations(smoothed_over_rotations(worst));
 }
 
 WaveformParameters rotated(const WaveformSpace& space, const WaveformParameters& parameters,
