@@ -49,7 +49,7 @@ constexpr std::array depth_files = {"depth.npy", "depth.npz", "depth.exr", "dept
 
 DesignOptions design_options(const DemoArguments& arguments) {
   DesignOptions options;
-  options.seed = options.factorize.seed = arguments.seed;
+  options.seed = arguments.seed;
   options.trials = arguments.trials;
   options = with_effort(std::move(options), arguments.effort);
   return options;
@@ -103,7 +103,7 @@ void print_summary(const Session& session, const fs::path& directory, const Came
                    const DesignResult& result, const SceneResult& scene, double seconds) {
   const DepthErrorKind kind = camera.operating.error;
   const Candidate& winner = result.winner();
-  const double best_m = chosen_error_m(winner.error, kind);
+  const double best_m = geometric_mean_error_m(winner.error, kind);
   session.say(fmt::format("winner on {}: {} ({} exposures)", camera.name, winner.code.name(),
                           winner.code.exposures()));
   session.say(fmt::format("  {} depth error {}, geometric mean over {} light levels (N = {})",
@@ -114,7 +114,7 @@ void print_summary(const Session& session, const fs::path& directory, const Came
        {"sinusoid-k3", "sinusoid-k4", "square-k4", "multifrequency-k5", "pulsed-multifrequency-k5"})
     if (const Candidate* c = result.find(name); c && c != &winner)
       gains += fmt::format("{}{:.2f}x better than {}", gains.empty() ? "" : ", ",
-                           chosen_error_m(c->error, kind) / best_m, name);
+                           geometric_mean_error_m(c->error, kind) / best_m, name);
   session.say("  " + gains);
   for (const SceneCapture& capture : scene.captures) {
     std::string line = fmt::format("scene {}, {} light: mean error {}", scene.name, capture.light,

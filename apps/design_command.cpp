@@ -10,7 +10,6 @@
 #include "second_return_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/correlation_file.hpp"
 #include "tofsmith/io/design_directory.hpp"
 #include "tofsmith/io/result_document.hpp"
@@ -33,23 +32,6 @@ struct DesignArguments {
   std::string output;
 };
 
-/// A family, a code file, or a file of correlation functions.
-TargetSet load_target(const DesignArguments& arguments, const Camera& camera) {
-  const std::filesystem::path path = arguments.target;
-  const std::string extension = path.extension().string();
-  if (extension == ".csv" || extension == ".txt" || extension == ".npy" || extension == ".npz")
-    return targets_from_table(path.stem().string(), read_correlation_functions(path),
-                              camera.samples, arguments.normalize);
-  if (arguments.normalize)
-    throw UsageError("--normalize goes with a --target that is a table; codes are as they are");
-  Camera ideal = camera;
-  ideal.sensor.taps = 1;
-  ideal.sensor.readout = Readout::separate;
-  ideal.sensor.modulation_contrast = 1.0;
-  ideal.light.peak_factor = 1e6;  // the ideal code, not the one within this camera's peak
-  return targets_of(load_code(arguments.target, ideal).resampled(camera.samples));
-}
-
 DesignMethod method_named(const std::string& name) {
   for (const DesignMethod method :
        {DesignMethod::factorize, DesignMethod::optimize, DesignMethod::search})
@@ -69,6 +51,8 @@ DesignOptions options_for(const DesignArguments& arguments, const Camera& camera
   if (!arguments.target.empty() && options.method != DesignMethod::factorize &&
       options.method != DesignMethod::best)
     throw UsageError("--target goes with --method factorize or best");
+  if (arguments.normalize && !is_correlation_table(arguments.target))
+    throw UsageError("--normalize goes with a --target that is a table; codes are as they are");
   if (camera.operating.multipath && options.robust)
     throw UsageError(
         "--robust: found beside second returns (--second-returns or [operating.multipath]); "
@@ -77,16 +61,9 @@ DesignOptions options_for(const DesignArguments& arguments, const Camera& camera
   options = with_effort(std::move(options), arguments.effort);
   arguments.later.apply_to(options.optimize, camera);
   options.seed = arguments.seed;
-  options.factorize.seed = arguments.seed;
   options.trials = arguments.trials;
-  if (!arguments.target.empty()) options.target = load_target(arguments, camera);
-  if (options.method == DesignMethod::factorize) {
-    options.baselines.clear();
-    if (options.exposures.empty() && !options.target)
-      options.exposures = suggested_exposures(camera, DesignMethod::factorize);
-    for (const int e : options.exposures)
-      options.baselines.push_back(fmt::format("hamiltonian-k{}", e));
-  }
+  if (!arguments.target.empty())
+    options.target = load_target(arguments.target, camera, arguments.normalize);
   return options;
 }
 

@@ -16,7 +16,7 @@ namespace {
 void add_second_returns(std::vector<std::vector<std::string>>& rows, const DesignResult& result,
                         DepthErrorKind kind) {
   rows.front().insert(rows.front().end(), {"second return (mm)", "as two returns (mm)"});
-  const std::vector<const Candidate*> order = by_chosen_error(result, kind);
+  const std::vector<const Candidate*> order = by_geometric_mean_error(result, kind);
   for (std::size_t i = 0; i < order.size(); ++i) {
     const SecondReturnReport& report = *order[i]->second_returns;
     rows[i + 1].push_back(estimate_mm_text(report.single_path.of(kind)));
@@ -58,7 +58,7 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
   const DepthErrorKind kind = camera.operating.error;
   std::vector<std::vector<std::string>> rows{
       {"code", "K", "linear (mm)", "circular (mm)", "rotation (bin)", "made by"}};
-  for (const Candidate* c : by_chosen_error(result, kind))
+  for (const Candidate* c : by_geometric_mean_error(result, kind))
     rows.push_back({c->code.name(), fmt::format("{}", c->error.measurements),
                     estimate_mm_text(c->error.linear.geometric_mean_m),
                     estimate_mm_text(c->error.circular.geometric_mean_m),

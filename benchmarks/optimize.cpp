@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "asked_figures.hpp"
-#include "tofsmith/design/optimize.hpp"
+#include "tofsmith/design/design.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
 namespace {
@@ -90,19 +90,25 @@ void run(const Row& row, std::uint64_t seed, int exposures, bool history,
   OptimizeOptions options;
   options.seed = seed;
   const double begin = seconds_of_processor();
-  const OptimizedCode found =
-      optimize(camera, exposures > 0 ? exposures : row.exposures, options, baselines_for(camera));
+  const std::vector<CodeSet> baselines = baselines_for(camera);
+  std::vector<Candidate> candidates =
+      optimize(camera, exposures > 0 ? exposures : row.exposures, options, baselines);
+  for (const CodeSet& code : baselines) candidates.push_back({.code = code, .method = "family"});
+  DesignOptions judging;
+  judging.trials = 4000;
+  const DesignResult found = judge(camera, std::move(candidates), judging);
   const double seconds = seconds_of_processor() - begin;
-  const Estimate error_m = judged(found.code, camera);
-  fmt::print("{:<22} {:7.2f} +- {:4.2f} mm (said {:7.2f}) {:5.1f} s  {:6} steps  from {}; {}\n",
-             row.name, 1e3 * error_m.value, 1e3 * error_m.standard_error, 1e3 * found.error_m.value,
-             seconds, found.steps, found.start, found.message);
-  for (const OptimizeCandidate& candidate : found.candidates)
-    fmt::print("    {:<28} {:7.2f}\n", candidate.name, 1e3 * candidate.error_m.value);
-  if (history)
-    for (const OptimizeIteration& event : found.history)
-      fmt::print("    {:<10} {:7.2f} {:7.2f}  {}\n", event.phase, 1e3 * event.error_m,
-                 1e3 * event.best_error_m, event.start);
+  const Candidate& best = found.winner();
+  const Estimate error_m = judged(best.code, camera);
+  fmt::print("{:<22} {:7.2f} +- {:4.2f} mm (said {:7.2f}) {:5.1f} s  {:6} steps  {}\n", row.name,
+             1e3 * error_m.value, 1e3 * error_m.standard_error,
+             1e3 * ranking_error_m(best, camera, judging), seconds, best.iterations, best.message);
+  for (const Candidate& candidate : found.candidates)
+    fmt::print("    {:<28} {:7.2f}\n", candidate.code.name(),
+               1e3 * ranking_error_m(candidate, camera, judging));
+  if (history && best.search)
+    for (const SearchStep& step : best.search->steps)
+      fmt::print("    {:5.0f} {:7.2f}\n", step.work, 1e3 * step.error_m);
   if (row.signal > 0) {
     const Estimate hamiltonian_m = judged(build_family("hamiltonian-k4", camera), camera);
     figures.at_least(fmt::format("{}: times better than Hamiltonian K=4", row.name),

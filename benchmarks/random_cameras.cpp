@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
     options.optimize.hops = 6;
     options.optimize.refinement_steps = 300;
     const DesignResult result = design(camera, options);
-    const std::vector<const Candidate*> order = by_chosen_error(result, kind);
+    const std::vector<const Candidate*> order = by_geometric_mean_error(result, kind);
     const auto found =
         std::ranges::find_if(order, [](const Candidate* c) { return !c->is_designed(); });
     if (found == order.end()) {

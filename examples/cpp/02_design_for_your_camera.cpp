@@ -30,8 +30,8 @@ int main() {
   options.optimize.pool_trials = 1000;
   options.optimize.validation_trials = 6000;
   const DesignResult result = design(camera, options);
-  for (const Candidate* candidate : by_chosen_error(result, camera.operating.error))
+  for (const Candidate* candidate : by_geometric_mean_error(result, camera.operating.error))
     std::printf("%s: %.1f mm (%s)\n", candidate->code.name().c_str(),
-                1e3 * choice_error_m(*candidate, camera, options), candidate->method.c_str());
+                1e3 * ranking_error_m(*candidate, camera, options), candidate->method.c_str());
   write_code("mine.code.json", result.winner().code, OutputPolicy::overwrite);
 }

@@ -21,9 +21,9 @@ int main() {
   options.factorize.max_iterations = 4;
   options.factorize.refined = 4;
   const DesignResult result = design(camera, options);
-  for (const Candidate* candidate : by_chosen_error(result, camera.operating.error)) {
+  for (const Candidate* candidate : by_geometric_mean_error(result, camera.operating.error)) {
     std::printf("%s: %.1f mm; %s\n", candidate->code.name().c_str(),
-                1e3 * choice_error_m(*candidate, camera, options), candidate->message.c_str());
+                1e3 * ranking_error_m(*candidate, camera, options), candidate->message.c_str());
     for (const MeasurementReport& report : candidate->per_measurement)
       std::printf("  rms distance from the target %.2g, %d edges\n", report.residual_rms,
                   report.edges);

@@ -14,7 +14,7 @@ result = tofsmith.design(
     camera, method="factorize", target=triangle, normalize=True, trials=1000,
     factorize={"random_starts": 3, "max_iterations": 4, "refined": 4},
 )
-for candidate in result.by_choice():
-    print(f"{candidate.code.name}: {candidate.choice_error_m * 1e3:.1f} mm; {candidate.message}")
+for candidate in result.by_ranking_error():
+    print(f"{candidate.code.name}: {candidate.ranking_error_m * 1e3:.1f} mm; {candidate.message}")
     for report in candidate.per_measurement:
         print(f"  rms distance from the target {report.residual_rms:.2g}, {report.edges} edges")

@@ -8,6 +8,7 @@
 #include "output_policy.hpp"
 #include "progress.hpp"
 #include "reports.hpp"
+#include "tofsmith/io/correlation_file.hpp"
 #include "tofsmith/report/design_report.hpp"
 
 namespace tofsmith::python {
@@ -27,7 +28,7 @@ namespace {
 DesignOptions design_options(const py::dict& values, const std::optional<TargetSet>& target) {
   double effort = 1.0;
   DesignOptions options;
-  OptionReader(values, "").value("effort", effort).value("seed", options.factorize.seed);
+  OptionReader(values, "").value("effort", effort);
   options = with_effort(std::move(options), effort);
   OptionReader reader(values, "");
   reader.value("effort", effort).fields(options, {"target"}).finish();
@@ -36,11 +37,11 @@ DesignOptions design_options(const py::dict& values, const std::optional<TargetS
   return options;
 }
 
-py::dict candidate_dict(const Candidate& candidate, double choice_error_m) {
+py::dict candidate_dict(const Candidate& candidate, double ranking_error_m) {
   py::dict dict;
   dict["code"] = candidate.code;
   dict["method"] = candidate.method;
-  dict["choice_error_m"] = choice_error_m;
+  dict["ranking_error_m"] = ranking_error_m;
   dict["error"] = report_dict(candidate.error);
   dict["rotation_bin"] = candidate.rotation_bin;
   dict["iterations"] = candidate.iterations;
@@ -90,7 +91,7 @@ py::dict design_dict(const Camera& camera, const py::dict& values,
       callback, [&](const Progress& progress) { return design(camera, options, progress); });
   py::list candidates;
   for (const Candidate& candidate : result.candidates)
-    candidates.append(candidate_dict(candidate, choice_error_m(candidate, camera, options)));
+    candidates.append(candidate_dict(candidate, ranking_error_m(candidate, camera, options)));
   py::dict dict;
   dict["candidates"] = candidates;
   dict["best"] = result.best;
@@ -108,6 +109,7 @@ void bind_design(py::module_& module) {
       .def("write", &write_design)
       .def("write_report", &write_design_report);
   module.def("targets_of", &targets_of);
+  module.def("load_target", &load_target);
   module.def("targets_from_table",
              [](const std::string& name, const Doubles& table, int samples, bool normalize) {
                return targets_from_table(name, to_matrix(table, "target"), samples, normalize);

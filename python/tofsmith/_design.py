@@ -15,7 +15,7 @@ import numpy.typing as npt
 from . import _check, _tofsmith
 from ._camera import Camera, CameraLike, camera_of
 from ._check import FloatArray, Path, Progress
-from ._code import CodeSet, load_code
+from ._code import CodeSet
 from ._reports import DepthErrorReport, RobustnessReport, SecondReturnReport, report_of
 
 
@@ -58,7 +58,7 @@ class Candidate:
     code : CodeSet
     method : str
         family, naive, reference, factorize, optimize or search.
-    choice_error_m : float
+    ranking_error_m : float
         What it is chosen by [m].
     error : DepthErrorReport
     rotation_bin : int
@@ -81,7 +81,7 @@ class Candidate:
 
     code: CodeSet
     method: str
-    choice_error_m: float
+    ranking_error_m: float
     error: DepthErrorReport
     rotation_bin: int
     iterations: int
@@ -99,7 +99,7 @@ class Candidate:
         return bool(self.per_measurement)
 
     def __repr__(self) -> str:
-        return f"<Candidate {self.code.name} ({self.method}): {self.choice_error_m * 1e3:.4g} mm>"
+        return f"<Candidate {self.code.name} ({self.method}): {self.ranking_error_m * 1e3:.4g} mm>"
 
 
 @dataclass(frozen=True)
@@ -152,9 +152,9 @@ class DesignResult:
     def winner(self) -> Candidate:
         return self.candidates[self.best]
 
-    def by_choice(self) -> list[Candidate]:
+    def by_ranking_error(self) -> list[Candidate]:
         """All candidates, the least error first."""
-        return sorted(self.candidates, key=lambda c: c.choice_error_m)
+        return sorted(self.candidates, key=lambda c: c.ranking_error_m)
 
     def __getitem__(self, name: str) -> Candidate:
         """The candidate of that name; KeyError names those there are."""
@@ -189,15 +189,10 @@ def _target(target: Target, camera: Camera, normalize: bool) -> _tofsmith.Target
     if isinstance(target, np.ndarray):
         table = _check.finite_array(target, "target", "(N, K)")
         return _tofsmith.targets_from_table("target", table, camera.samples, normalize)
-    if normalize:
-        raise ValueError("normalize: goes with a target that is an array; codes are as they are")
     if isinstance(target, (str, os.PathLike)):
-        # The ideal code, not the one within this camera's peak.
-        ideal = camera.replace(
-            light={"peak_factor": 1e6},
-            sensor={"taps": 1, "readout": "separate", "modulation_contrast": 1.0},
-        )
-        target = load_code(target, ideal)
+        return _tofsmith.load_target(_check.path(target, "target"), camera._handle, normalize)
+    if normalize:
+        raise ValueError("normalize: goes with a target that is a table; codes are as they are")
     code = _check.instance(target, CodeSet, "target").resampled(camera.samples)
     return _tofsmith.targets_of(code._handle)
 
@@ -238,14 +233,16 @@ def design(
     exposures : sequence of int, optional
         Numbers of exposures to design for, 1 .. 8; None: what suits method and camera.
     target : str, path, CodeSet or ndarray (N, K), optional
-        Correlation functions to factorize instead of Hamiltonian ones: a family, a code, or values
-        at equal steps of depth over one period, end point left out.
+        Correlation functions to factorize instead of Hamiltonian ones: a family, a code, a file of
+        either kind (.code.json; .csv, .txt, .npy or .npz with `corrfs`), or values at equal steps of
+        depth over one period, end point left out.
     normalize : bool
-        Rescale the columns of an array to [0, 1].
+        Rescale the columns of a table to [0, 1].
     robust : bool, optional
         Optimize for, and pick by, the worst of the camera's perturbations (False).
     baselines : sequence of str, optional
-        Families that compete; those the camera cannot play are left out.
+        Families that compete; those the camera cannot play are left out. None: what suits the
+        method (for factorize, the Hamiltonian codes it aims at).
     best_rotation : bool, optional
         Give every candidate its best origin of depth (True).
     trials, search_trials : int, optional

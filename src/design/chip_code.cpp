@@ -104,18 +104,25 @@ void ChipCode::validate() const {
   }
 }
 
-int chips_of(const Camera& camera) {
-  require(camera.sensor.shortest_pulse_s.has_value(), "sensor.shortest_pulse_s", "none",
-          "must be the length of one chip: codes are searched on a chip clock");
+std::optional<BrokenRule> why_no_chip_clock(const Camera& camera) {
+  if (!camera.sensor.shortest_pulse_s)
+    return broken("sensor.shortest_pulse_s", "none",
+                  "must be the length of one chip: codes are searched on a chip clock");
   const double chip_s = *camera.sensor.shortest_pulse_s;
   const double chips = 1.0 / (camera.fundamental_frequency_hz * chip_s);
-  require(std::abs(chips - std::round(chips)) < 1e-6 * chips && std::round(chips) >= 3 &&
-              std::round(chips) <= most_chips,
-          "sensor.shortest_pulse_s", chip_s,
-          fmt::format("must be the period divided by a whole number, 3 to {}; here {:.6g} s / "
-                      "shortest_pulse_s = {:.6g}",
-                      most_chips, 1.0 / camera.fundamental_frequency_hz, chips));
-  return static_cast<int>(std::lround(chips));
+  if (std::abs(chips - std::round(chips)) < 1e-6 * chips && std::round(chips) >= 3 &&
+      std::round(chips) <= most_chips)
+    return std::nullopt;
+  return broken("sensor.shortest_pulse_s", chip_s,
+                fmt::format("must be the period divided by a whole number, 3 to {}; here {:.6g} s "
+                            "/ shortest_pulse_s = {:.6g}",
+                            most_chips, 1.0 / camera.fundamental_frequency_hz, chips));
+}
+
+int chips_of(const Camera& camera) {
+  require(why_no_chip_clock(camera));
+  return static_cast<int>(
+      std::lround(1.0 / (camera.fundamental_frequency_hz * *camera.sensor.shortest_pulse_s)));
 }
 
 double chip_level(int on_chips, int chips, double peak_factor) {

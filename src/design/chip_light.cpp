@@ -9,19 +9,28 @@
 
 namespace tofsmith {
 
+std::optional<BrokenRule> why_not_plain(const Camera& camera) {
+  if (camera.band_limited())
+    return broken("impulse_response", "given",
+                  "must be none: codes on a chip clock are searched as exact rectangles");
+  if (camera.light.generator || camera.sensor.generator)
+    return broken("generator", "given", "must be none: the chip clock is the generator");
+  if (camera.sensor.modulation_contrast != 1.0)
+    return broken("sensor.modulation_contrast", camera.sensor.modulation_contrast,
+                  "must be 1 to search codes on a chip clock");
+  if (camera.sensor.readout != Readout::separate)
+    return broken("sensor.readout", "difference",
+                  "must be separate to search codes on a chip clock");
+  const auto& times = camera.exposure_s.each_s;
+  if (std::ranges::any_of(times, [&](double time_s) { return time_s != times.front(); }))
+    return broken("exposure_s", "of different lengths",
+                  "must be equal to search codes on a chip clock");
+  return std::nullopt;
+}
+
 void require_plain(const Camera& camera) {
   camera.validate();
-  require(!camera.band_limited(), "impulse_response", "given",
-          "must be none: codes on a chip clock are searched as exact rectangles");
-  require(!camera.light.generator && !camera.sensor.generator, "generator", "given",
-          "must be none: the chip clock is the generator");
-  require(camera.sensor.modulation_contrast == 1.0, "sensor.modulation_contrast",
-          camera.sensor.modulation_contrast, "must be 1 to search codes on a chip clock");
-  require(camera.sensor.readout == Readout::separate, "sensor.readout", "difference",
-          "must be separate to search codes on a chip clock");
-  const auto& times = camera.exposure_s.each_s;
-  require(std::ranges::all_of(times, [&](double time_s) { return time_s == times.front(); }),
-          "exposure_s", "of different lengths", "must be equal to search codes on a chip clock");
+  require(why_not_plain(camera));
 }
 
 ChipLight::ChipLight(const Camera& camera, const OperatingPoint& point, int code_chips,

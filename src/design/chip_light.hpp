@@ -26,7 +26,10 @@ struct ChipLight {
   }
 };
 
-/// @throws std::invalid_argument naming what the model of chips leaves out
+/// What a camera, a valid one, has that the model of chips leaves out.
+std::optional<BrokenRule> why_not_plain(const Camera& camera);
+
+/// @throws std::invalid_argument for a bad camera, or one with what the model of chips leaves out
 void require_plain(const Camera& camera);
 
 }  // namespace tofsmith

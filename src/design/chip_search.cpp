@@ -9,27 +9,16 @@
 #include <cmath>
 
 #include "design/chip_annealing.hpp"
+#include "design/chip_light.hpp"
 #include "design/chip_margin.hpp"
 #include "design/exhaustive_search.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/design/standard_chip_codes.hpp"
-#include "tofsmith/simulate/depth_error.hpp"
-#include "tofsmith/version.hpp"
 
 namespace tofsmith {
 
 namespace {
-
-void require_searchable(const Camera& camera, const ChipSearchOptions& options) {
-  require_plain(camera);
-  const int taps = camera.sensor.taps, values = taps * options.exposures;
-  require(values >= 3 && values <= most_chip_measurements, "exposures x sensor.taps", values,
-          "must be in [3, 16]: signal, ambient light and depth are unknown");
-  require(taps <= chips_of(camera), "sensor.taps", taps, "must not exceed the chips of the clock");
-  require(!camera.operating.uniform_albedo, "operating.albedo", "uniform",
-          "must be a number to search codes by their metric");
-}
 
 /// Whether all codes can be tried, and how many about that is.
 bool can_be_exhaustive(const AssignmentRules& rules, const ChipSearchOptions& options) {
@@ -43,26 +32,7 @@ bool can_be_exhaustive(const AssignmentRules& rules, const ChipSearchOptions& op
 ChipFinalist finalist_of(const ScoredCode& scored, const ChipJudge& judge) {
   return {.code = scored.code,
           .rms_m = judge.rms_m(scored.score),
-          .margin_sigma = judge.proven_margin_sigma(scored.code),
-          .circular_mde_m = {}};
-}
-
-/// Monte Carlo has the last word on the order.
-void rank_by_trials(std::vector<ChipFinalist>& finalists, const Camera& camera,
-                    const ChipSearchOptions& options, const Progress& progress) {
-  EvaluateOptions evaluation;
-  evaluation.trials = options.trials;
-  evaluation.seed = options.seed;
-  evaluation.method = DecodeMethod::ml;
-  const ProgressParts parts(progress, finalists.size());
-  for (std::size_t i = 0; i < finalists.size(); ++i) {
-    const Camera judged = camera_for(finalists[i].code, camera);
-    finalists[i].circular_mde_m =
-        evaluate(to_code_set(finalists[i].code, judged, "finalist"), judged, evaluation, parts[i])
-            .circular.geometric_mean_m;
-  }
-  std::ranges::stable_sort(finalists, {},
-                           [](const ChipFinalist& f) { return f.circular_mde_m.value; });
+          .margin_sigma = judge.proven_margin_sigma(scored.code)};
 }
 
 std::string proof_text(const ChipSearchCounts& counts, const AssignmentRules& rules,
@@ -79,9 +49,27 @@ std::string proof_text(const ChipSearchCounts& counts, const AssignmentRules& ru
 
 }  // namespace
 
-void ChipSearchOptions::validate() const {
-  check_fields(*this, "ChipSearchOptions::");
+std::optional<BrokenRule> why_not_searchable(const Camera& camera, int exposures) {
+  if (exposures < 1 || exposures > 4)
+    return broken("ChipSearchOptions::exposures", exposures, "must be in [1, 4]");
+  if (auto reason = why_not_plain(camera)) return reason;
+  const int taps = camera.sensor.taps, values = taps * exposures;
+  if (values < 3 || values > most_chip_measurements)
+    return broken("exposures x sensor.taps", values,
+                  "must be in [3, 16]: signal, ambient light and depth are unknown");
+  if (auto reason = why_no_chip_clock(camera)) return reason;
+  if (taps > chips_of(camera))
+    return broken("sensor.taps", taps, "must not exceed the chips of the clock");
+  if (camera.operating.uniform_albedo)
+    return broken("operating.albedo", "uniform",
+                  "must be a number to search codes by their metric");
+  const std::size_t listed = camera.exposure_s.each_s.size();
+  if (listed != 0 && listed != static_cast<std::size_t>(exposures))
+    return broken("number of exposure_s", listed, "must equal the exposures");
+  return std::nullopt;
 }
+
+void ChipSearchOptions::validate() const { check_fields(*this, "ChipSearchOptions::"); }
 
 ChipSearchCounts& ChipSearchCounts::operator+=(const ChipSearchCounts& other) {
   raw += other.raw;
@@ -100,7 +88,8 @@ ChipSearchCounts& ChipSearchCounts::operator+=(const ChipSearchCounts& other) {
 ChipSearchResult search_chip_codes(const Camera& camera, const ChipSearchOptions& options,
                                    const Progress& progress) {
   options.validate();
-  require_searchable(camera, options);
+  camera.validate();
+  require(why_not_searchable(camera, options.exposures));
   const auto begin = std::chrono::steady_clock::now();
   const AssignmentRules rules{.chips = chips_of(camera),
                               .taps = camera.sensor.taps,
@@ -124,7 +113,7 @@ ChipSearchResult search_chip_codes(const Camera& camera, const ChipSearchOptions
     annealing.annealing_starts = options.exposures == 1 ? 0 : 8;
     annealing.annealing_steps = 2000;
   }
-  const ProgressParts parts(progress, {is_exhaustive ? 5.0 : 90.0, is_exhaustive ? 85.0 : 0.0, 10});
+  const ProgressParts parts(progress, {is_exhaustive ? 5.0 : 95.0, is_exhaustive ? 95.0 : 0.0});
   ChipSearchCounts annealed;
   BestCodes best = anneal_chip_codes(judge, seeds, annealing, annealed, parts[0]);
 
@@ -145,12 +134,11 @@ ChipSearchResult search_chip_codes(const Camera& camera, const ChipSearchOptions
     result.proof = "Not proven: there are too many codes to try them all; these were annealed.";
   }
 
-  // 4. The finalists, with proven margins and, if asked, judged by Monte Carlo.
+  // 4. The finalists, with proven margins.
   for (const ScoredCode& scored : best.codes())
     result.finalists.push_back(finalist_of(scored, judge));
   for (const ScoredCode& scored : best.improvements())
     result.log.improvements.push_back({scored.code, judge.rms_m(scored.score), scored.share});
-  if (options.trials > 0) rank_by_trials(result.finalists, camera, options, parts[2]);
   result.log.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report(progress, 1.0, "codes searched");

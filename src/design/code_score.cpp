@@ -122,23 +122,7 @@ int CodeJudge::best_rotation(const SampledCode& code) const {
     }
     for (std::size_t r = 0; r < worst.size(); ++r) worst[r] = std::max(worst[r], log_error[r]);
   }
-  return smoothed_minimum(worst);
-}
-
-int smoothed_minimum(const std::vector<double>& values) {
-  constexpr std::array<double, 5> weights = {1.0, 2.0, 3.0, 2.0, 1.0};
-  const std::size_t count = values.size();
-  std::size_t best = 0;
-  double least = 1e300;
-  for (std::size_t i = 0; i < count; ++i) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < weights.size(); ++k)
-      sum += weights[k] * values[(i + count + k - 2) % count];
-    if (sum >= least) continue;
-    least = sum;
-    best = i;
-  }
-  return static_cast<int>(best);
+  return best_of_rotations(smoothed_over_rotations(worst));
 }
 
 WaveformParameters rotated(const WaveformSpace& space, const WaveformParameters& parameters,

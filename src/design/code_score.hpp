@@ -35,10 +35,6 @@ class CodeJudge {
   std::vector<TrialBatch> rotating_;  // the same, for the linear error
 };
 
-/// Index of the least value of a circular list after smoothing over its neighbours: errors of all
-/// rotations share trials, and the least of noisy values is an accident.
-int smoothed_minimum(const std::vector<double>& values);
-
 /// The parameters with the origin of depth moved to `rotation_bin`, to the nearest cell.
 WaveformParameters rotated(const WaveformSpace& space, const WaveformParameters& parameters,
                            int rotation_bin);

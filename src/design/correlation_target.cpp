@@ -23,6 +23,15 @@ TargetSet targets_of(const CodeSet& code) {
   return set;
 }
 
+Camera ideal_camera(const Camera& camera) {
+  Camera ideal = camera;
+  ideal.sensor.taps = 1;
+  ideal.sensor.readout = Readout::separate;
+  ideal.sensor.modulation_contrast = 1.0;
+  ideal.light.peak_factor = 1e6;
+  return ideal;
+}
+
 TargetSet targets_from_table(std::string name, const Eigen::MatrixXd& table, int samples,
                              bool normalize) {
   require(table.rows() >= 2, "rows of the target", table.rows(), "must be >= 2");

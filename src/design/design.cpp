@@ -3,20 +3,17 @@
 #include "tofsmith/design/design.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 
-#include "design/explanation.hpp"
+#include "design/design_problem.hpp"
 #include "design/factorized_code.hpp"
 #include "design/judge.hpp"
 #include "design/optimized_code.hpp"
 #include "design/searched_code.hpp"
 #include "design/shortest_run.hpp"
-#include "design/two_return_limit.hpp"
-#include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/design/standard_chip_codes.hpp"
 
 namespace tofsmith {
@@ -27,9 +24,15 @@ namespace {
 struct Task {
   DesignMethod method;
   std::string name;
-  double effort;  ///< share of the time, to show progress by
-  std::function<Candidate(const Progress&)> run;
+  double effort;                      ///< share of the time, to show progress by
+  std::optional<BrokenRule> why_not;  ///< the camera cannot be served so
+  std::function<std::vector<Candidate>(const Progress&)> run;
 };
+
+/// Of a search that found nothing.
+BrokenRule no_code_found(const std::string& name) {
+  return broken(name, "none", "no code on the camera's chip clock tells all depths apart");
+}
 
 bool includes(DesignMethod asked, DesignMethod method) {
   return asked == method || asked == DesignMethod::best;
@@ -50,31 +53,29 @@ void leave_out(DesignResult& result, const std::string& name, const std::string&
 }
 
 /// Lets a code compete as it is, if the camera can play it.
-template <typename MakeCode>
-void add_baseline(const std::string& name, const std::string& method, const Camera& camera,
-                  DesignResult& result, MakeCode&& make_code) {
-  try {
-    CodeSet code = make_code();
-    require_fits(code, camera);
-    if (!keeps_shortest_run(code, camera))
-      return leave_out(result, name, "has pulses or gaps below sensor.shortest_pulse_s");
-    result.candidates.push_back({.code = std::move(code), .method = method});
-  } catch (const std::invalid_argument& error) {
-    leave_out(result, name, error.what());
-  }
+void add_baseline(CodeSet code, const std::string& method, const Camera& camera,
+                  DesignResult& result) {
+  if (const auto reason = why_not_playable(code, camera))
+    return leave_out(result, code.name(), *reason);
+  if (!keeps_shortest_run(code, camera))
+    return leave_out(result, code.name(), "has pulses or gaps below sensor.shortest_pulse_s");
+  result.candidates.push_back({.code = std::move(code), .method = method});
 }
 
 /// Codes that compete as they are: families, what a sensor of exclusive taps plays if nobody
 /// searches, and the naive code of every target.
 void add_baselines(const Camera& camera, const DesignOptions& options,
                    const std::vector<TargetSet>& targets, DesignResult& result) {
-  for (const std::string& name : options.baselines)
-    add_baseline(name, "family", camera, result, [&] { return build_family(name, camera); });
+  for (const std::string& name :
+       options.baselines ? *options.baselines : suggested_baselines(camera, options))
+    if (const auto reason = why_no_family(name, camera))
+      leave_out(result, name, *reason);
+    else
+      add_baseline(build_family(name, camera), "family", camera, result);
   if (camera.sensor.taps >= 3)
     for (const StandardCode& standard : standard_chip_codes(camera, samples_of_standard_codes))
       if (standard.code.taps() == camera.sensor.taps)
-        add_baseline(standard.name, "reference", camera, result,
-                     [&] { return standard.code.resampled(camera.samples); });
+        add_baseline(standard.code.resampled(camera.samples), "reference", camera, result);
   for (const TargetSet& target : targets) {
     if (!options.target && result.find(target.name)) continue;  // that family is the naive code
     if (auto code = naive_code(target, camera))
@@ -82,16 +83,13 @@ void add_baselines(const Camera& camera, const DesignOptions& options,
   }
 }
 
-/// Where a method cannot serve a camera: a refusal if it was asked for, a note if all were.
-template <typename Action>
-void where_it_serves(DesignMethod method, const DesignOptions& options, DesignResult& result,
-                     Action&& action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    if (options.method == method) throw;
-    leave_out(result, std::string(name_of(method)), error.what());
-  }
+/// Whether nothing keeps a method from serving a camera. Something is a refusal if the method was
+/// asked for, and a note if all were.
+bool serves(DesignMethod method, const std::optional<BrokenRule>& why_not,
+            const DesignOptions& options, DesignResult& result) {
+  if (options.method == method) require(why_not);
+  if (why_not) leave_out(result, std::string(name_of(method)), why_not->text());
+  return !why_not;
 }
 
 /// What to design: a code for every target, then for every number of exposures. Tasks refer to all
@@ -100,73 +98,40 @@ std::vector<Task> tasks_for(const Camera& camera, const DesignOptions& options,
                             const std::vector<TargetSet>& targets, DesignResult& result) {
   std::vector<Task> tasks;
   for (const TargetSet& target : targets)
-    tasks.push_back(
-        {DesignMethod::factorize, target.name + "-factorized", 1.0, [&](const Progress& part) {
-           return factorized_candidate(target, camera, options, part);
-         }});
-  if (includes(options.method, DesignMethod::search))
-    where_it_serves(DesignMethod::search, options, result, [&] {
-      for (const int exposures : searchable_exposures(camera, options))
-        tasks.push_back({DesignMethod::search, searched_name(exposures), 3.0,
-                         [&, exposures](const Progress& part) {
-                           return searched_candidate(camera, exposures, options, part);
-                         }});
-    });
+    tasks.push_back({DesignMethod::factorize, target.name + "-factorized", 1.0, std::nullopt,
+                     [&](const Progress& part) -> std::vector<Candidate> {
+                       return {factorized_candidate(target, camera, options, part)};
+                     }});
+  // Of all methods, the search is for cameras that say what their chips are.
+  const bool searches = options.method == DesignMethod::search ||
+                        (options.method == DesignMethod::best && camera.sensor.shortest_pulse_s);
+  if (searches &&
+      serves(DesignMethod::search, why_nothing_to_search(camera, options), options, result))
+    for (const int exposures : searchable_exposures(camera, options))
+      tasks.push_back({DesignMethod::search, searched_name(exposures), 3.0,
+                       why_not_searchable(camera, exposures), [&, exposures](const Progress& part) {
+                         return searched_candidates(camera, exposures, options, part);
+                       }});
   if (includes(options.method, DesignMethod::optimize))
-    where_it_serves(DesignMethod::optimize, options, result, [&] {
-      for (const int exposures : optimizable_exposures(camera, options))
-        tasks.push_back({DesignMethod::optimize, optimized_name(exposures), 3.0,
-                         [&, exposures](const Progress& part) {
-                           return optimized_candidate(camera, exposures, options, result.candidates,
-                                                      part);
-                         }});
-    });
+    for (const int exposures : optimizable_exposures(camera, options))
+      tasks.push_back(
+          {DesignMethod::optimize, optimized_name(exposures), 3.0,
+           why_not_optimizable(camera, exposures), [&, exposures](const Progress& part) {
+             return optimized_candidates(camera, exposures, options, result.candidates, part);
+           }});
+  std::erase_if(
+      tasks, [&](const Task& task) { return !serves(task.method, task.why_not, options, result); });
   return tasks;
 }
 
-/// The code of a task: kept from an earlier run, or designed now.
-Candidate run_or_load(const Task& task, const DesignStore& store, const Progress& progress) {
+/// The candidates of a task: kept from an earlier run, or made now.
+std::vector<Candidate> run_or_load(const Task& task, const DesignStore& store,
+                                   const Progress& progress) {
   if (store.load)
-    if (std::optional<Candidate> kept = store.load(task.name)) return std::move(*kept);
-  Candidate candidate = task.run(progress);
-  if (store.save) store.save(candidate);
-  return candidate;
-}
-
-/// A target may be such that no choice of pairs can tell depth: that is a result, not a failure.
-void leave_out_what_tells_no_depth(const Camera& camera, DesignResult& result) {
-  std::erase_if(result.candidates, [&](const Candidate& c) {
-    if (!c.is_designed()) return false;
-    try {
-      make_decoding_table(ForwardModel(c.code, camera), camera).validate();
-      return false;
-    } catch (const std::invalid_argument& error) {
-      result.left_out.push_back(fmt::format("{} ({}): {}", c.code.name(), c.message, error.what()));
-      return true;
-    }
-  });
-}
-
-/// Judges all candidates, finds the best and judges it on perturbed cameras too.
-void judge_all(const Camera& camera, const DesignOptions& options, DesignResult& result,
-               const Progress& progress) {
-  const ProgressParts parts(progress, {90, options.robust ? 0.0 : 10.0});  // the winner: at last
-  const ProgressParts of_candidates(parts[0], result.candidates.size());
-  for (std::size_t i = 0; i < result.candidates.size(); ++i) {
-    const ProgressParts its(of_candidates[i], {15, options.robust ? 85.0 : 0.0});
-    judge(result.candidates[i], camera, options, its[0]);
-    if (options.robust) judge_robustness(result.candidates[i], camera, options, its[1]);
-  }
-  TwoReturnLimit two_returns(options.optimize.most_two_return_loss);
-  for (const Candidate& c : result.candidates)
-    if (!c.is_designed()) two_returns.add_given(c.second_returns);
-  const auto judged_m = [&](const Candidate& c) {
-    return two_returns.excess(c.second_returns) * choice_error_m(c, camera, options);
-  };
-  for (std::size_t i = 1; i < result.candidates.size(); ++i)
-    if (judged_m(result.candidates[i]) < judged_m(result.winner())) result.best = i;
-  Candidate& winner = result.candidates[result.best];
-  if (!winner.robustness) judge_robustness(winner, camera, options, parts[1]);
+    if (std::vector<Candidate> kept = store.load(task.name); !kept.empty()) return kept;
+  std::vector<Candidate> candidates = task.run(progress);
+  if (store.save && !candidates.empty()) store.save(task.name, candidates);
+  return candidates;
 }
 
 }  // namespace
@@ -191,26 +156,12 @@ const Candidate* DesignResult::find(std::string_view name) const {
   return nullptr;
 }
 
-double choice_error_m(const Candidate& candidate, const Camera& camera,
-                      const DesignOptions& options) {
-  if (options.robust && candidate.robustness)
-    return candidate.robustness->worst_calibrated_m().value;
-  const DepthErrorKind kind = camera.operating.error;
-  const double error_m = chosen_error_m(candidate.error, kind);
-  if (!camera.operating.multipath || !candidate.second_returns) return error_m;
-  return camera.operating.multipath->weighed(error_m,
-                                             candidate.second_returns->single_path.of(kind).value);
-}
-
-double chosen_error_m(const DepthErrorReport& report, DepthErrorKind kind) {
-  return report.of(kind).geometric_mean_m.value;
-}
-
-std::vector<const Candidate*> by_chosen_error(const DesignResult& result, DepthErrorKind kind) {
+std::vector<const Candidate*> by_geometric_mean_error(const DesignResult& result,
+                                                      DepthErrorKind kind) {
   std::vector<const Candidate*> order;
   for (const Candidate& c : result.candidates) order.push_back(&c);
-  std::ranges::stable_sort(order, {},
-                           [&](const Candidate* c) { return chosen_error_m(c->error, kind); });
+  std::ranges::stable_sort(
+      order, {}, [&](const Candidate* c) { return geometric_mean_error_m(c->error, kind); });
   return order;
 }
 
@@ -222,39 +173,44 @@ Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErro
           ratio * std::hypot(its.standard_error / its.value, best.standard_error / best.value)};
 }
 
+std::vector<std::string> suggested_baselines(const Camera& camera, const DesignOptions& options) {
+  if (options.method != DesignMethod::factorize)
+    return {"sinusoid-k3",    "sinusoid-k4",    "square-k4",      "multifrequency-k5",
+            "hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5", "pulsed-multifrequency-k5"};
+  std::vector<int> exposures = options.exposures;
+  if (exposures.empty() && !options.target)
+    exposures = suggested_exposures(camera, DesignMethod::factorize);
+  std::vector<std::string> names;
+  for (const int e : exposures) names.push_back(fmt::format("hamiltonian-k{}", e));
+  return names;
+}
+
 DesignResult design(const Camera& camera, const DesignOptions& options, const Progress& progress,
                     const DesignStore& store) {
-  options.validate();
-  camera.validate();
-  require(!options.robust || !camera.operating.multipath, "DesignOptions::robust", "true",
-          "must be false where operating.multipath says to reckon with second returns");
+  require_judgeable(camera, options);
   DesignResult result;
 
   // 1. What there is to factorize; baselines compete as they are.
   std::vector<TargetSet> targets;
-  if (includes(options.method, DesignMethod::factorize))
-    where_it_serves(DesignMethod::factorize, options, result,
-                    [&] { targets = targets_for(camera, options); });
+  if (includes(options.method, DesignMethod::factorize) &&
+      serves(DesignMethod::factorize, why_not_factorizable(camera, options), options, result))
+    targets = targets_for(camera, options);
   add_baselines(camera, options, targets, result);
 
-  // 2. Design codes. What is there by then is where the direct optimization starts, and what it has
-  //    to beat.
+  // 2. Design codes. What is there by then is where the direct optimization starts.
   const std::vector<Task> tasks = tasks_for(camera, options, targets, result);
   std::vector<double> efforts;
   for (const Task& task : tasks) efforts.push_back(task.effort);
   const ProgressParts parts(progress, {80, 20});
   const ProgressParts of_tasks(parts[0], efforts);
-  for (std::size_t i = 0; i < tasks.size(); ++i)
-    where_it_serves(tasks[i].method, options, result, [&] {
-      result.candidates.push_back(run_or_load(tasks[i], store, of_tasks[i]));
-    });
-  leave_out_what_tells_no_depth(camera, result);
-  require(!result.candidates.empty(), "target", fmt::format("{}", fmt::join(result.left_out, "; ")),
-          "nothing that was designed can tell depth, and the camera can play no baseline");
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    std::vector<Candidate> made = run_or_load(tasks[i], store, of_tasks[i]);
+    if (made.empty()) serves(tasks[i].method, no_code_found(tasks[i].name), options, result);
+    std::ranges::move(made, std::back_inserter(result.candidates));
+  }
 
   // 3. Judge all with the same fresh random numbers and pick by the camera's depth error.
-  judge_all(camera, options, result, parts[1]);
-  result.explanation = explain(camera, result);
+  judge_candidates(camera, options, result, parts[1]);
   report(progress, 1.0, "done");
   return result;
 }

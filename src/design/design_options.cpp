@@ -15,9 +15,10 @@ void DesignOptions::validate() const {
     require(method != DesignMethod::factorize || (e >= 3 && e <= 6), "DesignOptions::exposures", e,
             "must be in [3, 6] to aim at Hamiltonian codes");
   }
-  for (const std::string& name : baselines)
-    require(std::ranges::count(baselines, name) == 1, "DesignOptions::baselines", name,
-            "must be listed once");
+  if (baselines)
+    for (const std::string& name : *baselines)
+      require(std::ranges::count(*baselines, name) == 1, "DesignOptions::baselines", name,
+              "must be listed once");
   require(!target || !target->measurements.empty(), "DesignOptions::target", "[]",
           "must hold at least one correlation function");
   factorize.validate();

@@ -60,26 +60,8 @@ std::vector<double> in_between(std::vector<double> levels, int count, double flo
   return result;
 }
 
-void require_optimizable(const Camera& camera, int exposures) {
-  require(exposures >= 1 && exposures <= 8, "exposures", exposures, "must be in [1, 8]");
-  const bool difference = camera.sensor.readout == Readout::difference;
-  const int measurements = difference ? exposures : exposures * camera.sensor.taps;
-  const int fewest = difference ? 2 : 3;
-  require(measurements >= fewest, "exposures", exposures,
-          fmt::format("must give at least {} measurements; with sensor.taps = {} that takes {}",
-                      fewest, camera.sensor.taps,
-                      difference ? 2 : (2 + camera.sensor.taps) / camera.sensor.taps));
-  require(camera.light.peak_factor > 1.0, "light.peak_factor", camera.light.peak_factor,
-          "must be > 1 to optimize: light that never changes carries no depth");
-  require(camera.band_limited() || camera.sensor.shortest_pulse_s.has_value(),
-          "sensor.shortest_pulse_s", "none",
-          fmt::format("is needed to optimize for a camera without band limit, where ever shorter "
-                      "pulses are ever better; try {:.2g}",
-                      suggested_shortest_pulse_s(camera)));
-  const std::size_t listed = camera.exposure_s.each_s.size();
-  require(listed == 0 || listed == static_cast<std::size_t>(exposures), "number of exposure_s",
-          listed, fmt::format("must equal the {} exposures", exposures));
-}
+/// How many pulses of the shortest length the period holds.
+int runs_per_period(double shortest) { return static_cast<int>(std::floor(1.0 / shortest + 1e-9)); }
 
 /// Whether the means of a good code suffice to tell two returns: two strengths and two depths, and
 /// ambient light where it is seen, and one more.
@@ -122,16 +104,45 @@ std::vector<LightLevel> levels_of(const Camera& camera, const std::optional<Seco
 
 }  // namespace
 
+std::optional<BrokenRule> why_not_optimizable(const Camera& camera, int exposures) {
+  if (exposures < 1 || exposures > 8) return broken("exposures", exposures, "must be in [1, 8]");
+  const bool difference = camera.sensor.readout == Readout::difference;
+  const int measurements = difference ? exposures : exposures * camera.sensor.taps;
+  const int fewest = difference ? 2 : 3;
+  if (measurements < fewest)
+    return broken(
+        "exposures", exposures,
+        fmt::format("must give at least {} measurements; with sensor.taps = {} that takes "
+                    "{}",
+                    fewest, camera.sensor.taps,
+                    difference ? 2 : (2 + camera.sensor.taps) / camera.sensor.taps));
+  if (camera.light.peak_factor <= 1.0)
+    return broken("light.peak_factor", camera.light.peak_factor,
+                  "must be > 1 to optimize: light that never changes carries no depth");
+  if (!camera.band_limited() && !camera.sensor.shortest_pulse_s)
+    return broken(
+        "sensor.shortest_pulse_s", "none",
+        fmt::format("is needed to optimize for a camera without band limit, where ever shorter "
+                    "pulses are ever better; try {:.2g}",
+                    suggested_shortest_pulse_s(camera)));
+  const std::size_t listed = camera.exposure_s.each_s.size();
+  if (listed != 0 && listed != static_cast<std::size_t>(exposures))
+    return broken("number of exposure_s", listed,
+                  fmt::format("must equal the {} exposures", exposures));
+  const double shortest = shortest_run_periods(camera);
+  if (shortest > 0.0 && runs_per_period(shortest) < fewest_cells)
+    return broken("sensor.shortest_pulse_s", *camera.sensor.shortest_pulse_s,
+                  "must fit into the period four times");
+  return std::nullopt;
+}
+
 double suggested_shortest_pulse_s(const Camera& camera) {
   return 2.0 / (camera.samples * camera.fundamental_frequency_hz);
 }
 
 WaveformSpace waveform_space(const Camera& camera, int exposures, int samples) {
   const double shortest = shortest_run_periods(camera);
-  int most = samples;
-  if (shortest > 0.0) most = std::min(most, static_cast<int>(std::floor(1.0 / shortest + 1e-9)));
-  require(most >= fewest_cells, "sensor.shortest_pulse_s",
-          camera.sensor.shortest_pulse_s.value_or(0.0), "must fit into the period four times");
+  const int most = shortest > 0.0 ? std::min(samples, runs_per_period(shortest)) : samples;
   WaveformSpace space;
   space.cells = cells_within(most, camera.light.peak_factor);
   space.repeat = (std::min(samples, fewest_samples) + space.cells - 1) / space.cells;
@@ -172,7 +183,7 @@ DesignProblem make_design_problem(std::span<const Camera> variants, int exposure
   require(!variants.empty(), "variants", variants.size(), "must hold at least one camera");
   const Camera& camera = variants.front();
   camera.validate();
-  require_optimizable(camera, exposures);
+  require(why_not_optimizable(camera, exposures));
   DesignProblem problem;
   problem.space = waveform_space(camera, exposures, samples);
   problem.operating = camera.operating;

@@ -10,6 +10,7 @@
 #include "design/sampled_camera.hpp"
 #include "design/trial_batch.hpp"
 #include "design/waveform_parameters.hpp"
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/design/optimize.hpp"
 
 namespace tofsmith {
@@ -71,11 +72,16 @@ WaveformSpace waveform_space(const Camera& camera, int exposures, int samples);
 /// that read noise sets.
 std::vector<OperatingPoint> training_points(const Camera& camera);
 
+/// What keeps codes of so many exposures from being optimized for a camera, a valid one: too few
+/// measurements, light that cannot change, neither band limit nor a shortest pulse, or one so long
+/// that the period holds too few.
+std::optional<BrokenRule> why_not_optimizable(const Camera& camera, int exposures);
+
 /// With operating.multipath, levels with second returns stand beside those without, taken for one
 /// return and, where the camera gives enough measurements, for two.
 /// @param two_return_weight  OptimizeOptions::two_return_weight
-/// @throws std::invalid_argument if the camera gives fewer than 3 measurements, has no band limit
-///         and no shortest pulse, or variants differ in what may be played
+/// @throws std::invalid_argument as why_not_optimizable(), or if variants differ in what may be
+///         played
 DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples,
                                   double two_return_weight = 0.0);
 

@@ -7,10 +7,10 @@
 namespace tofsmith {
 
 CodeSet signed_by(CodeSet code, const std::string& method, const Camera& camera,
-                  const DesignOptions& options) {
+                  std::uint64_t seed) {
   code.provenance.method = method;
   code.provenance.camera = camera.name;
-  code.provenance.seed = options.seed;
+  code.provenance.seed = seed;
   code.provenance.version = TOFSMITH_VERSION;
   return code;
 }

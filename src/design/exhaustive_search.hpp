@@ -44,6 +44,24 @@ using SearchShare =
 void search_in_rounds(std::int64_t items, std::int64_t items_at_once, ExhaustiveFinding& finding,
                       const SearchShare& share, const Progress& progress);
 
+/// A whole search: `Search` lists what there is (items, counted by sizes) and searches an item.
+/// @param listing  what listing takes its time for, for the progress
+template <typename Search>
+ExhaustiveFinding search_all(const ExhaustiveTask& task, const char* listing,
+                             std::int64_t items_at_once, const Progress& progress) {
+  ExhaustiveFinding finding{BestCodes(task.finalists), {}};
+  report(progress, 0.0, listing);
+  const Search search(task);
+  finding.counts = search.sizes();
+  search_in_rounds(
+      search.items(), items_at_once, finding,
+      [&](std::int64_t item, BestCodes& best, ChipSearchCounts& counts) {
+        search.search_item(item, best, counts);
+      },
+      progress);
+  return finding;
+}
+
 /// Looks at one code, given the Fisher matrices of its other exposures, and keeps it if it is good.
 void look_at(const ChipCode& code, const std::vector<FisherMatrix>& nodes,
              const ExhaustiveTask& task, double share, BestCodes& best, ChipSearchCounts& counts);

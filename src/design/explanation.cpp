@@ -22,7 +22,7 @@ std::string_view kind_name(DepthErrorKind kind) {
 
 /// The baseline of the least error that is not the winner; null if there is none.
 const Candidate* best_baseline(const DesignResult& result, DepthErrorKind kind) {
-  for (const Candidate* c : by_chosen_error(result, kind))
+  for (const Candidate* c : by_geometric_mean_error(result, kind))
     if (c != &result.winner() && !c->is_designed()) return c;
   return nullptr;
 }
@@ -47,8 +47,9 @@ std::string what_it_beats(const Camera& camera, const DesignResult& result, Dept
 std::map<int, double> error_by_exposures(const DesignResult& result, DepthErrorKind kind) {
   std::map<int, double> errors;
   for (const Candidate& c : result.candidates) {
-    const auto [at, is_new] = errors.try_emplace(c.error.exposures, chosen_error_m(c.error, kind));
-    if (!is_new) at->second = std::min(at->second, chosen_error_m(c.error, kind));
+    const auto [at, is_new] =
+        errors.try_emplace(c.error.exposures, geometric_mean_error_m(c.error, kind));
+    if (!is_new) at->second = std::min(at->second, geometric_mean_error_m(c.error, kind));
   }
   return errors;
 }

@@ -192,17 +192,7 @@ class ExposurePairSearch {
 }  // namespace
 
 ExhaustiveFinding search_exposure_pairs(const ExhaustiveTask& task, const Progress& progress) {
-  ExhaustiveFinding finding{BestCodes(task.finalists), {}};
-  report(progress, 0.0, "exposures listed");
-  const ExposurePairSearch search(task);
-  finding.counts = search.sizes();
-  search_in_rounds(
-      search.items(), 64, finding,
-      [&](std::int64_t item, BestCodes& best, ChipSearchCounts& counts) {
-        search.search_item(item, best, counts);
-      },
-      progress);
-  return finding;
+  return search_all<ExposurePairSearch>(task, "exposures listed", 64, progress);
 }
 
 }  // namespace tofsmith

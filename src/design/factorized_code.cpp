@@ -6,13 +6,14 @@
 
 #include <chrono>
 
+#include "code/family_rules.hpp"
+#include "design/designed_code.hpp"
 #include "design/judge.hpp"
 #include "design/pair_choice.hpp"
 #include "design/pair_model.hpp"
 #include "design/start_pool.hpp"
 #include "tofsmith/code/hamiltonian.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/version.hpp"
 
 namespace tofsmith {
 
@@ -20,21 +21,37 @@ namespace {
 
 constexpr int fewest_exposures = 3, most_exposures = 6;  // of the Hamiltonian codes to aim at
 
-/// Whether codes for these targets can be played at all, before time is spent on them.
-void require_designable(const TargetSet& targets, const Camera& camera) {
-  require(camera.sensor.taps <= 2, "sensor.taps", camera.sensor.taps,
-          "must be 1 or 2 to factorize correlation functions");
-  require(targets.samples() == camera.samples, "length of the target", targets.samples(),
-          fmt::format("must equal the camera's samples = {}", camera.samples));
+/// Numbers of exposures of the Hamiltonian codes to aim at.
+std::vector<int> factorizable_exposures(const Camera& camera, const DesignOptions& options) {
+  std::vector<int> exposures = options.exposures;
+  if (exposures.empty()) exposures = suggested_exposures(camera, DesignMethod::factorize);
+  std::erase_if(exposures, [](int count) {  // the others are for other methods
+    return count < fewest_exposures || count > most_exposures;
+  });
+  return exposures;
+}
+
+FamilyOptions ideal_on(const Camera& camera) { return {.samples = camera.samples}; }
+
+/// Why codes for these targets cannot be played at all, before time is spent on them.
+std::optional<BrokenRule> why_not_designable(const TargetSet& targets, const Camera& camera) {
+  if (camera.sensor.taps > 2)
+    return broken("sensor.taps", camera.sensor.taps,
+                  "must be 1 or 2 to factorize correlation functions");
+  if (targets.samples() != camera.samples)
+    return broken("length of the target", targets.samples(),
+                  fmt::format("must equal the camera's samples = {}", camera.samples));
   const std::size_t values = targets.measurements.size() * camera.sensor.taps;
-  require(values >= 3 || camera.sensor.readout == Readout::difference,
-          "number of correlation functions", targets.measurements.size(),
-          fmt::format("must be >= {}: signal, ambient light and depth are unknown",
-                      camera.sensor.taps == 2 ? 2 : 3));
+  if (values < 3 && camera.sensor.readout != Readout::difference)
+    return broken("number of correlation functions", targets.measurements.size(),
+                  fmt::format("must be >= {}: signal, ambient light and depth are unknown",
+                              camera.sensor.taps == 2 ? 2 : 3));
   const std::size_t listed = camera.exposure_s.each_s.size();
-  require(
-      listed == 0 || listed == targets.measurements.size(), "number of exposure_s", listed,
-      fmt::format("must equal the {} exposures of {}", targets.measurements.size(), targets.name));
+  if (listed != 0 && listed != targets.measurements.size())
+    return broken("number of exposure_s", listed,
+                  fmt::format("must equal the {} exposures of {}", targets.measurements.size(),
+                              targets.name));
+  return std::nullopt;
 }
 
 Eigen::MatrixXd target_table(const TargetSet& targets) {
@@ -79,18 +96,20 @@ MeasurementReport measurement_report(const Factorization& f, const PairCandidate
 
 }  // namespace
 
+std::optional<BrokenRule> why_not_factorizable(const Camera& camera, const DesignOptions& options) {
+  if (!options.target)
+    for (const int count : factorizable_exposures(camera, options))
+      if (auto reason = hamiltonian_misfit(count, ideal_on(camera))) return reason;
+  for (const TargetSet& target : targets_for(camera, options))
+    if (auto reason = why_not_designable(target, camera)) return reason;
+  return std::nullopt;
+}
+
 std::vector<TargetSet> targets_for(const Camera& camera, const DesignOptions& options) {
+  if (options.target) return {*options.target};
   std::vector<TargetSet> targets;
-  if (options.target) targets.push_back(*options.target);
-  if (!options.target) {
-    const std::vector<int> exposures = options.exposures.empty()
-                                           ? suggested_exposures(camera, DesignMethod::factorize)
-                                           : options.exposures;
-    for (const int count : exposures)  // the others are for other methods
-      if (count >= fewest_exposures && count <= most_exposures)
-        targets.push_back(targets_of(hamiltonian_code(count, {.samples = camera.samples})));
-  }
-  for (const TargetSet& target : targets) require_designable(target, camera);
+  for (const int count : factorizable_exposures(camera, options))
+    targets.push_back(targets_of(hamiltonian_code(count, ideal_on(camera))));
   return targets;
 }
 
@@ -111,11 +130,13 @@ Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
   const ProgressParts parts(progress, {40, 60});  // factorizing, choosing pairs
   const auto begin = std::chrono::steady_clock::now();
   // 1. Factorize every measurement by itself.
+  FactorizeOptions factorizing_options = options.factorize;
+  factorizing_options.seed = options.seed;
   std::vector<Factorization> factorizations;
   const ProgressParts of_targets(parts[0], targets.measurements.size());
   for (const CorrelationTarget& target : targets.measurements)
     factorizations.push_back(
-        factorize(target, camera, options.factorize, of_targets[factorizations.size()]));
+        factorize(target, camera, factorizing_options, of_targets[factorizations.size()]));
   // 2. Choose among the pairs by the depth error of the whole code.
   EvaluateOptions search;
   search.trials = options.search_trials;
@@ -124,18 +145,14 @@ Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
       choose_by_depth_error(factorizations, camera, search, rotates(camera, options), parts[1]);
   // 3. Put the code together and say how near its target it is.
   Candidate candidate{
-      .code = assemble(targets.name + "-factorized", factorizations, choice, camera),
+      .code = signed_by(assemble(targets.name + "-factorized", factorizations, choice, camera),
+                        "factorize", camera, options.seed),
       .method = "factorize",
       .target = target_table(targets)};
-  Provenance& provenance = candidate.code.provenance;
-  provenance.method = "factorize";
-  provenance.camera = camera.name;
-  provenance.seed = options.seed;
-  provenance.version = TOFSMITH_VERSION;
   for (std::size_t k = 0; k < choice.size(); ++k) {
     const Factorization& f = factorizations[k];
     candidate.per_measurement.push_back(measurement_report(f, f.candidates[choice[k]]));
-    provenance.residuals.push_back(candidate.per_measurement.back().residual_rms);
+    candidate.code.provenance.residuals.push_back(candidate.per_measurement.back().residual_rms);
     for (const int iterations : f.iterations_per_start) candidate.iterations += iterations;
   }
   candidate.message = describe_residuals(candidate.per_measurement, factorizations);

@@ -9,9 +9,12 @@
 
 namespace tofsmith {
 
+/// Why there is nothing to factorize: the camera cannot play codes for one of the targets at all,
+/// or its samples cannot represent a Hamiltonian code.
+std::optional<BrokenRule> why_not_factorizable(const Camera& camera, const DesignOptions& options);
+
 /// Correlation functions to aim at: the user's, or Hamiltonian ones of every number of exposures
 /// asked for.
-/// @throws std::invalid_argument if codes for one of them cannot be played at all
 std::vector<TargetSet> targets_for(const Camera& camera, const DesignOptions& options);
 
 /// What a designer would play for the targets without optimization: the ideal demodulation with one

@@ -2,18 +2,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "design/judge.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <utility>
+
+#include "design/explanation.hpp"
+#include "design/two_return_limit.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
 
 namespace tofsmith {
 
-std::uint64_t search_seed(const DesignOptions& options) { return options.seed + 1; }
+namespace {
 
-bool rotates(const Camera& camera, const DesignOptions& options) {
-  return options.best_rotation && camera.operating.error == DepthErrorKind::linear;
+/// A target may be such that no choice of pairs can tell depth: that is a result, not a failure.
+void leave_out_what_tells_no_depth(const Camera& camera, DesignResult& result) {
+  std::erase_if(result.candidates, [&](const Candidate& c) {
+    const std::optional<std::string> reason = why_no_depth(c.code, camera);
+    if (!reason) return false;
+    const std::string message = c.message.empty() ? "" : fmt::format(" ({})", c.message);
+    result.left_out.push_back(fmt::format("{}{}: {}", c.code.name(), message, *reason));
+    return true;
+  });
+  require(!result.candidates.empty(), "target", fmt::format("{}", fmt::join(result.left_out, "; ")),
+          "nothing that was designed can tell depth, and the camera can play no baseline");
 }
 
-void judge(Candidate& candidate, const Camera& camera, const DesignOptions& options,
-           const Progress& progress) {
+/// Judges a candidate with random numbers it was not chosen by, at its best origin if asked.
+void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& options,
+               const Progress& progress) {
   EvaluateOptions judging;
   judging.trials = options.trials;
   judging.seed = options.seed;
@@ -22,22 +41,121 @@ void judge(Candidate& candidate, const Camera& camera, const DesignOptions& opti
   if (rotates(camera, options)) {
     EvaluateOptions search = judging;
     search.seed = search_seed(options);
-    candidate.rotation_bin = best_rotation(candidate.code, camera, search, parts[0]).rotation_bin;
-    candidate.code = candidate.code.rotated(candidate.rotation_bin);
+    const int moved_bin = best_rotation(candidate.code, camera, search, parts[0]).rotation_bin;
+    candidate.code = candidate.code.rotated(moved_bin);
+    candidate.rotation_bin = (candidate.rotation_bin + moved_bin) % camera.samples;
   }
   candidate.error = evaluate(candidate.code, camera, judging, parts[1]);
   if (later)
     candidate.second_returns =
         second_return_report(candidate.code, camera, *later, judging, parts[2]);
-  candidate.code.provenance.depth_error_m = chosen_error_m(candidate.error, camera.operating.error);
+  candidate.code.provenance.depth_error_m =
+      geometric_mean_error_m(candidate.error, camera.operating.error);
 }
 
+/// Judges it again on the camera's perturbations.
 void judge_robustness(Candidate& candidate, const Camera& camera, const DesignOptions& options,
                       const Progress& progress) {
   constexpr int most_trials = 4000;  // ratios, with the same trials on every camera
   candidate.robustness =
       robustness(candidate.code, camera,
                  {.trials = std::min(options.trials, most_trials), .seed = options.seed}, progress);
+}
+
+/// What all candidates are ranked by [m], with what two-return decoding copes with badly counting
+/// as so many times worse.
+std::vector<double> ranking_of(const std::vector<Candidate>& candidates, const Camera& camera,
+                               const DesignOptions& options) {
+  TwoReturnLimit two_returns(options.optimize.most_two_return_loss);
+  for (const Candidate& c : candidates)
+    if (!c.is_designed()) two_returns.add_given(c.second_returns);
+  std::vector<double> ranking_m;
+  for (const Candidate& c : candidates)
+    ranking_m.push_back(two_returns.excess(c.second_returns) * ranking_error_m(c, camera, options));
+  return ranking_m;
+}
+
+/// Of the candidates of each name, attempts at one code, only the best stays, in the place of the
+/// first. Finds the winner among them.
+void keep_best_of_each_name(const std::vector<double>& ranking_m, DesignResult& result) {
+  std::vector<Candidate> kept;
+  std::vector<double> kept_m;
+  for (std::size_t i = 0; i < result.candidates.size(); ++i) {
+    Candidate& candidate = result.candidates[i];
+    const auto same = std::ranges::find(kept, candidate.code.name(),
+                                        [](const Candidate& c) { return c.code.name(); });
+    const auto at = static_cast<std::size_t>(same - kept.begin());
+    if (same == kept.end()) {
+      kept.push_back(std::move(candidate));
+      kept_m.push_back(ranking_m[i]);
+    } else if (ranking_m[i] < kept_m[at]) {
+      kept[at] = std::move(candidate);
+      kept_m[at] = ranking_m[i];
+    }
+  }
+  result.candidates = std::move(kept);
+  result.best = static_cast<std::size_t>(std::ranges::min_element(kept_m) - kept_m.begin());
+}
+
+}  // namespace
+
+std::uint64_t search_seed(const DesignOptions& options) { return options.seed + 1; }
+
+bool rotates(const Camera& camera, const DesignOptions& options) {
+  return options.best_rotation && camera.operating.error == DepthErrorKind::linear;
+}
+
+void require_judgeable(const Camera& camera, const DesignOptions& options) {
+  options.validate();
+  camera.validate();
+  require(!options.robust || !camera.operating.multipath, "DesignOptions::robust", "true",
+          "must be false where operating.multipath says to reckon with second returns");
+}
+
+std::optional<std::string> why_no_depth(const CodeSet& code, const Camera& camera) {
+  if (auto reason = why_not_playable(code, camera)) return reason;
+  return why_not_decodable(make_decoding_table(ForwardModel(code, camera), camera));
+}
+
+void judge_candidates(const Camera& camera, const DesignOptions& options, DesignResult& result,
+                      const Progress& progress) {
+  leave_out_what_tells_no_depth(camera, result);
+  const ProgressParts parts(progress, {90, options.robust ? 0.0 : 10.0});  // the winner: at last
+  const ProgressParts of_candidates(parts[0], result.candidates.size());
+  for (std::size_t i = 0; i < result.candidates.size(); ++i) {
+    const ProgressParts its(of_candidates[i], {15, options.robust ? 85.0 : 0.0});
+    judge_one(result.candidates[i], camera, options, its[0]);
+    if (options.robust) judge_robustness(result.candidates[i], camera, options, its[1]);
+  }
+  keep_best_of_each_name(ranking_of(result.candidates, camera, options), result);
+  Candidate& winner = result.candidates[result.best];
+  if (!winner.robustness) judge_robustness(winner, camera, options, parts[1]);
+  result.explanation = explain(camera, result);
+}
+
+double geometric_mean_error_m(const DepthErrorReport& report, DepthErrorKind kind) {
+  return report.of(kind).geometric_mean_m.value;
+}
+
+double ranking_error_m(const Candidate& candidate, const Camera& camera,
+                       const DesignOptions& options) {
+  if (options.robust && candidate.robustness)
+    return candidate.robustness->worst_calibrated_m().value;
+  const DepthErrorKind kind = camera.operating.error;
+  const double error_m = geometric_mean_error_m(candidate.error, kind);
+  if (!camera.operating.multipath || !candidate.second_returns) return error_m;
+  return camera.operating.multipath->weighed(error_m,
+                                             candidate.second_returns->single_path.of(kind).value);
+}
+
+DesignResult judge(const Camera& camera, std::vector<Candidate> candidates,
+                   const DesignOptions& options, const Progress& progress) {
+  require_judgeable(camera, options);
+  for (const Candidate& c : candidates) require_fits(c.code, camera);
+  DesignResult result{.candidates = std::move(candidates)};
+  judge_candidates(camera, options, result, progress);
+  report(progress, 1.0, "done");
+  return result;
 }
 
 }  // namespace tofsmith

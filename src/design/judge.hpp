@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 
 #include "tofsmith/design/design.hpp"
 
@@ -15,12 +17,18 @@ std::uint64_t search_seed(const DesignOptions& options);
 /// Whether candidates are moved to their best origin. The circular error does not depend on it.
 bool rotates(const Camera& camera, const DesignOptions& options);
 
-/// Judges a candidate with random numbers it was not chosen by, at its best origin if asked.
-void judge(Candidate& candidate, const Camera& camera, const DesignOptions& options,
-           const Progress& progress);
+/// Why no depth can be told with a code: the camera cannot play it, or what it measures does not
+/// tell depths apart. None: depth can be told.
+std::optional<std::string> why_no_depth(const CodeSet& code, const Camera& camera);
 
-/// Judges it again on the camera's perturbations.
-void judge_robustness(Candidate& candidate, const Camera& camera, const DesignOptions& options,
+/// @throws std::invalid_argument for bad options or camera, or if together they ask for codes that
+///         are robust and reckon with second returns
+void require_judgeable(const Camera& camera, const DesignOptions& options);
+
+/// What judge() does, for checked options: leaves out candidates that tell no depth, judges the
+/// others, keeps the best of each name and finds the winner.
+/// @throws std::invalid_argument if no candidate is left; Interrupted
+void judge_candidates(const Camera& camera, const DesignOptions& options, DesignResult& result,
                       const Progress& progress);
 
 }  // namespace tofsmith

@@ -40,11 +40,10 @@ OptimizePool::OptimizePool(const DesignProblem& problem, const OptimizeOptions& 
       judge_(problem, trials_per_level(problem, options), options.seed,
              work_item(Phase::judging, 0)) {}
 
-void OptimizePool::record(const std::string& phase, const std::string& start,
-                          double log_error_bin) {
+void OptimizePool::record(double log_error_bin) {
   const double error_m = std::exp(log_error_bin) * bin_m_;
-  const double best_m = history_.empty() ? error_m : history_.back().best_error_m;
-  history_.push_back({phase, start, error_m, std::min(best_m, error_m)});
+  const double best_m = history_.empty() ? error_m : history_.back().error_m;
+  history_.push_back({static_cast<double>(history_.size() + 1), std::min(best_m, error_m)});
 }
 
 /// Replaces every entry by where a descent from it leads; its origin moves to the best rotation.
@@ -68,9 +67,9 @@ void OptimizePool::descend_all(std::vector<PoolEntry>& entries, int steps, doubl
   });
 }
 
-void OptimizePool::keep(const std::string& phase, std::vector<PoolEntry> entries) {
+void OptimizePool::keep(std::vector<PoolEntry> entries) {
   for (PoolEntry& entry : entries) {
-    record(phase, entry.start, entry.score.log_error_bin);
+    record(entry.score.log_error_bin);
     entries_.push_back(std::move(entry));
   }
   std::stable_sort(entries_.begin(), entries_.end(), [](const PoolEntry& a, const PoolEntry& b) {
@@ -91,7 +90,7 @@ void OptimizePool::run_starts(std::span<const CodeSet> also, const Progress& pro
     }
     descend_all(entries, options_.steps_per_start, 0.08, Phase::starting, first, shared);
     steps_ += std::ssize(entries) * options_.steps_per_start;
-    keep("start", std::move(entries));
+    keep(std::move(entries));
   }
 }
 
@@ -109,7 +108,7 @@ void OptimizePool::run_hops(const Progress& progress) {
     steps_ += std::ssize(entries) * options_.steps_per_hop;
     without_gain += static_cast<int>(entries.size());
     const double best_before = entries_.front().score.log_error_bin;
-    keep("hop", std::move(entries));
+    keep(std::move(entries));
     if (entries_.front().score.log_error_bin < best_before) without_gain = 0;
     if (options_.patience > 0 && without_gain >= options_.patience &&
         first + hops_together < count) {
@@ -130,7 +129,7 @@ void OptimizePool::refine(const Progress& progress) {
                         "refinement");
   descend_all(entries, options_.refinement_steps, 0.03, Phase::refining, 0, shared);
   steps_ += std::ssize(entries) * options_.refinement_steps;
-  keep("refinement", std::move(entries));
+  keep(std::move(entries));
 }
 
 }  // namespace tofsmith

@@ -23,24 +23,25 @@ class OptimizePool {
   void refine(const Progress& progress);
 
   const std::vector<PoolEntry>& entries() const { return entries_; }
-  std::vector<OptimizeIteration>& history() { return history_; }
+  /// The least error so far after every descent.
+  const std::vector<SearchStep>& history() const { return history_; }
   std::int64_t steps() const { return steps_; }
   bool ended_early() const { return ended_early_; }
   const CodeJudge& judge() const { return judge_; }
-  /// Adds an event to the history.
-  void record(const std::string& phase, const std::string& start, double log_error_bin);
+  /// Adds a descent to the history.
+  void record(double log_error_bin);
 
  private:
   void descend_all(std::vector<PoolEntry>& entries, int steps, double rate, std::uint64_t phase,
                    std::size_t first_item, SharedProgress& progress) const;
-  void keep(const std::string& phase, std::vector<PoolEntry> entries);
+  void keep(std::vector<PoolEntry> entries);
 
   const DesignProblem* problem_;
   OptimizeOptions options_;
   double bin_m_;
   CodeJudge judge_;
   std::vector<PoolEntry> entries_;
-  std::vector<OptimizeIteration> history_;
+  std::vector<SearchStep> history_;
   std::int64_t steps_ = 0;
   bool ended_early_ = false;
 };

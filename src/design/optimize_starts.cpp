@@ -34,14 +34,11 @@ std::vector<CodeSet> families_of(const WaveformSpace& space) {
                                     fmt::format("gray-k{}", space.exposures)};
   if (space.exposures == 4 || space.exposures == 5)
     names.push_back(fmt::format("pulsed-multifrequency-k{}-q5", space.exposures));
+  const FamilyOptions options{.samples = 240, .peak_factor = space.peak_factor};
   for (const std::string& name : names) {
-    if (!is_family(name)) continue;
-    try {
-      CodeSet code = make_family(name, {.samples = 240, .peak_factor = space.peak_factor});
-      codes.push_back(space.taps == 2 ? code.with_two_buckets() : code);
-    } catch (const std::invalid_argument&) {
-      // No such member of the family, or none at this peak: one start fewer.
-    }
+    if (why_no_family(name, options)) continue;  // no such member: one start fewer
+    const CodeSet code = make_family(name, options);
+    codes.push_back(space.taps == 2 ? code.with_two_buckets() : code);
   }
   return codes;
 }

@@ -15,10 +15,11 @@ std::vector<int> optimizable_exposures(const Camera& camera, const DesignOptions
 /// "optimized-k5"
 std::string optimized_name(int exposures);
 
-/// The code of so many exposures with the least depth error that direct optimization finds, from
-/// all candidates there are as starts; not judged yet.
+/// What optimize() makes of so many exposures, from all candidates there are as starts.
 /// @throws std::invalid_argument as optimize(); Interrupted
-Candidate optimized_candidate(const Camera& camera, int exposures, const DesignOptions& options,
-                              const std::vector<Candidate>& starts, const Progress& progress);
+std::vector<Candidate> optimized_candidates(const Camera& camera, int exposures,
+                                            const DesignOptions& options,
+                                            const std::vector<Candidate>& starts,
+                                            const Progress& progress);
 
 }  // namespace tofsmith

@@ -2,14 +2,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "design/pair_choice.hpp"
 
-#include <algorithm>
 #include <limits>
 #include <map>
-#include <stdexcept>
+
+#include "design/judge.hpp"
 
 namespace tofsmith {
 
 namespace {
+
+/// The depth error of a code by the camera's choice, at its best origin if asked; infinite where
+/// pairs that are good one by one leave depth untold together.
+double search_error_m(const CodeSet& code, const Camera& camera, const EvaluateOptions& options,
+                      bool at_best_rotation) {
+  if (why_no_depth(code, camera)) return std::numeric_limits<double>::infinity();
+  if (!at_best_rotation)
+    return geometric_mean_error_m(evaluate(code, camera, options), camera.operating.error);
+  const BestRotation best = best_rotation(code, camera, options);
+  return best.linear_geometric_mean_m[static_cast<std::size_t>(best.rotation_bin)];
+}
 
 /// Index of the naive pair, or of the best one where there is no naive pair.
 std::size_t naive_index(const Factorization& factorization) {
@@ -39,18 +50,9 @@ PairChoice choose_by_depth_error(const std::vector<Factorization>& factorization
   std::map<PairChoice, double> known;
   const auto error_of = [&](const PairChoice& choice) {
     const auto [entry, fresh] = known.try_emplace(choice, 0.0);
-    if (fresh) {
-      const CodeSet code = assemble("candidate", factorizations, choice, camera);
-      try {
-        entry->second =
-            at_best_rotation
-                ? std::ranges::min(best_rotation(code, camera, options).linear_geometric_mean_m)
-                : chosen_error_m(evaluate(code, camera, options), camera.operating.error);
-      } catch (const std::invalid_argument&) {
-        // Pairs that are good one by one can together leave depth untold.
-        entry->second = std::numeric_limits<double>::infinity();
-      }
-    }
+    if (fresh)
+      entry->second = search_error_m(assemble("candidate", factorizations, choice, camera), camera,
+                                     options, at_best_rotation);
     return entry->second;
   };
 

@@ -30,42 +30,53 @@ SearchRecord record_of(const ChipSearchResult& found) {
   return record;
 }
 
+/// What is proven of a finalist.
+std::string proof_of(const ChipSearchResult& found, std::size_t place) {
+  if (!found.proved) return "not proven";
+  return place == 0 ? "proven optimal" : fmt::format("proven number {} of all codes", place + 1);
+}
+
 }  // namespace
 
+std::optional<BrokenRule> why_nothing_to_search(const Camera& camera,
+                                                const DesignOptions& options) {
+  if (auto reason = why_no_chip_clock(camera)) return reason;
+  if (searchable_exposures(camera, options).empty())
+    return broken("sensor.taps", camera.sensor.taps,
+                  "too few to search codes of one or two exposures; name the --exposures");
+  return std::nullopt;
+}
+
 std::vector<int> searchable_exposures(const Camera& camera, const DesignOptions& options) {
-  if (options.method == DesignMethod::best && !camera.sensor.shortest_pulse_s) return {};
-  chips_of(camera);
   if (!options.exposures.empty()) return options.exposures;
   std::vector<int> searchable;
   for (const int exposures : suggested_exposures(camera, DesignMethod::search))
     if (exposures * camera.sensor.taps >= 3) searchable.push_back(exposures);
-  require(!searchable.empty(), "sensor.taps", camera.sensor.taps,
-          "too few to search codes of one or two exposures; name the --exposures");
   return searchable;
 }
 
 std::string searched_name(int exposures) { return fmt::format("searched-k{}", exposures); }
 
-Candidate searched_candidate(const Camera& camera, int exposures, const DesignOptions& options,
-                             const Progress& progress) {
+std::vector<Candidate> searched_candidates(const Camera& camera, int exposures,
+                                           const DesignOptions& options, const Progress& progress) {
   ChipSearchOptions search = options.search;
   search.exposures = exposures;
   search.seed = search_seed(options);
-  search.trials = std::max<std::int64_t>(search.trials, options.search_trials);
   const ChipSearchResult found = search_chip_codes(camera, search, progress);
-  require(!found.finalists.empty(), "exposures", exposures,
-          "no code on the camera's chip clock tells all depths apart");
-  const ChipFinalist& best = found.finalists.front();
-  Candidate candidate{.code = signed_by(to_code_set(best.code, camera, searched_name(exposures)),
-                                        "search", camera, options),
-                      .method = "search",
-                      .seconds = found.log.seconds,
-                      .search = record_of(found),
-                      .message = fmt::format("{}: {} mm rms, {}", best.code.text(),
-                                             plain_number(1e3 * best.rms_m, 4),
-                                             found.proved ? "proven optimal" : "not proven")};
-  candidate.per_measurement = reports_of(candidate.code, "search");
-  return candidate;
+  std::vector<Candidate> candidates;
+  for (std::size_t place = 0; place < found.finalists.size(); ++place) {
+    const ChipFinalist& its = found.finalists[place];
+    candidates.push_back(
+        {.code = signed_by(to_code_set(its.code, camera, searched_name(exposures)), "search",
+                           camera, options.seed),
+         .method = "search",
+         .seconds = found.log.seconds,
+         .search = record_of(found),
+         .message = fmt::format("{}: {} mm rms, {}", its.code.text(),
+                                plain_number(1e3 * its.rms_m, 4), proof_of(found, place))});
+    candidates.back().per_measurement = reports_of(candidates.back().code, "search");
+  }
+  return candidates;
 }
 
 }  // namespace tofsmith

@@ -88,7 +88,7 @@ class SingleExposureSearch {
       if (!turns_ || 2 * std::popcount(word) <= n_) lights_.push_back(word);
   }
 
-  std::int64_t blocks() const { return (std::ssize(lights_) + scan_lanes - 1) / scan_lanes; }
+  std::int64_t items() const { return (std::ssize(lights_) + scan_lanes - 1) / scan_lanes; }
 
   ChipSearchCounts sizes() const {
     ChipSearchCounts counts;
@@ -102,11 +102,11 @@ class SingleExposureSearch {
     return counts;
   }
 
-  void search_block(std::int64_t block, BestCodes& best, ChipSearchCounts& counts) const {
+  void search_item(std::int64_t block, BestCodes& best, ChipSearchCounts& counts) const {
     const auto begin = static_cast<std::size_t>(block * scan_lanes);
     const std::span<const ChipWord> lights = std::span(lights_).subspan(
         begin, std::min<std::size_t>(scan_lanes, lights_.size() - begin));
-    const double share = static_cast<double>(block) / static_cast<double>(blocks());
+    const double share = static_cast<double>(block) / static_cast<double>(items());
     turns_ ? search_turning(lights, share, best, counts)
            : search_informed(lights, share, best, counts);
   }
@@ -202,17 +202,7 @@ class SingleExposureSearch {
 }  // namespace
 
 ExhaustiveFinding search_single_exposures(const ExhaustiveTask& task, const Progress& progress) {
-  ExhaustiveFinding finding{BestCodes(task.finalists), {}};
-  report(progress, 0.0, "tap assignments listed");
-  const SingleExposureSearch search(task);
-  finding.counts = search.sizes();
-  search_in_rounds(
-      search.blocks(), 16, finding,
-      [&](std::int64_t block, BestCodes& best, ChipSearchCounts& counts) {
-        search.search_block(block, best, counts);
-      },
-      progress);
-  return finding;
+  return search_all<SingleExposureSearch>(task, "tap assignments listed", 16, progress);
 }
 
 }  // namespace tofsmith

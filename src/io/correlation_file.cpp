@@ -6,6 +6,7 @@
 
 #include "io/correlation_matrix.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/code_file.hpp"
 
 namespace tofsmith {
 
@@ -15,6 +16,21 @@ Eigen::MatrixXd read_correlation_functions(const std::filesystem::path& path) {
     throw IoError(path.string(), fmt::format("found {} samples of the period; expected at least {}",
                                              functions.rows(), fewest_samples));
   return functions;
+}
+
+bool is_correlation_table(const std::string& name_or_path) {
+  const std::string extension = std::filesystem::path(name_or_path).extension().string();
+  return extension == ".csv" || extension == ".txt" || extension == ".npy" || extension == ".npz";
+}
+
+TargetSet load_target(const std::string& name_or_path, const Camera& camera, bool normalize) {
+  const std::filesystem::path path = name_or_path;
+  if (is_correlation_table(name_or_path))
+    return targets_from_table(path.stem().string(), read_correlation_functions(path),
+                              camera.samples, normalize);
+  require(!normalize, "normalize", "true",
+          "goes with a target that is a table; codes are as they are");
+  return targets_of(load_code(name_or_path, ideal_camera(camera)).resampled(camera.samples));
 }
 
 }  // namespace tofsmith

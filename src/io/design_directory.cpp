@@ -79,6 +79,7 @@ Camera self_contained(Camera camera) {
 
 /// Everything that determines a designed code, as text.
 std::string design_key(const Camera& camera, DesignOptions options) {
+  options.baselines = options.baselines.value_or(suggested_baselines(camera, options));
   // Codes are judged afresh, and are called by how many exposures they have.
   options.trials = 0;
   if (!options.exposures.empty()) options.exposures = {0};
@@ -118,13 +119,18 @@ fs::path finished_path(const fs::path& directory, const std::string& name) {
   return directory / "finished" / (file_name_of(name) + ".json");
 }
 
-/// A finished code, or none if it was designed from other inputs.
-std::optional<Candidate> read_finished(const fs::path& path, const std::string& key,
-                                       const std::string& name, const Camera& camera) {
-  const nlohmann::json document = read_json(path);
+Json finished_json(const Candidate& candidate) {
+  return {{"method", candidate.method},
+          {"iterations", candidate.iterations},
+          {"seconds", candidate.seconds},
+          {"per_measurement", measurements_json(candidate)},
+          {"code", Json::parse(code_to_json(candidate.code))},
+          {"details", details_json(candidate)}};
+}
+
+Candidate finished_from_json(const JsonReader& json, const fs::path& path, const std::string& name,
+                             const Camera& camera) {
   const std::string file = path.string();
-  const JsonReader json(document, file);
-  if (json.member("key").text() != key) return std::nullopt;
   Candidate candidate{
       .code = parse_code_json(json.member("code").dump(), file),
       .method = json.member("method").text(),
@@ -136,6 +142,18 @@ std::optional<Candidate> read_finished(const fs::path& path, const std::string& 
   return candidate;
 }
 
+/// Finished candidates, or none if they were designed from other inputs.
+std::vector<Candidate> read_finished(const fs::path& path, const std::string& key,
+                                     const std::string& name, const Camera& camera) {
+  const nlohmann::json document = read_json(path);
+  const JsonReader json(document, path.string());
+  std::vector<Candidate> candidates;
+  if (json.member("key").text() != key) return candidates;
+  for (const JsonReader& entry : json.member("candidates").elements())
+    candidates.push_back(finished_from_json(entry, path, name, camera));
+  return candidates;
+}
+
 }  // namespace
 
 DesignDirectory::DesignDirectory(fs::path path) : path_(std::move(path)) {}
@@ -145,28 +163,25 @@ bool DesignDirectory::holds_design() const { return fs::exists(path_ / "design.j
 DesignStore DesignDirectory::store(const Camera& camera, const DesignOptions& options) const {
   make_output_directory(path_ / "finished");
   const std::string key = design_key(camera, options);
-  return {.load = [key, camera,
-                   directory = path_](const std::string& name) -> std::optional<Candidate> {
-            const fs::path path = finished_path(directory, name);
-            if (!fs::exists(path)) return std::nullopt;
-            try {
-              return read_finished(path, key, name, camera);
-            } catch (const IoError&) {
-              return std::nullopt;  // damaged: designing again costs minutes and replaces it
-            }
-          },
-          .save =
-              [key, directory = path_](const Candidate& candidate) {
-                const Json json = {{"key", key},
-                                   {"method", candidate.method},
-                                   {"iterations", candidate.iterations},
-                                   {"seconds", candidate.seconds},
-                                   {"per_measurement", measurements_json(candidate)},
-                                   {"code", Json::parse(code_to_json(candidate.code))},
-                                   {"details", details_json(candidate)}};
-                write_file_atomically(finished_path(directory, candidate.code.name()), json.dump(1),
-                                      OutputPolicy::overwrite);
-              }};
+  return {
+      .load = [key, camera, directory = path_](const std::string& name) -> std::vector<Candidate> {
+        const fs::path path = finished_path(directory, name);
+        if (!fs::exists(path)) return {};
+        try {
+          return read_finished(path, key, name, camera);
+        } catch (const IoError&) {
+          return {};  // damaged: designing again costs minutes and replaces it
+        }
+      },
+      .save =
+          [key, directory = path_](const std::string& name,
+                                   const std::vector<Candidate>& candidates) {
+            Json json = {{"key", key}, {"candidates", Json::array()}};
+            for (const Candidate& candidate : candidates)
+              json["candidates"].push_back(finished_json(candidate));
+            write_file_atomically(finished_path(directory, name), json.dump(1),
+                                  OutputPolicy::overwrite);
+          }};
 }
 
 void DesignDirectory::write(const Camera& camera, const DesignResult& result,

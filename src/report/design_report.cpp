@@ -33,7 +33,7 @@ KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
   numbers.entries.push_back({"best code", winner.code.name()});
   numbers.entries.push_back(
       {kind == DepthErrorKind::linear ? "linear depth error" : "circular depth error",
-       fmt::format("{:.1f} mm", 1e3 * chosen_error_m(winner.error, kind))});
+       fmt::format("{:.1f} mm", 1e3 * geometric_mean_error_m(winner.error, kind))});
   if (winner.second_returns)
     numbers.entries.push_back(
         {"behind second returns",
@@ -187,7 +187,8 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
   const DepthErrorKind kind = camera.operating.error;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     compared.push_back({&errors[i], codes[i].provenance.method});
-    if (chosen_error_m(errors[i], kind) < chosen_error_m(errors[best], kind)) best = i;
+    if (geometric_mean_error_m(errors[i], kind) < geometric_mean_error_m(errors[best], kind))
+      best = i;
   }
   page.sections.push_back(depth_error_section(camera, compared, best));
   Section waveforms{.title = "Waveforms"};

@@ -72,7 +72,7 @@ Section gain_section(const Camera& camera, const DesignResult& result) {
                   "candidate is; ± is one standard error, the two taken for independent.",
                   kind == DepthErrorKind::linear ? "linear" : "circular"),
               .columns = {{"code"}, {"made by"}, {"exposures", true}, {"times the best", true}}};
-  for (const Candidate* c : by_chosen_error(result, kind)) {
+  for (const Candidate* c : by_geometric_mean_error(result, kind)) {
     if (c == &result.winner()) continue;
     const Estimate gain = gain_over(result, *c, kind);
     table.rows.push_back({c->code.name(), c->method, fmt::format("{}", c->error.exposures),

@@ -19,9 +19,9 @@ DesignOptions design_options(int exposures, const ReproduceOptions& options) {
   DesignOptions design;
   design.method = DesignMethod::factorize;  // as the paper does
   design.exposures = {exposures};
-  design.baselines = {};
+  design.baselines.emplace();  // none
   design.best_rotation = true;
-  design.seed = design.factorize.seed = options.seed;
+  design.seed = options.seed;
   // Wraps at the origin make the linear error noisy: with 600 trials per light level the choice of
   // pairs and of the origin came out up to 7 % worse than with these.
   design.search_trials = options.fast ? 100 : 4000;

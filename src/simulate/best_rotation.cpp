@@ -31,8 +31,7 @@ BestRotation best_rotation(const CodeSet& code, const Camera& camera,
   BestRotation best;
   for (const double sum : log_sum)
     best.linear_geometric_mean_m.push_back(std::exp(sum / static_cast<double>(of_point.size())));
-  best.rotation_bin =
-      static_cast<int>(std::min_element(log_sum.begin(), log_sum.end()) - log_sum.begin());
+  best.rotation_bin = best_of_rotations(log_sum);
   return best;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -37,5 +38,23 @@ class ErrorByRotation {
  private:
   std::vector<double> jumps_;
 };
+
+/// The best origin of depth: of all rotations by their errors, or monotone functions of them, the
+/// first of the least. Wherever a code is given an origin, this is how it is chosen.
+inline int best_of_rotations(const std::vector<double>& errors) {
+  return static_cast<int>(std::min_element(errors.begin(), errors.end()) - errors.begin());
+}
+
+/// The errors of all rotations, smoothed over their neighbours round the circle: errors of all
+/// rotations share trials, and where these are few the least of noisy values is an accident.
+inline std::vector<double> smoothed_over_rotations(const std::vector<double>& errors) {
+  constexpr std::array<double, 5> weights = {1.0, 2.0, 3.0, 2.0, 1.0};
+  const std::size_t count = errors.size();
+  std::vector<double> sums(count, 0.0);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < weights.size(); ++k)
+      sums[i] += weights[k] * errors[(i + count + k - 2) % count];
+  return sums;
+}
 
 }  // namespace tofsmith

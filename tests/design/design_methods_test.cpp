@@ -28,7 +28,6 @@ DesignOptions quick(DesignMethod method, std::vector<int> exposures) {
   options.optimize.refinement_steps = 20;
   options.optimize.polish_steps = 10;
   options.optimize.pool_trials = 2000;
-  options.optimize.validation_trials = 6000;
   return options;
 }
 
@@ -60,9 +59,6 @@ TEST(DesignMethods, BestLetsEveryMethodCompeteAndPicksTheLeastError) {
   EXPECT_FALSE(optimized.search->proved);
   EXPECT_FALSE(optimized.search->steps.empty());
   EXPECT_EQ(optimized.per_measurement.size(), 4u);
-  // It started from this one, which stays what it returns if nothing is better.
-  EXPECT_LE(optimized.error.circular.geometric_mean_m.value,
-            1.02 * result.find("hamiltonian-k4")->error.circular.geometric_mean_m.value);
 }
 
 TEST(DesignMethods, OptimizedCodesAreTheSameOnAnyNumberOfThreads) {
@@ -121,7 +117,7 @@ TEST(DesignMethods, RobustCodesAreChosenByTheWorstPerturbedCamera) {
     ASSERT_TRUE(c.robustness) << c.code.name();
     EXPECT_LE(result.winner().robustness->worst_calibrated_m().value,
               c.robustness->worst_calibrated_m().value);
-    EXPECT_EQ(choice_error_m(c, camera, options), c.robustness->worst_calibrated_m().value);
+    EXPECT_EQ(ranking_error_m(c, camera, options), c.robustness->worst_calibrated_m().value);
   }
 }
 
@@ -162,8 +158,9 @@ TEST(GainOver, IsTheRatioOfChosenErrorsWithItsUncertainty) {
     const Estimate gain = gain_over(result, c, DepthErrorKind::linear);
     EXPECT_GE(gain.value, 1.0);
     EXPECT_GT(gain.standard_error, 0.0);
-    EXPECT_DOUBLE_EQ(gain.value, chosen_error_m(c.error, DepthErrorKind::linear) /
-                                     chosen_error_m(result.winner().error, DepthErrorKind::linear));
+    EXPECT_DOUBLE_EQ(gain.value,
+                     geometric_mean_error_m(c.error, DepthErrorKind::linear) /
+                         geometric_mean_error_m(result.winner().error, DepthErrorKind::linear));
   }
 }
 

@@ -41,11 +41,12 @@ void expect_best_wins(const Camera& camera, const DesignResult& result, const st
   ASSERT_NE(result.find(naive), nullptr) << naive;
   const DepthErrorKind kind = camera.operating.error;
   for (const Candidate& c : result.candidates) {
-    EXPECT_LE(chosen_error_m(result.winner().error, kind), chosen_error_m(c.error, kind))
+    EXPECT_LE(geometric_mean_error_m(result.winner().error, kind),
+              geometric_mean_error_m(c.error, kind))
         << c.code.name();
     EXPECT_NO_THROW(require_fits(c.code, camera));
     EXPECT_EQ(c.error.code, c.code.name());
-    EXPECT_EQ(c.code.provenance.depth_error_m, chosen_error_m(c.error, kind));
+    EXPECT_EQ(c.code.provenance.depth_error_m, geometric_mean_error_m(c.error, kind));
   }
 }
 
@@ -141,8 +142,12 @@ TEST(Design, BinaryArmsGetBinaryWaveformsOfASmoothTarget) {
 TEST(Design, UsesWhatTheStoreHoldsAndSavesWhatItDesigned) {
   const Camera camera = small_camera("paper-5f0");
   std::vector<Candidate> saved;
-  DesignStore store{.load = [](const std::string&) { return std::optional<Candidate>(); },
-                    .save = [&](const Candidate& c) { saved.push_back(c); }};
+  DesignStore store{.load = [](const std::string&) { return std::vector<Candidate>(); },
+                    .save =
+                        [&](const std::string& name, const std::vector<Candidate>& made) {
+                          EXPECT_EQ(name, "hamiltonian-k3-factorized");
+                          saved = made;
+                        }};
   const DesignResult first = design(camera, small_options(), {}, store);
   ASSERT_EQ(saved.size(), 1u);
   EXPECT_EQ(saved[0].code.name(), "hamiltonian-k3-factorized");
@@ -150,9 +155,11 @@ TEST(Design, UsesWhatTheStoreHoldsAndSavesWhatItDesigned) {
     EXPECT_EQ(name, "hamiltonian-k3-factorized");
     Candidate kept = saved[0];
     kept.message = "from the store";
-    return std::optional(kept);
+    return std::vector<Candidate>{kept};
   };
-  store.save = [](const Candidate&) { FAIL() << "nothing new to save"; };
+  store.save = [](const std::string&, const std::vector<Candidate>&) {
+    FAIL() << "nothing new to save";
+  };
   const DesignResult second = design(camera, small_options(), {}, store);
   const Candidate* kept = second.find("hamiltonian-k3-factorized");
   EXPECT_EQ(kept->message, "from the store");

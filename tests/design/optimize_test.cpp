@@ -10,6 +10,7 @@
 #include "same_code.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/design/design.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
@@ -39,7 +40,6 @@ OptimizeOptions small_options() {
   options.polish_steps = 20;
   options.trials_per_step = 60;
   options.pool_trials = 1000;
-  options.validation_trials = 1000;
   return options;
 }
 
@@ -54,21 +54,44 @@ double shortest_run(const Waveform& waveform) {
   return shortest;
 }
 
+/// What judge() keeps of the candidates beside the codes given.
+DesignResult judged(const Camera& camera, std::vector<Candidate> candidates,
+                    const std::vector<CodeSet>& given = {}) {
+  for (const CodeSet& code : given) candidates.push_back({.code = code, .method = "family"});
+  DesignOptions options;
+  options.trials = 4000;
+  options.seed = 12345;
+  return judge(camera, std::move(candidates), options);
+}
+
+TEST(Optimize, MakesCandidatesAndJudgesNone) {
+  const Camera camera = small_camera();
+  const std::vector<CodeSet> also = {build_family("hamiltonian-k4", camera)};
+  const std::vector<Candidate> candidates = optimize(camera, 4, small_options(), also);
+  ASSERT_EQ(candidates.size(), 2u) << "switched, and with polished edges";
+  for (const Candidate& c : candidates) {
+    EXPECT_EQ(c.code.name(), "optimized-k4");
+    EXPECT_EQ(c.method, "optimize");
+    EXPECT_TRUE(c.is_designed());
+    EXPECT_FALSE(why_not_playable(c.code, camera));
+    EXPECT_TRUE(c.error.points.empty());
+    EXPECT_FALSE(c.robustness);
+    EXPECT_EQ(c.rotation_bin, 0);
+    EXPECT_EQ(c.code.provenance.method, "optimize");
+    EXPECT_EQ(c.code.provenance.camera, camera.name);
+    EXPECT_GT(c.iterations, 0);
+  }
+  EXPECT_THAT(candidates[1].message, HasSubstr("with polished edges"));
+}
+
 TEST(Optimize, BeatsTheHamiltonianCodeThatItStartsFrom) {
   const Camera camera = small_camera();
   const std::vector<CodeSet> also = {build_family("hamiltonian-k4", camera)};
-  const OptimizedCode found = optimize(camera, 4, small_options(), also);
-  ASSERT_EQ(found.candidates.back().name, "hamiltonian-k4");
-  EXPECT_LT(found.error_m.value, 0.95 * found.candidates.back().error_m.value);
-  EXPECT_FALSE(found.is_given);
-  EXPECT_THAT(found.message, HasSubstr("times better than hamiltonian-k4"));
-  EXPECT_EQ(found.code.provenance.method, "optimize");
-  // Trials that nothing was chosen by say the same.
-  EvaluateOptions fresh;
-  fresh.seed = 12345;
-  const Estimate error_m = evaluate(found.code, camera, fresh).circular.geometric_mean_m;
-  EXPECT_NEAR(error_m.value, found.error_m.value,
-              5 * std::hypot(error_m.standard_error, found.error_m.standard_error));
+  const DesignResult result = judged(camera, optimize(camera, 4, small_options(), also), also);
+  ASSERT_EQ(result.candidates.size(), 2u) << "the better attempt, and the code given";
+  EXPECT_EQ(result.winner().code.name(), "optimized-k4");
+  EXPECT_LT(result.winner().error.circular.geometric_mean_m.value,
+            0.97 * result.find("hamiltonian-k4")->error.circular.geometric_mean_m.value);
 }
 
 TEST(Optimize, ReckonsWithSecondReturnsWhereTheCameraSaysSo) {
@@ -78,33 +101,15 @@ TEST(Optimize, ReckonsWithSecondReturnsWhereTheCameraSaysSo) {
   const std::vector<CodeSet> also = {build_family("hamiltonian-k5", camera)};
   const SecondReturns later{{0.2, 0.5}, {0.5, 3.0}, 0.5};
   camera.operating.multipath = later;
-  const OptimizedCode found = optimize(camera, 5, small_options(), also);
-  const OptimizeCandidate& given = found.candidates.back();
+  const DesignResult result = judged(camera, optimize(camera, 5, small_options(), also), also);
+  const Candidate& given = *result.find("hamiltonian-k5");
+  const Candidate& found = *result.find("optimized-k5");
   ASSERT_TRUE(given.second_returns && given.second_returns->two_return);
-  EXPECT_THAT(found.message, HasSubstr("behind second ones"));
-  // Fresh trials: less error by what was minimized, and two returns can still be told.
-  EvaluateOptions fresh;
-  fresh.trials = 4000;
-  fresh.seed = 12345;
-  const auto chosen_by = [&](const CodeSet& code) {
-    return later.weighed(evaluate(code, camera, fresh).circular.geometric_mean_m.value,
-                         second_return_error(code, camera, later, fresh).circular_m.value);
-  };
-  EXPECT_LT(chosen_by(found.code), chosen_by(also.front()));
-  EXPECT_LT(two_return_error(found.code, camera, later, fresh).circular_m.value,
-            1.4 * two_return_error(also.front(), camera, later, fresh).circular_m.value);
-}
-
-TEST(Optimize, IsNeverWorseThanTheBestCodeGiven) {
-  const Camera camera = small_camera(DepthErrorKind::linear);
-  OptimizeOptions poor = small_options();
-  poor.starts = poor.steps_per_start = 1;
-  poor.hops = poor.refinement_steps = 0;
-  const std::vector<CodeSet> also = {build_family("sinusoid-k3", camera),
-                                     build_family("hamiltonian-k5", camera)};
-  const OptimizedCode found = optimize(camera, 3, poor, also);
-  for (const OptimizeCandidate& candidate : found.candidates)
-    EXPECT_LE(found.error_m.value, candidate.error_m.value);
+  ASSERT_TRUE(found.second_returns && found.second_returns->two_return);
+  // Less error by what was minimized, and two returns can still be told.
+  EXPECT_LT(ranking_error_m(found, camera, {}), ranking_error_m(given, camera, {}));
+  EXPECT_LT(found.second_returns->two_return->circular_m.value,
+            1.4 * given.second_returns->two_return->circular_m.value);
 }
 
 TEST(Optimize, GivesTheSameBitsOnAnyNumberOfThreads) {
@@ -113,15 +118,14 @@ TEST(Optimize, GivesTheSameBitsOnAnyNumberOfThreads) {
     const ThreadLimit limit(threads);
     return optimize(camera, 3, small_options());
   };
-  const OptimizedCode one = with_threads(1), four = with_threads(4);
-  EXPECT_EQ(one.error_m.value, four.error_m.value);
-  for (int e = 0; e < 3; ++e) {
-    EXPECT_EQ(one.code.modulation(e), four.code.modulation(e));
-    EXPECT_EQ(one.code.demodulation(e), four.code.demodulation(e));
+  const std::vector<Candidate> one = with_threads(1), four = with_threads(4);
+  ASSERT_EQ(one.size(), four.size());
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    expect_same_code(one[k].code, four[k].code);
+    const std::vector<SearchStep>&a = one[k].search->steps, &b = four[k].search->steps;
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].error_m, b[i].error_m);
   }
-  ASSERT_EQ(one.history.size(), four.history.size());
-  for (std::size_t i = 0; i < one.history.size(); ++i)
-    EXPECT_EQ(one.history[i].error_m, four.history[i].error_m);
 }
 
 TEST(Optimize, KeepsEveryPulseAndGapAsLongAsAsked) {
@@ -130,7 +134,7 @@ TEST(Optimize, KeepsEveryPulseAndGapAsLongAsAsked) {
     if (!band_limited) camera.light.impulse_response = camera.sensor.impulse_response = {};
     for (const double shortest_periods : {1.0 / 45.5, 1.0 / 13.0}) {
       camera.sensor.shortest_pulse_s = shortest_periods / camera.fundamental_frequency_hz;
-      const CodeSet code = optimize(camera, 3, small_options()).code;
+      const CodeSet code = optimize(camera, 3, small_options()).back().code;
       for (int e = 0; e < 3; ++e) {
         EXPECT_TRUE(code.modulation(e).is_binary());
         EXPECT_GE(shortest_run(code.modulation(e)), shortest_periods - 1e-9);
@@ -171,7 +175,7 @@ TEST(Optimize, RefusesWhatCannotBeMeasured) {
 TEST(Optimize, TwoBucketsShareAllCharge) {
   Camera camera = small_camera();
   camera.sensor.taps = 2;
-  const CodeSet code = optimize(camera, 2, small_options()).code;
+  const CodeSet code = optimize(camera, 2, small_options()).back().code;
   EXPECT_EQ(code.measurements(), 4);
   const Eigen::MatrixXd gain = code.demodulation_samples();
   for (int e = 0; e < 2; ++e)
@@ -184,7 +188,7 @@ TEST(Optimize, ExclusiveTapsUseADrainOnlyWhereThereIsOne) {
   camera.sensor.modulation_contrast = 0.9;
   for (const bool drain : {true, false}) {
     camera.sensor.drain = drain;
-    const CodeSet code = optimize(camera, 1, small_options()).code;
+    const CodeSet code = optimize(camera, 1, small_options()).back().code;
     const Eigen::VectorXd sum = code.demodulation_samples().rowwise().sum();
     EXPECT_LE(sum.maxCoeff(), 1.0 + 1e-9);
     if (!drain) {
@@ -197,30 +201,32 @@ TEST(Optimize, DifferencesOfBucketsCancelAmbientLight) {
   Camera camera = small_camera();
   camera.sensor.taps = 2;
   camera.sensor.readout = Readout::difference;
-  const CodeSet code = optimize(camera, 2, small_options()).code;
+  const CodeSet code = optimize(camera, 2, small_options()).back().code;
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(code.demodulation(i).mean(), 0.5, 1e-9);
 }
 
 TEST(Optimize, ArmsThatNeedNotSwitchPlayAnyValue) {
   Camera camera = small_camera();
   camera.light.binary = false;
-  const CodeSet code = optimize(camera, 3, small_options()).code;
+  const CodeSet code = optimize(camera, 3, small_options()).back().code;
   EXPECT_FALSE(code.modulation(0).is_binary());
   EXPECT_TRUE(code.demodulation(0).is_binary());
   EXPECT_LE(code.peak(), camera.light.peak_factor * (1 + 1e-9));
   EXPECT_LE(code.modulation(0).mean(), 1.0 + 1e-9);
 }
 
-TEST(Optimize, JudgesByTheWorstVariant) {
+TEST(Optimize, MindsTheWorstVariant) {
   std::vector<Camera> variants(2, small_camera());
-  variants[1].light.impulse_response.f_max_hz *= 0.8;
-  const OptimizedCode found = optimize(variants, 3, small_options());
-  EvaluateOptions fresh;
-  double worst_m = 0.0;
-  for (const Camera& variant : variants)
-    worst_m =
-        std::max(worst_m, evaluate(found.code, variant, fresh).circular.geometric_mean_m.value);
-  EXPECT_NEAR(found.error_m.value, worst_m, 0.15 * worst_m);
+  variants[1].light.impulse_response.f_max_hz *= 0.5;
+  const auto worst_m = [&](const std::vector<Candidate>& found) {
+    double worst_m = 0.0;
+    for (const Camera& variant : variants)
+      worst_m =
+          std::max(worst_m, evaluate(found.back().code, variant).circular.geometric_mean_m.value);
+    return worst_m;
+  };
+  EXPECT_LT(worst_m(optimize(variants, 3, small_options())),
+            worst_m(optimize(variants.front(), 3, small_options())));
 }
 
 TEST(Optimize, HistoryNeverRisesAndEndsEarlyWithoutGain) {
@@ -228,9 +234,11 @@ TEST(Optimize, HistoryNeverRisesAndEndsEarlyWithoutGain) {
   options.hops = 40;
   options.steps_per_hop = 1;
   options.patience = 5;
-  const OptimizedCode found = optimize(small_camera(), 3, options);
-  for (std::size_t i = 1; i < found.history.size(); ++i)
-    EXPECT_LE(found.history[i].best_error_m, found.history[i - 1].best_error_m);
+  const Candidate found = optimize(small_camera(), 3, options).front();
+  for (std::size_t i = 1; i < found.search->steps.size(); ++i) {
+    EXPECT_LE(found.search->steps[i].error_m, found.search->steps[i - 1].error_m);
+    EXPECT_EQ(found.search->steps[i].work, found.search->steps[i - 1].work + 1);
+  }
   EXPECT_THAT(found.message, HasSubstr("hops ended early"));
 }
 

@@ -195,7 +195,7 @@ def test_design_keeps_baselines_and_reports_itself(camera):
     result = ts.design(camera, method="factorize", target=chi, trials=1000, search_trials=100,
                        baselines=["hamiltonian-k3"], factorize=quick)
     assert {c.method for c in result.candidates} >= {"factorize", "family"}
-    assert result.winner is result.by_choice()[0]
+    assert result.winner is result.by_ranking_error()[0]
     designed = next(c for c in result.candidates if c.method == "factorize")
     assert designed.is_designed and len(designed.per_measurement) == 3
     for measurement in designed.per_measurement:

@@ -21,7 +21,7 @@ structs = [
     ("RobustnessOptions", "simulate/robustness.hpp",
      lambda o: ts.robustness("square-k4", "paper-10f0", **o), set()),
     ("FactorizeOptions", "design/factorize.hpp",
-     lambda o: ts.design("paper-10f0", **quick, factorize=o), set()),
+     lambda o: ts.design("paper-10f0", **quick, factorize=o), {"seed"}),
     ("OptimizeOptions", "design/optimize.hpp",
      lambda o: ts.design("paper-10f0", **quick, optimize=o), {"seed"}),
     ("ChipSearchOptions", "design/chip_search.hpp",

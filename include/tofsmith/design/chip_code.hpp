@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/code/code_set.hpp"
+#include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 
@@ -52,9 +54,12 @@ struct ChipCode {
   friend bool operator==(const ChipCode&, const ChipCode&) = default;
 };
 
+/// Why a camera has no chip clock: no shortest pulse, or a period that is not a whole number of
+/// them, 3 .. most_chips. None: it has one.
+std::optional<BrokenRule> why_no_chip_clock(const Camera& camera);
+
 /// Chips per period of a camera's clock: period / sensor.shortest_pulse_s.
-/// @throws std::invalid_argument without a shortest pulse, or where the period is not a whole
-///         number of them, 3 .. most_chips
+/// @throws std::invalid_argument as why_no_chip_clock()
 int chips_of(const Camera& camera);
 
 /// Level at which a modulation that is on for `on_chips` plays, over average power: the camera's

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/progress.hpp"
-#include "tofsmith/core/statistics.hpp"
 #include "tofsmith/design/chip_code.hpp"
 
 namespace tofsmith {
@@ -27,8 +27,7 @@ struct ChipSearchOptions {
   int finalists = 4;                     ///< best codes by the metric to keep, 1 .. 100
   int annealing_starts = 24;             ///< where not all codes are searched; 0 .. 10000
   std::int64_t annealing_steps = 20000;  ///< per start, >= 1
-  std::int64_t trials = 0;               ///< Monte Carlo trials per point and finalist; 0 = none
-  std::uint64_t seed = 1;                ///< of annealing and trials
+  std::uint64_t seed = 1;                ///< of annealing
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
@@ -42,8 +41,7 @@ auto fields_of(ConstOrNot<ChipSearchOptions> auto& o) {
       Field("equal_duty", o.equal_duty), Field("largest_exhaustive", o.largest_exhaustive, ">= 0"),
       Field("finalists", o.finalists, "in [1, 100]"),
       Field("annealing_starts", o.annealing_starts, "in [0, 10000]", ByEffort{2}),
-      Field("annealing_steps", o.annealing_steps, ">= 1"), Field("trials", o.trials, "0 or >= 2"),
-      Field("seed", o.seed, Mark::from_above));
+      Field("annealing_steps", o.annealing_steps, ">= 1"), Field("seed", o.seed, Mark::from_above));
 }
 
 /// What became of all codes. Each was dropped by the first test named that it failed.
@@ -76,7 +74,6 @@ struct ChipFinalist {
   double rms_m = 0.0;  ///< metric: geometric mean over the points of chip_metric_rms_m
   double margin_sigma =
       0.0;  ///< proven, at the point where it is the smallest share of what is asked
-  Estimate circular_mde_m;  ///< Monte Carlo, maximum likelihood; value 0 without trials
 };
 
 /// What the search did.
@@ -89,20 +86,23 @@ struct ChipSearchLog {
 
 /// The best codes there are on a camera's chip clock.
 struct ChipSearchResult {
-  std::vector<ChipFinalist> finalists;  ///< best first: by Monte Carlo if asked, else by the metric
-  bool proved = false;                  ///< whether no code has a better metric than the finalists
-  std::string proof;                    ///< what is proven, or why it is not, in a sentence or two
+  std::vector<ChipFinalist>
+      finalists;        ///< best first by the metric; judge() says who wins in noise
+  bool proved = false;  ///< whether no code has a better metric than the finalists
+  std::string proof;    ///< what is proven, or why it is not, in a sentence or two
   ChipSearchLog log;
 };
+
+/// What keeps codes of so many exposures from being searched for a camera, a valid one: no chip
+/// clock, too few or too many measurements, or what chip_metric_rms_m leaves out.
+std::optional<BrokenRule> why_not_searchable(const Camera& camera, int exposures);
 
 /// Searches modulations and tap assignments of a camera with a chip clock for the least geometric
 /// mean over its operating points of chip_metric_rms_m, among codes that are not ambiguous and keep
 /// the margin at every point. (Where no standard code keeps it, as the one that comes nearest
 /// does.) All codes are tried, up to symmetry, and the result is proven, where there are not too
 /// many; else codes are annealed from multi-phase squares and the result is not proven.
-/// @throws std::invalid_argument for bad options or a camera without a chip clock, with fewer than
-/// 3
-///         measurements or with what chip_metric_rms_m leaves out; Interrupted
+/// @throws std::invalid_argument for bad options or camera, or as why_not_searchable(); Interrupted
 /// @note the same result and counts for any number of threads
 /// @see docs/exhaustive_search.md
 ChipSearchResult search_chip_codes(const Camera& camera, const ChipSearchOptions& options = {},

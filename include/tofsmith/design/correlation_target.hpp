@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tofsmith/camera/camera.hpp"
 #include "tofsmith/code/code_set.hpp"
 #include "tofsmith/core/fields.hpp"
 
@@ -50,6 +51,10 @@ auto fields_of(ConstOrNot<TargetSet> auto& t) {
 /// The correlation functions of a one-tap code without impulse responses. Of a family built without
 /// a peak limit these are the ideal ones.
 TargetSet targets_of(const CodeSet& code);
+
+/// The camera without what keeps it from playing ideal codes: one tap read by itself, full contrast
+/// and any peak. A family built for it has the correlation functions that targets_of() is for.
+Camera ideal_camera(const Camera& camera);
 
 /// A user's own correlation functions.
 /// @param table      (rows, K), values at equal steps of depth over one period, end point left out;

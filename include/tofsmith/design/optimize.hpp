@@ -3,17 +3,14 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/code/code_set.hpp"
 #include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/progress.hpp"
-#include "tofsmith/core/statistics.hpp"
-#include "tofsmith/simulate/second_return_error.hpp"
+#include "tofsmith/design/candidate.hpp"
 
 namespace tofsmith {
 
@@ -32,9 +29,6 @@ struct OptimizeOptions {
   int pool_trials = 20000;      ///< over all light levels, to rank codes while searching, >= 1000
   bool polish = true;           ///< move the switching times of the result continuously
   int polish_steps = 250;       ///< >= 0
-  /// Fresh trials for the final choice, over all operating points, >= 1000; never fewer than 3000
-  /// nor more than 40000 per point.
-  int validation_trials = 100000;
   std::uint64_t seed = 1;
   /// On cameras with operating.multipath and enough measurements: weight of log E3 in the loss,
   /// beside log E1^(1 - w) E2^w of SecondReturns::weight, with E3 the error of the direct depth
@@ -42,8 +36,8 @@ struct OptimizeOptions {
   /// others, so that two returns can be decoded; >= 0.
   double two_return_weight = 0.02;
   /// On cameras with operating.multipath: two-return decoding of a code may err this many times as
-  /// much as it does of the best code given that can be decoded so, if there is one; what errs more
-  /// counts as so many times worse in the final choice, up to 1.25 times; >= 1.
+  /// much as it does of the best baseline that can be decoded so, if there is one; what errs more
+  /// counts to the judge as so many times worse, up to 1.25 times; >= 1.
   double most_two_return_loss = 3.0;
 
   /// @throws std::invalid_argument naming field, value and rule
@@ -59,42 +53,10 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
       Field("refinement_steps", o.refinement_steps, ">= 0", ByEffort{50}),
       Field("trials_per_step", o.trials_per_step, ">= 8"),
       Field("pool_trials", o.pool_trials, ">= 1000"), Field("polish", o.polish),
-      Field("polish_steps", o.polish_steps, ">= 0"),
-      Field("validation_trials", o.validation_trials, ">= 1000"),
-      Field("seed", o.seed, Mark::from_above),
+      Field("polish_steps", o.polish_steps, ">= 0"), Field("seed", o.seed, Mark::from_above),
       Field("two_return_weight", o.two_return_weight, "finite and >= 0"),
       Field("most_two_return_loss", o.most_two_return_loss, ">= 1"));
 }
-
-/// One event of an optimization.
-struct OptimizeIteration {
-  std::string phase;          ///< "start", "hop", "refinement", "binary", "polish"
-  std::string start;          ///< where the descent began
-  double error_m = 0.0;       ///< of the code it led to, on the search's light levels and trials
-  double best_error_m = 0.0;  ///< least of those so far
-};
-
-/// A code that was a candidate of the final choice.
-struct OptimizeCandidate {
-  std::string name;
-  Estimate
-      error_m;  ///< fresh trials; geometric mean over the operating points; of the worst variant
-  /// On cameras with operating.multipath; of the camera itself.
-  std::optional<SecondReturnReport> second_returns;
-};
-
-/// What direct optimization found.
-struct OptimizedCode {
-  CodeSet code;           ///< the best candidate, at its best rotation for the linear error
-  Estimate error_m;       ///< its validated error
-  bool is_given = false;  ///< none of the optimized codes is better than one that was given
-  std::vector<OptimizeCandidate> candidates;  ///< optimized ones first, then the given, in order
-  std::vector<OptimizeIteration> history;
-  std::int64_t steps = 0;  ///< gradient steps of all descents
-  std::string start;       ///< where the best descent began
-  std::string message;  ///< one line: how much better than the best given code, and when it ended
-  double seconds = 0.0;
-};
 
 /// Optimizes all pairs of modulation and demodulation together for the depth error of a camera:
 /// geometric mean over its operating points, linear or circular as the camera asks.
@@ -106,20 +68,25 @@ struct OptimizedCode {
 /// buckets that share all charge; more, exclusive, with a drain where the camera has one. Every
 /// pulse and gap of binary waveforms is at least sensor.shortest_pulse_s long.
 /// @param exposures  1 .. 8, with at least 3 measurements in all (2 differences)
-/// @param also  codes that join the starts (where they have as many exposures) and the candidates;
-///              those the camera cannot play are left out
-/// @return the best candidate by fresh trials: never worse on them than the best code given
+/// @param also  codes that join the starts, where they have as many exposures
+/// @return codes that the camera can play, each named "optimized-k<exposures>", those first that
+/// the
+///         search likes better: the best of the pool with switching times on the grid, then with
+///         polished edges. They are not judged: Candidate::error is empty, and which one is best,
+///         at which origin, and whether it beats the codes given, is for judge() of
+///         design/design.hpp, with random numbers that nothing was chosen by. design() does both.
 /// @throws std::invalid_argument for bad options, an invalid camera, too few measurements, a camera
 ///         without band limit and without sensor.shortest_pulse_s; Interrupted
 /// @note same bits for any number of threads
-OptimizedCode optimize(const Camera& camera, int exposures, const OptimizeOptions& options = {},
-                       std::span<const CodeSet> also = {}, const Progress& progress = {});
+std::vector<Candidate> optimize(const Camera& camera, int exposures,
+                                const OptimizeOptions& options = {},
+                                std::span<const CodeSet> also = {}, const Progress& progress = {});
 
 /// The same for the worst of several variants of a camera, the first of which is the camera itself:
 /// the code must be one that it can play. Taps and readout of all must be the same.
-OptimizedCode optimize(std::span<const Camera> variants, int exposures,
-                       const OptimizeOptions& options = {}, std::span<const CodeSet> also = {},
-                       const Progress& progress = {});
+std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
+                                const OptimizeOptions& options = {},
+                                std::span<const CodeSet> also = {}, const Progress& progress = {});
 
 /// A shortest pulse that the camera's samples can follow [s]: two of them.
 double suggested_shortest_pulse_s(const Camera& camera);

@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/judge.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "same_code.hpp"
+#include "simulate/error_by_rotation.hpp"
+#include "small_design.hpp"
+#include "tofsmith/core/random.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Candidate candidate_of(const std::string& family, const Camera& camera,
+                       const std::string& name = {}) {
+  const CodeSet code = build_family(family, camera);
+  return {.code = name.empty() ? code : code.renamed(name), .method = "family"};
+}
+
+std::vector<Candidate> families(const Camera& camera) {
+  return {candidate_of("sinusoid-k4", camera), candidate_of("hamiltonian-k4", camera),
+          candidate_of("square-k4", camera)};
+}
+
+/// Apart from the error that the judge wrote down in the code.
+void expect_same_waveforms(const CodeSet& judged, CodeSet code) {
+  code.provenance.depth_error_m = judged.provenance.depth_error_m;
+  expect_same_code(judged, code);
+}
+
+TEST(Judge, TheWinnerIsNeverWorseThanAnyCandidateGiven) {
+  for (const DepthErrorKind kind : {DepthErrorKind::linear, DepthErrorKind::circular}) {
+    const Camera camera = small_camera("paper-10f0", kind);
+    const DesignOptions options = small_options();
+    const DesignResult result = judge(camera, families(camera), options);
+    ASSERT_EQ(result.candidates.size(), 3u);
+    for (const Candidate& c : result.candidates)
+      EXPECT_LE(ranking_error_m(result.winner(), camera, options),
+                ranking_error_m(c, camera, options))
+          << c.code.name();
+  }
+}
+
+TEST(Judge, RanksWhatDesignRanks) {
+  const Camera camera = small_camera("paper-5f0");
+  const DesignOptions options = small_options();
+  DesignStore store;
+  std::vector<Candidate> made;
+  store.save = [&](const std::string&, const std::vector<Candidate>& candidates) {
+    made = candidates;
+  };
+  const DesignResult designed = design(camera, options, {}, store);
+  for (const Candidate& c : made) {
+    EXPECT_TRUE(c.error.points.empty()) << "makers judge nothing";
+    EXPECT_EQ(c.rotation_bin, 0);
+  }
+  const DesignResult judged = judge(camera, made, options);
+  const Candidate& from_design = *designed.find("hamiltonian-k3-factorized");
+  expect_same_code(judged.winner().code, from_design.code);
+  EXPECT_EQ(judged.winner().rotation_bin, from_design.rotation_bin);
+  EXPECT_EQ(judged.winner().error.linear.geometric_mean_m.value,
+            from_design.error.linear.geometric_mean_m.value);
+}
+
+TEST(Judge, KeepsTheBestOfThoseThatShareAName) {
+  const Camera camera = small_camera("paper-10f0", DepthErrorKind::circular);
+  std::vector<Candidate> attempts = {candidate_of("sinusoid-k4", camera, "mine"),
+                                     candidate_of("square-k4", camera),
+                                     candidate_of("hamiltonian-k4", camera, "mine")};
+  const DesignResult better = judge(camera, attempts, small_options());
+  std::swap(attempts.front(), attempts.back());
+  const DesignResult same = judge(camera, attempts, small_options());
+  for (const DesignResult& result : {better, same}) {
+    ASSERT_EQ(result.candidates.size(), 2u);
+    EXPECT_EQ(result.candidates[0].code.name(), "mine");
+    expect_same_waveforms(result.candidates[0].code,
+                          candidate_of("hamiltonian-k4", camera, "mine").code);
+    EXPECT_EQ(result.winner().code.name(), "mine");
+  }
+}
+
+TEST(Judge, LeavesOutWhatTellsNoDepth) {
+  const Camera camera = small_camera("paper-10f0");
+  std::vector<Candidate> candidates = families(camera);
+  const std::vector<Waveform> flat(3, Waveform::constant(1.0));
+  candidates.push_back({.code = CodeSet::create("flat", camera.samples, 1, flat, flat),
+                        .method = "mine",
+                        .message = "nothing moves"});
+  const DesignResult result = judge(camera, candidates, small_options());
+  EXPECT_EQ(result.find("flat"), nullptr);
+  ASSERT_EQ(result.left_out.size(), 1u);
+  EXPECT_THAT(result.left_out[0], HasSubstr("flat (nothing moves): rank"));
+  EXPECT_THROW(judge(camera, {candidates.back()}, small_options()), std::invalid_argument);
+}
+
+TEST(Judge, CountsAllMovesOfTheOrigin) {
+  const Camera camera = small_camera("paper-5f0");
+  const CodeSet code = build_family("hamiltonian-k4", camera);
+  const DesignResult once = judge(camera, {{.code = code, .method = "family"}}, small_options());
+  const DesignResult twice = judge(camera, once.candidates, small_options());
+  expect_same_waveforms(twice.winner().code, code.rotated(twice.winner().rotation_bin));
+}
+
+TEST(BestOfRotations, IsTheFirstOfTheLeastAndIdempotent) {
+  EXPECT_EQ(best_of_rotations({3.0, 1.0, 2.0, 1.0}), 1);
+  for (std::uint64_t trial = 0; trial < 20; ++trial) {
+    RandomStream random(5, trial);
+    std::vector<double> errors(60);
+    for (double& error : errors) error = std::floor(8.0 * random.uniform());  // with ties
+    std::vector<double> moved = errors;
+    std::ranges::rotate(moved, moved.begin() + best_of_rotations(errors));
+    EXPECT_EQ(best_of_rotations(moved), 0) << "a code at its best origin stays there";
+    moved = errors;
+    std::ranges::rotate(moved, moved.begin() + best_of_rotations(smoothed_over_rotations(errors)));
+    EXPECT_EQ(best_of_rotations(smoothed_over_rotations(moved)), 0);
+  }
+}
+
+TEST(WhyNoDepth, IsAskedOfAllThatKeepsACodeFromMeasuring) {
+  const Camera camera = small_camera("paper-10f0");
+  EXPECT_FALSE(why_no_depth(build_family("hamiltonian-k4", camera), camera));
+  Camera dim = camera;
+  dim.light.peak_factor = 1.0;
+  EXPECT_THAT(*why_no_depth(build_family("hamiltonian-k4", camera), dim), HasSubstr("peak"));
+}
+
+TEST(SuggestedBaselines, SuitTheMethod) {
+  const Camera camera = small_camera("paper-10f0");
+  DesignOptions options;
+  EXPECT_EQ(suggested_baselines(camera, options).size(), 8u);
+  options.method = DesignMethod::factorize;
+  EXPECT_THAT(suggested_baselines(camera, options),
+              ElementsAre("hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5"));
+  options.exposures = {4};
+  EXPECT_THAT(suggested_baselines(camera, options), ElementsAre("hamiltonian-k4"));
+  options.exposures = {};
+  options.target = targets_of(build_family("square-k3", camera));
+  EXPECT_TRUE(suggested_baselines(camera, options).empty());
+}
+
+TEST(DesignSeed, ReachesFactorization) {
+  const Camera camera = small_camera("paper-5f0");
+  DesignOptions options = small_options();
+  options.factorize.structured_starts = false;
+  const auto factorized = [&](std::uint64_t seed, std::uint64_t factorize_seed) {
+    options.seed = seed;
+    options.factorize.seed = factorize_seed;
+    return design(camera, options).find("hamiltonian-k3-factorized")->code;
+  };
+  expect_same_code(factorized(7, 1), factorized(7, 2));
+}
+
+}  // namespace
+}  // namespace tofsmith
