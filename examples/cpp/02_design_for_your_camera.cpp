@@ -28,7 +28,6 @@ int main() {
   options.optimize.refinement_steps = 40;
   options.optimize.polish_steps = 20;
   options.optimize.pool_trials = 1000;
-  options.optimize.validation_trials = 6000;
   const DesignResult result = design(camera, options);
   for (const Candidate* candidate : by_geometric_mean_error(result, camera.operating.error))
     std::printf("%s: %.1f mm (%s)\n", candidate->code.name().c_str(),

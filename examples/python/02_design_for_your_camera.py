@@ -19,7 +19,7 @@ result = tofsmith.design(
     exposures=[3],
     trials=1000,
     optimize={"starts": 2, "steps_per_start": 40, "hops": 0, "refinement_steps": 40,
-              "polish_steps": 20, "pool_trials": 1000, "validation_trials": 6000},
+              "polish_steps": 20, "pool_trials": 1000},
 )
 for candidate in result.by_ranking_error():
     print(f"{candidate.code.name}: {candidate.ranking_error_m * 1e3:.1f} mm ({candidate.method})")

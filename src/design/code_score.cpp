@@ -3,7 +3,6 @@
 #include "design/code_score.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "simulate/error_by_rotation.hpp"
