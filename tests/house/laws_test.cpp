@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iostream>
 #include <map>
 #include <regex>
 #include <set>
@@ -14,7 +15,8 @@
 namespace tofsmith::house {
 namespace {
 
-constexpr std::size_t longest_file_lines = 350;
+constexpr std::size_t usual_file_lines = 350;  // beyond, a file may be one large concept: a warning
+constexpr std::size_t max_file_lines = 500;
 const std::vector<std::string> everywhere = {"include", "src",      "apps",      "python",
                                              "tests",   "examples", "benchmarks"};
 
@@ -25,11 +27,19 @@ std::vector<std::string> missing_licence(const SourceFile& file) {
   return {violation(file, 0, "must start with the two SPDX lines")};
 }
 
+std::vector<std::string> longer_than(std::size_t lines, const SourceFile& file) {
+  if (file.lines.size() <= lines) return {};
+  return {violation(
+      file, lines,
+      "longer than " + std::to_string(lines) + " lines: usually two concepts in one file")};
+}
+
+std::vector<std::string> long_files(const SourceFile& file) {
+  return longer_than(usual_file_lines, file);
+}
+
 std::vector<std::string> too_long(const SourceFile& file) {
-  if (file.lines.size() <= longest_file_lines) return {};
-  return {violation(file, longest_file_lines,
-                    "longer than " + std::to_string(longest_file_lines) +
-                        " lines: usually two concepts in one file")};
+  return longer_than(max_file_lines, file);
 }
 
 std::vector<std::string> printing_and_exiting(const SourceFile& file) {
@@ -103,7 +113,10 @@ TEST(House, EveryFileNamesItsLicence) {
 }
 
 TEST(House, NoFileIsTwoConceptsLong) {
-  EXPECT_EQ(violations_in(read_sources(everywhere), too_long), "");
+  const std::vector<SourceFile> files = read_sources(everywhere);
+  EXPECT_EQ(violations_in(files, too_long), "");
+  const std::string warnings = violations_in(files, long_files);
+  if (!warnings.empty()) std::cout << "warning, nothing is forbidden here:\n" << warnings;
 }
 
 TEST(House, TheLibraryNeverPrintsAndNeverExits) {
@@ -140,8 +153,10 @@ TEST(House, LawsFindWhatBreaksThem) {
   EXPECT_TRUE(breaks(missing_licence, {copyright}));
   EXPECT_TRUE(breaks(missing_licence, {}));
 
-  EXPECT_FALSE(breaks(too_long, std::vector<std::string>(350)));
-  EXPECT_TRUE(breaks(too_long, std::vector<std::string>(351)));
+  EXPECT_FALSE(breaks(long_files, std::vector<std::string>(350)));
+  EXPECT_TRUE(breaks(long_files, std::vector<std::string>(351)));
+  EXPECT_FALSE(breaks(too_long, std::vector<std::string>(500)));
+  EXPECT_TRUE(breaks(too_long, std::vector<std::string>(501)));
 
   const std::string opens = "namespace HWY_NAMESPACE {", closes = "}  // namespace HWY_NAMESPACE";
   EXPECT_FALSE(breaks(shared_kernels, {opens, "namespace hn = hwy::HWY_NAMESPACE;", "namespace {",
