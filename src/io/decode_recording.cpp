@@ -24,27 +24,29 @@ namespace tofsmith {
 
 namespace {
 
+bool finds_later_returns(const AnyDecoder& decoder) {
+  return std::holds_alternative<TwoReturnDecoder>(decoder) ||
+         std::holds_alternative<TailDecoder>(decoder);
+}
+
 /// Everything of a request that needs no file. @throws std::invalid_argument
 void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
   const std::filesystem::path& output = request.output;
   if (!(request.memory_mb > 0.0))
     throw std::invalid_argument(fmt::format("memory_mb = {}; must be > 0", request.memory_mb));
   if (request.frame && *request.frame < 0)
-    throw std::invalid_argument(
-        fmt::format("frame {}: must be >= 0, counted from 0", *request.frame));
+    throw std::invalid_argument(fmt::format("frame {}: must be >= 0", *request.frame));
   if (request.stack && output.extension() != ".npy")
     throw std::invalid_argument(
         fmt::format("stack: found the output {}; expected a .npy file", output.string()));
-  const DecodeMethod method = all_decode_methods[decoder.index()];
-  if (method != DecodeMethod::two_return && method != DecodeMethod::tail)
+  if (!finds_later_returns(decoder))
     for (const DecodedPlane plane : request.outputs)
       if (is_multipath_plane(plane))
         throw std::invalid_argument(fmt::format(
             "outputs {}: found the method {}; expected two-return or tail, which alone fill it",
-            name_of(plane), name_of(method)));
-  if (holds_depth_only(output) && !request.stack && !request.outputs.empty() &&
-      std::ranges::any_of(request.outputs,
-                          [](DecodedPlane plane) { return plane != DecodedPlane::depth; }))
+            name_of(plane), name_of(all_decode_methods[decoder.index()])));
+  const auto is_depth = [](DecodedPlane plane) { return plane == DecodedPlane::depth; };
+  if (holds_depth_only(output) && !request.stack && !std::ranges::all_of(request.outputs, is_depth))
     throw std::invalid_argument(
         fmt::format("outputs: a {} file holds depth only; .npz, .exr and .ply hold other planes, "
                     "and .npy does with --stack",
@@ -53,12 +55,9 @@ void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
 
 /// The planes to write; every plane once.
 std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const AnyDecoder& decoder) {
-  if (request.outputs.empty()) {
-    const DecodeMethod method = all_decode_methods[decoder.index()];
-    return holds_depth_only(request.output)
-               ? std::vector{DecodedPlane::depth}
-               : usual_planes(method == DecodeMethod::two_return || method == DecodeMethod::tail);
-  }
+  if (request.outputs.empty())
+    return holds_depth_only(request.output) ? std::vector{DecodedPlane::depth}
+                                            : usual_planes(finds_later_returns(decoder));
   std::vector<DecodedPlane> planes;
   for (const DecodedPlane plane : request.outputs)
     if (std::ranges::find(planes, plane) == planes.end()) planes.push_back(plane);
@@ -291,14 +290,6 @@ void decode_frames(const RawFramesReader& reader, int rows, const MappedDecoder&
 }
 
 }  // namespace
-
-std::string_view name_of(DepthKind kind) { return kind == DepthKind::z ? "z" : "radial"; }
-
-DepthKind parse_depth_kind(std::string_view name) {
-  for (const DepthKind kind : {DepthKind::radial, DepthKind::z})
-    if (name == name_of(kind)) return kind;
-  throw std::invalid_argument(fmt::format("kind = {}; must be radial or z", name));
-}
 
 void StatusCounts::add(std::span<const PixelStatus> statuses) {
   for (const PixelStatus status : statuses) ++counts_[static_cast<std::size_t>(status)];

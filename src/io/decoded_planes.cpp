@@ -47,6 +47,14 @@ DecodedPlane parse_decoded_plane(std::string_view name) {
   throw std::invalid_argument(fmt::format("plane = {}; must be one of {}", name, known));
 }
 
+std::string_view name_of(DepthKind kind) { return kind == DepthKind::z ? "z" : "radial"; }
+
+DepthKind parse_depth_kind(std::string_view name) {
+  for (const DepthKind kind : {DepthKind::radial, DepthKind::z})
+    if (name == name_of(kind)) return kind;
+  throw std::invalid_argument(fmt::format("kind = {}; must be radial or z", name));
+}
+
 bool is_multipath_plane(DecodedPlane plane) {
   return plane == DecodedPlane::delay || plane == DecodedPlane::ratio ||
          plane == DecodedPlane::returns;

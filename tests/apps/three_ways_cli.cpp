@@ -28,7 +28,11 @@ namespace {
 
 constexpr OutputPolicy policy = OutputPolicy::overwrite;
 
-Camera small_camera() { return load_camera("paper-10f0", {"samples=120"}); }
+Camera camera_with(const char* name, const std::string& setting) {
+  return load_camera(name, {&setting, 1});
+}
+
+Camera small_camera() { return camera_with("paper-10f0", "samples=120"); }
 
 void codes() {
   const Camera camera = small_camera();
@@ -89,7 +93,7 @@ void evaluate_codes() {
 }
 
 void design_codes() {
-  const Camera camera = load_camera("exclusive-3tap-9chip");
+  const Camera camera = camera_with("exclusive-3tap-9chip", "sensor.shortest_pulse_s=15e-9");
   DesignOptions options;
   options.method = DesignMethod::search;
   options.exposures = {2};

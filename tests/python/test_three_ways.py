@@ -14,7 +14,6 @@ import pytest
 import tofsmith as ts
 
 SMALL = ("--set", "samples=120")
-CHIPS = {"fundamental_frequency_hz": 25e6}
 
 
 @pytest.fixture(scope="module")
@@ -182,9 +181,10 @@ def test_evaluate(ways, camera):
 
 
 def test_design(ways):
-    ways.command("design", "exclusive-3tap-9chip", "--method", "search", "--exposures", "2",
+    ways.command("design", "exclusive-3tap-9chip", "--set",
+                 "sensor.shortest_pulse_s=15e-9", "--method", "search", "--exposures", "2",
                  "--trials", "1000", "-o", "design")
-    camera = ts.Camera("exclusive-3tap-9chip")
+    camera = ts.Camera("exclusive-3tap-9chip", sensor={"shortest_pulse_s": 15e-9})
     ts.design(camera, method="search", exposures=[2], trials=1000).write("design")
     ways.cpp("design")
     seconds = re.compile(rb'"seconds": ?[-+.\de]+')
