@@ -102,7 +102,8 @@ def test_decode(ways, camera):
     counts = np.round(np.clip(raw, 0, 65535)).astype("<u2")
     ways.give("planar.npy", np.moveaxis(raw, 3, 1).copy())
     ways.give("dump.bin", b"head" + np.moveaxis(counts, 3, 1).tobytes())
-    ways.give("dump.raw.toml", b"width = 40\nheight = 30\nmeasurements = 4\nheader_bytes = 4\n")
+    ways.give("dump.raw.toml", b"width = 40\nheight = 30\nmeasurements = 4\nheader_bytes = 4\n"
+              b"bits = 16\n")
     ways.give("table.npy", ts.ForwardModel("hamiltonian-k4", camera).correlation_table())
     ways.give("offset.npy", np.full((30, 40), 0.125, np.float32))
     ways.give("gain.npy", np.linspace(0.5, 2, 1200, dtype=np.float32).reshape(30, 40))
@@ -176,8 +177,12 @@ def test_evaluate(ways, camera):
     assert documents[0] == documents[1]
     report = ts.evaluate("hamiltonian-k4", camera, trials=500, seed=3)
     (code,) = json.loads(documents[0])["codes"]
-    assert (report.linear.geometric_mean_m.value
-            == code["linear"]["geometric_mean_m"]["value"])
+    for kind in ("linear", "circular"):
+        assert getattr(report, kind).geometric_mean_m == code[kind]["geometric_mean_m"]
+        assert getattr(report, kind).mean_se_m == code[kind]["mean_se_m"]
+    assert len(code["points"]) == report.circular_mde_m.size
+    for name in ("linear_mde_m", "circular_mde_m", "outlier_rate", "cramer_rao_mae_m"):
+        assert getattr(report, name).ravel().tolist() == [p[name] for p in code["points"]]
 
 
 def test_design(ways):
