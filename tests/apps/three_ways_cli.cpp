@@ -75,9 +75,11 @@ void decode() {
                     .memory_mb = 0.05,
                     .policy = policy},
                    decoder_of(DecodeMethod::ml, "hamiltonian-k4"));
-  decode_recording(
-      {.raw = "planar.npy", .layout = RawLayout::planar, .output = "measured.npy", .policy = policy},
-      decoder_of(DecodeMethod::zncc, "table.npy"));
+  decode_recording({.raw = "planar.npy",
+                    .layout = RawLayout::planar,
+                    .output = "measured.npy",
+                    .policy = policy},
+                   decoder_of(DecodeMethod::zncc, "table.npy"));
   decode_recording(
       {.raw = "dump.bin", .raw_format = "dump.raw.toml", .output = "dump.npz", .policy = policy},
       decoder);
