@@ -2,198 +2,113 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "decode_output.hpp"
 #include "decode_report.hpp"
-#include "decode_stream.hpp"
-#include "map_arguments.hpp"
 #include "method_arguments.hpp"
 #include "multipath_arguments.hpp"
 #include "number_checks.hpp"
 #include "one_of.hpp"
-#include "scene_source.hpp"
 #include "table_arguments.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
-#include "tofsmith/core/error.hpp"
-#include "tofsmith/decode/decode_method.hpp"
-#include "tofsmith/io/raw_frames_reader.hpp"
+#include "tofsmith/io/decode_recording.hpp"
 
 namespace tofsmith::apps {
 
 namespace {
 
 struct DecodeArguments {
-  std::string raw, code, output;
+  DecodeRequest request;
+  std::string raw, raw_format, offset_map, gain_map, code, output;
   CameraArguments camera;
   TapArguments taps;
   TableArguments table;
-  MapArguments maps;
   MethodArguments method;
   MultipathArguments multipath;
-  std::vector<std::string> planes;  // empty: as many of the usual ones as the format holds
+  std::vector<std::string> planes;
   DecodeOptions options;
-  int frame = -1;
   std::string kind = "radial";
   std::string layout = "interleaved";
-  std::string raw_format;
-  bool stack = false;
-  double memory_mb = 256;
 };
 
-void check_frame(const DecodeArguments& arguments, int frames) {
-  if (arguments.frame >= frames)
-    throw UsageError(fmt::format("--frame {}: {} holds {} frame{}, counted from 0", arguments.frame,
-                                 arguments.raw, frames, frames == 1 ? "" : "s"));
-}
-
-/// The planes to write; every plane once.
-std::vector<std::string> planes_to_write(const DecodeArguments& arguments) {
-  const std::string extension = std::filesystem::path(arguments.output).extension().string();
-  if (arguments.stack && extension != ".npy")
-    throw UsageError(
-        fmt::format("--stack: found the output {}; expected a .npy file", arguments.output));
-  if (!arguments.method.is_multipath())
-    for (const std::string& plane : arguments.planes)
-      if (is_multipath_plane(plane))
-        throw UsageError(fmt::format(
-            "--outputs {}: found --method {}; expected two-return or tail, which alone fill it",
-            plane, name_of(arguments.method.method())));
-  const bool depth_only = extension == ".npy" || extension == ".pfm" || extension == ".png";
-  if (arguments.planes.empty())
-    return depth_only ? std::vector<std::string>{"depth"}
-                      : plane_names(arguments.method.is_multipath());
-  if (depth_only && !arguments.stack && arguments.planes != std::vector<std::string>{"depth"})
-    throw UsageError(
-        fmt::format("--outputs: a {} file holds depth only; .npz, .exr and .ply hold "
-                    "other planes, and .npy does with --stack",
-                    extension));
-  std::vector<std::string> planes;
+DecodeRequest request_of(const DecodeArguments& arguments, const Camera& camera,
+                         const Session& session) {
+  DecodeRequest request = arguments.request;
+  request.raw = arguments.raw;
+  request.layout = parse_raw_layout(arguments.layout);
+  request.raw_format = arguments.raw_format;
+  request.output = arguments.output;
   for (const std::string& plane : arguments.planes)
-    if (std::ranges::find(planes, plane) == planes.end()) planes.push_back(plane);
-  return planes;
-}
-
-DecodeTarget target_of(const DecodeArguments& arguments, const Camera& camera,
-                       const RawFramesReader& reader) {
-  check_frame(arguments, reader.frames());
-  const std::filesystem::path path = arguments.output;
-  return {.path = path,
-          .stack = arguments.stack,
-          .planes = planes_to_write(arguments),
-          .count_statuses =
-              arguments.planes.empty() || std::ranges::count(arguments.planes, "status") > 0,
-          .as_z = arguments.kind == "z" && path.extension() != ".ply",
-          .first_frame = std::max(0, arguments.frame),
-          .frames = arguments.frame < 0 ? reader.frames() : 1,
-          .view = view_of(camera, reader.width(), reader.height())};
-}
-
-/// Whole numbers that nothing was said about.
-std::optional<std::string> electrons_note(const RawFramesReader& reader,
-                                          const DecodingTable& table) {
-  if (!reader.holds_integers() || table.saturation_level ||
-      (table.gain_e_per_raw.array() != 1.0).any() || (table.black_level.array() != 0.0).any())
-    return std::nullopt;
-  return "raw numbers are taken as electrons: no gain, black level or saturation is set (--set "
-         "sensor.adc_bits=.. --set sensor.gain_e_per_dn=.. --set sensor.black_level_dn=..)";
-}
-
-/// Before any frame is decoded.
-void check_range_fits(const std::filesystem::path& path, double range_m) {
-  constexpr double largest_m = 65.535;
-  if (path.extension() == ".png" && range_m > largest_m)
-    throw IoError(path.string(),
-                  fmt::format("found a range of {:.4g} m; expected at most {} m, all "
-                              "that 16 bits of millimetres hold (write .npy, .exr "
-                              "or .pfm)",
-                              range_m, largest_m));
-}
-
-/// Not even --force may replace what is being read.
-void check_inputs_are_kept(const DecodeArguments& arguments, const DecodeTarget& target) {
-  const std::vector<std::string> inputs = {arguments.raw,         arguments.raw_format,
-                                           arguments.code,        arguments.camera.name,
-                                           arguments.maps.offset, arguments.maps.gain};
-  for (const std::filesystem::path& path : target.paths()) check_not_input(path, inputs);
+    request.outputs.push_back(parse_decoded_plane(plane));
+  request.kind = parse_depth_kind(arguments.kind);
+  request.lens = camera.lens;
+  request.offset_map = arguments.offset_map;
+  request.gain_map = arguments.gain_map;
+  request.policy = session.output_policy();
+  request.other_inputs = {arguments.code, arguments.camera.name};
+  return request;
 }
 
 /// Decodes all frames; if it does not come to the end of several, says how far it came.
-DecodeSummary decode_all(const RawFramesReader& reader, int rows, const DecodeRows& decode_rows,
-                         DecodeOutput& output) {
-  const DecodeTarget& target = output.target();
-  DecodeSummary summary;
+DecodedRecording decode_all(const DecodeRequest& request, const AnyDecoder& decoder,
+                            Session& session) {
+  DecodedRecording result;
   try {
-    decode_frames(reader, rows, decode_rows, output, terminal_progress("decoding"), summary);
+    decode_recording(request, decoder, terminal_progress("decoding"), result);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(fmt::format("--{}", error.what()));
   } catch (...) {
-    if (target.frames > 1)
-      fmt::print(stderr, "tofsmith: decoded {} of {} frames; {}\n", summary.frames.size(),
-                 target.frames,
-                 target.stack             ? "with --stack nothing is kept unless all are decoded"
-                 : summary.frames.empty() ? "nothing is kept"
-                                          : "their files are kept");
+    session.tells_what_is_kept = result.frame_count > 1;
+    if (session.tells_what_is_kept)
+      fmt::print(stderr, "tofsmith: decoded {} of {} frames; {}\n", result.frames.size(),
+                 result.frame_count,
+                 request.stack           ? "with --stack nothing is kept unless all are decoded"
+                 : result.frames.empty() ? "nothing is kept"
+                                         : "their files are kept");
     throw;
   }
-  return summary;
-}
-
-std::optional<RawFormat> described_format(const DecodeArguments& arguments) {
-  if (arguments.raw_format.empty()) return std::nullopt;
-  return read_raw_format(arguments.raw_format);
+  return result;
 }
 
 void run(const DecodeArguments& arguments, Session& session) {
   const Camera camera = arguments.camera.load();
-  DecodingSource source =
+  const DecodingSource source =
       arguments.table.load(arguments.code, camera, arguments.camera.is_default(), arguments.taps);
   const AnyDecoder decoder =
       make_decoder(arguments.method.method(), source.table, arguments.options,
                    arguments.method.unwrap_weights(), arguments.multipath.options());
-  const double memory_bytes = 1e6 * arguments.memory_mb;
-  const RawFramesReader reader(arguments.raw,
-                               {.measurements = source.table.measurements(),
-                                .layout = parse_raw_layout(arguments.layout),
-                                .largest_in_memory = static_cast<std::uint64_t>(memory_bytes),
-                                .format = described_format(arguments)});
-  if (const auto note = electrons_note(reader, source.table)) source.notes.push_back(*note);
-  const PixelMaps maps = arguments.maps.load(reader.height(), reader.width());
-  const DecodeRows decode_rows = [&](const RawView& raw, int first_row, const DecodedView& decoded,
-                                     const Progress& progress) {
-    std::visit([&](const auto& d) { d.decode(raw, decoded, progress); }, decoder);
-    apply(maps, source.table.range_m, decoded,
-          static_cast<std::size_t>(first_row) * static_cast<std::size_t>(raw.width),
-          static_cast<std::size_t>(raw.pixels()));
-  };
-  const DecodeTarget target = target_of(arguments, camera, reader);
-  check_inputs_are_kept(arguments, target);
-  check_range_fits(target.path, source.table.range_m);
-  DecodeOutput output(target, session);
-  const int rows = rows_at_a_time(reader, target, memory_bytes);
-  session.tells_what_is_kept = target.frames > 1;
-  const DecodeSummary summary = decode_all(reader, rows, decode_rows, output);
-  if (const auto note = no_depth_note(summary.total())) source.notes.push_back(*note);
+  const DecodeRequest request = request_of(arguments, camera, session);
+  const DecodedRecording result = decode_all(request, decoder, session);
+  std::vector<std::string> notes = source.notes;
+  notes.insert(notes.end(), result.notes.begin(), result.notes.end());
 
   nlohmann::ordered_json document = {{"code", source.name},
                                      {"camera", camera.name},
                                      {"range_m", source.table.range_m},
                                      {"range_source", source.range_source},
                                      {"method", name_of(arguments.method.method())},
-                                     {"height", reader.height()},
-                                     {"width", reader.width()},
-                                     {"measurements", reader.measurements()}};
-  if (session.json) add_decode_summary(target, summary, document);
-  document["notes"] = source.notes;
+                                     {"height", result.height},
+                                     {"width", result.width},
+                                     {"measurements", result.measurements}};
+  if (session.json) add_decode_summary(request, result, document);
+  document["notes"] = notes;
   session.print_json(document);
-  std::string lines = decode_lines(target, summary);
-  if (source.tell_range) lines += "\n" + source.range_line();
-  for (const std::string& note : source.notes) lines += "\n" + note;
-  if (!camera.lens && (target.path.extension() == ".ply" || arguments.kind == "z"))
+  std::string lines = decode_lines(request, result);
+  if (source.tell_range)
+    lines += fmt::format("\nrange {:.4g} m ({})", source.table.range_m, source.range_source);
+  for (const std::string& note : notes) lines += "\n" + note;
+  if (!camera.lens && (request.output.extension() == ".ply" || request.kind == DepthKind::z))
     lines += "\nthe camera has no [lens]: its view was taken to be 60 degrees wide";
   session.say(lines);
+}
+
+std::vector<std::string> all_plane_names() {
+  std::vector<std::string> names;
+  for (const DecodedPlane plane : all_decoded_planes) names.emplace_back(name_of(plane));
+  return names;
 }
 
 }  // namespace
@@ -225,7 +140,12 @@ void add_decode_command(CLI::App& app, Session& session) {
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);
   arguments->table.add_to(*command);
-  arguments->maps.add_to(*command);
+  command->add_option("--offset-map", arguments->offset_map,
+                      "how much too far each pixel decodes in metres (.npy .npz .exr .pfm), taken "
+                      "off its depth; NaN marks a dead pixel");
+  command->add_option("--gain-map", arguments->gain_map,
+                      "response of each pixel over that of a usual one, taken out of signal and "
+                      "ambient; NaN marks a dead pixel");
   arguments->method.add_to(*command);
   arguments->multipath.add_to(*command);
   command
@@ -243,7 +163,7 @@ void add_decode_command(CLI::App& app, Session& session) {
           "(what simulate and demo take a depth image for); .ply holds points either way")
       ->check(one_of({"radial", "z"}))
       ->capture_default_str();
-  command->add_option("--frame", arguments->frame, "decode this frame only, counted from 0")
+  command->add_option("--frame", arguments->request.frame, "decode this frame only, counted from 0")
       ->check(number_from_0_on());
   command
       ->add_option("--low-signal-sigma", arguments->options.low_signal_sigma,
@@ -257,11 +177,11 @@ void add_decode_command(CLI::App& app, Session& session) {
       ->add_option("-o,--output", arguments->output,
                    "depth: .npy .npz .exr .pfm .png (16 bits, mm) .ply; several frames get numbers")
       ->required();
-  command->add_flag("--stack", arguments->stack,
+  command->add_flag("--stack", arguments->request.stack,
                     "all frames in one .npy, (F,H,W), written as they come; with --outputs each "
                     "plane but depth in a file of its own, NAME-PLANE.npy");
   command
-      ->add_option("--memory-mb", arguments->memory_mb,
+      ->add_option("--memory-mb", arguments->request.memory_mb,
                    "memory for frames under way [MB]; larger frames go in bands of rows. The "
                    "program itself takes some 50 MB more")
       ->check(positive_number(1e9))

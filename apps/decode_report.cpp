@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <nlohmann/json.hpp>
+
+#include "session.hpp"
 
 namespace tofsmith::apps {
 
@@ -14,14 +14,27 @@ namespace {
 
 constexpr std::size_t most_lines = 8, first_lines = 3, most_listed = 100'000;
 
-std::string kind_of(const DecodeTarget& target) {
-  if (target.path.extension() == ".ply") return "points";
-  return target.as_z ? "z-depth" : "radial distance";
+std::string kind_of(const DecodeRequest& request) {
+  if (request.output.extension() == ".ply") return "points";
+  return request.kind == DepthKind::z ? "z-depth" : "radial distance";
+}
+
+/// "ok 76.10 %, low_signal 3.20 %, .."; "" without pixels.
+std::string status_text(const StatusCounts& statuses) {
+  const auto pixels = static_cast<double>(statuses.pixels());
+  std::string text;
+  for (const PixelStatus status : all_pixel_statuses) {
+    const std::int64_t count = statuses.of(status);
+    if (count > 0)
+      text += fmt::format("{}{} {:.2f} %", text.empty() ? "" : ", ", name_of(status),
+                          100.0 * static_cast<double>(count) / pixels);
+  }
+  return text;
 }
 
 /// "a: b", or "a" if there is nothing to add.
 std::string with_status(const std::string& text, const StatusCounts& statuses) {
-  const std::string status = statuses.text();
+  const std::string status = status_text(statuses);
   return status.empty() ? text : fmt::format("{}: {}", text, status);
 }
 
@@ -29,98 +42,64 @@ std::string plural(std::size_t count, std::string_view what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-std::string frame_lines(const DecodeTarget& target, const DecodeSummary& summary) {
-  const std::size_t frames = summary.frames.size();
+std::string frame_lines(const DecodeRequest& request, const DecodedRecording& result) {
+  const std::size_t frames = result.frames.size();
   const std::size_t listed = frames <= most_lines ? frames : first_lines;
-  const auto path = [&](std::size_t i) {
-    return target.frame_path(target.first_frame + static_cast<int>(i)).string();
-  };
   std::string lines;
   for (std::size_t i = 0; i < listed; ++i)
-    lines +=
-        with_status(fmt::format("wrote {} ({})", path(i), kind_of(target)), summary.frames[i]) +
-        "\n";
+    lines += with_status(fmt::format("wrote {} ({})", result.files[i].string(), kind_of(request)),
+                         result.frames[i]) +
+             "\n";
   if (listed < frames)
-    lines += fmt::format(".. and {} more, to {}\n", frames - listed, path(frames - 1));
+    lines +=
+        fmt::format(".. and {} more, to {}\n", frames - listed, result.files[frames - 1].string());
   return lines;
 }
 
-std::string stack_lines(const DecodeTarget& target) {
+std::string stack_lines(const DecodeRequest& request, const DecodedRecording& result) {
   std::string lines;
-  for (const std::string& plane : target.planes)
-    lines += fmt::format("wrote {} ({})\n", target.stack_path(plane).string(),
-                         plane == "depth" ? kind_of(target) : plane);
-  return lines;
-}
-
-/// What pixels without depth are most likely due to.
-std::string_view likely_cause(PixelStatus status) {
-  switch (status) {
-    case PixelStatus::invalid:
-      return "the raw numbers are NaN or infinite, or the maps mark every pixel as dead: were they "
-             "written, and read with the right --raw-format?";
-    case PixelStatus::saturated:
-      return "every pixel has a raw number at the saturation level: expose less, or correct "
-             "sensor.full_well_e, sensor.adc_bits and sensor.gain_e_per_dn";
-    default:
-      return "no signal is in the raw numbers: is the light on, --code the code that was played, "
-             "--layout how they run, and sensor.black_level_dn what is in the dark?";
+  for (std::size_t i = 0; i < result.files.size(); ++i) {
+    const DecodedPlane plane = result.outputs[i];
+    lines += fmt::format("wrote {} ({})\n", result.files[i].string(),
+                         plane == DecodedPlane::depth ? kind_of(request) : name_of(plane));
   }
+  return lines;
 }
 
 }  // namespace
 
-std::optional<std::string> no_depth_note(const StatusCounts& statuses) {
-  constexpr std::array without_depth = {PixelStatus::invalid, PixelStatus::no_return,
-                                        PixelStatus::saturated};
-  std::int64_t without = 0;
-  std::string counts;
-  for (const PixelStatus status : without_depth) {
-    without += statuses.of(status);
-    if (statuses.of(status) > 0)
-      counts +=
-          fmt::format("{}{} {}", counts.empty() ? "" : ", ", statuses.of(status), name_of(status));
-  }
-  if (without == 0 || without < statuses.pixels()) return std::nullopt;
-  const auto by_count = [&](PixelStatus status) { return statuses.of(status); };
-  return fmt::format("no pixel has a depth ({}); {}", counts,
-                     likely_cause(std::ranges::max(without_depth, {}, by_count)));
+std::string decode_lines(const DecodeRequest& request, const DecodedRecording& result) {
+  return (request.stack ? stack_lines(request, result) : frame_lines(request, result)) +
+         with_status(fmt::format("{} of {} x {} in {}, {} frames/s, {} Mpixel/s",
+                                 plural(result.frames.size(), "frame"), result.height, result.width,
+                                 time_text(result.seconds), rate_text(result.frames_per_s()),
+                                 rate_text(result.megapixels_per_s())),
+                     result.total());
 }
 
-std::string decode_lines(const DecodeTarget& target, const DecodeSummary& summary) {
-  return (target.stack ? stack_lines(target) : frame_lines(target, summary)) +
-         with_status(
-             fmt::format("{} of {} x {} in {}, {} frames/s, {} Mpixel/s",
-                         plural(summary.frames.size(), "frame"), target.view.height,
-                         target.view.width, time_text(summary.seconds),
-                         rate_text(summary.frames_per_s()), rate_text(summary.megapixels_per_s())),
-             summary.total());
-}
-
-void add_decode_summary(const DecodeTarget& target, const DecodeSummary& summary,
+void add_decode_summary(const DecodeRequest& request, const DecodedRecording& result,
                         nlohmann::ordered_json& document) {
   const auto add_status = [](nlohmann::ordered_json& to, const StatusCounts& statuses) {
-    const std::string text = statuses.text();
+    const std::string text = status_text(statuses);
     if (!text.empty()) to["status"] = text;
   };
-  document["frame_count"] = summary.frames.size();
-  if (summary.frames.size() <= most_listed) {
+  document["frame_count"] = result.frames.size();
+  if (result.frames.size() <= most_listed) {
     nlohmann::ordered_json& frames = document["frames"] = nlohmann::ordered_json::array();
-    for (std::size_t i = 0; i < summary.frames.size(); ++i) {
-      const int frame = target.first_frame + static_cast<int>(i);
-      nlohmann::ordered_json entry = {{"frame", frame}};
-      if (!target.stack) entry["output"] = target.frame_path(frame).string();
-      add_status(entry, summary.frames[i]);
+    for (std::size_t i = 0; i < result.frames.size(); ++i) {
+      nlohmann::ordered_json entry = {{"frame", result.first_frame + static_cast<int>(i)}};
+      if (!request.stack) entry["output"] = result.files[i].string();
+      add_status(entry, result.frames[i]);
       frames.push_back(std::move(entry));
     }
   }
-  if (target.stack)
-    for (const std::string& plane : target.planes)
-      document["stack"][plane] = target.stack_path(plane).string();
-  add_status(document, summary.total());
-  document["seconds"] = summary.seconds;
-  document["frames_per_s"] = summary.frames_per_s();
-  document["megapixels_per_s"] = summary.megapixels_per_s();
+  if (request.stack)
+    for (std::size_t i = 0; i < result.files.size(); ++i)
+      document["stack"][std::string(name_of(result.outputs[i]))] = result.files[i].string();
+  add_status(document, result.total());
+  document["seconds"] = result.seconds;
+  document["frames_per_s"] = result.frames_per_s();
+  document["megapixels_per_s"] = result.megapixels_per_s();
 }
 
 }  // namespace tofsmith::apps

@@ -6,7 +6,6 @@
 #include <chrono>
 
 #include "commands.hpp"
-#include "depth_output.hpp"
 #include "design_effort.hpp"
 #include "design_output.hpp"
 #include "fresh_directory.hpp"
@@ -15,6 +14,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/io/design_directory.hpp"
 #include "tofsmith/io/file_name.hpp"
 #include "tofsmith/io/output_directory.hpp"
@@ -83,11 +83,12 @@ void write_products(const fs::path& directory, const SceneResult& scene, const C
                                  .reference_distance_m = scene.reference_distance_m,
                                  .seed = seed});
   const Decoder decoder(make_decoding_table(ForwardModel(best, camera), camera));
-  const DecodedPlanes image(decoder.decode(raw));
+  const DepthImage image = decoder.decode(raw);
   write_raw_frames(directory / "raw.npy", raw, policy);
   for (const char* name : depth_files)
-    write_decoded(directory / name, image, plane_names(), scene.view, policy);
-  write_decoded(directory / "points.ply", image, {"signal", "confidence"}, scene.view, policy);
+    write_decoded(directory / name, image, usual_planes(), scene.view, policy);
+  write_decoded(directory / "points.ply", image, {DecodedPlane::signal, DecodedPlane::confidence},
+                scene.view, policy);
   make_output_directory(directory / "waveforms");
   for (const Candidate& c : result.candidates) {
     const fs::path path = directory / "waveforms" / (file_name_of(c.code.name()) + ".csv");

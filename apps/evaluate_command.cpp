@@ -10,10 +10,9 @@
 #include "multipath_evaluation.hpp"
 #include "number_checks.hpp"
 #include "perturb_arguments.hpp"
-#include "played_code.hpp"
-#include "table_arguments.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
+#include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/report/design_report.hpp"
 #include "tofsmith/report/robustness_section.hpp"
@@ -163,7 +162,7 @@ void run(EvaluateArguments& arguments, const Session& session) {
   if (perturbed) static_cast<void>(perturbations(camera, *perturbed));  // refused before long work
   std::vector<CodeSet> codes;
   for (const std::string& name : arguments.codes)
-    codes.push_back(load_played_code(name, camera, arguments.taps));
+    codes.push_back(load_played_code(name, camera, arguments.taps.file_options()));
   if (arguments.multipath.is_asked())
     return arguments.multipath.run(codes, camera,
                                    arguments.trials->count() > 0 ? arguments.options.trials : 0,

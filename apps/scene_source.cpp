@@ -7,7 +7,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "number_checks.hpp"
 #include "tofsmith/core/error.hpp"
@@ -26,7 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double default_view_rad = std::numbers::pi / 3;
 constexpr int default_width = 320, default_height = 240;
 
 enum class SceneKind { built_in, scene_file, mesh, depth_image };
@@ -90,7 +88,7 @@ LoadedScene depth_image(const SceneSource& source, const Camera& camera) {
   const Image<float> depth_m = read_depth(source.scene);
   LoadedScene scene{fs::path(source.scene).stem().string(),
                     SceneImage(depth_m.height, depth_m.width),
-                    view_of(camera, depth_m.width, depth_m.height),
+                    view_of(camera.lens, depth_m.width, depth_m.height),
                     {}};
   scene.image.depth_m = source.kind == "z" ? radial_from_z(depth_m, scene.view) : depth_m;
   if (!source.image.empty()) {
@@ -127,16 +125,6 @@ void SceneSource::add_to(CLI::App& command) {
       ->check(CLI::Range(1, 16384));
   command.add_option("--scale-m", scale_m, "metres per unit of a mesh (1)")
       ->check(positive_number());
-}
-
-PinholeView view_of(const Camera& camera, int width, int height) {
-  if (!camera.lens) return PinholeView::centred(width, height, default_view_rad);
-  return {camera.lens->fx_px,
-          camera.lens->fy_px,
-          camera.lens->cx_px,
-          camera.lens->cy_px,
-          width,
-          height};
 }
 
 std::string lens_setting(const PinholeView& view) {

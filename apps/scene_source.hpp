@@ -43,9 +43,6 @@ struct LoadedScene {
 /// The lens of a view as a setting, to decode what was captured through it: "lens={ fx_px = .. }".
 std::string lens_setting(const PinholeView& view);
 
-/// How an image of this size is seen: through the camera's lens, or 60 degrees wide without one.
-PinholeView view_of(const Camera& camera, int width, int height);
-
 /// Loads a depth image with its albedo, or casts the rays of a scene. z-depth becomes radial
 /// distance through the camera's lens (without one: a view 60 degrees wide).
 /// @throws IoError, std::invalid_argument; UsageError for options that do not go with the scene

@@ -75,14 +75,4 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
-void check_not_input(const std::filesystem::path& output, const std::vector<std::string>& inputs) {
-  std::error_code ignored;
-  for (const std::string& input : inputs)
-    if (std::filesystem::equivalent(output, input, ignored))
-      throw IoError(output.string(),
-                    fmt::format("is the input {} of this command; choose another name, which "
-                                "--force does not replace",
-                                input));
-}
-
 }  // namespace tofsmith::apps

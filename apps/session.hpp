@@ -13,6 +13,7 @@
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/people_text.hpp"
 #include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/io/output_directory.hpp"
 
 namespace tofsmith::apps {
 
@@ -71,10 +72,5 @@ std::string rate_text(double per_second);
 
 /// A table of text with a header, columns padded, numbers (all columns but the first) to the right.
 std::string text_table(const std::vector<std::vector<std::string>>& rows);
-
-/// Fails if an output is one of the files that the command reads: writing would destroy it.
-/// @param inputs  paths, or names that are no files
-/// @throws IoError naming the output
-void check_not_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
 }  // namespace tofsmith::apps

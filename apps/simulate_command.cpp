@@ -6,12 +6,12 @@
 
 #include "commands.hpp"
 #include "number_checks.hpp"
-#include "played_code.hpp"
 #include "returns_arguments.hpp"
 #include "scene_source.hpp"
 #include "shard_argument.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
+#include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/raw_frames_file.hpp"
 #include "tofsmith/io/returns_file.hpp"
@@ -55,7 +55,7 @@ void simulate_set(const SimulateArguments& arguments, Session& session) {
                                           arguments.ambient_e_per_s, middle.ambient_e_per_s),
                    .capture = arguments.options,
                    .shard = parse_shard(arguments.shard)}},
-      load_played_code(arguments.code, camera, arguments.taps), camera, session);
+      load_played_code(arguments.code, camera, arguments.taps.file_options()), camera, session);
 }
 
 /// What only many scenes have.
@@ -85,7 +85,7 @@ void run(SimulateArguments& arguments, Session& session) {
   check_is_of_one_scene(arguments);
   arguments.scene.scene = arguments.scenes.front();
   const Camera camera = arguments.camera.load();
-  const CodeSet code = load_played_code(arguments.code, camera, arguments.taps);
+  const CodeSet code = load_played_code(arguments.code, camera, arguments.taps.file_options());
   check_outputs(arguments, session);
   const LoadedScene scene = load_scene(arguments.scene, camera);
   const SceneLight light = arguments.returns.load(scene, camera);
@@ -129,7 +129,7 @@ void run(SimulateArguments& arguments, Session& session) {
       arguments.options.seed));
   if (extent.beyond_range > 0) session.say(beyond_range_remark(extent));
   if (!(lens_setting(scene.view) ==
-        lens_setting(view_of(camera, scene.image.width(), scene.image.height()))))
+        lens_setting(view_of(camera.lens, scene.image.width(), scene.image.height()))))
     session.say(fmt::format("to decode it as points or z-depth, say how it was seen: --set '{}'",
                             lens_setting(scene.view)));
 }

@@ -10,12 +10,12 @@
 #include "interrupt.hpp"
 #include "number_checks.hpp"
 #include "one_of.hpp"
-#include "played_code.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/instrument/upload.hpp"
 #include "tofsmith/instrument/upload_selection.hpp"
+#include "tofsmith/io/decoding_table_file.hpp"
 
 namespace tofsmith::apps {
 

@@ -2,16 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <array>
 #include <map>
 
 #include "bindings.hpp"
 #include "multipath_options.hpp"
 #include "options.hpp"
+#include "output_policy.hpp"
 #include "progress.hpp"
 #include "raw_array.hpp"
 #include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/decode/measured_table.hpp"
 #include "tofsmith/decode/pixel_maps.hpp"
+#include "tofsmith/io/decode_recording.hpp"
+#include "tofsmith/io/decoding_table_file.hpp"
 
 namespace tofsmith::python {
 
@@ -106,6 +110,71 @@ void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_p
   });
 }
 
+DecodeRequest request_of(const std::string& raw, const std::string& output, const py::object& lens,
+                         const py::dict& values) {
+  DecodeRequest request;
+  std::string raw_format, offset_map, gain_map;
+  std::vector<std::string> outputs;
+  bool overwrite = false;
+  OptionReader reader(values, "");
+  reader.word("layout", request.layout, parse_raw_layout)
+      .word("kind", request.kind, parse_depth_kind)
+      .value("raw_format", raw_format)
+      .value("outputs", outputs)
+      .value("frame", request.frame)
+      .value("stack", request.stack)
+      .value("offset_map", offset_map)
+      .value("gain_map", gain_map)
+      .value("memory_mb", request.memory_mb)
+      .value("other_inputs", request.other_inputs)
+      .value("overwrite", overwrite);
+  reader.finish();
+  request.raw = raw;
+  request.output = output;
+  request.raw_format = raw_format;
+  request.offset_map = offset_map;
+  request.gain_map = gain_map;
+  request.policy = policy_of(overwrite);
+  for (const std::string& plane : outputs) request.outputs.push_back(parse_decoded_plane(plane));
+  if (!lens.is_none()) {
+    const auto [fx_px, fy_px, cx_px, cy_px] = py::cast<std::array<double, 4>>(lens);
+    request.lens = Lens{.fx_px = fx_px, .fy_px = fy_px, .cx_px = cx_px, .cy_px = cy_px};
+  }
+  return request;
+}
+
+std::map<std::string, std::int64_t> counts_of(const StatusCounts& statuses) {
+  std::map<std::string, std::int64_t> counts;
+  for (const PixelStatus status : all_pixel_statuses)
+    counts.emplace(name_of(status), statuses.of(status));
+  return counts;
+}
+
+py::dict decode_a_recording(const BoundDecoder& decoder, const std::string& raw,
+                            const std::string& output, const py::object& lens,
+                            const py::dict& values, const py::object& callback) {
+  const DecodeRequest request = request_of(raw, output, lens, values);
+  const DecodedRecording result = without_gil(callback, [&](const Progress& progress) {
+    return decode_recording(request, decoder.any, progress);
+  });
+  std::vector<std::string> files, outputs;
+  for (const std::filesystem::path& file : result.files) files.push_back(file.string());
+  for (const DecodedPlane plane : result.outputs) outputs.emplace_back(name_of(plane));
+  py::list frames;
+  for (const StatusCounts& frame : result.frames) frames.append(counts_of(frame));
+  py::dict dict;
+  dict["height"] = result.height;
+  dict["width"] = result.width;
+  dict["measurements"] = result.measurements;
+  dict["first_frame"] = result.first_frame;
+  dict["outputs"] = outputs;
+  dict["files"] = files;
+  dict["frames"] = frames;
+  dict["seconds"] = result.seconds;
+  dict["notes"] = result.notes;
+  return dict;
+}
+
 py::array_t<double> decode_depth_bins(const BoundDecoder& decoder, const Floats& measurements) {
   const int needed = table_of(decoder).measurements();
   if (measurements.ndim() != 2 || measurements.shape(1) != needed)
@@ -136,7 +205,26 @@ DecodingTable measured_table(const Doubles& correlation, const Camera& camera,
   return make_decoding_table(measured, camera);
 }
 
+py::tuple load_table(const std::string& code, const Camera& camera, const py::dict& values) {
+  DecodingTableOptions options;
+  std::string tap_order, ambient, axes;
+  OptionReader reader(values, "");
+  reader.value("taps", options.file.taps)
+      .value("tap_order", tap_order)
+      .value("range_m", options.range_m)
+      .value("ambient", ambient)
+      .value("axes", axes)
+      .value("keep_end_point", options.keep_end_point);
+  reader.finish();
+  if (!tap_order.empty()) options.file.tap_order = parse_tap_order(tap_order);
+  if (!ambient.empty()) options.ambient = parse_measured_ambient(ambient);
+  if (!axes.empty()) options.axes = parse_table_axes(axes);
+  LoadedDecodingTable loaded = load_decoding_table(code, camera, options);
+  return py::make_tuple(std::move(loaded.table), loaded.name, loaded.notes);
+}
+
 void bind_table(py::module_& module) {
+  module.def("load_decoding_table", &load_table);
   py::class_<DecodingTable>(module, "DecodingTable")
       .def_static("of_code",
                   [](const CodeSet& code, const Camera& camera) {
@@ -180,10 +268,16 @@ void bind_decode(py::module_& module) {
       .def(py::init(&decoder_of))
       .def("table", [](const BoundDecoder& decoder) { return table_of(decoder); })
       .def("decode", &decode)
+      .def("decode_recording", &decode_a_recording)
       .def("decode_depth_bins", &decode_depth_bins);
   module.def("decode_methods", [] {
     std::vector<std::string> names;
     for (const DecodeMethod method : all_decode_methods) names.emplace_back(name_of(method));
+    return names;
+  });
+  module.def("decoded_planes", [] {
+    std::vector<std::string> names;
+    for (const DecodedPlane plane : all_decoded_planes) names.emplace_back(name_of(plane));
     return names;
   });
   module.def("pixel_statuses", [] {

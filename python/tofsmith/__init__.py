@@ -44,7 +44,7 @@ from ._correlation_calibration import (
     calibrate_correlation,
     read_delay_sweep,
 )
-from ._decode import Decoder, decode
+from ._decode import DecodedRecording, Decoder, decode
 from ._decoding_table import DecodingTable
 from ._depth_image import DepthImage, PixelStatus, ReturnStatus
 from ._design import (
@@ -166,6 +166,7 @@ __all__ = [
     "CodeSet",
     "CramerRaoBound",
     "DeadPixels",
+    "DecodedRecording",
     "Decoder",
     "DecodingTable",
     "DelaySweep",

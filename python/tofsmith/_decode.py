@@ -4,15 +4,18 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path as FilePath
 from typing import Any, Optional
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _check, _tofsmith
-from ._camera import CameraLike
-from ._check import FloatArray, Progress
+from ._camera import CameraLike, camera_of
+from ._check import FloatArray, Path, Progress
 from ._code import CodeLike
 from ._decoding_table import DecodingTable
 from ._depth_image import (
@@ -25,14 +28,49 @@ from ._depth_image import (
 )
 
 
+@dataclass(frozen=True)
+class DecodedRecording:
+    """What became of a recording.
+
+    Attributes
+    ----------
+    files : list of pathlib.Path
+        Of every frame; of a stack, of every plane.
+    outputs : list of str
+        The planes written.
+    frames : list of dict
+        How many pixels of every frame have which PixelStatus, by its name; all 0 where `outputs`
+        were asked for without status.
+    first_frame : int
+        Number of the first of them in the recording.
+    height, width, measurements : int
+        Of every frame.
+    seconds : float
+        That decoding took [s].
+    notes : list of str
+        What should be known: raw numbers taken as electrons, no pixel that has a depth.
+    """
+
+    files: list[FilePath]
+    outputs: list[str]
+    frames: list[dict[str, int]]
+    first_frame: int
+    height: int
+    width: int
+    measurements: int
+    seconds: float
+    notes: list[str]
+
+
 class Decoder:
     """Depth from raw measurements. Immutable, safe to use from many threads at once.
 
     Parameters
     ----------
     code : CodeSet, DecodingTable, name of a family or file
-        A DecodingTable is used as it is, without a camera.
+        A DecodingTable is used as it is. A file as DecodingTable.load() takes it.
     camera : Camera or its name
+        Needed unless `code` is a DecodingTable, for which it only says the lens.
     method : {"zncc", "ml", "unwrap", "two-return", "tail"}
         zncc for any code; ml by maximum likelihood, slower; unwrap for sinusoids of one or more
         frequencies; two-return and tail where light comes back twice or trails off, for codes of
@@ -74,8 +112,13 @@ class Decoder:
             table = code
         elif camera is None:
             raise TypeError("camera: got None; needs a tofsmith.Camera or its name")
+        elif isinstance(code, (str, os.PathLike)):
+            table = DecodingTable.load(code, camera)
         else:
             table = DecodingTable.of_code(code, camera)
+        lens = None if camera is None else camera_of(camera).lens
+        self._lens = None if lens is None else (lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px)
+        self._inputs = table._inputs
         self._method = _check.one_of(method, "method", tuple(_tofsmith.decode_methods()))
         options = {
             "method": method,
@@ -152,6 +195,100 @@ class Decoder:
         ]
         self._handle.decode(array, is_planar, image.planes(), maps[0], maps[1], callback)
         return image
+
+    def decode_recording(
+        self,
+        raw: Path,
+        output: Path,
+        *,
+        layout: str = "interleaved",
+        raw_format: Optional[Path] = None,
+        outputs: Optional[Iterable[str]] = None,
+        kind: str = "radial",
+        frame: Optional[int] = None,
+        stack: bool = False,
+        offset_map: Optional[Path] = None,
+        gain_map: Optional[Path] = None,
+        memory_mb: float = 256.0,
+        overwrite: bool = False,
+        progress: Progress = None,
+    ) -> DecodedRecording:
+        """Decodes a recording of any length into files, in memory that does not grow with it, as
+        `tofsmith decode` does.
+
+        Parameters
+        ----------
+        raw : str or path
+            .npy or .npz, (H, W, K) or (F, H, W, K), or a dump that `raw_format` describes.
+        output : str or path
+            .npy .pfm .png (16 bits, mm): depth alone; .npz: an array of each plane; .exr: a channel
+            of each; .ply: points with planes as scalars. Files of several frames get numbers:
+            name-03.npz.
+        layout : {"interleaved", "planar"}
+            Of .npy and .npz; never guessed.
+        raw_format : str or path, optional
+            A .raw.toml file; see docs/raw_formats.md.
+        outputs : iterable of str, optional
+            Planes to write, others are not computed: depth, signal, ambient, confidence, deviation,
+            status, bin; of two-return and tail also delay, ratio, returns. None: as many of the
+            usual ones as `output` holds.
+        kind : {"radial", "z"}
+            Distance along the ray, or along the optical axis of the camera's lens (without one: of
+            a view 60 degrees wide); .ply holds points either way.
+        frame : int, optional
+            This frame alone, counted from 0.
+        stack : bool
+            All frames in one .npy, (F, H, W); planes but depth in files of their own,
+            name-PLANE.npy.
+        offset_map, gain_map : str or path, optional
+            Files of what Decoder.decode() takes as `delay_offset_m` and `gain`.
+        memory_mb : float
+            For frames under way [MB]; larger frames go in bands of rows.
+        overwrite : bool
+            Replace files that are there; never an input.
+        progress : callable, optional
+            Called with (fraction, step); False stops.
+
+        Returns
+        -------
+        DecodedRecording
+
+        Raises
+        ------
+        ValueError
+            For a request that cannot be, naming the argument, before anything is written.
+        OSError
+            If a file cannot be read or written, exists, or a frame needs more than `memory_mb`.
+        Interrupted
+            If `progress` says so; frames that are finished keep their files.
+
+        Notes
+        -----
+        The same bytes for any number of threads and any memory.
+        """
+        def name(path: Optional[Path], what: str) -> Optional[str]:
+            return None if path is None else _check.path(path, what)
+
+        planes = tuple(_tofsmith.decoded_planes())
+        options = {
+            "layout": layout,
+            "raw_format": name(raw_format, "raw_format"),
+            "outputs": [] if outputs is None else [
+                _check.one_of(plane, "outputs", planes) for plane in outputs],
+            "kind": kind,
+            "frame": None if frame is None else _check.whole(frame, "frame", 0),
+            "stack": bool(stack),
+            "offset_map": name(offset_map, "offset_map"),
+            "gain_map": name(gain_map, "gain_map"),
+            "memory_mb": _check.number(memory_mb, "memory_mb"),
+            "overwrite": bool(overwrite),
+            "other_inputs": self._inputs,
+        }
+        values = self._handle.decode_recording(
+            _check.path(raw, "raw"), _check.path(output, "output"), self._lens, options,
+            _check.progress(progress))
+        values["files"] = [FilePath(file) for file in values["files"]]
+        return DecodedRecording(**values)
 
     def decode_depth_bins(self, measurements: npt.ArrayLike) -> FloatArray:
         """Positions in [0, N) [bins], refined between bins, of many pixels: (.., K) to (..); one

@@ -4,13 +4,14 @@
 
 from __future__ import annotations
 
+import os
 from typing import Optional
 
 import numpy.typing as npt
 
 from . import _check, _tofsmith
 from ._camera import CameraLike, camera_of
-from ._check import FloatArray
+from ._check import FloatArray, Path
 from ._code import CodeLike, code_of
 
 
@@ -19,10 +20,13 @@ class DecodingTable:
 
     See Also
     --------
-    DecodingTable.of_code, DecodingTable.of_measured
+    DecodingTable.load, DecodingTable.of_code, DecodingTable.of_measured
     """
 
     _handle: _tofsmith.DecodingTable
+    _notes: list[str] = []
+    #: Files it was read from, which no output may replace.
+    _inputs: list[str] = []
 
     def __init__(self) -> None:
         raise TypeError(
@@ -34,6 +38,70 @@ class DecodingTable:
     def _of(cls, handle: _tofsmith.DecodingTable) -> DecodingTable:
         table = cls.__new__(cls)
         table._handle = handle
+        return table
+
+    @classmethod
+    def load(
+        cls,
+        code: Path,
+        camera: CameraLike,
+        *,
+        range_m: Optional[float] = None,
+        ambient: Optional[str] = None,
+        axes: Optional[str] = None,
+        keep_end_point: bool = False,
+        taps: Optional[int] = None,
+        tap_order: Optional[str] = None,
+    ) -> DecodingTable:
+        """The table of a family, of a code's file, or of a file of measured correlation functions,
+        as `tofsmith decode --code` takes them.
+
+        Parameters
+        ----------
+        code : str or path
+            Name of a family, or a file: .json .npz of a code; .npz .npy .csv of a measured table.
+        camera : Camera or its name
+        range_m : float, optional
+            Depth of a measured table [m]; None: the camera's.
+        ambient : {"equal", "mean", "none"}, optional
+            What constant light adds to the columns of a measured table; None: what the file says,
+            or the same to all.
+        axes : {"nk", "kn"}, optional
+            Of a measured table: samples by measurements, or the other way.
+        keep_end_point : bool
+            Keep a measured table's last sample though it equals the first.
+        taps : int, optional
+            Of an .npz file; None: the camera's.
+        tap_order : {"blocked", "interleaved"}, optional
+            How the columns of an .npz file run; never guessed.
+
+        Returns
+        -------
+        DecodingTable
+            With what should be known of it in `notes`.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be read, or its table tells no depths apart.
+        ValueError
+            If a code is given what only measured tables need.
+        """
+        options = {
+            "range_m": range_m,
+            "ambient": ambient,
+            "axes": axes,
+            "keep_end_point": bool(keep_end_point),
+            "taps": taps,
+            "tap_order": tap_order,
+        }
+        name = _check.path(code, "code")
+        handle, _, notes = _tofsmith.load_decoding_table(name, camera_of(camera)._handle, options)
+        table = cls._of(handle)
+        table._notes = notes
+        table._inputs = [name]
+        if isinstance(camera, (str, os.PathLike)):
+            table._inputs.append(os.fspath(camera))
         return table
 
     @classmethod
@@ -90,6 +158,12 @@ class DecodingTable:
         if range_m is not None:
             made = made.with_range(_check.number(range_m, "range_m"))
         return cls._of(made)
+
+    @property
+    def notes(self) -> list[str]:
+        """What should be known of it, where it was loaded: depths that look the same, a last sample
+        that was dropped, ambient light that was taken to be equal."""
+        return list(self._notes)
 
     @property
     def correlation(self) -> FloatArray:

@@ -19,4 +19,14 @@ void make_output_directory(const std::filesystem::path& directory) {
     throw IoError(directory.string(), "is a file; expected a directory");
 }
 
+void check_not_input(const std::filesystem::path& output, const std::vector<std::string>& inputs) {
+  std::error_code ignored;
+  for (const std::string& input : inputs)
+    if (std::filesystem::equivalent(output, input, ignored))
+      throw IoError(output.string(),
+                    fmt::format("is the input {} of this command; choose another name, which "
+                                "--force does not replace",
+                                input));
+}
+
 }  // namespace tofsmith

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -18,6 +19,11 @@ double share(std::int64_t part, std::int64_t whole) {
 }
 
 }  // namespace
+
+PinholeView view_of(const std::optional<Lens>& lens, int width, int height) {
+  if (!lens) return PinholeView::centred(width, height, std::numbers::pi / 3);
+  return {lens->fx_px, lens->fy_px, lens->cx_px, lens->cy_px, width, height};
+}
 
 double SceneExtent::no_return_share() const { return share(pixels - returns, pixels); }
 double SceneExtent::beyond_range_share() const { return share(beyond_range, returns); }

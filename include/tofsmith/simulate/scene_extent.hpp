@@ -3,12 +3,17 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/array.hpp"
+#include "tofsmith/scene/pinhole.hpp"
 #include "tofsmith/scene/scene_image.hpp"
 
 namespace tofsmith {
+
+/// How an image of this size is seen: through the lens, or 60 degrees wide without one.
+PinholeView view_of(const std::optional<Lens>& lens, int width, int height);
 
 /// How far away the parts of a scene are, for a camera.
 struct SceneExtent {

@@ -5,36 +5,28 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "tofsmith/core/array.hpp"
 #include "tofsmith/decode/decoded_view.hpp"
+#include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/scene/pinhole.hpp"
 
-namespace tofsmith::apps {
+namespace tofsmith {
 
-/// Names of the planes that are written unless others are asked for: depth, signal, ambient,
-/// confidence, deviation, status; of decoders of several returns also delay, ratio, returns.
-std::vector<std::string> plane_names(bool multipath = false);
 /// Whether only decoders of several returns fill the plane.
-bool is_multipath_plane(std::string_view name);
-/// All of these and bin: of zncc the one that scores best, of others the nearest.
-std::vector<std::string> all_plane_names();
-
+bool is_multipath_plane(DecodedPlane plane);
 /// Type of the items of a plane: status and returns uint8, bin int32, others float32.
-NpyType type_of_plane(std::string_view name);
+NpyType type_of_plane(DecodedPlane plane);
 /// What one pixel takes in these planes together [bytes].
-std::size_t bytes_per_pixel(const std::vector<std::string>& names);
+std::size_t bytes_per_pixel(const std::vector<DecodedPlane>& planes);
 
 /// Planes of a frame, or of some of its rows; those that nobody asked for are empty.
 class DecodedPlanes {
  public:
-  /// @param names  of all_plane_names()
-  DecodedPlanes(const std::vector<std::string>& names, int height, int width);
-  /// All planes of an image; no bins.
+  DecodedPlanes(const std::vector<DecodedPlane>& planes, int height, int width);
+  /// All planes of an image; no bins and nothing of later returns.
   explicit DecodedPlanes(DepthImage image);
 
   int height() const { return height_; }
@@ -43,16 +35,16 @@ class DecodedPlanes {
   DecodedView view();
 
   const Image<float>& depth_m() const { return image_.depth_m; }
+  bool has(DecodedPlane plane) const;
   /// A plane as floats: codes of status, numbers of bins.
-  Image<float> floats(std::string_view name) const;
+  Image<float> floats(DecodedPlane plane) const;
   /// The first rows of a plane as they are.
-  std::span<const std::byte> items(std::string_view name, int rows) const;
+  std::span<const std::byte> items(DecodedPlane plane, int rows) const;
 
  private:
-  Image<float>* float_plane(std::string_view name);
-  const Image<float>* float_plane(std::string_view name) const {
-    return const_cast<DecodedPlanes*>(this)->float_plane(name);
-  }
+  /// Calls `use` with the image of a plane, of whatever type.
+  template <typename Planes, typename Use>
+  static auto with(Planes& planes, DecodedPlane plane, const Use& use);
 
   int height_, width_;
   DepthImage image_;
@@ -66,4 +58,4 @@ class DecodedPlanes {
 /// @param first_row  of the view
 void turn_into_z(float* depth_m, int first_row, int rows, const PinholeView& view);
 
-}  // namespace tofsmith::apps
+}  // namespace tofsmith

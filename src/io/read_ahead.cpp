@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "read_ahead.hpp"
+#include "io/read_ahead.hpp"
 
 #include <algorithm>
 #include <utility>
 
-namespace tofsmith::apps {
+namespace tofsmith {
 
 std::vector<Band> bands_of(int first, int last, int height, int rows) {
   std::vector<Band> bands;
@@ -36,4 +36,4 @@ RawView ReadAhead::next() {
   return view;
 }
 
-}  // namespace tofsmith::apps
+}  // namespace tofsmith

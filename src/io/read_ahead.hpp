@@ -9,7 +9,7 @@
 
 #include "tofsmith/io/raw_frames_reader.hpp"
 
-namespace tofsmith::apps {
+namespace tofsmith {
 
 /// Rows first_row .. first_row + rows - 1 of a frame.
 struct Band {
@@ -45,4 +45,4 @@ class ReadAhead {
   std::future<RawView> coming_;  // last: its end waits for the buffer's last use
 };
 
-}  // namespace tofsmith::apps
+}  // namespace tofsmith

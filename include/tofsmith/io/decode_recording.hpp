@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/progress.hpp"
+#include "tofsmith/decode/decode_method.hpp"
+#include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/io/raw_frames_reader.hpp"
+#include "tofsmith/scene/pinhole.hpp"
+
+namespace tofsmith {
+
+/// What decoders say of every pixel of a frame, as the planes of DecodedView.
+enum class DecodedPlane {
+  depth,       ///< [m], float
+  signal,      ///< [e/s], float
+  ambient,     ///< [e/s], float
+  confidence,  ///< in [0, 1], float
+  deviation,   ///< predicted standard deviation of depth [m], float
+  status,      ///< PixelStatus, uint8
+  delay,       ///< of a second return [m], float
+  ratio,       ///< of a second return, float
+  returns,     ///< ReturnStatus, uint8
+  bin,         ///< of zncc the one that scores best, of others the nearest; int32
+};
+
+inline constexpr std::array all_decoded_planes = {
+    DecodedPlane::depth,     DecodedPlane::signal, DecodedPlane::ambient, DecodedPlane::confidence,
+    DecodedPlane::deviation, DecodedPlane::status, DecodedPlane::delay,   DecodedPlane::ratio,
+    DecodedPlane::returns,   DecodedPlane::bin};
+
+/// "depth", "signal", ..: the word of the enumerator, which arrays of .npz files have too.
+std::string_view name_of(DecodedPlane plane);
+/// @throws std::invalid_argument for any other word
+DecodedPlane parse_decoded_plane(std::string_view name);
+/// The planes that are written unless others are asked for: depth to status; of decoders of several
+/// returns also delay, ratio and returns.
+std::vector<DecodedPlane> usual_planes(bool multipath = false);
+
+/// Which distance is written as depth.
+enum class DepthKind {
+  radial,  ///< along the ray, as the camera measures it
+  z,       ///< along the optical axis
+};
+
+/// "radial", "z".
+std::string_view name_of(DepthKind kind);
+/// @throws std::invalid_argument for any other word
+DepthKind parse_depth_kind(std::string_view name);
+
+/// A recording to be decoded into files.
+struct DecodeRequest {
+  std::filesystem::path raw;  ///< .npy or .npz, (H, W, K) or (F, H, W, K), of any size
+  RawLayout layout = RawLayout::interleaved;  ///< of .npy and .npz; never guessed
+  std::filesystem::path raw_format;  ///< describes a sensor's dump (*.raw.toml); empty: no dump
+
+  /// .npy .pfm .png (16 bits, mm): depth alone; .npz: an array of each plane; .exr: a channel of
+  /// each; .ply: points with planes as scalars. Files of several frames get numbers: name-03.npz.
+  std::filesystem::path output;
+  std::vector<DecodedPlane> outputs;   ///< others are not computed; empty: what `output` holds
+  DepthKind kind = DepthKind::radial;  ///< .ply holds points either way
+  std::optional<Lens> lens;            ///< of points and z; none: a view 60 degrees wide
+  std::optional<int> frame;            ///< this one alone, counted from 0; none: all
+  bool stack = false;                  ///< all frames in one .npy a plane, name-PLANE.npy
+  std::filesystem::path offset_map;    ///< [m], as PixelMaps::delay_offset_m; empty: none
+  std::filesystem::path gain_map;      ///< as PixelMaps::gain; empty: none
+  double memory_mb = 256.0;            ///< for frames under way [MB], > 0
+  OutputPolicy policy = OutputPolicy::refuse_existing;
+  std::vector<std::string> other_inputs;  ///< files that were read too: no output replaces them
+};
+
+/// How many pixels have which status.
+class StatusCounts {
+ public:
+  void add(std::span<const PixelStatus> statuses);
+  void add(const StatusCounts& other);
+  std::int64_t of(PixelStatus status) const { return counts_[static_cast<std::size_t>(status)]; }
+  std::int64_t pixels() const;
+
+ private:
+  std::array<std::int64_t, all_pixel_statuses.size()> counts_{};
+};
+
+/// What came of a recording.
+struct DecodedRecording {
+  int height = 0;
+  int width = 0;
+  int measurements = 0;
+  int first_frame = 0;                       ///< that was asked for
+  int frame_count = 0;                       ///< that were asked for; 0 before the work begins
+  std::vector<DecodedPlane> outputs;         ///< the planes written
+  std::vector<std::filesystem::path> files;  ///< of every finished frame; of a stack: of outputs
+  std::vector<StatusCounts>
+      frames;               ///< of every finished frame; no counts if nobody asked for them
+  std::int64_t pixels = 0;  ///< decoded, over all frames
+  double seconds = 0.0;
+  std::vector<std::string> notes;  ///< what the user should know
+
+  double frames_per_s() const { return static_cast<double>(frames.size()) / seconds; }
+  double megapixels_per_s() const { return 1e-6 * static_cast<double>(pixels) / seconds; }
+  StatusCounts total() const;
+};
+
+/// Decodes a recording of any length in memory that does not grow with it, in bands of rows, the
+/// next of which is read meanwhile. Each file appears whole or not at all.
+/// @param decoder  of make_decoder(); its table says what raw numbers are
+/// @throws std::invalid_argument "field = value; rule" for a request that cannot be, before any
+///         file is written
+/// @throws IoError as RawFramesReader, for maps that do not fit, outputs that exist, are inputs or
+///         cannot hold the range, and frames that need more than `memory_mb`
+/// @throws Interrupted if progress says so; frames that are finished keep their files
+/// @note the same bits for any number of threads and any memory
+DecodedRecording decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
+                                  const Progress& progress = {});
+/// The same, and tells how far it came when it throws.
+/// @param result  filled frame by frame
+void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
+                      const Progress& progress, DecodedRecording& result);
+
+/// Writes what a decoder gave of a frame, by extension as DecodeRequest::output.
+/// @param planes  of depth, signal, ambient, confidence, deviation, status; not of .npy .pfm .png
+/// @param view    of points (.ply)
+/// @throws std::invalid_argument for a plane that is not there; IoError for an unknown extension,
+///         or as AtomicFile
+void write_decoded(const std::filesystem::path& path, const DepthImage& image,
+                   const std::vector<DecodedPlane>& planes, const PinholeView& view,
+                   OutputPolicy policy);
+
+}  // namespace tofsmith

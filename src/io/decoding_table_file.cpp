@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/decoding_table_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Ambient light that is taken to be equal, though the columns look as if duties were not.
+std::optional<std::string> duty_note(const std::string& path, const MeasuredTable& measured) {
+  constexpr double usual_spread = 0.02;
+  const Eigen::VectorXd mean = ambient_gain_of(measured.correlation, MeasuredAmbient::mean);
+  const double spread = mean.maxCoeff() - mean.minCoeff();
+  if (spread <= usual_spread * measured.correlation.cwiseAbs().maxCoeff()) return std::nullopt;
+  return fmt::format(
+      "{}: ambient light was taken to add the same to every measurement, but the "
+      "means of the columns differ; --ambient mean or none, or an array 'ambient', "
+      "says otherwise (or a dark offset was not subtracted: an array 'offset_dn' says "
+      "what raw numbers are without light)",
+      path);
+}
+
+/// What only a measured table takes was given to a code.
+void refuse_table_options(const std::string& code, const DecodingTableOptions& options) {
+  const char* const field = options.range_m          ? "range_m"
+                            : options.ambient        ? "ambient"
+                            : options.axes           ? "axes"
+                            : options.keep_end_point ? "keep_end_point"
+                                                     : nullptr;
+  if (field)
+    throw std::invalid_argument(fmt::format(
+        "{}: goes with a measured table; {} is a code, which the camera says all of", field, code));
+}
+
+LoadedDecodingTable load_measured(const std::string& path, const Camera& camera,
+                                  const DecodingTableOptions& options) {
+  auto [measured, notes] = read_measured_table(
+      path, {.layout = {options.file.taps.value_or(camera.sensor.taps), options.file.tap_order},
+             .axes = options.axes,
+             .keep_end_point = options.keep_end_point});
+  if (options.ambient)
+    measured.ambient_gain = ambient_gain_of(measured.correlation, *options.ambient);
+  else if (measured.ambient_gain.size() == 0 && camera.sensor.readout == Readout::separate)
+    if (const auto note = duty_note(path, measured)) notes.push_back(*note);
+  try {
+    LoadedDecodingTable loaded{.name = std::filesystem::path(path).stem().string(),
+                               .table = make_decoding_table(measured, camera),
+                               .is_measured = true,
+                               .notes = std::move(notes)};
+    if (options.range_m) loaded.table.range_m = *options.range_m;
+    loaded.table.validate();
+    return loaded;
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path, error.what());
+  }
+}
+
+}  // namespace
+
+std::optional<std::string> ambiguity_note(const DecodingTable& table) {
+  constexpr std::size_t most_shown = 3;
+  std::vector<AmbiguousDepths> pairs = ambiguous_depths(table);
+  if (pairs.empty()) return std::nullopt;
+  const auto distance_bin = [&](const AmbiguousDepths& pair) {
+    return std::abs(circular_difference(pair.first_bin, pair.second_bin, table.samples()));
+  };
+  std::ranges::stable_sort(pairs, std::ranges::greater(), distance_bin);
+  std::vector<std::string> shown;
+  for (std::size_t i = 0; i < std::min(pairs.size(), most_shown); ++i)
+    shown.push_back(fmt::format("{:.4g} m as {:.4g} m", pairs[i].second_m, pairs[i].first_m));
+  return fmt::format("{} of {} bins look like a nearer one and decode to it: {}{}", pairs.size(),
+                     table.samples(), fmt::join(shown, ", "),
+                     pairs.size() > most_shown ? ", .." : "");
+}
+
+bool names_measured_table(const std::string& code) {
+  std::error_code ignored;
+  return !is_family(code) && std::filesystem::is_regular_file(code, ignored) &&
+         is_measured_table(code);
+}
+
+void require_no_measured_table(const std::string& code) {
+  if (names_measured_table(code))
+    throw IoError(code,
+                  "this is a measured table (corrfs only), and only decode takes those; expected "
+                  "one of .json, .npz with modfs and demodfs");
+}
+
+CodeSet load_played_code(const std::string& code, const Camera& camera,
+                         const CodeFileOptions& options) {
+  require_no_measured_table(code);
+  CodeSet played = load_code(code, camera, options);
+  if (played.samples() != camera.samples)
+    throw IoError(code, fmt::format("found {} samples per period; expected {} as of the camera "
+                                    "(--set samples={} makes it fit)",
+                                    played.samples(), camera.samples, played.samples()));
+  return played;
+}
+
+LoadedDecodingTable load_decoding_table(const std::string& code, const Camera& camera,
+                                        const DecodingTableOptions& options) {
+  LoadedDecodingTable loaded;
+  if (names_measured_table(code)) {
+    loaded = load_measured(code, camera, options);
+  } else {
+    const CodeSet played = load_played_code(code, camera, options.file);
+    refuse_table_options(code, options);
+    loaded.name = played.name();
+    loaded.table = make_decoding_table(ForwardModel(played, camera), camera);
+  }
+  if (const auto note = ambiguity_note(loaded.table)) loaded.notes.push_back(*note);
+  return loaded;
+}
+
+}  // namespace tofsmith

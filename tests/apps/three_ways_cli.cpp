@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// The requests of tests/python/test_three_ways.py as a user of the C++ library writes them. Files
+// go to the directory that it runs in: three_ways_cli REQUEST
+#include <fmt/format.h>
+
+#include <exception>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "tofsmith/io/camera_toml.hpp"
+#include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/decode_recording.hpp"
+#include "tofsmith/io/decoding_table_file.hpp"
+#include "tofsmith/io/design_directory.hpp"
+#include "tofsmith/io/output_directory.hpp"
+#include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/io/result_document.hpp"
+#include "tofsmith/io/waveform_export.hpp"
+#include "tofsmith/scene/built_in_scenes.hpp"
+#include "tofsmith/scene/ray_cast.hpp"
+#include "tofsmith/simulate/capture.hpp"
+
+using namespace tofsmith;
+
+namespace {
+
+constexpr OutputPolicy policy = OutputPolicy::overwrite;
+
+Camera camera_with(const char* name, const std::string& setting) {
+  return load_camera(name, {&setting, 1});
+}
+
+Camera small_camera() { return camera_with("paper-10f0", "samples=120"); }
+
+void codes() {
+  const Camera camera = small_camera();
+  write_code("code.json", load_code("hamiltonian-k4", camera), policy);
+  write_code("code.npz", load_code("hamiltonian-k4", camera), policy);
+}
+
+void simulate() {
+  const Camera camera = small_camera();
+  const StagedScene scene = built_in_scene("table-top", 40, 30);
+  const SceneImage image = ray_cast(scene.shapes, scene.view, scene.camera_to_world);
+  const CodeSet code = load_code("hamiltonian-k4", camera);
+  write_raw_frames("raw.npy",
+                   capture(image, code, camera,
+                           {.signal_e_per_s = 1e6, .ambient_e_per_s = 1e4, .seed = 5, .frames = 3}),
+                   policy);
+}
+
+AnyDecoder decoder_of(DecodeMethod method, const std::string& code) {
+  return make_decoder(method, load_decoding_table(code, small_camera()).table);
+}
+
+void decode() {
+  const AnyDecoder decoder = decoder_of(DecodeMethod::zncc, "hamiltonian-k4");
+  for (const char* output : {"d.npy", "d.npz", "d.exr", "d.pfm", "d.png", "d.ply"})
+    decode_recording({.raw = "raw.npy", .output = output, .policy = policy}, decoder);
+  decode_recording({.raw = "raw.npy",
+                    .output = "z.npz",
+                    .outputs = {DecodedPlane::bin, DecodedPlane::depth, DecodedPlane::deviation},
+                    .kind = DepthKind::z,
+                    .frame = 1,
+                    .policy = policy},
+                   decoder);
+  decode_recording({.raw = "raw.npy",
+                    .output = "stack.npy",
+                    .outputs = {DecodedPlane::depth, DecodedPlane::status},
+                    .stack = true,
+                    .offset_map = "offset.npy",
+                    .gain_map = "gain.npy",
+                    .memory_mb = 0.05,
+                    .policy = policy},
+                   decoder_of(DecodeMethod::ml, "hamiltonian-k4"));
+  decode_recording({.raw = "planar.npy",
+                    .layout = RawLayout::planar,
+                    .output = "measured.npy",
+                    .policy = policy},
+                   decoder_of(DecodeMethod::zncc, "table.npy"));
+  decode_recording(
+      {.raw = "dump.bin", .raw_format = "dump.raw.toml", .output = "dump.npz", .policy = policy},
+      decoder);
+}
+
+void evaluate_codes() {
+  const Camera camera = small_camera();
+  const EvaluateOptions options{.trials = 500, .seed = 3};
+  const EvaluatedCode evaluated{
+      evaluate(load_code("hamiltonian-k4", camera), camera, options), 0, {}, {}};
+  write_file_atomically("evaluation.json",
+                        evaluation_document(camera, {&evaluated, 1}, options) + "\n", policy);
+}
+
+void design_codes() {
+  const Camera camera = camera_with("exclusive-3tap-9chip", "sensor.shortest_pulse_s=15e-9");
+  DesignOptions options;
+  options.method = DesignMethod::search;
+  options.exposures = {2};
+  options.trials = 1000;
+  const DesignDirectory directory("design");
+  directory.write(camera, design(camera, options, {}, directory.store(camera, options)), options,
+                  policy);
+}
+
+void export_code() {
+  const Camera camera = small_camera();
+  const ExportOptions options{.format = "csv", .samples = 60};
+  const CodeSet code = load_code("square-k4", camera);
+  const Camera played = exporting_camera(code, camera, options);
+  const WaveformExport exported = export_waveforms(code, played, options);
+  const std::vector<ExportedFile> files = export_files(exported);
+  make_output_directory("export");
+  for (const ExportedFile& file : files)
+    write_file_atomically("export/" + file.name, file.bytes, policy);
+  write_file_atomically("export/manifest.json", export_manifest(exported, files), policy);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::map<std::string, std::function<void()>> requests = {
+      {"codes", codes},         {"simulate", simulate},
+      {"decode", decode},       {"evaluate", evaluate_codes},
+      {"design", design_codes}, {"export", export_code}};
+  try {
+    requests.at(argc == 2 ? argv[1] : "")();
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,206 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""The same request by command, in C++ (tests/apps/three_ways_cli.cpp) and in Python gives the same
+bytes."""
+
+import json
+import os
+import re
+import subprocess
+
+import numpy as np
+import pytest
+
+import tofsmith as ts
+
+SMALL = ("--set", "samples=120")
+
+
+@pytest.fixture(scope="module")
+def camera():
+    return ts.Camera("paper-10f0", samples=120)
+
+
+class Ways:
+    """Runs a request in a directory for each way, and compares what lies there afterwards."""
+
+    def __init__(self, cli, folder):
+        self.cli = cli
+        self.folders = {way: folder / way for way in ("command", "cpp", "python")}
+        for way in self.folders.values():
+            way.mkdir()
+
+    def give(self, name, content):
+        """A file that every way finds."""
+        for folder in self.folders.values():
+            if isinstance(content, np.ndarray):
+                np.save(folder / name, content)
+            else:
+                (folder / name).write_bytes(content)
+
+    def run(self, *command, way="command"):
+        done = subprocess.run(command, cwd=self.folders[way], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+
+    def command(self, *arguments):
+        self.run(self.cli, "--quiet", *arguments)
+
+    def cpp(self, request):
+        program = os.environ.get("TOFSMITH_THREE_WAYS")
+        if not program:
+            pytest.skip("TOFSMITH_THREE_WAYS does not name the program in C++")
+        self.run(program, request, way="cpp")
+
+    def files(self, way):
+        folder = self.folders[way]
+        return {str(path.relative_to(folder)): path.read_bytes()
+                for path in folder.rglob("*") if path.is_file()}
+
+    def same(self, *ignored, change=lambda content: content):
+        """Every file but the ignored ones; gives their names."""
+        found = {way: {name: change(content) for name, content in self.files(way).items()
+                       if name not in ignored} for way in self.folders}
+        for way in ("cpp", "python"):
+            assert sorted(found[way]) == sorted(found["command"]), way
+            for name, content in found[way].items():
+                assert content == found["command"][name], (way, name)
+        return sorted(found["command"])
+
+
+@pytest.fixture
+def ways(cli, tmp_path, monkeypatch):
+    made = Ways(cli, tmp_path)
+    monkeypatch.chdir(made.folders["python"])
+    return made
+
+
+def test_codes(ways, camera):
+    for name in ("code.json", "code.npz"):
+        ways.command("codes", "hamiltonian-k4", *SMALL, "-o", name)
+        ts.write_code(name, ts.load_code("hamiltonian-k4", camera))
+    ways.cpp("codes")
+    assert len(ways.same()) == 2
+
+
+def capture(camera):
+    return ts.capture(ts.built_in_scene("table-top", 40, 30), "hamiltonian-k4", camera,
+                      signal_e_per_s=1e6, ambient_e_per_s=1e4, seed=5, frames=3)
+
+
+def test_simulate(ways, camera):
+    ways.command("simulate", "table-top", "--width", "40", "--height", "30", "--code",
+                 "hamiltonian-k4", *SMALL, "--signal", "1e6", "--ambient", "1e4", "--seed", "5",
+                 "--frames", "3", "-o", "raw.npy")
+    ts.write_raw("raw.npy", capture(camera))
+    ways.cpp("simulate")
+    assert ways.same() == ["raw.npy"]
+
+
+def test_decode(ways, camera):
+    raw = capture(camera)
+    ways.give("raw.npy", raw)
+    counts = np.round(np.clip(raw, 0, 65535)).astype("<u2")
+    ways.give("planar.npy", np.moveaxis(raw, 3, 1).copy())
+    ways.give("dump.bin", b"head" + np.moveaxis(counts, 3, 1).tobytes())
+    ways.give("dump.raw.toml", b"width = 40\nheight = 30\nmeasurements = 4\nheader_bytes = 4\n"
+              b"bits = 16\n")
+    ways.give("table.npy", ts.ForwardModel("hamiltonian-k4", camera).correlation_table())
+    ways.give("offset.npy", np.full((30, 40), 0.125, np.float32))
+    ways.give("gain.npy", np.linspace(0.5, 2, 1200, dtype=np.float32).reshape(30, 40))
+    given = list(ways.files("python"))
+
+    def command(name, output, *more, code="hamiltonian-k4"):
+        ways.command("decode", name, "--code", code, *SMALL, "-o", output, *more)
+
+    decoder = ts.Decoder("hamiltonian-k4", camera)
+    for output in ("d.npy", "d.npz", "d.exr", "d.pfm", "d.png", "d.ply"):
+        command("raw.npy", output)
+        result = decoder.decode_recording("raw.npy", output)
+        assert [str(file) for file in result.files] == [
+            output.replace(".", f"-{frame}.") for frame in range(3)]
+
+    command("raw.npy", "z.npz", "--outputs", "bin,depth,deviation", "--kind", "z", "--frame", "1")
+    result = decoder.decode_recording("raw.npy", "z.npz", outputs=["bin", "depth", "deviation"],
+                                      kind="z", frame=1)
+    assert (result.first_frame, result.outputs) == (1, ["bin", "depth", "deviation"])
+
+    command("raw.npy", "stack.npy", "--method", "ml", "--outputs", "depth,status", "--stack",
+            "--offset-map", "offset.npy", "--gain-map", "gain.npy", "--memory-mb", "0.05")
+    result = ts.Decoder("hamiltonian-k4", camera, method="ml").decode_recording(
+        "raw.npy", "stack.npy", outputs=["depth", "status"], stack=True, offset_map="offset.npy",
+        gain_map="gain.npy", memory_mb=0.05)
+    assert [file.name for file in result.files] == ["stack.npy", "stack-status.npy"]
+    status = np.load("stack-status.npy")
+    assert result.frames == [
+        {word.name: int((frame == word).sum()) for word in ts.PixelStatus} for frame in status]
+
+    command("planar.npy", "measured.npy", "--layout", "planar", code="table.npy")
+    ts.Decoder("table.npy", camera).decode_recording("planar.npy", "measured.npy", layout="planar")
+
+    command("dump.bin", "dump.npz", "--raw-format", "dump.raw.toml")
+    result = decoder.decode_recording("dump.bin", "dump.npz", raw_format="dump.raw.toml")
+    assert "taken as electrons" in result.notes[0]
+
+    ways.cpp("decode")
+    assert len(ways.same()) == len(given) + 6 * 3 + 1 + 2 + 3 + 3
+
+
+def test_decode_refuses_alike(ways, camera):
+    ways.give("raw.npy", capture(camera))
+    decoder = ts.Decoder("hamiltonian-k4", camera)
+    for error, word, arguments, options in (
+            (ValueError, "frame 3", ["--frame", "3"], {"frame": 3}),
+            (ValueError, "stack", ["--stack"], {"stack": True}),
+            (ValueError, "outputs delay", ["--outputs", "delay"], {"outputs": ["delay"]}),
+            (OSError, "0.001 MB", ["--memory-mb", "0.001"], {"memory_mb": 0.001})):
+        done = subprocess.run(
+            [ways.cli, "decode", "raw.npy", "--code", "hamiltonian-k4", *SMALL, "-o", "d.npz",
+             *arguments], cwd=ways.folders["command"], capture_output=True, text=True)
+        assert done.returncode == (2 if error is ValueError else 1)
+        with pytest.raises(error, match=re.escape(word)) as caught:
+            decoder.decode_recording("raw.npy", "d.npz", **options)
+        assert str(caught.value) in done.stderr
+    with pytest.raises(OSError, match="choose another name"):
+        decoder.decode_recording("raw.npy", "raw.npy", frame=0, overwrite=True)
+    with pytest.raises(ValueError, match="outputs: got str 'depth_m'; needs one of depth, "):
+        decoder.decode_recording("raw.npy", "d.npz", outputs=["depth_m"])
+    with pytest.raises(ts.Interrupted):
+        decoder.decode_recording("raw.npy", "d.npz", progress=lambda share, step: False)
+    assert list(ways.files("python")) == ["raw.npy"]
+
+
+def test_evaluate(ways, camera):
+    ways.command("evaluate", "hamiltonian-k4", *SMALL, "--trials", "500", "--seed", "3", "-o",
+                 "evaluation.json")
+    ways.cpp("evaluate")
+    documents = [ways.files(way)["evaluation.json"] for way in ("command", "cpp")]
+    assert documents[0] == documents[1]
+    report = ts.evaluate("hamiltonian-k4", camera, trials=500, seed=3)
+    (code,) = json.loads(documents[0])["codes"]
+    for kind in ("linear", "circular"):
+        assert getattr(report, kind).geometric_mean_m == code[kind]["geometric_mean_m"]
+        assert getattr(report, kind).mean_se_m == code[kind]["mean_se_m"]
+    assert len(code["points"]) == report.circular_mde_m.size
+    for name in ("linear_mde_m", "circular_mde_m", "outlier_rate", "cramer_rao_mae_m"):
+        assert getattr(report, name).ravel().tolist() == [p[name] for p in code["points"]]
+
+
+def test_design(ways):
+    ways.command("design", "exclusive-3tap-9chip", "--set",
+                 "sensor.shortest_pulse_s=15e-9", "--method", "search", "--exposures", "2",
+                 "--trials", "1000", "-o", "design")
+    camera = ts.Camera("exclusive-3tap-9chip", sensor={"shortest_pulse_s": 15e-9})
+    ts.design(camera, method="search", exposures=[2], trials=1000).write("design")
+    ways.cpp("design")
+    seconds = re.compile(rb'"seconds": ?[-+.\de]+')
+    # The page tells the command; finished codes stay of a run that could have been interrupted.
+    pages = [f"design/{name}" for name in ("report.html", "finished/searched-k2.json")]
+    assert len(ways.same(*pages, change=lambda content: seconds.sub(b"", content))) >= 5
+
+
+def test_export(ways, camera):
+    ways.command("export", "square-k4", "--format", "csv", "--samples", "60", *SMALL, "--no-loss",
+                 "-o", "export")
+    ts.export_waveforms("square-k4", camera, "export", "csv", samples=60)
+    ways.cpp("export")
+    assert len(ways.same("export/report.html")) >= 2
