@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -27,23 +28,29 @@ TEST(Readme, ShowsTheProgramThatTheConsumerProjectRuns) {
   EXPECT_NE(read("README.md").find("```cpp\n" + program + "```"), std::string::npos);
 }
 
-/// The first TOML example below a heading.
-std::string toml_below(const std::string& heading) {
+// What a page of so many lines does not say stands in docs/.
+TEST(Readme, IsReadInOneSitting) {
   const std::string readme = read("README.md");
-  const std::size_t section = readme.find("\n## " + heading + "\n");
-  if (section == std::string::npos) return "no such heading";
-  const std::size_t begin = readme.find("```toml\n", section) + 8;
-  return readme.substr(begin, readme.find("```", begin) - begin);
+  EXPECT_LE(std::count(readme.begin(), readme.end(), '\n'), 150);
 }
 
-TEST(Readme, ShowsACameraThatCanBeRead) {
-  const std::string toml = toml_below("Your camera");
-  EXPECT_DOUBLE_EQ(tofsmith::parse_camera_toml(toml, "README.md").light.peak_factor, 15.0);
+/// The first TOML example of a page.
+std::string toml_of(const std::string& path) {
+  const std::string page = read(path);
+  const std::size_t fence = page.find("```toml\n");
+  if (fence == std::string::npos) return "no TOML example";
+  const std::size_t begin = page.find('\n', fence) + 1;
+  return page.substr(begin, page.find("```", begin) - begin);
 }
 
-TEST(Readme, ShowsASceneThatCanBeRead) {
-  const std::string toml = toml_below("Your scene");
-  EXPECT_EQ(tofsmith::parse_scene_toml(toml, "README.md").shapes.size(), 4u);
+TEST(Pages, ShowACameraThatCanBeRead) {
+  const std::string path = "docs/cameras.md";
+  EXPECT_DOUBLE_EQ(tofsmith::parse_camera_toml(toml_of(path), path).light.peak_factor, 15.0);
+}
+
+TEST(Pages, ShowASceneThatCanBeRead) {
+  const std::string path = "docs/scenes.md";
+  EXPECT_EQ(tofsmith::parse_scene_toml(toml_of(path), path).shapes.size(), 4u);
 }
 
 }  // namespace
