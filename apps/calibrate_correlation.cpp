@@ -8,7 +8,6 @@
 
 #include "calibrate_output.hpp"
 #include "number_checks.hpp"
-#include "one_of.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/calibrate/calibrated_table_file.hpp"

@@ -4,7 +4,7 @@
 
 #include "calibrate_output.hpp"
 #include "number_checks.hpp"
-#include "one_of.hpp"
+#include "tap_arguments.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"

@@ -10,9 +10,8 @@
 #include "method_arguments.hpp"
 #include "multipath_arguments.hpp"
 #include "number_checks.hpp"
-#include "one_of.hpp"
-#include "table_arguments.hpp"
 #include "tap_arguments.hpp"
+#include "table_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/decode_recording.hpp"
 

@@ -9,6 +9,7 @@
 
 #include "tofsmith/core/people_text.hpp"
 #include "tofsmith/io/csv.hpp"
+#include "tofsmith/report/zncc_comparison.hpp"
 
 namespace tofsmith::apps {
 

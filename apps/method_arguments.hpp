@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "one_of.hpp"
+#include "tap_arguments.hpp"
 #include "tofsmith/decode/decode_method.hpp"
 
 namespace tofsmith::apps {

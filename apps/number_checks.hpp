@@ -3,14 +3,25 @@
 #pragma once
 
 #include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <functional>
 #include <string>
 #include <utility>
 
+#include "session.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
+
 namespace tofsmith::apps {
+
+/// Reads two numbers parted by a character, such as "3/8" or "1e3:1e5"; whether the text holds
+/// them.
+template <typename Number>
+bool read_number_pair(const std::string& text, char separator, Number& first, Number& second) {
+  const std::size_t at = text.find(separator);
+  return at != std::string::npos && CLI::detail::lexical_cast(text.substr(0, at), first) &&
+         CLI::detail::lexical_cast(text.substr(at + 1), second);
+}
 
 /// Checks the number of an option; what breaks the rule is refused with "found -1; must be > 0".
 inline CLI::Validator number_that(const std::string& rule, std::function<bool(double)> holds) {
@@ -54,6 +65,16 @@ inline CLI::Validator share_or_percentage(double least, double most) {
             return std::string();
           },
           "SHARE"};
+}
+
+/// "3/8" as the third of eight parts; "" is the whole. @throws UsageError
+inline SweepShard parse_shard(const std::string& text) {
+  SweepShard shard;
+  if (text.empty()) return shard;
+  if (!read_number_pair(text, '/', shard.index, shard.count) || shard.broken_rule())
+    throw UsageError(
+        fmt::format("--shard: found {}; expected i/n with i in 1 .. n, such as 3/8", text));
+  return shard;
 }
 
 }  // namespace tofsmith::apps

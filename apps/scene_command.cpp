@@ -2,22 +2,55 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "fresh_directory.hpp"
-#include "scene_preview.hpp"
 #include "scene_source.hpp"
+#include "tofsmith/io/colour.hpp"
 #include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/float_image_file.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/output_directory.hpp"
+#include "tofsmith/io/png.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
+#include "tofsmith/scene/scene_image.hpp"
 
 namespace tofsmith::apps {
-
 namespace {
+
+/// A picture to look at: left the depth, near bright and far dark; right what the camera's own
+/// light shows, albedo x cosine. Black where nothing returns.
+PngImage scene_preview(const SceneImage& scene) {
+  constexpr double darkest = 0.2;  // of what returns: black means no return
+  double nearest_m = std::numeric_limits<double>::infinity(), farthest_m = 0.0;
+  for (const double depth_m : scene.depth_m.pixels)
+    if (std::isfinite(depth_m)) {
+      nearest_m = std::min(nearest_m, depth_m);
+      farthest_m = std::max(farthest_m, depth_m);
+    }
+  const double span_m = std::max(farthest_m - nearest_m, 1e-9);
+
+  PngImage png{.height = scene.height(), .width = 2 * scene.width()};
+  const auto grey = [&](double value) {
+    png.values.push_back(static_cast<std::uint16_t>(std::lround(255.0 * value)));
+  };
+  for (int row = 0; row < scene.height(); ++row) {
+    for (int column = 0; column < scene.width(); ++column) {
+      const double depth_m = scene.depth_m(row, column);
+      grey(std::isfinite(depth_m) ? 1.0 - (1.0 - darkest) * (depth_m - nearest_m) / span_m : 0.0);
+    }
+    for (int column = 0; column < scene.width(); ++column) {
+      const double light = static_cast<double>(scene.albedo(row, column)) *
+                           static_cast<double>(scene.cosine(row, column));
+      grey(std::isfinite(scene.depth_m(row, column)) ? srgb_from_linear(light) : 0.0);
+    }
+  }
+  return png;
+}
 
 namespace fs = std::filesystem;
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include "scene_source.hpp"
-#include "one_of.hpp"
+#include "tap_arguments.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,26 +1,236 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "commands.hpp"
+#include "fresh_directory.hpp"
 #include "number_checks.hpp"
-#include "returns_arguments.hpp"
 #include "scene_source.hpp"
-#include "shard_argument.hpp"
+#include "session.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
+#include "tofsmith/io/output_directory.hpp"
 #include "tofsmith/io/raw_frames_file.hpp"
 #include "tofsmith/io/returns_file.hpp"
 #include "tofsmith/simulate/multipath_capture.hpp"
-#include "training_set_output.hpp"
+#include "tofsmith/sweep/training_set.hpp"
 
 namespace tofsmith::apps {
-
 namespace {
+
+/// Light that comes back by longer ways: `--second-return`, `--tail`, `--returns`, `--transient`,
+/// `--bounces`, and `--truth-returns` for what was simulated.
+class ReturnsArguments {
+ public:
+  void add_to(CLI::App& command);
+  /// @throws UsageError for words that do not fit each other; IoError as the files' readers;
+  ///         std::invalid_argument as SceneLight::validate
+  SceneLight load(const LoadedScene& scene, const Camera& camera) const;
+  /// Whether anything was asked for.
+  bool is_used() const {
+    return !second_returns_.empty() || tail_m_ || !returns_.empty() || !transient_.empty() ||
+           bounces_ > 0 || !truth_.empty();
+  }
+  /// Files that are read.
+  std::vector<std::string> inputs() const { return {returns_, transient_}; }
+  const std::string& truth() const { return truth_; }
+
+ private:
+  LaterReturns bounced(const LoadedScene& scene, const Camera& camera) const;
+
+  std::vector<std::string> second_returns_;
+  std::optional<double> tail_m_;
+  double tail_ratio_ = 0.3;
+  std::string returns_, transient_, truth_;
+  std::optional<double> transient_bin_s_;
+  int bounces_ = 0;
+  BounceOptions bounce_;
+  std::string transient_origin_ = "first", transient_background_ = "none";
+};
+
+/// Of "delta=1.0,ratio=.3", in any order.
+LaterReturn parse_second_return(const std::string& text) {
+  std::optional<float> delay_m, ratio;
+  for (const std::string& part : CLI::detail::split(text, ',')) {
+    const std::size_t equals = part.find('=');
+    const std::string key = part.substr(0, equals);
+    float value = 0.0f;
+    const bool is_number =
+        equals != std::string::npos && CLI::detail::lexical_cast(part.substr(equals + 1), value);
+    if (!is_number || (key != "delta" && key != "ratio"))
+      throw UsageError(fmt::format(
+          "--second-return {}: found '{}'; expected delta=METRES,ratio=NUMBER", text, part));
+    (key == "delta" ? delay_m : ratio) = value;
+  }
+  if (!delay_m || !ratio)
+    throw UsageError(
+        fmt::format("--second-return {}: found no {}; expected delta=METRES,ratio=NUMBER", text,
+                    delay_m ? "ratio" : "delta"));
+  return {*delay_m, *ratio};
+}
+
+void ReturnsArguments::add_to(CLI::App& command) {
+  command.add_option("--second-return", second_returns_,
+                     "a return behind every direct one: delta=METRES,ratio=NUMBER; several in "
+                     "order of their delays");
+  CLI::Option* tail =
+      command
+          .add_option("--tail", tail_m_,
+                      "light that trails off behind every direct return: its mean delay [m]")
+          ->check(positive_number());
+  command.add_option("--tail-ratio", tail_ratio_, "all light of the tail over the direct return's")
+      ->check(number_from_0_on())
+      ->capture_default_str()
+      ->needs(tail);
+  command.add_option("--returns", returns_,
+                     "later returns of every pixel (.npz: first, distance_m, ratio)");
+  CLI::Option* transient = command.add_option(
+      "--transient", transient_,
+      "light by time, over which each pixel's signal is spread: a histogram (T,) for all pixels "
+      "or (H,W,T) (.npy)");
+  command.add_option("--transient-bin-s", transient_bin_s_, "time that one of its bins takes [s]")
+      ->check(positive_number())
+      ->needs(transient);
+  command
+      .add_option("--transient-origin", transient_origin_,
+                  "what is at the pixel's depth: the histogram's first bin, or its peak")
+      ->check(one_of({"first", "peak"}))
+      ->capture_default_str()
+      ->needs(transient);
+  command
+      .add_option("--transient-background", transient_background_,
+                  "constant counts to take off each histogram first")
+      ->check(one_of({"none", "median"}))
+      ->capture_default_str()
+      ->needs(transient);
+  CLI::Option* bounces =
+      command
+          .add_option("--bounces", bounces_,
+                      "1: also light that one other surface of the scene sends on, gathered by "
+                      "rays; 0: none")
+          ->check(CLI::Range(0, 1))
+          ->capture_default_str();
+  command
+      .add_option("--bounce-rays", bounce_.rays,
+                  "rays by which each pixel gathers it; noise falls a little faster than their "
+                  "square root")
+      ->check(CLI::Range(16, 65536))
+      ->capture_default_str()
+      ->needs(bounces);
+  command.add_option("--truth-returns", truth_,
+                     "also write the true distance and signal of every return (.npz)");
+}
+
+LaterReturns ReturnsArguments::bounced(const LoadedScene& scene, const Camera& camera) const {
+  if (!second_returns_.empty() || !returns_.empty() || !transient_.empty())
+    throw UsageError(
+        "--bounces: found beside --second-return, --returns or --transient; expected one of them");
+  return bounced_light_of(scene, camera, bounce_, terminal_progress("gathering light"));
+}
+
+SceneLight ReturnsArguments::load(const LoadedScene& loaded, const Camera& camera) const {
+  const SceneImage& scene = loaded.image;
+  if (!transient_.empty() && (!second_returns_.empty() || tail_m_ || !returns_.empty()))
+    throw UsageError(
+        "--transient: found beside --second-return, --tail or --returns; expected alone, as it "
+        "holds all light of a pixel");
+  if (!returns_.empty() && !second_returns_.empty())
+    throw UsageError("--returns: found beside --second-return; expected one of them");
+  if (!transient_.empty() && !transient_bin_s_)
+    throw UsageError(
+        "--transient: found no --transient-bin-s; expected the time of one bin in seconds");
+  SceneLight light;
+  if (!second_returns_.empty()) {
+    std::vector<LaterReturn> behind;
+    for (const std::string& text : second_returns_) behind.push_back(parse_second_return(text));
+    light.returns = behind_every_pixel(scene, behind);
+  }
+  if (!returns_.empty())
+    light.returns = read_later_returns(returns_, scene.height(), scene.width());
+  if (bounces_ > 0) light.returns = bounced(loaded, camera);
+  if (tail_m_) light.tail = ExponentialTail{*tail_m_, tail_ratio_};
+  if (!transient_.empty())
+    light.transients = read_transients(
+        transient_, scene.height(), scene.width(),
+        {.bin_s = *transient_bin_s_,
+         .origin = transient_origin_ == "peak" ? TransientOrigin::peak : TransientOrigin::first,
+         .subtract_median = transient_background_ == "median"});
+  light.validate(scene, camera);
+  return light;
+}
+
+/// What `simulate` makes of many scenes.
+struct TrainingSetRequest {
+  std::vector<std::string> scenes;  ///< folders, lists (.txt) and files
+  SceneSource source;               ///< how each is to be read
+  std::filesystem::path directory;
+  TrainingSetOptions options;
+};
+
+/// Whether that is more than one scene.
+bool are_many_scenes(const std::vector<std::string>& scenes) {
+  std::error_code ignored;
+  return scenes.size() > 1 || std::filesystem::is_directory(scenes.front(), ignored) ||
+         std::filesystem::path(scenes.front()).extension() == ".txt";
+}
+
+/// @param what   "signal" or "ambient"
+/// @param range  "a:b", or "" for a fixed level
+/// @param level  that the user gave; else `usual`
+/// @throws UsageError if the range is none, or there is a level beside it
+LightRange light_range(const std::string& what, const std::string& range,
+                       std::optional<double> level, double usual) {
+  const std::string option = fmt::format("--{}-range", what);
+  if (range.empty()) return {level.value_or(usual), level.value_or(usual)};
+  if (level) throw UsageError(fmt::format("{}: expected no --{} beside it", option, what));
+  LightRange parsed;
+  if (!read_number_pair(range, ':', parsed.low_e_per_s, parsed.high_e_per_s) ||
+      parsed.broken_rule(what))
+    throw UsageError(
+        fmt::format("{}: found {}; expected a:b in e/s with 0 < a <= b, such as "
+                    "1e3:1e5",
+                    option, range));
+  return parsed;
+}
+
+/// Writes and tells. @throws as write_training_set(); std::runtime_error if some scenes failed
+void make_training_set(const TrainingSetRequest& request, const CodeSet& code, const Camera& camera,
+                       Session& session) {
+  const std::vector<TrainingScene> scenes = training_scenes(request.scenes);
+  const auto load = [&](const TrainingScene& scene) {
+    SceneSource source = request.source;
+    source.scene = scene.file.string();
+    LoadedScene loaded = load_scene(source, camera);
+    return LoadedTrainingScene{std::move(loaded.image), loaded.view};
+  };
+  const FreshDirectory fresh(request.directory);
+  make_output_directory(request.directory);
+  session.directory = request.directory;
+  const TrainingSetRun run = write_training_set(request.directory, scenes, code, camera, load,
+                                                request.options, terminal_progress("simulating"));
+  session.print_json({{"directory", request.directory.string()},
+                      {"index", run.index.string()},
+                      {"code", code.name()},
+                      {"camera", camera.name},
+                      {"scenes", run.scenes},
+                      {"written", run.written},
+                      {"kept", run.kept},
+                      {"failures", run.failures}});
+  session.say(fmt::format("wrote {}: {} scenes, {} of them now, {} kept", run.index.string(),
+                          run.written + run.kept, run.written, run.kept));
+  if (!run.failures.empty())
+    throw std::runtime_error(
+        fmt::format("{} of {} scenes failed, the others are there; the first: "
+                    "{}",
+                    run.failures.size(), run.scenes, run.failures.front()));
+}
 
 struct SimulateArguments {
   std::vector<std::string> scenes;

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "number_checks.hpp"
-#include "one_of.hpp"
+#include "tap_arguments.hpp"
 #include "session.hpp"
 
 namespace tofsmith::apps {

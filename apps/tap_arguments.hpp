@@ -5,11 +5,24 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "one_of.hpp"
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
 
 namespace tofsmith::apps {
+
+/// Takes one of these words, and tells of any other which of them could have been meant.
+inline CLI::Validator one_of(const std::vector<std::string>& words) {
+  const CLI::Validator member = CLI::IsMember(words);
+  CLI::Validator check = member;
+  return check.operation([member, words](std::string& word) {
+    std::string problem = member(word);
+    if (problem.empty()) return problem;
+    const std::string near = nearest_word(word, words);
+    return near.empty() ? problem : problem + "; did you mean " + near + "?";
+  });
+}
 
 /// What an NPZ code with several taps does not say about its columns: `--taps`, `--tap-order`.
 struct TapArguments {

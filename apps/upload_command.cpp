@@ -9,7 +9,6 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "number_checks.hpp"
-#include "one_of.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"

@@ -3,22 +3,55 @@
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 
 #include <fmt/format.h>
-
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "calibrate/delay_groups.hpp"
 #include "calibrate/harmonic_basis.hpp"
 #include "calibrate/pixel_alignment.hpp"
-#include "calibrate/sweep_drift.hpp"
 #include "calibrate/sweep_pixels.hpp"
-#include "calibrate/tap_imbalance.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/core/statistics.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 namespace {
+
+/// Sensor::tap_mismatch of each exposure of two taps, whose changes with delay are opposite: that
+/// of the second over that of the first is -(1 - m / 2) / (1 + m / 2).
+/// @param notes  gets one where taps differ, or where they are not opposite
+std::vector<Estimate> tap_imbalance(const Eigen::MatrixXd& table, const Eigen::MatrixXd& error,
+                                    std::vector<std::string>& notes) {
+  std::vector<Estimate> mismatch;
+  for (Eigen::Index i = 0; i + 1 < table.cols(); i += 2) {
+    const Eigen::VectorXd a = table.col(i).array() - table.col(i).mean();
+    const Eigen::VectorXd b = table.col(i + 1).array() - table.col(i + 1).mean();
+    // The noise of `a` adds to its square.
+    const double size2 = std::max(1e-300, a.squaredNorm() - error.col(i).squaredNorm());
+    const double ratio = -a.dot(b) / size2;
+    const double variance =
+        error.col(i + 1).cwiseAbs2().mean() + ratio * ratio * error.col(i).cwiseAbs2().mean();
+    const double ratio_error = std::sqrt(variance / size2);
+    mismatch.push_back(
+        {2 * (1 - ratio) / (1 + ratio), 4 / ((1 + ratio) * (1 + ratio)) * ratio_error});
+    const auto exposure = static_cast<int>(i / 2) + 1;
+    const Estimate& m = mismatch.back();
+    if (std::abs(m.value) > 3 * m.standard_error && std::abs(m.value) > 1e-3)
+      notes.push_back(fmt::format(
+          "taps of exposure {}: the first is {:+.3g} ± {:.1g} % more sensitive than the second",
+          exposure, 100 * m.value, 100 * m.standard_error));
+    const double left = std::sqrt((b + ratio * a).squaredNorm() / size2);
+    if (left > 0.02)
+      notes.push_back(fmt::format(
+          "taps of exposure {} are not opposite: {:.2g} % of their change does not cancel",
+          exposure, 100 * left));
+  }
+  return mismatch;
+}
 
 constexpr int most_harmonics = 64;
 

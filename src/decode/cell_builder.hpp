@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "decode/cell_record.hpp"
+#include "decode/cell_table.hpp"
 #include "decode/distinct_directions.hpp"
 #include "decode/rival_search.hpp"
 

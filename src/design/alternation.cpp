@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "design/bounded_least_squares.hpp"
+#include "design/least_squares_term.hpp"
 #include "tofsmith/core/periodic.hpp"
 
 namespace tofsmith {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "design/circulant_operator.hpp"
+#include "design/least_squares_term.hpp"
 #include "design/piecewise_constant.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/design/box_budget_projection.hpp"

@@ -3,11 +3,32 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <new>
+#include <vector>
 
-#include "design/aligned_floats.hpp"
 #include "design/sampled_camera.hpp"
 
 namespace tofsmith {
+
+/// Memory that begins on a cache line, as whole-vector loads want it.
+template <typename Value>
+struct CacheLineAllocator {
+  using value_type = Value;
+  static constexpr std::align_val_t alignment{64};
+
+  CacheLineAllocator() = default;
+  template <typename Other>
+  explicit CacheLineAllocator(const CacheLineAllocator<Other>&) {}
+
+  Value* allocate(std::size_t count) {
+    return static_cast<Value*>(::operator new(count * sizeof(Value), alignment));
+  }
+  void deallocate(Value* values, std::size_t) { ::operator delete(values, alignment); }
+  friend bool operator==(const CacheLineAllocator&, const CacheLineAllocator&) { return true; }
+};
+
+using AlignedFloats = std::vector<float, CacheLineAllocator<float>>;
 
 /// The curve that the decoder compares with, without what ambient light explains:
 ///   p_j = P x_j,  x_j = g o chi_j,  P = I - a a^T / |a|^2,  a = g o kappa,  g_i = T_i / mean T,

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "design/adam.hpp"
+#include "design/optimize_pool.hpp"
 #include "design/stochastic_gradient.hpp"
 #include "tofsmith/core/units.hpp"
 

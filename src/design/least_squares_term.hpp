@@ -4,10 +4,49 @@
 
 #include <Eigen/Core>
 
-#include "design/circulant_operator.hpp"
 #include "design/piecewise_constant.hpp"
+#include "tofsmith/core/periodic.hpp"
+#include "tofsmith/design/circulant_tv.hpp"
 
 namespace tofsmith {
+
+/// The sub-problem without total variation, whose weight is not read:
+///   minimize 1/2 |A x - b|^2  subject to  0 <= x <= upper_bound,  sum x <= budget
+/// by accelerated projected gradients. It has many solutions wherever A damps much: x keeps of
+/// `start` (N) what the data do not determine. For comparison with designs that have a weight.
+/// @return feasible (N); the objective is not above that of the projected start
+Eigen::VectorXd least_squares_within_bounds(const CirculantTvProblem& problem,
+                                            const Eigen::VectorXd& start);
+
+/// A x = kernel * x (circular) and its adjoint on half spectra. Keeps the kernel's spectrum.
+class CirculantOperator {
+ public:
+  explicit CirculantOperator(int samples) : transform_(samples) {}
+
+  /// Returns whether the kernel differs from the one held before.
+  bool set_kernel(const Eigen::VectorXd& kernel) {
+    if (kernel_.size() == kernel.size() && kernel_ == kernel) return false;
+    kernel_ = kernel;
+    transform_.forward(kernel_, spectrum_);
+    return true;
+  }
+
+  const PeriodicTransform& transform() const { return transform_; }
+  const Eigen::VectorXcd& spectrum() const { return spectrum_; }
+
+  /// sum_n r[n]^2 from the half spectrum of r (Parseval).
+  double energy(const Eigen::VectorXcd& half) const {
+    const int samples = transform_.samples();
+    double sum = 2 * half.squaredNorm() - std::norm(half[0]);
+    if (samples % 2 == 0) sum -= std::norm(half[samples / 2]);
+    return sum / samples;
+  }
+
+ private:
+  PeriodicTransform transform_;
+  Eigen::VectorXd kernel_;
+  Eigen::VectorXcd spectrum_;
+};
 
 /// The term 1/2 |A x - b|^2 for piecewise constant x.
 ///

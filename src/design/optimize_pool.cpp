@@ -5,13 +5,33 @@
 #include <algorithm>
 #include <cmath>
 
-#include "design/descent.hpp"
 #include "design/optimize_starts.hpp"
+#include "design/stochastic_gradient.hpp"
 #include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
-
 namespace {
+
+Sharpness sharpness_at(const DescentSchedule& schedule, double done) {
+  const double along = std::max(0.0, (done - schedule.soft_share) / (1.0 - schedule.soft_share));
+  return {std::pow(schedule.final_sharpness.modulation, along),
+          std::pow(schedule.final_sharpness.demodulation, along)};
+}
+
+constexpr double softness = 1.2;
+constexpr double noise = 0.3;
+
+int below(int count, RandomStream& random) {
+  return std::min(count - 1, static_cast<int>(random.uniform() * count));
+}
+
+/// Gates of exposure e, `cells` later.
+void rotate_gates(const WaveformSpace& space, int exposure, int cells,
+                  WaveformParameters& parameters) {
+  auto gates = parameters.demodulation.middleCols(exposure * space.columns(), space.columns());
+  const Eigen::MatrixXd before = gates;
+  for (int c = 0; c < space.cells; ++c) gates.row((c + cells) % space.cells) = before.row(c);
+}
 
 // Work items of one seed: no two phases share their random numbers.
 enum Phase : std::uint64_t { judging = 1, starting, hopping, refining, drawing_starts };
@@ -31,6 +51,93 @@ int trials_per_level(const DesignProblem& problem, const OptimizeOptions& option
 }
 
 }  // namespace
+
+void Adam::step(Eigen::MatrixXd& values, const Eigen::MatrixXd& gradient, double rate) {
+  if (mean_.size() == 0) {
+    mean_ = Eigen::ArrayXXd::Zero(values.rows(), values.cols());
+    square_ = mean_;
+  }
+  mean_power_ *= mean_decay_;
+  square_power_ *= square_decay_;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    const double g = std::isfinite(gradient(i)) ? gradient(i) : 0.0;
+    mean_(i) = mean_decay_ * mean_(i) + (1.0 - mean_decay_) * g;
+    square_(i) = square_decay_ * square_(i) + (1.0 - square_decay_) * g * g;
+    const double deviation = std::sqrt(square_(i) / (1.0 - square_power_));
+    values(i) -= rate * (mean_(i) / (1.0 - mean_power_)) / (deviation + 1e-12);
+  }
+}
+
+namespace {
+// Of streams whose other trials are steps.
+constexpr std::uint32_t noise_in_store = 0xffffffffu;
+}  // namespace
+
+WaveformParameters descend(const DesignProblem& problem, WaveformParameters parameters,
+                           const DescentSchedule& schedule, std::uint64_t seed,
+                           std::uint64_t work_item, SharedProgress* progress) {
+  constexpr double largest_modulation = 4.0, largest_demodulation = 3.0;
+  StochasticGradient objective(problem, schedule.trials_per_step,
+                               RandomStream(seed, work_item, noise_in_store));
+  Adam modulation, demodulation;
+  for (int step = 0; step < schedule.steps; ++step) {
+    if (progress) progress->add();
+    const double done = static_cast<double>(step) / schedule.steps;
+    const Sharpness sharpness = sharpness_at(schedule, done);
+    const double doubt =
+        schedule.doubt_begin * std::pow(schedule.doubt_end / schedule.doubt_begin, done);
+    RandomStream random(seed, work_item, static_cast<std::uint32_t>(step));
+    const SampledCode code = render(problem.space, parameters, sharpness);
+    const WaveformParameters gradient =
+        pull_back(problem.space, code, sharpness, objective.at(code, doubt, random));
+    // Sharper waveforms move further with the same parameters.
+    const double rate = schedule.rate * (done < 0.7 ? 1.0 : std::max(0.05, (1.0 - done) / 0.3));
+    modulation.step(parameters.modulation, gradient.modulation,
+                    rate / std::sqrt(sharpness.modulation));
+    demodulation.step(parameters.demodulation, gradient.demodulation,
+                      rate / std::sqrt(sharpness.demodulation));
+    parameters.modulation =
+        parameters.modulation.cwiseMax(-largest_modulation).cwiseMin(largest_modulation);
+    parameters.demodulation =
+        parameters.demodulation.cwiseMax(-largest_demodulation).cwiseMin(largest_demodulation);
+  }
+  return parameters;
+}
+
+WaveformParameters softened(WaveformParameters parameters, double limit) {
+  for (Eigen::MatrixXd* values : {&parameters.modulation, &parameters.demodulation})
+    *values = values->cwiseMax(-limit).cwiseMin(limit);
+  return parameters;
+}
+
+PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
+              RandomStream& random) {
+  const WaveformSpace& space = problem.space;
+  const int columns = space.columns();
+  const auto entries = static_cast<int>(pool.size());
+  const int base = random.uniform() < 0.6 ? 0 : below(std::min(3, entries), random);
+  PoolEntry next = pool[static_cast<std::size_t>(base)];
+  next.parameters = softened(std::move(next.parameters), softness);
+  const int e = below(space.exposures, random);
+  const double kind = random.uniform();
+  if (kind < 0.3) {
+    const WaveformParameters pair = softened(random_pair(problem, random), softness);
+    next.parameters.modulation.col(e) = pair.modulation;
+    next.parameters.demodulation.middleCols(e * columns, columns) = pair.demodulation;
+  } else if (kind < 0.6) {
+    const WaveformParameters donor =
+        softened(pool[static_cast<std::size_t>(below(entries, random))].parameters, softness);
+    const int from = below(space.exposures, random);
+    next.parameters.modulation.col(e) = donor.modulation.col(from);
+    next.parameters.demodulation.middleCols(e * columns, columns) =
+        donor.demodulation.middleCols(from * columns, columns);
+  }
+  if (kind >= 0.3 && kind < 0.8)
+    rotate_gates(space, e, below(space.cells, random), next.parameters);
+  for (Eigen::MatrixXd* values : {&next.parameters.modulation, &next.parameters.demodulation})
+    for (double& value : values->reshaped()) value += noise * random.normal();
+  return next;
+}
 
 OptimizePool::OptimizePool(const DesignProblem& problem, const OptimizeOptions& options,
                            double bin_m)

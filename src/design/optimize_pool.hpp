@@ -2,13 +2,68 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+#include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
-#include "design/basin_hops.hpp"
+#include "design/code_score.hpp"
+#include "design/design_problem.hpp"
+#include "tofsmith/core/random.hpp"
 #include "tofsmith/core/shared_progress.hpp"
 #include "tofsmith/design/optimize.hpp"
 
 namespace tofsmith {
+
+/// Stochastic gradient descent whose steps are scaled by running means of the gradient and of its
+/// square.
+/// @see Kingma and Ba, "Adam: a method for stochastic optimization", ICLR 2015
+class Adam {
+ public:
+  /// Steps `values` against `gradient`, of the same shape at every call; entries that are not
+  /// finite count as 0.
+  void step(Eigen::MatrixXd& values, const Eigen::MatrixXd& gradient, double rate);
+
+ private:
+  static constexpr double mean_decay_ = 0.9, square_decay_ = 0.99;
+  Eigen::ArrayXXd mean_, square_;
+  double mean_power_ = 1.0, square_power_ = 1.0;
+};
+
+/// How waveforms go downhill. They begin soft and a decoder that doubts; both sharpen on the way.
+struct DescentSchedule {
+  int steps = 300;
+  int trials_per_step = 360;  ///< over all light levels
+  double rate = 0.08;         ///< of the parameters, where waveforms are soft
+  Sharpness final_sharpness{6.0, 8.0};
+  double soft_share = 0.4;                    ///< of the steps, before waveforms begin to sharpen
+  double doubt_begin = 1.0, doubt_end = 3.0;  ///< sharpness of decisions per log likelihood
+};
+
+/// Parameters of lower error. Draws from the streams (seed, work item, step).
+/// @param progress  told of every step
+WaveformParameters descend(const DesignProblem& problem, WaveformParameters parameters,
+                           const DescentSchedule& schedule, std::uint64_t seed,
+                           std::uint64_t work_item, SharedProgress* progress = nullptr);
+
+/// A code that descents have found.
+struct PoolEntry {
+  WaveformParameters parameters;
+  CodeScore score;
+  std::string start;  ///< where it began
+};
+
+/// A jump out of a basin of the error: one of the best of the pool, softened, with one pair of
+/// waveforms replaced (by a random one, or by one of another entry) or its gates rotated against
+/// its light, and noise on all.
+/// @param pool  best first, not empty
+/// @return parameters to descend from, and where they began
+PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
+              RandomStream& random);
+
+/// Parameters no further from soft than `limit`, so that a descent can change them again.
+WaveformParameters softened(WaveformParameters parameters, double limit);
 
 /// Codes that descents from many starts lead to, best first, with what happened on the way.
 class OptimizePool {

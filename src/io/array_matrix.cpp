@@ -3,12 +3,45 @@
 #include "io/array_matrix.hpp"
 
 #include <fmt/format.h>
-
 #include <cmath>
+#include <vector>
 
+#include "io/file_kind.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/csv.hpp"
+#include "tofsmith/io/npz.hpp"
 
 namespace tofsmith {
+
+Eigen::Index column_of(int exposure, int tap, int exposures, int taps,
+                       std::optional<TapOrder> order) {
+  return order == TapOrder::blocked ? tap * exposures + exposure : exposure * taps + tap;
+}
+
+int exposures_of(Eigen::Index columns, const TapLayout& layout, std::string_view file) {
+  require(layout.taps >= 1, "taps", layout.taps, "must be >= 1");
+  if (columns % layout.taps != 0)
+    throw IoError(file, fmt::format("found {} columns; expected a multiple of taps = {}", columns,
+                                    layout.taps));
+  if (layout.taps > 1 && !layout.order)
+    throw IoError(file, fmt::format("does not say in which order its columns hold {} taps; "
+                                    "expected --tap-order blocked or interleaved",
+                                    layout.taps));
+  return static_cast<int>(columns) / layout.taps;
+}
+
+Eigen::MatrixXd correlation_matrix_of(const std::filesystem::path& path) {
+  const std::string extension = known_extension(path, {".csv", ".txt", ".npy", ".npz"});
+  if (extension == ".npz")
+    return matrix_of(NpzReader(path).read("corrfs"), path.string() + ": corrfs");
+  if (extension != ".npy") return read_csv(path).values;
+  NpyArray array = read_npy(path);
+  if (array.axes() == 1) {
+    const std::vector<double> column = array.to_doubles();
+    array = NpyArray::of<double>({column.size(), 1}, column);
+  }
+  return matrix_of(array, path.string());
+}
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 

@@ -11,7 +11,6 @@
 
 #include "io/document_text.hpp"
 #include "io/json_reader.hpp"
-#include "io/json_text.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

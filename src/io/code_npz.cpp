@@ -11,7 +11,6 @@
 #include <limits>
 
 #include "io/array_matrix.hpp"
-#include "io/tap_columns.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/periodic.hpp"
 #include "tofsmith/io/npz.hpp"

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "io/correlation_matrix.hpp"
+#include "io/array_matrix.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
 

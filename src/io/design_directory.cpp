@@ -10,7 +10,7 @@
 #include "io/field_json.hpp"
 #include "io/field_key.hpp"
 #include "io/json_reader.hpp"
-#include "io/json_text.hpp"
+#include "io/document_text.hpp"
 #include "io/result_json.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/hash.hpp"

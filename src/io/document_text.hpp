@@ -4,8 +4,13 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 namespace tofsmith {
+
+/// @param file  what errors call it
+/// @throws IoError "file:line:column: .." at the first character that is no JSON
+nlohmann::json parse_json(std::string_view text, std::string_view file);
 
 /// JSON for people to read: one member a line, while lists of plain values and what stands in
 /// lists stay on one line. Numbers read back as exactly what they were.

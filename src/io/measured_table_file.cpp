@@ -10,9 +10,8 @@
 #include <cmath>
 
 #include "core/enum_words.hpp"
-#include "io/correlation_matrix.hpp"
+#include "io/array_matrix.hpp"
 #include "io/file_kind.hpp"
-#include "io/tap_columns.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/npz.hpp"
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/json_reader.hpp"
-#include "io/json_text.hpp"
+#include "io/document_text.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/io/file_name.hpp"

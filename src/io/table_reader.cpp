@@ -2,17 +2,97 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/table_reader.hpp"
 
+#include <fmt/format.h>
 #include <fmt/ranges.h>
-
 #include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 namespace {
+
+/// JSON's quoting is TOML's for valid text.
+std::string quoted(const std::string& text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string joined(const std::string& list, const std::string& element) {
+  return list.empty() ? element : fmt::format("{}, {}", list, element);
+}
+
+std::string one_line(const toml::node& node) {
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+  if (const auto* text = node.as_string()) return quoted(text->get());
+  std::string inside;
+  if (const auto* list = node.as_array()) {
+    for (const toml::node& element : *list) inside = joined(inside, one_line(element));
+    return fmt::format("[{}]", inside);
+  }
+  if (const auto* table = node.as_table()) {
+    for (const auto& [key, value] : *table) {
+      const std::string member =
+          fmt::format("{} = {}", quoted(std::string(key.str())), one_line(value));
+      inside = joined(inside, member);
+    }
+    return fmt::format("{{ {} }}", inside);
+  }
+  std::ostringstream out;
+  node.visit([&](const auto& value) {
+    if constexpr (toml::is_value<decltype(value)>) out << value;
+  });
+  return out.str();
+}
+
+std::string describe_setting(std::string_view setting) {
+  return fmt::format("setting '{}'", setting);
+}
+
+/// Keys of `change` replace those of `base`. Nodes are moved: copies forget where they stood.
+void lay_over(toml::table& base, toml::table&& change) {
+  for (auto&& [key, node] : change) {
+    toml::table* inner = node.as_table();
+    toml::table* below = base[key.str()].as_table();
+    if (inner && below && !inner->is_inline()) {
+      lay_over(*below, std::move(*inner));
+      continue;
+    }
+    base.erase(key.str());  // with its key, which remembers the old place
+    node.visit([&, k = key](auto& value) { base.insert_or_assign(k, std::move(value)); });
+  }
+}
+
+/// `key = word` as `key = "word"`.
+std::optional<std::string> with_quotes(const std::string& setting) {
+  const std::size_t begin = setting.find_first_not_of(' ', setting.find('=') + 1);
+  if (setting.find('=') == std::string::npos || begin == std::string::npos) return std::nullopt;
+  const std::string word = setting.substr(begin);
+  const bool plain = std::all_of(word.begin(), word.end(), [](unsigned char c) {
+    return std::isalnum(c) ||
+           std::string_view("_./-").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (!plain || std::isdigit(static_cast<unsigned char>(word[0]))) return std::nullopt;
+  return fmt::format("{}\"{}\"", setting.substr(0, begin), word);
+}
+
+toml::table parse_setting(const std::string& setting) {
+  try {
+    return toml::parse(setting, describe_setting(setting));
+  } catch (const toml::parse_error& error) {
+    if (const auto quoted = with_quotes(setting)) try {
+        return toml::parse(*quoted, describe_setting(setting));
+      } catch (const toml::parse_error&) {  // the first message is about what the user wrote
+      }
+    throw IoError(describe_setting(setting),
+                  fmt::format("{}; expected key = value", error.description()));
+  }
+}
 
 /// What stands in the file, for "found ..".
 std::string describe(const toml::node& node) {
@@ -27,6 +107,59 @@ std::string describe(const toml::node& node) {
 }
 
 }  // namespace
+
+SettingValue toml_value_of(const toml::node& node, std::string place) {
+  SettingValue value{one_line(node), {}, {}, std::move(place)};
+  value.text = node.is_string() ? node.as_string()->get() : value.toml;
+  if (node.is_integer()) value.number = static_cast<double>(node.as_integer()->get());
+  if (node.is_floating_point() && std::isfinite(node.as_floating_point()->get()))
+    value.number = node.as_floating_point()->get();
+  return value;
+}
+
+SettingValue toml_value_of(double number, std::string place) {
+  const std::string text = fmt::format("{}", number);
+  return {text, text, number, std::move(place)};
+}
+
+SettingValue toml_value_of_line(const std::string& line, std::string place) {
+  double number = 0.0;
+  const char* const end = line.data() + line.size();
+  const auto [stopped, error] = std::from_chars(line.data(), end, number);
+  if (error == std::errc() && stopped == end && std::isfinite(number))
+    return {line, line, number, std::move(place)};
+  return {line == "true" || line == "false" ? line : quoted(line), line, {}, std::move(place)};
+}
+
+TomlDocument::TomlDocument(std::string_view text, std::string_view source_name)
+    : source_name_(source_name) {
+  try {
+    root_ = toml::parse(text, source_name);
+  } catch (const toml::parse_error& error) {
+    throw IoError(place_of(error.source()), error.description());
+  }
+}
+
+void TomlDocument::apply(const std::string& setting) {
+  toml::table change = parse_setting(setting);
+  if (change.empty())
+    throw IoError(describe_setting(setting), "found no key; expected key = value");
+  lay_over(root_, std::move(change));
+}
+
+bool TomlDocument::is_setting(const toml::source_region& region) const {
+  return region.path && *region.path != source_name_;
+}
+
+std::string TomlDocument::place_of(const toml::source_region& region) const {
+  if (is_setting(region)) return *region.path;
+  return fmt::format("{}:{}:{}", source_name_, region.begin.line, region.begin.column);
+}
+
+std::filesystem::path TomlDocument::directory_of(const toml::source_region& region) const {
+  return is_setting(region) ? std::filesystem::path()
+                            : std::filesystem::path(source_name_).parent_path();
+}
 
 TableReader::TableReader(const TomlDocument& document, Places& places)
     : TableReader(document, places, document.root(), "") {}

@@ -3,22 +3,187 @@
 #include "tofsmith/report/design_report.hpp"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "report/error_sections.hpp"
-#include "report/search_sections.hpp"
-#include "report/second_return_section.hpp"
+#include "tofsmith/core/people_text.hpp"
+#include "tofsmith/design/design.hpp"
+#include "tofsmith/report/bar_figure.hpp"
 #include "tofsmith/report/code_figures.hpp"
+#include "tofsmith/report/colours.hpp"
+#include "tofsmith/report/line_figure.hpp"
+#include "tofsmith/report/page.hpp"
 #include "tofsmith/report/robustness_section.hpp"
 #include "tofsmith/report/scene_section.hpp"
 #include "tofsmith/report/zncc_comparison.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {
-
 namespace {
+
+/// A candidate with its errors.
+struct Judged {
+  const Candidate* candidate;
+  Estimate single_m, behind_m;
+  std::optional<Estimate> two_return_m;
+  double weighed_m;
+};
+
+std::vector<Judged> by_weighed_error(const SecondReturns& returns, const DesignResult& result,
+                                     DepthErrorKind kind) {
+  std::vector<Judged> all;
+  for (const Candidate& c : result.candidates) {
+    if (!c.second_returns) continue;
+    Judged judged{&c, c.error.of(kind).geometric_mean_m, c.second_returns->single_path.of(kind),
+                  std::nullopt, 0.0};
+    if (c.second_returns->two_return)
+      judged.two_return_m = c.second_returns->two_return->circular_m;
+    judged.weighed_m = returns.weighed(judged.single_m.value, judged.behind_m.value);
+    all.push_back(judged);
+  }
+  std::ranges::stable_sort(all, {}, &Judged::weighed_m);
+  return all;
+}
+
+Table second_return_table(const SecondReturns& returns, const std::vector<Judged>& codes,
+                          const Candidate& winner, std::string_view kind) {
+  Table table{
+      .id = "second-returns",
+      .caption = fmt::format(
+          "Geometric means over the operating points of the {} error of single returns (E1) and "
+          "behind a second return of ratio {} to {}, {} to {} m late, decoded as single-path (E2); "
+          "the same decoded as two returns (circular). Codes are chosen by E1^{:.3g} E2^{:.3g}; "
+          "where decoding as two returns errs much more than of standard codes, that counts too.",
+          kind, returns.ratio[0], returns.ratio[1], returns.delay_m[0], returns.delay_m[1],
+          1.0 - returns.weight, returns.weight),
+      .columns = {{"code"},
+                  {"E1 (mm)", true},
+                  {"E2 (mm)", true},
+                  {"chosen by (mm)", true},
+                  {"as two returns (mm)", true}}};
+  for (const Judged& j : codes) {
+    if (j.candidate == &winner) table.highlighted_row = static_cast<int>(table.rows.size());
+    table.rows.push_back({j.candidate->code.name(), estimate_mm_text(j.single_m),
+                          estimate_mm_text(j.behind_m), fmt::format("{:.1f}", 1e3 * j.weighed_m),
+                          j.two_return_m ? estimate_mm_text(*j.two_return_m) : "cannot"});
+  }
+  return table;
+}
+
+Figure second_return_bars(const std::vector<Judged>& codes) {
+  ColourAssignment colours;
+  BarSeries single{.name = "one return"}, behind{.name = "second return, single-path"},
+      two{.name = "second return, as two"};
+  std::vector<std::string> names;
+  const auto add = [](BarSeries& series, const Estimate& e) {
+    series.values.push_back(1e3 * e.value);
+    series.errors.push_back(1e3 * e.standard_error);
+  };
+  const Estimate none{std::numeric_limits<double>::quiet_NaN(), 0.0};
+  for (const Judged& j : codes) {
+    names.push_back(j.candidate->code.name());
+    add(single, j.single_m);
+    add(behind, j.behind_m);
+    add(two, j.two_return_m.value_or(none));
+  }
+  std::vector<BarSeries> series{std::move(single), std::move(behind), std::move(two)};
+  for (BarSeries& bars : series) bars.style = colours.style(bars.name);
+  return bar_figure({.id = "second-return-errors",
+                     .title = "Depth error without and behind second returns",
+                     .caption = "What a second return adds to the error of each code, and what "
+                                "two-return decoding takes away again; no bar where a code cannot "
+                                "be decoded so."},
+                    names, series, {.label = "depth error", .unit = "mm", .from_zero = true});
+}
+
+/// The candidates' errors without and behind second returns, decoded as single-path and as two
+/// returns, in the order of what they were chosen by.
+Section second_return_section(const SecondReturns& returns, const DesignResult& result,
+                              DepthErrorKind kind) {
+  const std::vector<Judged> codes = by_weighed_error(returns, result, kind);
+  return {"Second returns",
+          {second_return_table(returns, codes, result.winner(),
+                               kind == DepthErrorKind::linear ? "linear" : "circular"),
+           second_return_bars(codes)}};
+}
+
+/// Residuals against iterations of every measurement that was designed.
+void add_convergence(const DesignResult& result, Section& section) {
+  for (const Candidate& c : result.candidates) {
+    ColourAssignment colours;
+    std::vector<Series> series;
+    for (std::size_t k = 0; k < c.per_measurement.size(); ++k) {
+      Series relaxed{.name = fmt::format("measurement {}", k + 1),
+                     .mark = Mark::line_and_markers,
+                     .style = colours.style(fmt::format("{}", k))};
+      for (std::size_t i = 0; i < c.per_measurement[k].history.size(); ++i) {
+        relaxed.x.push_back(static_cast<double>(i + 1));
+        relaxed.y.push_back(std::max(1e-6, c.per_measurement[k].history[i].playable_residual_rms));
+      }
+      if (!relaxed.x.empty()) series.push_back(std::move(relaxed));
+    }
+    if (series.empty()) continue;
+    section.blocks.push_back(line_figure(
+        {.id = figure_id("convergence", c.code.name()),
+         .title = fmt::format("Convergence of {}", c.code.name()),
+         .caption = "Residual of the binary projection after each pair of convex steps, for the "
+                    "random start that came closest; values below 1e-6 are drawn "
+                    "at 1e-6."},
+        series, {.label = "iteration"}, {.label = "residual, rms", .logarithmic = true}));
+  }
+}
+
+/// The smallest error so far of every search, and what it counted.
+void add_search_progress(const DesignResult& result, Section& section) {
+  ColourAssignment colours;
+  for (const Candidate& c : result.candidates) {
+    if (!c.search) continue;
+    section.blocks.push_back(
+        KeyValueList{{{c.code.name(), fmt::format("{}. {}", c.message, c.search->account)}}});
+    Series steps{.name = c.code.name(),
+                 .mark = Mark::line_and_markers,
+                 .style = colours.style(c.code.name())};
+    for (const SearchStep& step : c.search->steps) {
+      steps.x.push_back(step.work);
+      steps.y.push_back(1e3 * step.error_m);
+    }
+    if (steps.x.empty()) continue;
+    section.blocks.push_back(line_figure(
+        {.id = figure_id("search", c.code.name()),
+         .title = fmt::format("Search for {}", c.code.name()),
+         .caption = fmt::format("The {}, against work.", c.search->error_name)},
+        {steps}, {.label = c.search->work_unit}, {.label = "depth error", .unit = "mm"}));
+  }
+}
+
+/// How many times as large as the winner's the error of every other candidate is.
+Section gain_section(const Camera& camera, const DesignResult& result) {
+  const DepthErrorKind kind = camera.operating.error;
+  Table table{.id = "gains",
+              .caption = fmt::format(
+                  "How many times as large as that of the best the {} depth error of every other "
+                  "candidate is; ± is one standard error, the two taken for independent.",
+                  kind == DepthErrorKind::linear ? "linear" : "circular"),
+              .columns = {{"code"}, {"made by"}, {"exposures", true}, {"times the best", true}}};
+  for (const Candidate* c : by_geometric_mean_error(result, kind)) {
+    if (c == &result.winner()) continue;
+    const Estimate gain = gain_over(result, *c, kind);
+    table.rows.push_back({c->code.name(), c->method, fmt::format("{}", c->error.exposures),
+                          fmt::format("{:.3f} ± {:.3f}", gain.value, gain.standard_error)});
+  }
+  return {"Gain", {std::move(table)}};
+}
+
+/// How the designed codes were found: errors against work, residuals against iterations, and what
+/// exhaustive searches counted.
+Section search_section(const DesignResult& result) {
+  Section section{.title = "Search"};
+  add_search_progress(result, section);
+  add_convergence(result, section);
+  return section;
+}
 
 /// How many times larger another candidate's chosen error is than the winner's.
 std::string gain_text(const DesignResult& result, std::string_view name, DepthErrorKind kind) {

@@ -2,10 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+
 #include "tofsmith/core/array.hpp"
 #include "tofsmith/report/colours.hpp"
+#include "tofsmith/report/heat_map_figure.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
+
+/// A value at every operating point of a code, signal by ambient.
+HeatMap operating_map(const OperatingRange& range, const DepthErrorReport& error,
+                      const std::function<double(const PointDepthError&)>& value);
+
+/// Maps of several codes over the operating points.
+Figure operating_maps(FigureText text, const OperatingRange& range,
+                      const std::vector<HeatMap>& maps, const ColourScale& colours);
 
 /// Every value times `factor`, e.g. metres to millimetres.
 Image<float> scaled(Image<float> image, double factor);

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "report/series_trace.hpp"
+#include "report/plotly_json.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

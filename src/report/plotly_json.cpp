@@ -3,7 +3,6 @@
 #include "report/plotly_json.hpp"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -17,6 +16,15 @@
 
 namespace tofsmith::plotly {
 namespace {
+
+/// The series with the point that closes its period, if it has one.
+Series closed(Series series) {
+  if (!series.period || series.x.empty()) return series;
+  series.x.push_back(series.x.front() + *series.period);
+  series.y.push_back(series.y.front());
+  if (!series.y_error.empty()) series.y_error.push_back(series.y_error.front());
+  return series;
+}
 
 constexpr std::string_view base64_digits =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -99,6 +107,67 @@ const char* dash_name(Dash dash) {
 }
 
 }  // namespace
+
+PanelLayout::PanelLayout(int panels, int max_columns, double gap)
+    : columns_(std::min(panels, max_columns)),
+      rows_((panels + columns_ - 1) / columns_),
+      gap_(gap) {}
+
+double PanelLayout::panel_width() const { return (1 - gap_ * (columns_ - 1)) / columns_; }
+
+void PanelLayout::place(Json& layout, int panel, double row_gap, const std::string& title, Json x,
+                        Json y) const {
+  const double left = column(panel) * (panel_width() + gap_);
+  const double right = left + panel_width();
+  const double height = (1 - row_gap * (rows_ - 1)) / rows_;
+  const double bottom = (rows_ - 1 - row(panel)) * (height + row_gap);
+  const double top = bottom + height;
+  x["domain"] = {number(left), number(right)};
+  y["domain"] = {number(bottom), number(top)};
+  x["anchor"] = axis_name("y", panel);
+  y["anchor"] = axis_name("x", panel);
+  layout[axis_key("x", panel)] = std::move(x);
+  layout[axis_key("y", panel)] = std::move(y);
+  if (!title.empty()) layout["annotations"].push_back(panel_title(title, (left + right) / 2, top));
+}
+
+Json trace_of(const Series& open_series) {
+  require(open_series.x.size() == open_series.y.size(), "Series::y.size", open_series.y.size(),
+          "must equal x.size = " + std::to_string(open_series.x.size()));
+  require(open_series.y_error.empty() || open_series.y_error.size() == open_series.y.size(),
+          "Series::y_error.size", open_series.y_error.size(), "must be 0 or equal y.size");
+  const Series series = closed(open_series);
+  const bool has_line = series.mark != Mark::markers;
+  const bool has_markers = series.mark == Mark::markers || series.mark == Mark::line_and_markers;
+  Json trace = {{"type", "scatter"},
+                {"name", text(series.name)},
+                {"mode", !has_line     ? "markers"
+                         : has_markers ? "lines+markers"
+                                       : "lines"},
+                {"x", numbers(series.x)},
+                {"y", numbers(series.y)},
+                {"line", line(series.style)},
+                {"hovertemplate", "%{x:.4g}, %{y:.4g}"}};
+  // Plotly would drop points it takes for collinear and tilt the flat parts of a waveform.
+  trace["line"]["simplify"] = false;
+  if (series.mark == Mark::steps) trace["line"]["shape"] = "hv";
+  if (has_markers) trace["marker"] = {{"color", series.style.colour}, {"size", 6}};
+  if (!series.y_error.empty()) {
+    trace["error_y"] = {{"type", "data"},
+                        {"array", numbers(series.y_error)},
+                        {"color", series.style.colour},
+                        {"thickness", 1.2},
+                        {"width", 3}};
+  }
+  return trace;
+}
+
+std::vector<double> drawn(const std::vector<Series>& series, std::vector<double> Series::*values) {
+  std::vector<double> all;
+  for (const Series& one : series)
+    all.insert(all.end(), (one.*values).begin(), (one.*values).end());
+  return all;
+}
 
 Json number(double value) {
   if (!std::isfinite(value)) return nullptr;

@@ -6,10 +6,12 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tofsmith/report/colours.hpp"
 #include "tofsmith/report/figure.hpp"
+#include "tofsmith/report/line_figure.hpp"
 
 namespace tofsmith::plotly {
 
@@ -46,5 +48,39 @@ Json panel_title(const std::string& plain, double x, double y);
 
 /// Figure of these traces and this layout.
 Figure figure(FigureText text, const Json& data, Json layout, const FigureSize& size);
+
+/// The trace that draws a series.
+/// @throws std::invalid_argument if x, y and y_error differ in length
+Json trace_of(const Series& series);
+
+/// What the series draw along one axis: all their `values` (&Series::x or &Series::y).
+std::vector<double> drawn(const std::vector<Series>& series, std::vector<double> Series::*values);
+
+inline constexpr double panel_title_px = 26;
+inline constexpr double colour_bar_px = 88;
+
+/// Panels of one size in rows of `columns`, the first at the top left; every row has room for
+/// panel titles above it.
+class PanelLayout {
+ public:
+  /// @param gap  share of the width of the plot that stays free between columns
+  PanelLayout(int panels, int max_columns, double gap);
+
+  int rows() const { return rows_; }
+  int columns() const { return columns_; }
+  int row(int panel) const { return panel / columns_; }
+  int column(int panel) const { return panel % columns_; }
+  /// Width of a panel as a share of the width of the plot.
+  double panel_width() const;
+  /// Places the axes x and y of a panel and the heading above it.
+  /// @param row_gap  share of the height of the plot that stays free between rows
+  void place(Json& layout, int panel, double row_gap, const std::string& title, Json x,
+             Json y) const;
+
+ private:
+  int columns_;
+  int rows_;
+  double gap_;
+};
 
 }  // namespace tofsmith::plotly

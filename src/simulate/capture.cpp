@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "simulate/captured_rows.hpp"
+#include "simulate/row_capture.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/shared_progress.hpp"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/simulate/multipath_capture.hpp"
 
-#include "simulate/captured_rows.hpp"
+#include "simulate/row_capture.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

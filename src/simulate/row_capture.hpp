@@ -3,6 +3,7 @@
 #pragma once
 
 #include "simulate/pixel_capture.hpp"
+#include "tofsmith/core/progress.hpp"
 #include "tofsmith/simulate/multipath_capture.hpp"
 
 namespace tofsmith {
@@ -32,5 +33,9 @@ class RowCapture {
   PixelCapture pixel_;
   std::optional<FineCorrelation> tail_, transient_;  // of what is the same for all pixels
 };
+
+/// All rows of all frames, on all threads.
+RawFrames captured_rows(const RowCapture& source, int height, int width, int frames,
+                        const Progress& progress);
 
 }  // namespace tofsmith

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sweep/item_result.hpp"
 
-#include "io/json_text.hpp"
+#include "io/document_text.hpp"
 #include "io/result_json.hpp"
 
 namespace tofsmith {

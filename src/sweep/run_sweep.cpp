@@ -3,20 +3,173 @@
 #include "tofsmith/sweep/run_sweep.hpp"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <deque>
 #include <iterator>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "sweep/item_batch.hpp"
+#include "sweep/item_queue.hpp"
 #include "sweep/key_order.hpp"
-#include "sweep/open_items.hpp"
-#include "sweep/sweep_crew.hpp"
+#include "sweep/rank_state.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/sweep/sweep_ranks.hpp"
 
 namespace tofsmith {
-
 namespace {
+
+/// The items of a run that are not known to be finished: first those that were never asked for,
+/// then those that others had when we asked.
+class OpenItems {
+ public:
+  /// @param keys  of all items of the list; must outlive this
+  OpenItems(std::span<const std::string> keys, const SweepShard& shard);
+
+  /// Adds all of them to a store that lacks them.
+  void add_to(SweepStore& store, const WorkList& list, const Progress& progress);
+  /// Claims up to `most`. May come back empty-handed though some are open.
+  std::vector<ClaimedItem> claim(SweepStore& store, std::size_t most);
+
+  std::size_t count() const { return count_; }
+  /// Items that nobody needs to compute any more, or that are ours.
+  std::size_t settled() const { return settled_; }
+  bool are_none() const { return settled_ == count_; }
+  bool were_all_asked() const { return next_ == items_.size(); }
+
+ private:
+  std::vector<std::string> keys_of(std::span<const std::int64_t> items) const;
+
+  std::span<const std::string> keys_;
+  std::vector<std::int64_t> items_, taken_;
+  std::size_t next_ = 0, settled_ = 0, count_ = 0;
+};
+
+/// Most items that a store is asked about, or told of, at a time.
+constexpr std::size_t most_asked_at_once = 4096;
+
+OpenItems::OpenItems(std::span<const std::string> keys, const SweepShard& shard)
+    : keys_(keys), items_(key_order(keys)) {
+  std::erase_if(items_,
+                [&](std::int64_t i) { return !shard.holds(keys[static_cast<std::size_t>(i)]); });
+  count_ = items_.size();
+}
+
+void OpenItems::add_to(SweepStore& store, const WorkList& list, const Progress& progress) {
+  // In the order of the keys, which is the store's own: then it grows at its end.
+  const std::span<const std::int64_t> items(items_);
+  for (std::size_t begin = 0; begin < items.size(); begin += most_asked_at_once) {
+    report(progress, 0.0, fmt::format("adding items: {} of {}", begin, items.size()));
+    const auto part = items.subspan(begin, std::min(most_asked_at_once, items.size() - begin));
+    store.add(keys_of(part), [&](std::size_t i) { return list.settings_json(part[i]); });
+  }
+  std::ranges::sort(items_);
+}
+
+std::vector<ClaimedItem> OpenItems::claim(SweepStore& store, std::size_t most) {
+  if (were_all_asked()) {  // go on with those that others had
+    items_ = std::exchange(taken_, {});
+    next_ = 0;
+  }
+  const std::size_t some = std::min(most_asked_at_once, items_.size() - next_);
+  const std::vector<std::string> keys = keys_of(std::span(items_).subspan(next_, some));
+  std::vector<ClaimedItem> ours;
+  for (const ClaimAnswer answer : store.claim(keys, most)) {
+    const std::int64_t item = items_[next_++];
+    if (answer == ClaimAnswer::taken)
+      taken_.push_back(item);
+    else
+      ++settled_;
+    if (answer == ClaimAnswer::ours) ours.push_back({item, keys_[static_cast<std::size_t>(item)]});
+  }
+  return ours;
+}
+
+std::vector<std::string> OpenItems::keys_of(std::span<const std::int64_t> items) const {
+  std::vector<std::string> keys;
+  keys.reserve(items.size());
+  for (const std::int64_t item : items) keys.push_back(keys_[static_cast<std::size_t>(item)]);
+  return keys;
+}
+
+/// All who compute for a run: this process and, of a job of several ranks, the others.
+class SweepCrew {
+ public:
+  /// What became of items that a member was given.
+  struct Delivery {
+    std::size_t member;
+    std::vector<ItemOutcome> outcomes;
+  };
+
+  /// @param ranks          this must be rank 0 of them; null if there are no others
+  /// @param computes_here  whether this process is one of the members
+  SweepCrew(const WorkList& list, SweepRanks* ranks, bool computes_here);
+
+  std::size_t size() const { return (computes_here_ ? 1 : 0) + others_; }
+  void give(std::size_t member, std::vector<ClaimedItem> items);
+  /// Waits a moment for something to come out.
+  /// @throws Interrupted if a member's user asks to stop; std::runtime_error if one cannot go on
+  std::vector<Delivery> wait();
+  /// Sends all home, and drops what is unfinished. @return what was finished nevertheless
+  std::vector<ItemOutcome> stop();
+  /// How far this process is with a single item, in [0, 1].
+  double fraction() const { return own_.fraction(); }
+
+ private:
+  SweepRanks* ranks_;
+  bool computes_here_;
+  std::size_t others_;
+  ItemQueue own_;
+};
+
+/// Long enough to leave the processor to others, short enough for the user; shorter where other
+/// ranks wait for us.
+constexpr std::chrono::milliseconds alone_wait(50), served_wait(1);
+
+SweepCrew::SweepCrew(const WorkList& list, SweepRanks* ranks, bool computes_here)
+    : ranks_(ranks),
+      computes_here_(computes_here),
+      others_(ranks == nullptr ? 0 : static_cast<std::size_t>(ranks->count() - 1)),
+      own_(list) {}
+
+void SweepCrew::give(std::size_t member, std::vector<ClaimedItem> items) {
+  if (computes_here_ && member == 0) return own_.give(std::move(items));
+  const int rank = static_cast<int>(member) + (computes_here_ ? 0 : 1);
+  ranks_->state().send(rank, RankTag::items, bytes_of(items));
+}
+
+std::vector<SweepCrew::Delivery> SweepCrew::wait() {
+  std::vector<Delivery> deliveries;
+  auto own = own_.wait(others_ > 0 ? served_wait : alone_wait);
+  if (!own.empty()) deliveries.push_back({0, std::move(own)});
+  if (others_ == 0) return deliveries;
+  SweepRanks::State& state = ranks_->state();
+  while (std::optional<RankMessage> message = state.world->receive()) {
+    const auto tag = static_cast<RankTag>(message->tag);
+    if (tag == RankTag::interrupted) throw Interrupted();
+    if (tag == RankTag::trouble)
+      throw std::runtime_error(fmt::format("{}: {}", state.name_of(message->rank), message->bytes));
+    if (tag == RankTag::outcomes)
+      deliveries.push_back({static_cast<std::size_t>(message->rank) - (computes_here_ ? 0 : 1),
+                            outcomes_of(message->bytes)});
+  }
+  return deliveries;
+}
+
+std::vector<ItemOutcome> SweepCrew::stop() {
+  std::vector<ItemOutcome> outcomes = own_.stop();
+  if (others_ == 0) return outcomes;
+  std::vector<ItemOutcome> theirs = ranks_->state().send_home();
+  outcomes.insert(outcomes.end(), std::make_move_iterator(theirs.begin()),
+                  std::make_move_iterator(theirs.end()));
+  return outcomes;
+}
 
 using Clock = std::chrono::steady_clock;
 

@@ -1,19 +1,179 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <sstream>
 
 #include "io/table_reader.hpp"
-#include "sweep/sweep_axis.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/read_file.hpp"
 #include "tofsmith/sweep/sweep_spec.hpp"
 
 namespace tofsmith {
-
 namespace {
+
+/// Most values that one axis may have.
+constexpr std::int64_t max_axis_values = 1'000'000;
+
+/// What can vary beside the keys of the camera.
+constexpr std::array<std::string_view, 9> other_keys = {
+    "camera", "code", "exposures",      "method",         "unwrap_weights",
+    "trials", "seed", "signal_e_per_s", "ambient_e_per_s"};
+
+void check_key(const TableReader& table, const std::string& key) {
+  std::vector<std::string> known = camera_keys();
+  known.insert(known.end(), other_keys.begin(), other_keys.end());
+  if (std::ranges::find(known, key) != known.end()) return;
+  // The last word of a key, or else what is spelled nearly like it.
+  const auto ends_so = [&](const std::string& word) { return word.ends_with("." + key); };
+  const auto found = std::ranges::find_if(known, ends_so);
+  const std::string near = found != known.end() ? *found : nearest_word(key, known);
+  table.fail("key", fmt::format("found unknown axis \"{}\"; {}", key,
+                                near.empty() ? "expected a key of the camera such as "
+                                               "light.peak_factor, or " +
+                                                   fmt::format("{}", fmt::join(other_keys, ", "))
+                                             : fmt::format("did you mean \"{}\"?", near)));
+}
+
+/// To twelve digits, so that 0.1 + 0.2 is the 0.3 that a list would say.
+double rounded(double value) { return std::stod(fmt::format("{:.12g}", value)); }
+
+std::vector<SettingValue> range_values(const TableReader& table, double from, double to,
+                                       double step) {
+  const std::string place = table.place_of("from");
+  const double steps = (to - from) / step;
+  if (!(steps >= 0.0) || !std::isfinite(steps))
+    table.fail("step",
+               fmt::format("found {}; expected steps that lead from {} to {}", step, from, to));
+  if (steps >= static_cast<double>(max_axis_values))
+    table.fail("step",
+               fmt::format("makes {:.3g} values; expected at most {}", steps, max_axis_values));
+  std::vector<SettingValue> values;
+  const auto count = static_cast<std::int64_t>(std::floor(steps * (1 + 1e-12) + 1e-9));
+  for (std::int64_t i = 0; i <= count; ++i)
+    values.push_back(toml_value_of(rounded(from + static_cast<double>(i) * step), place));
+  return values;
+}
+
+std::vector<SettingValue> logarithmic_values(const TableReader& table, double from, double to,
+                                             int count) {
+  const std::string place = table.place_of("from");
+  if (!(from > 0.0)) table.fail("from", fmt::format("found {}; expected a number > 0", from));
+  if (!(to > 0.0)) table.fail("to", fmt::format("found {}; expected a number > 0", to));
+  if (count < 2 || count > max_axis_values)
+    table.fail("count", fmt::format("found {}; expected 2 .. {}", count, max_axis_values));
+  std::vector<SettingValue> values;
+  for (int i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / (count - 1);
+    const double value = i + 1 == count ? to : from * std::pow(to / from, share);
+    values.push_back(toml_value_of(rounded(value), place));
+  }
+  return values;
+}
+
+std::vector<SettingValue> file_values(const TableReader& table, const std::string& name) {
+  const std::filesystem::path path = table.resolve("file", name);
+  std::string text;
+  try {
+    text = read_text_file(path);
+  } catch (const IoError& error) {
+    table.fail("file", error.what());
+  }
+  std::vector<SettingValue> values;
+  std::istringstream lines(text);
+  std::int64_t number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    const std::size_t begin = line.find_first_not_of(" \t\r");
+    if (begin == std::string::npos || line[begin] == '#') continue;
+    const std::size_t end = line.find_last_not_of(" \t\r");
+    values.push_back(toml_value_of_line(line.substr(begin, end + 1 - begin),
+                                        fmt::format("{}:{}:{}", path.string(), number, begin + 1)));
+  }
+  if (values.empty())
+    table.fail("file", fmt::format("{} holds no value; expected one a line", path.string()));
+  return values;
+}
+
+[[noreturn]] void refuse_value(const SweepAxis& axis, const SettingValue& value,
+                               std::string_view expected) {
+  throw IoError(value.place,
+                fmt::format("{}: found {}; expected {}", axis.key, value.toml, expected));
+}
+
+void check_value(const SweepAxis& axis, const SettingValue& value) {
+  const bool is_text = value.toml.starts_with('"');
+  const auto is_integer_from = [&](double least) {
+    return value.number && *value.number >= least && *value.number < 0x1p53 &&
+           *value.number == std::floor(*value.number);
+  };
+  if (axis.key == "camera" || axis.key == "code") {
+    if (!is_text || value.text.empty()) refuse_value(axis, value, "a name or file in quotes");
+  } else if (axis.key == "method" || axis.key == "unwrap_weights") {
+    try {
+      if (axis.key == "method")
+        parse_decode_method(value.text);
+      else
+        parse_unwrap_weights(value.text);
+    } catch (const std::invalid_argument& error) {
+      throw IoError(value.place, error.what());
+    }
+  } else if (axis.key == "exposures") {
+    if (!is_integer_from(1)) refuse_value(axis, value, "an integer >= 1");
+  } else if (axis.key == "seed") {
+    if (!is_integer_from(0)) refuse_value(axis, value, "an integer >= 0 below 2^53");
+  } else if (axis.key == "trials") {
+    if (!is_integer_from(2) || *value.number > 4e9) refuse_value(axis, value, "an integer >= 2");
+  } else if (axis.key == "signal_e_per_s" || axis.key == "ambient_e_per_s") {
+    if (!value.number || !(*value.number >= 0.0)) refuse_value(axis, value, "a number >= 0");
+  }
+}
+
+/// Reads one [[axis]]. @throws IoError naming file:line:column
+SweepAxis read_sweep_axis(TableReader& table) {
+  SweepAxis axis;
+  table.required("key", "\"light.peak_factor\"").value("key", axis.key);
+  axis.place = table.place_of("key");
+  check_key(table, axis.key);
+
+  const bool has_values = table.contains("values"), has_file = table.contains("file");
+  if (has_values || has_file) {
+    table.refuse({"from", "to", "step", "count"}, "no values and no file beside it");
+    if (has_values) table.refuse({"file"}, "no values beside it");
+    table.value("values", axis.values);
+    if (has_values && axis.values.empty())
+      table.fail("values", "found an empty list; expected at least one value");
+    std::string file;
+    table.value("file", file);
+    if (has_file) axis.values = file_values(table, file);
+    return axis;
+  }
+  if (!table.contains("from"))
+    table.fail("key",
+               "found no values; expected values = [..], file = \"..\", or from, to and "
+               "step (even) or count (logarithmic)");
+  double from = 0.0, to = 0.0, step = 0.0;
+  int count = 0;
+  table.value("from", from);
+  table.required("to", "1e5").value("to", to);
+  if (table.contains("count")) {
+    table.refuse({"step"}, "no count beside it");
+    table.value("count", count);
+    axis.values = logarithmic_values(table, from, to, count);
+  } else {
+    table.required("step", "1").value("step", step);
+    axis.values = range_values(table, from, to, step);
+  }
+  return axis;
+}
+
+/// Refuses values that no item could use. @throws IoError naming file:line:column
+void check_axis_values(const SweepAxis& axis) {
+  for (const SettingValue& value : axis.values) check_value(axis, value);
+}
 
 using MethodWord = std::pair<std::string_view, DecodeMethod>;
 using WeightsWord = std::pair<std::string_view, UnwrapWeights>;

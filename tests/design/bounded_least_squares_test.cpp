@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "design/bounded_least_squares.hpp"
+#include "design/least_squares_term.hpp"
 
 #include <gtest/gtest.h>
 

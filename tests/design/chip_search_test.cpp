@@ -13,7 +13,7 @@
 #include <set>
 
 #include "design/best_codes.hpp"
-#include "design/tap_assignments.hpp"
+#include "design/exhaustive_search.hpp"
 #include "each_target.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"

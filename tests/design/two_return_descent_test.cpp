@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "design/depth_error_loss.hpp"
-#include "design/descent.hpp"
+#include "design/optimize_pool.hpp"
 #include "design/design_problem.hpp"
 #include "design/optimize_starts.hpp"
 #include "tofsmith/camera/camera.hpp"

@@ -9,7 +9,7 @@
 
 #include "damaged_files.hpp"
 #include "io/field_key.hpp"
-#include "io/json_text.hpp"
+#include "io/document_text.hpp"
 #include "tofsmith/design/design.hpp"
 
 namespace tofsmith {
