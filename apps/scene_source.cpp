@@ -12,6 +12,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/albedo_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
+#include "tofsmith/io/embree_search.hpp"
 #include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
@@ -102,7 +103,7 @@ LoadedScene depth_image(const SceneSource& source, const Camera& camera) {
 LoadedScene load(const SceneSource& source, SceneKind kind, const Camera& camera) {
   if (kind == SceneKind::depth_image) return depth_image(source, camera);
   StagedScene staged = staged_scene(source, kind);
-  SceneImage image = ray_cast(staged.shapes, staged.view, staged.camera_to_world);
+  SceneImage image = ray_cast(staged.shapes, staged.view, staged.camera_to_world, embree_search());
   check_view(staged, image);
   return {kind == SceneKind::built_in ? source.scene : fs::path(source.scene).stem().string(),
           std::move(image), staged.view, std::move(staged)};
@@ -156,7 +157,7 @@ LaterReturns bounced_light_of(const LoadedScene& scene, const Camera& camera, Bo
                     "out of view: a built-in scene, a scene file (.toml) or a mesh",
                     scene.name));
   options.range_m = camera.range_m();
-  return bounced_light(*scene.staged, options, progress);
+  return bounced_light(*scene.staged, options, progress, embree_search());
 }
 
 std::string beyond_range_remark(const SceneExtent& extent) {

@@ -17,6 +17,7 @@
 
 #include "generated_meshes.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/io/embree_search.hpp"
 #include "tofsmith/scene/ray_cast.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 
@@ -118,7 +119,7 @@ int main() {
   const tofsmith::Mesh mesh = bumpy_ball();
   const std::vector<tofsmith::Shape> shapes = {mesh};
 
-  const tofsmith::RayCaster caster(shapes);
+  const tofsmith::RayCaster caster(shapes, tofsmith::embree_search());
   const EmbreeAlone embree(mesh, view);
   double ours = 1e9, alone = 1e9;
   std::size_t hits = 0, seen = 0;
@@ -131,7 +132,8 @@ int main() {
                                         [](std::int32_t shape) { return shape >= 0; }));
                     }));
   }
-  const double build = best_seconds(5, [&] { tofsmith::RayCaster again(shapes); });
+  const double build =
+      best_seconds(5, [&] { tofsmith::RayCaster again(shapes, tofsmith::embree_search()); });
   int tried = 0;
   const double reference = best_seconds(3, [&] {
     tried = 0;

@@ -5,6 +5,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/io/embree_search.hpp"
 #include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/scene/check_view.hpp"
@@ -19,7 +20,7 @@ py::dict seen(const StagedScene& staged) {
   SceneImage image;
   {
     const py::gil_scoped_release release;
-    image = ray_cast(staged.shapes, staged.view, staged.camera_to_world);
+    image = ray_cast(staged.shapes, staged.view, staged.camera_to_world, embree_search());
     check_view(staged, image);
   }
   py::dict scene;

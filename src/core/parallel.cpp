@@ -2,24 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/core/parallel.hpp"
 
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
 #include "tofsmith/core/error.hpp"
 
+#ifdef TOFSMITH_HAS_TBB
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#endif
+
 namespace tofsmith {
 
-void parallel_for_blocks(std::int64_t count, std::int64_t block,
-                         const std::function<void(IndexRange)>& work) {
-  TOFSMITH_ASSERT_LT(std::int64_t{0}, block);
-  const std::int64_t blocks = (count + block - 1) / block;
-  tbb::parallel_for(std::int64_t{0}, blocks, [&](std::int64_t b) {
-    work({b * block, std::min(count, (b + 1) * block)});
-  });
-}
-
+#ifdef TOFSMITH_HAS_TBB
 void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& work) {
   tbb::parallel_for(std::int64_t{0}, count, [&](std::int64_t i) { work(i); });
 }
@@ -29,6 +23,24 @@ struct ThreadLimit::Control {
       : control(tbb::global_control::max_allowed_parallelism, threads) {}
   tbb::global_control control;
 };
+#else  // in the thread that asks, in order
+void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& work) {
+  for (std::int64_t i = 0; i < count; ++i) work(i);
+}
+
+struct ThreadLimit::Control {
+  explicit Control(std::size_t) {}
+};
+#endif
+
+void parallel_for_blocks(std::int64_t count, std::int64_t block,
+                         const std::function<void(IndexRange)>& work) {
+  TOFSMITH_ASSERT_LT(std::int64_t{0}, block);
+  const std::int64_t blocks = (count + block - 1) / block;
+  parallel_for(blocks, [&](std::int64_t b) {
+    work({b * block, std::min(count, (b + 1) * block)});
+  });
+}
 
 ThreadLimit::ThreadLimit(int threads) {
   require(threads >= 0, "threads", threads, "must be >= 0 (0 uses every core)");

@@ -12,6 +12,7 @@
 #include "reproduce/figures.hpp"
 #include "reproduce/scene_views.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/embree_search.hpp"
 #include "tofsmith/report/image_figure.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/scene/check_view.hpp"
@@ -54,7 +55,8 @@ StagedScene in_place_of_the_hand(const TriangleMesh& mesh, int width, int height
 SceneResult seen(const ReproduceOptions& options, int width, int height) {
   const StagedScene staged = options.mesh ? in_place_of_the_hand(*options.mesh, width, height)
                                           : built_in_scene("hand", width, height);
-  const SeenScene whole = RayCaster(staged.shapes).see(staged.view, staged.camera_to_world);
+  const SeenScene whole =
+      RayCaster(staged.shapes, embree_search()).see(staged.view, staged.camera_to_world);
   check_view(staged, whole.image);
   int left = width, right = 0, top = height, bottom = 0;
   for (int row = 0; row < height; ++row)

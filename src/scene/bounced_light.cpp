@@ -42,10 +42,11 @@ struct SeenPoint {
 
 class BounceGatherer {
  public:
-  BounceGatherer(const StagedScene& scene, const BounceOptions& options)
+  BounceGatherer(const StagedScene& scene, const BounceOptions& options,
+                 const MeshSearchMaker& search_of)
       : scene_(scene),
         options_(options),
-        caster_(scene.shapes),
+        caster_(scene.shapes, search_of),
         light_(scene.camera_to_world.translation()) {}
 
   /// Later returns of a pixel, by increasing distance.
@@ -160,11 +161,11 @@ void BounceOptions::validate() const {
 }
 
 LaterReturns bounced_light(const StagedScene& scene, const BounceOptions& options,
-                           const Progress& progress) {
+                           const Progress& progress, const MeshSearchMaker& search_of) {
   options.validate();
   scene.view.validate();
   require_rigid(scene.camera_to_world, "camera_to_world");
-  const BounceGatherer gatherer(scene, options);
+  const BounceGatherer gatherer(scene, options, search_of);
   const int height = scene.view.height, width = scene.view.width;
   LaterReturns result(height, width);
   std::vector<std::vector<LaterReturn>> of_row(static_cast<std::size_t>(width));

@@ -16,8 +16,8 @@ std::optional<Hit> nearest_hit(std::span<const Shape> shapes, const Ray& ray) {
 }
 
 SceneImage ray_cast(std::span<const Shape> shapes, const PinholeView& view,
-                    const Eigen::Isometry3d& camera_to_world) {
-  return RayCaster(shapes).see(view, camera_to_world).image;
+                    const Eigen::Isometry3d& camera_to_world, const MeshSearchMaker& search_of) {
+  return RayCaster(shapes, search_of).see(view, camera_to_world).image;
 }
 
 }  // namespace tofsmith

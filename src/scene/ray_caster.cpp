@@ -7,7 +7,6 @@
 #include <cmath>
 #include <vector>
 
-#include "scene/mesh_caster.hpp"
 #include "scene/rigid.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
@@ -16,14 +15,14 @@ namespace tofsmith {
 
 struct RayCaster::Prepared {
   std::vector<Shape> shapes;
-  EmbreeDevice device;                                    ///< none without meshes
-  std::vector<std::unique_ptr<const MeshCaster>> meshes;  ///< one per shape; null for other shapes
+  /// One per shape; null: the shape is intersected in closed form.
+  std::vector<std::unique_ptr<const MeshSearch>> searches;
 
   void trace(std::span<const Ray> rays, std::span<NearestHit> nearest) const {
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       const auto index = static_cast<std::int32_t>(i);
-      if (meshes[i]) {
-        meshes[i]->trace(rays, nearest, index);
+      if (searches[i]) {
+        searches[i]->trace(rays, nearest, index);
         continue;
       }
       std::visit(
@@ -38,17 +37,14 @@ struct RayCaster::Prepared {
   }
 };
 
-RayCaster::RayCaster(std::span<const Shape> shapes) {
+RayCaster::RayCaster(std::span<const Shape> shapes, const MeshSearchMaker& search_of) {
   for (const Shape& shape : shapes) validate(shape);
   auto prepared = std::make_unique<Prepared>();
   prepared->shapes.assign(shapes.begin(), shapes.end());
-  prepared->meshes.resize(shapes.size());
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    const Mesh* mesh = std::get_if<Mesh>(&prepared->shapes[i]);
-    if (!mesh) continue;
-    if (!prepared->device) prepared->device = new_embree_device();
-    prepared->meshes[i] = std::make_unique<MeshCaster>(*mesh, prepared->device.get());
-  }
+  prepared->searches.resize(shapes.size());
+  for (std::size_t i = 0; search_of && i < shapes.size(); ++i)
+    if (const Mesh* mesh = std::get_if<Mesh>(&prepared->shapes[i]))
+      prepared->searches[i] = search_of(*mesh);
   prepared_ = std::move(prepared);
 }
 
@@ -72,11 +68,11 @@ SeenScene RayCaster::see(const PinholeView& view, const Eigen::Isometry3d& camer
   const Eigen::Vector3d origin = camera_to_world.translation();
   parallel_for(view.height, [&](std::int64_t line) {
     const int row = static_cast<int>(line);
-    constexpr int packet = static_cast<int>(MeshCaster::packet);
-    std::array<Ray, MeshCaster::packet> rays;
+    constexpr int packet = static_cast<int>(MeshSearch::packet);
+    std::array<Ray, MeshSearch::packet> rays;
     for (int begin = 0; begin < view.width; begin += packet) {
       const int count = std::min(packet, view.width - begin);
-      std::array<NearestHit, MeshCaster::packet> nearest;
+      std::array<NearestHit, MeshSearch::packet> nearest;
       for (int lane = 0; lane < count; ++lane)
         rays[static_cast<std::size_t>(lane)] = {origin, turn * view.ray(row, begin + lane)};
       const auto lanes = static_cast<std::size_t>(count);

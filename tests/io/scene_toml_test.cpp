@@ -12,6 +12,7 @@
 
 #include "damaged_files.hpp"
 #include "temporary_directory.hpp"
+#include "tofsmith/io/embree_search.hpp"
 #include "tofsmith/io/float_image_file.hpp"
 #include "tofsmith/scene/ray_cast.hpp"
 
@@ -85,7 +86,8 @@ TEST(SceneToml, ThePointLookedAtIsInTheMiddle) {
   const StagedScene scene = parse_scene_toml(
       "[view]\nwidth_px = 65\nheight_px = 49\n[camera]\nposition_m = [1, -2, 0]\n"
       "look_at_m = [0, 0, 3]\n[[sphere]]\ncentre_m = [0, 0, 3]\nradius_m = 0.5\n");
-  const SceneImage image = ray_cast(scene.shapes, scene.view, scene.camera_to_world);
+  const SceneImage image =
+      ray_cast(scene.shapes, scene.view, scene.camera_to_world, embree_search());
   EXPECT_NEAR(image.depth_m(24, 32), std::sqrt(14.0) - 0.5, 1e-5);
   EXPECT_NEAR(scene.camera_to_world.linear().determinant(), 1.0, 1e-12);
   EXPECT_NEAR(scene.camera_to_world.linear()(1, 0), 0.0, 1e-12) << "rows are level";

@@ -7,6 +7,7 @@
 
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/scene/later_returns.hpp"
+#include "tofsmith/scene/mesh_search.hpp"
 #include "tofsmith/scene/staged_scene.hpp"
 
 namespace tofsmith {
@@ -33,9 +34,10 @@ struct BounceOptions {
 /// Directions are a lattice turned at random for each pixel. Every bin of delays becomes one return
 /// at its mean distance; light and mean delay are kept. Pixels without direct return, or that see
 /// their surface edge-on, have none.
+/// @param search_of  how meshes are searched: see RayCaster
 /// @throws std::invalid_argument if scene or options are invalid; Interrupted if progress says so
 /// @note the same for any number of threads
 LaterReturns bounced_light(const StagedScene& scene, const BounceOptions& options = {},
-                           const Progress& progress = {});
+                           const Progress& progress = {}, const MeshSearchMaker& search_of = {});
 
 }  // namespace tofsmith

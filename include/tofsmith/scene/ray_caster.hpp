@@ -9,6 +9,7 @@
 #include <span>
 
 #include "tofsmith/core/array.hpp"
+#include "tofsmith/scene/mesh_search.hpp"
 #include "tofsmith/scene/pinhole.hpp"
 #include "tofsmith/scene/scene_image.hpp"
 #include "tofsmith/scene/shapes.hpp"
@@ -21,18 +22,16 @@ struct SeenScene {
   Image<std::int32_t> shape;  ///< index of the shape seen in a pixel; -1 = no return
 };
 
-/// Shapes made ready for many rays. Meshes are searched through a hierarchy of bounding boxes; the
-/// triangle found is then intersected in double precision. All other shapes stay closed form.
-///
-/// Agrees with nearest_hit but for rays that pass an edge of a mesh closer than about 1e-6 of the
-/// mesh's (not the scene's) size: those may see the triangle beside it.
+/// Shapes made ready for many rays. Meshes are searched as the caller says; all other shapes stay
+/// closed form.
 /// @note immutable; thread-safe; same image for any number of threads
 class RayCaster {
  public:
   /// Keeps copies of the shapes.
-  /// @throws std::invalid_argument if a shape is invalid; std::runtime_error or std::bad_alloc if
-  ///         the hierarchy cannot be built
-  explicit RayCaster(std::span<const Shape> shapes);
+  /// @param search_of  how meshes are searched, such as embree_search(); empty: every triangle is
+  ///                   tried, as nearest_hit does, which is slow for more than a few
+  /// @throws std::invalid_argument if a shape is invalid; what `search_of` throws
+  explicit RayCaster(std::span<const Shape> shapes, const MeshSearchMaker& search_of = {});
   ~RayCaster();
   RayCaster(RayCaster&&) noexcept;
   RayCaster& operator=(RayCaster&&) noexcept;

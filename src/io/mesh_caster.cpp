@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/mesh_caster.hpp"
+#include "io/mesh_caster.hpp"
 
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
@@ -10,9 +10,11 @@
 #include <array>
 #include <new>
 #include <stdexcept>
+#include <utility>
 
 #include "scene/mesh_surface.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/embree_search.hpp"
 
 namespace tofsmith {
 
@@ -39,12 +41,15 @@ Item* new_buffer(RTCDevice device, RTCGeometry geometry, RTCBufferType type, RTC
 }  // namespace
 
 EmbreeDevice new_embree_device() {
-  EmbreeDevice device(rtcNewDevice(nullptr));
+  EmbreeDevice device(rtcNewDevice(nullptr), [](RTCDevice made) {
+    if (made) rtcReleaseDevice(made);
+  });
   throw_on_error(device.get(), "new device");
   return device;
 }
 
-MeshCaster::MeshCaster(const Mesh& mesh, RTCDevice device) : mesh_(&mesh) {
+MeshCaster::MeshCaster(const Mesh& mesh, EmbreeDevice device)
+    : device_(std::move(device)), mesh_(&mesh) {
   Eigen::AlignedBox3d bounds;
   for (std::size_t i = 0; i < mesh.triangles.triangles.size(); ++i) {
     const auto [a, b, c] = corners_in_world(mesh, i);
@@ -60,10 +65,11 @@ MeshCaster::MeshCaster(const Mesh& mesh, RTCDevice device) : mesh_(&mesh) {
   radius_m_ = 0.5 * bounds.diagonal().norm() * (1 + single_precision);
   // In one thread: the order in which several build the hierarchy would decide which of two
   // triangles a ray along their common edge sees.
-  tbb::task_arena(1).execute([&] { build(device); });
+  tbb::task_arena(1).execute([&] { build(); });
 }
 
-void MeshCaster::build(RTCDevice device) {
+void MeshCaster::build() {
+  const RTCDevice device = device_.get();
   const EmbreeOwner<RTCGeometry, rtcReleaseGeometry> geometry(
       rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
   throw_on_error(device, "new geometry");
@@ -174,6 +180,13 @@ void MeshCaster::trace(std::span<const Ray> rays, std::span<NearestHit> nearest,
       any = true;
     }
   }
+}
+
+MeshSearchMaker embree_search() {
+  return [device = EmbreeDevice()](const Mesh& mesh) mutable -> std::unique_ptr<const MeshSearch> {
+    if (!device) device = new_embree_device();  // scenes without a mesh need none
+    return std::make_unique<MeshCaster>(mesh, device);
+  };
 }
 
 }  // namespace tofsmith

@@ -6,21 +6,14 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
 #include <type_traits>
 #include <vector>
 
-#include "tofsmith/scene/shapes.hpp"
+#include "tofsmith/scene/mesh_search.hpp"
 
 namespace tofsmith {
-
-/// The nearest surface met so far, and the shape it belongs to.
-struct NearestHit {
-  Hit hit{std::numeric_limits<double>::infinity(), Eigen::Vector3d::Zero(), 0.0};
-  std::int32_t shape = -1;
-};
 
 template <typename Handle, void (*Release)(Handle)>
 struct EmbreeRelease {
@@ -28,7 +21,7 @@ struct EmbreeRelease {
 };
 template <typename Handle, void (*Release)(Handle)>
 using EmbreeOwner = std::unique_ptr<std::remove_pointer_t<Handle>, EmbreeRelease<Handle, Release>>;
-using EmbreeDevice = EmbreeOwner<RTCDevice, rtcReleaseDevice>;
+using EmbreeDevice = std::shared_ptr<std::remove_pointer_t<RTCDevice>>;
 using EmbreeScene = EmbreeOwner<RTCScene, rtcReleaseScene>;
 
 /// @throws std::runtime_error
@@ -39,18 +32,13 @@ EmbreeDevice new_embree_device();
 /// The hierarchy works in single precision: in coordinates about the mesh's own centre, in units
 /// of its own size, and on rays that start where they reach it, so that neither the mesh's place
 /// nor the camera's distance costs digits. It only names the triangle.
-class MeshCaster {
+class MeshCaster : public MeshSearch {
  public:
-  static constexpr std::size_t packet = 8;
-
   /// @param mesh  must outlive the caster
-  MeshCaster(const Mesh& mesh, RTCDevice device);
+  MeshCaster(const Mesh& mesh, EmbreeDevice device);
 
-  /// Replaces what is farther than this mesh.
-  /// @param rays     at most `packet`
-  /// @param nearest  one per ray
-  /// @param shape    the mesh's index
-  void trace(std::span<const Ray> rays, std::span<NearestHit> nearest, std::int32_t shape) const;
+  void trace(std::span<const Ray> rays, std::span<NearestHit> nearest,
+             std::int32_t shape) const override;
 
  private:
   /// A triangle of the world; weights of corners b and c are gradient . (point - corner).
@@ -59,8 +47,9 @@ class MeshCaster {
     std::uint32_t triangle;
   };
   Hit hit_facet(const Facet& facet, const Ray& ray, double share_b, double share_c) const;
-  void build(RTCDevice device);
+  void build();
 
+  EmbreeDevice device_;  ///< outlives scene_
   const Mesh* mesh_;
   std::vector<Facet> facets_;  ///< triangles without area are left out
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
