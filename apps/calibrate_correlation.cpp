@@ -10,14 +10,13 @@
 #include "number_checks.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
-#include "tofsmith/calibrate/calibrated_table_file.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
-#include "tofsmith/calibrate/ideal_code_fit.hpp"
+#include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/people_text.hpp"
+#include "tofsmith/core/units.hpp"
 #include "tofsmith/io/code_file.hpp"
-#include "tofsmith/io/float_image_file.hpp"
-#include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/io/image_file.hpp"
+#include "tofsmith/io/raw_frames.hpp"
 #include "tofsmith/report/calibration_report.hpp"
 
 namespace tofsmith::apps {

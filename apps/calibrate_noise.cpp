@@ -6,7 +6,7 @@
 #include "number_checks.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/io/raw_frames.hpp"
 #include "tofsmith/report/calibration_report.hpp"
 
 namespace tofsmith::apps {

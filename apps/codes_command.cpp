@@ -9,13 +9,12 @@
 #include "tap_arguments.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/camera/generator_report.hpp"
-#include "tofsmith/code/coding_curve.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
-#include "tofsmith/io/waveform_csv.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/export_report.hpp"
+#include "tofsmith/waveforms/waveform_export.hpp"
 
 namespace tofsmith::apps {
 

@@ -13,17 +13,16 @@
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/io/design_directory.hpp"
-#include "tofsmith/io/file_name.hpp"
-#include "tofsmith/io/output_directory.hpp"
-#include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/io/raw_frames.hpp"
 #include "tofsmith/io/result_document.hpp"
-#include "tofsmith/io/scene_directory.hpp"
-#include "tofsmith/io/waveform_csv.hpp"
+#include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/simulate/capture.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
+#include "tofsmith/waveforms/waveform_export.hpp"
 
 namespace tofsmith::apps {
 

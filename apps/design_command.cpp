@@ -17,8 +17,8 @@
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/design/optimize.hpp"
-#include "tofsmith/io/correlation_file.hpp"
 #include "tofsmith/io/design_directory.hpp"
+#include "tofsmith/io/measured_table_file.hpp"
 #include "tofsmith/io/result_document.hpp"
 
 namespace tofsmith::apps {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "tofsmith/io/result_document.hpp"
-#include "tofsmith/io/scene_directory.hpp"
+#include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/report/design_report.hpp"
 
 namespace tofsmith::apps {

@@ -22,8 +22,6 @@
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/report/design_report.hpp"
-#include "tofsmith/report/robustness_section.hpp"
-#include "tofsmith/report/zncc_comparison.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
 namespace tofsmith::apps {

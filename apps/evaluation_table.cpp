@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tofsmith/core/people_text.hpp"
+#include "tofsmith/core/units.hpp"
 #include "tofsmith/io/csv.hpp"
-#include "tofsmith/report/zncc_comparison.hpp"
+#include "tofsmith/report/design_report.hpp"
 
 namespace tofsmith::apps {
 

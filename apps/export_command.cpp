@@ -11,12 +11,12 @@
 #include "terminal_progress.hpp"
 #include "tofsmith/camera/generator_report.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/instrument/generator_model.hpp"
+#include "tofsmith/instrument/upload.hpp"
+#include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
-#include "tofsmith/io/output_directory.hpp"
-#include "tofsmith/io/waveform_export.hpp"
 #include "tofsmith/report/export_report.hpp"
+#include "tofsmith/waveforms/waveform_export.hpp"
 
 namespace tofsmith::apps {
 

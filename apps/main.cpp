@@ -15,7 +15,6 @@
 #include "interrupt.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/build_info.hpp"
-#include "tofsmith/core/dispatch_target.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 

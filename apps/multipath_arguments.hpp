@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "number_checks.hpp"
-#include "tofsmith/decode/multipath_options.hpp"
+#include "tofsmith/decode/multipath_decoder.hpp"
 
 namespace tofsmith::apps {
 

@@ -8,9 +8,8 @@
 
 #include "number_checks.hpp"
 #include "terminal_progress.hpp"
-#include "tofsmith/io/multipath_document.hpp"
-#include "tofsmith/report/multipath_scene_section.hpp"
-#include "tofsmith/report/multipath_section.hpp"
+#include "tofsmith/io/result_document.hpp"
+#include "tofsmith/report/design_report.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
 
 namespace tofsmith::apps {

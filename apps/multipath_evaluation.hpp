@@ -11,7 +11,6 @@
 #include "session.hpp"
 #include "tofsmith/scene/bounced_light.hpp"
 #include "tofsmith/simulate/multipath_error.hpp"
-#include "tofsmith/simulate/multipath_scene.hpp"
 
 namespace tofsmith::apps {
 

@@ -7,7 +7,7 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/scene_directory.hpp"
+#include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/report/design_report.hpp"
 
 namespace tofsmith::apps {

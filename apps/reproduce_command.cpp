@@ -8,9 +8,9 @@
 
 #include "commands.hpp"
 #include "fresh_directory.hpp"
+#include "paper/reproduction_directory.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/mesh_file.hpp"
-#include "tofsmith/reproduce/reproduction_directory.hpp"
 
 namespace tofsmith::apps {
 

@@ -10,15 +10,12 @@
 
 #include "number_checks.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/albedo_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
-#include "tofsmith/io/embree_search.hpp"
+#include "tofsmith/io/image_file.hpp"
 #include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
-#include "tofsmith/scene/check_view.hpp"
-#include "tofsmith/scene/framed_mesh.hpp"
-#include "tofsmith/scene/ray_cast.hpp"
+#include "tofsmith/scene/ray_caster.hpp"
 
 namespace tofsmith::apps {
 

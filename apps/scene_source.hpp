@@ -6,10 +6,9 @@
 
 #include "session.hpp"
 #include "tofsmith/scene/bounced_light.hpp"
-#include "tofsmith/scene/pinhole.hpp"
+#include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/scene/scene_image.hpp"
-#include "tofsmith/scene/staged_scene.hpp"
-#include "tofsmith/simulate/scene_extent.hpp"
+#include "tofsmith/simulate/scene_result.hpp"
 
 namespace tofsmith::apps {
 

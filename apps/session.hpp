@@ -11,9 +11,8 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
-#include "tofsmith/core/people_text.hpp"
+#include "tofsmith/core/units.hpp"
 #include "tofsmith/io/atomic_file.hpp"
-#include "tofsmith/io/output_directory.hpp"
 
 namespace tofsmith::apps {
 

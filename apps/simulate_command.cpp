@@ -14,12 +14,11 @@
 #include "session.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
+#include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
-#include "tofsmith/io/output_directory.hpp"
-#include "tofsmith/io/raw_frames_file.hpp"
-#include "tofsmith/io/returns_file.hpp"
-#include "tofsmith/simulate/multipath_capture.hpp"
+#include "tofsmith/io/raw_frames.hpp"
+#include "tofsmith/simulate/capture.hpp"
 #include "tofsmith/sweep/training_set.hpp"
 
 namespace tofsmith::apps {

@@ -14,11 +14,10 @@
 #include "number_checks.hpp"
 #include "session.hpp"
 #include "terminal_progress.hpp"
-#include "tofsmith/io/npz.hpp"
+#include "tofsmith/io/npy.hpp"
+#include "tofsmith/report/figure.hpp"
 #include "tofsmith/report/page.hpp"
-#include "tofsmith/report/small_multiples.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
-#include "tofsmith/sweep/sweep_ranks.hpp"
 #include "tofsmith/sweep/sweep_results.hpp"
 #include "tofsmith/version.hpp"
 

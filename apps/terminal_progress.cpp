@@ -13,7 +13,7 @@
 #include <string>
 
 #include "interrupt.hpp"
-#include "tofsmith/core/remaining_time.hpp"
+#include "tofsmith/core/progress.hpp"
 
 namespace tofsmith::apps {
 

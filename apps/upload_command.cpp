@@ -13,7 +13,6 @@
 #include "terminal_progress.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/instrument/upload.hpp"
-#include "tofsmith/instrument/upload_selection.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 
 namespace tofsmith::apps {

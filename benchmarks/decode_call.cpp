@@ -12,7 +12,7 @@
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/decode/decoder.hpp"
-#include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/io/raw_frames.hpp"
 
 int main(int argc, char** argv) {
   using namespace tofsmith;

@@ -17,13 +17,13 @@
 #include <string>
 #include <vector>
 
+#include "core/shared/random.hpp"
 #include "decode_codes.hpp"
 #include "exactness_pixels.hpp"
 #include "reference_bins.hpp"
 #include "reference_decoder.hpp"
-#include "tofsmith/core/dispatch_target.hpp"
+#include "tofsmith/core/build_info.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/core/random.hpp"
 
 namespace {
 

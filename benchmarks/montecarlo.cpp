@@ -20,7 +20,7 @@
 #include "decode_codes.hpp"
 #include "in_turns.hpp"
 #include "simulate/trial_errors.hpp"
-#include "tofsmith/core/dispatch_target.hpp"
+#include "tofsmith/core/build_info.hpp"
 
 namespace tofsmith::benchmarks {
 namespace {

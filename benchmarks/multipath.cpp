@@ -10,8 +10,7 @@
 #include "fast_random.hpp"
 #include "in_turns.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/decode/tail_decoder.hpp"
-#include "tofsmith/decode/two_return_decoder.hpp"
+#include "tofsmith/decode/multipath_decoder.hpp"
 
 namespace tofsmith::benchmarks {
 namespace {

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "tofsmith/core/random.hpp"
+#include "core/shared/random.hpp"
 #include "tofsmith/design/design.hpp"
 
 namespace {

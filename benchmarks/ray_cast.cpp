@@ -17,8 +17,7 @@
 
 #include "generated_meshes.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/io/embree_search.hpp"
-#include "tofsmith/scene/ray_cast.hpp"
+#include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 
 namespace {

@@ -16,15 +16,15 @@
 #include <string>
 
 #include "asked_figures.hpp"
+#include "design/chips/chip_metric.hpp"
+#include "design/chips/standard_chip_codes.hpp"
 #include "generated_meshes.hpp"
 #include "tofsmith/decode/likelihood_decoder.hpp"
-#include "tofsmith/design/chip_metric.hpp"
 #include "tofsmith/design/chip_search.hpp"
-#include "tofsmith/design/standard_chip_codes.hpp"
-#include "tofsmith/scene/framed_mesh.hpp"
+#include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 #include "tofsmith/simulate/capture.hpp"
-#include "tofsmith/simulate/scene_error.hpp"
+#include "tofsmith/simulate/scene_result.hpp"
 
 namespace {
 

@@ -12,9 +12,9 @@
 #include <numbers>
 #include <vector>
 
-#include "tofsmith/core/periodic.hpp"
+#include "core/shared/periodic.hpp"
+#include "design/circulant_tv/circulant_tv_certificate.hpp"
 #include "tofsmith/design/circulant_tv.hpp"
-#include "tofsmith/design/circulant_tv_certificate.hpp"
 
 namespace {
 

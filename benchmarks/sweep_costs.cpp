@@ -10,8 +10,8 @@
 #include <chrono>
 #include <cstdlib>
 
+#include "core/shared/hash.hpp"
 #include "sweep/rank_messages.hpp"
-#include "tofsmith/core/hash.hpp"
 
 namespace {
 

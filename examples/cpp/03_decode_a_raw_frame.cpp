@@ -7,10 +7,10 @@
 
 #include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/io/depth_file.hpp"
-#include "tofsmith/io/ply.hpp"
-#include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/io/mesh_file.hpp"
+#include "tofsmith/io/raw_frames.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
-#include "tofsmith/scene/ray_cast.hpp"
+#include "tofsmith/scene/ray_caster.hpp"
 #include "tofsmith/simulate/capture.hpp"
 
 using namespace tofsmith;

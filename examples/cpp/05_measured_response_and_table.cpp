@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "tofsmith/decode/decoder.hpp"
-#include "tofsmith/decode/measured_table.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
 int main() {

@@ -3,7 +3,6 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "tofsmith/simulate/bounds.hpp"
-#include "tofsmith/simulate/direct_tof_bound.hpp"
 
 namespace tofsmith::python {
 

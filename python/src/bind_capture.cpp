@@ -5,7 +5,7 @@
 #include "bindings.hpp"
 #include "capture_arguments.hpp"
 #include "progress.hpp"
-#include "tofsmith/simulate/multipath_capture.hpp"
+#include "tofsmith/simulate/capture.hpp"
 
 namespace tofsmith::python {
 

@@ -5,10 +5,8 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "tofsmith/camera/camera.hpp"
-#include "tofsmith/code/coding_curve.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/io/code_file.hpp"
-#include "tofsmith/io/code_json.hpp"
 
 namespace tofsmith::python {
 

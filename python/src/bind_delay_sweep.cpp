@@ -7,11 +7,10 @@
 #include "output_policy.hpp"
 #include "progress.hpp"
 #include "reports.hpp"
-#include "tofsmith/calibrate/calibrated_table_file.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
-#include "tofsmith/calibrate/ideal_code_fit.hpp"
+#include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/io/code_file.hpp"
-#include "tofsmith/io/float_image_file.hpp"
+#include "tofsmith/io/image_file.hpp"
 #include "tofsmith/report/calibration_report.hpp"
 
 namespace tofsmith::python {

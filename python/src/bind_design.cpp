@@ -8,7 +8,7 @@
 #include "output_policy.hpp"
 #include "progress.hpp"
 #include "reports.hpp"
-#include "tofsmith/io/correlation_file.hpp"
+#include "tofsmith/io/measured_table_file.hpp"
 #include "tofsmith/report/design_report.hpp"
 
 namespace tofsmith::python {

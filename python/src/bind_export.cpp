@@ -10,7 +10,6 @@
 #include "output_policy.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/atomic_file.hpp"
-#include "tofsmith/io/output_directory.hpp"
 
 namespace tofsmith::python {
 

@@ -5,10 +5,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "tofsmith/report/code_figures.hpp"
-#include "tofsmith/report/heat_map_figure.hpp"
-#include "tofsmith/report/image_figure.hpp"
-#include "tofsmith/report/line_figure.hpp"
-#include "tofsmith/report/space_figure.hpp"
+#include "tofsmith/report/figure.hpp"
 
 namespace tofsmith::python {
 

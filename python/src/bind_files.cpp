@@ -6,13 +6,10 @@
 #include "bindings.hpp"
 #include "output_policy.hpp"
 #include "tofsmith/io/code_file.hpp"
-#include "tofsmith/io/correlation_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
-#include "tofsmith/io/impulse_response_file.hpp"
 #include "tofsmith/io/measured_table_file.hpp"
-#include "tofsmith/io/ply.hpp"
-#include "tofsmith/io/raw_frames_file.hpp"
-#include "tofsmith/io/raw_frames_reader.hpp"
+#include "tofsmith/io/mesh_file.hpp"
+#include "tofsmith/io/raw_frames.hpp"
 
 namespace tofsmith::python {
 

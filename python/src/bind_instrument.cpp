@@ -7,7 +7,6 @@
 #include "options.hpp"
 #include "progress.hpp"
 #include "tofsmith/instrument/upload.hpp"
-#include "tofsmith/instrument/upload_selection.hpp"
 
 namespace tofsmith::python {
 

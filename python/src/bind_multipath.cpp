@@ -7,7 +7,7 @@
 #include "multipath_options.hpp"
 #include "options.hpp"
 #include "progress.hpp"
-#include "tofsmith/simulate/multipath_bounds.hpp"
+#include "tofsmith/simulate/bounds.hpp"
 #include "tofsmith/simulate/multipath_error.hpp"
 
 namespace tofsmith::python {

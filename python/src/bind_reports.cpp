@@ -7,7 +7,7 @@
 #include "output_policy.hpp"
 #include "progress.hpp"
 #include "reports.hpp"
-#include "tofsmith/io/scene_directory.hpp"
+#include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/report/design_report.hpp"
 
 namespace tofsmith::python {

@@ -4,9 +4,9 @@
 
 #include "bindings.hpp"
 #include "options.hpp"
+#include "paper/reproduction_directory.hpp"
 #include "progress.hpp"
 #include "tofsmith/io/mesh_file.hpp"
-#include "tofsmith/reproduce/reproduction_directory.hpp"
 
 namespace tofsmith::python {
 

@@ -5,11 +5,10 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "tofsmith/camera/camera.hpp"
-#include "tofsmith/io/embree_search.hpp"
+#include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
-#include "tofsmith/scene/check_view.hpp"
-#include "tofsmith/scene/ray_cast.hpp"
+#include "tofsmith/scene/ray_caster.hpp"
 
 namespace tofsmith::python {
 

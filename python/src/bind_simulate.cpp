@@ -6,8 +6,8 @@
 #include "options.hpp"
 #include "progress.hpp"
 #include "reports.hpp"
-#include "tofsmith/simulate/generator_loss.hpp"
-#include "tofsmith/simulate/table_depth_error.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/simulate/robustness.hpp"
 
 namespace tofsmith::python {
 

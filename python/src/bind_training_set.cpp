@@ -5,7 +5,7 @@
 #include "bindings.hpp"
 #include "capture_arguments.hpp"
 #include "progress.hpp"
-#include "tofsmith/io/output_directory.hpp"
+#include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/sweep/training_set.hpp"
 
 namespace tofsmith::python {

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "tofsmith/io/waveform_export.hpp"
+#include "tofsmith/waveforms/waveform_export.hpp"
 
 namespace tofsmith::python {
 

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "tofsmith/decode/multipath_options.hpp"
+#include "tofsmith/decode/multipath_decoder.hpp"
 
 namespace tofsmith::python {
 

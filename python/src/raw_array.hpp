@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "arrays.hpp"
-#include "tofsmith/core/raw_view.hpp"
+#include "tofsmith/core/array.hpp"
 
 namespace tofsmith::python {
 

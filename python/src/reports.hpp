@@ -4,11 +4,9 @@
 
 #include <pybind11/pybind11.h>
 
-#include "tofsmith/camera/impulse_response.hpp"
+#include "tofsmith/camera/camera.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
-#include "tofsmith/simulate/generator_loss.hpp"
 #include "tofsmith/simulate/robustness.hpp"
-#include "tofsmith/simulate/second_return_error.hpp"
 
 namespace tofsmith::python {
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/calibrate/calibrated_table_file.hpp"
+#include "tofsmith/calibrate/correlation_calibration.hpp"
 
-#include "io/array_matrix.hpp"
-#include "io/file_kind.hpp"
-#include "tofsmith/io/npz.hpp"
+#include "io/arrays/shared/array_matrix.hpp"
+#include "io/shared/file_kind.hpp"
+#include "tofsmith/io/npy.hpp"
 
 namespace tofsmith {
 

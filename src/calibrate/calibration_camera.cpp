@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "core/enum_words.hpp"
+#include "core/shared/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/impulse_response_file.hpp"
-#include "tofsmith/scene/pinhole.hpp"
+#include "tofsmith/io/measured_table_file.hpp"
+#include "tofsmith/scene/scene_image.hpp"
 
 namespace tofsmith {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/calibrate/delay_sweep.hpp"
+#include "tofsmith/calibrate/correlation_calibration.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/io/npy.hpp"
-#include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/io/raw_frames.hpp"
 
 namespace tofsmith {
 namespace {

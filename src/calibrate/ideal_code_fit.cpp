@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/calibrate/ideal_code_fit.hpp"
+#include "tofsmith/calibrate/correlation_calibration.hpp"
 
 #include <fmt/format.h>
 

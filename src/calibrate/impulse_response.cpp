@@ -9,7 +9,7 @@
 
 #include "calibrate/parametric_response.hpp"
 #include "calibrate/response_spectrum.hpp"
-#include "core/enum_words.hpp"
+#include "core/shared/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/statistics.hpp"
 

@@ -11,9 +11,9 @@
 #include <optional>
 #include <tuple>
 
-#include "core/enum_words.hpp"
+#include "core/shared/enum_words.hpp"
+#include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/read_file.hpp"
 
 namespace tofsmith {
 namespace {

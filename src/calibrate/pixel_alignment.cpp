@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "calibrate/harmonic_basis.hpp"
+#include "core/shared/periodic.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/core/periodic.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {

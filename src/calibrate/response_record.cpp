@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/calibrate/response_record.hpp"
+#include "tofsmith/calibrate/impulse_response.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

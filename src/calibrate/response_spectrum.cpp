@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tofsmith/core/periodic.hpp"
+#include "core/shared/periodic.hpp"
 
 namespace tofsmith {
 namespace {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "tofsmith/camera/played_code.hpp"
-#include "tofsmith/camera/prototype.hpp"
+#include "camera/shared/played_code.hpp"
+#include "camera/shared/prototype.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/camera/correlation.hpp"
+#include "tofsmith/camera/forward_model.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/shared/periodic.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/periodic.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tofsmith/camera/played_code.hpp"
+#include "camera/shared/played_code.hpp"
 
 namespace tofsmith {
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/camera/impulse_response.hpp"
+#include "tofsmith/camera/camera.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "core/enum_words.hpp"
+#include "core/shared/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/camera/played_waveform.hpp"
+#include "camera/shared/played_waveform.hpp"
 
+#include "core/shared/periodic.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/periodic.hpp"
 
 namespace tofsmith {
 

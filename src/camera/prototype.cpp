@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/camera/prototype.hpp"
+#include "camera/shared/prototype.hpp"
 
 #include <cmath>
 #include <numbers>

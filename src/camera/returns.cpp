@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/camera/returns.hpp"
+#include "tofsmith/camera/forward_model.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
 
+#include "core/shared/exponential_average.hpp"
+#include "core/shared/periodic.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/exponential_average.hpp"
-#include "tofsmith/core/periodic.hpp"
 
 namespace tofsmith {
 

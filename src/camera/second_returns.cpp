@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/camera/second_returns.hpp"
+#include "tofsmith/camera/camera.hpp"
 
 #include <fmt/format.h>
 

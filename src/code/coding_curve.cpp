@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/code/coding_curve.hpp"
+#include "tofsmith/code/families.hpp"
 
 #include <Eigen/SVD>
 #include <algorithm>
 
+#include "core/shared/periodic.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/periodic.hpp"
 
 namespace tofsmith {
 

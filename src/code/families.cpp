@@ -8,10 +8,10 @@
 #include <functional>
 #include <optional>
 
-#include "code/family_rules.hpp"
-#include "tofsmith/code/hamiltonian.hpp"
-#include "tofsmith/code/ramp.hpp"
-#include "tofsmith/code/square.hpp"
+#include "code/shared/family_rules.hpp"
+#include "code/shared/hamiltonian.hpp"
+#include "code/shared/ramp.hpp"
+#include "code/square.hpp"
 
 namespace tofsmith {
 

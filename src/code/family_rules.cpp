@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "code/family_rules.hpp"
+#include "code/shared/family_rules.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <numeric>
 #include <string>
 
-#include "tofsmith/code/hamiltonian.hpp"
+#include "code/shared/hamiltonian.hpp"
 
 namespace tofsmith {
 

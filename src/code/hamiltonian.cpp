@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/code/hamiltonian.hpp"
+#include "code/shared/hamiltonian.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
 
-#include "code/family_rules.hpp"
-#include "tofsmith/core/random.hpp"
+#include "code/shared/family_rules.hpp"
+#include "core/shared/random.hpp"
 
 namespace tofsmith {
 

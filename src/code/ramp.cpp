@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/code/ramp.hpp"
+#include "code/shared/ramp.hpp"
 
 #include <algorithm>
 

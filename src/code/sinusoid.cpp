@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/code/sinusoid.hpp"
+#include "tofsmith/code/families.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "code/family_rules.hpp"
+#include "code/shared/family_rules.hpp"
 
 namespace tofsmith {
 

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/code/square.hpp"
+#include "code/square.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "code/family_rules.hpp"
+#include "code/shared/family_rules.hpp"
 
 namespace tofsmith {
 

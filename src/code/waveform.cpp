@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/code/waveform.hpp"
+#include "tofsmith/code/code_set.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/shared/periodic.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/periodic.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {

@@ -10,7 +10,6 @@
 #include <bit>
 
 #include "core/build_commit.hpp"
-#include "tofsmith/core/dispatch_target.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/core/dispatch_target.hpp"
+#include "tofsmith/core/build_info.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

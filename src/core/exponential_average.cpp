@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/core/exponential_average.hpp"
+#include "core/shared/exponential_average.hpp"
 
 #include <cmath>
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/random_tile.hpp"
+#include "core/shared/random_tile.hpp"
 
 #ifndef TOFSMITH_CORE_POISSON_TILE_CONSTANTS
 #define TOFSMITH_CORE_POISSON_TILE_CONSTANTS
@@ -25,7 +25,7 @@ constexpr double least_stirling_count = 16.0;
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include "core/vectors-inl.hpp"
+#include "core/shared/vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {

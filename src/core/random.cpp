@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/core/random.hpp"
+#include "core/shared/random.hpp"
 
 #include <Random123/philox.h>
 

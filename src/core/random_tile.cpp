@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/random_tile.hpp"
+#include "core/shared/random_tile.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/random_tile.cpp"
@@ -8,7 +8,7 @@
 // Highway asks for its own header after foreach_target, and for this one first.
 #include <hwy/highway.h>
 
-#include "core/vector_math-inl.hpp"
+#include "core/shared/vector_math-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/core/raw_view.hpp"
+#include "tofsmith/core/array.hpp"
 
 #include <string>
 
-#include "core/pixel_runs.hpp"
+#include "core/shared/pixel_runs.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

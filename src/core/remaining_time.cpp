@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/core/remaining_time.hpp"
+#include "tofsmith/core/progress.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/core/shared_progress.hpp"
+#include "core/shared/shared_progress.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/decode/decode_method.hpp"
 
-#include "core/enum_words.hpp"
+#include "core/shared/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

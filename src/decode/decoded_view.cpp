@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/decode/decoded_view.hpp"
+#include "tofsmith/decode/depth_image.hpp"
 
 namespace tofsmith {
 

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "decode/bin_matcher.hpp"
-#include "decode/output_kernel.hpp"
-#include "decode/pixel_model.hpp"
-#include "decode/pixel_output.hpp"
+#include "decode/output/output_kernel.hpp"
+#include "decode/output/pixel_model.hpp"
+#include "decode/output/pixel_output.hpp"
+#include "decode/search/bin_matcher.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -39,9 +39,7 @@ RawView column_of(const float* measurements, std::int64_t pixels, int count) {
 
 }  // namespace
 
-void DecodeOptions::validate() const {
-  check_fields(*this, "DecodeOptions::");
-}
+void DecodeOptions::validate() const { check_fields(*this, "DecodeOptions::"); }
 
 struct Decoder::Plan {
   Plan(DecodingTable table_, const DecodeOptions& options_, const AmbientProjection& projection)

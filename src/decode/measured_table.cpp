@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/decode/measured_table.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
 
 #include <string>
 
-#include "core/enum_words.hpp"
+#include "core/shared/enum_words.hpp"
 #include "decode/saturation_level.hpp"
 #include "tofsmith/core/error.hpp"
 

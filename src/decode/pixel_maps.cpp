@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "decode/pixel_output.hpp"
+#include "decode/output/pixel_output.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 

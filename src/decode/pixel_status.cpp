@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/decode/pixel_status.hpp"
+#include "tofsmith/decode/depth_image.hpp"
 
-#include "core/enum_words.hpp"
+#include "core/shared/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/design/correlation_target.hpp"
+#include "tofsmith/design/factorize.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "tofsmith/camera/correlation.hpp"
+#include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -7,14 +7,14 @@
 #include <algorithm>
 #include <iterator>
 
-#include "design/design_problem.hpp"
-#include "design/factorized_code.hpp"
+#include "design/chips/searched_code.hpp"
+#include "design/chips/standard_chip_codes.hpp"
+#include "design/factorize/factorized_code.hpp"
 #include "design/judge.hpp"
-#include "design/optimized_code.hpp"
-#include "design/searched_code.hpp"
+#include "design/optimize/design_problem.hpp"
+#include "design/optimize/optimized_code.hpp"
 #include "design/shortest_run.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/design/standard_chip_codes.hpp"
 
 namespace tofsmith {
 

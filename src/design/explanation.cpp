@@ -8,7 +8,7 @@
 #include <map>
 
 #include "design/exposure_sweep.hpp"
-#include "tofsmith/core/people_text.hpp"
+#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "design/explanation.hpp"
-#include "design/two_return_limit.hpp"
+#include "design/optimize/two_return_limit.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 

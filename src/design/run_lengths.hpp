@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "tofsmith/code/waveform.hpp"
+#include "tofsmith/code/code_set.hpp"
 
 namespace tofsmith {
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/design/termination.hpp"
+#include "tofsmith/design/design.hpp"
 
-#include "core/enum_words.hpp"
+#include "core/shared/enum_words.hpp"
 
 namespace tofsmith {
 

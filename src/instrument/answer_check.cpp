@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "tofsmith/instrument/scpi_session.hpp"
-#include "tofsmith/instrument/upload_script.hpp"
+#include "tofsmith/instrument/upload.hpp"
 
 namespace tofsmith {
 

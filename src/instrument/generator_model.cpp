@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/instrument/generator_model.hpp"
+#include "tofsmith/instrument/upload.hpp"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "tofsmith/core/sha256.hpp"
+#include "core/shared/sha256.hpp"
 
 namespace tofsmith {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tofsmith/instrument/upload_script.hpp"
+#include "tofsmith/instrument/upload.hpp"
 
 namespace tofsmith {
 

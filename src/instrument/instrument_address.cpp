@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/instrument/instrument_address.hpp"
+#include "tofsmith/instrument/scpi_session.hpp"
 
 #include <fmt/format.h>
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "instrument/generator_scripts.hpp"
-#include "tofsmith/io/ieee488_block.hpp"
-#include "tofsmith/io/keysight_arb.hpp"
+#include "waveforms/shared/ieee488_block.hpp"
+#include "waveforms/shared/keysight_arb.hpp"
 
 namespace tofsmith {
 

@@ -6,7 +6,7 @@
 
 #include "instrument/generator_scripts.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/siglent_waveform.hpp"
+#include "waveforms/shared/siglent_waveform.hpp"
 
 namespace tofsmith {
 

@@ -13,7 +13,7 @@
 
 #include "instrument/vxi11_connection.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/instrument/instrument_connection.hpp"
+#include "tofsmith/instrument/scpi_session.hpp"
 
 namespace tofsmith {
 

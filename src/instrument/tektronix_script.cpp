@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "instrument/generator_scripts.hpp"
-#include "tofsmith/io/ieee488_block.hpp"
-#include "tofsmith/io/tektronix_waveform.hpp"
+#include "waveforms/shared/ieee488_block.hpp"
+#include "waveforms/shared/tektronix_waveform.hpp"
 
 namespace tofsmith {
 

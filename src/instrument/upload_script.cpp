@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/instrument/upload_script.hpp"
+#include "tofsmith/instrument/upload.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 #include "instrument/generator_scripts.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/waveform_format.hpp"
+#include "tofsmith/waveforms/waveform_export.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/instrument/upload_selection.hpp"
+#include "tofsmith/instrument/upload.hpp"
 
 #include <fmt/format.h>
 
-#include "core/enum_words.hpp"
+#include "core/shared/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/instrument/instrument_connection.hpp"
+#include "tofsmith/instrument/scpi_session.hpp"
 
 #ifdef TOFSMITH_HAS_LXI
 #include <csignal>

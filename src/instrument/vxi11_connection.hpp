@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "tofsmith/instrument/instrument_connection.hpp"
+#include "tofsmith/instrument/scpi_session.hpp"
 
 namespace tofsmith {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/byte_order.hpp"
+#include "io/shared/byte_order.hpp"
 
 #include <algorithm>
 

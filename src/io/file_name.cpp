@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/io/file_name.hpp"
+#include "tofsmith/io/atomic_file.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/io/image_limits.hpp"
+#include "io/image_limits.hpp"
 
 #include <fmt/format.h>
 

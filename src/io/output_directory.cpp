@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/io/output_directory.hpp"
+#include "tofsmith/io/atomic_file.hpp"
 
 #include <fmt/format.h>
 

@@ -7,9 +7,8 @@
 #include <algorithm>
 
 #include "report/calibration_page.hpp"
-#include "tofsmith/core/people_text.hpp"
-#include "tofsmith/report/colours.hpp"
-#include "tofsmith/report/line_figure.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/report/figure.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {

@@ -4,13 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "report/waveform_series.hpp"
+#include "camera/shared/played_code.hpp"
+#include "report/shared/waveform_series.hpp"
 #include "tofsmith/camera/forward_model.hpp"
-#include "tofsmith/camera/played_code.hpp"
-#include "tofsmith/code/coding_curve.hpp"
+#include "tofsmith/code/families.hpp"
 #include "tofsmith/core/units.hpp"
-#include "tofsmith/report/small_multiples.hpp"
-#include "tofsmith/report/space_figure.hpp"
+#include "tofsmith/report/figure.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {

@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include "report/calibration_page.hpp"
-#include "tofsmith/core/people_text.hpp"
+#include "tofsmith/core/units.hpp"
 #include "tofsmith/report/calibration_report.hpp"
-#include "tofsmith/report/colours.hpp"
-#include "tofsmith/report/image_figure.hpp"
-#include "tofsmith/report/line_figure.hpp"
+#include "tofsmith/report/figure.hpp"
 
 namespace tofsmith {
 

@@ -8,16 +8,13 @@
 #include <limits>
 
 #include "report/error_sections.hpp"
-#include "tofsmith/core/people_text.hpp"
+#include "report/scene_section.hpp"
+#include "report/shared/bar_figure.hpp"
+#include "tofsmith/core/units.hpp"
 #include "tofsmith/design/design.hpp"
-#include "tofsmith/report/bar_figure.hpp"
 #include "tofsmith/report/code_figures.hpp"
-#include "tofsmith/report/colours.hpp"
-#include "tofsmith/report/line_figure.hpp"
+#include "tofsmith/report/figure.hpp"
 #include "tofsmith/report/page.hpp"
-#include "tofsmith/report/robustness_section.hpp"
-#include "tofsmith/report/scene_section.hpp"
-#include "tofsmith/report/zncc_comparison.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "report/error_map.hpp"
+#include "report/shared/error_map.hpp"
 
-#include "report/level_text.hpp"
+#include "report/shared/level_text.hpp"
 
 namespace tofsmith {
 

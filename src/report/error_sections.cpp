@@ -8,10 +8,10 @@
 #include <limits>
 #include <numeric>
 
-#include "report/error_map.hpp"
-#include "report/level_text.hpp"
-#include "tofsmith/report/bar_figure.hpp"
-#include "tofsmith/report/line_figure.hpp"
+#include "report/shared/bar_figure.hpp"
+#include "report/shared/error_map.hpp"
+#include "report/shared/level_text.hpp"
+#include "tofsmith/report/figure.hpp"
 
 namespace tofsmith {
 namespace {

@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "report/level_text.hpp"
-#include "report/waveform_series.hpp"
+#include "report/shared/level_text.hpp"
+#include "report/shared/waveform_series.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/camera/generator_report.hpp"
 #include "tofsmith/report/code_figures.hpp"
-#include "tofsmith/report/line_figure.hpp"
+#include "tofsmith/report/figure.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {

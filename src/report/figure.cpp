@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "report/plotly_json.hpp"
+#include "report/shared/plotly_json.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

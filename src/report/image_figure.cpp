@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/report/image_figure.hpp"
+#include "tofsmith/report/figure.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "report/colour_axis.hpp"
-#include "report/plotly_json.hpp"
+#include "report/shared/plotly_json.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/report/line_figure.hpp"
+#include "tofsmith/report/figure.hpp"
 
 #include <utility>
 
-#include "report/plotly_json.hpp"
+#include "report/shared/plotly_json.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

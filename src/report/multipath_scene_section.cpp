@@ -1,19 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/report/multipath_scene_section.hpp"
+#include "tofsmith/report/design_report.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "report/error_map.hpp"
-#include "report/level_text.hpp"
-#include "tofsmith/report/colours.hpp"
-#include "tofsmith/report/image_figure.hpp"
-#include "tofsmith/report/line_figure.hpp"
-#include "tofsmith/report/space_figure.hpp"
-#include "tofsmith/simulate/scene_error.hpp"
+#include "report/shared/error_map.hpp"
+#include "report/shared/level_text.hpp"
+#include "tofsmith/report/figure.hpp"
+#include "tofsmith/simulate/scene_result.hpp"
 
 namespace tofsmith {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/report/multipath_section.hpp"
+#include "tofsmith/report/design_report.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <cmath>
 #include <functional>
 
-#include "report/level_text.hpp"
-#include "tofsmith/report/heat_map_figure.hpp"
+#include "report/shared/level_text.hpp"
+#include "tofsmith/report/figure.hpp"
 
 namespace tofsmith {
 

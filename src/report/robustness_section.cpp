@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/report/robustness_section.hpp"
+#include "tofsmith/report/design_report.hpp"
 
 #include <fmt/format.h>
 
-#include "report/level_text.hpp"
-#include "tofsmith/report/bar_figure.hpp"
-#include "tofsmith/report/colours.hpp"
+#include "report/shared/bar_figure.hpp"
+#include "report/shared/level_text.hpp"
+#include "tofsmith/report/figure.hpp"
 
 namespace tofsmith {
 

@@ -1,17 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/report/scene_section.hpp"
+#include "report/scene_section.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "report/error_map.hpp"
-#include "report/level_text.hpp"
+#include "report/shared/error_map.hpp"
+#include "report/shared/level_text.hpp"
 #include "tofsmith/report/code_figures.hpp"
-#include "tofsmith/report/image_figure.hpp"
-#include "tofsmith/report/space_figure.hpp"
+#include "tofsmith/report/figure.hpp"
 
 namespace tofsmith {
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/report/small_multiples.hpp"
+#include "tofsmith/report/figure.hpp"
 
 #include <fmt/format.h>
 
 #include <set>
 #include <utility>
 
-#include "report/plotly_json.hpp"
+#include "report/shared/plotly_json.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

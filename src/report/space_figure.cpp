@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/report/space_figure.hpp"
+#include "tofsmith/report/figure.hpp"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
+#include "core/shared/random.hpp"
 #include "report/colour_axis.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/random.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "report/waveform_series.hpp"
+#include "report/shared/waveform_series.hpp"
 
-#include "tofsmith/camera/played_waveform.hpp"
+#include "camera/shared/played_waveform.hpp"
 
 namespace tofsmith {
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/report/zncc_comparison.hpp"
+#include "tofsmith/report/design_report.hpp"
 
 #include <fmt/format.h>
 
-#include "tofsmith/core/people_text.hpp"
+#include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
 

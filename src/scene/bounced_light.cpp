@@ -6,11 +6,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/shared/random.hpp"
+#include "core/shared/shared_progress.hpp"
 #include "scene/rigid.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/core/random.hpp"
-#include "tofsmith/core/shared_progress.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 
 namespace tofsmith {

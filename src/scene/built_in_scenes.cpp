@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "scene/table_top.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/scene/shapes.hpp"
-#include "tofsmith/scene/table_top.hpp"
 
 namespace tofsmith {
 namespace {

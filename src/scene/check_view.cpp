@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/scene/check_view.hpp"
+#include "tofsmith/scene/ray_caster.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "scene/mesh_surface.hpp"
+#include "scene/shared/mesh_surface.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/scene/framed_mesh.hpp"
+#include "tofsmith/scene/built_in_scenes.hpp"
 
 #include <algorithm>
 #include <cmath>

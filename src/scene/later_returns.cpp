@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/scene/later_returns.hpp"
+#include "tofsmith/scene/bounced_light.hpp"
 
 #include <cmath>
 #include <string>

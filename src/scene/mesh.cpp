@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/scene/mesh.hpp"
+#include "tofsmith/scene/shapes.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "scene/mesh_surface.hpp"
+#include "scene/shared/mesh_surface.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/scene/shapes.hpp"
 
 namespace tofsmith {
 

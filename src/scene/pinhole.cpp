@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/scene/pinhole.hpp"
+#include "tofsmith/scene/scene_image.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/scene/ray_cast.hpp"
-
 #include "tofsmith/scene/ray_caster.hpp"
 
 namespace tofsmith {

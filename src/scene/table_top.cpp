@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/scene/table_top.hpp"
+#include "scene/table_top.hpp"
 
 #include <numbers>
 
-#include "tofsmith/scene/ray_cast.hpp"
+#include "tofsmith/scene/ray_caster.hpp"
 
 namespace tofsmith {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/scene/texture.hpp"
+#include "tofsmith/scene/shapes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "simulate/depth_trials.hpp"
-#include "simulate/error_by_rotation.hpp"
+#include "simulate/shared/error_by_rotation.hpp"
 
 namespace tofsmith {
 

@@ -4,16 +4,14 @@
 
 #include <cmath>
 
-#include "simulate/row_capture.hpp"
+#include "core/shared/shared_progress.hpp"
+#include "simulate/shared/row_capture.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/core/shared_progress.hpp"
 
 namespace tofsmith {
 
-void CaptureOptions::validate() const {
-  check_fields(*this);
-}
+void CaptureOptions::validate() const { check_fields(*this); }
 
 double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,
                             const CaptureOptions& options) {

@@ -5,7 +5,6 @@
 #include "simulate/trial_errors.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/simulate/bounds.hpp"
-#include "tofsmith/simulate/direct_tof_bound.hpp"
 
 namespace tofsmith {
 
@@ -20,9 +19,7 @@ double bound_mae_m(const Bound& bound, const Camera& camera, const OperatingPoin
 
 }  // namespace
 
-void EvaluateOptions::validate() const {
-  check_fields(*this);
-}
+void EvaluateOptions::validate() const { check_fields(*this); }
 
 DepthErrorReport evaluate(const CodeSet& code, const Camera& camera, const EvaluateOptions& options,
                           const Progress& progress) {

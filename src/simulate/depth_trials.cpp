@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-#include "core/whole_vectors.hpp"
+#include "core/shared/whole_vectors.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "decode/trial_decoder.hpp"
+#include "core/shared/shared_progress.hpp"
+#include "decode/output/shared/trial_decoder.hpp"
 #include "simulate/trial_kernel.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/core/shared_progress.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {

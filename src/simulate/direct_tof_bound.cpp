@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/simulate/direct_tof_bound.hpp"
+#include "tofsmith/simulate/bounds.hpp"
 
 #include <cmath>
 #include <numeric>

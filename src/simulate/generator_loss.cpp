@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/simulate/generator_loss.hpp"
+#include "tofsmith/simulate/robustness.hpp"
 
 #include <cmath>
 

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/simulate/multipath_bounds.hpp"
+#include "tofsmith/simulate/bounds.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/shared/exponential_average.hpp"
 #include "simulate/bound_means.hpp"
-#include "tofsmith/core/exponential_average.hpp"
 
 namespace tofsmith {
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/simulate/multipath_capture.hpp"
+#include "tofsmith/simulate/capture.hpp"
 
-#include "simulate/row_capture.hpp"
+#include "simulate/shared/row_capture.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

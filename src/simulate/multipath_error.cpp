@@ -7,13 +7,12 @@
 #include <limits>
 #include <optional>
 
-#include "simulate/pixel_capture.hpp"
+#include "simulate/shared/pixel_capture.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
-#include "tofsmith/decode/tail_decoder.hpp"
-#include "tofsmith/decode/two_return_decoder.hpp"
-#include "tofsmith/simulate/multipath_bounds.hpp"
+#include "tofsmith/decode/multipath_decoder.hpp"
+#include "tofsmith/simulate/bounds.hpp"
 
 namespace tofsmith {
 

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/simulate/multipath_scene.hpp"
+#include "tofsmith/simulate/multipath_error.hpp"
 
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "tofsmith/decode/decoder.hpp"
-#include "tofsmith/decode/two_return_decoder.hpp"
-#include "tofsmith/simulate/scene_error.hpp"
+#include "tofsmith/decode/multipath_decoder.hpp"
+#include "tofsmith/simulate/scene_result.hpp"
 
 namespace tofsmith {
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/simulate/photon_information.hpp"
+#include "tofsmith/simulate/bounds.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
 
-#include "tofsmith/core/periodic.hpp"
+#include "core/shared/periodic.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/simulate/second_return_error.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "simulate/pixel_capture.hpp"
+#include "simulate/shared/pixel_capture.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
-#include "tofsmith/decode/two_return_decoder.hpp"
+#include "tofsmith/decode/multipath_decoder.hpp"
 
 namespace tofsmith {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/simulate/table_depth_error.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
 
 #include "simulate/trial_errors.hpp"
 #include "tofsmith/core/error.hpp"

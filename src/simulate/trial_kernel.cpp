@@ -11,7 +11,7 @@
 // Highway asks for its own headers after foreach_target, and for this one first.
 #include <hwy/highway.h>
 
-#include "decode/output_vectors-inl.hpp"
+#include "decode/output/shared/output_vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/random_tile.hpp"
-#include "decode/pixel_tile.hpp"
-#include "decode/trial_decoder.hpp"
+#include "core/shared/random_tile.hpp"
+#include "decode/output/shared/trial_decoder.hpp"
+#include "decode/search/shared/pixel_tile.hpp"
 #include "simulate/trial_model.hpp"
 
 namespace tofsmith {

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "decode/bin_records.hpp"
+#include "decode/search/shared/bin_records.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 

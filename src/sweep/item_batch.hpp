@@ -9,8 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "tofsmith/sweep/sweep_store.hpp"
-#include "tofsmith/sweep/work_list.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
 
 namespace tofsmith {
 

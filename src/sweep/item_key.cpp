@@ -8,9 +8,9 @@
 #include <iterator>
 #include <span>
 
-#include "tofsmith/core/hash.hpp"
+#include "core/shared/hash.hpp"
 #include "tofsmith/io/camera_toml.hpp"
-#include "tofsmith/sweep/work_list.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
 
 namespace tofsmith {
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sweep/item_result.hpp"
 
-#include "io/document_text.hpp"
-#include "io/result_json.hpp"
+#include "io/documents/shared/document_text.hpp"
+#include "io/documents/shared/result_json.hpp"
 
 namespace tofsmith {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sweep/item_batch.hpp"
-#include "tofsmith/sweep/sweep_store.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
 
 namespace tofsmith {
 

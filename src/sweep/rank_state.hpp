@@ -8,7 +8,7 @@
 
 #include "sweep/mpi_world.hpp"
 #include "sweep/rank_messages.hpp"
-#include "tofsmith/sweep/sweep_ranks.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
 
 namespace tofsmith {
 

@@ -20,7 +20,6 @@
 #include "sweep/key_order.hpp"
 #include "sweep/rank_state.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/sweep/sweep_ranks.hpp"
 
 namespace tofsmith {
 namespace {

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/sweep/work_list.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {

@@ -7,7 +7,7 @@
 
 #include "sweep/store_file.hpp"
 #include "sweep/worker_identity.hpp"
-#include "tofsmith/sweep/sweep_store.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
 
 namespace tofsmith {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/sweep/sweep_ranks.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 
 #include "sweep/item_queue.hpp"
 #include "sweep/rank_state.hpp"
-#include "tofsmith/core/dispatch_target.hpp"
+#include "tofsmith/core/build_info.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/version.hpp"
 

@@ -9,8 +9,8 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "io/document_text.hpp"
-#include "io/result_json.hpp"
+#include "io/documents/shared/document_text.hpp"
+#include "io/documents/shared/result_json.hpp"
 #include "sweep/item_result.hpp"
 #include "tofsmith/io/csv.hpp"
 #include "tofsmith/version.hpp"

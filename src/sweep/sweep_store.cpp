@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/sweep/sweep_store.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <array>
 #include <set>
 
+#include "core/shared/hash.hpp"
 #include "sweep/file_system.hpp"
 #include "sweep/store_state.hpp"
-#include "tofsmith/core/dispatch_target.hpp"
+#include "tofsmith/core/build_info.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/hash.hpp"
 
 namespace tofsmith {
 

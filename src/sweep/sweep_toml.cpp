@@ -6,11 +6,11 @@
 #include <cmath>
 #include <sstream>
 
-#include "io/table_reader.hpp"
+#include "io/shared/read_file.hpp"
+#include "io/text/shared/table_reader.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
-#include "tofsmith/io/read_file.hpp"
-#include "tofsmith/sweep/sweep_spec.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
 
 namespace tofsmith {
 namespace {

@@ -6,8 +6,8 @@
 #include <array>
 #include <sstream>
 
+#include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/read_file.hpp"
 #include "tofsmith/sweep/training_set.hpp"
 
 namespace tofsmith {

@@ -11,17 +11,17 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/shared/hash.hpp"
+#include "core/shared/random.hpp"
 #include "sweep/item_key.hpp"
 #include "sweep/key_order.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/hash.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/core/random.hpp"
 #include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/camera_toml.hpp"
-#include "tofsmith/io/npz.hpp"
-#include "tofsmith/io/output_directory.hpp"
-#include "tofsmith/simulate/scene_extent.hpp"
+#include "tofsmith/io/npy.hpp"
+#include "tofsmith/simulate/scene_result.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {

@@ -9,18 +9,18 @@
 #include <map>
 #include <string>
 
+#include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/design_directory.hpp"
-#include "tofsmith/io/output_directory.hpp"
-#include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/io/raw_frames.hpp"
 #include "tofsmith/io/result_document.hpp"
-#include "tofsmith/io/waveform_export.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
-#include "tofsmith/scene/ray_cast.hpp"
+#include "tofsmith/scene/ray_caster.hpp"
 #include "tofsmith/simulate/capture.hpp"
+#include "tofsmith/waveforms/waveform_export.hpp"
 
 using namespace tofsmith;
 

@@ -7,9 +7,8 @@
 
 #include <cmath>
 
-#include "tofsmith/calibrate/ideal_code_fit.hpp"
+#include "core/shared/random.hpp"
 #include "tofsmith/camera/forward_model.hpp"
-#include "tofsmith/core/random.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/calibrate/delay_sweep.hpp"
+#include "tofsmith/calibrate/correlation_calibration.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tofsmith/core/random.hpp"
+#include "core/shared/random.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/camera/correlation.hpp"
+#include "tofsmith/camera/forward_model.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "tofsmith/camera/forward_model.hpp"
-#include "tofsmith/core/random.hpp"
+#include "core/shared/random.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {

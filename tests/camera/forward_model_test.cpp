@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "code/shared/hamiltonian.hpp"
+#include "core/shared/periodic.hpp"
 #include "tofsmith/code/families.hpp"
-#include "tofsmith/code/hamiltonian.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/periodic.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {

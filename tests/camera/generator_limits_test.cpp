@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "tofsmith/camera/generator.hpp"
+#include "core/shared/random.hpp"
+#include "tofsmith/camera/camera.hpp"
 #include "tofsmith/camera/generator_report.hpp"
-#include "tofsmith/core/random.hpp"
 
 namespace tofsmith {
 namespace {

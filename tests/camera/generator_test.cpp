@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/camera/generator.hpp"
+#include "tofsmith/camera/camera.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "camera/shared/played_code.hpp"
+#include "camera/shared/prototype.hpp"
+#include "core/shared/random.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/camera/generator_report.hpp"
-#include "tofsmith/camera/played_code.hpp"
-#include "tofsmith/camera/prototype.hpp"
 #include "tofsmith/code/families.hpp"
-#include "tofsmith/core/random.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {

@@ -7,8 +7,8 @@
 #include <complex>
 #include <numbers>
 
+#include "core/shared/random.hpp"
 #include "tofsmith/camera/forward_model.hpp"
-#include "tofsmith/core/random.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/camera/played_waveform.hpp"
+#include "camera/shared/played_waveform.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,10 +7,9 @@
 #include <bit>
 #include <set>
 
-#include "tofsmith/code/coding_curve.hpp"
-#include "tofsmith/code/hamiltonian.hpp"
-#include "tofsmith/code/ramp.hpp"
-#include "tofsmith/code/square.hpp"
+#include "code/shared/hamiltonian.hpp"
+#include "code/shared/ramp.hpp"
+#include "code/square.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/code/waveform.hpp"
+#include "tofsmith/code/code_set.hpp"
 
 #include <gtest/gtest.h>
 
-#include "tofsmith/code/code_set.hpp"
-#include "tofsmith/core/random.hpp"
+#include "core/shared/random.hpp"
 
 namespace tofsmith {
 namespace {

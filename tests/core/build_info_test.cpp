@@ -7,7 +7,6 @@
 
 #include <string>
 
-#include "tofsmith/core/dispatch_target.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith {

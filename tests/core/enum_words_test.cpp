@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/enum_words.hpp"
+#include "core/shared/enum_words.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include <array>
 
-#include "tofsmith/core/random.hpp"
+#include "core/shared/random.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/core/hash.hpp"
+#include "core/shared/hash.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/core/people_text.hpp"
+#include "tofsmith/core/units.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,9 +10,9 @@
 #include <thread>
 #include <vector>
 
+#include "core/shared/shared_progress.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/core/shared_progress.hpp"
 
 namespace tofsmith {
 namespace {

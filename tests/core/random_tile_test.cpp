@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/random_tile.hpp"
+#include "core/shared/random_tile.hpp"
 
 #include <Random123/philox.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <map>
 #include <vector>
 
+#include "core/shared/random.hpp"
 #include "each_target.hpp"
-#include "tofsmith/core/random.hpp"
 #include "tofsmith/core/statistics.hpp"
 
 namespace tofsmith {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/core/sha256.hpp"
+#include "core/shared/sha256.hpp"
 
 #include <gtest/gtest.h>
 

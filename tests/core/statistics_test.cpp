@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "tofsmith/core/hash.hpp"
-#include "tofsmith/core/random.hpp"
+#include "core/shared/hash.hpp"
+#include "core/shared/random.hpp"
 
 namespace tofsmith {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "tofsmith/core/random.hpp"
+#include "core/shared/random.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // Branch and bound over arcs against a plain search in double of all rows.
-#include "decode/arc_search.hpp"
+#include "decode/search/arc_search.hpp"
 
 #include <gtest/gtest.h>
 

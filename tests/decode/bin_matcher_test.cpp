@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // The rivals that confidence compares with, against a search of all bins.
-#include "decode/bin_matcher.hpp"
+#include "decode/search/bin_matcher.hpp"
 
 #include <gtest/gtest.h>
 

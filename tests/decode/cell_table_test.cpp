@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // What a cell claims, against a search of all directions in double.
-#include "decode/cell_table.hpp"
+#include "decode/search/cell_table.hpp"
 
 #include <gtest/gtest.h>
 
+#include "core/shared/random.hpp"
 #include "directions_setup.hpp"
-#include "tofsmith/core/random.hpp"
 
 namespace tofsmith {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "decode_setup.hpp"
-#include "tofsmith/decode/two_return_decoder.hpp"
+#include "tofsmith/decode/multipath_decoder.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/decode/measured_table.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,14 +6,13 @@
 #include <cmath>
 #include <limits>
 
-#include "decode/multipath_engine.hpp"
+#include "decode/multipath/multipath_engine.hpp"
 #include "decode_setup.hpp"
 #include "each_target.hpp"
 #include "reference_returns.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
-#include "tofsmith/decode/tail_decoder.hpp"
-#include "tofsmith/decode/two_return_decoder.hpp"
+#include "tofsmith/decode/multipath_decoder.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // The kernel in single precision against the definition of every output in double.
-#include "decode/output_kernel.hpp"
+#include "decode/output/output_kernel.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // The bound on rounding that comes with every projected pixel, against double arithmetic.
-#include "decode/tile_projection.hpp"
+#include "decode/search/tile_projection.hpp"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 
-#include "decode/exact_projection.hpp"
+#include "core/shared/random.hpp"
+#include "decode/search/exact_projection.hpp"
 #include "each_target.hpp"
-#include "tofsmith/core/random.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "design/least_squares_term.hpp"
+#include "design/circulant_tv/least_squares_term.hpp"
 
 #include <gtest/gtest.h>
 
-#include "tofsmith/core/periodic.hpp"
-#include "tofsmith/core/random.hpp"
-#include "tofsmith/design/box_budget_projection.hpp"
+#include "core/shared/periodic.hpp"
+#include "core/shared/random.hpp"
+#include "design/circulant_tv/box_budget_projection.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/design/box_budget_projection.hpp"
+#include "design/circulant_tv/box_budget_projection.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "tofsmith/core/random.hpp"
+#include "core/shared/random.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/design/chip_metric.hpp"
+#include "design/chips/chip_metric.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <limits>
 #include <numbers>
 
-#include "tofsmith/core/random.hpp"
+#include "core/shared/random.hpp"
 #include "tofsmith/simulate/bounds.hpp"
 
 namespace tofsmith {

@@ -12,13 +12,13 @@
 #include <limits>
 #include <set>
 
-#include "design/best_codes.hpp"
-#include "design/exhaustive_search.hpp"
+#include "design/chips/best_codes.hpp"
+#include "design/chips/chip_metric.hpp"
+#include "design/chips/exhaustive_search.hpp"
+#include "design/chips/standard_chip_codes.hpp"
 #include "each_target.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/design/chip_metric.hpp"
-#include "tofsmith/design/standard_chip_codes.hpp"
 
 namespace tofsmith {
 namespace {

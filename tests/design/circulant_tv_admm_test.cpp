@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/design/circulant_tv_admm.hpp"
+#include "design/circulant_tv/circulant_tv_admm.hpp"
 
 #include <gtest/gtest.h>
 
 #include "circulant_tv_instances.hpp"
-#include "tofsmith/design/circulant_tv_certificate.hpp"
+#include "design/circulant_tv/circulant_tv_certificate.hpp"
 
 namespace tofsmith {
 namespace {

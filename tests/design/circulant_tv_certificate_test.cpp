@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/design/circulant_tv_certificate.hpp"
+#include "design/circulant_tv/circulant_tv_certificate.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "circulant_tv_instances.hpp"
-#include "tofsmith/design/box_budget_projection.hpp"
-#include "tofsmith/design/total_variation_prox.hpp"
+#include "design/circulant_tv/box_budget_projection.hpp"
+#include "design/circulant_tv/total_variation_prox.hpp"
 
 namespace tofsmith {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "circulant_tv_instances.hpp"
-#include "tofsmith/design/circulant_tv_certificate.hpp"
+#include "design/circulant_tv/circulant_tv_certificate.hpp"
 
 namespace tofsmith {
 namespace {

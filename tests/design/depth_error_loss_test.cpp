@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "design/depth_error_loss.hpp"
+#include "design/optimize/depth_error_loss.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "design/design_problem.hpp"
+#include "design/optimize/design_problem.hpp"
 
 #include <gtest/gtest.h>
 

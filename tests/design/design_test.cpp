@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "design/pair_choice.hpp"
+#include "design/chips/pair_choice.hpp"
 #include "same_code.hpp"
 #include "small_design.hpp"
 #include "tofsmith/core/error.hpp"

@@ -5,15 +5,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "design/alternation.hpp"
-#include "design/edge_refinement.hpp"
+#include "core/shared/random.hpp"
+#include "design/chips/edge_refinement.hpp"
+#include "design/factorize/shared/alternation.hpp"
+#include "design/factorize/shared/start_pool.hpp"
 #include "design/run_lengths.hpp"
-#include "design/start_pool.hpp"
-#include "tofsmith/camera/correlation.hpp"
+#include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/core/random.hpp"
 
 namespace tofsmith {
 namespace {

@@ -7,10 +7,10 @@
 
 #include <algorithm>
 
+#include "core/shared/random.hpp"
 #include "same_code.hpp"
-#include "simulate/error_by_rotation.hpp"
+#include "simulate/shared/error_by_rotation.hpp"
 #include "small_design.hpp"
-#include "tofsmith/core/random.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "design/sampled_camera.hpp"
+#include "design/optimize/sampled_camera.hpp"
 
 #include <gtest/gtest.h>
 
+#include "core/shared/random.hpp"
 #include "tofsmith/camera/forward_model.hpp"
-#include "tofsmith/core/random.hpp"
 
 namespace tofsmith {
 namespace {

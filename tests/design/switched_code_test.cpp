@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "design/switched_code.hpp"
+#include "design/optimize/switched_code.hpp"
 
 #include <gtest/gtest.h>
 
-#include "design/binarization.hpp"
-#include "design/edge_polish.hpp"
+#include "design/optimize/binarization.hpp"
+#include "design/optimize/edge_polish.hpp"
 
 namespace tofsmith {
 namespace {

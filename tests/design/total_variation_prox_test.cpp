@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/design/total_variation_prox.hpp"
+#include "design/circulant_tv/total_variation_prox.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "tofsmith/core/periodic.hpp"
-#include "tofsmith/core/random.hpp"
+#include "core/shared/periodic.hpp"
+#include "core/shared/random.hpp"
 
 namespace tofsmith {
 namespace {

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "design/depth_error_loss.hpp"
-#include "design/optimize_pool.hpp"
-#include "design/design_problem.hpp"
-#include "design/optimize_starts.hpp"
+#include "design/optimize/depth_error_loss.hpp"
+#include "design/optimize/design_problem.hpp"
+#include "design/optimize/optimize_pool.hpp"
+#include "design/optimize/optimize_starts.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/code/families.hpp"
 

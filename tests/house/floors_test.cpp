@@ -101,7 +101,7 @@ const Example examples[] = {
     {"src/core/x.cpp", "#include <vector>", true},
     {"src/core/x.cpp", "#include <hwy/highway.h>", true},
     {"src/core/x.cpp", "// #include \"tofsmith/io/x.hpp\"", true},
-    {"src/io/x.cpp", "#include \"io/byte_order.hpp\"", true},
+    {"src/io/x.cpp", "#include \"io/shared/byte_order.hpp\"", true},
     {"src/design/x.cpp", "#include \"tofsmith/simulate/bounds.hpp\"", true},
     {"src/report/x.cpp", "#include \"tofsmith/io/x.hpp\"", true},
     {"apps/x.cpp", "#include \"tofsmith/report/page.hpp\"", true},

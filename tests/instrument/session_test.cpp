@@ -7,8 +7,8 @@
 
 #include "simulated_server.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/instrument/generator_model.hpp"
 #include "tofsmith/instrument/scpi_session.hpp"
+#include "tofsmith/instrument/upload.hpp"
 #include "upload_setup.hpp"
 
 namespace tofsmith {

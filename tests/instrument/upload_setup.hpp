@@ -7,11 +7,11 @@
 #include <string>
 #include <utility>
 
+#include "core/shared/random.hpp"
 #include "simulated_generator.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/random.hpp"
 #include "tofsmith/instrument/upload.hpp"
-#include "tofsmith/io/waveform_format.hpp"
+#include "tofsmith/waveforms/waveform_export.hpp"
 
 namespace tofsmith {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/io/albedo_file.hpp"
+#include "tofsmith/io/image_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,13 +8,10 @@
 #include <limits>
 
 #include "damaged_files.hpp"
+#include "io/images/exr.hpp"
+#include "io/images/pfm.hpp"
 #include "temporary_directory.hpp"
-#include "tofsmith/io/colour.hpp"
-#include "tofsmith/io/exr.hpp"
-#include "tofsmith/io/float_image_file.hpp"
 #include "tofsmith/io/npy.hpp"
-#include "tofsmith/io/pfm.hpp"
-#include "tofsmith/io/png.hpp"
 
 namespace tofsmith {
 namespace {

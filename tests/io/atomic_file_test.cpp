@@ -11,8 +11,8 @@
 #include <fstream>
 
 #include "damaged_files.hpp"
+#include "io/shared/read_file.hpp"
 #include "temporary_directory.hpp"
-#include "tofsmith/io/read_file.hpp"
 
 namespace tofsmith {
 namespace {

@@ -8,12 +8,12 @@
 #include <fstream>
 
 #include "damaged_files.hpp"
-#include "io/array_matrix.hpp"
+#include "io/arrays/shared/array_matrix.hpp"
 #include "same_code.hpp"
 #include "temporary_directory.hpp"
 #include "tofsmith/code/families.hpp"
-#include "tofsmith/io/correlation_file.hpp"
-#include "tofsmith/io/npz.hpp"
+#include "tofsmith/io/measured_table_file.hpp"
+#include "tofsmith/io/npy.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/io/code_npz.hpp"
+#include "tofsmith/io/code_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "damaged_files.hpp"
-#include "io/array_matrix.hpp"
+#include "io/arrays/shared/array_matrix.hpp"
 #include "same_code.hpp"
-#include "tofsmith/camera/correlation.hpp"
+#include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/code/families.hpp"
-#include "tofsmith/io/npz.hpp"
+#include "tofsmith/io/npy.hpp"
 
 namespace tofsmith {
 namespace {

@@ -11,7 +11,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
-#include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/io/raw_frames.hpp"
 
 namespace tofsmith {
 namespace {

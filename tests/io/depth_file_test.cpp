@@ -10,13 +10,12 @@
 #include <limits>
 
 #include "damaged_files.hpp"
+#include "io/images/exr.hpp"
+#include "io/images/pfm.hpp"
+#include "io/shared/read_file.hpp"
 #include "temporary_directory.hpp"
-#include "tofsmith/io/exr.hpp"
-#include "tofsmith/io/float_image_file.hpp"
-#include "tofsmith/io/npz.hpp"
-#include "tofsmith/io/pfm.hpp"
-#include "tofsmith/io/png.hpp"
-#include "tofsmith/io/read_file.hpp"
+#include "tofsmith/io/image_file.hpp"
+#include "tofsmith/io/npy.hpp"
 
 namespace tofsmith {
 namespace {

@@ -8,11 +8,11 @@
 #include <fstream>
 
 #include "damaged_files.hpp"
+#include "io/shared/read_file.hpp"
 #include "same_code.hpp"
 #include "small_design.hpp"
 #include "temporary_directory.hpp"
-#include "tofsmith/io/file_name.hpp"
-#include "tofsmith/io/read_file.hpp"
+#include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/result_document.hpp"
 
 namespace tofsmith {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/io/embree_search.hpp"
+#include "tofsmith/io/mesh_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,9 @@
 #include <limits>
 #include <utility>
 
+#include "core/shared/random.hpp"
 #include "generated_meshes.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/core/random.hpp"
-#include "tofsmith/scene/ray_cast.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 
 namespace tofsmith {

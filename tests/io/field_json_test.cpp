@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/field_json.hpp"
+#include "io/text/field_json.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "damaged_files.hpp"
-#include "io/field_key.hpp"
-#include "io/document_text.hpp"
+#include "io/documents/shared/document_text.hpp"
+#include "io/text/field_key.hpp"
 #include "tofsmith/design/design.hpp"
 
 namespace tofsmith {

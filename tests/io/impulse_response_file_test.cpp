@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/io/impulse_response_file.hpp"
+#include "tofsmith/io/measured_table_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

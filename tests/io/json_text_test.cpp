@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/document_text.hpp"
+#include "io/documents/shared/document_text.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

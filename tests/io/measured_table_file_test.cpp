@@ -9,9 +9,9 @@
 #include <fstream>
 
 #include "damaged_files.hpp"
-#include "io/array_matrix.hpp"
+#include "io/arrays/shared/array_matrix.hpp"
 #include "temporary_directory.hpp"
-#include "tofsmith/io/npz.hpp"
+#include "tofsmith/io/npy.hpp"
 
 namespace tofsmith {
 namespace {

@@ -11,9 +11,8 @@
 #include <numeric>
 
 #include "damaged_files.hpp"
+#include "io/shared/read_file.hpp"
 #include "temporary_directory.hpp"
-#include "tofsmith/io/npy_stream.hpp"
-#include "tofsmith/io/read_file.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/io/npz.hpp"
+#include "tofsmith/io/npy.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <fstream>
 
 #include "damaged_files.hpp"
+#include "io/shared/read_file.hpp"
 #include "temporary_directory.hpp"
-#include "tofsmith/io/read_file.hpp"
 
 namespace tofsmith {
 namespace {

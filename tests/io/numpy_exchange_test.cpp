@@ -6,10 +6,9 @@
 #include <cstdlib>
 #include <numeric>
 
+#include "io/shared/read_file.hpp"
 #include "temporary_directory.hpp"
-#include "tofsmith/io/npy_stream.hpp"
-#include "tofsmith/io/npz.hpp"
-#include "tofsmith/io/read_file.hpp"
+#include "tofsmith/io/npy.hpp"
 
 // Files pass between this library and the NumPy of Debian's python3; numpy_exchange.py is the
 // other side.

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/io/png.hpp"
+#include "tofsmith/io/image_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "damaged_files.hpp"
+#include "io/image_limits.hpp"
 #include "temporary_directory.hpp"
-#include "tofsmith/io/colour.hpp"
-#include "tofsmith/io/image_limits.hpp"
 
 namespace tofsmith {
 namespace {

@@ -10,8 +10,8 @@
 #include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/scene/bounced_light.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
-#include "tofsmith/simulate/multipath_bounds.hpp"
-#include "tofsmith/simulate/multipath_scene.hpp"
+#include "tofsmith/simulate/bounds.hpp"
+#include "tofsmith/simulate/multipath_error.hpp"
 
 namespace tofsmith {
 namespace {

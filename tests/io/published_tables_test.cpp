@@ -9,7 +9,7 @@
 #include "decode_setup.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/measured_table_file.hpp"
-#include "tofsmith/simulate/table_depth_error.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
 namespace {

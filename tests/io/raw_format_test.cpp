@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/io/raw_format.hpp"
+#include "tofsmith/io/raw_frames.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,8 +13,6 @@
 #include "raw_packer.hpp"
 #include "temporary_directory.hpp"
 #include "tofsmith/io/npy.hpp"
-#include "tofsmith/io/raw_frames_file.hpp"
-#include "tofsmith/io/raw_frames_reader.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/io/raw_frames_file.hpp"
+#include "tofsmith/io/raw_frames.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 #include "damaged_files.hpp"
 #include "temporary_directory.hpp"
-#include "tofsmith/io/npz.hpp"
+#include "tofsmith/io/npy.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/io/raw_frames_reader.hpp"
+#include "tofsmith/io/raw_frames.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,6 @@
 #include "damaged_files.hpp"
 #include "decode_setup.hpp"
 #include "temporary_directory.hpp"
-#include "tofsmith/io/raw_frames_file.hpp"
 
 namespace tofsmith {
 namespace {

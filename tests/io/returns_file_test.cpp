@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/io/returns_file.hpp"
+#include "tofsmith/io/depth_file.hpp"
 
 #include <gmock/gmock.h>
 
 #include "temporary_directory.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/npz.hpp"
+#include "tofsmith/io/npy.hpp"
 
 namespace tofsmith {
 namespace {

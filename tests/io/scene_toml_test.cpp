@@ -12,9 +12,9 @@
 
 #include "damaged_files.hpp"
 #include "temporary_directory.hpp"
-#include "tofsmith/io/embree_search.hpp"
-#include "tofsmith/io/float_image_file.hpp"
-#include "tofsmith/scene/ray_cast.hpp"
+#include "tofsmith/io/image_file.hpp"
+#include "tofsmith/io/mesh_file.hpp"
+#include "tofsmith/scene/ray_caster.hpp"
 
 namespace tofsmith {
 namespace {

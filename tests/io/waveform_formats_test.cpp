@@ -9,11 +9,11 @@
 #include <cstring>
 
 #include "damaged_files.hpp"
-#include "tofsmith/io/ieee488_block.hpp"
-#include "tofsmith/io/keysight_arb.hpp"
-#include "tofsmith/io/read_file.hpp"
-#include "tofsmith/io/siglent_waveform.hpp"
-#include "tofsmith/io/tektronix_waveform.hpp"
+#include "io/shared/read_file.hpp"
+#include "waveforms/shared/ieee488_block.hpp"
+#include "waveforms/shared/keysight_arb.hpp"
+#include "waveforms/shared/siglent_waveform.hpp"
+#include "waveforms/shared/tektronix_waveform.hpp"
 
 namespace tofsmith {
 namespace {

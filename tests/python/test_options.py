@@ -26,9 +26,9 @@ structs = [
      lambda o: ts.design("paper-10f0", **quick, optimize=o), {"seed"}),
     ("ChipSearchOptions", "design/chip_search.hpp",
      lambda o: ts.design("paper-10f0", **quick, search=o), {"seed", "exposures"}),
-    ("MultipathOptions", "decode/multipath_options.hpp",
+    ("MultipathOptions", "decode/multipath_decoder.hpp",
      lambda o: ts.Decoder("hamiltonian-k4", "paper-10f0", multipath=o), {"doubt"}),
-    ("ReturnPrior", "decode/multipath_options.hpp",
+    ("ReturnPrior", "decode/multipath_decoder.hpp",
      lambda o: ts.Decoder("hamiltonian-k4", "paper-10f0", multipath={"prior": o}), set()),
 ]
 #: Struct, header, function or class whose keywords are its fields.
@@ -38,18 +38,18 @@ keywords = [
     ("DesignOptions", "design/design.hpp", ts.design, set()),
     ("MultipathErrorOptions", "simulate/multipath_error.hpp", ts.multipath_error, set()),
     ("DecodeOptions", "decode/decoder.hpp", ts.Decoder, set()),
-    ("ExportOptions", "io/waveform_export.hpp", ts.export_waveforms, set()),
-    ("ResponseRecordOptions", "calibrate/response_record.hpp", ts.read_response_record, set()),
+    ("ExportOptions", "waveforms/waveform_export.hpp", ts.export_waveforms, set()),
+    ("ResponseRecordOptions", "calibrate/impulse_response.hpp", ts.read_response_record, set()),
     ("ResponseCalibrationOptions", "calibrate/impulse_response.hpp",
      ts.calibrate_impulse_response, {"fundamental_frequency_hz", "samples"}),
-    ("DelaySweepOptions", "calibrate/delay_sweep.hpp", ts.read_delay_sweep,
+    ("DelaySweepOptions", "calibrate/correlation_calibration.hpp", ts.read_delay_sweep,
      {"unit_scale", "fundamental_frequency_hz", "samples", "table"}),
     ("CorrelationCalibrationOptions", "calibrate/correlation_calibration.hpp",
      ts.calibrate_correlation, {"taps", "differences", "range_m", "exposure_s"}),
     ("PhotonTransferOptions", "calibrate/photon_transfer.hpp", ts.photon_transfer, set()),
     ("CaptureOptions", "simulate/capture.hpp", ts.write_training_set,
      {"signal_e_per_s", "ambient_e_per_s"}),
-    ("ReproduceOptions", "reproduce/context.hpp", ts.reproduce, {"mesh_name"}),
+    ("ReproduceOptions", "../../src/paper/context.hpp", ts.reproduce, {"mesh_name"}),
 ]
 
 
@@ -80,8 +80,8 @@ def test_every_option_is_a_keyword(struct, header, of, elsewhere):
     assert fields(struct, header) - elsewhere <= parameters
 
 
-uploads = ("UploadRequest", "instrument/upload_script.hpp"), (
-    "UploadSelection", "instrument/upload_selection.hpp")
+uploads = ("UploadRequest", "instrument/upload.hpp"), (
+    "UploadSelection", "instrument/upload.hpp")
 
 
 def test_every_option_of_an_upload_can_be_given():
@@ -92,7 +92,7 @@ def test_every_option_of_an_upload_can_be_given():
 
 
 def test_every_plane_of_a_decoded_image_is_there():
-    planes = fields("DecodedView", "decode/decoded_view.hpp")
+    planes = fields("DecodedView", "decode/depth_image.hpp")
     names = {name for name in vars(ts.DepthImage)["__dataclass_fields__"]}
     assert names == planes
     image = ts.decode(np.ones((1, 1, 4), np.float32), "hamiltonian-k4", "paper-10f0")

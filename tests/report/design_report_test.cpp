@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "report/scene_section.hpp"
 #include "small_design.hpp"
 #include "tofsmith/report/code_figures.hpp"
-#include "tofsmith/report/scene_section.hpp"
 
 namespace tofsmith {
 namespace {

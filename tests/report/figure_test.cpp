@@ -8,12 +8,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "tofsmith/report/bar_figure.hpp"
-#include "tofsmith/report/heat_map_figure.hpp"
-#include "tofsmith/report/image_figure.hpp"
-#include "tofsmith/report/small_multiples.hpp"
-#include "tofsmith/report/space_figure.hpp"
-#include "tofsmith/report/surface_figure.hpp"
+#include "paper/surface_figure.hpp"
+#include "report/shared/bar_figure.hpp"
 
 namespace tofsmith {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "report/resources.hpp"
 #include "sample_page.hpp"
-#include "tofsmith/report/line_figure.hpp"
+#include "tofsmith/report/figure.hpp"
 
 namespace tofsmith {
 namespace {

@@ -8,12 +8,9 @@
 #include <limits>
 #include <numbers>
 
-#include "tofsmith/core/random.hpp"
-#include "tofsmith/report/bar_figure.hpp"
-#include "tofsmith/report/heat_map_figure.hpp"
-#include "tofsmith/report/image_figure.hpp"
-#include "tofsmith/report/small_multiples.hpp"
-#include "tofsmith/report/space_figure.hpp"
+#include "core/shared/random.hpp"
+#include "report/shared/bar_figure.hpp"
+#include "tofsmith/report/figure.hpp"
 
 namespace tofsmith {
 namespace {

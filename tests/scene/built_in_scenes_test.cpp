@@ -8,9 +8,8 @@
 #include <cmath>
 #include <limits>
 
-#include "tofsmith/scene/check_view.hpp"
+#include "scene/table_top.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
-#include "tofsmith/scene/table_top.hpp"
 
 namespace tofsmith {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tofsmith/core/random.hpp"
+#include "core/shared/random.hpp"
 #include "tofsmith/scene/shapes.hpp"
 
 namespace tofsmith {

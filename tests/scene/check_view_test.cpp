@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/scene/check_view.hpp"
+#include "tofsmith/scene/ray_caster.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "core/shared/random.hpp"
 #include "generated_meshes.hpp"
-#include "tofsmith/core/random.hpp"
-#include "tofsmith/scene/ray_cast.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/scene/mesh.hpp"
+#include "tofsmith/scene/shapes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "generated_meshes.hpp"
-#include "tofsmith/scene/shapes.hpp"
 
 namespace tofsmith {
 namespace {

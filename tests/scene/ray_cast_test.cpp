@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/scene/ray_cast.hpp"
+#include "tofsmith/scene/ray_caster.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <limits>
 #include <numbers>
 
-#include "tofsmith/core/random.hpp"
-#include "tofsmith/scene/table_top.hpp"
+#include "core/shared/random.hpp"
+#include "scene/table_top.hpp"
 
 namespace tofsmith {
 namespace {

@@ -9,9 +9,8 @@
 #include <memory>
 #include <utility>
 
+#include "core/shared/random.hpp"
 #include "generated_meshes.hpp"
-#include "tofsmith/core/random.hpp"
-#include "tofsmith/scene/ray_cast.hpp"
 
 namespace tofsmith {
 namespace {

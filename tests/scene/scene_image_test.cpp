@@ -7,8 +7,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "tofsmith/scene/pinhole.hpp"
-
 namespace tofsmith {
 namespace {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tofsmith/core/random.hpp"
+#include "core/shared/random.hpp"
 #include "tofsmith/simulate/bounds.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 

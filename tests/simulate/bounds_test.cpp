@@ -9,8 +9,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/shared/random.hpp"
 #include "tofsmith/code/families.hpp"
-#include "tofsmith/core/random.hpp"
 
 namespace tofsmith {
 namespace {

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <cstring>
 
+#include "scene/table_top.hpp"
+#include "simulate/fine_correlation.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/decode/decoder.hpp"
-#include "tofsmith/scene/table_top.hpp"
-#include "tofsmith/simulate/fine_correlation.hpp"
 
 namespace tofsmith {
 namespace {

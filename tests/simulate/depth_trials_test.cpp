@@ -9,8 +9,8 @@
 #include <memory>
 
 #include "each_target.hpp"
+#include "simulate/noise.hpp"
 #include "simulate/trial_errors.hpp"
-#include "tofsmith/simulate/noise.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/simulate/direct_tof_bound.hpp"
+#include "tofsmith/simulate/bounds.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,8 @@
 #include <numbers>
 #include <utility>
 
-#include "tofsmith/camera/played_waveform.hpp"
-#include "tofsmith/core/random.hpp"
-#include "tofsmith/simulate/bounds.hpp"
+#include "camera/shared/played_waveform.hpp"
+#include "core/shared/random.hpp"
 
 namespace tofsmith {
 namespace {

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "tofsmith/core/exponential_average.hpp"
+#include "core/shared/exponential_average.hpp"
 #include "tofsmith/simulate/bounds.hpp"
-#include "tofsmith/simulate/multipath_bounds.hpp"
-#include "tofsmith/simulate/multipath_capture.hpp"
+#include "tofsmith/simulate/capture.hpp"
 #include "tofsmith/simulate/multipath_error.hpp"
 
 namespace tofsmith {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/simulate/scene_error.hpp"
+#include "tofsmith/simulate/scene_result.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/simulate/second_return_error.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include "tofsmith/scene/bounced_light.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
-#include "tofsmith/simulate/multipath_bounds.hpp"
-#include "tofsmith/simulate/multipath_scene.hpp"
+#include "tofsmith/simulate/bounds.hpp"
+#include "tofsmith/simulate/multipath_error.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/simulate/table_depth_error.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
 
 #include <gtest/gtest.h>
 
 #include "decode_setup.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tofsmith/core/random.hpp"
+#include "core/shared/random.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/decode/decoder.hpp"

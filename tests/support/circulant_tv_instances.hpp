@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "tofsmith/core/periodic.hpp"
-#include "tofsmith/core/random.hpp"
+#include "core/shared/periodic.hpp"
+#include "core/shared/random.hpp"
 #include "tofsmith/design/circulant_tv.hpp"
 
 namespace tofsmith::test {

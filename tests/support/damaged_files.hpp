@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "core/shared/random.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/random.hpp"
 
 namespace tofsmith {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/shared/random.hpp"
 #include "tofsmith/camera/forward_model.hpp"
-#include "tofsmith/core/random.hpp"
 #include "tofsmith/decode/decoder.hpp"
 
 namespace tofsmith {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "decode/direction_table.hpp"
+#include "decode/search/direction_table.hpp"
 #include "decode_setup.hpp"
 #include "generated_curves.hpp"
 

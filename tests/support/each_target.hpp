@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "tofsmith/core/dispatch_target.hpp"
+#include "tofsmith/core/build_info.hpp"
 
 namespace tofsmith {
 

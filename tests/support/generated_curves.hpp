@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "tofsmith/core/random.hpp"
+#include "core/shared/random.hpp"
 
 namespace tofsmith {
 

@@ -9,7 +9,7 @@
 #include <map>
 #include <utility>
 
-#include "tofsmith/scene/mesh.hpp"
+#include "tofsmith/scene/shapes.hpp"
 
 namespace tofsmith {
 

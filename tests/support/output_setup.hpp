@@ -11,10 +11,10 @@
 #include <limits>
 #include <vector>
 
-#include "decode/direction_table.hpp"
-#include "decode/output_kernel.hpp"
-#include "decode/pixel_output.hpp"
+#include "decode/output/output_kernel.hpp"
+#include "decode/output/pixel_output.hpp"
 #include "decode/raw_scale.hpp"
+#include "decode/search/direction_table.hpp"
 #include "decode_setup.hpp"
 #include "each_target.hpp"
 #include "tofsmith/core/units.hpp"

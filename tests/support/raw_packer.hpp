@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "damaged_files.hpp"
-#include "tofsmith/io/raw_format.hpp"
+#include "tofsmith/io/raw_frames.hpp"
 
 namespace tofsmith {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "design/sampled_camera.hpp"
-#include "design/trial_batch.hpp"
+#include "design/optimize/sampled_camera.hpp"
+#include "design/optimize/trial_batch.hpp"
 
 namespace tofsmith {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "decode/multipath_search.hpp"
+#include "decode/multipath/multipath_search.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 
 namespace tofsmith {

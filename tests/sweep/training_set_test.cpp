@@ -9,13 +9,13 @@
 #include <fstream>
 #include <map>
 
+#include "io/shared/read_file.hpp"
 #include "temporary_directory.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/code_file.hpp"
-#include "tofsmith/io/npz.hpp"
-#include "tofsmith/io/read_file.hpp"
+#include "tofsmith/io/npy.hpp"
 
 namespace tofsmith {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/sweep/work_list.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

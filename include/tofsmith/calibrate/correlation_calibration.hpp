@@ -3,18 +3,58 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "tofsmith/calibrate/delay_sweep.hpp"
+#include "tofsmith/calibrate/instrument_table.hpp"
+#include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/array.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/statistics.hpp"
-#include "tofsmith/decode/measured_table.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/decode/pixel_maps.hpp"
+#include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/io/measured_table_file.hpp"
 
 namespace tofsmith {
+
+/// What a delay is told in.
+enum class DelayUnit { second, metre, bin, period };
+
+/// "s", "m", "bin" or "period"; "ns" and the like through seconds_per_unit().
+/// @throws std::invalid_argument for any other word
+DelayUnit parse_delay_unit(std::string_view word);
+
+/// Frames of a flat target at known delays, in the order in which they were taken.
+struct DelaySweep {
+  std::vector<double> delay_periods;  ///< of each frame (F), any real
+  RawFrames frames;                   ///< (F, H, W, K) raw numbers; H = W = 1 for a table of means
+  std::vector<std::string> notes;
+
+  /// Whether sizes agree and delays run through a whole period without a gap.
+  /// @throws std::invalid_argument naming what is missing
+  void validate() const;
+};
+
+/// What the file of a sweep does not say.
+struct DelaySweepOptions {
+  std::filesystem::path shifts;  ///< delays of a stack of frames: text of one column, or .npy
+  DelayUnit unit = DelayUnit::second;
+  double unit_scale = 1.0;                 ///< in `unit` of one number of the file
+  double fundamental_frequency_hz = 15e6;  ///< f0: a period is 1/f0, or c/(2 f0) in metres
+  int samples = 240;                       ///< N, bins of a period
+  DecimalMark decimal = DecimalMark::automatic;
+  MeasuredTableOptions table;  ///< how an array (N, K) without delays is read
+};
+
+/// Reads a delay sweep:
+///   - text: delay and K values per row,
+///   - .npy or .npz of shape (F, H, W, K) beside a list of F shifts,
+///   - .npy or .npz of shape (N, K): equal steps of one period, see read_measured_table().
+/// @throws IoError naming file and place for what does not fit
+DelaySweep read_delay_sweep(const std::filesystem::path& path, const DelaySweepOptions& options);
 
 /// What is known of the camera that took a sweep.
 struct CorrelationCalibrationOptions {
@@ -73,5 +113,53 @@ struct CalibratedCorrelation {
 CalibratedCorrelation calibrate_correlation(const DelaySweep& sweep,
                                             const CorrelationCalibrationOptions& options,
                                             const Progress& progress = {});
+
+/// Writes the table as read_measured_table() reads it: corrfs, corrfs_se, offset_dn and, where they
+/// are known, ambient and exposure_s. Columns hold the taps of an exposure side by side.
+/// @throws IoError unless the extension is .npz, or as AtomicFile does
+void write_calibrated_table(const std::filesystem::path& path, const CalibratedCorrelation& found,
+                            OutputPolicy policy);
+
+/// One harmonic of a measured table against that of an ideal code.
+struct HarmonicRatio {
+  int harmonic = 1;
+  double measured = 0.0;  ///< amplitude, root of the sum of squares over measurements
+  double ideal = 0.0;     ///< the same of the fitted code without responses
+  Estimate ratio;         ///< what both arms pass of it; not a number where the code has none
+};
+
+/// An ideal code fitted to a measured table.
+struct IdealCodeFit {
+  std::string code;
+  double delay_periods = 0.0;   ///< by which the measured curves arrive later
+  bool reversed = false;        ///< delay runs the other way
+  bool inverted = false;        ///< all signs are opposite
+  std::vector<int> exposure;    ///< of the code that each measured exposure is
+  double scale = 1.0;           ///< raw numbers of one unit of the code's correlation
+  double ideal_residual = 0.0;  ///< rms left over the rms of the table, without responses
+  double residual = 0.0;        ///< the same with the response
+  ImpulseResponse response;     ///< of each of the two arms, both alike; none if nothing is gained
+  Estimate parameter_hz;        ///< its f_max_hz or cutoff_hz
+  Eigen::MatrixXd fitted;       ///< (N, K), without means
+  std::vector<HarmonicRatio> harmonics;  ///< 1 .. 16
+};
+
+/// Fits codes to a measured table, the least residual first: common scale, delay, direction and
+/// sign, the order of exposures, and one symmetric response of both arms (hann, gaussian or
+/// lowpass), all by least squares over harmonics. Means of columns do not count.
+/// @param table   (N, K)
+/// @param error   standard errors of its values (N, K)
+/// @param codes   families or codes that fit the camera's taps, of K values
+/// @throws std::invalid_argument if no code has K values
+std::vector<IdealCodeFit> fit_ideal_codes(const Eigen::MatrixXd& table,
+                                          const Eigen::MatrixXd& error, const Camera& camera,
+                                          const std::vector<CodeSet>& codes);
+
+/// The ideal codes of K values on that camera: every family, without responses, peak or generator.
+std::vector<CodeSet> ideal_codes(const Camera& camera, int measurements);
+
+/// The camera whose arms respond as fitted and whose taps differ as measured.
+Camera with_fit(Camera camera, const IdealCodeFit& fit,
+                const std::vector<Estimate>& tap_mismatch = {});
 
 }  // namespace tofsmith

@@ -2,18 +2,123 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <complex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "tofsmith/camera/generator.hpp"
-#include "tofsmith/camera/impulse_response.hpp"
-#include "tofsmith/camera/second_returns.hpp"
 #include "tofsmith/code/code_set.hpp"
 #include "tofsmith/core/fields.hpp"
 
 namespace tofsmith {
+
+/// How a light source or a sensor smooths what it is told to play. Its transfer function is 1 at
+/// frequency 0, so mean power and duty stay.
+struct ImpulseResponse {
+  enum class Kind { none, hann, gaussian, lowpass, file };
+
+  Kind kind = Kind::none;
+  /// Of a Hann window: the frequency at which it attenuates by 5 [Hz], > 0. The window is
+  /// 1.444 / f_max_hz wide and its transfer function sinc(x) / (1 - x^2), x = f * width.
+  /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 4.2 and Fig. 5
+  double f_max_hz = 0.0;
+  /// Of a Gaussian or a first-order low-pass: the frequency of -3 dB [Hz], > 0.
+  double cutoff_hz = 0.0;
+  /// Measured response, in steps of time_step_s, linear in between; scaled to sum 1 where it is
+  /// used. Nothing passes above half the sampling rate.
+  std::vector<double> samples;
+  double time_step_s = 0.0;  ///< of `samples` [s], > 0
+  std::string file;          ///< where `samples` came from
+
+  /// Transfer function at a frequency [Hz]; 1 at 0.
+  std::complex<double> transfer(double frequency_hz) const;
+
+  /// @throws std::invalid_argument naming `field`.member, value and rule
+  void validate(std::string_view field) const;
+
+  friend bool operator==(const ImpulseResponse&, const ImpulseResponse&) = default;
+};
+
+/// "none", "hann", "gaussian", "lowpass", "file".
+std::string_view name_of(ImpulseResponse::Kind kind);
+
+/// Second returns as a camera meets them: ratio and delay are uniform between their limits. Field
+/// names are the keys of [operating.multipath] in the TOML file.
+struct SecondReturns {
+  std::array<double, 2> ratio{0.1, 0.5};    ///< r = S2 / S1, least and largest, in [0, 1]
+  std::array<double, 2> delay_m{0.5, 3.0};  ///< behind the direct return, in (0, range) [m]
+  /// How much they count where codes are designed: what is minimized is E1^(1 - weight) E2^weight,
+  /// with E1 the error of single returns and E2 that behind such second ones, decoded as
+  /// single-path; in (0, 1).
+  double weight = 0.2;
+
+  /// A ratio and a delay from two numbers uniform on [0, 1).
+  double ratio_at(double uniform) const { return ratio[0] + uniform * (ratio[1] - ratio[0]); }
+  double delay_at_m(double uniform) const {
+    return delay_m[0] + uniform * (delay_m[1] - delay_m[0]);
+  }
+
+  /// E1^(1 - weight) E2^weight.
+  double weighed(double single_return_error, double second_return_error) const;
+
+  /// @throws std::invalid_argument naming the field as operating.multipath.*, value and rule
+  void validate(double range_m) const;
+
+  friend bool operator==(const SecondReturns&, const SecondReturns&) = default;
+};
+
+/// An arbitrary waveform generator, or a memory of patterns, that drives one arm of a camera from a
+/// table of points. Its analog bandwidth is not here: it belongs to the arm's impulse response.
+struct Generator {
+  double sample_rate_hz = 500e6;  ///< most points per second [1/s], > 0
+  int amplitude_bits = 14;        ///< of a point's amplitude, 1 .. 24
+  /// Points of the table that holds one period, 2 .. 2^20; none: as many as are played. A table of
+  /// more points than the sample rate allows is played by skipping some.
+  std::optional<int> table_points = {};
+  /// Binary waveforms switch at multiples of this time only [s]; it divides the period. None: at
+  /// any point.
+  std::optional<double> edge_grid_s = {};
+
+  /// Points of one period that are played, n: as many whole ones as the sample rate allows,
+  /// n f0 <= sample rate, and as the table has. The clock is then n f0.
+  int points_per_period(double fundamental_frequency_hz) const;
+  /// Points of the table that holds one period.
+  int points_in_table(double fundamental_frequency_hz) const;
+
+  /// @throws std::invalid_argument naming `field`.member, value and rule; also where a period has
+  ///         fewer than 2 points
+  void validate(std::string_view field, double fundamental_frequency_hz) const;
+
+  friend bool operator==(const Generator&, const Generator&) = default;
+};
+
+/// What a generator's table holds of a waveform it is told, each point held for 1/n of the period.
+///   - Switching times of a binary waveform first move to the edge grid, if there is one.
+///   - A point takes the waveform's value at the middle of its time, as in a table that a user
+///     loads. So a switching time moves to the nearest point, by at most half a point (from the
+///     middle between two to the earlier one), and a pulse shorter than a point may vanish.
+///   - Amplitudes are rounded to 2^bits levels from 0 to the waveform's own peak. On and off are
+///     levels: a binary waveform stays binary, and one whose switching times are points does not
+///     change.
+/// @throws std::invalid_argument if the generator cannot play that frequency, or for values below 0
+Waveform generator_table(const Waveform& waveform, const Generator& generator,
+                         double fundamental_frequency_hz);
+
+/// What a generator makes of a waveform it is told: its table; of a table of more points than it
+/// plays, the points at the middles of those it plays.
+/// @throws std::invalid_argument as generator_table()
+Waveform generated(const Waveform& waveform, const Generator& generator,
+                   double fundamental_frequency_hz);
+
+/// Where `generated` puts a switching time [periods].
+double generated_switching_time(double switching_time_periods, const Generator& generator,
+                                double fundamental_frequency_hz);
+
+/// Where a generator of n points per period puts a switching time [points], as `generator_table`
+/// does without an edge grid.
+double nearest_point(double switching_time_periods, double points_per_period);
 
 /// How the noise of electrons is drawn.
 enum class NoiseModel {

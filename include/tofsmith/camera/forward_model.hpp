@@ -7,9 +7,33 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
-#include "tofsmith/camera/correlation.hpp"
+#include "tofsmith/code/code_set.hpp"
 
 namespace tofsmith {
+
+/// The correlation function of one demodulation and one modulation function, for real depth:
+///   chi(u) = integral over the period of (h_d * d)(t) (h_m * m)(t - u) dt,  u in periods.
+/// Without impulse responses it is piecewise linear and kept exactly by its corners; with them it
+/// is smooth and kept by its harmonics D_n Hd_n conj(M_n Hm_n).
+/// @see Gutierrez-Barragan et al., CVPR 2019, Eq. (3)
+class CorrelationFunction {
+ public:
+  /// Without impulse responses.
+  CorrelationFunction(const Waveform& demodulation, const Waveform& modulation);
+  /// With `transfer` = Hd_n conj(Hm_n), n = 0 .. as many harmonics as are to be kept.
+  CorrelationFunction(const Waveform& demodulation, const Waveform& modulation,
+                      const Eigen::VectorXcd& transfer);
+
+  /// Value at depth `u` [periods]; any real u, period 1.
+  double operator()(double u) const;
+  /// Values at u = j / points, j = 0 .. points - 1.
+  Eigen::VectorXd table(int points) const;
+
+ private:
+  std::vector<double> corners_;  // positions in [0, 1), sorted; empty when harmonics are kept
+  std::vector<double> values_;   // at the corners
+  Eigen::VectorXcd harmonics_;
+};
 
 /// Light that comes back from one depth.
 struct Return {
@@ -94,5 +118,44 @@ double constant_variance_e2_of(const Sensor& sensor);
 /// where a generator rounds duties of 1/2. To hold such a leak to be unknown would cost a whole
 /// measurement; to ignore it costs next to nothing. Else ambient_gain().
 Eigen::VectorXd unknown_ambient_gain(const ForwardModel& model, const Camera& camera);
+
+/// Light that trails off behind the direct return, as in haze or translucent things: after a delay
+/// u behind it comes ratio / mean exp(-u / mean) of its signal per unit of u.
+struct ExponentialTail {
+  double mean_delay_m = 0.5;  ///< [m], > 0 and at most the range of the period
+  double ratio = 0.3;         ///< signal of all of the tail over that of the direct return, >= 0
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate(double range_m) const;
+};
+
+/// A measured response of a scene to one short pulse: light by distance, as a histogram.
+struct Transient {
+  std::vector<double> light;  ///< of each bin, >= 0, any unit; a pixel's signal is shared out so
+  double bin_m = 0.0;         ///< depth that one bin takes, c / 2 times its time [m], > 0
+  double first_m = 0.0;       ///< depth at which bin 0 begins, behind the pixel's depth [m]
+
+  /// Sum of all bins.
+  double total() const;
+  /// Every bin as a return at its middle, with its share of `signal_e_per_s`; empty bins left out.
+  /// @param depth_bin  of the pixel
+  std::vector<Return> returns(double depth_bin, double signal_e_per_s, double camera_bin_m) const;
+
+  /// Finite bins that are not negative, with some light, no longer together than the range.
+  /// @throws std::invalid_argument naming bin, value and rule
+  void validate(double range_m) const;
+};
+
+/// What tap values see of unit light that trails off, (points, E x taps): chi averaged over
+/// exponential delays, row j for a direct return at depth j N / points (see
+/// ForwardModel::tap_correlation_table), exact for chords between rows.
+Eigen::MatrixXd tap_tail_table(const ForwardModel& model, const ExponentialTail& tail,
+                               double range_m, int points);
+
+/// What tap values see of unit light spread as a transient, (points, E x taps), row j for a pixel
+/// at depth j N / points. The histogram is resampled onto the rows: constant within its bins, exact
+/// for chords between rows; it wraps at the period, as the light does.
+Eigen::MatrixXd tap_transient_table(const ForwardModel& model, const Transient& transient,
+                                    double range_m, int points);
 
 }  // namespace tofsmith

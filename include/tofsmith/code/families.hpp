@@ -2,14 +2,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "tofsmith/code/sinusoid.hpp"
+#include "tofsmith/code/code_set.hpp"
 
 namespace tofsmith {
+
+/// What a family must respect of the camera it is built for.
+struct FamilyOptions {
+  int samples = 240;         ///< N
+  double peak_factor = 1e9;  ///< p = P_max / P_ave >= 1; a huge value gives the ideal code
+  bool exact_grid = true;    ///< refuse N that would round the code's switching times
+  void validate() const;
+};
+
+/// Sinusoid modulation and demodulation, demodulation shifted in `phase_steps` equal steps.
+/// Modulation is 1 + min(1, p - 1) cos, so that it stays within the peak.
+CodeSet sinusoid_code(int phase_steps, const FamilyOptions& options);
+
+/// One frequency of a multi-frequency code and how many phases of it are measured.
+struct FrequencySteps {
+  int frequency = 1;  ///< multiple of the fundamental
+  int steps = 3;      ///< phase steps; 2 means a quadrature pair (0 and 90 degrees)
+};
+
+/// Multi-frequency sinusoids: for each entry a sinusoid with its phase steps.
+/// The paper's K = 5 code is {{1, 3}, {7, 2}}.
+CodeSet multi_frequency_code(const std::vector<FrequencySteps>& frequencies,
+                             const FamilyOptions& options);
 
 /// One line of the list of built-in families.
 struct FamilyDescription {
@@ -34,5 +58,22 @@ CodeSet make_family(std::string_view name, const FamilyOptions& options);
 
 /// Whether `name` is the name of a family (whatever the options).
 bool is_family(std::string_view name);
+
+/// The coding curve is the closed path that the vector of K correlations draws as depth runs
+/// through the range. Tables are (N, K), one row per depth, end point left out.
+
+/// Length of the coding curve of a table, closed.
+double coding_curve_length(const Eigen::MatrixXd& table);
+
+/// Lowest harmonic h such that harmonics 1..h hold `share` of the energy of the non-constant part.
+int harmonics_used(const Eigen::MatrixXd& table, double share = 0.99);
+
+/// The curve in its three directions of largest extent (principal axes), (N, 3), for drawing; 0
+/// along directions it does not have.
+Eigen::MatrixXd coding_curve_in_space(const Eigen::MatrixXd& table);
+
+/// Number of independent directions of the table, each column taken about its mean: singular values
+/// above `tolerance` times the largest.
+int coding_curve_rank(const Eigen::MatrixXd& table, double tolerance = 1e-6);
 
 }  // namespace tofsmith

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tofsmith {
@@ -23,5 +24,16 @@ BuildInfo build_info();
 
 /// Four lines, of which the first is "tofsmith 0.1.0 (commit 0123456789ab)".
 std::string to_text(const BuildInfo& info);
+
+/// The instruction set that vector code runs on here, such as "AVX2". Results have the same bits
+/// wherever this is the same; on another one, sums may be rounded differently.
+std::string dispatch_target();
+
+/// The instruction sets that this machine offers and the library has code for, best first.
+std::vector<std::string> dispatch_targets();
+
+/// From now on vector code of this process runs on `name`. Call it before any work starts.
+/// @throws std::invalid_argument unless it is one of dispatch_targets(), in any case of letters
+void pin_dispatch_target(std::string_view name);
 
 }  // namespace tofsmith

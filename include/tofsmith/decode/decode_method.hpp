@@ -7,8 +7,7 @@
 #include <variant>
 
 #include "tofsmith/decode/likelihood_decoder.hpp"
-#include "tofsmith/decode/tail_decoder.hpp"
-#include "tofsmith/decode/two_return_decoder.hpp"
+#include "tofsmith/decode/multipath_decoder.hpp"
 #include "tofsmith/decode/unwrap_decoder.hpp"
 
 namespace tofsmith {

@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <memory>
 
+#include "tofsmith/core/array.hpp"
 #include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/progress.hpp"
-#include "tofsmith/core/raw_view.hpp"
-#include "tofsmith/decode/decoded_view.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
+#include "tofsmith/decode/depth_image.hpp"
 
 namespace tofsmith {
 

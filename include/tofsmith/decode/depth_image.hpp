@@ -2,10 +2,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
 #include "tofsmith/core/array.hpp"
-#include "tofsmith/decode/pixel_status.hpp"
 
 namespace tofsmith {
+
+/// What became of a pixel. Where several apply, the first in the order invalid, saturated,
+/// no_return, low_signal, ambiguous is given.
+enum class PixelStatus : std::uint8_t {
+  ok = 0,
+  invalid = 1,     ///< a measurement is NaN or infinite: no depth
+  no_return = 2,   ///< no depth explains the pixel with positive signal: no depth
+  saturated = 3,   ///< a measurement is clipped: the depth may be far off
+  low_signal = 4,  ///< the signal does not stand out of its noise
+  ambiguous = 5,   ///< another depth, far from this one, explains the pixel almost as well
+};
+
+inline constexpr std::array all_pixel_statuses = {PixelStatus::ok,         PixelStatus::invalid,
+                                                  PixelStatus::no_return,  PixelStatus::saturated,
+                                                  PixelStatus::low_signal, PixelStatus::ambiguous};
+
+/// "ok", "invalid", "no_return", "saturated", "low_signal", "ambiguous".
+std::string_view name_of(PixelStatus status);
+
+/// How many returns a pixel shows. It stands beside PixelStatus, which says whether the depth of a
+/// single return can be trusted: a pixel may be saturated and still be two returns.
+enum class ReturnStatus : std::uint8_t {
+  none = 0,        ///< no depth: invalid or no return at all
+  single = 1,      ///< one return explains the pixel
+  two = 2,         ///< a second return, or a tail, explains it better by more than the threshold
+  unresolved = 3,  ///< one return does not explain it, and neither does a second: the depth is that
+                   ///< of one return and may be biased
+};
+
+inline constexpr std::array all_return_statuses = {ReturnStatus::none, ReturnStatus::single,
+                                                   ReturnStatus::two, ReturnStatus::unresolved};
+
+/// "none", "single", "two", "unresolved".
+std::string_view name_of(ReturnStatus status);
 
 /// What a decoder says about every pixel of a frame; all planes are (H, W). Pixels without depth
 /// (invalid, no_return) hold NaN in every plane but status.
@@ -21,6 +59,28 @@ struct DepthImage {
   DepthImage(int height, int width);
   int height() const { return status.height; }
   int width() const { return status.width; }
+};
+
+/// Where a decoder writes: planes of H x W values, row by row, in the caller's memory. A null plane
+/// is not wanted, and what only it needs is not computed. Owns nothing.
+struct DecodedView {
+  std::int32_t* bin = nullptr;       ///< as decode_bins of the decoder: in [0, N), or -1
+  float* depth_m = nullptr;          ///< as the planes of DepthImage
+  float* signal_e_per_s = nullptr;   ///< [e/s]
+  float* ambient_e_per_s = nullptr;  ///< [e/s]
+  float* confidence = nullptr;       ///< in [0, 1]
+  float* predicted_standard_deviation_m = nullptr;  ///< [m]
+  PixelStatus* status = nullptr;
+  // Of decoders of several returns; others leave them as they are.
+  float* delay_m = nullptr;  ///< as the planes of MultipathImage
+  float* ratio = nullptr;
+  ReturnStatus* returns = nullptr;
+
+  bool wants_bins_only() const;
+  /// All planes of an image; no bins.
+  static DecodedView of(DepthImage& image);
+  /// The same planes from a later pixel on.
+  DecodedView from(std::size_t pixel) const;
 };
 
 }  // namespace tofsmith

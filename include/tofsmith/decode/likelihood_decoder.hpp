@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <memory>
 
+#include "tofsmith/core/array.hpp"
 #include "tofsmith/core/progress.hpp"
-#include "tofsmith/core/raw_view.hpp"
 #include "tofsmith/decode/decoder.hpp"
 
 namespace tofsmith {

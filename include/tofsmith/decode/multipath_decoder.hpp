@@ -4,13 +4,69 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
+#include "tofsmith/core/array.hpp"
 #include "tofsmith/core/progress.hpp"
-#include "tofsmith/core/raw_view.hpp"
-#include "tofsmith/decode/multipath_image.hpp"
-#include "tofsmith/decode/multipath_options.hpp"
+#include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/decode/depth_image.hpp"
 
 namespace tofsmith {
+
+/// What is believed of later returns before a pixel is seen; depth itself may be anything. The
+/// answer leans on it where light is scarce.
+struct ReturnPrior {
+  double single_probability = 0.5;  ///< that there is no later return, in [0, 1)
+  double mean_delay_m = 0.5;        ///< delays are exponential with this mean [m], > 0
+  double largest_ratio = 0.5;       ///< ratios are uniform from 0 to this, in (0, 1]
+};
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<ReturnPrior> auto& p) {
+  return std::tuple(Field("single_probability", p.single_probability, "in [0, 1)"),
+                    Field("mean_delay_m", p.mean_delay_m, "finite and > 0"),
+                    Field("largest_ratio", p.largest_ratio, "in (0, 1]"));
+}
+
+/// How returns beside the direct one are looked for.
+struct MultipathOptions {
+  /// A second return is accepted if it lowers chi^2 by more than this, >= 0. Single returns exceed
+  /// 9 in about one pixel of a hundred.
+  double threshold = 9.0;
+  double shortest_delay_m = 0.1;  ///< of a second return behind the direct one [m], > 0
+  /// Of a second return [m], above the shortest and below the range; none: a third of the range.
+  std::optional<double> longest_delay_m;
+  /// Mean delay of the exponential tail that TailDecoder fits [m], > 0 and at most the range.
+  double tail_m = 0.5;
+  /// If set, depth is the posterior median under this prior where one return does not explain the
+  /// pixel, instead of the most likely one.
+  std::optional<ReturnPrior> prior;
+  DecodeOptions doubt;  ///< of the single return
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate(double range_m) const;
+};
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<MultipathOptions> auto& o) {
+  return std::tuple(Field("threshold", o.threshold, "finite and >= 0"),
+                    Field("shortest_delay_m", o.shortest_delay_m, "> 0"),
+                    Field("longest_delay_m", o.longest_delay_m), Field("tail_m", o.tail_m, "> 0"),
+                    Field("prior", o.prior), Field("doubt", o.doubt));
+}
+
+/// What a decoder of several returns says about every pixel of a frame; all planes are (H, W).
+struct MultipathImage {
+  DepthImage direct;            ///< of the direct return
+  Image<float> delay_m;         ///< of the second return behind it [m]; NaN where there is none
+  Image<float> ratio;           ///< r = S2 / S1, in [0, 1]; NaN where there is none
+  Image<ReturnStatus> returns;  ///< how many returns the pixel shows
+
+  MultipathImage() = default;
+  MultipathImage(int height, int width);
+  int height() const { return direct.height(); }
+  int width() const { return direct.width(); }
+  /// Where a decoder writes all of it.
+  DecodedView view();
+};
 
 /// What TwoReturnDecoder and TailDecoder share: a model of one return, and one of light that comes
 /// later too for the pixels that one return does not explain.
@@ -55,6 +111,50 @@ class MultipathDecoder {
 
  private:
   std::unique_ptr<const Plan> plan_;
+};
+
+/// Direct depth of pixels behind whose return light trails off, as in haze and translucent things:
+///   y' = T o (S1 chi(z) + S2 integral_0^inf exp(-u / L) / L chi(z + u) du + A kappa) + noise,
+/// S1 >= S2 >= 0, with the mean delay L = MultipathOptions::tail_m known. All else is as in
+/// TwoReturnDecoder; a place tried is one depth with its tail, and only depth goes downhill.
+/// The delay it gives is tail_m where a tail was found, the ratio the light of all of the tail
+/// beside the direct return's.
+class TailDecoder : public MultipathDecoder {
+ public:
+  /// @throws std::invalid_argument if table or options are invalid, or the code holds too few
+  ///         independent means: fewer than 5 (4 where ambient light cancels)
+  explicit TailDecoder(DecodingTable table, const MultipathOptions& options = {});
+
+  /// As TwoReturnDecoder::why_not_decodable(), of a tail.
+  static std::optional<std::string> why_not_decodable(const DecodingTable& table);
+};
+
+/// Direct depth of pixels into which light may come back twice:
+///   y' = electrons - dark = T o (S1 chi(z) + S2 chi(z + delta) + A kappa) + noise,  S1 >= S2 >= 0.
+///
+/// The fast Decoder fits one return. Its chi^2, weighted by the noise of the measurements and
+/// counted in the dimensions the code spans (what ambient light explains left out), is all that a
+/// second return could explain: up to the threshold the pixel is single and keeps what Decoder
+/// says. Else two returns are fitted by weighted least squares, the likelihood of normal noise: all
+/// pairs of coarse places are tried in closed form, the best three followed by Levenberg-Marquardt
+/// on (z, delta). Two returns are accepted if chi^2 falls by more than the threshold below the best
+/// single return's anywhere. S2 <= S1 is needed: without it a phantom early return explains pixels
+/// of one return.
+///
+/// The noise of a measurement is taken from itself: max(y', 0) + dark + constant variance. Curves
+/// between bins are drawn by cubics where that foretells the table better than chords do.
+///
+/// @see docs/multipath.md
+class TwoReturnDecoder : public MultipathDecoder {
+ public:
+  /// @throws std::invalid_argument if table or options are invalid, or the code holds too few
+  ///         independent means: fewer than 6 (5 where ambient light cancels), as codes of two
+  ///         frequencies do
+  explicit TwoReturnDecoder(DecodingTable table, const MultipathOptions& options = {});
+
+  /// Why two returns cannot be told apart with a table whose numbers are in order: no depth can be
+  /// told at all, or there are too few independent means. None: they can, well or badly.
+  static std::optional<std::string> why_not_decodable(const DecodingTable& table);
 };
 
 }  // namespace tofsmith

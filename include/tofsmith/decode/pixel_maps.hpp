@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "tofsmith/core/array.hpp"
-#include "tofsmith/decode/decoded_view.hpp"
+#include "tofsmith/decode/depth_image.hpp"
 
 namespace tofsmith {
 

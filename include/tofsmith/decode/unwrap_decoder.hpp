@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tofsmith/core/array.hpp"
 #include "tofsmith/core/progress.hpp"
-#include "tofsmith/core/raw_view.hpp"
 #include "tofsmith/decode/decoder.hpp"
 
 namespace tofsmith {

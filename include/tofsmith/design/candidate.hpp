@@ -11,7 +11,6 @@
 #include "tofsmith/design/factorize.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
-#include "tofsmith/simulate/second_return_error.hpp"
 
 namespace tofsmith {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "tofsmith/design/termination.hpp"
+#include "tofsmith/design/design.hpp"
 
 namespace tofsmith {
 

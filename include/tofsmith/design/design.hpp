@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tofsmith/design/candidate.hpp"
@@ -13,6 +14,17 @@
 #include "tofsmith/design/optimize.hpp"
 
 namespace tofsmith {
+
+/// Why an iterative method ended.
+enum class Termination {
+  not_run,          ///< nothing was computed; a result starts this way
+  converged,        ///< the method's own test of optimality holds
+  stalled,          ///< rounding keeps the method from any further progress
+  iteration_limit,  ///< the allowed iterations are used up
+};
+
+/// The enumerator's name.
+std::string_view to_string(Termination termination);
 
 /// How codes are found.
 enum class DesignMethod {

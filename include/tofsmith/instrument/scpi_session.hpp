@@ -2,13 +2,63 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
 
-#include "tofsmith/instrument/instrument_connection.hpp"
-
 namespace tofsmith {
+
+/// Where an instrument is in the network.
+struct InstrumentAddress {
+  enum class Protocol {
+    raw_socket,  ///< SCPI over TCP
+    vxi11,       ///< where the library was built with liblxi
+  };
+  Protocol protocol = Protocol::raw_socket;
+  std::string host;  ///< name or number
+  int port = 5025;   ///< of a raw socket
+
+  /// "tcp://host:5025", "vxi11://host"
+  std::string text() const;
+
+  friend bool operator==(const InstrumentAddress&, const InstrumentAddress&) = default;
+};
+
+/// Reads host, host:port, [IPv6]:port, tcp://host:port, vxi11://host, TCPIP::host::port::SOCKET and
+/// TCPIP::host::INSTR (VXI-11). Without a port it is 5025.
+/// @throws std::invalid_argument naming what is wrong for anything else
+InstrumentAddress parse_instrument_address(std::string_view text);
+
+/// Carries bytes to an instrument and back. Every operation ends by its deadline.
+class InstrumentConnection {
+ public:
+  InstrumentConnection() = default;
+  InstrumentConnection(const InstrumentConnection&) = delete;
+  InstrumentConnection& operator=(const InstrumentConnection&) = delete;
+  virtual ~InstrumentConnection() = default;
+
+  /// Sends a whole message.
+  /// @throws IoError naming the instrument if it does not take all bytes in time
+  virtual void send(std::string_view message, double deadline_s) = 0;
+  /// Waits for bytes: at least one, or none when the time is over.
+  /// @throws IoError naming the instrument if it has closed the connection
+  virtual std::string receive(double deadline_s) = 0;
+  /// What errors call the instrument.
+  virtual std::string name() const = 0;
+};
+
+/// Called while something is waited for; it may throw to stop that.
+using StopCheck = std::function<void()>;
+
+/// @throws IoError naming host and port if nothing answers there by the deadline, or for VXI-11 in
+///         a library without it
+std::unique_ptr<InstrumentConnection> connect_instrument(const InstrumentAddress& address,
+                                                         double deadline_s,
+                                                         const StopCheck& check_stop = {});
+
+/// Whether the library was built with VXI-11.
+bool has_vxi11();
 
 /// Messages to an instrument and its answers, framed as IEEE 488.2 says. Every error names the
 /// instrument, what was sent, what came and what to do next.

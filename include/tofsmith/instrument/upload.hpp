@@ -2,15 +2,175 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/instrument/scpi_session.hpp"
-#include "tofsmith/instrument/upload_script.hpp"
+#include "tofsmith/waveforms/waveform_export.hpp"
 
 namespace tofsmith {
+
+/// Generators that are told in the same words.
+enum class GeneratorFamily {
+  siglent_x,          ///< SDG1000X, SDG2000X, SDG6000X
+  keysight_trueform,  ///< 33500 and 33600
+  tektronix_afg3000,  ///< AFG3000, with B and C
+};
+
+/// What a generator can do; docs/instruments.md has the sources. Limits are those of the smallest
+/// version; what the instrument answers decides.
+struct GeneratorModel {
+  std::string name;    ///< "SDG2042X"
+  std::string vendor;  ///< as in its answer to *IDN?
+  GeneratorFamily family = GeneratorFamily::siglent_x;
+  int channels = 2;
+  double sample_rate_hz = 0.0;             ///< most points played per second
+  double most_repetition_hz = 0.0;         ///< of a whole table; 0: as the sample rate allows
+  double true_arb_rate_hz = 0.0;           ///< most points per second that are all played, where a
+                                           ///< generator otherwise skips (Siglent); 0: it cannot
+  int least_points = 2, most_points = 0;   ///< of a table
+  int memories = 0;                        ///< tables at a time; 0: as many as fit
+  double least_vpp = 0.0, most_vpp = 0.0;  ///< into 50 ohm
+
+  /// Name of the WaveformFormat whose points it takes.
+  std::string format() const;
+  /// Whether the list of errors can be asked for.
+  bool has_error_queue() const { return family != GeneratorFamily::siglent_x; }
+};
+
+/// All models.
+const std::vector<GeneratorModel>& generator_models();
+/// @throws std::invalid_argument that names the nearest, or the families
+const GeneratorModel& generator_model(std::string_view name);
+
+/// The most points per second that any model plays which takes this WaveformFormat, or any model at
+/// all where none of them does.
+double fastest_sample_rate_hz(std::string_view format);
+
+/// What an instrument says of itself.
+struct InstrumentIdentity {
+  std::string vendor, model, serial, firmware;
+};
+
+/// Reads an answer to *IDN?. @throws IoError "place: .." if it is none
+InstrumentIdentity parse_identity(std::string_view answer, std::string_view place);
+/// @throws IoError "place: .." for an instrument that is none of the models
+const GeneratorModel& identified_model(const InstrumentIdentity& identity, std::string_view place);
+
+/// What one channel of a generator is given.
+struct UploadChannel {
+  int channel = 1;                        ///< 1, 2
+  std::vector<QuantizedWaveform> stored;  ///< tables for its memory, in this order
+  int selected = 0;                       ///< index of the one it plays
+
+  /// @throws std::out_of_range if no stored waveform is selected
+  const QuantizedWaveform& selected_waveform() const;
+};
+
+/// How a Siglent is told the waveform; sources disagree, see docs/instruments.md.
+enum class WaveHeader {
+  length,   ///< with LENGTH, so that the message says where it ends
+  plain,    ///< as Siglent's application note
+  minimal,  ///< name and data only
+};
+
+/// What a generator is asked to do.
+struct UploadRequest {
+  std::vector<UploadChannel> channels;
+  double load_ohm = 50.0;  ///< that the volts are meant for, 1 .. 1e6, or infinity: high impedance
+  bool output_on = false;  ///< at the end; otherwise outputs stay off
+  bool read_back = true;   ///< the points; some models cannot
+  bool reset = true;       ///< to the generator's defaults first, so that nothing old plays on
+  bool true_arb = false;   ///< Siglent: play every point instead of skipping some
+  WaveHeader wave_header = WaveHeader::length;  ///< Siglent
+  double settle_s = 0.5;                        ///< Siglent: pause behind a waveform, 0 .. 60
+  double patience_s = 20.0;     ///< more than usual for a reset and for files, 0 .. 600
+  std::string filter = "STEP";  ///< Keysight: STEP, NORM or OFF
+};
+
+/// What an answer must say.
+struct AnswerCheck {
+  int channel = 0;       ///< 0: none
+  std::string quantity;  ///< "amplitude_vpp", ..
+  std::string field;     ///< key of answers such as "C1:BSWV FRQ,1000HZ,AMP,4V"; empty: all of it
+  double wanted = 0.0;   ///< for a number
+  double tolerance = 0.0;
+  std::vector<std::string> texts;  ///< for a word: any of these, upper case
+  bool within = false;             ///< the word may stand anywhere in the answer
+};
+
+/// A message to the instrument, and what must come back.
+struct UploadStep {
+  enum class Answer { none, line, block, wave_data };
+  std::string what;     ///< "select the waveform of channel 1"
+  std::string message;  ///< without line end
+  std::string data;     ///< bytes behind the message
+  bool line_end = true;
+  bool switches_on = false;  ///< an output
+  Answer answer = Answer::none;
+  std::vector<AnswerCheck> checks;  ///< of a line
+  /// Of a block or wave data: what is wrong with it, or "".
+  std::function<std::string(const std::string& bytes)> problem;
+  std::size_t expected_bytes = 0, most_bytes = 0;
+  double more_s = 0.0;   ///< that an answer may take longer than usual
+  double pause_s = 0.0;  ///< behind the message
+};
+
+/// Everything said to a generator for one upload, in order.
+struct UploadScript {
+  GeneratorModel model;
+  std::vector<UploadStep> steps;
+  std::vector<std::string> outputs_off;          ///< messages that make it safe
+  bool reads_back = true;                        ///< points of every waveform are compared
+  std::vector<std::string> cannot_be_read_back;  ///< what no answer confirms
+};
+
+/// @throws std::invalid_argument naming what does not fit the model: channels, memory, points,
+///         rate, frequency, volts
+UploadScript upload_script(const GeneratorModel& model, const UploadRequest& request);
+
+/// The messages as text, one a line, data summarized: what would be sent.
+std::string script_text(const UploadScript& script);
+
+/// Volts at a load for each volt into 50 ohm.
+double load_gain(double load_ohm);
+
+/// What is wrong with an answer, or "". @param value  the number found, if it is one
+std::string answer_problem(const AnswerCheck& check, const std::string& answer,
+                           double* value = nullptr);
+
+/// What of a code a generator is given.
+struct UploadSelection {
+  int light_channel = 1;   ///< that plays the light; 0: none
+  int sensor_channel = 2;  ///< that plays the sensor's gain; 0: none
+  int exposure = 1;        ///< which of the pairs is played, from 1
+  int tap = 1;             ///< that the sensor's channel plays, from 1
+  bool all = false;        ///< load all pairs
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+
+/// A code as tables for a model: of its format and, unless the options say another, its highest
+/// rate (with `true_arb`: that at which every point is played).
+/// @throws std::invalid_argument naming the option that breaks a rule of the format or the model
+WaveformExport export_for_model(const CodeSet& code, const Camera& camera,
+                                const GeneratorModel& model, ExportOptions options, bool true_arb);
+
+/// The channels of that selection, each with the tables that it holds and the one that it plays.
+/// @throws std::invalid_argument if the code has no such exposure or tap
+std::vector<UploadChannel> selected_channels(const WaveformExport& exported,
+                                             const UploadSelection& selection);
+
+/// "step", "normal" or "off" as a Keysight is told it. @throws std::invalid_argument
+std::string parse_output_filter(std::string_view word);
+/// "length", "plain" or "minimal". @throws std::invalid_argument for any other word
+WaveHeader parse_wave_header(std::string_view word);
 
 /// A step that went well.
 struct UploadedStep {

@@ -6,9 +6,25 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace tofsmith {
+
+/// A file name for something named freely: bytes other than ASCII letters, digits, "-", "_", and
+/// dots after the first byte, become %XX. Different names stay different; none leaves its
+/// directory.
+std::string file_name_of(std::string_view name);
+
+/// Makes a directory for output, with those above it, where it is missing.
+/// @throws IoError naming it if it cannot be made, or a file is in the way
+void make_output_directory(const std::filesystem::path& directory);
+
+/// Fails if an output is one of the files that the work reads: writing would destroy it.
+/// @param inputs  paths, or names that are no files
+/// @throws IoError naming the output
+void check_not_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
 /// What happens when the output file is already there.
 enum class OutputPolicy { refuse_existing, overwrite };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +13,14 @@
 #include "tofsmith/io/atomic_file.hpp"
 
 namespace tofsmith {
+
+/// What a key of a TOML file can be set to.
+struct SettingValue {
+  std::string toml;              ///< as the right side of `key = ..`, on one line
+  std::string text;              ///< the same without the quotes of a text
+  std::optional<double> number;  ///< of an integer or a finite number
+  std::string place;             ///< where it was written, as errors name it
+};
 
 /// Keys that replace those of a file, each as the file would say it: "light.peak_factor=5",
 /// "exposure_s=[0.1, 0.2]", "sensor.readout=difference" (quotes around one word may be left out).

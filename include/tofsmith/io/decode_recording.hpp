@@ -15,8 +15,8 @@
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/io/atomic_file.hpp"
-#include "tofsmith/io/raw_frames_reader.hpp"
-#include "tofsmith/scene/pinhole.hpp"
+#include "tofsmith/io/raw_frames.hpp"
+#include "tofsmith/scene/scene_image.hpp"
 
 namespace tofsmith {
 

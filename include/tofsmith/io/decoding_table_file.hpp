@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "tofsmith/decode/decoding_table.hpp"
-#include "tofsmith/decode/measured_table.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/measured_table_file.hpp"
 

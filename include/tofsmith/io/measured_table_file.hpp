@@ -2,16 +2,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "tofsmith/decode/measured_table.hpp"
-#include "tofsmith/io/code_npz.hpp"
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
+#include "tofsmith/design/factorize.hpp"
+#include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/io/code_file.hpp"
 
 namespace tofsmith {
+
+/// Reads a measured impulse response: text (.csv, .txt) with the columns time_s and value or with
+/// values alone, or a one-dimensional NumPy array (.npy). Times must be equally spaced; the first
+/// one is when the response starts and is taken for 0.
+/// @param time_step_s  needed unless the file has times, with which it must agree
+/// @throws IoError naming the file and the place for whatever does not fit
+ImpulseResponse read_impulse_response(const std::filesystem::path& path,
+                                      std::optional<double> time_step_s = std::nullopt);
+
+/// Writes a response of kind "file" as text with the columns time_s and value, as read above.
+/// @throws IoError as AtomicFile does
+void write_impulse_response(const std::filesystem::path& path, const ImpulseResponse& response,
+                            OutputPolicy policy);
 
 /// Which axis of an array of correlation functions is depth.
 enum class TableAxes {
@@ -54,5 +71,23 @@ bool is_measured_table(const std::filesystem::path& path);
 ///         orientation, values that are not finite, or several taps without an order
 MeasuredTableFile read_measured_table(const std::filesystem::path& path,
                                       const MeasuredTableOptions& options = {});
+
+/// Reads correlation functions, sampled on one period with the end point left out, as (N, K):
+/// text (.csv, .txt) with K columns, a NumPy array (.npy) of shape (N, K) or (N,), or the array
+/// `corrfs` of an archive (.npz).
+/// @throws IoError naming the place for values that are not finite, or N < 8
+Eigen::MatrixXd read_correlation_functions(const std::filesystem::path& path);
+
+/// Whether a target is named by a file that read_correlation_functions() reads, by its extension.
+bool is_correlation_table(const std::string& name_or_path);
+
+/// What `--target` names, as correlation functions to factorize on the camera's samples: a table
+/// (is_correlation_table()), else a family or a code file,
+/// whose ideal correlation functions are meant (ideal_camera()).
+/// @param normalize  of a table: rescale every column to [0, 1]
+/// @throws IoError as read_correlation_functions() and load_code(); std::invalid_argument for a
+///         code that is to be normalized, or one of several taps
+TargetSet load_target(const std::string& name_or_path, const Camera& camera,
+                      bool normalize = false);
 
 }  // namespace tofsmith

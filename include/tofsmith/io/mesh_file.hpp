@@ -2,15 +2,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
-#include "tofsmith/scene/mesh.hpp"
+#include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/scene/ray_caster.hpp"
+#include "tofsmith/scene/shapes.hpp"
 
 namespace tofsmith {
+
+/// One more number per point, such as "intensity" or "confidence".
+struct PointScalar {
+  std::string name;  ///< letters, digits and underscores
+  std::vector<float> values;
+};
+
+/// Points in space. Every list but `points_m` may be empty; the others are as long as it.
+struct PointCloud {
+  std::vector<std::array<float, 3>> points_m;        ///< x, y, z
+  std::vector<PointScalar> scalars;                  ///< in the file's order
+  std::vector<std::array<std::uint8_t, 3>> colours;  ///< red, green, blue, sRGB
+};
+
+/// Reads the vertices of an ascii or binary little endian PLY file that holds nothing else. Scalars
+/// of any number type become float.
+/// @param file  what errors call it
+/// @throws IoError at a byte offset if the header is malformed, x, y or z is missing, there are
+///         lists or other elements, or the data is not as long as the header says
+PointCloud parse_ply(std::span<const std::byte> content, std::string_view file);
+PointCloud read_ply(const std::filesystem::path& path);
+
+/// Binary little endian: x, y, z, the scalars, then red, green, blue.
+/// @throws std::invalid_argument if lists differ in length or a scalar's name is no PLY word, taken
+///         or used twice
+std::vector<std::byte> serialize_ply(const PointCloud& cloud);
+/// @throws IoError as AtomicFile does
+void write_ply(const std::filesystem::path& path, const PointCloud& cloud, OutputPolicy policy);
 
 /// Largest mesh file that is read [bytes]; a triangle takes 15 to 200.
 inline constexpr std::uint64_t max_mesh_file_bytes = std::uint64_t{1} << 30;
@@ -29,5 +62,14 @@ bool is_mesh_file(const std::filesystem::path& path);
 TriangleMesh parse_mesh(std::span<const std::byte> content, std::string_view file);
 /// @throws IoError as parse_mesh(), or if the file cannot be read or exceeds max_mesh_file_bytes
 TriangleMesh read_mesh(const std::filesystem::path& path);
+
+/// Searches meshes through Embree's hierarchy of bounding boxes; the triangle found is then
+/// intersected in double precision. For RayCaster, ray_cast and bounced_light of scenes with
+/// meshes.
+///
+/// Agrees with trying every triangle but for rays that pass an edge of a mesh closer than about
+/// 1e-6 of the mesh's (not the scene's) size: those may see the triangle beside it. What it makes
+/// throws std::runtime_error or std::bad_alloc if a hierarchy cannot be set up.
+MeshSearchMaker embree_search();
 
 }  // namespace tofsmith

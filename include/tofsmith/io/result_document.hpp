@@ -5,9 +5,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/simulate/multipath_error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
 namespace tofsmith {
@@ -32,5 +34,12 @@ std::string evaluation_document(const Camera& camera, std::span<const EvaluatedC
 /// best, and how each designed code compares with its target.
 std::string design_document(const Camera& camera, const DesignResult& result,
                             const DesignOptions& options);
+
+/// What `evaluate --multipath` found, as JSON: per code, per signal, every cell; what a code cannot
+/// do is null.
+/// @param scene  what became of a scene, by mean delay of its later light; null: none
+std::string multipath_document(const Camera& camera, const std::vector<MultipathErrorReport>& codes,
+                               const MultipathErrorOptions& options,
+                               const MultipathScene* scene = nullptr);
 
 }  // namespace tofsmith

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "tofsmith/calibrate/correlation_calibration.hpp"
-#include "tofsmith/calibrate/ideal_code_fit.hpp"
 #include "tofsmith/calibrate/impulse_response.hpp"
 #include "tofsmith/calibrate/photon_transfer.hpp"
 #include "tofsmith/report/page.hpp"

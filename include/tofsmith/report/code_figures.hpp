@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
-#include "tofsmith/report/colours.hpp"
+#include "tofsmith/report/figure.hpp"
 #include "tofsmith/report/page.hpp"
 
 namespace tofsmith {

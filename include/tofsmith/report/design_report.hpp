@@ -9,8 +9,10 @@
 
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/io/result_document.hpp"
-#include "tofsmith/io/scene_directory.hpp"
+#include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/report/page.hpp"
+#include "tofsmith/simulate/multipath_error.hpp"
+#include "tofsmith/simulate/robustness.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
 
 namespace tofsmith {
@@ -31,5 +33,47 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
 /// The same, with what zncc makes of the same trials and with perturbed cameras where they have it.
 Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
                        std::span<const EvaluatedCode> evaluated, const std::string& command_line);
+
+/// A code and what becomes of its depth error on perturbed cameras.
+struct JudgedCode {
+  std::string name;
+  RobustnessReport robustness;
+};
+
+/// The codes that were judged on perturbed cameras.
+std::vector<JudgedCode> judged_codes(std::span<const EvaluatedCode> codes);
+
+/// The lines of a table of robustness, headings first: every code on every perturbed camera, each
+/// error beside its ratio to the nominal one, and the worst of them.
+std::vector<std::vector<std::string>> robustness_rows(const std::vector<JudgedCode>& codes);
+
+/// The same for a page.
+Section robustness_section(const std::vector<JudgedCode>& codes);
+
+/// Whether codes were decoded by zncc too.
+bool is_compared_with_zncc(std::span<const EvaluatedCode> codes);
+
+/// What zncc makes of the same trials, and how many times as large the errors by maximum likelihood
+/// are, as geometric means and, if asked, at every light level; headings first.
+std::vector<std::vector<std::string>> zncc_comparison_rows(std::span<const EvaluatedCode> codes,
+                                                           bool every_level);
+/// The same for a page.
+Section zncc_comparison(std::span<const EvaluatedCode> codes);
+
+/// The lines of a table of errors where light comes back twice, headings first: every code at every
+/// signal, single returns, second returns and tails.
+std::vector<std::vector<std::string>> multipath_rows(
+    const std::vector<MultipathErrorReport>& codes);
+
+/// Heat maps over (delta, r) of bias and error, single-path beside two-return, with their bound,
+/// one panel per code and signal; and the table.
+Section multipath_section(const std::vector<MultipathErrorReport>& codes);
+
+/// The lines of a table of errors by mean delay of the later light, headings first.
+std::vector<std::vector<std::string>> multipath_scene_rows(const MultipathScene& scene);
+
+/// True, single-path and two-return depth and errors, where two returns were found, the middle row
+/// seen from above, point clouds with and without, and the table.
+Section multipath_scene_section(const MultipathScene& scene, const Camera& camera);
 
 }  // namespace tofsmith

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "tofsmith/io/waveform_export.hpp"
 #include "tofsmith/report/page.hpp"
-#include "tofsmith/simulate/generator_loss.hpp"
+#include "tofsmith/simulate/robustness.hpp"
+#include "tofsmith/waveforms/waveform_export.hpp"
 
 namespace tofsmith {
 

@@ -2,13 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "tofsmith/scene/staged_scene.hpp"
+#include "tofsmith/scene/scene_image.hpp"
+#include "tofsmith/scene/shapes.hpp"
 
 namespace tofsmith {
+
+/// A scene, and the place from which it is seen.
+struct StagedScene {
+  std::vector<Shape> shapes;
+  PinholeView view;
+  Eigen::Isometry3d camera_to_world = Eigen::Isometry3d::Identity();
+};
 
 /// Names that built_in_scene knows.
 std::vector<std::string> built_in_scene_names();
@@ -32,5 +41,18 @@ std::vector<std::string> built_in_scene_names();
 /// @see Gutierrez-Barragan et al., CVPR 2019, Figs. 7, 10 and 11; sizes the paper does not give are
 ///      ours
 StagedScene built_in_scene(std::string_view name, int width = 320, int height = 240);
+
+/// A mesh turned as mesh files mean it, y up and front towards a camera that looks along z, with
+/// the middle of its box at `centre_m`.
+/// @param scale_m  metres per unit of the mesh, > 0
+/// @throws std::invalid_argument if the mesh is a single point
+Mesh upright_mesh(TriangleMesh triangles, double scale_m, const Eigen::Vector3d& centre_m);
+
+/// A mesh alone in front of a camera that looks along its -z axis with y up, as mesh files mean
+/// them, from where it fills 80 % of the image's width or height; the view is 60 degrees wide.
+/// @param scale_m  metres per unit of the mesh, > 0
+/// @param width, height  resolution of the pinhole camera, > 0
+/// @throws std::invalid_argument if the mesh or a number is invalid
+StagedScene framed_mesh(TriangleMesh triangles, double scale_m, int width, int height);
 
 }  // namespace tofsmith

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+
 #include "tofsmith/core/array.hpp"
 
 namespace tofsmith {
@@ -24,5 +26,34 @@ struct SceneImage {
   /// @throws std::invalid_argument naming plane and pixel, value and the rule it breaks
   void validate() const;
 };
+
+/// An ideal pinhole camera at the origin: x to the right, y down, z along the optical axis.
+/// Pixel (row v, column u) has its centre at integer coordinates.
+struct PinholeView {
+  double fx_px = 0.0;  ///< focal length in columns [px], > 0
+  double fy_px = 0.0;  ///< focal length in rows [px], > 0
+  double cx_px = 0.0;  ///< column of the optical axis [px]
+  double cy_px = 0.0;  ///< row of the optical axis [px]
+  int width = 0;       ///< columns, > 0
+  int height = 0;      ///< rows, > 0
+
+  /// Square pixels, axis in the middle of the image.
+  /// @param horizontal_angle_rad  between the first and the last column's outer edges, in (0, pi)
+  static PinholeView centred(int width, int height, double horizontal_angle_rad);
+
+  /// Unit vector from the origin through a pixel's centre.
+  Eigen::Vector3d ray(int row, int column) const;
+  /// Radial distance over z-depth in a pixel, >= 1.
+  double radial_per_z(int row, int column) const;
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+
+/// Radial distance of every pixel from its z-depth; NaN stays NaN.
+/// @throws std::invalid_argument if the image is not of the view's size
+Image<float> radial_from_z(const Image<float>& z_m, const PinholeView& view);
+/// z-depth of every pixel from its radial distance; NaN stays NaN.
+Image<float> z_from_radial(const Image<float>& radial_m, const PinholeView& view);
 
 }  // namespace tofsmith

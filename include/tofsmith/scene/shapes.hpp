@@ -3,13 +3,58 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <variant>
+#include <vector>
 
-#include "tofsmith/scene/mesh.hpp"
-#include "tofsmith/scene/texture.hpp"
+#include "tofsmith/core/array.hpp"
 
 namespace tofsmith {
+
+/// How a surface reflects: one albedo, two that alternate, or a picture.
+struct Texture {
+  enum class Pattern { uniform, checker, stripes, image };
+  Pattern pattern = Pattern::uniform;
+  double albedo = 0.5;        ///< [0, 1]; scales the values of an image
+  double other_albedo = 0.5;  ///< of every second field, [0, 1]
+  double period_m = 0.1;  ///< width of a field or of the image [m], > 0; on a sphere measured along
+                          ///< its equator
+  /// Albedo, linear, each value in [0, 1]; repeats in both directions, rows run against the second
+  /// coordinate. Meshes with texture coordinates lay it over [0, 1] x [0, 1], whatever period_m.
+  Image<float> image;
+
+  /// Albedo at surface coordinates [m]; stripes alternate along the first.
+  double at(double first_m, double second_m) const;
+  /// Albedo of the image at texture coordinates, u to the right, v up; the nearest pixel.
+  double image_at(double u, double v) const;
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+
+/// Triangles that share vertices, in units of their own.
+struct TriangleMesh {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of vertices
+  /// (u, v) of every vertex, u to the right and v up over the texture's image; may be empty.
+  std::vector<Eigen::Vector2d> texture_coordinates;
+
+  /// @throws std::invalid_argument for no triangles, an index out of range, a vertex that is not
+  ///         finite, or texture coordinates that are not one per vertex: naming which and its value
+  void validate() const;
+};
+
+/// A mesh placed in the world.
+struct Mesh {
+  TriangleMesh triangles;
+  double scale_m = 1.0;  ///< metres per unit of the mesh, > 0
+  Eigen::Isometry3d mesh_to_world = Eigen::Isometry3d::Identity();  ///< applied after scaling
+  /// Without texture coordinates: patterns run along the mesh's own x and y axes [m].
+  Texture texture;
+};
 
 /// A half-line from a camera.
 struct Ray {

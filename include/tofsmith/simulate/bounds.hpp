@@ -6,10 +6,51 @@
 #include <optional>
 #include <vector>
 
+#include "tofsmith/camera/camera.hpp"
 #include "tofsmith/camera/forward_model.hpp"
-#include "tofsmith/simulate/photon_information.hpp"
 
 namespace tofsmith {
+
+/// Information on the delay of a light of given shape behind arms of one transfer function, where
+/// photons are recorded one by one.
+/// @see docs/bounds.md
+class PhotonInformation {
+ public:
+  /// @param transfer  harmonics 0 .. highest of what blurs the light
+  /// @param may_ring  whether the response may really fall below 0, as a measured one may; else
+  ///                  values below 0 come from the harmonics left out
+  PhotonInformation(const Eigen::VectorXcd& transfer, bool may_ring);
+
+  /// Integral over the period of (s x')^2 / (s x + other) for x the arms' response itself: what no
+  /// light of mean at most 1 exceeds. Infinite where s x + other is not above 0.
+  /// @param signal_e  s, electrons of the light
+  /// @param other_e   variance of everything else, were it all collected with the light
+  double of_impulses(double signal_e, double other_e) const;
+  /// s^2 / other times the largest mean of x'^2 of a light within [0, peak_factor] and of mean at
+  /// most 1.
+  double of_ripple(double signal_e, double other_e, double peak_factor) const;
+  /// The smaller of both.
+  double largest(double signal_e, double other_e, double peak_factor) const;
+
+  /// max (2 pi n |H_n|)^2.
+  double largest_slope_power() const { return largest_slope_power_; }
+  /// How far below 0 a light within [0, peak_factor] and of mean at most 1 can come: 0 unless the
+  /// response itself does.
+  double undershoot(double peak_factor) const;
+
+ private:
+  Eigen::VectorXd response_, slope_;  // over one period
+  bool may_ring_;
+  double largest_slope_power_ = 0.0;
+};
+
+/// Integral over the period of (s x')^2 / (s x + other), x and x' sampled at equal distances.
+double information_of_shape(const Eigen::VectorXd& shape, const Eigen::VectorXd& slope,
+                            double signal_e, double other_e);
+
+/// A real signal and its slope per period, from harmonics 0 .. highest, at 4 x highest points.
+void sample_with_slope(const Eigen::VectorXcd& harmonics, Eigen::VectorXd& values,
+                       Eigen::VectorXd& slope);
 
 /// Which information a Cramer-Rao bound counts.
 enum class NoiseInformation {
@@ -78,5 +119,66 @@ class ReceiverBound {
   std::vector<double> exposure_s_;            // of each exposure
   std::optional<PhotonInformation> photons_;  // behind both arms; none without limit
 };
+
+/// What the light alone allows, for scale: depth from photons recorded one by one by an ideal
+/// direct time-of-flight receiver, with the camera's light source, its total exposure time and
+/// nothing else of it (no demodulation, no read noise, no dark current). Signal and ambient are
+/// known.
+///   J <= T integral over the period of (S m')^2 / (S m + A) du
+/// No receiver of any kind does better with the same light, so it is never above ReceiverBound.
+/// @see docs/bounds.md for derivation and assumptions
+class DirectTofBound {
+ public:
+  /// @throws std::invalid_argument if the camera is invalid
+  explicit DirectTofBound(const Camera& camera);
+
+  /// No modulation within the camera's peak and average power carries more [1 / period^2];
+  /// infinite where the light has no impulse response.
+  double photon_information(const OperatingPoint& point) const;
+  /// range sqrt(2 / pi) / sqrt(photon_information) [m].
+  double mae_m(const OperatingPoint& point) const;
+  /// The same averaged over a signal scaled uniformly in (0, 1), at each albedo held to range / 4.
+  double mae_uniform_albedo_m(const OperatingPoint& point) const;
+
+  /// What one modulation carries, exactly [1 / period^2]; infinite without impulse response.
+  double information_of(const Waveform& modulation, const OperatingPoint& point) const;
+
+ private:
+  double range_m_;
+  double exposure_s_;  // of all exposures together, times the sensitivity of the best tap
+  double peak_factor_;
+  Eigen::VectorXcd transfer_;                 // of the light; empty if it has no limit
+  std::optional<PhotonInformation> photons_;  // behind the light's response; none if no limit
+};
+
+/// Cramer-Rao bound of direct depth where light comes back twice: the inverse Fisher matrix over
+/// (z, delta, S1, S2, A) of the expected measurements, weighted by their variance, which holds the
+/// light of both returns. Behind a tail of known mean delay: over (z, S1, S2, A).
+/// @note two returns pay only where this is below the bias of single-path decoding
+class MultipathBound {
+ public:
+  /// @param camera  the one `model` was made with
+  MultipathBound(const ForwardModel& model, const Camera& camera);
+
+  /// Smallest standard deviation of direct depth [m], at the middle of each bin (N).
+  Eigen::VectorXd sigma_m(const OperatingPoint& point, double ratio, double delay_m) const;
+  Eigen::VectorXd tail_sigma_m(const OperatingPoint& point, const ExponentialTail& tail) const;
+  /// Mean over depth of sqrt(2 / pi) sigma, at each depth held to range / 4, the mean circular
+  /// error of a guess [m].
+  double mae_m(const Eigen::VectorXd& sigma_m) const;
+
+ private:
+  Eigen::VectorXd sigma_of(const OperatingPoint& point, double ratio, const Eigen::MatrixXd& later,
+                           Eigen::Index shift, bool delay_is_known) const;
+
+  int samples_;
+  double range_m_;
+  Eigen::MatrixXd readout_, table_;  // T o chi of the tap values, (points, taps)
+  Eigen::VectorXd ambient_, shot_ambient_, floor_variance_e2_;
+};
+
+/// Bias of single-path decoding behind a second return, where it is closer than the correlation
+/// functions' features: r delta / (1 + r) [m], with every code.
+double single_path_bias_m(double ratio, double delay_m);
 
 }  // namespace tofsmith

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/decode/decode_method.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
 
 namespace tofsmith {
 
@@ -155,5 +157,61 @@ struct BestRotation {
 /// @param options  as for evaluate
 BestRotation best_rotation(const CodeSet& code, const Camera& camera,
                            const EvaluateOptions& options = {}, const Progress& progress = {});
+
+/// Mean circular depth error [m] of a table on frames made from itself, so that measured tables
+/// stand beside codes: expected electrons along the chords between its rows, normal noise of the
+/// variance it states, one depth drawn in each of `trials` equal slices of the range.
+/// @param light   S in multiples of what the table was measured with, A in e/s
+/// @param trials  >= 2; odd numbers are rounded up
+/// @throws std::invalid_argument if the table or the number of trials is invalid
+/// @note same bits for any number of threads, on one dispatch_target()
+Estimate table_depth_error_m(const DecodingTable& table, const OperatingPoint& light,
+                             std::int64_t trials = 20000, std::uint64_t seed = 1);
+
+/// Error of the direct depth [m]: geometric means over the operating points of mean |error|.
+struct SecondReturnError {
+  Estimate linear_m, circular_m;
+
+  const Estimate& of(DepthErrorKind kind) const {
+    return kind == DepthErrorKind::linear ? linear_m : circular_m;
+  }
+};
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<SecondReturnError> auto& e) {
+  return std::tuple(Field("linear_m", e.linear_m, "finite and >= 0"),
+                    Field("circular_m", e.circular_m, "finite and >= 0"));
+}
+
+/// Error where every pixel has a second return, decoded as if there were one, by zncc. Trial t of a
+/// point draws depth, uniform on the t-th slice of the range, albedo, return and noise from a
+/// stream of its own. Of the options, trials (per point) and seed count.
+/// @throws std::invalid_argument as evaluate(); Interrupted
+SecondReturnError second_return_error(const CodeSet& code, const Camera& camera,
+                                      const SecondReturns& later,
+                                      const EvaluateOptions& options = {},
+                                      const Progress& progress = {});
+
+/// The same trials, decoded as two returns.
+/// @throws std::invalid_argument also for codes that cannot tell two returns
+SecondReturnError two_return_error(const CodeSet& code, const Camera& camera,
+                                   const SecondReturns& later, const EvaluateOptions& options = {},
+                                   const Progress& progress = {});
+
+/// What second returns make of a code.
+struct SecondReturnReport {
+  SecondReturnError single_path;                ///< decoded as single-path
+  std::optional<SecondReturnError> two_return;  ///< as two returns; none: the code cannot
+};
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<SecondReturnReport> auto& r) {
+  return std::tuple(Field("single_path", r.single_path), Field("two_return", r.two_return));
+}
+
+/// Both, on the same trials.
+/// @throws as second_return_error()
+SecondReturnReport second_return_report(const CodeSet& code, const Camera& camera,
+                                        const SecondReturns& later,
+                                        const EvaluateOptions& options = {},
+                                        const Progress& progress = {});
 
 }  // namespace tofsmith

@@ -2,17 +2,63 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/array.hpp"
 #include "tofsmith/core/progress.hpp"
-#include "tofsmith/scene/pinhole.hpp"
 #include "tofsmith/scene/scene_image.hpp"
-#include "tofsmith/simulate/scene_error.hpp"
 
 namespace tofsmith {
+
+/// How far a decoded frame is from the scene, over the pixels that have a true depth.
+struct SceneError {
+  double mean_m = 0.0;         ///< mean |decoded - true|, pixels without decoded depth left out
+  double median_m = 0.0;       ///< median of the same
+  double outlier_rate = 0.0;   ///< share beyond the threshold or without decoded depth
+  double decoded_share = 0.0;  ///< share of pixels that got a depth
+  std::int64_t pixels = 0;     ///< with a true depth
+  double outlier_threshold_m = 0.0;
+};
+
+/// True distance as the camera can see it: wrapped into the range; NaN = no return.
+Image<float> wrapped_depth_m(const SceneImage& scene, const Camera& camera);
+
+/// decoded - true [m], the linear or the circular difference; NaN where either is unknown.
+/// @throws std::invalid_argument if the sizes differ
+Image<float> depth_difference_m(const Image<float>& decoded_m, const SceneImage& scene,
+                                const Camera& camera, DepthErrorKind kind);
+
+/// Summary of the differences. @throws std::invalid_argument if the sizes differ
+SceneError scene_error(const Image<float>& decoded_m, const SceneImage& scene, const Camera& camera,
+                       DepthErrorKind kind, double outlier_threshold_m = 0.3);
+
+/// How an image of this size is seen: through the lens, or 60 degrees wide without one.
+PinholeView view_of(const std::optional<Lens>& lens, int width, int height);
+
+/// How far away the parts of a scene are, for a camera.
+struct SceneExtent {
+  std::int64_t pixels = 0;        ///< in all
+  std::int64_t returns = 0;       ///< with a depth
+  std::int64_t beyond_range = 0;  ///< of these, at or beyond the unambiguous range
+  double nearest_m = 0.0;         ///< radial; 0 of no returns
+  double median_m = 0.0;
+  double farthest_m = 0.0;
+  double range_m = 0.0;  ///< unambiguous range of the camera
+
+  double no_return_share() const;     ///< of all pixels
+  double beyond_range_share() const;  ///< of the pixels with a depth
+};
+
+SceneExtent scene_extent(const SceneImage& scene, const Camera& camera);
+
+/// 1 where depth is at or beyond the camera's unambiguous range: what it measures there is wrapped
+/// and looks like a nearer surface. 0 elsewhere and where nothing returns.
+Image<std::uint8_t> beyond_range(const SceneImage& scene, const Camera& camera);
 
 /// One code's depth of one capture.
 struct SceneDecoding {

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,11 +14,238 @@
 
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/progress.hpp"
-#include "tofsmith/sweep/sweep_ranks.hpp"
-#include "tofsmith/sweep/sweep_store.hpp"
-#include "tofsmith/sweep/work_list.hpp"
+#include "tofsmith/io/camera_toml.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
+
+/// One thing that varies.
+struct SweepAxis {
+  /// A key of the camera such as "light.peak_factor", or camera, code, exposures, method,
+  /// signal_e_per_s, ambient_e_per_s, seed, trials.
+  std::string key;
+  std::vector<SettingValue> values;  ///< at least one
+  std::string place;                 ///< where it was written, as errors name it
+  bool crossed = false;              ///< with all others, even where those are zipped
+};
+
+/// How the values of several axes meet.
+enum class SweepCombination {
+  product,  ///< every value of one with every value of the others; the last axis varies fastest
+  zip,      ///< first with first, second with second, ..; all axes are of one length
+};
+
+/// A list of depth errors to find: what stays, and what varies. As TOML:
+///
+///     camera = "paper-10f0"        # a built-in name, or a file beside this one
+///     set = ["samples=120"]        # keys of the camera that are other than there
+///     codes = ["hamiltonian-k4", "mine.code.json"]   # or code = "hamiltonian-k{exposures}"
+///     method = "zncc"
+///     trials = 20000               # or target_standard_error = 0.01, most_trials = 50000000
+///     seed = 1
+///     outlier_threshold_m = 0.5
+///     combine = "product"
+///
+///     [[axis]]
+///     key = "light.peak_factor"
+///     values = [5, 10, 15]
+///
+///     [[axis]]
+///     key = "signal_e_per_s"       # in place of the camera's operating.signal_e_per_s
+///     from = 1e3
+///     to = 1e5
+///     count = 9                    # logarithmic; or step = 500
+///
+///     [[axis]]
+///     key = "exposure_s"
+///     file = "times.txt"           # a value a line
+struct SweepSpec {
+  std::string source_name;          ///< what errors call it
+  std::filesystem::path directory;  ///< where relative names of cameras and codes start
+  std::string camera = "paper-10f0";
+  std::vector<std::string> settings;  ///< of the camera, as for load_camera()
+  std::string code;                   ///< when there is no axis of that name
+  EvaluateOptions options;
+  SweepCombination combine = SweepCombination::product;
+  std::vector<SweepAxis> axes;
+
+  /// How many items there are; at most 2^62, beyond which they are not counted.
+  std::int64_t items() const;
+  /// Which value of each axis an item has.
+  std::vector<std::size_t> value_indices(std::int64_t item) const;
+};
+
+/// @param source_name  the file's path, or what errors shall call the text
+/// @throws IoError "file:line:column: .." for what is no TOML, unknown keys and axes (with the
+///         nearest known one), empty axes, zipped axes of different lengths, ranges without end
+SweepSpec parse_sweep_toml(std::string_view text, std::string_view source_name = "sweep.toml");
+/// @throws IoError as parse_sweep_toml(), or if the file cannot be read
+SweepSpec read_sweep_toml(const std::filesystem::path& path);
+
+/// How a store is used.
+struct SweepStoreOptions {
+  /// A worker of another machine that gave no sign of life for so long is taken for dead, and its
+  /// unfinished items are done again [s], > 0. No two clocks are compared: each process times by
+  /// its own how long others stay silent.
+  double lease_s = 60.0;
+  /// What network file system the store is on ("NFS"), or "" for none; found out if absent.
+  std::optional<std::string> network_file_system = {};
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+
+/// How far items have come.
+struct SweepCounts {
+  std::int64_t pending = 0, running = 0, finished = 0, failed = 0;
+  double seconds = 0.0;  ///< that the finished ones took [s]
+};
+
+enum class ItemStatus { pending, running, finished, failed };
+
+/// What a store knows of an item.
+struct StoredItem {
+  ItemStatus status = ItemStatus::pending;
+  std::string settings;  ///< as it was added: JSON
+  std::string result;    ///< of a finished one: JSON
+  std::string message;   ///< of a failed one
+  double seconds = 0.0;
+};
+
+/// What became of an item, to be stored.
+struct ItemOutcome {
+  std::string key;
+  std::string result;   ///< JSON; "" if it failed
+  std::string message;  ///< why it failed
+  double seconds = 0.0;
+};
+
+/// Whether an item that was asked for is ours to do.
+enum class ClaimAnswer { ours, finished, taken };
+
+/// Results of sweeps in one SQLite file, under the keys of their items. Many processes may work on
+/// one store; a killed one, at any moment, loses nothing but its unfinished items. The file is in
+/// WAL mode, or with a rollback journal where a network file system holds it.
+/// @note one object must not be used by two threads at a time
+class SweepStore {
+ public:
+  /// Opens a store to work on it; makes it if it is missing or empty.
+  /// @throws IoError if the file is no store, damaged, of another version or instruction set, in
+  ///         WAL mode on a network file system, or if it cannot be written
+  static SweepStore open(const std::filesystem::path& path, const SweepStoreOptions& options = {});
+  /// Opens a store to look at it; the file and its directory may be read-only.
+  /// @throws IoError if the file is missing, no store, damaged or of another version
+  static SweepStore read(const std::filesystem::path& path);
+  /// Makes a store of what is in others: all items, finished where they are so in any. It depends
+  /// on their content alone, not on their order.
+  /// @param path  of a new or empty file
+  /// @throws IoError as open() and read(), or if two of them differ in a result
+  static void merge(const std::filesystem::path& path,
+                    std::span<const std::filesystem::path> parts);
+  ~SweepStore();
+  SweepStore(SweepStore&&) noexcept;
+
+  /// The instruction set that the results were computed on, see dispatch_target().
+  const std::string& target() const;
+
+  /// Adds items that are not there yet.
+  /// @param settings  JSON of the i-th, for people
+  void add(std::span<const std::string> keys,
+           const std::function<std::string(std::size_t)>& settings);
+
+  /// Makes unfinished items ours, unless another worker that lives has them. Looks at a few
+  /// thousand of `keys` at most, and no further once `most` are ours; answers for those it looked
+  /// at.
+  std::vector<ClaimAnswer> claim(std::span<const std::string> keys, std::size_t most);
+  /// Stores what became of items. One that is finished already stays as it is.
+  void finish(std::span<const ItemOutcome> outcomes);
+  /// Shows the others that we live; due a few times per lease.
+  void beat();
+  /// Gives back what is ours and unfinished.
+  void release();
+
+  /// @throws IoError if the entry is damaged
+  std::optional<StoredItem> find(std::string_view key);
+  /// Of the items with these keys, each counted once; those not in the store are pending.
+  SweepCounts count(std::span<const std::string> keys);
+
+ private:
+  struct State;
+  explicit SweepStore(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// Changes whenever the same settings give other results, so that old stores are not trusted.
+inline constexpr int sweep_result_version = 2;
+
+/// One depth error to find.
+struct WorkItem {
+  /// 32 hexadecimal digits: a hash of everything that determines the result (the camera with its
+  /// responses as samples, the code's waveforms, decoder, operating points, seed, trials, version
+  /// of results), and of nothing else: not of names, files or places in a list.
+  std::string key;
+  Camera camera;
+  CodeSet code;
+  EvaluateOptions options;
+};
+
+/// The items of a sweep.
+class WorkList {
+ public:
+  explicit WorkList(SweepSpec spec) : spec_(std::move(spec)), size_(spec_.items()) {}
+
+  const SweepSpec& spec() const { return spec_; }
+  std::int64_t size() const { return size_; }
+
+  /// The code of an item, as it is called there: a family's name or a file.
+  std::string code_name(std::int64_t item) const;
+  /// What is particular about an item, as one line of JSON: {"code": "square-k4", "samples": 120}.
+  std::string settings_json(std::int64_t item) const;
+
+  /// Reads and builds what an item needs.
+  /// @throws IoError for files that cannot be read, values that no camera can have and codes that
+  ///         its camera cannot play, naming the value's place and the item
+  WorkItem item(std::int64_t item) const;
+
+  /// The keys of all items, each of which is so checked.
+  /// @throws IoError as item(); Interrupted if progress says so
+  std::vector<std::string> keys(const Progress& progress = {}) const;
+
+ private:
+  SweepSpec spec_;
+  std::int64_t size_;
+};
+
+/// The processes (ranks) that one `mpirun` started to finish a sweep together, as one of them sees
+/// them. Rank 0 runs the sweep: it alone opens the store, and gives items to the others, which call
+/// work_for_sweep().
+/// @note at most one in the life of a process; use it from one thread
+class SweepRanks {
+ public:
+  /// Finds the others; waits for them all. Without mpirun, there are none.
+  /// @throws std::runtime_error if there are others, but no MPI was there to build with; or on rank
+  ///         0, if another rank has another version or instruction set, see dispatch_target()
+  static SweepRanks join(const Progress& progress = {});
+  /// Leaves: rank 0 sends the others home first.
+  ~SweepRanks();
+  SweepRanks(SweepRanks&&) noexcept;
+
+  int rank() const;
+  int count() const;
+
+  struct State;
+  State& state() { return *state_; }
+
+ private:
+  explicit SweepRanks(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// Computes what rank 0 asks for, until it sends us home. What goes wrong here is told by rank 0.
+/// @param list      reads the sweep that rank 0 runs; called once there is work
+/// @param progress  when it asks to stop, so does the whole job
+void work_for_sweep(SweepRanks& ranks, const std::function<WorkList()>& list,
+                    const Progress& progress = {});
 
 /// One part of a sweep that is cut in parts for machines that share nothing.
 struct SweepShard {

@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "tofsmith/io/npz.hpp"
-#include "tofsmith/sweep/sweep_store.hpp"
-#include "tofsmith/sweep/work_list.hpp"
+#include "tofsmith/io/npy.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
 
 namespace tofsmith {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "tofsmith/core/progress.hpp"
-#include "tofsmith/scene/pinhole.hpp"
+#include "tofsmith/scene/scene_image.hpp"
 #include "tofsmith/simulate/capture.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
 

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// @file
+/// All of tofsmith::core: codes, cameras, decoding and simulation.
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/camera/generator_report.hpp"
+#include "tofsmith/code/code_set.hpp"
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/build_info.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/fields.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/progress.hpp"
+#include "tofsmith/core/statistics.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/decode/decode_method.hpp"
+#include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
+#include "tofsmith/decode/depth_image.hpp"
+#include "tofsmith/decode/likelihood_decoder.hpp"
+#include "tofsmith/decode/multipath_decoder.hpp"
+#include "tofsmith/decode/pixel_maps.hpp"
+#include "tofsmith/decode/unwrap_decoder.hpp"
+#include "tofsmith/scene/bounced_light.hpp"
+#include "tofsmith/scene/built_in_scenes.hpp"
+#include "tofsmith/scene/ray_caster.hpp"
+#include "tofsmith/scene/scene_image.hpp"
+#include "tofsmith/scene/shapes.hpp"
+#include "tofsmith/simulate/bounds.hpp"
+#include "tofsmith/simulate/capture.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
+#include "tofsmith/simulate/multipath_error.hpp"
+#include "tofsmith/simulate/robustness.hpp"
+#include "tofsmith/simulate/scene_result.hpp"
+#include "tofsmith/version.hpp"

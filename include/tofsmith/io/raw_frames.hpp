@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tofsmith/core/array.hpp"
+#include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/io/npy.hpp"
+
+namespace tofsmith {
+
+/// What one number of a dump is.
+enum class RawNumbers { integers, floats };
+
+/// How integers lie in bytes.
+enum class RawPacking {
+  plain,  ///< each in a container of 8, 16 or 32 bits
+  mipi,   ///< CSI-2 RAW10, RAW12, RAW14: high bytes of a group, then the low bits of all of them
+  lsb_first,  ///< a stream of bits, lowest bit of a byte first (RAW11, Mono10p, Mono12p)
+  msb_first,  ///< a stream of bits, highest bit of a byte first
+};
+
+/// Where the numbers of a pixel stand.
+enum class RawOrder {
+  planar,       ///< (F, K, H, W): one image per number
+  interleaved,  ///< (F, H, W, K): side by side
+  by_rows,      ///< (F, H, K, W): one row of each in turn
+};
+
+/// Whether a number's unused bits are the highest or the lowest of its container.
+enum class RawAlignment { low, high };
+
+/// A dump of a sensor, without header that says so: what a `*.raw.toml` file describes. Field names
+/// are its keys; docs/raw_formats.md explains each.
+struct RawFormat {
+  int width = 0;                         ///< W, pixels
+  int height = 0;                        ///< H, pixels
+  int measurements = 0;                  ///< numbers per pixel as they stand in the file
+  int frames = 0;                        ///< 0: as many as the file holds
+  std::uint64_t header_bytes = 0;        ///< skipped at the beginning of the file
+  std::uint64_t frame_header_bytes = 0;  ///< skipped ahead of every frame
+  std::uint64_t image_header_bytes = 0;  ///< skipped ahead of every image, planar
+  std::uint64_t row_bytes = 0;           ///< from one row to the next; 0: no gap
+
+  RawNumbers numbers = RawNumbers::integers;
+  int bits = 16;           ///< of a number: integers 1 .. 32, floats 32 or 64
+  int container_bits = 0;  ///< plain: 8, 16 or 32; 0: as few as hold `bits`
+  RawPacking packing = RawPacking::plain;
+  RawAlignment align = RawAlignment::low;  ///< plain
+  bool big_endian = false;                 ///< plain, and floats
+  bool is_signed = false;                  ///< two's complement
+  bool rows_start_bytes = true;            ///< lsb_first, msb_first: each row at a whole byte
+  RawOrder layout = RawOrder::planar;
+  std::vector<int> order;      ///< order[j]: which measurement number j of the file is; empty: j
+  bool flip_rows = false;      ///< the file begins with the lowest row
+  bool flip_columns = false;   ///< rows begin at the right
+  double black_level = 0.0;    ///< taken off every number
+  bool subtract_taps = false;  ///< measurements 2 i and 2 i + 1 come out as their difference
+
+  /// Numbers per pixel that come out: K, or K / 2 differences.
+  int output_measurements() const { return subtract_taps ? measurements / 2 : measurements; }
+  /// Whether decoded numbers need 64-bit floats to be exact.
+  bool needs_doubles() const { return bits > 24 && !(numbers == RawNumbers::floats && bits == 32); }
+
+  /// Numbers in one row of the file.
+  std::size_t numbers_per_row() const;
+  /// Rows of one image, or of one frame where it has no images.
+  std::size_t rows_per_image() const;
+  /// Images of one frame: K if planar, else 1.
+  std::size_t images() const;
+  /// What one row takes without gap [bytes], where rows start at whole bytes.
+  std::uint64_t tight_row_bytes() const;
+  /// What one image takes without its header [bytes].
+  std::uint64_t image_bytes() const;
+  /// What one frame takes with its headers [bytes].
+  std::uint64_t frame_bytes() const;
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+
+  friend bool operator==(const RawFormat&, const RawFormat&) = default;
+};
+
+/// Reads a description. @param source_name  path of the file, or what errors shall call it
+/// @throws IoError "file:line:column: .." for what is no TOML, unknown keys (with the nearest known
+///         one), wrong types, and contradictory or broken rules
+RawFormat parse_raw_format(std::string_view text, std::string_view source_name = "sensor.raw.toml");
+/// @throws IoError as parse_raw_format(), or if the file cannot be read
+RawFormat read_raw_format(const std::filesystem::path& path);
+
+/// `count` numbers of a row, from number `first` on, as they stand in the file: black level, order
+/// and differences come later.
+/// @param row        bytes from the first one that holds a bit of the row
+/// @param first_bit  of the row in its first byte, 0 but for rows that do not start a byte
+void unpack_numbers(const RawFormat& format, std::span<const std::byte> row, int first_bit,
+                    std::span<double> numbers);
+
+/// Raw measurements of shape (H, W, K), or (F, H, W, K) for several frames, from .npy or .npz (the
+/// array "raw", or the only one): uint8, uint16, int16, float32 or float64. Values are kept as they
+/// are, NaN and infinity too.
+/// @param measurements  K that the code asks for, if one is known
+/// @throws IoError if the extension, the shape or the type is another, or K differs
+RawFrames read_raw_frames(const std::filesystem::path& path,
+                          std::optional<int> measurements = std::nullopt);
+
+/// Writes float32 to .npy or .npz: (H, W, K) if there is one frame, (F, H, W, K) otherwise.
+/// @throws std::invalid_argument if there are no values, or not as many as the sizes say
+/// @throws IoError if the extension is another, or as AtomicFile does
+void write_raw_frames(const std::filesystem::path& path, const RawFrames& raw, OutputPolicy policy);
+
+/// Where the K measurements of a pixel stand in a file.
+enum class RawLayout {
+  interleaved,  ///< (H, W, K) or (F, H, W, K): side by side
+  planar,       ///< (K, H, W) or (F, K, H, W): one image per measurement
+};
+
+/// "interleaved", "planar".
+std::string_view name_of(RawLayout layout);
+/// @throws std::invalid_argument for any other word
+RawLayout parse_raw_layout(std::string_view name);
+
+/// How a recording is read.
+struct RawReadOptions {
+  /// K that the code asks for, if one is known.
+  std::optional<int> measurements;
+  /// Never guessed; where the other one would fit, the error says so.
+  RawLayout layout = RawLayout::interleaved;
+  /// Most memory [bytes] for files that cannot be read in parts: .npz, and .npy in Fortran order.
+  std::uint64_t largest_in_memory = max_npz_bytes;
+  /// How a dump without header is laid out; the file is then read as one, whatever its extension,
+  /// and `layout` does not count.
+  std::optional<RawFormat> format;
+};
+
+class RawDumpReader;
+
+/// Reads rows of the frames of a recording as they stand in the file, .npy of any size in the
+/// memory of those rows; so is a dump that a RawFormat describes. An .npz, or an .npy in Fortran
+/// order, is held in memory as a whole.
+/// @note reading is safe from many threads at once, each with a buffer of its own
+class RawFramesReader {
+ public:
+  /// @throws IoError as read_raw_frames() in raw_frames_file.hpp, or if a file that cannot be read
+  /// in parts would take
+  ///         more memory than allowed
+  explicit RawFramesReader(const std::filesystem::path& path, const RawReadOptions& options = {});
+  ~RawFramesReader();
+  RawFramesReader(RawFramesReader&&) noexcept;
+
+  int frames() const { return sizes_.frames; }
+  int height() const { return sizes_.height; }
+  int width() const { return sizes_.width; }
+  int measurements() const { return sizes_.measurements; }
+  /// Of the numbers that read_rows() gives: int16 and dumps come as floats.
+  NpyType type() const { return type_; }
+  /// Whether the file holds whole numbers.
+  bool holds_integers() const { return holds_integers_; }
+  /// What one row of a frame takes [bytes].
+  std::size_t row_bytes() const;
+  /// What the reader itself holds [bytes]: the values of a file that cannot be read in parts.
+  std::size_t bytes_in_memory() const { return whole_.bytes().size(); }
+
+  /// Rows first_row .. first_row + rows - 1 of a frame, in the file's layout and in type(): numbers
+  /// of .npy and .npz but int16 are not converted, big-endian ones are turned round.
+  /// @param buffer  what the view looks at, as long as no later call changes it
+  /// @throws std::invalid_argument if there is no such frame or row
+  /// @throws IoError if the file cannot be read or became shorter
+  RawView read_rows(int frame, int first_row, int rows, std::vector<std::byte>& buffer) const;
+  /// Frame `index` alone, as (1, H, W, K) floats.
+  RawFrames read_frame(int index) const;
+
+ private:
+  void open_array(const std::filesystem::path& path, const RawReadOptions& options);
+  void open_dump(const std::filesystem::path& path, const RawReadOptions& options);
+  void read_stored_rows(int frame, int first_row, int rows, std::vector<std::byte>& buffer) const;
+  RawView view_of(const std::byte* data, int rows, int rows_of_a_plane) const;
+  RawView rows_in_memory(int frame, int first_row, int rows) const;
+
+  std::optional<NpyReader> file_;        // none if `whole_` holds everything
+  std::unique_ptr<RawDumpReader> dump_;  // of a dump: the only one of the three
+  NpyArray whole_;
+  NpyType type_ = NpyType::float32;
+  bool holds_integers_ = false;
+  RawLayout layout_;
+  RawFrames sizes_;  // without values
+};
+
+}  // namespace tofsmith

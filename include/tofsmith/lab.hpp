@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// @file
+/// All of tofsmith::lab: calibration, waveform formats and generators. Includes tofsmith/io.hpp.
+
+#include "tofsmith/calibrate/calibration_camera.hpp"
+#include "tofsmith/calibrate/correlation_calibration.hpp"
+#include "tofsmith/calibrate/impulse_response.hpp"
+#include "tofsmith/calibrate/instrument_table.hpp"
+#include "tofsmith/calibrate/photon_transfer.hpp"
+#include "tofsmith/instrument/scpi_session.hpp"
+#include "tofsmith/instrument/upload.hpp"
+#include "tofsmith/io.hpp"
+#include "tofsmith/waveforms/waveform_export.hpp"

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// @file
+/// All of tofsmith::report: figures and pages. Includes tofsmith/lab.hpp.
+
+#include "tofsmith/lab.hpp"
+#include "tofsmith/report/calibration_report.hpp"
+#include "tofsmith/report/code_figures.hpp"
+#include "tofsmith/report/design_report.hpp"
+#include "tofsmith/report/export_report.hpp"
+#include "tofsmith/report/figure.hpp"
+#include "tofsmith/report/page.hpp"

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+// The first rule that a member of a family breaks; none: it can be built. A grid that does not
+// divide the samples comes with the nearest usable N, unless the caller asks for no exact grid.
+
+std::optional<BrokenRule> options_misfit(const FamilyOptions& options);
+std::optional<BrokenRule> multi_frequency_misfit(const std::vector<FrequencySteps>& frequencies,
+                                                 const FamilyOptions& options);
+std::optional<BrokenRule> square_misfit(int phase_steps, const FamilyOptions& options);
+std::optional<BrokenRule> pulsed_multi_frequency_misfit(int low_steps, int high_frequency,
+                                                        const FamilyOptions& options);
+std::optional<BrokenRule> gray_misfit(int bits, const FamilyOptions& options);
+std::optional<BrokenRule> hamiltonian_misfit(int measurements, const FamilyOptions& options);
+
+/// Of a walk alone.
+std::optional<BrokenRule> walk_misfit(int measurements);
+
+std::string pulsed_multi_frequency_name(int low_steps, int high_frequency);
+
+}  // namespace tofsmith

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "tofsmith/code/families.hpp"
+
+namespace tofsmith {
+
+/// A closed walk along the edges of the K-cube: consecutive vertices (bit k = code k is on) differ
+/// in one bit, no vertex comes twice, all-zeros and all-ones are left out, and every bit is on in
+/// exactly half of the vertices. Its length is the longest possible: 2^K - 2 for odd K, and
+/// 2^K - 4 for even K, since the cube is bipartite.
+/// K = 3, 4, 5 are the published walks; beyond, a walk is constructed.
+/// @throws std::invalid_argument unless 3 <= K <= 10
+std::vector<std::uint32_t> hamiltonian_walk(int measurements);
+
+/// Number of edges L of the walk: 6, 12, 30, 60, ..
+int hamiltonian_length(int measurements);
+
+/// Hamiltonian coding functions: demodulation follows the walk, modulation is one pulse of duty
+/// max(1/p, 1/L), so that the coding curve runs along the edges of the cube.
+/// @throws std::invalid_argument unless N is a multiple of L (with options.exact_grid)
+/// @see Gupta et al., "What are optimal coding functions for time-of-flight imaging?",
+///      ACM Trans. Graph. 37(2), 2018; Gutierrez-Barragan et al., CVPR 2019, Sec. 4
+CodeSet hamiltonian_code(int measurements, const FamilyOptions& options);
+
+}  // namespace tofsmith

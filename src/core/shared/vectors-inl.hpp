@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// The vectors of every kernel: as wide as the instruction set has them, up to 64 bytes. Compiled
+// once for every instruction set.
+#if defined(TOFSMITH_CORE_VECTORS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef TOFSMITH_CORE_VECTORS_INL_HPP
+#undef TOFSMITH_CORE_VECTORS_INL_HPP
+#else
+#define TOFSMITH_CORE_VECTORS_INL_HPP
+#endif
+
+#include <hwy/highway.h>
+
+#include "core/shared/whole_vectors.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tofsmith {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+namespace {
+
+using Floats = hn::CappedTag<float, widest_vector>;
+using Vector = hn::Vec<Floats>;
+using Mask = hn::Mask<Floats>;
+using Indices = hn::RebindToSigned<Floats>;
+using IndexVector = hn::Vec<Indices>;
+
+using Doubles = hn::CappedTag<double, widest_vector / 2>;
+using DoubleVector = hn::Vec<Doubles>;
+
+template <typename Tag = Floats>
+HWY_INLINE int lanes_of(Tag tag = {}) {
+  return static_cast<int>(hn::Lanes(tag));
+}
+
+HWY_INLINE Vector all(float value) { return hn::Set(Floats(), value); }
+HWY_INLINE DoubleVector all(double value) { return hn::Set(Doubles(), value); }
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace tofsmith
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/decode/likelihood_decoder.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "decode/likelihood/likelihood_search.hpp"
+#include "decode/output/pixel_output.hpp"
+#include "decode/raw_scale.hpp"
+#include "decode/search/nearest_bins.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+using PerMeasurement = std::array<double, max_measurements>;
+
+}  // namespace
+
+struct LikelihoodDecoder::Plan {
+  Plan(DecodingTable table_, const DecodeOptions& options_, const AmbientProjection& projection)
+      : table(std::move(table_)), options(options_), scale(table), search(table, projection) {}
+
+  DecodingTable table;
+  DecodeOptions options;
+  RawScale scale;
+  LikelihoodSearch search;
+
+  bool read(const float* raw, PerMeasurement& electrons) const;
+  std::vector<double> work_space() const {
+    return std::vector<double>(static_cast<std::size_t>(table.samples()));
+  }
+  double decode_depth_bin(const float* raw, std::vector<double>& fall) const;
+  void decode_pixel(const float* raw, std::size_t at, const DecodedView& decoded,
+                    std::vector<double>& fall) const;
+};
+
+LikelihoodDecoder::LikelihoodDecoder(DecodingTable table, const DecodeOptions& options) {
+  options.validate();
+  table.validate();
+  const AmbientProjection projection(table);
+  plan_ = std::make_unique<const Plan>(std::move(table), options, projection);
+}
+LikelihoodDecoder::~LikelihoodDecoder() = default;
+LikelihoodDecoder::LikelihoodDecoder(LikelihoodDecoder&&) noexcept = default;
+LikelihoodDecoder& LikelihoodDecoder::operator=(LikelihoodDecoder&&) noexcept = default;
+
+const DecodingTable& LikelihoodDecoder::table() const { return plan_->table; }
+const DecodeOptions& LikelihoodDecoder::options() const { return plan_->options; }
+
+void LikelihoodDecoder::decode_depth_bins(const float* measurements, std::int64_t pixels,
+                                          double* depth_bin) const {
+  std::vector<double> fall = plan_->work_space();
+  for (std::int64_t i = 0; i < pixels; ++i)
+    depth_bin[i] = plan_->decode_depth_bin(measurements + i * this->measurements(), fall);
+}
+
+void LikelihoodDecoder::decode_bins(const float* measurements, std::int64_t pixels,
+                                    std::int32_t* bin) const {
+  nearest_bins(*this, measurements, pixels, bin);
+}
+
+void LikelihoodDecoder::decode(const RawView& raw, const DecodedView& decoded,
+                               const Progress& progress) const {
+  constexpr std::int64_t block_pixels = usual_block_pixels / 16;
+  decode_frame(
+      raw, decoded, measurements(), progress,
+      [&](const float* values, std::int64_t pixels, const DecodedView& block) {
+        std::vector<double> fall = plan_->work_space();
+        for (std::int64_t i = 0; i < pixels; ++i)
+          plan_->decode_pixel(values + i * measurements(), static_cast<std::size_t>(i), block,
+                              fall);
+      },
+      block_pixels);
+}
+
+DepthImage LikelihoodDecoder::decode(const RawFrames& raw, int frame,
+                                     const Progress& progress) const {
+  return decoded_image(raw, frame, [&](const RawView& view, const DecodedView& decoded) {
+    decode(view, decoded, progress);
+  });
+}
+
+/// False where a measurement is NaN or infinite.
+bool LikelihoodDecoder::Plan::read(const float* raw, PerMeasurement& electrons) const {
+  bool finite = true;
+  for (int k = 0; k < table.measurements(); ++k) {
+    electrons[static_cast<std::size_t>(k)] = scale.electrons(raw[k], k);
+    finite = finite && std::isfinite(raw[k]);
+  }
+  return finite;
+}
+
+/// NaN where a measurement is NaN or infinite.
+double LikelihoodDecoder::Plan::decode_depth_bin(const float* raw,
+                                                 std::vector<double>& fall) const {
+  PerMeasurement electrons;
+  if (!read(raw, electrons)) return std::numeric_limits<double>::quiet_NaN();
+  const MostLikely found = search.most_likely(search.model().pixel(electrons.data()), fall);
+  return search.depth_bin(found.best);
+}
+
+void LikelihoodDecoder::Plan::decode_pixel(const float* raw, std::size_t at,
+                                           const DecodedView& decoded,
+                                           std::vector<double>& fall) const {
+  PerMeasurement electrons;
+  if (!read(raw, electrons)) return store_invalid(at, decoded);
+  const LikelihoodPixel pixel = search.model().pixel(electrons.data());
+  const MostLikely found = search.most_likely(pixel, fall);
+  PixelDecoding decoding{search.depth_bin(found.best), search.model().estimate(pixel, found.best)};
+  if (decoding.estimate.signal_e_per_s > 0.0)
+    decoding.confidence = search.confidence(pixel, found, fall);
+  store_pixel(table, options, raw, decoding, at, decoded);
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "decode/likelihood/likelihood_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tofsmith {
+
+namespace {
+
+/// Share of the mean measurement below which no variance is believed.
+constexpr double least_share = 1e-4;
+/// Costs that differ by less, per unit where they are large, are one.
+double same_cost(double cost) { return 1e-10 * std::max(1.0, std::abs(cost)); }
+constexpr int most_steps = 30, most_halvings = 8, most_chords = 16, most_bins_apart = 3;
+
+}  // namespace
+
+LikelihoodModel::LikelihoodModel(const DecodingTable& table, const AmbientProjection& projection)
+    : samples_(table.samples()),
+      measurements_(table.measurements()),
+      unknowns_(projection.ambient.isZero(0.0) ? 2 : 3),
+      ambient_(projection.ambient),
+      gated_(projection.gated),
+      noise_(table) {}
+
+LikelihoodPixel LikelihoodModel::pixel(const double* electrons) const {
+  double size = 0.0;
+  for (int k = 0; k < measurements_; ++k) size += std::abs(electrons[k]);
+  return {electrons, std::max(least_variance_e2, least_share * size / measurements_)};
+}
+
+double LikelihoodModel::cost(const LikelihoodPixel& pixel, std::int32_t bin,
+                             const Quadratic::Vector& light) const {
+  const std::int32_t to = next(bin);
+  const double *x0 = gated_.row(bin).data(), *x1 = gated_.row(to).data();
+  const double *s0 = noise_.shot_gated.row(bin).data(), *s1 = noise_.shot_gated.row(to).data();
+  constexpr int factors = 4;  // so many variances have a product that does not overflow
+  double squares = 0.0, logs = 0.0, product = 1.0;
+  for (int k = 0; k < measurements_; ++k) {
+    const double mean = light[0] * x0[k] + light[1] * x1[k] + light[2] * ambient_[k];
+    const double variance =
+        std::max(pixel.least_variance_e2, light[0] * s0[k] + light[1] * s1[k] +
+                                              light[2] * noise_.shot_ambient[k] +
+                                              noise_.floor_variance_e2[k]);
+    const double residual = pixel.electrons[k] - mean;
+    squares += residual * residual / variance;
+    product *= variance;
+    if (k % factors == factors - 1) {
+      logs += std::log(product);
+      product = 1.0;
+    }
+  }
+  return squares + logs + std::log(product);
+}
+
+BoundedMinimum LikelihoodModel::least_squares(const LikelihoodPixel& pixel, std::int32_t bin,
+                                              const double* weight) const {
+  const double *x0 = gated_.row(bin).data(), *x1 = gated_.row(next(bin)).data();
+  Quadratic q;
+  for (int k = 0; k < measurements_; ++k) {
+    const std::array mean{x0[k], x1[k], ambient_[k]};
+    for (std::size_t i = 0; i < 3; ++i) {
+      q.g[i] += weight[k] * pixel.electrons[k] * mean[i];
+      for (std::size_t j = 0; j <= i; ++j) q.h[i][j] += weight[k] * mean[i] * mean[j];
+    }
+  }
+  q.h[0][1] = q.h[1][0], q.h[0][2] = q.h[2][0], q.h[1][2] = q.h[2][1];
+  return minimize_bounded(q, unknowns_);
+}
+
+/// The quadratic that Fisher scoring puts in place of cost / 2 around some light: its gradient, and
+/// the expected value of its second derivatives.
+Quadratic LikelihoodModel::scoring(const LikelihoodPixel& pixel, std::int32_t bin,
+                                   const Quadratic::Vector& light) const {
+  const std::int32_t to = next(bin);
+  const double *x0 = gated_.row(bin).data(), *x1 = gated_.row(to).data();
+  const double *s0 = noise_.shot_gated.row(bin).data(), *s1 = noise_.shot_gated.row(to).data();
+  Quadratic q;
+  for (int k = 0; k < measurements_; ++k) {
+    const std::array mean{x0[k], x1[k], ambient_[k]};
+    std::array shot{s0[k], s1[k], noise_.shot_ambient[k]};
+    double residual = pixel.electrons[k], variance = noise_.floor_variance_e2[k];
+    for (std::size_t i = 0; i < 3; ++i) {
+      residual -= light[i] * mean[i];
+      variance += light[i] * shot[i];
+    }
+    if (variance < pixel.least_variance_e2) {
+      variance = pixel.least_variance_e2;
+      shot = {};
+    }
+    const double by_mean = residual / variance;
+    const double by_variance = 0.5 * (by_mean * by_mean - 1.0 / variance);
+    for (std::size_t i = 0; i < 3; ++i) {
+      q.g[i] += by_mean * mean[i] + by_variance * shot[i];
+      for (std::size_t j = 0; j <= i; ++j)
+        q.h[i][j] += mean[i] * mean[j] / variance + 0.5 * shot[i] * shot[j] / (variance * variance);
+    }
+  }
+  q.h[0][1] = q.h[1][0], q.h[0][2] = q.h[2][0], q.h[1][2] = q.h[2][1];
+  // From steps to light itself, whose bounds are at 0.
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) q.g[i] += q.h[i][j] * light[j];
+  return q;
+}
+
+ChordFit LikelihoodModel::fit(const LikelihoodPixel& pixel, std::int32_t bin,
+                              const double* weight) const {
+  ChordFit best{bin, least_squares(pixel, bin, weight).x};
+  best.cost = cost(pixel, bin, best.light);
+  for (int step = 0; step < most_steps; ++step) {
+    const Quadratic::Vector aim = minimize_bounded(scoring(pixel, bin, best.light), unknowns_).x;
+    double length = 1.0, fall = 0.0;
+    for (int i = 0; i < most_halvings && !(fall > 0.0); ++i, length *= 0.5) {
+      ChordFit tried = best;
+      for (std::size_t j = 0; j < 3; ++j)
+        tried.light[j] = length == 1.0 ? aim[j] : best.light[j] + length * (aim[j] - best.light[j]);
+      tried.cost = cost(pixel, bin, tried.light);
+      fall = best.cost - tried.cost;
+      if (fall > 0.0) best = tried;
+    }
+    if (!(fall > same_cost(best.cost))) break;
+  }
+  return best;
+}
+
+ChordFit LikelihoodModel::fit_around(const LikelihoodPixel& pixel, std::int32_t bin,
+                                     const double* weight) const {
+  ChordFit best = fit(pixel, previous(bin), weight);
+  const ChordFit after = fit(pixel, bin, weight);
+  const bool upwards = after.cost < best.cost - same_cost(best.cost);
+  if (upwards) best = after;
+  for (int i = 0; i < most_chords; ++i) {
+    if (upwards ? !best.is_at_next() : !best.is_at_bin()) break;
+    const ChordFit beyond = fit(pixel, upwards ? next(best.bin) : previous(best.bin), weight);
+    if (!(beyond.cost < best.cost - same_cost(best.cost))) break;
+    best = beyond;
+  }
+  return best;
+}
+
+ChordFit LikelihoodModel::fit_near(const LikelihoodPixel& pixel, const ChordFit& found,
+                                   const double* weight) const {
+  ChordFit best = found;
+  std::int32_t below = found.bin, above = found.bin;
+  for (int distance = 1; distance <= most_bins_apart; ++distance) {
+    below = previous(below), above = next(above);
+    for (const std::int32_t bin : {below, above}) {
+      const ChordFit other = fit(pixel, bin, weight);
+      if (other.cost < best.cost - same_cost(best.cost)) best = other;
+    }
+  }
+  return best;
+}
+
+PixelEstimate LikelihoodModel::estimate(const LikelihoodPixel& pixel, const ChordFit& fit) const {
+  const std::int32_t from = fit.bin, to = next(from);
+  const double signal = fit.signal_e_per_s(), t = fit.position().fraction;
+  const double *x0 = gated_.row(from).data(), *x1 = gated_.row(to).data();
+  const double *s0 = noise_.shot_gated.row(from).data(), *s1 = noise_.shot_gated.row(to).data();
+  const double* before = gated_.row(previous(from)).data();
+  const double* after = gated_.row(next(to)).data();
+  constexpr int depth = 0, light = 1;
+  Quadratic information;
+  for (int k = 0; k < measurements_; ++k) {
+    const double variance =
+        std::max(pixel.least_variance_e2, fit.light[0] * s0[k] + fit.light[1] * s1[k] +
+                                              fit.light[2] * noise_.shot_ambient[k] +
+                                              noise_.floor_variance_e2[k]);
+    // Per bin; at a bin, the mean of both sides.
+    const double slope = t <= 0.0   ? 0.5 * (x1[k] - before[k])
+                         : t >= 1.0 ? 0.5 * (after[k] - x0[k])
+                                    : x1[k] - x0[k];
+    const std::array by{signal * slope, (1 - t) * x0[k] + t * x1[k], ambient_[k]};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) information.h[i][j] += by[i] * by[j] / variance;
+  }
+  PixelEstimate result;
+  result.signal_e_per_s = signal;
+  result.ambient_e_per_s = unknowns_ == 3 ? fit.light[2] : std::numeric_limits<double>::quiet_NaN();
+  result.signal_standard_deviation_e_per_s = 1.0 / std::sqrt(left_of(information, light));
+  result.depth_standard_deviation_bin = 1.0 / std::sqrt(left_of(information, depth));
+  return result;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "decode/likelihood/likelihood_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "decode/search/nearest_bins.hpp"
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+namespace {
+
+constexpr int bins_per_block = 64;
+/// Signal and ambient light that differ in direction by less (square of the sine) are one.
+constexpr double parallel_light = 1e-13;
+
+/// Costs that differ by less, per unit where they are large, tie: the lowest depth wins.
+constexpr double cost_tie = 1e-9;
+/// Peaks are followed whose weighted squares are at most `squares_ratio` times those of the best
+/// peak plus `squares_lead`: weights come from one estimate for all.
+constexpr double squares_ratio = 2.0, squares_lead = 30.0;
+
+}  // namespace
+
+DepthScores::DepthScores(const AmbientProjection& projection)
+    : directions_(projection.curve.rowwise().normalized().transpose()),
+      gated_(projection.gated.transpose()),
+      ambient_(projection.ambient) {}
+
+std::int32_t DepthScores::best_correlation(const double* plane) const {
+  double best = -1.0;
+  std::int32_t best_bin = -1;
+  std::array<double, bins_per_block> score;
+  for (int first = 0; first < samples(); first += bins_per_block) {
+    const int count = std::min(bins_per_block, samples() - first);
+    score.fill(0.0);
+    for (Eigen::Index j = 0; j < directions_.rows(); ++j) {
+      const double* direction = directions_.row(j).data() + first;
+      for (int i = 0; i < count; ++i) score[static_cast<std::size_t>(i)] += plane[j] * direction[i];
+    }
+    for (int i = 0; i < count; ++i)
+      if (best_bin < 0 || score[static_cast<std::size_t>(i)] > best) {
+        best = score[static_cast<std::size_t>(i)];
+        best_bin = first + i;
+      }
+  }
+  return best_bin;
+}
+
+void DepthScores::weighted_fall(const double* electrons, const double* weight, double* fall) const {
+  std::array<double, bins_per_block> xx, xa, xy;
+  double aa = 0.0, ay = 0.0;
+  for (Eigen::Index k = 0; k < ambient_.size(); ++k) {
+    aa += weight[k] * ambient_[k] * ambient_[k];
+    ay += weight[k] * ambient_[k] * electrons[k];
+  }
+  const double ambient_alone = ay > 0.0 ? ay * ay / aa : 0.0;
+  for (int first = 0; first < samples(); first += bins_per_block) {
+    const int count = std::min(bins_per_block, samples() - first);
+    xx.fill(0.0), xa.fill(0.0), xy.fill(0.0);
+    for (Eigen::Index k = 0; k < ambient_.size(); ++k) {
+      const double* x = gated_.row(k).data() + first;
+      const double by_a = weight[k] * ambient_[k], by_y = weight[k] * electrons[k];
+      for (int i = 0; i < count; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        xx[at] += weight[k] * x[i] * x[i];
+        xa[at] += by_a * x[i];
+        xy[at] += by_y * x[i];
+      }
+    }
+    for (int i = 0; i < count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const double signal = xy[at] * aa - ay * xa[at], ambient = ay * xx[at] - xy[at] * xa[at];
+      const double determinant = xx[at] * aa - xa[at] * xa[at];
+      const double signal_alone = xy[at] > 0.0 ? xy[at] * xy[at] / xx[at] : 0.0;
+      const bool both = signal > 0.0 && ambient > 0.0 && determinant > parallel_light * xx[at] * aa;
+      fall[first + i] = both ? (signal * xy[at] + ambient * ay) / determinant
+                             : std::max(signal_alone, ambient_alone);
+    }
+  }
+}
+
+/// A peak over bins, and the weighted squares it leaves on the better chord beside it.
+struct LikelihoodSearch::Peak {
+  std::int32_t bin = 0;
+  double squares = 0.0;
+};
+
+/// The most promising peaks of a pixel, best first.
+class LikelihoodSearch::Peaks {
+ public:
+  void add(const Peak& peak) {
+    std::size_t at = count_;
+    while (at > 0 && peaks_[at - 1].squares > peak.squares) --at;
+    if (at == most_peaks) return;
+    count_ = std::min(count_ + 1, most_peaks);
+    std::copy_backward(peaks_.begin() + at, peaks_.begin() + count_ - 1, peaks_.begin() + count_);
+    peaks_[at] = peak;
+  }
+  const Peak* begin() const { return peaks_.data(); }
+  const Peak* end() const { return peaks_.data() + count_; }
+
+ private:
+  std::array<Peak, most_peaks> peaks_{};
+  std::size_t count_ = 0;
+};
+
+LikelihoodSearch::LikelihoodSearch(const DecodingTable& table, const AmbientProjection& projection)
+    : scores_(projection),
+      correlation_(table, projection),
+      model_(table, projection),
+      directions_(projection) {}
+
+/// Inverse variances of the measurements at the estimate of zero-mean normalized cross-correlation.
+/// Any depth that explains the pixel has nearly the same ones. False if ambient light alone
+/// explains the pixel, which is then all there is.
+bool LikelihoodSearch::estimate_weights(const double* electrons, MostLikely& result) const {
+  std::array<double, max_measurements> plane, variance_e2;
+  correlation_.project(electrons, plane.data());
+  const std::int32_t bin = scores_.best_correlation(plane.data());
+  const PixelEstimate estimate = correlation_.estimate(
+      electrons, plane.data(), correlation_.refine(plane.data(), bin), variance_e2.data());
+  for (int k = 0; k < correlation_.measurements(); ++k)
+    result.weight[static_cast<std::size_t>(k)] = 1.0 / variance_e2[static_cast<std::size_t>(k)];
+  result.best.light[2] = std::max(0.0, estimate.ambient_e_per_s);
+  return std::any_of(plane.begin(), plane.begin() + correlation_.rank(),
+                     [](double value) { return value != 0.0; });
+}
+
+double LikelihoodSearch::squares_beside(const LikelihoodPixel& pixel, std::int32_t bin,
+                                        const double* weight) const {
+  const std::int32_t before = bin > 0 ? bin - 1 : scores_.samples() - 1;
+  double whole = 0.0;
+  for (int k = 0; k < correlation_.measurements(); ++k)
+    whole += weight[k] * pixel.electrons[k] * pixel.electrons[k];
+  return whole + 2 * std::min(model_.least_squares(pixel, before, weight).value,
+                              model_.least_squares(pixel, bin, weight).value);
+}
+
+LikelihoodSearch::Peaks LikelihoodSearch::peaks(const LikelihoodPixel& pixel, const double* weight,
+                                                const std::vector<double>& fall) const {
+  Peaks found;
+  const std::size_t last = fall.size() - 1;
+  for (std::size_t n = 0; n <= last; ++n) {
+    const double before = fall[n > 0 ? n - 1 : last], after = fall[n < last ? n + 1 : 0];
+    const bool rises = n > 0 ? fall[n] > before : fall[n] >= before;
+    if (!rises || fall[n] < after) continue;
+    const auto bin = static_cast<std::int32_t>(n);
+    found.add({bin, squares_beside(pixel, bin, weight)});
+  }
+  return found;
+}
+
+MostLikely LikelihoodSearch::most_likely(const LikelihoodPixel& pixel,
+                                         std::vector<double>& fall) const {
+  MostLikely result;
+  if (!estimate_weights(pixel.electrons, result)) return result;
+  scores_.weighted_fall(pixel.electrons, result.weight.data(), fall.data());
+
+  const Peaks found = peaks(pixel, result.weight.data(), fall);
+  const double most_squares = squares_ratio * std::max(found.begin()->squares, 0.0) + squares_lead;
+  for (const Peak& peak : found) {
+    if (peak.squares > most_squares) break;
+    const ChordFit fit = model_.fit_around(pixel, peak.bin, result.weight.data());
+    const double tie = cost_tie * std::max(1.0, std::abs(result.best.cost));
+    const bool is_first = result.count == 0;
+    const bool is_lower = fit.cost < result.best.cost - tie;
+    const bool ties = fit.cost <= result.best.cost + tie;
+    if (is_first || is_lower || (ties && depth_bin(fit) < depth_bin(result.best)))
+      result.best = fit;
+    result.followed[result.count++] = fit;
+  }
+  result.best = model_.fit_near(pixel, result.best, result.weight.data());
+  return result;
+}
+
+double LikelihoodSearch::confidence(const LikelihoodPixel& pixel, const MostLikely& found,
+                                    const std::vector<double>& fall) const {
+  const std::int32_t samples = scores_.samples();
+  const std::int32_t nearest = nearest_bin(depth_bin(found.best), samples);
+  const Lobe lobe = directions_.main_lobe(nearest);
+  if (lobe.end - lobe.begin >= samples) return 1.0;
+
+  std::int32_t rival = lobe.end % samples;
+  for (std::int32_t n = lobe.end; n < lobe.begin + samples; ++n)
+    if (fall[static_cast<std::size_t>(n % samples)] > fall[static_cast<std::size_t>(rival)])
+      rival = n % samples;
+  double rival_cost = model_.fit(pixel, rival, found.weight.data()).cost;
+  for (std::size_t i = 0; i < found.count; ++i) {
+    const double above = wrap(depth_bin(found.followed[i]) - lobe.begin, samples);
+    if (above > lobe.end - 1 - lobe.begin)
+      rival_cost = std::min(rival_cost, found.followed[i].cost);
+  }
+  return 1.0 / (1.0 + std::exp(-0.5 * std::max(rival_cost - found.best.cost, 0.0)));
+}
+
+}  // namespace tofsmith

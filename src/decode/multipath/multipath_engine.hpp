@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "decode/expected_noise.hpp"
+#include "decode/multipath/multipath_search.hpp"
+#include "decode/raw_scale.hpp"
+#include "tofsmith/decode/multipath_decoder.hpp"
+
+namespace tofsmith {
+
+/// What is known of the direct depth of a pixel once all later returns the prior allows are
+/// averaged over.
+struct DepthPosterior {
+  double median = 0.0;     ///< [fine points], in [0, points)
+  double deviation = 0.0;  ///< [fine points]
+};
+
+/// Posterior of direct depth around a single fit, under a prior on the second return (for a tail:
+/// on its ratio).
+class ReturnPosterior {
+ public:
+  ReturnPosterior(const MultipathCurve& curve, const ReturnPrior& prior, double range_m,
+                  const DelayBounds& delays);
+
+  /// @param position  of the single fit [fine points]
+  DepthPosterior around(const MultipathCurve& curve, const PixelGroup& pixels, int lane,
+                        double position) const;
+
+ private:
+  double single_probability_;
+  int reach_;                  // of the window to both sides [fine points]
+  std::vector<int> delay_;     // of equal probability [fine points]; one 0 for a tail
+  std::vector<double> ratio_;  // of equal probability
+};
+
+/// What is beside the direct return.
+enum class LaterLight { second_return, tail };
+
+/// Decodes pixels of up to two returns: the single return by the fast decoder, and what one return
+/// does not explain by a search for a second.
+class MultipathEngine {
+ public:
+  /// @throws std::invalid_argument if table or options are invalid, or the code cannot support it
+  MultipathEngine(DecodingTable table, const MultipathOptions& options, LaterLight later);
+
+  const DecodingTable& table() const { return single_.table(); }
+  const MultipathOptions& options() const { return options_; }
+
+  void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress) const;
+  /// As Decoder::decode_depth_bins.
+  void decode_depth_bins(const float* measurements, std::int64_t pixels, double* depth_bin) const;
+
+ private:
+  struct Queue;
+  void decode_block(const float* raw, std::int64_t pixels, const DecodedView& decoded) const;
+  void load(const float* raw, float depth_m, int lane, PixelGroup& group) const;
+  void search(Queue& queue, const float* raw, const DecodedView& decoded) const;
+  void store(std::int64_t pixel, const PixelGroup& group, const PairFits& fits, int lane,
+             const DecodedView& decoded) const;
+  double ambient_e_per_s(const PixelGroup& group, const PairFits& fits, int lane) const;
+  bool is_single(float chi2) const { return !(chi2 > static_cast<float>(options_.threshold)); }
+
+  MultipathEngine(DecodingTable table, const MultipathOptions& options, LaterLight later,
+                  const AmbientProjection& projection);
+
+  MultipathOptions options_;
+  LaterLight later_;
+  Decoder single_;
+  RawScale scale_;
+  ExpectedNoise noise_;
+  bool has_own_shot_noise_;  // light that cancels in the measurements still makes noise
+  Eigen::VectorXd ambient_;
+  RowMajorMatrix gated_, gated_tail_;
+  MultipathCurve curve_;
+  DelayBounds delays_;
+  float unexplained_chi2_;  // more than a single return should leave
+  std::optional<ReturnPosterior> posterior_;
+};
+
+}  // namespace tofsmith

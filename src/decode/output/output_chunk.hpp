@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "decode/expected_noise.hpp"
+#include "decode/search/shared/bin_records.hpp"
+
+namespace tofsmith {
+
+/// Pixels whose records lie side by side in the work space.
+inline constexpr int pixels_per_chunk = 128;
+/// Of so many deviations, squared, the normal probability is 1 in single precision.
+inline constexpr float sure_sigma2 = 36.0f;
+
+/// What is the same for all bins.
+struct OutputConstants {
+  int samples = 0;
+  float bin_m = 0.0f;
+  float bin_high_m = 0.0f;  // bin_m = high + low; a bin's number times high is exact
+  float bin_low_m = 0.0f;
+  float range_m = 0.0f;
+  bool sees_ambient = false;
+  std::vector<float> ambient_weight;  // a / |a|^2 (K)
+  std::vector<float> basis;           // V (K, rank)
+  std::vector<float> shot_ambient;    // variance per ambient light (K)
+  std::vector<float> floor_noise_e2;  // variance without light (K)
+  float most_shot = 0.0f;             // the largest variance per signal
+  float most_shot_ambient = 0.0f;     // per ambient light
+  float most_floor_e2 = 0.0f;         // and without light
+  float low_signal_sigma2 = 0.0f;
+  float minimum_confidence = 0.0f;
+};
+
+/// Which steps the wanted planes need.
+struct OutputSteps {
+  bool ambient = false;
+  bool noise = false;
+  bool confidence = false;
+  int fields = 0;  // of the records
+};
+
+/// Work space of a chunk, all that is known of its pixels in rows of pixels_per_chunk.
+struct OutputChunk {
+  int pixels = 0;
+  const float* plane = nullptr;      // as in the tile
+  const float* electrons = nullptr;  // as in the tile
+  alignas(64) std::int32_t bin[pixels_per_chunk];
+  alignas(64) std::int32_t rival[pixels_per_chunk];
+  alignas(64) std::uint32_t start[pixels_per_chunk];        // of the bins' records
+  alignas(64) std::uint32_t rival_start[pixels_per_chunk];  // of the rivals' directions
+  alignas(64) float signal[pixels_per_chunk];               // > 0 where there is a depth
+  alignas(64) float offset[pixels_per_chunk];  // of depth from the bin, in bins: in [-1, 1]
+  alignas(64) float ambient[pixels_per_chunk];
+  alignas(64) float signal_variance[pixels_per_chunk];
+  alignas(64) float confidence[pixels_per_chunk];
+  alignas(64) float chord[ChordLayout::fields * pixels_per_chunk];
+  alignas(64) float rival_direction[max_measurements * pixels_per_chunk];
+  alignas(64) float record[max_record_fields * pixels_per_chunk];
+
+  const float* field(int f) const { return record + f * pixels_per_chunk; }
+  const float* chord_field(int f) const { return chord + f * pixels_per_chunk; }
+};
+
+}  // namespace tofsmith

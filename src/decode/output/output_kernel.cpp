@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "decode/output/output_kernel.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "decode/output/output_kernel.cpp"
+#include <hwy/foreach_target.h>
+// Highway asks for its own headers after foreach_target, and for this one first.
+#include <hwy/highway.h>
+
+#include "decode/output/output_noise-inl.hpp"
+#include "decode/output/output_position-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tofsmith {
+namespace HWY_NAMESPACE {
+namespace {
+
+/// One chunk, step by step. `Rank` 0 stands for any rank, known only when running.
+template <int Rank>
+HWY_INLINE void write_chunk(const BinRecords& records, const OutputConstants& c,
+                            const OutputSteps& steps, const std::uint8_t* saturated,
+                            OutputChunk& chunk, const DecodedView& planes) {
+  const RecordLayout& layout = records.layout;
+  const int rank = Rank > 0 ? Rank : layout.rank;
+  find_rows(records.records, chunk.bin, chunk.pixels, chunk.start);
+  for (int i = 0; i < chunk.pixels; i += lanes_of())
+    gather(records.records.data(), chunk.start + i, 0, steps.fields, chunk.record + i);
+  refine(layout, rank, chunk);
+  if (planes.depth_m) write_depth(c, chunk, planes.depth_m);
+  if (planes.bin) std::copy_n(chunk.bin, chunk.pixels, planes.bin);
+  if (planes.signal_e_per_s) write_values(chunk, chunk.signal, planes.signal_e_per_s);
+  if (steps.ambient) {
+    find_chords(records.chords, chunk);
+    find_ambient(c, layout, chunk);
+  }
+  if (planes.ambient_e_per_s) write_ambient(c, chunk, planes.ambient_e_per_s);
+  if (planes.predicted_standard_deviation_m)
+    write_depth_noise(chunk, planes.predicted_standard_deviation_m);
+  if (steps.confidence) {
+    find_rows(records.directions, chunk.rival, chunk.pixels, chunk.rival_start);
+    find_confidence(c, records, rank, chunk);
+  }
+  if (planes.confidence) write_values(chunk, chunk.confidence, planes.confidence);
+  if (planes.status) {
+    if (!steps.confidence) std::fill_n(chunk.confidence, pixels_per_chunk, 1.0f);
+    find_signal_noise(layout, chunk);
+    write_status(c, chunk, saturated, planes.status);
+  }
+}
+
+/// Row numbers of a chunk: those of its pixels, then -1.
+HWY_INLINE void copy_rows(const std::int32_t* numbers, int pixels, std::int32_t* to) {
+  std::fill(std::copy_n(numbers, pixels, to), to + pixels_per_chunk, -1);
+}
+
+template <int Rank>
+HWY_INLINE void write_tile(const BinRecords& records, const OutputConstants& c,
+                           const OutputSteps& steps, const MatchedTile& tile,
+                           const DecodedView& planes) {
+  OutputChunk chunk;
+  for (int first = 0; first < tile.pixels; first += pixels_per_chunk) {
+    chunk.pixels = std::min(tile.pixels - first, pixels_per_chunk);
+    copy_rows(tile.bin + first, chunk.pixels, chunk.bin);
+    if (steps.confidence) copy_rows(tile.rival + first, chunk.pixels, chunk.rival);
+    chunk.plane = tile.plane + first;
+    chunk.electrons = tile.electrons ? tile.electrons + first : nullptr;
+    write_chunk<Rank>(records, c, steps, tile.saturated ? tile.saturated + first : nullptr, chunk,
+                      planes.from(static_cast<std::size_t>(first)));
+  }
+}
+
+void write(const BinRecords& records, const OutputConstants& c, const OutputSteps& steps,
+           const MatchedTile& tile, const DecodedView& planes) {
+  switch (records.layout.rank) {
+    case 2:
+      return write_tile<2>(records, c, steps, tile, planes);
+    case 3:
+      return write_tile<3>(records, c, steps, tile, planes);
+    case 4:
+      return write_tile<4>(records, c, steps, tile, planes);
+    default:
+      return write_tile<0>(records, c, steps, tile, planes);
+  }
+}
+
+/// Bins and offsets of a chunk as positions in double precision.
+HWY_INLINE void join(const std::int32_t* bin, const OutputChunk& chunk, double samples,
+                     double* depth_bin) {
+  const Doubles d;
+  const hn::Rebind<std::int32_t, decltype(d)> di;
+  const hn::Rebind<float, decltype(d)> df;
+  const auto zero = hn::Zero(d), all_samples = hn::Set(d, samples);
+  const auto none = hn::Set(d, std::numeric_limits<double>::quiet_NaN());
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
+    const auto whole = hn::PromoteTo(d, hn::LoadU(di, bin + i));
+    auto at = hn::Add(whole, hn::PromoteTo(d, hn::LoadU(df, chunk.offset + i)));
+    at = hn::Add(at, hn::IfThenElseZero(hn::Lt(at, zero), all_samples));
+    at = hn::Sub(at, hn::IfThenElseZero(hn::Ge(at, all_samples), all_samples));
+    hn::StoreU(hn::IfThenElse(hn::Lt(whole, zero), none, at), d, depth_bin + i);
+  }
+}
+
+template <int Rank>
+HWY_INLINE void find_tile_positions(const BinRecords& records, const OutputConstants& c,
+                                    const MatchedTile& tile, double* depth_bin) {
+  OutputChunk chunk;
+  const RecordLayout& layout = records.layout;
+  for (int first = 0; first < tile.pixels; first += pixels_per_chunk) {
+    chunk.pixels = std::min(tile.pixels - first, pixels_per_chunk);
+    chunk.plane = tile.plane + first;
+    find_rows(records.records, tile.bin + first, chunk.pixels, chunk.start);
+    for (int i = 0; i < chunk.pixels; i += lanes_of())
+      gather(records.records.data(), chunk.start + i, 0, layout.end_of_depth(), chunk.record + i);
+    refine(layout, Rank > 0 ? Rank : layout.rank, chunk);
+    join(tile.bin + first, chunk, c.samples, depth_bin + first);
+  }
+}
+
+void find_positions(const BinRecords& records, const OutputConstants& c, const MatchedTile& tile,
+                    double* depth_bin) {
+  switch (records.layout.rank) {
+    case 2:
+      return find_tile_positions<2>(records, c, tile, depth_bin);
+    case 3:
+      return find_tile_positions<3>(records, c, tile, depth_bin);
+    case 4:
+      return find_tile_positions<4>(records, c, tile, depth_bin);
+    default:
+      return find_tile_positions<0>(records, c, tile, depth_bin);
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace tofsmith
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tofsmith {
+
+HWY_EXPORT(write);
+HWY_EXPORT(find_positions);
+
+namespace {
+
+/// What has so few digits that its product with any of so many integers is exact.
+float with_room_for(double value, int integers) {
+  int exponent = 0;
+  const double mantissa = std::frexp(value, &exponent);
+  const int digits = std::numeric_limits<float>::digits -
+                     static_cast<int>(std::bit_width(static_cast<unsigned>(integers)));
+  return static_cast<float>(
+      std::ldexp(std::nearbyint(std::ldexp(mantissa, digits)), exponent - digits));
+}
+
+}  // namespace
+
+OutputKernel::OutputKernel(const DecodingTable& table, const AmbientProjection& projection,
+                           const DecodeOptions& options)
+    : records_(table, projection) {
+  const double bin_m = table.bin_m();
+  const ExpectedNoise noise(table);
+  const double ambient2 = projection.ambient.squaredNorm();
+  constants_.samples = table.samples();
+  constants_.bin_m = static_cast<float>(bin_m);
+  constants_.bin_high_m = with_room_for(bin_m, table.samples());
+  constants_.bin_low_m = static_cast<float>(bin_m - constants_.bin_high_m);
+  constants_.range_m = static_cast<float>(table.range_m);
+  constants_.sees_ambient = ambient2 > 0.0;
+  if (constants_.sees_ambient) constants_.ambient_weight = in_floats(projection.ambient / ambient2);
+  const RowMajorMatrix basis = projection.basis;
+  constants_.basis.assign(basis.data(), basis.data() + basis.size());
+  constants_.shot_ambient = in_floats(noise.shot_ambient);
+  constants_.floor_noise_e2 = in_floats(noise.floor_variance_e2);
+  constants_.most_shot = static_cast<float>(std::max(0.0, noise.shot_gated.maxCoeff()));
+  constants_.most_shot_ambient = static_cast<float>(std::max(0.0, noise.shot_ambient.maxCoeff()));
+  constants_.most_floor_e2 =
+      static_cast<float>(std::max(least_variance_e2, noise.floor_variance_e2.maxCoeff()));
+  constants_.low_signal_sigma2 = static_cast<float>(std::min<double>(
+      options.low_signal_sigma * options.low_signal_sigma, std::numeric_limits<float>::max()));
+  constants_.minimum_confidence = static_cast<float>(options.minimum_confidence);
+}
+
+bool OutputKernel::needs_electrons(const DecodedView& planes) const {
+  return constants_.sees_ambient && (planes.ambient_e_per_s || planes.confidence ||
+                                     planes.predicted_standard_deviation_m || planes.status);
+}
+
+bool OutputKernel::needs_rivals(const DecodedView& planes) const {
+  return planes.confidence || (planes.status && constants_.minimum_confidence > 0.0f);
+}
+
+void OutputKernel::write(const MatchedTile& tile, const DecodedView& planes) const {
+  const RecordLayout& layout = records_.layout;
+  OutputSteps steps;
+  steps.confidence = needs_rivals(planes);
+  steps.noise = steps.confidence || planes.predicted_standard_deviation_m || planes.status;
+  steps.ambient = steps.noise || planes.ambient_e_per_s;
+  steps.fields = steps.confidence ? layout.end_of_directions()
+                 : steps.noise    ? layout.end_of_noise()
+                 : steps.ambient  ? layout.end_of_light()
+                                  : layout.end_of_depth();
+  HWY_DYNAMIC_DISPATCH(write)(records_, constants_, steps, tile, planes);
+}
+
+void OutputKernel::find_positions(const MatchedTile& tile, double* depth_bin) const {
+  HWY_DYNAMIC_DISPATCH(find_positions)(records_, constants_, tile, depth_bin);
+}
+
+}  // namespace tofsmith
+#endif

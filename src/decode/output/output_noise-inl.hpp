@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// What is known of a pixel's noise: deviations, confidence and status. Compiled once for every
+// instruction set.
+#if defined(TOFSMITH_DECODE_OUTPUT_NOISE_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef TOFSMITH_DECODE_OUTPUT_NOISE_INL_HPP
+#undef TOFSMITH_DECODE_OUTPUT_NOISE_INL_HPP
+#else
+#define TOFSMITH_DECODE_OUTPUT_NOISE_INL_HPP
+#endif
+
+#include "decode/output/shared/output_vectors-inl.hpp"
+#include "tofsmith/decode/depth_image.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tofsmith {
+namespace HWY_NAMESPACE {
+namespace {
+/// Ambient light that makes noise.
+HWY_INLINE Vector noisy_ambient(const OutputChunk& chunk, int i) {
+  return hn::Max(load(chunk.ambient, i), hn::Zero(Floats()));
+}
+
+/// Per signal, per ambient light, and without light.
+HWY_INLINE Vector variance_of(Vector signal, Vector ambient, Vector per_signal, Vector per_ambient,
+                              Vector without) {
+  const Vector sum = product_plus(signal, per_signal, product_plus(ambient, per_ambient, without));
+  return hn::Max(sum, hn::Zero(Floats()));
+}
+
+HWY_INLINE void find_signal_noise(const RecordLayout& layout, OutputChunk& chunk) {
+  const Floats d;
+  const float* noise = chunk.field(layout.signal_noise());
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d))
+    hn::StoreU(
+        variance_of(load(chunk.signal, i), noisy_ambient(chunk, i), load(noise, i),
+                    load(noise + pixels_per_chunk, i), load(noise + 2 * pixels_per_chunk, i)),
+        d, chunk.signal_variance + i);
+}
+
+HWY_INLINE void write_depth_noise(const OutputChunk& chunk, float* standard_deviation_m) {
+  const Floats d;
+  const float* noise = chunk.chord_field(ChordLayout::depth_noise);
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
+    const Vector signal = load(chunk.signal, i);
+    const Vector variance =
+        variance_of(signal, noisy_ambient(chunk, i), load(noise, i),
+                    load(noise + pixels_per_chunk, i), load(noise + 2 * pixels_per_chunk, i));
+    const Vector deviation = hn::Div(hn::Sqrt(variance), signal);
+    store_some(d, unless(hn::Gt(signal, hn::Zero(d)), deviation), standard_deviation_m + i,
+               chunk.pixels - i);
+  }
+}
+
+/// The normal distribution at z >= 0. Abramowitz and Stegun 26.2.19; errs by less than 2e-7.
+HWY_INLINE Vector normal_probability(Vector z) {
+  Vector power = product_plus(z, all(0.0000053830f), all(0.0000488906f));
+  power = product_plus(z, power, all(0.0000380036f));
+  power = product_plus(z, power, all(0.0032776263f));
+  power = product_plus(z, power, all(0.0211410061f));
+  power = product_plus(z, power, all(0.0498673470f));
+  power = product_plus(z, power, all(1.0f));
+  for (int twice = 0; twice < 4; ++twice) power = hn::Mul(power, power);
+  return hn::Sub(all(1.0f), hn::Div(all(0.5f), power));
+}
+
+/// Difference d of the directions of bins and rivals, instead of the rivals'. Returns <d, q>, and
+/// in `square` |d|^2.
+HWY_INLINE Vector lead_of(const RecordLayout& layout, int rank, OutputChunk& chunk, int i,
+                          Vector& square) {
+  const Floats d;
+  Vector lead = square = hn::Zero(d);
+  for (int j = 0; j < rank; ++j) {
+    float* const rival = chunk.rival_direction + j * pixels_per_chunk + i;
+    const Vector apart = hn::Sub(load(chunk.field(layout.direction() + j), i), load(rival, 0));
+    hn::StoreU(apart, d, rival);
+    lead = product_plus(apart, load(chunk.plane + j * pixels_per_tile, i), lead);
+    square = product_plus(apart, apart, square);
+  }
+  return lead;
+}
+
+/// Noise of the lead: sum_k (V d)_k^2 v_k.
+HWY_INLINE Vector lead_variance(const OutputConstants& c, const RecordLayout& layout, int rank,
+                                const OutputChunk& chunk, int i) {
+  const Vector signal = load(chunk.signal, i), ambient = noisy_ambient(chunk, i);
+  Vector variance = hn::Zero(Floats());
+  for (int k = 0; k < layout.measurements; ++k) {
+    const float* const basis = c.basis.data() + k * rank;
+    Vector weight = hn::Zero(Floats());
+    for (int j = 0; j < rank; ++j)
+      weight = product_plus(load(chunk.rival_direction + j * pixels_per_chunk, i), all(basis[j]),
+                            weight);
+    const Vector without_signal =
+        product_plus(ambient, all(c.shot_ambient.data()[k]), all(c.floor_noise_e2.data()[k]));
+    const Vector noise =
+        product_plus(signal, load(chunk.field(layout.shot() + k), i), without_signal);
+    variance = product_plus(hn::Mul(weight, weight),
+                            hn::Max(noise, all(static_cast<float>(least_variance_e2))), variance);
+  }
+  return variance;
+}
+
+/// Probability that the bin scores higher than its rival, for noise on the lead. Most leads are so
+/// many deviations of the most noise there can be that their probability is 1 as a float: the noise
+/// of others alone is computed.
+HWY_INLINE void find_confidence(const OutputConstants& c, const BinRecords& records, int rank,
+                                OutputChunk& chunk) {
+  const Floats d;
+  const RecordLayout& layout = records.layout;
+  const Vector zero = hn::Zero(d), one = all(1.0f);
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
+    gather(records.directions.data(), chunk.rival_start + i, 0, rank, chunk.rival_direction + i);
+    Vector square;
+    const Vector lead = hn::Max(lead_of(layout, rank, chunk, i, square), zero);
+    const Vector most_noise = product_plus(
+        load(chunk.signal, i), all(c.most_shot),
+        product_plus(noisy_ambient(chunk, i), all(c.most_shot_ambient), all(c.most_floor_e2)));
+    const Mask is_sure =
+        hn::Ge(hn::Mul(lead, lead), hn::Mul(hn::Mul(square, all(sure_sigma2)), most_noise));
+    const auto has_rival = hn::Gt(hn::LoadU(Indices(), chunk.rival + i), hn::Set(Indices(), -1));
+    const Mask is_open = hn::And(hn::And(hn::RebindMask(d, has_rival), hn::Not(is_sure)),
+                                 hn::Gt(load(chunk.signal, i), zero));
+    Vector confidence = one;
+    if (!hn::AllFalse(d, is_open)) {
+      gather(records.records.data(), chunk.start + i, layout.shot(), layout.end(),
+             chunk.record + i);
+      const Vector deviation = hn::Sqrt(lead_variance(c, layout, rank, chunk, i));
+      confidence =
+          hn::IfThenElse(is_open, normal_probability(hn::Div(lead, deviation)), confidence);
+    }
+    hn::StoreU(confidence, d, chunk.confidence + i);
+  }
+}
+
+HWY_INLINE hn::Vec<Indices> status(PixelStatus value) {
+  return hn::Set(Indices(), static_cast<std::int32_t>(value));
+}
+
+/// The first status in the order of PixelStatus that applies.
+HWY_INLINE void write_status(const OutputConstants& c, const OutputChunk& chunk,
+                             const std::uint8_t* saturated, PixelStatus* to) {
+  const Floats d;
+  const Indices di;
+  for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
+    const Vector signal = load(chunk.signal, i);
+    const Vector least2 = hn::Mul(all(c.low_signal_sigma2), load(chunk.signal_variance, i));
+    const auto is_ambiguous =
+        hn::RebindMask(di, hn::Lt(load(chunk.confidence, i), all(c.minimum_confidence)));
+    const auto is_low = hn::RebindMask(di, hn::Lt(hn::Mul(signal, signal), least2));
+    const auto is_nothing = hn::RebindMask(di, hn::Not(hn::Gt(signal, hn::Zero(d))));
+    const auto is_saturated =
+        hn::Gt(hn::PromoteTo(di, hn::LoadU(Bytes(), saturated + i)), hn::Zero(di));
+    const auto is_invalid = hn::Lt(hn::LoadU(di, chunk.bin + i), hn::Zero(di));
+    auto value =
+        hn::IfThenElse(is_ambiguous, status(PixelStatus::ambiguous), status(PixelStatus::ok));
+    value = hn::IfThenElse(is_low, status(PixelStatus::low_signal), value);
+    value = hn::IfThenElse(is_nothing, status(PixelStatus::no_return), value);
+    value = hn::IfThenElse(is_saturated, status(PixelStatus::saturated), value);
+    value = hn::IfThenElse(is_invalid, status(PixelStatus::invalid), value);
+    store_some(Bytes(), hn::DemoteTo(Bytes(), value), reinterpret_cast<std::uint8_t*>(to + i),
+               chunk.pixels - i);
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace tofsmith
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "decode/output/pixel_model.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace tofsmith {
+
+namespace {
+
+double dot(const double* a, const double* b, int size) {
+  double sum = 0.0;
+  for (int i = 0; i < size; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+}  // namespace
+
+PixelModel::PixelModel(const DecodingTable& table, const AmbientProjection& projection)
+    : samples_(table.samples()), projection_(projection), basis_(projection.basis), noise_(table) {
+  own_ = projection.curve.rowwise().squaredNorm();
+  with_next_.resize(samples_);
+  for (std::int32_t n = 0; n < samples_; ++n)
+    with_next_[n] = projection.curve.row(n).dot(projection.curve.row(next(n)));
+}
+
+void PixelModel::project(const double* electrons, double* plane) const {
+  const int r = rank();
+  std::fill_n(plane, r, 0.0);
+  double size = 0.0;
+  for (int k = 0; k < measurements(); ++k) {
+    size += std::abs(electrons[k]);
+    for (int j = 0; j < r; ++j) plane[j] += basis_(k, j) * electrons[k];
+  }
+  if (std::sqrt(dot(plane, plane, r)) <= nothing_left * size) std::fill_n(plane, r, 0.0);
+}
+
+double PixelModel::along(const double* plane, std::int32_t bin) const {
+  return dot(plane, projection_.curve.row(bin).data(), rank());
+}
+
+PixelModel::ChordPoint PixelModel::best_inside(std::int32_t bin, double at_bin,
+                                               double at_next) const {
+  const double q00 = own_[bin], q11 = own_[next(bin)], q01 = with_next_[bin];
+  if (q00 * q11 - q01 * q01 <= parallel_chords * q00 * q11) return {};
+  const double u = q11 * at_bin - q01 * at_next;
+  const double v = q00 * at_next - q01 * at_bin;
+  if (!(u > 0.0 && v > 0.0)) return {};
+  const double t = v / (u + v);
+  const double length2 = (1 - t) * (1 - t) * q00 + 2 * t * (1 - t) * q01 + t * t * q11;
+  return {t, ((1 - t) * at_bin + t * at_next) / std::sqrt(length2)};
+}
+
+Position PixelModel::refine(const double* plane, std::int32_t bin) const {
+  const std::int32_t left = previous(bin);
+  const double at_bin = along(plane, bin);
+  const ChordPoint before = best_inside(left, along(plane, left), at_bin);
+  const ChordPoint after = best_inside(bin, at_bin, along(plane, next(bin)));
+  if (!(before.score > 0.0 || after.score > 0.0)) return {bin, 0.0};
+  // As among bins, the lower depth wins a tie.
+  if (before.score >= (1 - tie_tolerance) * after.score) return {left, before.fraction};
+  return {bin, after.fraction};
+}
+
+PixelEstimate PixelModel::estimate(const double* electrons, const double* plane,
+                                   const Position& position, double* variance_e2) const {
+  const int k_count = measurements(), r = rank();
+  const std::int32_t from = position.bin, to = next(from);
+  const double t = position.fraction;
+  PixelEstimate result;
+
+  // The point of the curve, and its slope per bin: at a bin, the mean of both sides.
+  std::array<double, max_measurements> point, slope, weight;
+  const double* p0 = projection_.curve.row(from).data();
+  const double* p1 = projection_.curve.row(to).data();
+  const double* before = projection_.curve.row(previous(from)).data();
+  for (int j = 0; j < r; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    point[i] = (1 - t) * p0[j] + t * p1[j];
+    slope[i] = t > 0.0 ? p1[j] - p0[j] : 0.5 * (p1[j] - before[j]);
+  }
+
+  const double length2 = dot(point.data(), point.data(), r);
+  result.signal_e_per_s = dot(plane, point.data(), r) / length2;
+
+  // What signal leaves is ambient light.
+  const double* x0 = projection_.gated.row(from).data();
+  const double* x1 = projection_.gated.row(to).data();
+  const Eigen::VectorXd& a = projection_.ambient;
+  double with_ambient = 0.0;
+  for (int k = 0; k < k_count; ++k)
+    with_ambient += (electrons[k] - result.signal_e_per_s * ((1 - t) * x0[k] + t * x1[k])) * a[k];
+  const double ambient2 = dot(a.data(), a.data(), k_count);
+  result.ambient_e_per_s =
+      ambient2 > 0.0 ? with_ambient / ambient2 : std::numeric_limits<double>::quiet_NaN();
+
+  const double signal = std::max(result.signal_e_per_s, 0.0);
+  const double ambient = ambient2 > 0.0 ? std::max(result.ambient_e_per_s, 0.0) : 0.0;
+  const double* s0 = noise_.shot_gated.row(from).data();
+  const double* s1 = noise_.shot_gated.row(to).data();
+  for (int k = 0; k < k_count; ++k)
+    variance_e2[k] = std::max(least_variance_e2, signal * ((1 - t) * s0[k] + t * s1[k]) +
+                                                     ambient * noise_.shot_ambient[k] +
+                                                     noise_.floor_variance_e2[k]);
+
+  // dS = <p, noise> / |p|^2, and dz = <d, noise> / (S |d|^2) with d the slope across p.
+  result.signal_standard_deviation_e_per_s = deviation_along(point.data(), variance_e2) / length2;
+  const double turn = dot(slope.data(), point.data(), r) / length2;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(r); ++j)
+    weight[j] = slope[j] - turn * point[j];
+  const double across2 = dot(weight.data(), weight.data(), r);
+  const double slope2 = dot(slope.data(), slope.data(), r);
+  result.depth_standard_deviation_bin =
+      signal > 0.0 && across2 > parallel_chords * slope2
+          ? deviation_along(weight.data(), variance_e2) / (signal * across2)
+          : std::numeric_limits<double>::infinity();
+  return result;
+}
+
+double PixelModel::deviation_along(const double* difference, const double* variance_e2) const {
+  double variance = 0.0;
+  for (int k = 0; k < measurements(); ++k) {
+    const double weight = dot(basis_.row(k).data(), difference, rank());
+    variance += weight * weight * variance_e2[k];
+  }
+  return std::sqrt(variance);
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "decode/output/pixel_output.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "core/shared/shared_progress.hpp"
+#include "decode/search/nearest_bins.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
+
+PixelStatus status_of(const DecodingTable& table, const DecodeOptions& options, const float* raw,
+                      const PixelDecoding& pixel) {
+  if (table.saturation_level)
+    for (int k = 0; k < table.measurements(); ++k)
+      if (raw[k] >= *table.saturation_level) return PixelStatus::saturated;
+  const PixelEstimate& estimate = pixel.estimate;
+  if (!(estimate.signal_e_per_s > 0.0)) return PixelStatus::no_return;
+  if (estimate.signal_e_per_s <
+      options.low_signal_sigma * estimate.signal_standard_deviation_e_per_s)
+    return PixelStatus::low_signal;
+  if (pixel.confidence < options.minimum_confidence) return PixelStatus::ambiguous;
+  return PixelStatus::ok;
+}
+
+}  // namespace
+
+void store_pixel(const DecodingTable& table, const DecodeOptions& options, const float* raw,
+                 const PixelDecoding& pixel, std::size_t at, const DecodedView& decoded) {
+  const PixelEstimate& estimate = pixel.estimate;
+  const bool has_depth = estimate.signal_e_per_s > 0.0;
+  const auto store = [&](float* plane, double value) {
+    if (plane) plane[at] = has_depth ? static_cast<float>(value) : no_value;
+  };
+  // Rounding to float can land on the end of the range, which is its beginning.
+  const bool at_end =
+      static_cast<float>(pixel.depth_bin * table.bin_m()) >= static_cast<float>(table.range_m);
+  if (decoded.bin) decoded.bin[at] = nearest_bin(pixel.depth_bin, table.samples());
+  store(decoded.depth_m, at_end ? 0.0 : pixel.depth_bin * table.bin_m());
+  store(decoded.signal_e_per_s, estimate.signal_e_per_s);
+  store(decoded.ambient_e_per_s, estimate.ambient_e_per_s);
+  store(decoded.confidence, pixel.confidence);
+  store(decoded.predicted_standard_deviation_m,
+        estimate.depth_standard_deviation_bin * table.bin_m());
+  if (decoded.status) decoded.status[at] = status_of(table, options, raw, pixel);
+}
+
+void store_invalid(std::size_t at, const DecodedView& decoded) {
+  if (decoded.bin) decoded.bin[at] = -1;
+  for (float* plane : {decoded.depth_m, decoded.signal_e_per_s, decoded.ambient_e_per_s,
+                       decoded.confidence, decoded.predicted_standard_deviation_m})
+    if (plane) plane[at] = no_value;
+  if (decoded.status) decoded.status[at] = PixelStatus::invalid;
+}
+
+double confidence_of(double lead, double deviation) {
+  if (deviation == 0.0) return 1.0;
+  return 0.5 * std::erfc(-std::max(lead, 0.0) / deviation * std::numbers::sqrt2 / 2);
+}
+
+void for_each_block(const RawView& raw, int measurements, const Progress& progress,
+                    const std::function<void(IndexRange pixels)>& work, std::int64_t block_pixels) {
+  require(raw.measurements == measurements, "raw measurements", raw.measurements,
+          "must equal the code's " + std::to_string(measurements));
+  require(raw.height >= 0 && raw.width >= 0, "raw height and width",
+          std::min(raw.height, raw.width), "must be >= 0");
+  const std::int64_t count = raw.pixels();
+  SharedProgress shared(progress, static_cast<double>(count), "decoding");
+  parallel_for_blocks(count, block_pixels, [&](IndexRange range) {
+    work(range);
+    shared.add(static_cast<double>(range.end - range.begin));
+  });
+  report(progress, 1.0, "decoding");
+}
+
+void decode_frame(const RawView& raw, const DecodedView& decoded, int measurements,
+                  const Progress& progress,
+                  const std::function<void(const float* raw, std::int64_t pixels,
+                                           const DecodedView& decoded)>& decode_block,
+                  std::int64_t block_pixels) {
+  for_each_block(
+      raw, measurements, progress,
+      [&](IndexRange block) {
+        const std::int64_t pixels = block.end - block.begin;
+        std::vector<float> values(static_cast<std::size_t>(pixels * measurements));
+        copy_pixels(raw, block.begin, pixels, values.data());
+        decode_block(values.data(), pixels, decoded.from(static_cast<std::size_t>(block.begin)));
+      },
+      block_pixels);
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+#include "decode/output/pixel_model.hpp"
+#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/progress.hpp"
+#include "tofsmith/decode/decoder.hpp"
+
+namespace tofsmith {
+
+/// What a decoder found out about one pixel.
+struct PixelDecoding {
+  double depth_bin = 0.0;  ///< in [0, N)
+  PixelEstimate estimate;
+  double confidence = 0.0;  ///< that no far-off depth is the true one
+};
+
+/// Writes one pixel, with its status: what every decoder does in the same way.
+/// @param raw  (K) raw numbers
+/// @param at   index of the pixel in the view
+void store_pixel(const DecodingTable& table, const DecodeOptions& options, const float* raw,
+                 const PixelDecoding& pixel, std::size_t at, const DecodedView& decoded);
+/// Writes a pixel with a measurement that is no number.
+void store_invalid(std::size_t at, const DecodedView& decoded);
+
+/// Normal probability that a lead is not noise of this deviation.
+double confidence_of(double lead, double deviation);
+
+/// As many as fast decoders take at a time; slow ones take fewer, so that progress can stop them.
+inline constexpr std::int64_t usual_block_pixels = 16384;
+
+/// Calls `work` for blocks of the pixels of a frame, on all threads, with progress.
+/// @throws std::invalid_argument if the frame's measurements are not as many; Interrupted if
+///         progress says so
+void for_each_block(const RawView& raw, int measurements, const Progress& progress,
+                    const std::function<void(IndexRange pixels)>& work,
+                    std::int64_t block_pixels = usual_block_pixels);
+
+/// The same with the raw numbers of a block, (pixels, K), their number, and where to store them.
+void decode_frame(const RawView& raw, const DecodedView& decoded, int measurements,
+                  const Progress& progress,
+                  const std::function<void(const float* raw, std::int64_t pixels,
+                                           const DecodedView& decoded)>& decode_block,
+                  std::int64_t block_pixels = usual_block_pixels);
+
+/// A new image, filled by `decode(view, planes)` from one frame of several.
+template <typename Decode>
+DepthImage decoded_image(const RawFrames& raw, int frame, const Decode& decode) {
+  const RawView view = view_of_frame(raw, frame);
+  DepthImage image(raw.height, raw.width);
+  decode(view, DecodedView::of(image));
+  return image;
+}
+
+}  // namespace tofsmith

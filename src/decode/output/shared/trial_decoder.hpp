@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "decode/output/output_kernel.hpp"
+#include "decode/search/bin_matcher.hpp"
+#include "tofsmith/decode/decode_method.hpp"
+
+namespace tofsmith {
+
+/// What ZNCC sees of raw numbers: q = weight raw + offset [e], without ambient light.
+struct PlaneMap {
+  Eigen::MatrixXd weight;  ///< (rank, K)
+  Eigen::VectorXd offset;  ///< (rank)
+};
+
+/// The decoder inside a Monte Carlo loop, of any method: no status, no planes but positions, and
+/// for ZNCC a way in behind the projection. Its positions are those of the method's decoder up to
+/// single precision between bins.
+class TrialDecoder {
+ public:
+  /// @throws std::invalid_argument if the method cannot decode this table
+  TrialDecoder(DecodeMethod method, DecodingTable table, UnwrapWeights unwrap_weights);
+
+  int measurements() const { return measurements_; }
+  int samples() const { return samples_; }
+  /// The projection of raw numbers that alone decides where a pixel is; none but for ZNCC.
+  const PlaneMap* plane_map() const { return zncc_ ? &zncc_->plane_map : nullptr; }
+
+  /// Positions in [0, N) of what stands in tile.plane.
+  /// @param tile       with `pixels` set, plane filled up to a multiple of 16
+  /// @param sub_bin    between bins; else the best bins
+  /// @param depth_bin  room for pixels_per_tile; not a number where the plane is not finite
+  void decode_plane(bool sub_bin, PixelTile& tile, double* depth_bin) const;
+  /// The same of raw numbers [K][pixels_per_tile].
+  void decode_raw(const float* raw, bool sub_bin, PixelTile& tile, double* depth_bin) const;
+
+ private:
+  struct Zncc {
+    Zncc(const DecodingTable& table, const AmbientProjection& projection);
+    PlaneMap plane_map;
+    BinMatcher matcher;
+    OutputKernel outputs;
+  };
+  void positions_of(bool sub_bin, const PixelTile& tile, double* depth_bin) const;
+
+  int measurements_;
+  int samples_;
+  std::unique_ptr<const Zncc> zncc_;
+  std::optional<AnyDecoder> other_;
+};
+
+}  // namespace tofsmith

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "decode/output/shared/trial_decoder.hpp"
+
+#include <limits>
+
+namespace tofsmith {
+
+namespace {
+
+PlaneMap plane_map_of(const DecodingTable& table, const AmbientProjection& projection) {
+  const RawScale scale(table);
+  Eigen::VectorXd at_zero(table.measurements()), gain(table.measurements());
+  for (int k = 0; k < table.measurements(); ++k) {
+    at_zero[k] = scale.electrons(0.0, k);
+    gain[k] = scale.electrons(1.0, k) - at_zero[k];
+  }
+  return {projection.basis.transpose() * gain.asDiagonal(), projection.basis.transpose() * at_zero};
+}
+
+}  // namespace
+
+TrialDecoder::Zncc::Zncc(const DecodingTable& table, const AmbientProjection& projection)
+    : plane_map(plane_map_of(table, projection)),
+      matcher(table, projection),
+      outputs(table, projection, {}) {}
+
+TrialDecoder::TrialDecoder(DecodeMethod method, DecodingTable table, UnwrapWeights unwrap_weights)
+    : measurements_(table.measurements()), samples_(table.samples()) {
+  if (method != DecodeMethod::zncc) {
+    other_ = make_decoder(method, std::move(table), {}, unwrap_weights);
+    return;
+  }
+  table.validate();
+  zncc_ = std::make_unique<const Zncc>(table, AmbientProjection(table));
+}
+
+void TrialDecoder::decode_plane(bool sub_bin, PixelTile& tile, double* depth_bin) const {
+  zncc_->matcher.match_plane(tile);
+  positions_of(sub_bin, tile, depth_bin);
+}
+
+void TrialDecoder::decode_raw(const float* raw, bool sub_bin, PixelTile& tile,
+                              double* depth_bin) const {
+  const int count = tile.pixels;
+  const RawView view = RawView::planar(raw, 1, pixels_per_tile, measurements_);
+  if (zncc_) {
+    zncc_->matcher.match(view, 0, count, false, tile);
+    return positions_of(sub_bin, tile, depth_bin);
+  }
+  // The slower methods want the measurements of a pixel side by side.
+  copy_pixels(view, 0, count, tile.raw);
+  std::visit(
+      [&](const auto& decoder) {
+        if (sub_bin) return decoder.decode_depth_bins(tile.raw, count, depth_bin);
+        decoder.decode_bins(tile.raw, count, tile.bin);
+        std::copy_n(tile.bin, count, depth_bin);
+      },
+      *other_);
+}
+
+void TrialDecoder::positions_of(bool sub_bin, const PixelTile& tile, double* depth_bin) const {
+  if (sub_bin)
+    return zncc_->outputs.find_positions(
+        {.pixels = tile.pixels, .plane = tile.plane, .bin = tile.bin}, depth_bin);
+  for (int i = 0; i < tile.pixels; ++i)
+    depth_bin[i] = tile.bin[i] < 0 ? std::numeric_limits<double>::quiet_NaN() : tile.bin[i];
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,261 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// How arcs are passed over; compiled once for every instruction set.
+#if defined(TOFSMITH_DECODE_ARC_WALK_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef TOFSMITH_DECODE_ARC_WALK_INL_HPP
+#undef TOFSMITH_DECODE_ARC_WALK_INL_HPP
+#else
+#define TOFSMITH_DECODE_ARC_WALK_INL_HPP
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+#include "core/shared/vectors-inl.hpp"
+#include "decode/search/arc_table.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tofsmith {
+namespace HWY_NAMESPACE {
+namespace {
+
+static_assert(block_lanes == widest_vector);
+constexpr float no_score = -std::numeric_limits<float>::infinity();
+constexpr float unit_roundoff = 0.5f * std::numeric_limits<float>::epsilon();
+constexpr int most_flat_blocks = 16;  // of arcs that are looked at one by one
+
+HWY_INLINE float largest(Vector v) { return hn::GetLane(hn::MaxOfLanes(Floats(), v)); }
+
+HWY_INLINE std::uint32_t bits_of(Mask mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(Floats(), mask, bytes);
+  std::uint16_t bits;
+  std::memcpy(&bits, bytes, sizeof bits);
+  return bits;
+}
+
+/// One vector q, its components `stride` apart.
+struct Query {
+  const float* first;
+  int stride;
+  int rank;
+  float length;
+  HWY_INLINE float operator[](int j) const { return first[j * stride]; }
+};
+
+/// Scores of as many vectors of a block as fit, each plus its offset.
+template <int Rank>
+HWY_INLINE Vector scores(const Query& q, const float* block) {
+  const Floats d;
+  const int rank = Rank > 0 ? Rank : q.rank;
+  Vector sum = hn::Load(d, block);
+  for (int j = 0; j < rank; ++j)
+    sum = hn::MulAdd(all(q[j]), hn::Load(d, block + (j + 1) * block_lanes), sum);
+  return sum;
+}
+
+/// How far float scores may be off, as shares of |q| (in all: `per_error` times the error of q and
+/// `share` |q|). `lead` is what proves that one score beats another; pruned is what scores less
+/// than the best by more than `prune`.
+struct Margins {
+  float lead;
+  float tie;
+  float prune;
+};
+
+// Rounding a direction to float and summing rank products, fused or not, moves a score by at most
+// (rank + 2) u |q| to first order. The bound of an arc takes at most 1.5 of that from its knots
+// (growth), and few u |q| from its own operations.
+HWY_INLINE Margins margins_of(int rank) {
+  const float score = static_cast<float>(rank + 2) * unit_roundoff * 1.01f;
+  const float bound = 4.0f * static_cast<float>(rank + 4) * unit_roundoff;
+  const auto tie = static_cast<float>(2 * tie_tolerance);
+  return {2.0f * score, tie, score + bound + tie};
+}
+
+/// The arcs of one query that may hold its best row: of all, or of the bundles that may.
+struct Walk {
+  std::uint64_t near[most_bundle_blocks / 4];  // bits of arcs (flat) or bundles, 16 a block
+  float threshold;                             // bounds below it are passed over
+};
+
+/// All rows count.
+struct Anywhere {
+  HWY_INLINE Vector operator()(Vector score, std::int32_t, std::int32_t) const { return score; }
+};
+
+/// Rows at the positions [begin, end), modulo N, count.
+struct Within {
+  std::int32_t begin, end, samples;
+  HWY_INLINE bool meets(std::int32_t block_begin) const {
+    return block_begin < end && block_begin + block_lanes > begin;
+  }
+  /// Positions of rows first, first + step, ..; those that do not count are -1.
+  HWY_INLINE IndexVector positions(std::int32_t first, std::int32_t step) const {
+    const Indices d;
+    const auto row = hn::Min(hn::Add(hn::Mul(hn::Iota(d, 0), hn::Set(d, step)), hn::Set(d, first)),
+                             hn::Set(d, samples - 1));
+    const auto least = hn::Set(d, begin), none = hn::Set(d, -1);
+    const auto position =
+        hn::IfThenElse(hn::Lt(row, least), hn::Add(row, hn::Set(d, samples)), row);
+    const auto in_time = hn::IfThenElse(hn::Lt(position, hn::Set(d, end)), position, none);
+    return hn::IfThenElse(hn::Lt(position, least), none, in_time);
+  }
+  HWY_INLINE Vector operator()(Vector score, std::int32_t first, std::int32_t step) const {
+    const auto counts = hn::Gt(positions(first, step), hn::Set(Indices(), -1));
+    return hn::IfThenElse(hn::RebindMask(Floats(), counts), score, all(no_score));
+  }
+};
+
+/// A threshold at or below 0 would need negative scores in its bounds: nothing is passed over.
+HWY_INLINE float threshold_of(float best, float slack) {
+  return best > slack ? best - slack : no_score;
+}
+
+/// Bits of the knots whose score reaches what the bounds of their arcs ask for.
+HWY_INLINE std::uint32_t reaching(Vector score, const float* bounds, const Query& q,
+                                  float threshold) {
+  const Floats d;
+  const Vector needed = hn::NegMulAdd(all(q.length), hn::Load(d, bounds + block_lanes),
+                                      hn::Mul(all(threshold), hn::Load(d, bounds)));
+  return bits_of(hn::Ge(score, needed));
+}
+
+/// Bits of the arcs of a block whose bound reaches the threshold.
+template <int Rank>
+HWY_INLINE std::uint32_t near_in_block(const float* block, const float* score, const Query& q,
+                                       float threshold) {
+  const int rank = Rank > 0 ? Rank : q.rank;
+  const float* starts = block + (1 + rank) * block_lanes;
+  const float* ends = starts + 2 * block_lanes;
+  std::uint32_t by_start = 0, by_end = 0;
+  for (int i = 0; i < block_lanes; i += lanes_of()) {
+    const Vector positive = hn::Max(hn::Load(Floats(), score + i), hn::Zero(Floats()));
+    by_start |= reaching(positive, starts + i, q, threshold) << i;
+    by_end |= reaching(positive, ends + i, q, threshold) << i;
+  }
+  return by_start | by_end >> 1;
+}
+
+template <int Rank, typename Where>
+HWY_INLINE Vector score_knots(const KnotLevel& level, int b, const Query& q, const Where& where,
+                              Vector best, float* score) {
+  for (int i = 0; i < block_lanes; i += lanes_of()) {
+    const Vector part = scores<Rank>(q, level.block(b) + i);
+    hn::Store(part, Floats(), score + i);
+    best = hn::Max(
+        best, where(part, (b * arcs_per_block + i) * level.rows_per_arc(), level.rows_per_arc()));
+  }
+  return best;
+}
+
+HWY_INLINE bool is_flat(const ArcTable& table) { return table.arcs().blocks() <= most_flat_blocks; }
+HWY_INLINE const KnotLevel& first_level(const ArcTable& table) {
+  return is_flat(table) ? table.arcs() : table.bundles();
+}
+
+/// Looks at all knots of the first level.
+template <int Rank, typename Where>
+HWY_INLINE void start_walk(const ArcTable& table, const Query& q, float slack, const Where& where,
+                           Walk& walk) {
+  HWY_ALIGN float score[most_bundle_blocks * block_lanes];
+  const KnotLevel& level = first_level(table);
+  Vector best = all(no_score);
+  for (int b = 0; b < level.blocks(); ++b)
+    best = score_knots<Rank>(level, b, q, where, best, score + b * block_lanes);
+  walk.threshold = threshold_of(largest(best), slack);
+  for (int b = 0; b < level.blocks(); ++b) {
+    const std::uint64_t bits =
+        near_in_block<Rank>(level.block(b), score + b * block_lanes, q, walk.threshold);
+    walk.near[b / 4] = (b % 4 == 0 ? 0 : walk.near[b / 4]) | bits << b % 4 * block_lanes;
+  }
+}
+
+/// Calls visit(15 block + bit) for all bits of the first level.
+template <typename Visit>
+HWY_INLINE void for_each_near(const ArcTable& table, const Walk& walk, Visit& visit) {
+  for (int b = 0; b < first_level(table).blocks(); b += 4)
+    for (std::uint64_t bits = walk.near[b / 4]; bits != 0; bits &= bits - 1) {
+      const int bit = std::countr_zero(bits);
+      visit((b + bit / block_lanes) * arcs_per_block + bit % block_lanes);
+    }
+}
+
+template <int Rank, typename Where>
+struct BestKnot {
+  const ArcTable& table;
+  const Query& q;
+  const Where& where;
+  float (&most)[block_lanes];
+  HWY_INLINE void operator()(std::int32_t bundle) {
+    HWY_ALIGN float score[block_lanes];
+    const Vector best = hn::Load(Floats(), most);
+    hn::Store(score_knots<Rank>(table.arcs(), bundle, q, where, best, score), Floats(), most);
+  }
+};
+
+/// Raises the threshold by the knots of the arcs in all bundles that are near.
+template <int Rank, typename Where>
+HWY_INLINE void refine_walk(const ArcTable& table, const Query& q, float slack, const Where& where,
+                            Walk& walk) {
+  if (is_flat(table)) return;
+  HWY_ALIGN float most[block_lanes];
+  hn::Store(all(no_score), Floats(), most);
+  BestKnot<Rank, Where> best{table, q, where, most};
+  for_each_near(table, walk, best);
+  walk.threshold = std::max(walk.threshold, threshold_of(largest(hn::Load(Floats(), most)), slack));
+}
+
+template <typename Visit>
+HWY_INLINE void visit_arc(const ArcTable& table, std::int32_t arc, Visit& visit) {
+  const std::int32_t per_arc = table.blocks_per_arc();
+  const std::int32_t end = std::min((arc + 1) * per_arc, table.row_blocks());
+  for (std::int32_t block = arc * per_arc; block < end; ++block) visit(block);
+}
+
+template <typename Visit>
+struct OfArc {
+  const ArcTable& table;
+  Visit& visit;
+  HWY_INLINE void operator()(std::int32_t arc) { visit_arc(table, arc, visit); }
+};
+
+template <int Rank, typename Visit>
+struct OfBundle {
+  const ArcTable& table;
+  const Query& q;
+  float threshold;
+  Visit& visit;
+  HWY_INLINE void operator()(std::int32_t bundle) {
+    HWY_ALIGN float score[block_lanes];
+    score_knots<Rank>(table.arcs(), bundle, q, Anywhere(), all(no_score), score);
+    std::uint32_t bits = near_in_block<Rank>(table.arcs().block(bundle), score, q, threshold);
+    for (; bits != 0; bits &= bits - 1)
+      visit_arc(table, bundle * arcs_per_block + std::countr_zero(bits), visit);
+  }
+};
+
+/// Calls visit(block of rows) for all arcs that may hold the best row.
+template <int Rank, typename Visit>
+HWY_INLINE void for_each_near_rows(const ArcTable& table, const Query& q, const Walk& walk,
+                                   Visit& visit) {
+  if (is_flat(table)) {
+    OfArc<Visit> of_arc{table, visit};
+    for_each_near(table, walk, of_arc);
+  } else {
+    OfBundle<Rank, Visit> of_bundle{table, q, walk.threshold, visit};
+    for_each_near(table, walk, of_bundle);
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace tofsmith
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "decode/search/bin_matcher.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/shared/pixel_runs.hpp"
+#include "core/shared/whole_vectors.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// The vector of a pixel in the plane without its length, whose square it returns; zeros stay so.
+template <typename Value>
+Value normalized(const PixelTile& tile, int pixel, int rank,
+                 std::array<Value, max_measurements>& unit) {
+  Value length2 = 0;
+  for (int j = 0; j < rank; ++j) {
+    const Value q = tile.plane[j * pixels_per_tile + pixel];
+    unit[static_cast<std::size_t>(j)] = q;
+    length2 += q * q;
+  }
+  const Value scale = length2 > 0 ? 1 / std::sqrt(length2) : 0;
+  for (int j = 0; j < rank; ++j) unit[static_cast<std::size_t>(j)] *= scale;
+  return length2;
+}
+
+}  // namespace
+
+BinMatcher::BinMatcher(const DecodingTable& table, const AmbientProjection& projection)
+    : directions_(projection),
+      arcs_(directions_),
+      rivals_(directions_, arcs_),
+      distinct_(directions_),
+      projection_(table, projection),
+      exact_(table, projection) {
+  if (CircleSearch::serves(distinct_))
+    search_.emplace<CircleSearch>(distinct_, rivals_);
+  else if (CellTable::serves(distinct_))
+    search_.emplace<CellSearch>(distinct_, rivals_);
+}
+
+void BinMatcher::match(const RawView& view, std::int64_t first, int pixels, bool for_outputs,
+                       PixelTile& tile) const {
+  projection_.project(view, first, pixels, for_outputs, tile);
+  if (search(for_outputs, tile)) return;
+  for (int i = 0; i < pixels; ++i)
+    if (tile.bin[i] < 0) decide(view, first, i, tile);
+}
+
+void BinMatcher::match_plane(PixelTile& tile) const {
+  std::fill_n(tile.error, whole_vectors(tile.pixels), 0.0f);
+  if (search(false, tile)) return;
+  for (int i = 0; i < tile.pixels; ++i) {
+    if (tile.bin[i] >= 0) continue;
+    std::array<double, max_measurements> unit;
+    const double length2 = normalized(tile, i, exact_.rank(), unit);
+    if (!std::isfinite(length2)) continue;
+    tile.bin[i] = length2 > 0.0 ? choose(unit.data()) : distinct_.bin.front();
+  }
+}
+
+/// @returns whether all bins are proven
+bool BinMatcher::search(bool wants_rivals, PixelTile& tile) const {
+  if (const auto* circle = std::get_if<CircleSearch>(&search_)) return circle->search(tile);
+  if (const auto* cells = std::get_if<CellSearch>(&search_))
+    return cells->search(wants_rivals, tile);
+  arcs_.search(tile.plane, pixels_per_tile, tile.error, tile.pixels, tile.bin);
+  bool all_proven = true;
+  for (int i = 0; i < tile.pixels; ++i) {
+    const bool is_proven = tile.bin[i] >= 0 && is_precise(tile, i);
+    tile.bin[i] = is_proven ? directions_.bin_of_row(tile.bin[i]) : -1;
+    all_proven = all_proven && is_proven;
+  }
+  return all_proven;
+}
+
+void BinMatcher::find_rivals(PixelTile& tile) const {
+  const auto* circle = std::get_if<CircleSearch>(&search_);
+  const bool has_cells = std::holds_alternative<CellSearch>(search_);
+  for (int i = 0; i < tile.pixels; ++i) {
+    std::int32_t& rival = tile.rival[i];
+    if (tile.bin[i] < 0)
+      rival = -1;
+    else if (circle)
+      rival = circle->rival(tile.bin[i]);
+    else if (has_cells)
+      rival = rivals_.moved_out(tile.bin[i], CellRecord::rival_in(rival));
+    else
+      rival = RivalSearch::unknown;
+    if (rival == RivalSearch::unknown) rival = rival_of(tile, i);
+  }
+}
+
+/// The rival of one pixel, for its own vector.
+std::int32_t BinMatcher::rival_of(const PixelTile& tile, int pixel) const {
+  std::array<float, max_measurements> unit;
+  normalized(tile, pixel, directions_.rank(), unit);
+  return rivals_.rival(tile.bin[pixel], unit.data());
+}
+
+/// Whether single precision tells where a pixel is. No search proves the bin of one that is not.
+/// Which others are decided differs between processors, and must not show in `plane`.
+bool BinMatcher::is_precise(const PixelTile& tile, int pixel) const {
+  constexpr float share = 1e-5f;
+  float largest = 0.0f;
+  for (int j = 0; j < exact_.rank(); ++j)
+    largest = std::max(largest, std::abs(tile.plane[j * pixels_per_tile + pixel]));
+  return tile.error[pixel] < share * largest;
+}
+
+/// One pixel in double arithmetic.
+void BinMatcher::decide(const RawView& view, std::int64_t first, int pixel, PixelTile& tile) const {
+  std::array<double, max_measurements> raw;
+  for_each_run(view, first + pixel, 1, [&](const auto* number, std::int64_t, std::int64_t) {
+    for (int k = 0; k < view.measurements; ++k)
+      raw[static_cast<std::size_t>(k)] = static_cast<double>(number[k * view.measurement_stride]);
+  });
+  PlaneVector vector;
+  exact_.project(raw.data(), vector);
+  if (!is_precise(tile, pixel))
+    for (int j = 0; j < exact_.rank(); ++j)
+      tile.plane[j * pixels_per_tile + pixel] =
+          static_cast<float>(vector.unit[static_cast<std::size_t>(j)] * vector.length);
+  if (!std::isfinite(vector.length)) return;  // bin is -1
+  tile.bin[pixel] = vector.length > 0.0 ? choose(vector.unit.data()) : distinct_.bin.front();
+}
+
+/// The lowest bin whose score ties with the best.
+std::int32_t BinMatcher::choose(const double* unit) const {
+  if (const auto* circle = std::get_if<CircleSearch>(&search_)) return circle->choose(unit);
+  if (const auto* cells = std::get_if<CellSearch>(&search_)) return cells->choose(unit);
+  return directions_.bin_of_row(arcs_.choose(directions_, unit, 1));
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "decode/search/cell_search.hpp"
+#include "decode/search/circle_search.hpp"
+#include "decode/search/exact_projection.hpp"
+#include "decode/search/tile_projection.hpp"
+
+namespace tofsmith {
+
+/// The bins whose directions match pixels best, exactly as double arithmetic finds them: single
+/// precision proves most of them, double arithmetic decides the others.
+class BinMatcher {
+ public:
+  BinMatcher(const DecodingTable& table, const AmbientProjection& projection);
+  BinMatcher(const BinMatcher&) = delete;
+  BinMatcher& operator=(const BinMatcher&) = delete;
+
+  const ExactProjection& exact() const { return exact_; }
+
+  /// Fills a tile with the pixels of a view from pixel `first` on; bins are -1 where a raw number
+  /// is none.
+  /// @param pixels       1 .. pixels_per_tile
+  /// @param for_outputs  as of TileProjection::project
+  void match(const RawView& view, std::int64_t first, int pixels, bool for_outputs,
+             PixelTile& tile) const;
+  /// The same for vectors that already lie in the tile's plane and are what they are: exact. Bins
+  /// are -1 where one is not finite.
+  void match_plane(PixelTile& tile) const;
+  /// Completes `rival` of a matched tile: what the search found with the bin (rank 3 and 4: for the
+  /// centre of the cell; rank 2: for the bin's own direction) if it is outside the main lobe of the
+  /// pixel's bin, else the best for the pixel's own vector.
+  void find_rivals(PixelTile& tile) const;
+
+ private:
+  bool search(bool wants_rivals, PixelTile& tile) const;
+  bool is_precise(const PixelTile& tile, int pixel) const;
+  void decide(const RawView& view, std::int64_t first, int pixel, PixelTile& tile) const;
+  std::int32_t choose(const double* unit) const;
+  std::int32_t rival_of(const PixelTile& tile, int pixel) const;
+
+  DirectionTable directions_;
+  ArcSearch arcs_;
+  RivalSearch rivals_;
+  DistinctDirections distinct_;
+  TileProjection projection_;
+  ExactProjection exact_;
+  std::variant<std::monostate, CircleSearch, CellSearch> search_;
+};
+
+}  // namespace tofsmith

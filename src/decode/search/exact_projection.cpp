@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "decode/search/exact_projection.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tofsmith {
+
+void ExactProjection::project(const double* raw, PlaneVector& vector) const {
+  double size = 0.0;  // sum of |y'|: finite unless a measurement is not
+  std::fill_n(vector.unit.begin(), rank(), 0.0);
+  for (int k = 0; k < measurements(); ++k) {
+    const double y = electrons(raw[k], k);
+    size += std::abs(y);
+    for (int j = 0; j < rank(); ++j) vector.unit[static_cast<std::size_t>(j)] += basis_(k, j) * y;
+  }
+  double length2 = 0.0;
+  for (int j = 0; j < rank(); ++j) {
+    const double q = vector.unit[static_cast<std::size_t>(j)];
+    length2 += q * q;
+  }
+  const double length = std::sqrt(length2);
+  const bool is_seen = length > nothing_left * size;  // false for NaN
+  vector.length = is_seen ? length : 0.0 * size;
+  for (int j = 0; j < rank(); ++j) {
+    double& unit = vector.unit[static_cast<std::size_t>(j)];
+    unit = is_seen && std::isfinite(length) ? unit / length : 0.0;
+  }
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "decode/ambient_projection.hpp"
+#include "decode/raw_scale.hpp"
+#include "tofsmith/core/array.hpp"
+
+namespace tofsmith {
+
+/// What is left of a pixel without ambient light, q = V^T y', as length and unit vector.
+struct PlaneVector {
+  double length =
+      0.0;  ///< |q| [e]; 0 if what is left is rounding, NaN if a raw number is no number
+  std::array<double, max_measurements> unit;  ///< (rank)
+};
+
+/// The projection in double arithmetic, pixel by pixel.
+class ExactProjection {
+ public:
+  ExactProjection(const DecodingTable& table, const AmbientProjection& projection)
+      : scale_(table), basis_(projection.basis) {}
+
+  int measurements() const { return static_cast<int>(basis_.rows()); }
+  int rank() const { return static_cast<int>(basis_.cols()); }
+
+  /// Electrons without dark ones of one raw number.
+  double electrons(double raw, int measurement) const { return scale_.electrons(raw, measurement); }
+  /// @param raw  (K)
+  void project(const double* raw, PlaneVector& vector) const;
+
+ private:
+  RawScale scale_;
+  RowMajorMatrix basis_;  // V (K, rank)
+};
+
+}  // namespace tofsmith

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "decode/unwrap/phase_unwrapper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+
+PhaseUnwrapper::PhaseUnwrapper(std::vector<int> frequencies, std::vector<double> weights)
+    : frequencies_(std::move(frequencies)),
+      weights_(std::move(weights)),
+      whole_weight_(std::accumulate(weights_.begin(), weights_.end(), 0.0)),
+      highest_(*std::max_element(frequencies_.begin(), frequencies_.end())) {
+  TOFSMITH_ASSERT_EQ(frequencies_.size(), weights_.size());
+  TOFSMITH_ASSERT_LE(count(), max_frequencies);
+}
+
+/// Seen from a depth z, the nearest candidate of frequency f changes where z is half way between
+/// two of them. Between such places, sum f of them on the range, the choice stays, and the least
+/// distance of all z is that of one of these choices at its weighted mean.
+template <typename Use>
+void PhaseUnwrapper::for_each_choice(const double* phase, const Use& use) const {
+  constexpr double just_after = 1e-9;  // [periods]; beyond the rounding of places that coincide
+  Wraps wraps;
+  for (std::size_t own = 0; own < frequencies_.size(); ++own)
+    for (int wrap = 0; wrap < frequencies_[own]; ++wrap) {
+      const double z = (phase[own] + wrap + 0.5) / frequencies_[own] + just_after;
+      double sum = 0.0;
+      for (std::size_t j = 0; j < frequencies_.size(); ++j) {
+        const double f = frequencies_[j];
+        wraps.candidate[j] = (phase[j] + std::round(z * f - phase[j])) / f;
+        sum += weights_[j] * wraps.candidate[j];
+      }
+      wraps.depth = sum / whole_weight_;
+      wraps.distance = 0.0;
+      for (std::size_t j = 0; j < frequencies_.size(); ++j) {
+        const double away = wraps.candidate[j] - wraps.depth;
+        wraps.distance += weights_[j] * away * away;
+      }
+      use(wraps);
+    }
+}
+
+Wraps PhaseUnwrapper::nearest(const double* phase) const {
+  Wraps best;
+  best.distance = std::numeric_limits<double>::infinity();
+  for_each_choice(phase, [&](const Wraps& wraps) {
+    if (wraps.distance < best.distance) best = wraps;
+  });
+  return best;
+}
+
+std::optional<Wraps> PhaseUnwrapper::rival(const double* phase, const Wraps& best) const {
+  std::optional<Wraps> found;
+  for_each_choice(phase, [&](const Wraps& wraps) {
+    if (std::abs(circular_difference(wraps.depth, best.depth, 1.0)) * highest_ <= 0.5) return;
+    if (!found || wraps.distance < found->distance) found = wraps;
+  });
+  return found;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/design/chip_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// The word as a waveform: its runs of chips, joined across the end of the period.
+Waveform chip_waveform(ChipWord word, int chips, double level) {
+  if (word == 0) return Waveform::constant(0.0);
+  if (word == all_chips(chips)) return Waveform::constant(level);
+  std::vector<OnInterval> on;
+  const auto is_on = [&](int chip) { return (word >> (chip % chips) & 1U) != 0; };
+  for (int rise = 0; rise < chips; ++rise) {
+    if (!is_on(rise) || is_on(rise + chips - 1)) continue;
+    int fall = rise + 1;
+    while (is_on(fall)) ++fall;
+    on.push_back({static_cast<double>(rise) / chips, static_cast<double>(fall) / chips});
+  }
+  return Waveform::binary(std::move(on), level);
+}
+
+}  // namespace
+
+ChipWord delayed_chips(ChipWord word, int shift, int chips) {
+  const int by = ((shift % chips) + chips) % chips;
+  return by == 0 ? word : ((word << by) | (word >> (chips - by))) & all_chips(chips);
+}
+
+ChipWord reversed_chips(ChipWord word, int chips) {
+  ChipWord reversed = word & 1U;
+  for (int k = 1; k < chips; ++k) reversed |= (word >> k & 1U) << (chips - k);
+  return reversed;
+}
+
+std::string chip_text(ChipWord word, int chips) {
+  std::string text;
+  for (int k = 0; k < chips; ++k) text += (word >> k & 1U) != 0 ? '1' : '0';
+  return text;
+}
+
+ChipWord chip_word(std::string_view text) {
+  require(!text.empty() && text.size() <= most_chips, "chips", text,
+          fmt::format("must be 1 to {} digits", most_chips));
+  ChipWord word = 0;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    require(text[k] == '0' || text[k] == '1', "chips", text, "must be digits 0 and 1");
+    if (text[k] == '1') word |= ChipWord{1} << k;
+  }
+  return word;
+}
+
+const ChipWord* ChipCode::taps_of(int exposure) const {
+  return demodulation.data() + static_cast<std::size_t>(exposure) * static_cast<std::size_t>(taps);
+}
+
+int ChipCode::correlation(int measurement, int shift) const {
+  const ChipWord light = modulation[static_cast<std::size_t>(measurement / taps)];
+  return std::popcount(demodulation[static_cast<std::size_t>(measurement)] &
+                       delayed_chips(light, shift, chips));
+}
+
+std::string ChipCode::text() const {
+  std::string text;
+  for (int e = 0; e < exposures(); ++e) {
+    text += e > 0 ? ", M " : "M ";
+    text += chip_text(modulation[static_cast<std::size_t>(e)], chips);
+    for (int i = 0; i < taps; ++i) {
+      text += i == 0 ? " D " : "/";
+      text += chip_text(taps_of(e)[i], chips);
+    }
+  }
+  return text;
+}
+
+void ChipCode::validate() const {
+  require(chips >= 3 && chips <= most_chips, "ChipCode::chips", chips,
+          fmt::format("must be in [3, {}]", most_chips));
+  require(taps >= 1 && taps <= 16, "ChipCode::taps", taps, "must be in [1, 16]");
+  require(exposures() >= 1, "ChipCode::modulation", "[]", "must list at least one exposure");
+  require(measurements() == exposures() * taps, "number of ChipCode::demodulation", measurements(),
+          "must be exposures x taps");
+  for (const ChipWord word : modulation)
+    require(word <= all_chips(chips), "ChipCode::modulation", word, "must lie within the chips");
+  for (int e = 0; e < exposures(); ++e) {
+    ChipWord taken = 0;
+    for (int i = 0; i < taps; ++i) {
+      const ChipWord word = taps_of(e)[i];
+      require(word <= all_chips(chips), "ChipCode::demodulation", word,
+              "must lie within the chips");
+      require((taken & word) == 0, "ChipCode::demodulation", chip_text(word, chips),
+              "must not overlap another tap of its exposure");
+      taken |= word;
+    }
+  }
+}
+
+std::optional<BrokenRule> why_no_chip_clock(const Camera& camera) {
+  if (!camera.sensor.shortest_pulse_s)
+    return broken("sensor.shortest_pulse_s", "none",
+                  "must be the length of one chip: codes are searched on a chip clock");
+  const double chip_s = *camera.sensor.shortest_pulse_s;
+  const double chips = 1.0 / (camera.fundamental_frequency_hz * chip_s);
+  if (std::abs(chips - std::round(chips)) < 1e-6 * chips && std::round(chips) >= 3 &&
+      std::round(chips) <= most_chips)
+    return std::nullopt;
+  return broken("sensor.shortest_pulse_s", chip_s,
+                fmt::format("must be the period divided by a whole number, 3 to {}; here {:.6g} s "
+                            "/ shortest_pulse_s = {:.6g}",
+                            most_chips, 1.0 / camera.fundamental_frequency_hz, chips));
+}
+
+int chips_of(const Camera& camera) {
+  require(why_no_chip_clock(camera));
+  return static_cast<int>(
+      std::lround(1.0 / (camera.fundamental_frequency_hz * *camera.sensor.shortest_pulse_s)));
+}
+
+double chip_level(int on_chips, int chips, double peak_factor) {
+  return on_chips == 0 ? 0.0 : std::min(peak_factor, static_cast<double>(chips) / on_chips);
+}
+
+CodeSet to_code_set(const ChipCode& code, const Camera& camera, const std::string& name) {
+  code.validate();
+  std::vector<Waveform> modulation, demodulation;
+  for (const ChipWord word : code.modulation)
+    modulation.push_back(chip_waveform(
+        word, code.chips, chip_level(std::popcount(word), code.chips, camera.light.peak_factor)));
+  for (const ChipWord word : code.demodulation)
+    demodulation.push_back(chip_waveform(word, code.chips, 1.0));
+  return CodeSet::create(name, camera.samples, code.taps, std::move(modulation),
+                         std::move(demodulation));
+}
+
+Camera camera_for(const ChipCode& code, Camera camera) {
+  camera.sensor.taps = code.taps;
+  camera.sensor.shortest_pulse_s = 1.0 / (camera.fundamental_frequency_hz * code.chips);
+  camera.samples = (camera.samples + code.chips - 1) / code.chips * code.chips;
+  return camera;
+}
+
+Camera at_point(Camera camera, const OperatingPoint& point) {
+  camera.operating.signal_e_per_s = {point.signal_e_per_s};
+  camera.operating.ambient_e_per_s = {point.ambient_e_per_s};
+  return camera;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "design/chips/chip_light.hpp"
+
+namespace tofsmith {
+
+/// Most measurements that codes on a chip clock may have.
+inline constexpr int most_chip_measurements = 16;
+
+/// Whitened distances between the measurements of different depths of one code.
+class ChipMargin {
+ public:
+  ChipMargin(const ChipCode& code, const ChipLight& light, double separation_periods);
+
+  /// Whether the least distance is proven to be at least this [standard deviations].
+  bool reaches(double sigma) const;
+  /// Proven lower bound of the least distance, not more than 1e-3 of it below; 0 below 1e-3.
+  double proven_sigma() const;
+  /// The least distance over `per_chip` true depths in every chip: never below the least of all.
+  double sampled_sigma(int per_chip, double stop_below_sigma = 0.0) const;
+
+ private:
+  using Values = std::array<double, most_chip_measurements>;
+  /// Part of a chip that holds rival depths.
+  struct Stretch {
+    int chip;
+    double begin, end;
+  };
+  struct Stretches {
+    std::array<Stretch, 4> of{};
+    std::size_t count = 0;
+    void add(const Stretch& stretch) { of[count++] = stretch; }
+    auto begin() const { return of.begin(); }
+    auto end() const { return of.begin() + count; }
+  };
+  struct Whitening;
+
+  Values values_at(int chip, double place) const;
+  Whitening whitening(const Values& variance) const;
+  Values variance_at(int chip, double place) const;
+  Stretches rivals(double first, double last, int chip) const;
+  double squared_distance(int chip, double place, const Stretch& rival) const;
+  double lower_bound(int chip, double begin, double end, const Stretch& rival) const;
+  double nearest(int chip, double place) const;
+  bool clears(int chip, double begin, double end, int rival_chip, double& least,
+              double factor) const;
+
+  int chips_, measurements_;
+  double separation_chips_;
+  double constant_e2_;
+  std::vector<Values> signal_e_;  // at the corners 0 .. n
+  Values ambient_e_{};            // expected electrons of ambient light
+  Values open_{};                 // direction of ambient light
+};
+
+}  // namespace tofsmith

@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/chips/edge_refinement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <unsupported/Eigen/NonLinearOptimization>
+
+#include "design/run_lengths.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double duty_weight = 2.0;  // of (mean d - target's) beside the harmonics
+constexpr double fading_run = 2e-3;  // of the period; shorter runs fade away in the fit
+constexpr int most_rounds = 4;       // of fitting and dropping short runs
+
+/// Fourier coefficients of a unit-level binary waveform by its switching times, and their
+/// derivatives: X[n] = sum_j s_j exp(-2 pi i n e_j) / (2 pi i n), s = +1 at rises, -1 at falls.
+void harmonics_of_edges(const Eigen::VectorXd& times, int highest, Eigen::VectorXcd& harmonics,
+                        Eigen::MatrixXcd& derivatives) {
+  using namespace std::complex_literals;
+  harmonics = Eigen::VectorXcd::Zero(highest + 1);
+  derivatives.resize(highest + 1, times.size());
+  for (Eigen::Index j = 0; j < times.size(); ++j) {
+    const double sign = j % 2 == 0 ? 1.0 : -1.0;
+    const std::complex<double> turn = std::polar(1.0, -2 * pi * times[j]);
+    std::complex<double> phase = 1.0;
+    harmonics[0] -= sign * times[j];
+    derivatives(0, j) = -sign;
+    for (int n = 1; n <= highest; ++n) {
+      phase *= turn;
+      harmonics[n] += sign * phase / (2i * pi * static_cast<double>(n));
+      derivatives(n, j) = -sign * phase;
+    }
+  }
+}
+
+/// Residuals Z[n] = D[n] conj(M[n]) H[n] - T[n], as real numbers weighted by Parseval, and a last
+/// one that holds the duty of d; in the shape Eigen's Levenberg-Marquardt expects.
+class HarmonicFit {
+ public:
+  using Scalar = double;
+  using InputType = Eigen::VectorXd;
+  using ValueType = Eigen::VectorXd;
+  using JacobianType = Eigen::MatrixXd;
+  enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
+
+  HarmonicFit(const PairModel& model, const WaveformPair& start)
+      : modulation_(start.modulation, 1.0 / model.peak_factor()),
+        demodulation_(start.demodulation, 0.0),
+        demodulation_mean_(model.target().demodulation_mean),
+        shortest_run_(std::max(fading_run, model.shortest_run())) {
+    const int samples = model.samples();
+    const Eigen::VectorXcd response = model.transfer(samples / 2);
+    // Harmonics that the camera does not pass cannot be fitted: they only cost time.
+    highest_ = samples / 2;
+    while (highest_ > 8 && std::abs(response[highest_]) < 1e-5) --highest_;
+    transfer_ = response.head(highest_ + 1);
+    const Eigen::VectorXcd spectrum = model.spectrum(model.target_samples());
+    target_.resize(highest_ + 1);
+    for (int n = 0; n <= highest_; ++n) {
+      // Linear between bins: the transform of the samples times sinc^2.
+      const double x = pi * n / samples;
+      const double sinc = n == 0 ? 1.0 : std::sin(x) / x;
+      target_[n] = spectrum[n] / static_cast<double>(samples) * sinc * sinc;
+    }
+  }
+
+  int inputs() const {
+    return static_cast<int>(modulation_.parameter_count() + demodulation_.parameter_count());
+  }
+  int values() const { return std::max(2 * highest_ + 2, inputs()); }
+
+  Eigen::VectorXd start() const {
+    Eigen::VectorXd parameters(inputs());
+    parameters << modulation_.parameters(), demodulation_.parameters();
+    return parameters;
+  }
+
+  int operator()(const Eigen::VectorXd& parameters, Eigen::VectorXd& residuals) const {
+    evaluate(parameters, &residuals, nullptr);
+    return 0;
+  }
+  int df(const Eigen::VectorXd& parameters, Eigen::MatrixXd& jacobian) const {
+    evaluate(parameters, nullptr, &jacobian);
+    return 0;
+  }
+
+  WaveformPair pair(const Eigen::VectorXd& parameters) const {
+    return {
+        modulation_.waveform(parameters.head(modulation_.parameter_count()), shortest_run_),
+        demodulation_.waveform(parameters.tail(demodulation_.parameter_count()), shortest_run_)};
+  }
+
+ private:
+  void evaluate(const Eigen::VectorXd& parameters, Eigen::VectorXd* residuals,
+                Eigen::MatrixXd* jacobian) const {
+    const Eigen::Index count = modulation_.parameter_count();
+    Eigen::VectorXd m_times, d_times;
+    Eigen::MatrixXd m_chain, d_chain;
+    modulation_.edges(parameters.head(count), m_times, m_chain);
+    demodulation_.edges(parameters.tail(demodulation_.parameter_count()), d_times, d_chain);
+    Eigen::VectorXcd m, d;
+    Eigen::MatrixXcd m_derivatives, d_derivatives;
+    harmonics_of_edges(m_times, highest_, m, m_derivatives);
+    harmonics_of_edges(d_times, highest_, d, d_derivatives);
+    // Unit mean power: M = U / duty, and the duty moves with the edges too.
+    const double duty = m[0].real();
+    const Eigen::RowVectorXcd duty_derivatives = m_derivatives.row(0);
+    m /= duty;
+    m_derivatives = (m_derivatives - m * duty_derivatives) / duty;
+
+    if (residuals) {
+      residuals->setZero(values());
+      for (int n = 0; n <= highest_; ++n)
+        put(*residuals, n, d[n] * std::conj(m[n]) * transfer_[n] - target_[n]);
+      (*residuals)[2 * highest_ + 1] = duty_weight * (d[0].real() - demodulation_mean_);
+    }
+    if (jacobian) {
+      jacobian->setZero(values(), inputs());
+      const Eigen::MatrixXcd by_m =
+          (transfer_.cwiseProduct(d)).asDiagonal() *
+          (m_derivatives.conjugate() * m_chain.cast<std::complex<double>>());
+      const Eigen::MatrixXcd by_d = (transfer_.cwiseProduct(m.conjugate())).asDiagonal() *
+                                    (d_derivatives * d_chain.cast<std::complex<double>>());
+      for (int n = 0; n <= highest_; ++n) {
+        for (Eigen::Index j = 0; j < count; ++j) put(jacobian->col(j), n, by_m(n, j));
+        for (Eigen::Index j = 0; j < by_d.cols(); ++j) put(jacobian->col(count + j), n, by_d(n, j));
+      }
+      jacobian->row(2 * highest_ + 1).tail(by_d.cols()) =
+          duty_weight * d_derivatives.row(0).real() * d_chain;
+    }
+  }
+
+  template <typename Column>
+  static void put(Column&& column, int n, std::complex<double> value) {
+    if (n == 0) {
+      column[0] = value.real();
+    } else {
+      column[2 * n - 1] = std::numbers::sqrt2 * value.real();
+      column[2 * n] = std::numbers::sqrt2 * value.imag();
+    }
+  }
+
+  RunLengths modulation_, demodulation_;
+  double demodulation_mean_;
+  double shortest_run_;
+  int highest_ = 0;
+  Eigen::VectorXcd transfer_, target_;
+};
+
+bool switches(const Waveform& waveform) {
+  return waveform.is_binary() && waveform.duty() > 0.0 && waveform.duty() < 1.0;
+}
+
+}  // namespace
+
+std::optional<WaveformPair> refine_edges(const PairModel& model, const WaveformPair& start) {
+  if (!switches(start.modulation) || !switches(start.demodulation)) return std::nullopt;
+  WaveformPair pair = start;
+  for (int round = 0; round < most_rounds; ++round) {
+    HarmonicFit fit(model, pair);
+    Eigen::VectorXd parameters = fit.start();
+    Eigen::LevenbergMarquardt<HarmonicFit> solver(fit);
+    solver.parameters.maxfev = 100;
+    solver.parameters.ftol = solver.parameters.xtol = 1e-9;
+    solver.minimize(parameters);
+    if (!parameters.allFinite()) return pair;
+    const int edges_before = pair.modulation.edges() + pair.demodulation.edges();
+    WaveformPair moved = fit.pair(parameters);
+    if (!switches(moved.modulation) || !switches(moved.demodulation)) return pair;
+    pair = std::move(moved);
+    if (pair.modulation.edges() + pair.demodulation.edges() == edges_before) break;
+  }
+  return pair;
+}
+
+}  // namespace tofsmith

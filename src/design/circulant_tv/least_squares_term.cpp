@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/circulant_tv/least_squares_term.hpp"
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "core/shared/periodic.hpp"
+#include "design/circulant_tv/box_budget_projection.hpp"
+
+namespace tofsmith {
+
+Eigen::VectorXd least_squares_within_bounds(const CirculantTvProblem& problem,
+                                            const Eigen::VectorXd& start) {
+  constexpr int most_steps = 500;
+  constexpr double still = 1e-7;  // largest move of a sample, in units of the upper bound
+  const PeriodicTransform transform(problem.samples());
+  Eigen::VectorXcd kernel, target, half;
+  transform.forward(problem.kernel, kernel);
+  transform.forward(problem.target, target);
+  const double lipschitz = kernel.cwiseAbs2().maxCoeff();
+
+  Eigen::VectorXd x = start;
+  project_on_box_and_budget(x, problem.upper_bound, problem.budget);
+  if (lipschitz <= 0.0) return x;
+  Eigen::VectorXd ahead = x, gradient;
+  double momentum = 1.0;
+  for (int step = 0; step < most_steps; ++step) {
+    transform.forward(ahead, half);
+    half = kernel.conjugate().cwiseProduct(kernel.cwiseProduct(half) - target);
+    transform.inverse(half, gradient);
+    Eigen::VectorXd next = ahead - gradient / lipschitz;
+    project_on_box_and_budget(next, problem.upper_bound, problem.budget);
+    const Eigen::VectorXd move = next - x;
+    if (move.cwiseAbs().maxCoeff() < still * problem.upper_bound) return next;
+    // Momentum that points uphill is dropped, which keeps the objective from rising in the end.
+    if ((ahead - next).dot(move) > 0.0) momentum = 1.0;
+    const double grown = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * momentum * momentum));
+    ahead = next + (momentum - 1.0) / grown * move;
+    momentum = grown;
+    x = next;
+  }
+  return x;
+}
+
+LeastSquaresTerm::LeastSquaresTerm(int samples) : samples_(samples), operator_(samples) {
+  integrator_.setZero(operator_.transform().coefficients());
+  for (Eigen::Index k = 1; k < integrator_.size(); ++k) {
+    // exp(i t) - 1 = 2 i sin(t / 2) exp(i t / 2), without cancellation at small t.
+    const double half_angle = std::numbers::pi * static_cast<double>(k) / samples;
+    integrator_[k] = std::polar(0.5 / std::sin(half_angle), -half_angle - 0.5 * std::numbers::pi);
+  }
+}
+
+void LeastSquaresTerm::set(const Eigen::VectorXd& kernel, const Eigen::VectorXd& target) {
+  const PeriodicTransform& transform = operator_.transform();
+  if (operator_.set_kernel(kernel)) {
+    const Eigen::VectorXcd& spectrum = operator_.spectrum();
+    mean_curvature_ = std::norm(spectrum[0]) / samples_;
+    // A second difference multiplies the spectrum by -4 sin^2 = -1 / |integrator|^2.
+    half_ =
+        (-spectrum.cwiseAbs2().cwiseProduct(integrator_.cwiseAbs2())).cast<std::complex<double>>();
+    transform.inverse(half_, signal_);
+    curve_.resize(2 * samples_ + 1);
+    curve_ << signal_, signal_, signal_[0];
+  }
+  transform.forward(target, target_spectrum_);
+  half_ = operator_.spectrum().conjugate().cwiseProduct(target_spectrum_);
+  mean_pull_ = half_[0].real() / samples_;
+  half_ = half_.cwiseProduct(integrator_).eval();
+  transform.inverse(half_, signal_);
+  pull_.resize(2 * samples_ + 1);
+  pull_ << signal_, signal_, signal_[0];
+}
+
+void LeastSquaresTerm::add_trend(double mean_gradient, Eigen::VectorXd& sums) const {
+  for (int k = 0; k <= samples_; ++k) sums[k] += mean_gradient * k;
+}
+
+void LeastSquaresTerm::prefix_gradient(const PiecewiseConstant& x, Eigen::VectorXd& sums) const {
+  const int origin = x[0].start;
+  sums = -pull_.segment(origin, samples_ + 1);
+  if (x.size() > 1)
+    for (int j = 0; j < x.size(); ++j) {
+      const double jump = x[j].value - x[x.previous(j)].value;
+      const int lead = origin - x[j].start;  // from the jump to the origin, modulo N
+      if (jump != 0)
+        sums.noalias() += jump * curve_.segment(lead > 0 ? lead : lead + samples_, samples_ + 1);
+    }
+  add_trend(mean_curvature_ * x.sum() - mean_pull_, sums);
+}
+
+double LeastSquaresTerm::prefix_gradient_by_transform(const PiecewiseConstant& x,
+                                                      Eigen::VectorXd& sums) {
+  const PeriodicTransform& transform = operator_.transform();
+  x.write_to(signal_);
+  transform.forward(signal_, half_);
+  half_ = (operator_.spectrum().cwiseProduct(half_) - target_spectrum_).eval();
+  const double value = 0.5 * operator_.energy(half_);
+  half_ = half_.cwiseProduct(operator_.spectrum().conjugate()).eval();
+  const double mean_gradient = half_[0].real() / samples_;
+  half_ = half_.cwiseProduct(integrator_).eval();
+  transform.inverse(half_, signal_);
+  const int origin = x[0].start;
+  sums.resize(samples_ + 1);
+  sums << signal_.tail(samples_ - origin), signal_.head(origin), signal_[origin];
+  add_trend(mean_gradient, sums);
+  return value;
+}
+
+}  // namespace tofsmith

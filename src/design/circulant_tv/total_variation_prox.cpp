@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/circulant_tv/total_variation_prox.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+void TotalVariationProx::linear(const Eigen::VectorXd& y, double weight, Eigen::VectorXd& x) {
+  require(weight >= 0, "weight", weight, "must be >= 0");
+  const int size = static_cast<int>(y.size());
+  x = y;
+  if (size <= 1 || weight == 0) return;
+
+  // The derivative of the cost-to-go of x[n] is piecewise linear and increasing. Its knots live in
+  // [first, last] of a buffer that grows from the middle; outside them it is the line
+  // slope * x + offset given by the left and the right accumulators.
+  knots_.resize(2 * static_cast<std::size_t>(size));
+  lower_.resize(static_cast<std::size_t>(size));
+  upper_.resize(static_cast<std::size_t>(size));
+  int first = size, last = size - 1;
+
+  // Clipping the derivative to [-weight, weight] is the effect of the jump to the next sample:
+  // knots beyond the clipping points go, and one new knot on each side takes their place.
+  double left_slope = 1, left_offset = -y[0];
+  double right_slope = 1, right_offset = -y[0];
+  for (int n = 0; n < size - 1; ++n) {
+    while (first <= last && left_slope * knots_[first].position + left_offset <= -weight) {
+      left_slope += knots_[first].slope_change;
+      left_offset += knots_[first].offset_change;
+      ++first;
+    }
+    lower_[n] = (-weight - left_offset) / left_slope;
+    while (last >= first && right_slope * knots_[last].position + right_offset >= weight) {
+      right_slope -= knots_[last].slope_change;
+      right_offset -= knots_[last].offset_change;
+      --last;
+    }
+    upper_[n] = (weight - right_offset) / right_slope;
+    knots_[--first] = {lower_[n], left_slope, left_offset + weight};
+    knots_[++last] = {upper_[n], -right_slope, weight - right_offset};
+    // Outside the knots the clipped derivative is -+weight; add the next sample's own x - y.
+    left_slope = right_slope = 1;
+    left_offset = -weight - y[n + 1];
+    right_offset = weight - y[n + 1];
+  }
+
+  // The last sample is where the derivative vanishes; the others follow from their clips.
+  while (first <= last && left_slope * knots_[first].position + left_offset <= 0) {
+    left_slope += knots_[first].slope_change;
+    left_offset += knots_[first].offset_change;
+    ++first;
+  }
+  x[size - 1] = -left_offset / left_slope;
+  for (int n = size - 2; n >= 0; --n) x[n] = std::min(std::max(x[n + 1], lower_[n]), upper_[n]);
+}
+
+double TotalVariationProx::ring_gap(const Eigen::VectorXd& y, double weight, double dual,
+                                    Eigen::VectorXd& x) {
+  const Eigen::Index size = y.size();
+  tilted_ = y;
+  tilted_[0] -= dual;
+  tilted_[size - 1] += dual;
+  linear(tilted_, weight, x);
+  return x[0] - x[size - 1];
+}
+
+void TotalVariationProx::circular(const Eigen::VectorXd& y, double weight, double& ring_dual,
+                                  Eigen::VectorXd& x) {
+  require(weight >= 0, "weight", weight, "must be >= 0");
+  if (y.size() <= 2 || weight == 0) {
+    // Two samples on a ring share two jumps.
+    ring_dual = 0;
+    linear(y, y.size() == 2 ? 2 * weight : weight, x);
+    return;
+  }
+  const double negligible = 1e-15 * y.cwiseAbs().maxCoeff();
+  double dual = std::clamp(ring_dual, -weight, weight);
+  double gap = ring_gap(y, weight, dual, x);
+
+  // Bracket the root, walking from the start with growing steps; at an end of the dual's range a
+  // gap of the right sign is a true jump.
+  double other = dual, other_gap = gap;
+  for (double step = 0.02 * weight; std::abs(gap) > negligible; step *= 6) {
+    const double end = gap > 0 ? weight : -weight;
+    if (dual == end) break;
+    other = dual;
+    other_gap = gap;
+    dual = gap > 0 ? std::min(weight, dual + step) : std::max(-weight, dual - step);
+    gap = ring_gap(y, weight, dual, x);
+    if ((gap > 0) != (other_gap > 0)) break;
+  }
+
+  // Illinois: regula falsi that halves the weight of an end that stays. The gap is piecewise linear
+  // in the dual, so that it ends on the root.
+  const double width = 4e-16 * weight;
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    if (std::abs(gap) <= negligible || (gap > 0) == (other_gap > 0)) break;
+    if (std::abs(dual - other) <= width) break;
+    double next = (dual * other_gap - other * gap) / (other_gap - gap);
+    if (iteration % 8 == 7) next = 0.5 * (dual + other);
+    if (!(next > std::min(dual, other) && next < std::max(dual, other))) break;
+    const double next_gap = ring_gap(y, weight, next, x);
+    if ((next_gap > 0) != (gap > 0)) {
+      other = dual;
+      other_gap = gap;
+    } else {
+      other_gap *= 0.5;
+    }
+    dual = next;
+    gap = next_gap;
+  }
+  ring_dual = dual;
+}
+
+}  // namespace tofsmith

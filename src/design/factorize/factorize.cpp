@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/design/factorize.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/shared/shared_progress.hpp"
+#include "design/chips/edge_refinement.hpp"
+#include "design/factorize/shared/alternation.hpp"
+#include "design/factorize/shared/start_pool.hpp"
+#include "design/shortest_run.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Samples as a playable waveform: switching times where the arm may only switch.
+Waveform as_waveform(const Eigen::VectorXd& samples, bool binary, double level) {
+  if (!binary) return Waveform::sampled(samples);
+  return Waveform::binary_from_samples(samples, level > 0.0 ? level : 1.0);
+}
+
+struct StartResult {
+  PairCandidate candidate;
+  std::vector<FactorizeIteration> history;
+};
+
+StartResult run_start(const PairModel& model, const FactorizeOptions& options, int index) {
+  CirculantTvSolver solver(model.samples());
+  const AlternationStart start = random_start(model, options.seed, index);
+  const double weight = options.total_variation_weights[static_cast<std::size_t>(index) %
+                                                        options.total_variation_weights.size()];
+  AlternationResult found = alternate(model, start.pair, weight, options, solver);
+  const SampledPair& p = found.playable;
+  WaveformPair pair{as_waveform(p.modulation, model.binary_modulation(), p.modulation.maxCoeff()),
+                    as_waveform(p.demodulation, model.binary_demodulation(), 1.0)};
+  const double residual = model.residual_rms(pair);
+  return {{std::move(pair), residual, start.name, static_cast<int>(found.history.size())},
+          std::move(found.history)};
+}
+
+bool by_residual(const PairCandidate& a, const PairCandidate& b) {
+  return a.residual_rms < b.residual_rms;
+}
+
+/// Moves the switching times of the most promising candidates; each keeps the better version.
+void refine_best(const PairModel& model, const FactorizeOptions& options,
+                 std::vector<PairCandidate>& candidates, const Progress& progress) {
+  const auto count = std::min<std::int64_t>(options.refined, std::ssize(candidates));
+  SharedProgress shared(progress, static_cast<double>(count), "refining switching times");
+  parallel_for(count, [&](std::int64_t i) {
+    shared.add();
+    PairCandidate& c = candidates[static_cast<std::size_t>(i)];
+    if (c.residual_rms < 1e-9 || c.start == "naive")
+      return;  // nothing to gain; naive stays as it is
+    const auto refined = refine_edges(model, c.pair);
+    if (!refined) return;
+    const double residual = model.residual_rms(*refined);
+    if (residual >= c.residual_rms) return;
+    c.pair = *refined;
+    c.residual_rms = residual;
+  });
+}
+
+/// Different waveforms with the same residual to nine digits are the same design, moved in time.
+void drop_repeats(std::vector<PairCandidate>& candidates) {
+  std::stable_sort(candidates.begin(), candidates.end(), by_residual);
+  const auto last = std::unique(
+      candidates.begin(), candidates.end(), [](const PairCandidate& a, const PairCandidate& b) {
+        return b.start != "naive" &&
+               b.residual_rms - a.residual_rms < 1e-6 * a.residual_rms + 1e-12;
+      });
+  candidates.erase(last, candidates.end());
+}
+
+/// Leaves only pairs that respect the shortest pulse, if there are any.
+/// @return whether there are
+bool drop_short_pulses(const PairModel& model, std::vector<PairCandidate>& candidates) {
+  const auto too_short = [&](const PairCandidate& c) {
+    return !keeps_shortest_run(c.pair.modulation, model.shortest_run()) ||
+           !keeps_shortest_run(c.pair.demodulation, model.shortest_run());
+  };
+  if (std::ranges::all_of(candidates, too_short)) return false;
+  std::erase_if(candidates, too_short);
+  return true;
+}
+
+std::string describe(const Factorization& f, const CorrelationTarget& target) {
+  if (f.exact()) return "reached exactly";
+  const double share = f.best().residual_rms / std::max(f.target_variation_rms, 1e-300);
+  std::string message = fmt::format("residual {:.4g} rms, {:.0f} % of the target's variation",
+                                    f.best().residual_rms, 100 * share);
+  if (target.samples.minCoeff() < -1e-9 || target.samples.maxCoeff() > 1 + 1e-9)
+    message += "; the target leaves [0, 1], which no correlation function can";
+  else if (share > 0.5)
+    message += "; the target is out of reach of this camera";
+  return message;
+}
+
+}  // namespace
+
+void FactorizeOptions::validate() const {
+  require(!total_variation_weights.empty(), "FactorizeOptions::total_variation_weights", "[]",
+          "must list at least one weight");
+  check_fields(*this, "FactorizeOptions::");
+  require(random_starts > 0 || structured_starts, "FactorizeOptions::random_starts", random_starts,
+          "must be >= 1 without structured starts");
+}
+
+Factorization factorize(const CorrelationTarget& target, const Camera& camera,
+                        const FactorizeOptions& options, const Progress& progress) {
+  options.validate();
+  camera.validate();
+  require(target.samples.size() == camera.samples, "length of the target", target.samples.size(),
+          fmt::format("must equal the camera's samples = {}", camera.samples));
+  require(target.samples.allFinite(), "target", "not finite", "must be finite");
+
+  // 1. What the camera makes of a pair, and how far that is from the target.
+  const PairModel model(target, camera);
+  Factorization result;
+  result.target_variation_rms =
+      std::sqrt((target.samples.array() - target.samples.mean()).square().mean());
+
+  // 2. Alternate the convex steps from random starts, each with its best binary projection.
+  std::vector<StartResult> runs(static_cast<std::size_t>(options.random_starts));
+  const ProgressParts parts(progress, {60, 40});
+  SharedProgress shared(parts[0], options.random_starts, "alternating convex steps");
+  parallel_for(std::ssize(runs), [&](std::int64_t i) {
+    shared.add();
+    runs[static_cast<std::size_t>(i)] = run_start(model, options, static_cast<int>(i));
+  });
+  for (const StartResult& run : runs) {
+    result.candidates.push_back(run.candidate);
+    result.iterations_per_start.push_back(run.candidate.iterations);
+  }
+  report(parts[0], 1.0, "alternating convex steps");
+
+  // 3. Structured pairs, and the naive one, compete as they stand.
+  if (options.structured_starts)
+    std::ranges::move(structured_starts(model), std::back_inserter(result.candidates));
+  drop_repeats(result.candidates);
+
+  // 4. Move switching times continuously.
+  if (options.refine_edges) refine_best(model, options, result.candidates, parts[1]);
+  if (options.keep_naive)
+    std::ranges::move(naive_start(model), std::back_inserter(result.candidates));
+  const bool playable = drop_short_pulses(model, result.candidates);
+  drop_repeats(result.candidates);
+  report(progress, 1.0, "refining switching times");
+
+  // 5. Keep the best few, and the naive pair whatever its residual.
+  std::vector<PairCandidate> kept;
+  for (PairCandidate& c : result.candidates)
+    if (std::ssize(kept) < options.kept || c.start == "naive") kept.push_back(std::move(c));
+  result.candidates = std::move(kept);
+  if (!runs.empty())
+    result.history = std::ranges::min_element(runs, by_residual, &StartResult::candidate)->history;
+  result.message = describe(result, target);
+  if (!playable) result.message += "; no pair found keeps the sensor's shortest_pulse_s";
+  return result;
+}
+
+}  // namespace tofsmith

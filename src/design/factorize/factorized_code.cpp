@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/factorize/factorized_code.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "code/shared/family_rules.hpp"
+#include "code/shared/hamiltonian.hpp"
+#include "design/chips/pair_choice.hpp"
+#include "design/chips/shared/pair_model.hpp"
+#include "design/designed_code.hpp"
+#include "design/factorize/shared/start_pool.hpp"
+#include "design/judge.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr int fewest_exposures = 3, most_exposures = 6;  // of the Hamiltonian codes to aim at
+
+/// Numbers of exposures of the Hamiltonian codes to aim at.
+std::vector<int> factorizable_exposures(const Camera& camera, const DesignOptions& options) {
+  std::vector<int> exposures = options.exposures;
+  if (exposures.empty()) exposures = suggested_exposures(camera, DesignMethod::factorize);
+  std::erase_if(exposures, [](int count) {  // the others are for other methods
+    return count < fewest_exposures || count > most_exposures;
+  });
+  return exposures;
+}
+
+FamilyOptions ideal_on(const Camera& camera) { return {.samples = camera.samples}; }
+
+/// Why codes for these targets cannot be played at all, before time is spent on them.
+std::optional<BrokenRule> why_not_designable(const TargetSet& targets, const Camera& camera) {
+  if (camera.sensor.taps > 2)
+    return broken("sensor.taps", camera.sensor.taps,
+                  "must be 1 or 2 to factorize correlation functions");
+  if (targets.samples() != camera.samples)
+    return broken("length of the target", targets.samples(),
+                  fmt::format("must equal the camera's samples = {}", camera.samples));
+  const std::size_t values = targets.measurements.size() * camera.sensor.taps;
+  if (values < 3 && camera.sensor.readout != Readout::difference)
+    return broken("number of correlation functions", targets.measurements.size(),
+                  fmt::format("must be >= {}: signal, ambient light and depth are unknown",
+                              camera.sensor.taps == 2 ? 2 : 3));
+  const std::size_t listed = camera.exposure_s.each_s.size();
+  if (listed != 0 && listed != targets.measurements.size())
+    return broken("number of exposure_s", listed,
+                  fmt::format("must equal the {} exposures of {}", targets.measurements.size(),
+                              targets.name));
+  return std::nullopt;
+}
+
+Eigen::MatrixXd target_table(const TargetSet& targets) {
+  Eigen::MatrixXd table(targets.samples(), std::ssize(targets.measurements));
+  for (Eigen::Index k = 0; k < table.cols(); ++k)
+    table.col(k) = targets.measurements[static_cast<std::size_t>(k)].samples;
+  return table;
+}
+
+/// How near the correlation functions are to their targets, in one line. Whether a target is within
+/// reach is a matter of the pair that comes closest, not of the one that measures depth best.
+std::string describe_residuals(const std::vector<MeasurementReport>& reports,
+                               const std::vector<Factorization>& factorizations) {
+  std::string residuals, smallest, unreachable;
+  bool exact = true, closest = true;
+  for (std::size_t k = 0; k < reports.size(); ++k) {
+    exact = exact && reports[k].residual_rms < 1e-6;
+    residuals += fmt::format("{}{:.3g}", k ? ", " : "", reports[k].residual_rms);
+    smallest += fmt::format("{}{:.3g}", k ? ", " : "", reports[k].smallest_residual_rms);
+    closest = closest && reports[k].residual_rms < 1.01 * reports[k].smallest_residual_rms + 1e-9;
+    if (reports[k].smallest_residual_rms > 0.5 * factorizations[k].target_variation_rms)
+      unreachable += fmt::format("{}{}", unreachable.empty() ? "" : ", ", k + 1);
+  }
+  if (exact) return "all targets reached exactly";
+  std::string text = fmt::format("residuals {} rms", residuals);
+  if (!closest) text += fmt::format(" (chosen by depth error; smallest found {})", smallest);
+  if (!unreachable.empty())
+    text += fmt::format("; target {} out of reach of this camera", unreachable);
+  return text;
+}
+
+MeasurementReport measurement_report(const Factorization& f, const PairCandidate& chosen) {
+  return {.residual_rms = chosen.residual_rms,
+          .smallest_residual_rms = f.best().residual_rms,
+          .demodulation_duty = chosen.pair.demodulation.mean(),
+          .modulation_duty = chosen.pair.modulation.duty(),
+          .peak = chosen.pair.modulation.peak(),
+          .edges = chosen.pair.modulation.edges() + chosen.pair.demodulation.edges(),
+          .start = chosen.start,
+          .history = f.history};
+}
+
+}  // namespace
+
+std::optional<BrokenRule> why_not_factorizable(const Camera& camera, const DesignOptions& options) {
+  if (!options.target)
+    for (const int count : factorizable_exposures(camera, options))
+      if (auto reason = hamiltonian_misfit(count, ideal_on(camera))) return reason;
+  for (const TargetSet& target : targets_for(camera, options))
+    if (auto reason = why_not_designable(target, camera)) return reason;
+  return std::nullopt;
+}
+
+std::vector<TargetSet> targets_for(const Camera& camera, const DesignOptions& options) {
+  if (options.target) return {*options.target};
+  std::vector<TargetSet> targets;
+  for (const int count : factorizable_exposures(camera, options))
+    targets.push_back(targets_of(hamiltonian_code(count, ideal_on(camera))));
+  return targets;
+}
+
+std::optional<CodeSet> naive_code(const TargetSet& targets, const Camera& camera) {
+  std::vector<Factorization> pairs;
+  for (const CorrelationTarget& target : targets.measurements) {
+    pairs.push_back({.candidates = naive_start(PairModel(target, camera))});
+    if (pairs.back().candidates.empty()) return std::nullopt;
+  }
+  CodeSet code = assemble(targets.name + "-naive", pairs, PairChoice(pairs.size(), 0), camera);
+  code.provenance.method = "naive";
+  code.provenance.camera = camera.name;
+  return code;
+}
+
+Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
+                               const DesignOptions& options, const Progress& progress) {
+  const ProgressParts parts(progress, {40, 60});  // factorizing, choosing pairs
+  const auto begin = std::chrono::steady_clock::now();
+  // 1. Factorize every measurement by itself.
+  FactorizeOptions factorizing_options = options.factorize;
+  factorizing_options.seed = options.seed;
+  std::vector<Factorization> factorizations;
+  const ProgressParts of_targets(parts[0], targets.measurements.size());
+  for (const CorrelationTarget& target : targets.measurements)
+    factorizations.push_back(
+        factorize(target, camera, factorizing_options, of_targets[factorizations.size()]));
+  // 2. Choose among the pairs by the depth error of the whole code.
+  EvaluateOptions search;
+  search.trials = options.search_trials;
+  search.seed = search_seed(options);
+  const PairChoice choice =
+      choose_by_depth_error(factorizations, camera, search, rotates(camera, options), parts[1]);
+  // 3. Put the code together and say how near its target it is.
+  Candidate candidate{
+      .code = signed_by(assemble(targets.name + "-factorized", factorizations, choice, camera),
+                        "factorize", camera, options.seed),
+      .method = "factorize",
+      .target = target_table(targets)};
+  for (std::size_t k = 0; k < choice.size(); ++k) {
+    const Factorization& f = factorizations[k];
+    candidate.per_measurement.push_back(measurement_report(f, f.candidates[choice[k]]));
+    candidate.code.provenance.residuals.push_back(candidate.per_measurement.back().residual_rms);
+    for (const int iterations : f.iterations_per_start) candidate.iterations += iterations;
+  }
+  candidate.message = describe_residuals(candidate.per_measurement, factorizations);
+  candidate.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return candidate;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/optimize/binarization.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace tofsmith {
+
+namespace {
+
+/// Value of every cell: that of its first sample.
+Eigen::VectorXd cell_values(const WaveformSpace& space, const Eigen::VectorXd& samples) {
+  Eigen::VectorXd cells(space.cells);
+  for (int c = 0; c < space.cells; ++c) cells[c] = samples[c * space.repeat];
+  return cells;
+}
+
+/// Cells by value, largest first.
+std::vector<int> ranked(const Eigen::VectorXd& cells) {
+  std::vector<int> order(static_cast<std::size_t>(cells.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return cells[a] > cells[b]; });
+  return order;
+}
+
+/// 1 in the first `count` cells of the order.
+SwitchedLabels first_of(const std::vector<int>& order, int count) {
+  std::vector<int> cells(order.size(), 0);
+  for (int i = 0; i < count; ++i)
+    cells[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])] = 1;
+  return SwitchedLabels::from_cells(cells);
+}
+
+SwitchedLabels gates_of(const WaveformSpace& space, const SampledCode& code, int e) {
+  const Eigen::VectorXd first = cell_values(space, code.demodulation.col(e * space.taps));
+  if (space.equal_duties) {
+    SwitchedLabels halves = first_of(ranked(first), space.cells / 2);
+    for (int& label : halves.label) label = 1 - label;  // the first bucket is class 0
+    return halves;
+  }
+  Eigen::MatrixXd shares(space.cells, space.classes());
+  for (int t = 0; t < space.taps; ++t)
+    shares.col(t) = cell_values(space, code.demodulation.col(e * space.taps + t));
+  if (space.drain)
+    shares.col(space.taps) = 1.0 - shares.leftCols(space.taps).rowwise().sum().array();
+  std::vector<int> cells(static_cast<std::size_t>(space.cells));
+  for (int c = 0; c < space.cells; ++c) {
+    Eigen::Index largest = 0;
+    shares.row(c).maxCoeff(&largest);
+    cells[static_cast<std::size_t>(c)] = static_cast<int>(largest);
+  }
+  return SwitchedLabels::from_cells(cells);
+}
+
+/// How many of the brightest cells, lit evenly, come closest to the waveform.
+int nearest_count(const Eigen::VectorXd& cells, const std::vector<int>& order, int fewest) {
+  const auto total = static_cast<double>(order.size());
+  int best = fewest;
+  double least = 1e300, lit = 0.0;
+  for (int on = 1; on < static_cast<int>(order.size()); ++on) {
+    lit += cells[order[static_cast<std::size_t>(on - 1)]];
+    if (on < fewest) continue;
+    // Squared distance to level total / on, without what does not depend on `on`.
+    const double distance = total * total / on - 2.0 * total / on * lit;
+    if (distance < least) {
+      least = distance;
+      best = on;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+SwitchedCode binarized(const DesignProblem& problem, const SampledCode& code,
+                       const CodeJudge& judge) {
+  const WaveformSpace& space = problem.space;
+  SwitchedCode result;
+  result.sampled = code;
+  if (problem.binary_demodulation)
+    for (int e = 0; e < space.exposures; ++e) result.gates.push_back(gates_of(space, code, e));
+  if (!problem.binary_modulation) return result;
+
+  const int fewest =
+      std::max(1, static_cast<int>(std::ceil(space.cells / space.peak_factor - 1e-9)));
+  std::vector<std::vector<int>> order;
+  std::vector<int> count;
+  for (int e = 0; e < space.exposures; ++e) {
+    const Eigen::VectorXd cells = cell_values(space, code.modulation.col(e));
+    order.push_back(ranked(cells));
+    count.push_back(nearest_count(cells, order.back(), fewest));
+    result.light.push_back(first_of(order.back(), count.back()));
+  }
+  for (std::size_t e = 0; e < order.size(); ++e) {
+    double least = judge.score(sampled_on(space, result)).log_error_bin;
+    SwitchedLabels best = result.light[e];
+    for (const int change : {-2, -1, 1, 2}) {
+      const int on = count[e] + change;
+      if (on < fewest || on >= space.cells) continue;
+      result.light[e] = first_of(order[e], on);
+      const double error = judge.score(sampled_on(space, result)).log_error_bin;
+      if (error >= least) continue;
+      least = error;
+      best = result.light[e];
+    }
+    result.light[e] = best;
+  }
+  return result;
+}
+
+}  // namespace tofsmith

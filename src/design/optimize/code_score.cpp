@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/optimize/code_score.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulate/shared/error_by_rotation.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr double least_error_bin = 1e-9;  // errors have logarithms
+
+/// The same waveforms on the grid they are judged on.
+SampledCode on_grid_of(const SampledCamera& judge, const SampledCode& code) {
+  const int repeat = judge.samples() / code.samples();
+  if (repeat == 1) return code;
+  SampledCode fine{Eigen::MatrixXd(judge.samples(), code.modulation.cols()),
+                   Eigen::MatrixXd(judge.samples(), code.demodulation.cols())};
+  for (int n = 0; n < judge.samples(); ++n) {
+    fine.modulation.row(n) = code.modulation.row(n / repeat);
+    fine.demodulation.row(n) = code.demodulation.row(n / repeat);
+  }
+  return fine;
+}
+
+/// The code with its modulation delayed: correlation'(z) = correlation(z + rotation_bin).
+SampledCode rotated(const SampledCode& code, int rotation_bin) {
+  SampledCode result = code;
+  const int samples = code.samples();
+  for (int n = 0; n < samples; ++n)
+    result.modulation.row((n + rotation_bin) % samples) = code.modulation.row(n);
+  return result;
+}
+
+std::vector<TrialBatch> draw_batches(const DesignProblem& problem, int trials, bool ends_matter,
+                                     std::uint64_t seed, std::uint64_t work_item) {
+  const CameraVariant* most = &problem.variants.front();
+  for (const CameraVariant& variant : problem.variants)
+    if (variant.levels.size() > most->levels.size()) most = &variant;
+  std::vector<TrialBatch> batches;
+  for (std::size_t p = 0; p < most->levels.size(); ++p) {
+    RandomStream random(seed, work_item, static_cast<std::uint32_t>(2 * p + ends_matter));
+    const LightLevel& level = most->levels[p];
+    batches.push_back(draw_trials(DesignProblem::trials_of(level, trials), problem.measurements(),
+                                  problem.operating, ends_matter, random, nullptr,
+                                  problem.later_of(level)));
+  }
+  return batches;
+}
+
+/// Mean error over the trials [bin]; circular where two returns are decoded.
+double mean_error_bin(const TrialBatch& batch, const std::vector<double>& decoded_bin, int samples,
+                      bool linear) {
+  linear = linear && !batch.two_returns;
+  double sum = 0.0;
+  for (std::size_t t = 0; t < decoded_bin.size(); ++t) {
+    const double error = std::abs(batch.trials[t].depth_periods * samples - decoded_bin[t]);
+    sum += batch.trials[t].weight * (linear ? error : std::min(error, samples - error));
+  }
+  return sum / static_cast<double>(decoded_bin.size());
+}
+
+}  // namespace
+
+CodeJudge::CodeJudge(const DesignProblem& problem, int trials, std::uint64_t seed,
+                     std::uint64_t work_item)
+    : problem_(&problem),
+      judging_(draw_batches(problem, trials, problem.linear(), seed, work_item)) {
+  if (problem.linear()) rotating_ = draw_batches(problem, trials, false, seed, work_item);
+}
+
+CodeScore CodeJudge::score(const SampledCode& code) const {
+  const SampledCode fine = on_grid_of(problem_->variants.front().judge, code);
+  const int finer = fine.samples() / code.samples();
+  const double in_bins_of_code = std::log(finer);
+  if (!problem_->linear()) return {log_error(fine) - in_bins_of_code, 0};
+  const int rotation = best_rotation(fine);
+  return {log_error(rotated(fine, rotation)) - in_bins_of_code, rotation / finer};
+}
+
+double CodeJudge::log_error(const SampledCode& code) const {
+  double worst = -1e300;
+  std::vector<double> decoded_bin;
+  for (const CameraVariant& variant : problem_->variants) {
+    DepthErrorLoss loss(variant.judge, variant.judge.measure(code).table,
+                        problem_->operating.error);
+    double sum = 0.0;
+    for (std::size_t p = 0; p < variant.levels.size(); ++p) {
+      loss.decode(variant.levels[p].point, judging_[p], decoded_bin);
+      sum +=
+          variant.levels[p].weight *
+          std::log(std::max(least_error_bin, mean_error_bin(judging_[p], decoded_bin,
+                                                            code.samples(), problem_->linear())));
+    }
+    worst = std::max(worst, sum / variant.total_weight());
+  }
+  return worst;
+}
+
+int CodeJudge::best_rotation(const SampledCode& code) const {
+  const int samples = code.samples();
+  std::vector<double> worst(static_cast<std::size_t>(samples), -1e300), decoded_bin;
+  for (const CameraVariant& variant : problem_->variants) {
+    DepthErrorLoss loss(variant.judge, variant.judge.measure(code).table,
+                        problem_->operating.error);
+    std::vector<double> log_error(worst.size(), 0.0);
+    for (std::size_t p = 0; p < variant.levels.size(); ++p) {
+      if (rotating_[p].two_returns) continue;  // their error is circular
+      loss.decode(variant.levels[p].point, rotating_[p], decoded_bin);
+      ErrorByRotation errors(samples);
+      for (std::size_t t = 0; t < decoded_bin.size(); ++t)  // the end of the last chord is bin 0
+        errors.add(rotating_[p].trials[t].depth_periods * samples,
+                   std::min(decoded_bin[t], std::nextafter(samples, 0.0)));
+      const std::vector<double> sums = errors.sums();
+      for (std::size_t r = 0; r < sums.size(); ++r)
+        log_error[r] += variant.levels[p].weight * std::log(std::max(least_error_bin, sums[r])) /
+                        variant.total_weight();
+    }
+    for (std::size_t r = 0; r < worst.size(); ++r) worst[r] = std::max(worst[r], log_error[r]);
+  }
+  return best_of_rotations(smoothed_over_rotations(worst));
+}
+
+WaveformParameters rotated(const WaveformSpace& space, const WaveformParameters& parameters,
+                           int rotation_bin) {
+  const int cells = (rotation_bin + space.repeat / 2) / space.repeat % space.cells;
+  WaveformParameters result = parameters;
+  for (int c = 0; c < space.cells; ++c)
+    result.modulation.row((c + cells) % space.cells) = parameters.modulation.row(c);
+  return result;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/optimize/decoding_curve.hpp"
+
+#include <algorithm>
+
+#include "core/shared/whole_vectors.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Whole vectors for N + 1 points, and one more for what reads a point ahead.
+int padded_stride(int samples) { return whole_vectors(samples + 1) + widest_vector; }
+
+/// g_i of DecodingCurve.
+Eigen::VectorXd relative_exposure(const SampledCamera& camera) {
+  return camera.exposure_s() / camera.exposure_s().mean();
+}
+
+/// The unit vector along g o kappa; zeros where ambient light need not be reckoned with.
+Eigen::VectorXd ambient_direction(const SampledCamera& camera, const MeasurementTable& table) {
+  const Eigen::VectorXd ambient = relative_exposure(camera).cwiseProduct(table.ambient_gain);
+  const double length = ambient.norm();
+  if (!camera.ambient_unknown() || length == 0.0) return Eigen::VectorXd::Zero(ambient.size());
+  return ambient / length;
+}
+
+}  // namespace
+
+DecodingCurve::DecodingCurve(const SampledCamera& camera, const MeasurementTable& table)
+    : samples(table.samples()), measurements(table.measurements()), stride(padded_stride(samples)) {
+  const Eigen::VectorXd direction = ambient_direction(camera, table);
+  exact_points = table.correlation * relative_exposure(camera).asDiagonal();
+  exact_points -= (exact_points * direction) * direction.transpose();
+  const auto size = static_cast<std::size_t>(stride);
+  points.assign(size * static_cast<std::size_t>(measurements), 0.0f);
+  squares.assign(size, 0.0f);
+  products.assign(size, 0.0f);
+  for (int j = 0; j <= samples; ++j) {
+    const int at = j % samples, next = (at + 1) % samples;
+    for (int r = 0; r < measurements; ++r)
+      points[static_cast<std::size_t>(r) * size + static_cast<std::size_t>(j)] =
+          static_cast<float>(exact_points(at, r));
+    squares[static_cast<std::size_t>(j)] = static_cast<float>(exact_points.row(at).squaredNorm());
+    products[static_cast<std::size_t>(j)] =
+        static_cast<float>(exact_points.row(at).dot(exact_points.row(next)));
+  }
+}
+
+CurveGradient::CurveGradient(const DecodingCurve& curve)
+    : points(curve.points.size(), 0.0f),
+      squares(curve.squares.size(), 0.0f),
+      next_squares(curve.squares.size(), 0.0f),
+      products(curve.squares.size(), 0.0f) {}
+
+void CurveGradient::clear() {
+  for (AlignedFloats* values : {&points, &squares, &next_squares, &products})
+    std::fill(values->begin(), values->end(), 0.0f);
+}
+
+void CurveGradient::pull_back(const SampledCamera& camera, const MeasurementTable& table,
+                              const DecodingCurve& curve, MeasurementTable& gradient) const {
+  const int samples = curve.samples;
+  Eigen::MatrixXd by_points(samples, curve.measurements);
+  for (int j = 0; j < samples; ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    const int next = (j + 1) % samples, last = (j + samples - 1) % samples;
+    const double by_square = squares[at] + next_squares[static_cast<std::size_t>(last)];
+    for (int r = 0; r < curve.measurements; ++r)
+      by_points(j, r) =
+          points[static_cast<std::size_t>(r) * static_cast<std::size_t>(curve.stride) + at] +
+          2.0 * by_square * curve.exact_points(j, r) + products[at] * curve.exact_points(next, r) +
+          products[static_cast<std::size_t>(last)] * curve.exact_points(last, r);
+  }
+  // p_j = x_j - a (a . x_j) / |a|^2, with a / |a| = n: by x_j it is P G_j; by a, it is
+  // -sum_j [P G_j (n . x_j) + p_j (n . G_j)] / |a|.
+  const Eigen::VectorXd exposure = relative_exposure(camera);
+  const Eigen::VectorXd direction = ambient_direction(camera, table);
+  const Eigen::VectorXd along = by_points * direction;
+  by_points -= along * direction.transpose();
+  gradient.correlation += by_points * exposure.asDiagonal();
+  if (direction.isZero(0.0)) return;
+  const Eigen::VectorXd curve_along = (table.correlation * exposure.asDiagonal()) * direction;
+  const double length = exposure.cwiseProduct(table.ambient_gain).norm();
+  const Eigen::VectorXd by_ambient =
+      -(by_points.transpose() * curve_along + curve.exact_points.transpose() * along) / length;
+  gradient.ambient_gain += by_ambient.cwiseProduct(exposure);
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <new>
+#include <vector>
+
+#include "design/optimize/sampled_camera.hpp"
+
+namespace tofsmith {
+
+/// Memory that begins on a cache line, as whole-vector loads want it.
+template <typename Value>
+struct CacheLineAllocator {
+  using value_type = Value;
+  static constexpr std::align_val_t alignment{64};
+
+  CacheLineAllocator() = default;
+  template <typename Other>
+  explicit CacheLineAllocator(const CacheLineAllocator<Other>&) {}
+
+  Value* allocate(std::size_t count) {
+    return static_cast<Value*>(::operator new(count * sizeof(Value), alignment));
+  }
+  void deallocate(Value* values, std::size_t) { ::operator delete(values, alignment); }
+  friend bool operator==(const CacheLineAllocator&, const CacheLineAllocator&) { return true; }
+};
+
+using AlignedFloats = std::vector<float, CacheLineAllocator<float>>;
+
+/// The curve that the decoder compares with, without what ambient light explains:
+///   p_j = P x_j,  x_j = g o chi_j,  P = I - a a^T / |a|^2,  a = g o kappa,  g_i = T_i / mean T,
+/// at bins j = 0 .. N, the last of which is the first again; and Q_jk = <p_j, p_k> for neighbours.
+struct DecodingCurve {
+  DecodingCurve(const SampledCamera& camera, const MeasurementTable& table);
+
+  /// Component r of the curve, j = 0 .. N and padding.
+  const float* component(int r) const { return points.data() + r * stride; }
+
+  int samples, measurements;
+  int stride;                    ///< between components; whole vectors, and room for one more point
+  AlignedFloats points;          ///< (R, stride)
+  AlignedFloats squares;         ///< Q_jj, j = 0 .. N
+  AlignedFloats products;        ///< Q_j,j+1, j = 0 .. N - 1
+  Eigen::MatrixXd exact_points;  ///< (N, R)
+};
+
+/// Gradient of a function by what is in a DecodingCurve, summed over trials.
+struct CurveGradient {
+  explicit CurveGradient(const DecodingCurve& curve);
+  void clear();
+  /// Adds the gradient by the table that the curve was made of.
+  void pull_back(const SampledCamera& camera, const MeasurementTable& table,
+                 const DecodingCurve& curve, MeasurementTable& gradient) const;
+
+  AlignedFloats points;                 ///< (R, stride)
+  AlignedFloats squares, next_squares;  ///< by Q_jj and Q_j+1,j+1 as seen from chord j
+  AlignedFloats products;
+};
+
+}  // namespace tofsmith

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/optimize/depth_error_loss.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+MeasurementTable zeros_like(const MeasurementTable& table) {
+  MeasurementTable zeros;
+  zeros.correlation = Eigen::MatrixXd::Zero(table.samples(), table.measurements());
+  zeros.ambient_gain = Eigen::VectorXd::Zero(table.measurements());
+  if (table.shot_correlation.size() > 0) {
+    zeros.shot_correlation = zeros.correlation;
+    zeros.shot_ambient_gain = zeros.ambient_gain;
+  }
+  return zeros;
+}
+
+}  // namespace
+
+DepthErrorLoss::DepthErrorLoss(const SampledCamera& camera, MeasurementTable table,
+                               DepthErrorKind kind)
+    : camera_(&camera),
+      table_(std::move(table)),
+      circular_(kind == DepthErrorKind::circular),
+      curve_(camera, table_),
+      decoder_(curve_),
+      curve_gradient_(curve_),
+      reading_gradient_(zeros_like(table_)) {
+  const auto measurements = static_cast<std::size_t>(table_.measurements());
+  reading_.electrons.resize(measurements);
+  reading_.deviation_e.resize(measurements);
+  by_electrons_.resize(measurements);
+}
+
+double DepthErrorLoss::mean_variance_e2(const OperatingPoint& point) const {
+  const Eigen::VectorXd light = point.signal_e_per_s * table_.shot().colwise().mean().transpose() +
+                                point.ambient_e_per_s * table_.shot_ambient();
+  return (camera_->exposure_s().cwiseProduct(light) + camera_->constant_variance_e2()).mean();
+}
+
+DepthErrorLoss::Place DepthErrorLoss::place_at(double depth_periods, double signal_e_per_s) const {
+  const int samples = table_.samples();
+  const double position = depth_periods * samples;
+  const int bin = std::min(static_cast<int>(position), samples - 1);
+  return {bin, bin + 1 < samples ? bin + 1 : 0, position - bin, signal_e_per_s};
+}
+
+void DepthErrorLoss::read(const OperatingPoint& point, const TrialBatch& batch, std::size_t trial) {
+  const DepthTrial& truth = batch.trials[trial];
+  const double signal_e_per_s = truth.albedo * point.signal_e_per_s;
+  reading_.places = {place_at(truth.depth_periods, signal_e_per_s)};
+  if (truth.later_ratio > 0.0)
+    reading_.places.push_back(place_at(wrap(truth.depth_periods + truth.later_delay_periods, 1.0),
+                                       truth.later_ratio * signal_e_per_s));
+  const double* normals = batch.normals_of(trial);
+  const Eigen::MatrixXd& shot = table_.shot();
+  const Eigen::VectorXd& shot_ambient = table_.shot_ambient();
+  for (int i = 0; i < table_.measurements(); ++i) {
+    const double time_s = camera_->exposure_s()[i];
+    double light = point.ambient_e_per_s * table_.ambient_gain[i];
+    double shot_light = point.ambient_e_per_s * shot_ambient[i];
+    for (const Place& place : reading_.places) {
+      light += place.signal_e_per_s * place.between(table_.correlation, i);
+      shot_light += place.signal_e_per_s * place.between(shot, i);
+    }
+    const double deviation =
+        std::sqrt(std::max(1e-6, time_s * shot_light + camera_->constant_variance_e2()[i]));
+    const auto k = static_cast<std::size_t>(i);
+    reading_.deviation_e[k] = deviation;
+    reading_.electrons[k] = static_cast<float>(time_s * light + deviation * normals[i]);
+  }
+}
+
+/// Electrons depend on the means directly and on the variances as sigma e.
+void DepthErrorLoss::pull_back_reading(const OperatingPoint& point, const double* normals,
+                                       double weight) {
+  const bool apart = reading_gradient_.shot_correlation.size() > 0;
+  Eigen::MatrixXd& by_shot =
+      apart ? reading_gradient_.shot_correlation : reading_gradient_.correlation;
+  Eigen::VectorXd& by_shot_ambient =
+      apart ? reading_gradient_.shot_ambient_gain : reading_gradient_.ambient_gain;
+  for (int i = 0; i < table_.measurements(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double by_mean = weight * by_electrons_[k] * camera_->exposure_s()[i];
+    const double by_variance = by_mean * normals[i] / (2.0 * reading_.deviation_e[k]);
+    reading_gradient_.ambient_gain[i] += by_mean * point.ambient_e_per_s;
+    by_shot_ambient[i] += by_variance * point.ambient_e_per_s;
+    for (const Place& place : reading_.places) {
+      const double lower = place.signal_e_per_s * (1.0 - place.fraction);
+      const double upper = place.signal_e_per_s * place.fraction;
+      reading_gradient_.correlation(place.bin, i) += by_mean * lower;
+      reading_gradient_.correlation(place.next, i) += by_mean * upper;
+      by_shot(place.bin, i) += by_variance * lower;
+      by_shot(place.next, i) += by_variance * upper;
+    }
+  }
+}
+
+SoftTwoReturnDecoder* DepthErrorLoss::two_return_decoder(const TrialBatch& batch) {
+  if (!batch.two_returns) return nullptr;
+  const TwoReturnGrid& grid = *batch.two_returns;
+  if (!two_returns_) two_returns_.emplace(curve_, table_.samples() / grid.bins, grid.delays);
+  return &*two_returns_;
+}
+
+double DepthErrorLoss::sum_errors(const OperatingPoint& point, const TrialBatch& batch,
+                                  double sharpness, double weight, bool with_gradient) {
+  const double per_trial = 1.0 / static_cast<double>(batch.trials.size());
+  SoftTwoReturnDecoder* const pairs = two_return_decoder(batch);
+  double sum = 0.0;
+  for (std::size_t t = 0; t < batch.trials.size(); ++t) {
+    read(point, batch, t);
+    const float* const electrons = reading_.electrons.data();
+    const SoftQuestion question{batch.trials[t].depth_periods * table_.samples(), sharpness,
+                                circular_};
+    const double trial_weight = batch.trials[t].weight * per_trial;
+    if (!with_gradient) {
+      sum += trial_weight * (pairs ? pairs->expected_error(electrons, question)
+                                   : decoder_.expected_error(curve_, electrons, question));
+      continue;
+    }
+    const double scale = weight * trial_weight;
+    const auto by_error = static_cast<float>(scale);
+    sum += trial_weight *
+           (pairs ? pairs->expected_error(electrons, question, by_error, by_electrons_.data())
+                  : decoder_.expected_error(curve_, electrons, question, by_error, curve_gradient_,
+                                            by_electrons_.data()));
+    pull_back_reading(point, batch.normals_of(t), scale);
+  }
+  return sum;
+}
+
+double DepthErrorLoss::soft_error(const OperatingPoint& point, const TrialBatch& batch,
+                                  double sharpness) {
+  return sum_errors(point, batch, sharpness, 0.0, false);
+}
+
+double DepthErrorLoss::soft_error(const OperatingPoint& point, const TrialBatch& batch,
+                                  double sharpness, double weight) {
+  return sum_errors(point, batch, sharpness, weight, true);
+}
+
+void DepthErrorLoss::decode(const OperatingPoint& point, const TrialBatch& batch,
+                            std::vector<double>& decoded_bin) {
+  SoftTwoReturnDecoder* const pairs = two_return_decoder(batch);
+  decoded_bin.resize(batch.trials.size());
+  for (std::size_t t = 0; t < batch.trials.size(); ++t) {
+    read(point, batch, t);
+    const float* const electrons = reading_.electrons.data();
+    decoded_bin[t] = pairs ? pairs->decode(electrons) : decoder_.decode(curve_, electrons);
+  }
+}
+
+MeasurementTable DepthErrorLoss::gradient() const {
+  MeasurementTable result = reading_gradient_;
+  CurveGradient by_curve = curve_gradient_;
+  if (two_returns_) two_returns_->pull_back(by_curve);
+  by_curve.pull_back(*camera_, table_, curve_, result);
+  return result;
+}
+
+}  // namespace tofsmith

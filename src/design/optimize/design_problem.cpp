@@ -1,0 +1,212 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/optimize/design_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "design/shortest_run.hpp"
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/design/optimize.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr int fewest_samples = 96;  // of the correlation functions, however long the cells
+constexpr int fewest_cells = 4;
+
+/// Lengths whose transform is fast.
+bool factors_are_small(int count) {
+  for (const int factor : {2, 3, 5})
+    while (count % factor == 0) count /= factor;
+  return count == 1;
+}
+
+/// Share of the peak that pulses of whole cells can use.
+double usable_peak(int cells, double peak_factor) {
+  return cells / std::ceil(cells / peak_factor - 1e-9) / peak_factor;
+}
+
+int cells_within(int most, double peak_factor) {
+  const auto largest = [&](double least_usable) {
+    for (int cells = most; cells >= fewest_cells && 5 * cells >= 4 * most; --cells)
+      if (cells % 2 == 0 && factors_are_small(cells) &&
+          usable_peak(cells, peak_factor) >= least_usable)
+        return cells;
+    return 0;
+  };
+  for (const double least_usable : {0.98, 0.9, 0.0})
+    if (const int cells = largest(least_usable)) return cells;
+  return most;
+}
+
+/// `count` values between those of the list, evenly by rank and by logarithm over `floor`.
+std::vector<double> in_between(std::vector<double> levels, int count, double floor) {
+  std::sort(levels.begin(), levels.end());
+  if (std::ssize(levels) <= count) return levels;
+  std::vector<double> result;
+  for (int i = 0; i < count; ++i) {
+    const double rank = (i + 0.5) / count * static_cast<double>(levels.size() - 1);
+    const auto below = static_cast<std::size_t>(rank);
+    const double share = rank - static_cast<double>(below);
+    const double low = std::log(levels[below] + floor);
+    const double high = std::log(levels[below + 1] + floor);
+    result.push_back(std::exp(low + share * (high - low)) - floor);
+  }
+  return result;
+}
+
+/// How many pulses of the shortest length the period holds.
+int runs_per_period(double shortest) { return static_cast<int>(std::floor(1.0 / shortest + 1e-9)); }
+
+/// Whether the means of a good code suffice to tell two returns: two strengths and two depths, and
+/// ambient light where it is seen, and one more.
+bool may_tell_two_returns(const Camera& camera, int exposures) {
+  const int taps = camera.sensor.taps;
+  if (camera.sensor.readout == Readout::difference) return exposures >= 5;
+  // Taps that share all charge add up to the same in every exposure.
+  const bool share_all = taps > 1 && !(taps > 2 && camera.sensor.drain);
+  return (share_all ? exposures * (taps - 1) + 1 : exposures * taps) >= 6;
+}
+
+/// Second returns on a grid that is coarse enough to try all pairs of bins.
+LaterTrials decoded_as_two(LaterTrials later, int samples) {
+  constexpr int most_bins = 160;
+  int step = (samples + most_bins - 1) / most_bins;
+  while (samples % step != 0) ++step;
+  const int bins = samples / step;
+  const auto bin_of = [&](double delay_m) {
+    return std::clamp(static_cast<int>(std::lround(delay_m / later.range_m * bins)), 1, bins - 1);
+  };
+  const auto [shortest_m, longest_m] = later.returns.delay_m;
+  later.decoded_as_two =
+      TwoReturnGrid{bins, {bin_of(shortest_m), bin_of(std::max(longest_m, later.range_m / 3.0))}};
+  return later;
+}
+
+/// The camera's points, and the same with second returns where those matter.
+std::vector<LightLevel> levels_of(const Camera& camera, const std::optional<SecondReturns>& later,
+                                  double two_return_weight) {
+  const std::vector<OperatingPoint> points = training_points(camera);
+  std::vector<LightLevel> levels;
+  const auto add = [&](TrialReturns returns, double weight) {
+    for (const OperatingPoint& point : points) levels.push_back({point, returns, weight});
+  };
+  add(TrialReturns::one, later ? 1.0 - later->weight : 1.0);
+  if (later) add(TrialReturns::two_taken_for_one, later->weight);
+  if (later && two_return_weight > 0.0) add(TrialReturns::two, two_return_weight);
+  return levels;
+}
+
+}  // namespace
+
+std::optional<BrokenRule> why_not_optimizable(const Camera& camera, int exposures) {
+  if (exposures < 1 || exposures > 8) return broken("exposures", exposures, "must be in [1, 8]");
+  const bool difference = camera.sensor.readout == Readout::difference;
+  const int measurements = difference ? exposures : exposures * camera.sensor.taps;
+  const int fewest = difference ? 2 : 3;
+  if (measurements < fewest)
+    return broken(
+        "exposures", exposures,
+        fmt::format("must give at least {} measurements; with sensor.taps = {} that takes "
+                    "{}",
+                    fewest, camera.sensor.taps,
+                    difference ? 2 : (2 + camera.sensor.taps) / camera.sensor.taps));
+  if (camera.light.peak_factor <= 1.0)
+    return broken("light.peak_factor", camera.light.peak_factor,
+                  "must be > 1 to optimize: light that never changes carries no depth");
+  if (!camera.band_limited() && !camera.sensor.shortest_pulse_s)
+    return broken(
+        "sensor.shortest_pulse_s", "none",
+        fmt::format("is needed to optimize for a camera without band limit, where ever shorter "
+                    "pulses are ever better; try {:.2g}",
+                    suggested_shortest_pulse_s(camera)));
+  const std::size_t listed = camera.exposure_s.each_s.size();
+  if (listed != 0 && listed != static_cast<std::size_t>(exposures))
+    return broken("number of exposure_s", listed,
+                  fmt::format("must equal the {} exposures", exposures));
+  const double shortest = shortest_run_periods(camera);
+  if (shortest > 0.0 && runs_per_period(shortest) < fewest_cells)
+    return broken("sensor.shortest_pulse_s", *camera.sensor.shortest_pulse_s,
+                  "must fit into the period four times");
+  return std::nullopt;
+}
+
+double suggested_shortest_pulse_s(const Camera& camera) {
+  return 2.0 / (camera.samples * camera.fundamental_frequency_hz);
+}
+
+WaveformSpace waveform_space(const Camera& camera, int exposures, int samples) {
+  const double shortest = shortest_run_periods(camera);
+  const int most = shortest > 0.0 ? std::min(samples, runs_per_period(shortest)) : samples;
+  WaveformSpace space;
+  space.cells = cells_within(most, camera.light.peak_factor);
+  space.repeat = (std::min(samples, fewest_samples) + space.cells - 1) / space.cells;
+  space.exposures = exposures;
+  space.taps = camera.sensor.taps;
+  space.drain = space.taps == 1 || (space.taps > 2 && camera.sensor.drain);
+  space.peak_factor = camera.light.peak_factor;
+  space.equal_duties = camera.sensor.readout == Readout::difference;
+  return space;
+}
+
+std::vector<OperatingPoint> training_points(const Camera& camera) {
+  std::vector<OperatingPoint> all = camera.operating.points();
+  if (all.size() <= 40) return all;
+  const double floor_e_per_s =
+      std::max(1.0, constant_variance_e2_of(camera.sensor)) /
+      camera.exposure_s.of(
+          0, static_cast<int>(std::max<std::size_t>(1, camera.exposure_s.each_s.size())));
+  OperatingRange fewer = camera.operating;
+  fewer.signal_e_per_s = in_between(fewer.signal_e_per_s, 6, 0.0);
+  fewer.ambient_e_per_s = in_between(fewer.ambient_e_per_s, 6, floor_e_per_s);
+  return fewer.points();
+}
+
+double CameraVariant::total_weight() const {
+  double total = 0.0;
+  for (const LightLevel& level : levels) total += level.weight;
+  return total;
+}
+
+std::size_t CameraVariant::usual_levels() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      levels, [](const LightLevel& level) { return level.returns != TrialReturns::two; }));
+}
+
+DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples,
+                                  double two_return_weight) {
+  require(!variants.empty(), "variants", variants.size(), "must hold at least one camera");
+  const Camera& camera = variants.front();
+  camera.validate();
+  require(why_not_optimizable(camera, exposures));
+  DesignProblem problem;
+  problem.space = waveform_space(camera, exposures, samples);
+  problem.operating = camera.operating;
+  problem.shortest_run_periods = shortest_run_periods(camera);
+  problem.binary_modulation = camera.light.binary;
+  problem.binary_demodulation = camera.sensor.binary;
+  if (const auto& later = camera.operating.multipath)
+    problem.later = LaterTrials{*later, camera.range_m(), {}};
+  if (!may_tell_two_returns(camera, exposures)) two_return_weight = 0.0;
+  if (problem.later && two_return_weight > 0.0)
+    problem.later_as_two = decoded_as_two(*problem.later, problem.space.samples());
+  for (const Camera& variant : variants) {
+    variant.validate();
+    require(variant.sensor.taps == camera.sensor.taps &&
+                variant.sensor.readout == camera.sensor.readout,
+            "variants", variant.name, "must have the taps and the readout of the first");
+    const int samples_here = problem.space.samples();
+    const int finer = camera.band_limited() ? 1 : std::clamp(camera.samples / samples_here, 1, 4);
+    problem.variants.push_back({SampledCamera(variant, samples_here, exposures),
+                                SampledCamera(variant, finer * samples_here, exposures),
+                                levels_of(variant, camera.operating.multipath, two_return_weight)});
+  }
+  return problem;
+}
+
+}  // namespace tofsmith

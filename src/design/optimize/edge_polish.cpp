@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/optimize/edge_polish.hpp"
+
+#include <algorithm>
+
+#include "design/optimize/optimize_pool.hpp"
+#include "design/optimize/stochastic_gradient.hpp"
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+using EdgeGradient = std::vector<std::vector<std::vector<double>>>;
+
+/// Sample in which a switching time lies.
+Eigen::Index sample_at(double time, int samples) {
+  return std::min<Eigen::Index>(samples - 1, static_cast<Eigen::Index>(wrap(time, 1.0) * samples));
+}
+
+std::size_t before(std::size_t i, std::size_t count) { return (i + count - 1) % count; }
+
+/// An edge that moves later by t lights its sample by N t times the level, and dims the whole
+/// waveform where that makes the light longer.
+std::vector<double> pull_back_light(const SwitchedLabels& light, const Eigen::VectorXd& gradient,
+                                    const Eigen::VectorXd& modulation) {
+  const auto samples = static_cast<int>(gradient.size());
+  const double level = 1.0 / light.share(1);
+  const double by_level = gradient.dot(modulation) * level;  // all of it, per duty
+  std::vector<double> result;
+  for (std::size_t i = 0; i < light.runs(); ++i) {
+    const double longer = light.label[i] == 1 ? -1.0 : 1.0;  // a fall, moved later
+    result.push_back(longer *
+                     (samples * level * gradient[sample_at(light.at[i], samples)] - by_level));
+  }
+  return result;
+}
+
+/// An edge that moves later gives its sample to the class before it.
+std::vector<double> pull_back_gates(const WaveformSpace& space, const SwitchedLabels& gates,
+                                    const Eigen::MatrixXd& gradient) {
+  const auto by_class = [&](int label, Eigen::Index n) {
+    return label < space.taps ? gradient(n, label) : 0.0;
+  };
+  std::vector<double> result;
+  for (std::size_t i = 0; i < gates.runs(); ++i) {
+    const Eigen::Index n = sample_at(gates.at[i], space.samples());
+    result.push_back(space.samples() * (by_class(gates.label[before(i, gates.runs())], n) -
+                                        by_class(gates.label[i], n)));
+  }
+  return result;
+}
+
+/// Lengthens runs shorter than `shortest` on both sides. @return whether all are long enough
+bool lengthen_short_runs(SwitchedLabels& labels, double shortest) {
+  constexpr int rounds = 20;
+  const std::size_t count = labels.runs();
+  for (int round = 0; round < rounds; ++round) {
+    bool good = true;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double missing = shortest - labels.length(i);
+      if (missing <= 0.0) continue;
+      good = false;
+      labels.at[i] -= 0.5001 * missing;
+      labels.at[(i + 1) % count] += 0.5001 * missing;
+    }
+    if (good) return true;
+  }
+  return false;
+}
+
+/// Lengthens all pulses alike until the light needs no more than the peak.
+void lengthen_pulses(SwitchedLabels& light, double peak_factor) {
+  const double missing = 1.0 / peak_factor - light.share(1);
+  if (missing <= 0.0) return;
+  const double each = missing / (0.5 * static_cast<double>(light.runs()));
+  const SwitchedLabels before_it = light;
+  for (std::size_t i = 0; i < light.runs(); ++i)
+    light.at[i] += (before_it.label[i] == 1 ? -0.5 : 0.5) * each * (1.0 + 1e-12);
+}
+
+bool is_playable(const SwitchedLabels& labels, double shortest) {
+  for (std::size_t i = 0; i < labels.runs(); ++i)
+    if (labels.length(i) < shortest) return false;
+  return true;
+}
+
+/// Edges moved along the gradient, then back to what can be played; unmoved where that fails.
+void step_edges(SwitchedLabels& labels, const std::vector<double>& gradient, double rate,
+                double shortest, double light_peak, Adam& adam) {
+  if (labels.runs() == 0) return;
+  const SwitchedLabels unmoved = labels;
+  Eigen::MatrixXd times =
+      Eigen::Map<const Eigen::VectorXd>(labels.at.data(), std::ssize(labels.at));
+  adam.step(times, Eigen::Map<const Eigen::VectorXd>(gradient.data(), std::ssize(gradient)), rate);
+  labels.at.assign(times.data(), times.data() + times.size());
+  constexpr int rounds = 5;
+  bool good = false;
+  for (int round = 0; round < rounds && !good; ++round) {
+    good = lengthen_short_runs(labels, shortest);
+    if (light_peak > 0.0) lengthen_pulses(labels, light_peak);
+    good = good && is_playable(labels, shortest);
+  }
+  if (!good) labels = unmoved;
+}
+
+}  // namespace
+
+EdgeGradient pull_back_to_edges(const WaveformSpace& space, const SwitchedCode& code,
+                                const SampledCode& gradient) {
+  EdgeGradient result(2);
+  const SampledCode sampled = sampled_on(space, code);
+  for (std::size_t e = 0; e < code.light.size(); ++e) {
+    const auto column = static_cast<Eigen::Index>(e);
+    result[0].push_back(pull_back_light(code.light[e], gradient.modulation.col(column),
+                                        sampled.modulation.col(column)));
+  }
+  for (std::size_t e = 0; e < code.gates.size(); ++e)
+    result[1].push_back(pull_back_gates(
+        space, code.gates[e],
+        gradient.demodulation.middleCols(static_cast<Eigen::Index>(e) * space.taps, space.taps)));
+  return result;
+}
+
+SwitchedCode polish_edges(const DesignProblem& problem, SwitchedCode code, int steps,
+                          int trials_per_step, std::uint64_t seed, std::uint64_t work_item,
+                          SharedProgress* progress) {
+  constexpr double least_run = 1e-3;   // periods: edges do not pass through each other
+  constexpr double first_rate = 0.15;  // cells per step
+  const WaveformSpace& space = problem.space;
+  const double shortest = std::max(least_run, problem.shortest_run_periods);
+  if (space.equal_duties && code.light.empty()) return code;
+  constexpr double doubt = 3.0;
+  StochasticGradient gradient(problem, trials_per_step, RandomStream(seed, work_item, 0xffffffffu));
+  std::vector<Adam> light(code.light.size()), gates(code.gates.size());
+  for (int step = 0; step < steps; ++step) {
+    if (progress) progress->add();
+    const double done = static_cast<double>(step) / steps;
+    RandomStream random(seed, work_item, static_cast<std::uint32_t>(step));
+    const SampledCode by_samples = gradient.at(sampled_on(space, code), doubt, random);
+    const EdgeGradient by_edges = pull_back_to_edges(space, code, by_samples);
+    const double rate = first_rate / space.cells * std::max(0.03, 1.0 - done);
+    for (std::size_t e = 0; e < light.size(); ++e)
+      step_edges(code.light[e], by_edges[0][e], rate, shortest, space.peak_factor, light[e]);
+    if (space.equal_duties) continue;
+    for (std::size_t e = 0; e < gates.size(); ++e)
+      step_edges(code.gates[e], by_edges[1][e], rate, shortest, 0.0, gates[e]);
+  }
+  return code;
+}
+
+}  // namespace tofsmith

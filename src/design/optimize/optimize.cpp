@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/design/optimize.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "core/shared/shared_progress.hpp"
+#include "design/designed_code.hpp"
+#include "design/optimize/binarization.hpp"
+#include "design/optimize/edge_polish.hpp"
+#include "design/optimize/optimize_pool.hpp"
+#include "design/optimize/optimize_starts.hpp"
+#include "design/optimize/optimized_code.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/decode/multipath_decoder.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr std::uint64_t polish_key = 103;
+
+/// Whether two returns can be told apart, well or badly.
+bool tells_two_returns(const CodeSet& code, const Camera& camera) {
+  return !TwoReturnDecoder::why_not_decodable(
+      make_decoding_table(ForwardModel(code, camera), camera));
+}
+
+/// Which of the pool are made playable: the best and, on cameras that reckon with second returns,
+/// the best few of the others that can be decoded as two returns.
+std::vector<PoolEntry> entries_to_play(const DesignProblem& problem, const OptimizePool& pool,
+                                       const Camera& camera, const OptimizeOptions& options,
+                                       const Sharpness& sharpness) {
+  constexpr std::size_t most_others = 3;
+  const std::vector<PoolEntry>& all = pool.entries();
+  const std::size_t best = std::min(static_cast<std::size_t>(options.refined), all.size());
+  std::vector<PoolEntry> chosen(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(best));
+  if (!camera.operating.multipath) return chosen;
+  for (std::size_t k = best; k < all.size() && chosen.size() < best + most_others; ++k) {
+    const SwitchedCode code =
+        binarized(problem, render(problem.space, all[k].parameters, sharpness), pool.judge());
+    if (tells_two_returns(code_set("optimized", problem.space, code, camera.samples), camera))
+      chosen.push_back(all[k]);
+  }
+  return chosen;
+}
+
+/// How the codes were searched for.
+SearchRecord record_of(const OptimizePool& pool, std::int64_t steps) {
+  return {.work_unit = "descents",
+          .error_name = "smallest depth error so far, by the search's own trials",
+          .steps = pool.history(),
+          .account = fmt::format("{} gradient steps", steps)};
+}
+
+/// The best of the pool as codes that can be played: switched, and with polished edges too.
+std::vector<Candidate> playable_candidates(const DesignProblem& problem, OptimizePool& pool,
+                                           const Camera& camera, const OptimizeOptions& options,
+                                           const Progress& progress) {
+  const WaveformSpace& space = problem.space;
+  Sharpness sharpness{6.0, 8.0};
+  if (!problem.binary_modulation) sharpness.modulation = 1.0;
+  if (!problem.binary_demodulation) sharpness.demodulation = 1.0;
+  const std::vector<PoolEntry> entries = entries_to_play(problem, pool, camera, options, sharpness);
+  const auto count = std::ssize(entries);
+  std::vector<SwitchedCode> codes(2 * static_cast<std::size_t>(count));
+  SharedProgress shared(progress, static_cast<double>(count) * options.polish_steps, "edges");
+  parallel_for(count, [&](std::int64_t i) {
+    const auto k = static_cast<std::size_t>(i);
+    codes[2 * k] =
+        binarized(problem, render(space, entries[k].parameters, sharpness), pool.judge());
+    codes[2 * k + 1] = codes[2 * k];
+    if (options.polish)
+      codes[2 * k + 1] = polish_edges(
+          problem, codes[2 * k], options.polish_steps, options.trials_per_step, options.seed,
+          combine_keys(polish_key, static_cast<std::uint64_t>(i)), &shared);
+  });
+  const std::string name = optimized_name(space.exposures);
+  std::vector<Candidate> candidates;
+  for (std::size_t k = 0; k < codes.size(); ++k) {
+    const bool polished = k % 2 == 1;
+    if (polished && !options.polish) continue;
+    const std::string& start = entries[k / 2].start;
+    pool.record(pool.judge().score(sampled_on(space, codes[k])).log_error_bin);
+    candidates.push_back(
+        {.code = signed_by(code_set(name, space, codes[k], camera.samples), "optimize", camera,
+                           options.seed),
+         .method = "optimize",
+         .message =
+             fmt::format("a descent from {}{}{}", start, polished ? ", with polished edges" : "",
+                         pool.ended_early() ? "; hops ended early, without gain" : "")});
+    candidates.back().per_measurement = reports_of(candidates.back().code, start);
+  }
+  return candidates;
+}
+
+}  // namespace
+
+void OptimizeOptions::validate() const { check_fields(*this, "OptimizeOptions::"); }
+
+std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
+                                const OptimizeOptions& options, std::span<const CodeSet> also,
+                                const Progress& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  options.validate();
+  const DesignProblem problem =
+      make_design_problem(variants, exposures, options.samples, options.two_return_weight);
+  const Camera& camera = variants.front();
+
+  // 1. Go downhill from many codes, from changed copies of the best, and once more from the best.
+  OptimizePool pool(problem, options, camera.range_m() / problem.space.samples());
+  const ProgressParts parts(progress, {40, 35, 10, 15});
+  pool.run_starts(also, parts[0]);
+  pool.run_hops(parts[1]);
+  pool.refine(parts[2]);
+
+  // 2. Make the best of them playable.
+  std::vector<Candidate> candidates = playable_candidates(problem, pool, camera, options, parts[3]);
+
+  // 3. Say how they were found.
+  const std::int64_t polished =
+      options.polish ? std::ssize(candidates) / 2 * options.polish_steps : 0;
+  const std::int64_t steps = pool.steps() + polished;
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  for (Candidate& c : candidates) {
+    c.iterations = static_cast<int>(std::min<std::int64_t>(steps, std::numeric_limits<int>::max()));
+    c.seconds = seconds;
+    c.search = record_of(pool, steps);
+  }
+  report(progress, 1.0, "done");
+  return candidates;
+}
+
+std::vector<Candidate> optimize(const Camera& camera, int exposures, const OptimizeOptions& options,
+                                std::span<const CodeSet> also, const Progress& progress) {
+  return optimize(std::span<const Camera>(&camera, 1), exposures, options, also, progress);
+}
+
+}  // namespace tofsmith

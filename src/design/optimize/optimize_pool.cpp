@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/optimize/optimize_pool.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "design/optimize/optimize_starts.hpp"
+#include "design/optimize/stochastic_gradient.hpp"
+#include "tofsmith/core/parallel.hpp"
+
+namespace tofsmith {
+namespace {
+
+Sharpness sharpness_at(const DescentSchedule& schedule, double done) {
+  const double along = std::max(0.0, (done - schedule.soft_share) / (1.0 - schedule.soft_share));
+  return {std::pow(schedule.final_sharpness.modulation, along),
+          std::pow(schedule.final_sharpness.demodulation, along)};
+}
+
+constexpr double softness = 1.2;
+constexpr double noise = 0.3;
+
+int below(int count, RandomStream& random) {
+  return std::min(count - 1, static_cast<int>(random.uniform() * count));
+}
+
+/// Gates of exposure e, `cells` later.
+void rotate_gates(const WaveformSpace& space, int exposure, int cells,
+                  WaveformParameters& parameters) {
+  auto gates = parameters.demodulation.middleCols(exposure * space.columns(), space.columns());
+  const Eigen::MatrixXd before = gates;
+  for (int c = 0; c < space.cells; ++c) gates.row((c + cells) % space.cells) = before.row(c);
+}
+
+// Work items of one seed: no two phases share their random numbers.
+enum Phase : std::uint64_t { judging = 1, starting, hopping, refining, drawing_starts };
+constexpr std::size_t together = 10;  // descents before the pool is sorted
+constexpr std::size_t hops_together = 5;
+constexpr std::size_t largest_pool = 24;
+constexpr double refinement_softness = 1.5;
+
+std::uint64_t work_item(std::uint64_t phase, std::size_t item) {
+  return combine_keys(phase, static_cast<std::uint64_t>(item));
+}
+
+int trials_per_level(const DesignProblem& problem, const OptimizeOptions& options) {
+  constexpr int fewest = 100;
+  const std::size_t levels = problem.variants.front().levels.size();
+  return std::max(fewest, options.pool_trials / static_cast<int>(levels));
+}
+
+}  // namespace
+
+void Adam::step(Eigen::MatrixXd& values, const Eigen::MatrixXd& gradient, double rate) {
+  if (mean_.size() == 0) {
+    mean_ = Eigen::ArrayXXd::Zero(values.rows(), values.cols());
+    square_ = mean_;
+  }
+  mean_power_ *= mean_decay_;
+  square_power_ *= square_decay_;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    const double g = std::isfinite(gradient(i)) ? gradient(i) : 0.0;
+    mean_(i) = mean_decay_ * mean_(i) + (1.0 - mean_decay_) * g;
+    square_(i) = square_decay_ * square_(i) + (1.0 - square_decay_) * g * g;
+    const double deviation = std::sqrt(square_(i) / (1.0 - square_power_));
+    values(i) -= rate * (mean_(i) / (1.0 - mean_power_)) / (deviation + 1e-12);
+  }
+}
+
+namespace {
+// Of streams whose other trials are steps.
+constexpr std::uint32_t noise_in_store = 0xffffffffu;
+}  // namespace
+
+WaveformParameters descend(const DesignProblem& problem, WaveformParameters parameters,
+                           const DescentSchedule& schedule, std::uint64_t seed,
+                           std::uint64_t work_item, SharedProgress* progress) {
+  constexpr double largest_modulation = 4.0, largest_demodulation = 3.0;
+  StochasticGradient objective(problem, schedule.trials_per_step,
+                               RandomStream(seed, work_item, noise_in_store));
+  Adam modulation, demodulation;
+  for (int step = 0; step < schedule.steps; ++step) {
+    if (progress) progress->add();
+    const double done = static_cast<double>(step) / schedule.steps;
+    const Sharpness sharpness = sharpness_at(schedule, done);
+    const double doubt =
+        schedule.doubt_begin * std::pow(schedule.doubt_end / schedule.doubt_begin, done);
+    RandomStream random(seed, work_item, static_cast<std::uint32_t>(step));
+    const SampledCode code = render(problem.space, parameters, sharpness);
+    const WaveformParameters gradient =
+        pull_back(problem.space, code, sharpness, objective.at(code, doubt, random));
+    // Sharper waveforms move further with the same parameters.
+    const double rate = schedule.rate * (done < 0.7 ? 1.0 : std::max(0.05, (1.0 - done) / 0.3));
+    modulation.step(parameters.modulation, gradient.modulation,
+                    rate / std::sqrt(sharpness.modulation));
+    demodulation.step(parameters.demodulation, gradient.demodulation,
+                      rate / std::sqrt(sharpness.demodulation));
+    parameters.modulation =
+        parameters.modulation.cwiseMax(-largest_modulation).cwiseMin(largest_modulation);
+    parameters.demodulation =
+        parameters.demodulation.cwiseMax(-largest_demodulation).cwiseMin(largest_demodulation);
+  }
+  return parameters;
+}
+
+WaveformParameters softened(WaveformParameters parameters, double limit) {
+  for (Eigen::MatrixXd* values : {&parameters.modulation, &parameters.demodulation})
+    *values = values->cwiseMax(-limit).cwiseMin(limit);
+  return parameters;
+}
+
+PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
+              RandomStream& random) {
+  const WaveformSpace& space = problem.space;
+  const int columns = space.columns();
+  const auto entries = static_cast<int>(pool.size());
+  const int base = random.uniform() < 0.6 ? 0 : below(std::min(3, entries), random);
+  PoolEntry next = pool[static_cast<std::size_t>(base)];
+  next.parameters = softened(std::move(next.parameters), softness);
+  const int e = below(space.exposures, random);
+  const double kind = random.uniform();
+  if (kind < 0.3) {
+    const WaveformParameters pair = softened(random_pair(problem, random), softness);
+    next.parameters.modulation.col(e) = pair.modulation;
+    next.parameters.demodulation.middleCols(e * columns, columns) = pair.demodulation;
+  } else if (kind < 0.6) {
+    const WaveformParameters donor =
+        softened(pool[static_cast<std::size_t>(below(entries, random))].parameters, softness);
+    const int from = below(space.exposures, random);
+    next.parameters.modulation.col(e) = donor.modulation.col(from);
+    next.parameters.demodulation.middleCols(e * columns, columns) =
+        donor.demodulation.middleCols(from * columns, columns);
+  }
+  if (kind >= 0.3 && kind < 0.8)
+    rotate_gates(space, e, below(space.cells, random), next.parameters);
+  for (Eigen::MatrixXd* values : {&next.parameters.modulation, &next.parameters.demodulation})
+    for (double& value : values->reshaped()) value += noise * random.normal();
+  return next;
+}
+
+OptimizePool::OptimizePool(const DesignProblem& problem, const OptimizeOptions& options,
+                           double bin_m)
+    : problem_(&problem),
+      options_(options),
+      bin_m_(bin_m),
+      judge_(problem, trials_per_level(problem, options), options.seed,
+             work_item(Phase::judging, 0)) {}
+
+void OptimizePool::record(double log_error_bin) {
+  const double error_m = std::exp(log_error_bin) * bin_m_;
+  const double best_m = history_.empty() ? error_m : history_.back().error_m;
+  history_.push_back({static_cast<double>(history_.size() + 1), std::min(best_m, error_m)});
+}
+
+/// Replaces every entry by where a descent from it leads; its origin moves to the best rotation.
+void OptimizePool::descend_all(std::vector<PoolEntry>& entries, int steps, double rate,
+                               std::uint64_t phase, std::size_t first_item,
+                               SharedProgress& progress) const {
+  DescentSchedule schedule;
+  schedule.steps = steps;
+  schedule.rate = rate;
+  schedule.trials_per_step = options_.trials_per_step;
+  if (!problem_->binary_modulation) schedule.final_sharpness.modulation = 1.0;
+  if (!problem_->binary_demodulation) schedule.final_sharpness.demodulation = 1.0;
+  parallel_for(std::ssize(entries), [&](std::int64_t i) {
+    PoolEntry& entry = entries[static_cast<std::size_t>(i)];
+    entry.parameters =
+        descend(*problem_, std::move(entry.parameters), schedule, options_.seed,
+                work_item(phase, first_item + static_cast<std::size_t>(i)), &progress);
+    entry.score = judge_.score(render(problem_->space, entry.parameters, schedule.final_sharpness));
+    entry.parameters = rotated(problem_->space, entry.parameters, entry.score.rotation_bin);
+    entry.score.rotation_bin = 0;
+  });
+}
+
+void OptimizePool::keep(std::vector<PoolEntry> entries) {
+  for (PoolEntry& entry : entries) {
+    record(entry.score.log_error_bin);
+    entries_.push_back(std::move(entry));
+  }
+  std::stable_sort(entries_.begin(), entries_.end(), [](const PoolEntry& a, const PoolEntry& b) {
+    return a.score.log_error_bin < b.score.log_error_bin;
+  });
+  if (entries_.size() > largest_pool) entries_.resize(largest_pool);
+}
+
+void OptimizePool::run_starts(std::span<const CodeSet> also, const Progress& progress) {
+  const auto count = static_cast<std::size_t>(options_.starts);
+  SharedProgress shared(progress, static_cast<double>(count) * options_.steps_per_start, "starts");
+  for (std::size_t first = 0; first < count; first += together) {
+    std::vector<PoolEntry> entries;
+    for (std::size_t i = first; i < std::min(count, first + together); ++i) {
+      RandomStream random(options_.seed, work_item(Phase::drawing_starts, i));
+      OptimizeStart start = optimize_start(*problem_, also, static_cast<int>(i), random);
+      entries.push_back({std::move(start.parameters), {}, std::move(start.name)});
+    }
+    descend_all(entries, options_.steps_per_start, 0.08, Phase::starting, first, shared);
+    steps_ += std::ssize(entries) * options_.steps_per_start;
+    keep(std::move(entries));
+  }
+}
+
+void OptimizePool::run_hops(const Progress& progress) {
+  const auto count = static_cast<std::size_t>(options_.hops);
+  int without_gain = 0;
+  SharedProgress shared(progress, static_cast<double>(count) * options_.steps_per_hop, "hops");
+  for (std::size_t first = 0; first < count; first += hops_together) {
+    std::vector<PoolEntry> entries;
+    for (std::size_t i = first; i < std::min(count, first + hops_together); ++i) {
+      RandomStream random(options_.seed, work_item(Phase::hopping, i), 1u << 30);
+      entries.push_back(hop(*problem_, entries_, random));
+    }
+    descend_all(entries, options_.steps_per_hop, 0.08, Phase::hopping, first, shared);
+    steps_ += std::ssize(entries) * options_.steps_per_hop;
+    without_gain += static_cast<int>(entries.size());
+    const double best_before = entries_.front().score.log_error_bin;
+    keep(std::move(entries));
+    if (entries_.front().score.log_error_bin < best_before) without_gain = 0;
+    if (options_.patience > 0 && without_gain >= options_.patience &&
+        first + hops_together < count) {
+      ended_early_ = true;
+      break;
+    }
+  }
+}
+
+void OptimizePool::refine(const Progress& progress) {
+  if (options_.refinement_steps == 0) return;
+  std::vector<PoolEntry> entries(
+      entries_.begin(),
+      entries_.begin() + std::min<std::ptrdiff_t>(options_.refined, std::ssize(entries_)));
+  for (PoolEntry& entry : entries)
+    entry.parameters = softened(std::move(entry.parameters), refinement_softness);
+  SharedProgress shared(progress, static_cast<double>(entries.size()) * options_.refinement_steps,
+                        "refinement");
+  descend_all(entries, options_.refinement_steps, 0.03, Phase::refining, 0, shared);
+  steps_ += std::ssize(entries) * options_.refinement_steps;
+  keep(std::move(entries));
+}
+
+}  // namespace tofsmith

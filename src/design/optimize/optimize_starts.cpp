@@ -1,0 +1,243 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/optimize/optimize_starts.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/shared/random.hpp"
+#include "design/optimize/design_problem.hpp"
+#include "tofsmith/code/code_set.hpp"
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+namespace {
+
+/// Sum of harmonics 1 .. highest with normal coefficients, at the samples.
+Eigen::VectorXd smooth_function(int samples, int highest_frequency, RandomStream& random) {
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(samples);
+  for (int f = 1; f <= highest_frequency; ++f) {
+    const double a = random.normal(), b = random.normal();
+    for (int n = 0; n < samples; ++n) {
+      const double angle = 2.0 * std::numbers::pi * f * (n + 0.5) / samples;
+      values[n] += a * std::cos(angle) + b * std::sin(angle);
+    }
+  }
+  return values;
+}
+
+/// A code of zeros, to be written exposure by exposure.
+SampledCode empty_code(const WaveformSpace& space) {
+  return {Eigen::MatrixXd::Zero(space.samples(), space.exposures),
+          Eigen::MatrixXd::Zero(space.samples(), space.exposures * space.taps)};
+}
+
+/// Highest harmonic that the camera lets through well enough to be of use.
+int highest_useful_frequency(const DesignProblem& problem) {
+  constexpr double useful = 0.02;  // of the amplitude, behind both arms
+  constexpr int most = 14;
+  int highest = 1;
+  for (int n = 1; n <= std::min(most, problem.space.cells / 4); ++n)
+    if (std::abs(problem.variants.front().camera.transfer(n)) > useful) highest = n;
+  return highest;
+}
+
+/// `count` equal pulses, together on for `duty` of the period.
+void write_pulses(const WaveformSpace& space, int count, double duty, int exposure,
+                  SampledCode& code) {
+  code.modulation.col(exposure) =
+      pulse_train(count, std::min(1.0, duty)).cell_averages(space.samples());
+}
+
+/// Taps open in turn, `frequency` times per period; one tap, half the time.
+void write_turns(const WaveformSpace& space, int frequency, double phase, int exposure,
+                 SampledCode& code) {
+  const int turns = std::max(2, space.taps), samples = space.samples();
+  for (int n = 0; n < samples; ++n) {
+    const double x = frequency * (n + 0.5) / samples + phase;
+    const int tap = static_cast<int>((x - std::floor(x)) * turns);
+    if (tap < space.taps) code.demodulation(n, exposure * space.taps + tap) = 1.0;
+  }
+}
+
+/// The tap that is open is the one of the largest of random smooth functions.
+void write_smooth_gates(const WaveformSpace& space, int highest_frequency, int exposure,
+                        RandomStream& random, SampledCode& code) {
+  const int choices = std::max(2, space.taps), samples = space.samples();
+  Eigen::MatrixXd functions(samples, choices);
+  for (int c = 0; c < choices; ++c)
+    functions.col(c) = smooth_function(samples, highest_frequency, random);
+  for (int n = 0; n < samples; ++n) {
+    Eigen::Index tap = 0;
+    functions.row(n).maxCoeff(&tap);
+    if (tap < space.taps) code.demodulation(n, exposure * space.taps + tap) = 1.0;
+  }
+}
+
+/// Light where a random smooth function is largest, as long as the peak demands.
+void write_smooth_light(const WaveformSpace& space, int highest_frequency, int exposure,
+                        RandomStream& random, SampledCode& code) {
+  const int samples = space.samples();
+  const Eigen::VectorXd values = smooth_function(samples, highest_frequency, random);
+  std::vector<double> sorted(values.begin(), values.end());
+  std::sort(sorted.rbegin(), sorted.rend());
+  const auto on = std::clamp<std::size_t>(
+      static_cast<std::size_t>(std::ceil(samples / space.peak_factor - 1e-9)), 1, sorted.size());
+  const double threshold = sorted[on - 1];
+  for (int n = 0; n < samples; ++n)
+    if (values[n] >= threshold)
+      code.modulation(n, exposure) = static_cast<double>(samples) / static_cast<double>(on);
+}
+
+constexpr double start_scale = 1.5;  // parameters of a waveform that is on
+constexpr double start_noise = 0.05;
+constexpr double rough_noise = 0.6;
+
+void add_noise(WaveformParameters& parameters, double deviation, RandomStream& random) {
+  for (Eigen::MatrixXd* values : {&parameters.modulation, &parameters.demodulation})
+    for (double& value : values->reshaped()) value += deviation * random.normal();
+}
+
+/// Families with as many exposures as the space, built for its peak.
+std::vector<CodeSet> families_of(const WaveformSpace& space) {
+  std::vector<CodeSet> codes;
+  if (space.taps > 2) return codes;
+  std::vector<std::string> names = {fmt::format("hamiltonian-k{}", space.exposures),
+                                    fmt::format("pulsed-multifrequency-k{}", space.exposures),
+                                    fmt::format("gray-k{}", space.exposures)};
+  if (space.exposures == 4 || space.exposures == 5)
+    names.push_back(fmt::format("pulsed-multifrequency-k{}-q5", space.exposures));
+  const FamilyOptions options{.samples = 240, .peak_factor = space.peak_factor};
+  for (const std::string& name : names) {
+    if (why_no_family(name, options)) continue;  // no such member: one start fewer
+    const CodeSet code = make_family(name, options);
+    codes.push_back(space.taps == 2 ? code.with_two_buckets() : code);
+  }
+  return codes;
+}
+
+OptimizeStart start_at(const WaveformSpace& space, const CodeSet& code, double noise,
+                       RandomStream& random) {
+  OptimizeStart start{code.name(), parameters_near(space, sampled_on(space, code), start_scale)};
+  add_noise(start.parameters, noise, random);
+  return start;
+}
+
+/// Exposures at several frequencies: the first ones at the lowest, so that depth is unique, the
+/// rest at `high` with their phases spread evenly, or at random frequencies and phases if that is
+/// 0.
+SampledCode mixture_of_frequencies(const DesignProblem& problem, int high, RandomStream& random) {
+  const WaveformSpace& space = problem.space;
+  const int needed = space.taps >= 2 ? (space.taps == 2 ? 2 : 1) : (space.exposures >= 4 ? 3 : 2);
+  const int highest = std::min(12, highest_useful_frequency(problem));
+  const double spread = space.taps >= 2 ? 0.5 : 1.0;  // buckets see phases half a period apart too
+  SampledCode code = empty_code(space);
+  for (int e = 0; e < space.exposures; ++e) {
+    int frequency = 1;
+    double phase = static_cast<double>(e) / needed * spread;
+    if (e >= needed) {
+      const int others = space.exposures - needed;
+      frequency =
+          high > 0 ? high : 2 + static_cast<int>(random.uniform() * std::max(1, highest - 1));
+      phase = high == 0 ? random.uniform() : (e - needed) * (others == 2 ? 0.25 : spread / others);
+    }
+    const double duty = std::max(1.0 / space.peak_factor, space.taps > 2 ? 0.5 / space.taps : 0.2);
+    write_pulses(space, frequency, duty, e, code);
+    write_turns(space, frequency, phase, e, code);
+  }
+  return code;
+}
+
+SampledCode random_gates(const DesignProblem& problem, bool random_light, RandomStream& random) {
+  const WaveformSpace& space = problem.space;
+  const int highest = std::min(9, highest_useful_frequency(problem));
+  const auto any = [&] { return 1 + static_cast<int>(random.uniform() * highest); };
+  SampledCode code = empty_code(space);
+  for (int e = 0; e < space.exposures; ++e) {
+    write_smooth_gates(space, any(), e, random, code);
+    if (random_light)
+      write_smooth_light(space, any(), e, random, code);
+    else
+      write_pulses(space, 1, 1.0 / space.peak_factor, e, code);
+  }
+  return code;
+}
+
+}  // namespace
+
+SampledCode sampled_on(const WaveformSpace& space, const CodeSet& code) {
+  return {code.resampled(space.samples()).modulation_samples(),
+          code.resampled(space.samples()).demodulation_samples()};
+}
+
+bool fits_space(const WaveformSpace& space, const CodeSet& code) {
+  return code.exposures() == space.exposures && code.taps() == space.taps;
+}
+
+WaveformParameters random_pair(const DesignProblem& problem, RandomStream& random) {
+  WaveformSpace one = problem.space;
+  one.exposures = 1;
+  SampledCode code = empty_code(one);
+  const int highest = highest_useful_frequency(problem);
+  const int frequency = 1 + static_cast<int>(random.uniform() * std::min(9, highest));
+  const double kind = random.uniform();
+  const double duty = std::max(1.0 / one.peak_factor, one.taps > 2 ? 0.5 / one.taps : 0.2);
+  if (kind < 0.4) {
+    write_pulses(one, frequency, duty, 0, code);
+    write_turns(one, frequency, random.uniform(), 0, code);
+  } else {
+    write_smooth_gates(one, frequency, 0, random, code);
+    if (kind < 0.7)
+      write_pulses(one, 1, 1.0 / one.peak_factor, 0, code);
+    else
+      write_smooth_light(one, 1 + static_cast<int>(random.uniform() * std::min(9, highest)), 0,
+                         random, code);
+  }
+  return parameters_near(one, code, start_scale);
+}
+
+OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeSet> also, int index,
+                             RandomStream& random) {
+  const WaveformSpace& space = problem.space;
+  std::vector<CodeSet> codes;
+  for (const CodeSet& code : also)
+    if (fits_space(space, code)) codes.push_back(code);
+  for (CodeSet& family : families_of(space))
+    if (std::ranges::none_of(codes,
+                             [&](const CodeSet& code) { return code.name() == family.name(); }))
+      codes.push_back(std::move(family));
+  const auto count = static_cast<int>(codes.size());
+  if (index < count)
+    return start_at(space, codes[static_cast<std::size_t>(index)], start_noise, random);
+
+  const int kind = (index - count) % 5, cycle = (index - count) / 5;
+  if (kind == 4 && count > 0) {
+    OptimizeStart start =
+        start_at(space, codes[static_cast<std::size_t>(cycle % count)], rough_noise, random);
+    start.name += " with noise";
+    return start;
+  }
+  const int highest = highest_useful_frequency(problem);
+  const int high = 2 + cycle % std::max(1, std::min(12, highest) - 1);
+  SampledCode code;
+  std::string name;
+  if (kind == 0) {
+    name = fmt::format("frequencies 1 and {}", high);
+    code = mixture_of_frequencies(problem, high, random);
+  } else if (kind == 2) {
+    name = "mixture of frequencies";
+    code = mixture_of_frequencies(problem, 0, random);
+  } else {
+    name = kind == 1 ? "random gates, one pulse" : "random gates, random light";
+    code = random_gates(problem, /*random_light=*/kind != 1, random);
+  }
+  OptimizeStart start{name, parameters_near(space, code, start_scale)};
+  add_noise(start.parameters, start_noise, random);
+  return start;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/optimize/optimized_code.hpp"
+
+#include <fmt/format.h>
+
+#include "design/judge.hpp"
+#include "tofsmith/simulate/robustness.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// The camera, and with DesignOptions::robust what its band may be instead: other perturbations
+/// change the code or the taps, not what the gradients go through.
+std::vector<Camera> variants_of(const Camera& camera, const DesignOptions& options) {
+  std::vector<Camera> variants{camera};
+  if (options.robust)
+    for (PerturbedCamera& perturbed : perturbations(camera, {.peak = 0.0, .tap_mismatch = 0.0}))
+      variants.push_back(std::move(perturbed.camera));
+  return variants;
+}
+
+}  // namespace
+
+std::vector<int> optimizable_exposures(const Camera& camera, const DesignOptions& options) {
+  if (!options.exposures.empty()) return options.exposures;
+  return suggested_exposures(camera, DesignMethod::optimize);
+}
+
+std::string optimized_name(int exposures) { return fmt::format("optimized-k{}", exposures); }
+
+std::vector<Candidate> optimized_candidates(const Camera& camera, int exposures,
+                                            const DesignOptions& options,
+                                            const std::vector<Candidate>& starts,
+                                            const Progress& progress) {
+  std::vector<CodeSet> also;
+  for (const Candidate& c : starts)
+    if (c.code.exposures() == exposures) also.push_back(c.code);
+  OptimizeOptions search = options.optimize;
+  search.seed = search_seed(options);
+  std::vector<Candidate> candidates =
+      optimize(variants_of(camera, options), exposures, search, also, progress);
+  for (Candidate& c : candidates) c.code.provenance.seed = options.seed;
+  return candidates;
+}
+
+}  // namespace tofsmith

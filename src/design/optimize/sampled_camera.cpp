@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/optimize/sampled_camera.hpp"
+
+#include "design/grid_transfer.hpp"
+#include "tofsmith/camera/forward_model.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Contrast below 1 mixes the taps of an exposure: C x_j + (1 - C) / t sum_k x_k.
+Eigen::MatrixXd mixing_matrix(int exposures, int taps, double contrast) {
+  Eigen::MatrixXd mixing = Eigen::MatrixXd::Zero(exposures * taps, exposures * taps);
+  for (int e = 0; e < exposures; ++e)
+    mixing.block(e * taps, e * taps, taps, taps) =
+        contrast * Eigen::MatrixXd::Identity(taps, taps) +
+        Eigen::MatrixXd::Constant(taps, taps, (1.0 - contrast) / taps);
+  return mixing;
+}
+
+}  // namespace
+
+SampledCamera::SampledCamera(const Camera& camera, int samples, int exposures)
+    : transform_(samples),
+      exposures_(exposures),
+      taps_(camera.sensor.taps),
+      difference_(camera.sensor.readout == Readout::difference),
+      transfer_(grid_transfer(camera, samples) / static_cast<double>(samples)) {
+  const int tap_values = exposures * taps_;
+  const Eigen::MatrixXd readout = readout_matrix(tap_values, camera.sensor.readout);
+  const Eigen::MatrixXd mixing = mixing_matrix(exposures, taps_, camera.sensor.modulation_contrast);
+  combination_ = readout * mixing;
+  shot_combination_ = readout.cwiseAbs() * mixing;
+  exposure_s_.resize(measurements());
+  const int per_exposure = measurements() / exposures;
+  for (int i = 0; i < measurements(); ++i)
+    exposure_s_[i] = camera.exposure_s.of(i / per_exposure, exposures);
+  const Eigen::VectorXd taps_read = readout.cwiseAbs().rowwise().sum();
+  constant_variance_e2_ = taps_read.cwiseProduct(
+      (camera.sensor.dark_current_e_per_s * exposure_s_).array().matrix() +
+      Eigen::VectorXd::Constant(measurements(), constant_variance_e2_of(camera.sensor)));
+}
+
+SampledCamera::Measured SampledCamera::measure(const SampledCode& code) const {
+  Measured measured;
+  measured.modulation.resize(static_cast<std::size_t>(exposures_));
+  measured.demodulation.resize(static_cast<std::size_t>(exposures_) *
+                               static_cast<std::size_t>(taps_));
+  Eigen::MatrixXd correlation(samples(), exposures_ * taps_);
+  Eigen::VectorXd signal;
+  for (int e = 0; e < exposures_; ++e) {
+    Eigen::VectorXcd& m = measured.modulation[static_cast<std::size_t>(e)];
+    signal = code.modulation.col(e);
+    transform_.forward(signal, m);
+    const Eigen::VectorXcd seen = m.conjugate().cwiseProduct(transfer_);
+    for (int i = e * taps_; i < (e + 1) * taps_; ++i) {
+      Eigen::VectorXcd& d = measured.demodulation[static_cast<std::size_t>(i)];
+      signal = code.demodulation.col(i);
+      transform_.forward(signal, d);
+      transform_.inverse(d.cwiseProduct(seen), signal);
+      correlation.col(i) = signal;
+    }
+  }
+  const Eigen::VectorXd gain = code.demodulation.colwise().mean().transpose();
+  measured.table.correlation = correlation * combination_.transpose();
+  measured.table.ambient_gain = combination_ * gain;
+  if (difference_) {
+    measured.table.shot_correlation = correlation * shot_combination_.transpose();
+    measured.table.shot_ambient_gain = shot_combination_ * gain;
+  }
+  return measured;
+}
+
+SampledCode SampledCamera::pull_back(const Measured& measured,
+                                     const MeasurementTable& gradient) const {
+  Eigen::MatrixXd by_tap = gradient.correlation * combination_;
+  Eigen::VectorXd by_gain = combination_.transpose() * gradient.ambient_gain;
+  if (difference_) {
+    by_tap += gradient.shot_correlation * shot_combination_;
+    by_gain += shot_combination_.transpose() * gradient.shot_ambient_gain;
+  }
+  SampledCode result{Eigen::MatrixXd(samples(), exposures_),
+                     Eigen::MatrixXd(samples(), exposures_ * taps_)};
+  Eigen::VectorXd signal;
+  Eigen::VectorXcd spectrum;
+  for (int e = 0; e < exposures_; ++e) {
+    const Eigen::VectorXcd& m = measured.modulation[static_cast<std::size_t>(e)];
+    Eigen::VectorXcd by_modulation = Eigen::VectorXcd::Zero(transfer_.size());
+    for (int i = e * taps_; i < (e + 1) * taps_; ++i) {
+      // chi = F^-1 (D conj(M) G / N): the adjoint by d multiplies by M conj(G), that by m takes
+      // conj(gradient) D G, since m enters conjugated.
+      signal = by_tap.col(i);
+      transform_.forward(signal, spectrum);
+      const Eigen::VectorXcd& d = measured.demodulation[static_cast<std::size_t>(i)];
+      by_modulation += spectrum.conjugate().cwiseProduct(d).cwiseProduct(transfer_);
+      transform_.inverse(spectrum.cwiseProduct(m).cwiseProduct(transfer_.conjugate()), signal);
+      result.demodulation.col(i) = signal.array() + by_gain[i] / samples();
+    }
+    transform_.inverse(by_modulation, signal);
+    result.modulation.col(e) = signal;
+  }
+  return result;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <vector>
+
+#include "core/shared/periodic.hpp"
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
+
+namespace tofsmith {
+
+/// Waveforms of a code, held over the N cells of a grid.
+struct SampledCode {
+  Eigen::MatrixXd modulation;    ///< (N, E)
+  Eigen::MatrixXd demodulation;  ///< (N, E x taps)
+
+  int samples() const { return static_cast<int>(modulation.rows()); }
+};
+
+/// A camera on a grid: from waveforms to correlation functions and back with gradients. Band limit
+/// of both arms, contrast and the readout of taps are in it.
+class SampledCamera {
+ public:
+  /// A table, with the spectra of the waveforms it is of.
+  struct Measured {
+    MeasurementTable table;
+    std::vector<Eigen::VectorXcd> modulation, demodulation;
+  };
+
+  /// @param samples  N of the grid
+  SampledCamera(const Camera& camera, int samples, int exposures);
+
+  int samples() const { return transform_.samples(); }
+  int measurements() const { return static_cast<int>(combination_.rows()); }
+  /// Integration time of every measurement [s] (R).
+  const Eigen::VectorXd& exposure_s() const { return exposure_s_; }
+  /// Variance without any light [e^2] (R): read noise, quantization and dark current.
+  const Eigen::VectorXd& constant_variance_e2() const { return constant_variance_e2_; }
+  /// Whether a decoder has to reckon with ambient light: not where buckets are subtracted.
+  bool ambient_unknown() const { return !difference_; }
+
+  /// What the arms leave of harmonic n of waveforms held over the grid's cells, n = 0 .. N/2.
+  std::complex<double> transfer(int harmonic) const {
+    return transfer_[harmonic] * static_cast<double>(samples());
+  }
+
+  Measured measure(const SampledCode& code) const;
+
+  /// Gradient by the waveforms of a function whose gradient by the table is given.
+  SampledCode pull_back(const Measured& measured, const MeasurementTable& gradient) const;
+
+ private:
+  PeriodicTransform transform_;
+  int exposures_, taps_;
+  bool difference_;
+  Eigen::VectorXcd transfer_;    // G / N
+  Eigen::MatrixXd combination_;  // (R, tap values): contrast, then readout
+  Eigen::MatrixXd shot_combination_;
+  Eigen::VectorXd exposure_s_, constant_variance_e2_;
+};
+
+}  // namespace tofsmith

@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/optimize/soft_decoder.hpp"
+
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "design/optimize/soft_decoder.cpp"
+#include <hwy/foreach_target.h>
+// Highway asks for its own headers after foreach_target.
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include "core/shared/vectors-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tofsmith {
+namespace HWY_NAMESPACE {
+namespace {
+
+constexpr float smallest_square = 1e-10f;  // |p|^2 of a point without contrast
+constexpr float smallest = 1e-30f;
+
+/// beta_j = <y, p_j>, j = 0 .. N.
+HWY_INLINE void match_points(const DecodingCurve& curve, const float* HWY_RESTRICT electrons,
+                             SoftDecoder::Scratch& scratch) {
+  const Floats d;
+  const int lanes = lanes_of(d);
+  for (int j = 0; j <= curve.samples; j += lanes) {
+    auto sum = hn::Zero(d);
+    for (int r = 0; r < curve.measurements; ++r)
+      sum = hn::MulAdd(hn::Set(d, electrons[r]), hn::Load(d, curve.component(r) + j), sum);
+    hn::Store(sum, d, scratch.match.data() + j);
+  }
+}
+
+/// Best point of every chord: with u = Q11 b0 - Q01 b1 and v = Q00 b1 - Q01 b0 it lies at
+/// t = v / (u + v) where both are > 0, else at the better end. Scores are S_j, -1 in the padding.
+/// @return the largest
+HWY_INLINE float score_chords(const DecodingCurve& curve, SoftDecoder::Scratch& scratch) {
+  const Floats d;
+  const int lanes = lanes_of(d);
+  const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+  const auto least = hn::Set(d, smallest_square);
+  auto largest = hn::Set(d, -1.0f);
+  for (int j = 0; j < curve.samples; j += lanes) {
+    const auto b0 = hn::Load(d, scratch.match.data() + j);
+    const auto b1 = hn::LoadU(d, scratch.match.data() + j + 1);
+    const auto q00 = hn::Add(hn::Load(d, curve.squares.data() + j), least);
+    const auto q11 = hn::Add(hn::LoadU(d, curve.squares.data() + j + 1), least);
+    const auto q01 = hn::Load(d, curve.products.data() + j);
+    const auto u = hn::NegMulAdd(q01, b1, hn::Mul(q11, b0));
+    const auto v = hn::NegMulAdd(q01, b0, hn::Mul(q00, b1));
+    const auto inside = hn::And(hn::Gt(u, zero), hn::Gt(v, zero));
+    const auto inverse = hn::Div(one, hn::Max(hn::Add(u, v), hn::Set(d, smallest)));
+    const auto upper_is_better =
+        hn::Gt(hn::Mul(hn::Mul(b1, hn::Abs(b1)), q00), hn::Mul(hn::Mul(b0, hn::Abs(b0)), q11));
+    const auto end = hn::IfThenElseZero(upper_is_better, one);
+    const auto t = hn::IfThenElse(inside, hn::Mul(v, inverse), end);
+    const auto s = hn::Sub(one, t);
+    const auto match = hn::Max(zero, hn::MulAdd(s, b0, hn::Mul(t, b1)));
+    const auto cross = hn::Mul(hn::Mul(hn::Add(q01, q01), s), t);
+    const auto square =
+        hn::Max(least, hn::MulAdd(hn::Mul(q00, s), s, hn::MulAdd(hn::Mul(q11, t), t, cross)));
+    const auto ratio = hn::Div(match, square);
+    const auto in_range =
+        hn::Lt(hn::Iota(d, static_cast<float>(j)), hn::Set(d, static_cast<float>(curve.samples)));
+    const auto score =
+        hn::IfThenElse(in_range, hn::Mul(half, hn::Mul(match, ratio)), hn::Set(d, -1.0f));
+    hn::Store(t, d, scratch.place.data() + j);
+    hn::Store(ratio, d, scratch.ratio.data() + j);
+    hn::Store(score, d, scratch.score.data() + j);
+    hn::Store(hn::IfThenElseZero(inside, inverse), d, scratch.free.data() + j);
+    largest = hn::Max(largest, score);
+  }
+  return hn::GetLane(hn::MaxOfLanes(d, largest));
+}
+
+/// The bin of the largest correlation. Uses scratch.ratio.
+HWY_INLINE int best_bin(const DecodingCurve& curve, SoftDecoder::Scratch& scratch) {
+  const Floats d;
+  const int lanes = lanes_of(d);
+  auto largest = hn::Set(d, -std::numeric_limits<float>::max());
+  for (int j = 0; j < curve.samples; j += lanes) {
+    const auto match = hn::Load(d, scratch.match.data() + j);
+    const auto square = hn::Add(hn::Load(d, curve.squares.data() + j), hn::Set(d, smallest_square));
+    const auto in_range =
+        hn::Lt(hn::Iota(d, static_cast<float>(j)), hn::Set(d, static_cast<float>(curve.samples)));
+    const auto score = hn::IfThenElse(in_range, hn::Div(hn::Mul(match, hn::Abs(match)), square),
+                                      hn::Set(d, -std::numeric_limits<float>::max()));
+    hn::Store(score, d, scratch.ratio.data() + j);
+    largest = hn::Max(largest, score);
+  }
+  const float wanted = hn::GetLane(hn::MaxOfLanes(d, largest));
+  int best = 0;
+  while (best + 1 < curve.samples && scratch.ratio[static_cast<std::size_t>(best)] != wanted)
+    ++best;
+  return best;
+}
+
+float decode_best(const DecodingCurve& curve, const float* electrons,
+                  SoftDecoder::Scratch& scratch) {
+  match_points(curve, electrons, scratch);
+  const auto right = static_cast<std::size_t>(best_bin(curve, scratch));
+  score_chords(curve, scratch);
+  const std::size_t left = right > 0 ? right - 1 : static_cast<std::size_t>(curve.samples) - 1;
+  const std::size_t chord = scratch.score[left] > scratch.score[right] ? left : right;
+  return static_cast<float>(chord) + scratch.place[chord];
+}
+
+/// What a vector of chords is off by.
+template <typename V>
+HWY_INLINE V chord_error(Floats d, V place, float true_bin, float samples, bool circular) {
+  const auto distance = hn::Abs(hn::Sub(place, hn::Set(d, true_bin)));
+  if (!circular) return distance;
+  return hn::Min(distance, hn::Sub(hn::Set(d, samples), distance));
+}
+
+/// Shares of the chords (unnormalized) and their errors. Returns {sum of shares, sum of shares
+/// times errors}.
+HWY_INLINE void weigh_chords(const DecodingCurve& curve, const SoftQuestion& question,
+                             float largest, SoftDecoder::Scratch& scratch, float* sums) {
+  const Floats d;
+  const int lanes = lanes_of(d);
+  const auto sharpness = hn::Set(d, static_cast<float>(question.sharpness));
+  const auto shift = hn::Set(d, largest);
+  auto total = hn::Zero(d), error_total = hn::Zero(d);
+  for (int j = 0; j < curve.samples; j += lanes) {
+    const auto index = hn::Iota(d, static_cast<float>(j));
+    const auto place = hn::Add(index, hn::Load(d, scratch.place.data() + j));
+    const auto error = chord_error(d, place, static_cast<float>(question.true_bin),
+                                   static_cast<float>(curve.samples), question.circular);
+    const auto exponent =
+        hn::Max(hn::Set(d, -80.0f),
+                hn::Mul(sharpness, hn::Sub(hn::Load(d, scratch.score.data() + j), shift)));
+    const auto in_range = hn::Lt(index, hn::Set(d, static_cast<float>(curve.samples)));
+    const auto share = hn::IfThenElseZero(in_range, hn::Exp(d, exponent));
+    hn::Store(share, d, scratch.share.data() + j);
+    hn::Store(error, d, scratch.error.data() + j);
+    total = hn::Add(total, share);
+    error_total = hn::MulAdd(share, error, error_total);
+  }
+  sums[0] = hn::GetLane(hn::SumOfLanes(d, total));
+  sums[1] = hn::GetLane(hn::SumOfLanes(d, error_total));
+}
+
+/// Gradient of the expected error by the matches b_j of every chord's two ends (scratch) and, added
+/// with its weight, by the squares and products of the curve.
+HWY_INLINE void differentiate_chords(const DecodingCurve& curve, const SoftQuestion& question,
+                                     float weight, float normalization, float expected,
+                                     CurveGradient& gradient, SoftDecoder::Scratch& scratch) {
+  const Floats d;
+  const int lanes = lanes_of(d);
+  const auto one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), zero = hn::Zero(d);
+  const auto least = hn::Set(d, smallest_square);
+  const auto samples = hn::Set(d, static_cast<float>(curve.samples));
+  const auto truth = hn::Set(d, static_cast<float>(question.true_bin));
+  const auto scale = hn::Set(d, weight);
+  for (int j = 0; j < curve.samples; j += lanes) {
+    const auto b0 = hn::Load(d, scratch.match.data() + j);
+    const auto b1 = hn::LoadU(d, scratch.match.data() + j + 1);
+    const auto q00 = hn::Add(hn::Load(d, curve.squares.data() + j), least);
+    const auto q11 = hn::Add(hn::LoadU(d, curve.squares.data() + j + 1), least);
+    const auto q01 = hn::Load(d, curve.products.data() + j);
+    const auto t = hn::Load(d, scratch.place.data() + j);
+    const auto s = hn::Sub(one, t);
+    const auto share = hn::Mul(hn::Load(d, scratch.share.data() + j), hn::Set(d, normalization));
+
+    // By the score: S = match^2 / (2 square), stationary in t where t is free.
+    const auto by_score =
+        hn::Mul(hn::Mul(hn::Set(d, static_cast<float>(question.sharpness)), share),
+                hn::Sub(hn::Load(d, scratch.error.data() + j), hn::Set(d, expected)));
+    const auto ratio = hn::Load(d, scratch.ratio.data() + j);
+    const auto by_match = hn::Mul(by_score, ratio);
+    const auto by_square = hn::Neg(hn::Mul(half, hn::Mul(by_match, ratio)));
+    auto by_b0 = hn::Mul(by_match, s);
+    auto by_b1 = hn::Mul(by_match, t);
+    auto by_q00 = hn::Mul(hn::Mul(by_square, s), s);
+    auto by_q11 = hn::Mul(hn::Mul(by_square, t), t);
+    auto by_q01 = hn::Mul(hn::Mul(hn::Add(by_square, by_square), s), t);
+
+    // By the place of the best point, t = v / (u + v).
+    const auto from_truth = hn::Sub(hn::Add(hn::Iota(d, static_cast<float>(j)), t), truth);
+    auto sign = hn::IfThenElse(hn::Gt(from_truth, zero), one, hn::Set(d, -1.0f));
+    if (question.circular) {
+      const auto around = hn::Gt(hn::Abs(from_truth), hn::Mul(half, samples));
+      sign = hn::IfThenElse(around, hn::Neg(sign), sign);
+    }
+    const auto by_place = hn::Mul(hn::Mul(share, sign), hn::Load(d, scratch.free.data() + j));
+    const auto by_u = hn::Neg(hn::Mul(by_place, t));
+    const auto by_v = hn::Mul(by_place, s);
+    by_b0 = hn::MulAdd(by_u, q11, hn::NegMulAdd(by_v, q01, by_b0));
+    by_b1 = hn::MulAdd(by_v, q00, hn::NegMulAdd(by_u, q01, by_b1));
+    by_q11 = hn::MulAdd(by_u, b0, by_q11);
+    by_q00 = hn::MulAdd(by_v, b1, by_q00);
+    by_q01 = hn::NegMulAdd(by_u, b1, hn::NegMulAdd(by_v, b0, by_q01));
+
+    const auto add = [&](AlignedFloats& sum, auto value) {
+      hn::Store(hn::MulAdd(scale, value, hn::Load(d, sum.data() + j)), d, sum.data() + j);
+    };
+    add(gradient.squares, by_q00);
+    add(gradient.next_squares, by_q11);
+    add(gradient.products, by_q01);
+    hn::Store(by_b0, d, scratch.by_match.data() + j);
+    hn::StoreU(by_b1, d, scratch.by_next_match.data() + j + 1);
+  }
+  // Padding lanes are zero: their share is. Point N is point 0.
+  scratch.by_next_match[0] = scratch.by_next_match[static_cast<std::size_t>(curve.samples)];
+}
+
+/// From the matches b_j = <y, p_j> to the points, with the weight, and to y.
+HWY_INLINE void differentiate_matches(const DecodingCurve& curve, const float* electrons,
+                                      float weight, CurveGradient& gradient,
+                                      SoftDecoder::Scratch& scratch, float* by_electrons) {
+  const Floats d;
+  const int lanes = lanes_of(d);
+  for (int j = 0; j < curve.samples; j += lanes) {
+    const auto sum = hn::Add(hn::Load(d, scratch.by_match.data() + j),
+                             hn::Load(d, scratch.by_next_match.data() + j));
+    const auto in_range =
+        hn::Lt(hn::Iota(d, static_cast<float>(j)), hn::Set(d, static_cast<float>(curve.samples)));
+    hn::Store(hn::IfThenElseZero(in_range, sum), d, scratch.by_match.data() + j);
+  }
+  for (int r = 0; r < curve.measurements; ++r) {
+    float* HWY_RESTRICT by_points = gradient.points.data() + r * curve.stride;
+    const float* HWY_RESTRICT points = curve.component(r);
+    const auto electron = hn::Set(d, weight * electrons[r]);
+    auto sum = hn::Zero(d);
+    for (int j = 0; j < curve.samples; j += lanes) {
+      const auto by_match = hn::Load(d, scratch.by_match.data() + j);
+      sum = hn::MulAdd(by_match, hn::Load(d, points + j), sum);
+      hn::Store(hn::MulAdd(by_match, electron, hn::Load(d, by_points + j)), d, by_points + j);
+    }
+    by_electrons[r] = hn::GetLane(hn::SumOfLanes(d, sum));
+  }
+}
+
+/// @param gradient  null: the error alone
+float soft_error(const DecodingCurve& curve, const float* electrons, const SoftQuestion& question,
+                 float weight, CurveGradient* gradient, SoftDecoder::Scratch& scratch,
+                 float* by_electrons) {
+  match_points(curve, electrons, scratch);
+  const float largest = score_chords(curve, scratch);
+  float sums[2];
+  weigh_chords(curve, question, largest, scratch, sums);
+  const float expected = sums[1] / sums[0];
+  if (!gradient) return expected;
+  differentiate_chords(curve, question, weight, 1.0f / sums[0], expected, *gradient, scratch);
+  differentiate_matches(curve, electrons, weight, *gradient, scratch, by_electrons);
+  return expected;
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace tofsmith
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tofsmith {
+
+HWY_EXPORT(decode_best);
+HWY_EXPORT(soft_error);
+
+SoftDecoder::Scratch::Scratch(int stride) {
+  for (AlignedFloats* values :
+       {&match, &ratio, &score, &place, &free, &share, &error, &by_match, &by_next_match})
+    values->assign(static_cast<std::size_t>(stride), 0.0f);
+}
+
+SoftDecoder::SoftDecoder(const DecodingCurve& curve) : scratch_(curve.stride) {}
+
+double SoftDecoder::decode(const DecodingCurve& curve, const float* electrons) {
+  return HWY_DYNAMIC_DISPATCH(decode_best)(curve, electrons, scratch_);
+}
+
+double SoftDecoder::expected_error(const DecodingCurve& curve, const float* electrons,
+                                   const SoftQuestion& question) {
+  return HWY_DYNAMIC_DISPATCH(soft_error)(curve, electrons, question, 0.0f, nullptr, scratch_,
+                                          nullptr);
+}
+
+double SoftDecoder::expected_error(const DecodingCurve& curve, const float* electrons,
+                                   const SoftQuestion& question, float weight,
+                                   CurveGradient& gradient, float* by_electrons) {
+  return HWY_DYNAMIC_DISPATCH(soft_error)(curve, electrons, question, weight, &gradient, scratch_,
+                                          by_electrons);
+}
+
+}  // namespace tofsmith
+#endif

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/shared/random.hpp"
+#include "design/optimize/design_problem.hpp"
+#include "design/optimize/trial_batch.hpp"
+
+namespace tofsmith {
+
+/// Gradient of a problem's objective by the waveforms, from fresh trials at every call. The
+/// objective is the smooth maximum, over the variants of the camera, of the mean log error over the
+/// light levels; what a level counts for follows from running means of its errors.
+class StochasticGradient {
+ public:
+  /// @param trials  per call, over all light levels and variants
+  /// @param random  of the noise that is kept in store
+  StochasticGradient(const DesignProblem& problem, int trials, RandomStream random);
+
+  /// @param doubt  sharpness of the decoder's decisions per log likelihood
+  SampledCode at(const SampledCode& code, double doubt, RandomStream& random);
+
+ private:
+  double mean_log(std::size_t variant) const;
+  double weight(std::size_t variant, std::size_t point) const;
+  void add(std::size_t variant, std::size_t point, double error);
+
+  const DesignProblem* problem_;
+  int trials_;
+  NoiseStore noise_;
+  std::vector<std::vector<double>> average_error_;  // 0: not known yet
+};
+
+}  // namespace tofsmith

@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/optimize/waveform_parameters.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tofsmith {
+
+namespace {
+
+/// s(x) = 1 / (1 + exp(-x)).
+Eigen::ArrayXd logistic_of(const Eigen::ArrayXd& x) {
+  return 1.0 / (1.0 + (-x.max(-500.0).min(500.0)).exp());
+}
+
+/// s(k (x - lambda)) with lambda such that the mean is `mean` in (0, 1): Newton's method, kept
+/// inside a bracket that every step narrows.
+Eigen::ArrayXd logistic_of_mean(const Eigen::ArrayXd& x, double steepness, double mean) {
+  const double margin = (std::abs(std::log(mean / (1.0 - mean))) + 1.0) / steepness;
+  double low = x.minCoeff() - margin, high = x.maxCoeff() + margin;
+  double lambda = x.mean() - std::log(mean / (1.0 - mean)) / steepness;
+  Eigen::ArrayXd value;
+  for (int iteration = 0; iteration < 60; ++iteration) {
+    value = logistic_of(steepness * (x - lambda));
+    const double excess = value.mean() - mean;
+    if (std::abs(excess) < 1e-12) break;
+    (excess > 0.0 ? low : high) = lambda;
+    const double slope = steepness * (value * (1.0 - value)).mean();
+    const double step = slope > 0.0 ? excess / slope : 0.0;
+    const double newton = lambda + step;
+    lambda = newton > low && newton < high && slope > 1e-9 ? newton : 0.5 * (low + high);
+    if (high - low < 1e-14 * (1.0 + std::abs(high))) break;
+  }
+  return value;
+}
+
+/// Each cell's value on all of its samples.
+Eigen::VectorXd on_samples(const Eigen::ArrayXd& cells, int repeat) {
+  Eigen::VectorXd samples(cells.size() * repeat);
+  for (Eigen::Index c = 0; c < cells.size(); ++c)
+    samples.segment(c * repeat, repeat).setConstant(cells[c]);
+  return samples;
+}
+
+/// The first sample of each cell.
+Eigen::ArrayXd first_samples(const Eigen::VectorXd& samples, int repeat) {
+  Eigen::ArrayXd cells(samples.size() / repeat);
+  for (Eigen::Index c = 0; c < cells.size(); ++c) cells[c] = samples[c * repeat];
+  return cells;
+}
+
+Eigen::ArrayXd sum_in_cells(const Eigen::VectorXd& samples, int repeat) {
+  Eigen::ArrayXd cells(samples.size() / repeat);
+  for (Eigen::Index c = 0; c < cells.size(); ++c)
+    cells[c] = samples.segment(c * repeat, repeat).sum();
+  return cells;
+}
+
+Eigen::ArrayXd mean_in_cells(const Eigen::VectorXd& samples, int repeat) {
+  return sum_in_cells(samples, repeat) / repeat;
+}
+
+/// Derivative of logistic_of_mean, whose values are given: lambda moves along.
+Eigen::ArrayXd pull_back_of_mean(const Eigen::ArrayXd& value, double steepness,
+                                 const Eigen::ArrayXd& gradient) {
+  const Eigen::ArrayXd slope = value * (1.0 - value);
+  const double total = slope.sum();
+  const double mean = total > 1e-12 ? (slope * gradient).sum() / total : 0.0;
+  return steepness * slope * (gradient - mean);
+}
+
+/// Shares of all classes (cells, classes).
+Eigen::ArrayXXd softmax(const Eigen::ArrayXXd& logits) {
+  Eigen::ArrayXXd shares = (logits.colwise() - logits.rowwise().maxCoeff()).exp();
+  const Eigen::ArrayXd sum = shares.rowwise().sum();
+  return shares.colwise() / sum;
+}
+
+/// Shares of the classes of exposure e, read from the code; the drain takes what the taps leave.
+Eigen::ArrayXXd class_shares(const WaveformSpace& space, const SampledCode& code, int e) {
+  Eigen::ArrayXXd shares(space.cells, space.classes());
+  for (int t = 0; t < space.taps; ++t)
+    shares.col(t) = first_samples(code.demodulation.col(e * space.taps + t), space.repeat);
+  if (space.drain) shares.col(space.taps) = 1.0 - shares.leftCols(space.taps).rowwise().sum();
+  return shares;
+}
+
+}  // namespace
+
+SampledCode render(const WaveformSpace& space, const WaveformParameters& parameters,
+                   const Sharpness& sharpness) {
+  SampledCode code{Eigen::MatrixXd(space.samples(), space.exposures),
+                   Eigen::MatrixXd(space.samples(), space.exposures * space.taps)};
+  const int columns = space.columns();
+  for (int e = 0; e < space.exposures; ++e) {
+    code.modulation.col(e) =
+        space.peak_factor *
+        on_samples(logistic_of_mean(parameters.modulation.col(e).array(), sharpness.modulation,
+                                    1.0 / space.peak_factor),
+                   space.repeat);
+    if (columns == 1) {
+      const Eigen::ArrayXd theta = parameters.demodulation.col(e).array();
+      const Eigen::ArrayXd first = space.equal_duties
+                                       ? logistic_of_mean(theta, sharpness.demodulation, 0.5)
+                                       : logistic_of(sharpness.demodulation * theta);
+      code.demodulation.col(e * space.taps) = on_samples(first, space.repeat);
+      if (space.taps == 2)
+        code.demodulation.col(e * space.taps + 1) = on_samples(1.0 - first, space.repeat);
+      continue;
+    }
+    const Eigen::ArrayXXd shares = softmax(
+        sharpness.demodulation * parameters.demodulation.middleCols(e * columns, columns).array());
+    for (int t = 0; t < space.taps; ++t)
+      code.demodulation.col(e * space.taps + t) = on_samples(shares.col(t), space.repeat);
+  }
+  return code;
+}
+
+WaveformParameters pull_back(const WaveformSpace& space, const SampledCode& code,
+                             const Sharpness& sharpness, const SampledCode& gradient) {
+  const int columns = space.columns(), taps = space.taps;
+  WaveformParameters result{Eigen::MatrixXd(space.cells, space.exposures),
+                            Eigen::MatrixXd(space.cells, space.exposures * columns)};
+  const auto by_cell = [&](const Eigen::VectorXd& samples) {
+    return sum_in_cells(samples, space.repeat);
+  };
+  for (int e = 0; e < space.exposures; ++e) {
+    const double peak = space.peak_factor;
+    const Eigen::ArrayXd level = first_samples(code.modulation.col(e), space.repeat) / peak;
+    result.modulation.col(e) =
+        pull_back_of_mean(level, sharpness.modulation, peak * by_cell(gradient.modulation.col(e)));
+    if (columns == 1) {
+      const Eigen::ArrayXd first = first_samples(code.demodulation.col(e * taps), space.repeat);
+      Eigen::ArrayXd by_first = by_cell(gradient.demodulation.col(e * taps));
+      if (taps == 2) by_first -= by_cell(gradient.demodulation.col(e * taps + 1));
+      result.demodulation.col(e) = space.equal_duties
+                                       ? pull_back_of_mean(first, sharpness.demodulation, by_first)
+                                       : sharpness.demodulation * first * (1.0 - first) * by_first;
+      continue;
+    }
+    const Eigen::ArrayXXd shares = class_shares(space, code, e);
+    Eigen::ArrayXXd by_share = Eigen::ArrayXXd::Zero(space.cells, space.classes());
+    for (int t = 0; t < taps; ++t)
+      by_share.col(t) = by_cell(gradient.demodulation.col(e * taps + t));
+    const Eigen::ArrayXd mean = (shares * by_share).rowwise().sum();
+    result.demodulation.middleCols(e * columns, columns) =
+        sharpness.demodulation * shares * (by_share.colwise() - mean);
+  }
+  return result;
+}
+
+WaveformParameters parameters_near(const WaveformSpace& space, const SampledCode& code,
+                                   double scale) {
+  const int columns = space.columns();
+  // With a column per class, differences of columns count.
+  const double gate_scale = columns == 1 ? scale : 0.5 * scale;
+  WaveformParameters result{Eigen::MatrixXd(space.cells, space.exposures),
+                            Eigen::MatrixXd(space.cells, space.exposures * columns)};
+  for (int e = 0; e < space.exposures; ++e) {
+    const Eigen::ArrayXd light = mean_in_cells(code.modulation.col(e), space.repeat);
+    result.modulation.col(e) = scale * (2.0 * light / std::max(1e-12, light.maxCoeff()) - 1.0);
+    Eigen::ArrayXd drained = Eigen::ArrayXd::Ones(space.cells);
+    for (int t = 0; t < space.taps; ++t) {
+      const Eigen::ArrayXd gain =
+          mean_in_cells(code.demodulation.col(e * space.taps + t), space.repeat);
+      drained -= gain;
+      if (columns == 1 && t > 0) continue;
+      result.demodulation.col(e * columns + t) = gate_scale * (2.0 * gain - 1.0);
+    }
+    if (columns > 1 && space.drain)
+      result.demodulation.col(e * columns + space.taps) = gate_scale * (2.0 * drained - 1.0);
+  }
+  return result;
+}
+
+}  // namespace tofsmith

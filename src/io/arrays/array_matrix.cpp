@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/arrays/shared/array_matrix.hpp"
+
+#include <fmt/format.h>
+#include <cmath>
+#include <vector>
+
+#include "io/shared/file_kind.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/csv.hpp"
+#include "tofsmith/io/npy.hpp"
+
+namespace tofsmith {
+
+Eigen::Index column_of(int exposure, int tap, int exposures, int taps,
+                       std::optional<TapOrder> order) {
+  return order == TapOrder::blocked ? tap * exposures + exposure : exposure * taps + tap;
+}
+
+int exposures_of(Eigen::Index columns, const TapLayout& layout, std::string_view file) {
+  require(layout.taps >= 1, "taps", layout.taps, "must be >= 1");
+  if (columns % layout.taps != 0)
+    throw IoError(file, fmt::format("found {} columns; expected a multiple of taps = {}", columns,
+                                    layout.taps));
+  if (layout.taps > 1 && !layout.order)
+    throw IoError(file, fmt::format("does not say in which order its columns hold {} taps; "
+                                    "expected --tap-order blocked or interleaved",
+                                    layout.taps));
+  return static_cast<int>(columns) / layout.taps;
+}
+
+Eigen::MatrixXd correlation_matrix_of(const std::filesystem::path& path) {
+  const std::string extension = known_extension(path, {".csv", ".txt", ".npy", ".npz"});
+  if (extension == ".npz")
+    return matrix_of(NpzReader(path).read("corrfs"), path.string() + ": corrfs");
+  if (extension != ".npy") return read_csv(path).values;
+  NpyArray array = read_npy(path);
+  if (array.axes() == 1) {
+    const std::vector<double> column = array.to_doubles();
+    array = NpyArray::of<double>({column.size(), 1}, column);
+  }
+  return matrix_of(array, path.string());
+}
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+Eigen::MatrixXd matrix_of(const NpyArray& array, std::string_view place) {
+  if (array.axes() != 2 || array.size() == 0)
+    throw IoError(
+        place, fmt::format("found the shape {}; expected (N, K)", describe_shape(array.shape())));
+  const std::vector<double> values = array.to_doubles();
+  Eigen::MatrixXd matrix =
+      Eigen::Map<const RowMajor>(values.data(), static_cast<Eigen::Index>(array.shape()[0]),
+                                 static_cast<Eigen::Index>(array.shape()[1]));
+  for (Eigen::Index n = 0; n < matrix.rows(); ++n)
+    for (Eigen::Index i = 0; i < matrix.cols(); ++i)
+      if (!std::isfinite(matrix(n, i)))
+        throw IoError(fmt::format("{}[{}, {}]", place, n, i),
+                      fmt::format("found {}; expected a finite number", matrix(n, i)));
+  return matrix;
+}
+
+NpyArray array_of(const Eigen::MatrixXd& matrix) {
+  const RowMajor rows = matrix;
+  return NpyArray::of<double>(
+      {static_cast<std::size_t>(rows.rows()), static_cast<std::size_t>(rows.cols())},
+      std::span<const double>(rows.data(), static_cast<std::size_t>(rows.size())));
+}
+
+}  // namespace tofsmith

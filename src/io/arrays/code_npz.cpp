@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/code_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "core/shared/periodic.hpp"
+#include "io/arrays/shared/array_matrix.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/npy.hpp"
+
+namespace tofsmith {
+namespace {
+
+// Noise of the transforms that such files were made with.
+constexpr double transform_noise = 1e-9;
+constexpr Eigen::Index max_rows = 65536;  // as a camera's
+constexpr Eigen::Index max_columns = 4096;
+
+/// An array of the archive, with what errors call it.
+struct NamedMatrix {
+  std::string place;
+  Eigen::MatrixXd values;
+};
+
+NamedMatrix read_matrix(const NpzReader& reader, std::string_view file, const char* name) {
+  const std::string place = fmt::format("{}: {}", file, name);
+  NamedMatrix matrix{place, matrix_of(reader.read(name), place)};
+  const Eigen::Index samples = matrix.values.rows(), columns = matrix.values.cols();
+  if (samples < 2 || samples > max_rows || columns > max_columns)
+    throw IoError(place, fmt::format("found the shape ({}, {}); expected (N, K) with N in [2, {}] "
+                                     "and K at most {}",
+                                     samples, columns, max_rows, max_columns));
+  return matrix;
+}
+
+void require_same_shape(const NamedMatrix& matrix, const NamedMatrix& other) {
+  if (matrix.values.rows() == other.values.rows() && matrix.values.cols() == other.values.cols())
+    return;
+  throw IoError(matrix.place, fmt::format("found the shape ({}, {}); expected ({}, {}) as of {}",
+                                          matrix.values.rows(), matrix.values.cols(),
+                                          other.values.rows(), other.values.cols(), other.place));
+}
+
+/// Draws rounding noise back into [0, highest] and refuses what is farther out.
+void limit(NamedMatrix& matrix, double highest, std::string_view expected) {
+  for (Eigen::Index n = 0; n < matrix.values.rows(); ++n)
+    for (Eigen::Index i = 0; i < matrix.values.cols(); ++i) {
+      double& value = matrix.values(n, i);
+      if (value < -transform_noise || value > highest + transform_noise)
+        throw IoError(fmt::format("{}[{}, {}]", matrix.place, n, i),
+                      fmt::format("found {}; expected {}", value, expected));
+      value = std::clamp(value, 0.0, highest);
+    }
+}
+
+Waveform waveform_of(const Eigen::VectorXd& samples) {
+  const double peak = samples.maxCoeff();
+  if (peak == 0.0) return Waveform::constant(0.0);
+  const double near = transform_noise * peak;
+  const bool two_levels = ((samples.array() <= near) || (samples.array() >= peak - near)).all();
+  return two_levels ? Waveform::binary_from_samples(samples, peak) : Waveform::sampled(samples);
+}
+
+/// All taps of an exposure see the same light.
+void require_same_light(const NamedMatrix& modulation, Eigen::Index column, Eigen::Index first) {
+  for (Eigen::Index n = 0; n < modulation.values.rows(); ++n) {
+    const double value = modulation.values(n, column), expected = modulation.values(n, first);
+    if (std::abs(value - expected) <= transform_noise * std::max(1.0, std::abs(expected))) continue;
+    throw IoError(fmt::format("{}[{}, {}]", modulation.place, n, column),
+                  fmt::format("found {}; expected {} as in column {}, a tap of the same exposure",
+                              value, expected, first));
+  }
+}
+
+}  // namespace
+
+CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file,
+                       const TapLayout& layout) {
+  const NpzReader reader(content, file);
+  if (!reader.contains("modfs") && !reader.contains("corrfs"))
+    throw IoError(file, fmt::format("found the arrays {}; expected modfs and demodfs, a code, or "
+                                    "corrfs, a measured table",
+                                    fmt::join(reader.names(), ", ")));
+  NamedMatrix modulation = read_matrix(reader, file, "modfs");
+  NamedMatrix demodulation = read_matrix(reader, file, "demodfs");
+  require_same_shape(demodulation, modulation);
+  if (reader.contains("corrfs"))
+    require_same_shape(read_matrix(reader, file, "corrfs"), modulation);
+  limit(modulation, std::numeric_limits<double>::infinity(), "power over average power, >= 0");
+  limit(demodulation, 1.0, "a gain in [0, 1]");
+
+  const int exposures = exposures_of(modulation.values.cols(), layout, file);
+  std::vector<Waveform> light, gains;
+  for (int e = 0; e < exposures; ++e) {
+    const Eigen::Index first = column_of(e, 0, exposures, layout.taps, layout.order);
+    light.push_back(waveform_of(modulation.values.col(first)));
+    for (int t = 0; t < layout.taps; ++t) {
+      const Eigen::Index column = column_of(e, t, exposures, layout.taps, layout.order);
+      require_same_light(modulation, column, first);
+      gains.push_back(waveform_of(demodulation.values.col(column)));
+    }
+  }
+  try {
+    return CodeSet::create(std::filesystem::path(file).stem().string(),
+                           static_cast<int>(modulation.values.rows()), layout.taps,
+                           std::move(light), std::move(gains));
+  } catch (const std::invalid_argument& error) {
+    throw IoError(file, error.what());
+  }
+}
+
+std::vector<std::byte> serialize_code_npz(const CodeSet& code, std::optional<TapOrder> order) {
+  require(code.taps() == 1 || order.has_value(), "taps", code.taps(),
+          "several taps need an order, blocked or interleaved");
+  const Eigen::MatrixXd light = code.modulation_samples(), gains = code.demodulation_samples();
+  Eigen::MatrixXd modulation(code.samples(), code.measurements());
+  Eigen::MatrixXd demodulation = modulation, correlation = modulation;
+  for (int i = 0; i < code.measurements(); ++i) {
+    const int e = code.exposure_of(i);
+    const Eigen::Index column = column_of(e, i % code.taps(), code.exposures(), code.taps(), order);
+    modulation.col(column) = light.col(e);
+    demodulation.col(column) = gains.col(i);
+    correlation.col(column) = circular_correlation(gains.col(i), light.col(e)) / code.samples();
+  }
+  return serialize_npz({{"modfs", array_of(modulation)},
+                        {"demodfs", array_of(demodulation)},
+                        {"corrfs", array_of(correlation)}});
+}
+
+}  // namespace tofsmith

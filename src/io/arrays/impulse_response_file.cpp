@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/measured_table_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "io/shared/file_kind.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/csv.hpp"
+#include "tofsmith/io/npy.hpp"
+
+namespace tofsmith {
+namespace {
+
+// Of a step: room for times that were written with few digits.
+constexpr double time_tolerance = 0.01;
+
+/// The step of equally spaced times.
+double time_step_of(const Eigen::VectorXd& time_s, const std::string& file) {
+  const Eigen::Index last = time_s.size() - 1;
+  if (last < 1) throw IoError(file, "found one time; expected at least two to tell the step");
+  const double step_s = (time_s[last] - time_s[0]) / static_cast<double>(last);
+  if (!(step_s > 0.0)) throw IoError(file, "found times that do not rise; expected them to");
+  for (Eigen::Index i = 0; i <= last; ++i) {
+    const double expected_s = time_s[0] + step_s * static_cast<double>(i);
+    if (std::abs(time_s[i] - expected_s) > time_tolerance * step_s)
+      throw IoError(file, fmt::format("row {}: found the time {} s; expected {} s: times must be "
+                                      "equally spaced",
+                                      i, time_s[i], expected_s));
+  }
+  return step_s;
+}
+
+void read_text(const std::filesystem::path& path, ImpulseResponse& response) {
+  const CsvTable table = read_csv(path);
+  const Eigen::Index columns = table.values.cols();
+  if (columns > 2)
+    throw IoError(path.string(),
+                  fmt::format("found {} columns; expected time_s and value, or value", columns));
+  if (columns == 2) {
+    if (!table.names.empty() && table.names[0] != "time_s")
+      throw IoError(path.string(),
+                    fmt::format("found a first column {}; expected time_s", table.names[0]));
+    response.time_step_s = time_step_of(table.values.col(0), path.string());
+  }
+  const auto values = table.values.col(columns - 1);
+  response.samples.assign(values.begin(), values.end());
+}
+
+void read_array(const std::filesystem::path& path, ImpulseResponse& response) {
+  const NpyArray array = read_npy(path);
+  if (array.axes() != 1)
+    throw IoError(path.string(), fmt::format("found an array of shape {}; expected one axis",
+                                             describe_shape(array.shape())));
+  response.samples = array.to_doubles();
+}
+
+}  // namespace
+
+ImpulseResponse read_impulse_response(const std::filesystem::path& path,
+                                      std::optional<double> time_step_s) {
+  ImpulseResponse response;
+  response.kind = ImpulseResponse::Kind::file;
+  response.file = path.string();
+  if (known_extension(path, {".csv", ".txt", ".npy"}) == ".npy")
+    read_array(path, response);
+  else
+    read_text(path, response);
+  const double found_s = response.time_step_s;
+  if (found_s == 0.0 && !time_step_s)
+    throw IoError(path.string(), "found values without times; expected time_step_s beside `file`");
+  if (found_s != 0.0 && time_step_s && std::abs(found_s - *time_step_s) > time_tolerance * found_s)
+    throw IoError(path.string(), fmt::format("found times {} s apart; expected time_step_s = {}",
+                                             found_s, *time_step_s));
+  response.time_step_s = time_step_s.value_or(found_s);
+  try {
+    response.validate("impulse_response");
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path.string(), error.what());
+  }
+  return response;
+}
+
+void write_impulse_response(const std::filesystem::path& path, const ImpulseResponse& response,
+                            OutputPolicy policy) {
+  response.validate("impulse_response");
+  std::string text = "time_s,value\n";
+  for (std::size_t i = 0; i < response.samples.size(); ++i)
+    text += fmt::format("{:.17g},{:.9g}\n", response.time_step_s * static_cast<double>(i),
+                        response.samples[i]);
+  write_file_atomically(path, text, policy);
+}
+
+}  // namespace tofsmith

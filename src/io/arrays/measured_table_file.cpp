@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/measured_table_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/shared/enum_words.hpp"
+#include "io/arrays/shared/array_matrix.hpp"
+#include "io/shared/file_kind.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/npy.hpp"
+
+namespace tofsmith {
+namespace {
+
+constexpr Eigen::Index most_samples = 65536, most_measurements = 64;
+
+bool can_be_table(Eigen::Index samples, Eigen::Index measurements) {
+  return samples >= fewest_samples && samples <= most_samples && measurements >= 1 &&
+         measurements <= most_measurements;
+}
+
+/// The matrix as (N, K).
+void turn(Eigen::MatrixXd& matrix, const std::string& place, std::optional<TableAxes> axes,
+          std::vector<std::string>& notes) {
+  const Eigen::Index rows = matrix.rows(), columns = matrix.cols();
+  const bool upright = can_be_table(rows, columns), lying = can_be_table(columns, rows);
+  const bool told_lying = axes == TableAxes::measurements_first;
+  if (axes ? !(told_lying ? lying : upright) : !(upright || lying))
+    throw IoError(place, fmt::format("found the shape ({}, {}); expected {} with N in [{}, {}] and "
+                                     "K at most {}",
+                                     rows, columns, told_lying ? "(K, N)" : "(N, K)",
+                                     fewest_samples, most_samples, most_measurements));
+  if (!axes && upright && lying && rows <= columns)
+    throw IoError(place, fmt::format("found the shape ({}, {}), which could be (N, K) or (K, N); "
+                                     "expected the axes, --table-axes nk or kn",
+                                     rows, columns));
+  if (!(axes ? told_lying : !upright)) return;
+  matrix.transposeInPlace();
+  if (!axes)
+    notes.push_back(
+        fmt::format("{}: its shape ({}, {}) was taken as (K, N): {} measurements of {} "
+                    "samples",
+                    place, rows, columns, rows, columns));
+}
+
+/// Largest difference between two samples, as a share of the largest value.
+double distance(const Eigen::MatrixXd& matrix, Eigen::Index a, Eigen::Index b) {
+  const double largest = matrix.cwiseAbs().maxCoeff();
+  return largest > 0.0 ? (matrix.row(a) - matrix.row(b)).cwiseAbs().maxCoeff() / largest : 0.0;
+}
+
+void drop_repeated_end(Eigen::MatrixXd& matrix, const std::string& place,
+                       std::vector<std::string>& notes) {
+  constexpr double rounding = 1e-6;
+  const Eigen::Index last = matrix.rows() - 1;
+  if (distance(matrix, last, 0) > rounding) return;
+  if (distance(matrix, last, last - 1) <= rounding || distance(matrix, 0, 1) <= rounding) {
+    notes.push_back(
+        fmt::format("{}: its last sample equals the first, but so do their "
+                    "neighbours: all {} were kept",
+                    place, last + 1));
+    return;
+  }
+  if (last < fewest_samples)
+    throw IoError(place, fmt::format("found {} samples and a repeated end point; expected at least "
+                                     "{} samples of the period",
+                                     last, fewest_samples));
+  matrix.conservativeResize(last, Eigen::NoChange);
+  notes.push_back(
+      fmt::format("{}: its last sample repeats the first and was dropped: N = {}, which makes "
+                  "depths {:.3g} % larger (--keep-end-point keeps it)",
+                  place, last, 100.0 / static_cast<double>(last)));
+}
+
+/// A list of one number per column; empty if the archive has none.
+Eigen::VectorXd list_of(const NpzReader& archive, const std::string& file, const char* name,
+                        Eigen::Index columns) {
+  if (!archive.contains(name)) return {};
+  const NpyArray array = archive.read(name);
+  const std::string place = fmt::format("{}: {}", file, name);
+  if (array.axes() != 1 || array.size() != static_cast<std::size_t>(columns))
+    throw IoError(place, fmt::format("found the shape {}; expected ({},), one number per column of "
+                                     "corrfs",
+                                     describe_shape(array.shape()), columns));
+  const std::vector<double> values = array.to_doubles();
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i]))
+      throw IoError(fmt::format("{}[{}]", place, i),
+                    fmt::format("found {}; expected a finite number", values[i]));
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), columns);
+}
+
+void note_unused(const NpzReader& archive, const std::string& file,
+                 std::vector<std::string>& notes) {
+  constexpr std::array<std::string_view, 6> known = {"corrfs",    "ambient",       "exposure_s",
+                                                     "offset_dn", "gain_e_per_dn", "corrfs_se"};
+  std::vector<std::string> unused;
+  for (const std::string& name : archive.names())
+    if (std::ranges::find(known, name) == known.end()) unused.push_back(name);
+  if (!unused.empty())
+    notes.push_back(fmt::format("{}: not used: {}", file, fmt::join(unused, ", ")));
+}
+
+/// Columns exposure by exposure, the taps of each side by side.
+void sort_columns(MeasuredTable& table, const TapLayout& layout, const std::string& file) {
+  const int exposures = exposures_of(table.columns(), layout, file);
+  table.taps = layout.taps;
+  Eigen::VectorXi source(table.columns());
+  for (int e = 0; e < exposures; ++e)
+    for (int t = 0; t < layout.taps; ++t)
+      source[e * layout.taps + t] =
+          static_cast<int>(column_of(e, t, exposures, layout.taps, layout.order));
+  table.correlation = table.correlation(Eigen::all, source).eval();
+  for (Eigen::VectorXd* list :
+       {&table.ambient_gain, &table.exposure_s, &table.black_level, &table.gain_e_per_raw})
+    if (list->size() > 0) *list = (*list)(source).eval();
+}
+
+constexpr EnumWords<TableAxes, 2> axes_words("TableAxes", "axes of the table", "nk", "kn");
+
+}  // namespace
+
+TableAxes parse_table_axes(std::string_view word) { return axes_words.parse(word); }
+
+bool is_measured_table(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  if (extension != ".npz") return extension == ".csv" || extension == ".txt" || extension == ".npy";
+  const NpzReader archive(path);
+  return archive.contains("corrfs") && !archive.contains("modfs") && !archive.contains("demodfs");
+}
+
+MeasuredTableFile read_measured_table(const std::filesystem::path& path,
+                                      const MeasuredTableOptions& options) {
+  MeasuredTableFile file;
+  MeasuredTable& table = file.table;
+  const std::string name = path.string();
+  table.correlation = correlation_matrix_of(path);
+  turn(table.correlation, name, options.axes, file.notes);
+  if (!options.keep_end_point) drop_repeated_end(table.correlation, name, file.notes);
+  if (lower_extension(path) == ".npz") {
+    const NpzReader archive(path);
+    table.ambient_gain = list_of(archive, name, "ambient", table.columns());
+    table.exposure_s = list_of(archive, name, "exposure_s", table.columns());
+    table.black_level = list_of(archive, name, "offset_dn", table.columns());
+    table.gain_e_per_raw = list_of(archive, name, "gain_e_per_dn", table.columns());
+    note_unused(archive, name, file.notes);
+  }
+  sort_columns(table, options.layout, name);
+  return file;
+}
+
+}  // namespace tofsmith

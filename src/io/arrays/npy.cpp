@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/npy.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "io/arrays/npy_header.hpp"
+#include "io/shared/byte_order.hpp"
+
+namespace tofsmith {
+namespace {
+
+template <typename Number, typename... Items>
+std::vector<Number> converted(const NpyArray& array) {
+  std::vector<Number> numbers(array.size());
+  const NpyType type = array.type() == NpyType::boolean ? NpyType::uint8 : array.type();
+  const auto convert_if = [&]<typename Item>(Item) {
+    if (type != npy_type_of<Item>) return;
+    const auto* items = reinterpret_cast<const Item*>(array.bytes().data());
+    std::transform(items, items + array.size(), numbers.begin(),
+                   [](Item item) { return static_cast<Number>(item); });
+  };
+  (convert_if(Items()), ...);
+  return numbers;
+}
+
+template <typename Number>
+std::vector<Number> to_numbers(const NpyArray& array) {
+  return converted<Number, std::int8_t, std::int16_t, std::int32_t, std::int64_t, std::uint8_t,
+                   std::uint16_t, std::uint32_t, std::uint64_t, float, double>(array);
+}
+
+}  // namespace
+
+std::size_t item_size(NpyType type) { return npy_types[static_cast<std::size_t>(type)].bytes; }
+std::string_view name_of(NpyType type) { return npy_types[static_cast<std::size_t>(type)].name; }
+
+std::string describe_shape(const NpyShape& shape) {
+  if (shape.size() == 1) return fmt::format("({},)", shape[0]);
+  return fmt::format("({})", fmt::join(shape, ", "));
+}
+
+NpyArray::NpyArray(NpyType type, NpyShape shape) : type_(type), shape_(std::move(shape)) {
+  const auto bytes = npy_byte_count(type_, shape_);
+  if (!bytes)
+    throw std::invalid_argument(
+        fmt::format("shape = {}; must fit in memory", describe_shape(shape_)));
+  bytes_.resize(*bytes);
+}
+
+void NpyArray::fill(std::span<const std::byte> values) {
+  if (values.size() != bytes_.size())
+    throw std::invalid_argument(fmt::format("values = {} items; must be {} for shape {}",
+                                            values.size() / item_size(type_), size(),
+                                            describe_shape(shape_)));
+  std::copy(values.begin(), values.end(), bytes_.begin());
+}
+
+void NpyArray::check_type(NpyType asked) const {
+  if (asked == type_ || (asked == NpyType::uint8 && type_ == NpyType::boolean)) return;
+  throw std::invalid_argument(
+      fmt::format("type = {}; must be {} here", name_of(type_), name_of(asked)));
+}
+
+std::vector<double> NpyArray::to_doubles() const { return to_numbers<double>(*this); }
+std::vector<float> NpyArray::to_floats() const { return to_numbers<float>(*this); }
+
+NpyArray parse_npy(std::span<const std::byte> content, std::string_view file) {
+  const NpyHeader header = parse_npy_header(content, content.size(), file);
+  NpyArray array(header.type, header.shape);
+  const auto data = content.subspan(header.data_offset);
+  std::copy(data.begin(), data.end(), array.bytes().begin());
+  restore_host_order(header, array);
+  return array;
+}
+
+NpyArray read_npy(const std::filesystem::path& path) { return NpyReader(path).read_all(); }
+
+std::vector<std::byte> serialize_npy(const NpyArray& array) {
+  const std::string header = serialize_npy_header(array.type(), array.shape());
+  const auto header_bytes = std::as_bytes(std::span(header));
+  std::vector<std::byte> content(header_bytes.begin(), header_bytes.end());
+  content.insert(content.end(), array.bytes().begin(), array.bytes().end());
+  if constexpr (!host_is_little_endian)
+    swap_byte_order(std::span(content).subspan(header.size()), item_size(array.type()));
+  return content;
+}
+
+void write_npy(const std::filesystem::path& path, const NpyArray& array, OutputPolicy policy) {
+  AtomicFile file(path, policy);
+  if constexpr (host_is_little_endian) {  // no copy of what may be gigabytes
+    file.write(serialize_npy_header(array.type(), array.shape()));
+    file.write(array.bytes());
+  } else {
+    file.write(serialize_npy(array));
+  }
+  file.commit();
+}
+
+}  // namespace tofsmith

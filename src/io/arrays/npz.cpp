@@ -1,0 +1,265 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/npy.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <zip.h>
+
+#include <algorithm>
+#include <array>
+#include <list>
+#include <utility>
+
+#include "io/arrays/npy_header.hpp"
+#include "io/shared/byte_order.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+/// Named, for the state of a reader holds one.
+struct DiscardNpzArchive {
+  void operator()(zip_t* archive) const { zip_discard(archive); }
+};
+
+namespace {
+
+constexpr std::string_view suffix = ".npy";
+
+using Archive = std::unique_ptr<zip_t, DiscardNpzArchive>;
+
+struct FreeSource {
+  void operator()(zip_source_t* source) const { zip_source_free(source); }
+};
+using Source = std::unique_ptr<zip_source_t, FreeSource>;
+
+struct CloseEntry {
+  void operator()(zip_file_t* entry) const { zip_fclose(entry); }
+};
+using Entry = std::unique_ptr<zip_file_t, CloseEntry>;
+
+class ZipError {
+ public:
+  ZipError() { zip_error_init(&error_); }
+  ~ZipError() { zip_error_fini(&error_); }
+  ZipError(const ZipError&) = delete;
+  ZipError& operator=(const ZipError&) = delete;
+  zip_error_t* get() { return &error_; }
+  std::string text() { return zip_error_strerror(&error_); }
+
+ private:
+  zip_error_t error_;
+};
+
+Archive open_archive(Source source, int flags, std::string_view file) {
+  ZipError error;
+  Archive archive(source ? zip_open_from_source(source.get(), flags, error.get()) : nullptr);
+  if (!archive) throw IoError(file, fmt::format("cannot read as an NPZ archive: {}", error.text()));
+  (void)source.release();  // the archive owns it now
+  return archive;
+}
+
+}  // namespace
+
+struct NpzReader::State {
+  Archive archive;
+  std::string file;
+  std::vector<std::string> names;
+  std::vector<std::uint64_t> sizes;
+
+  void read_directory();
+  std::size_t index_of(std::string_view name) const;
+  std::vector<std::byte> unpack(std::size_t index) const;
+};
+
+/// Notes names and sizes of all entries and refuses what cannot be a set of arrays.
+void NpzReader::State::read_directory() {
+  std::uint64_t total = 0;
+  const zip_int64_t count = zip_get_num_entries(archive.get(), 0);
+  if (count < 1) throw IoError(file, "found no entries; expected an archive of arrays");
+  for (zip_int64_t i = 0; i < count; ++i) {
+    zip_stat_t entry;
+    const auto index = static_cast<zip_uint64_t>(i);
+    constexpr zip_uint64_t needed = ZIP_STAT_NAME | ZIP_STAT_SIZE;
+    if (zip_stat_index(archive.get(), index, 0, &entry) != 0 || (entry.valid & needed) != needed)
+      throw IoError(file, fmt::format("entry {}: {}", i, zip_strerror(archive.get())));
+    std::string name = entry.name;
+    if (name.ends_with(suffix)) name.resize(name.size() - suffix.size());
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      throw IoError(file, fmt::format("found the entry '{}' twice; expected it once", name));
+    if (entry.size > max_npz_bytes - total)
+      throw IoError(file, fmt::format("the entries unpack to more than {} bytes; expected less",
+                                      max_npz_bytes));
+    total += entry.size;
+    names.push_back(std::move(name));
+    sizes.push_back(entry.size);
+  }
+}
+
+std::size_t NpzReader::State::index_of(std::string_view name) const {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end())
+    throw IoError(file,
+                  fmt::format("there is no array '{}'; found {}", name, fmt::join(names, ", ")));
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+std::vector<std::byte> NpzReader::State::unpack(std::size_t index) const {
+  const auto damaged = [&](const std::string& problem) {
+    return IoError(file, fmt::format("entry '{}': {}", names[index], problem));
+  };
+  const Entry entry(zip_fopen_index(archive.get(), index, 0));
+  if (!entry) throw damaged(zip_strerror(archive.get()));
+  // Grows with what really comes, not with what the directory claims. One read more than there
+  // should be data makes libzip compare the checksum.
+  constexpr std::size_t block = std::size_t{1} << 22;
+  std::vector<std::byte> content;
+  for (;;) {
+    const std::size_t done = content.size();
+    content.resize(done + std::min<std::uint64_t>(block, sizes[index] - done + 1));
+    const zip_int64_t got = zip_fread(entry.get(), content.data() + done, content.size() - done);
+    if (got < 0) throw damaged(zip_file_strerror(entry.get()));
+    content.resize(done + static_cast<std::size_t>(got));
+    if (content.size() > sizes[index] || (got == 0 && content.size() < sizes[index]))
+      throw damaged(fmt::format("found {} bytes; expected {} as the directory says", content.size(),
+                                sizes[index]));
+    if (got == 0) return content;
+  }
+}
+
+NpzReader::NpzReader(const std::filesystem::path& path) : state_(std::make_unique<State>()) {
+  state_->file = path.string();
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    throw IoError(state_->file, "found a directory; expected a file");
+  if (!std::filesystem::exists(path, ignored)) throw IoError(state_->file, "there is no such file");
+  Source source(zip_source_file_create(path.c_str(), 0, -1, nullptr));
+  state_->archive = open_archive(std::move(source), ZIP_RDONLY, state_->file);
+  state_->read_directory();
+}
+
+NpzReader::NpzReader(std::span<const std::byte> content, std::string_view file)
+    : state_(std::make_unique<State>()) {
+  state_->file = file;
+  Source source(zip_source_buffer_create(content.data(), content.size(), 0, nullptr));
+  state_->archive = open_archive(std::move(source), ZIP_RDONLY, state_->file);
+  state_->read_directory();
+}
+
+NpzReader::~NpzReader() = default;
+NpzReader::NpzReader(NpzReader&&) noexcept = default;
+
+const std::vector<std::string>& NpzReader::names() const { return state_->names; }
+
+bool NpzReader::contains(std::string_view name) const {
+  return std::find(names().begin(), names().end(), name) != names().end();
+}
+
+std::uint64_t NpzReader::unpacked_bytes(std::string_view name) const {
+  return state_->sizes[state_->index_of(name)];
+}
+
+NpyArray NpzReader::read(std::string_view name) const {
+  const auto content = state_->unpack(state_->index_of(name));
+  return parse_npy(content, fmt::format("{}: entry '{}'", state_->file, name));
+}
+
+namespace {
+
+NpzArrays read_all(const NpzReader& reader) {
+  NpzArrays arrays;
+  for (const std::string& name : reader.names()) arrays.emplace(name, reader.read(name));
+  return arrays;
+}
+
+/// The NPY file of an array in two pieces, so that its items need not be copied.
+struct Entries {
+  std::list<std::string> headers;
+  std::list<std::vector<std::byte>> swapped;  // items of machines that are big-endian
+
+  std::array<zip_buffer_fragment_t, 2> pieces(const NpyArray& array) {
+    std::string& header = headers.emplace_back(serialize_npy_header(array.type(), array.shape()));
+    std::span<const std::byte> items = array.bytes();
+    if constexpr (!host_is_little_endian) {
+      auto& copy = swapped.emplace_back(items.begin(), items.end());
+      swap_byte_order(copy, item_size(array.type()));
+      items = copy;
+    }
+    const auto bytes = [](const void* data) {  // libzip only reads them
+      return const_cast<zip_uint8_t*>(static_cast<const zip_uint8_t*>(data));
+    };
+    return {{{bytes(header.data()), header.size()}, {bytes(items.data()), items.size()}}};
+  }
+};
+
+/// Packs arrays into what an archive is opened on.
+void pack(const NpzArrays& arrays, NpzCompression compression, Source target,
+          std::string_view file) {
+  Archive archive = open_archive(std::move(target), ZIP_CREATE | ZIP_TRUNCATE, file);
+  const auto check = [&](bool good) {
+    if (!good) throw IoError(file, zip_strerror(archive.get()));
+  };
+  Entries entries;  // libzip reads them at zip_close
+  for (const auto& [name, array] : arrays) {
+    const auto pieces = entries.pieces(array);
+    zip_source_t* source =
+        zip_source_buffer_fragment(archive.get(), pieces.data(), pieces.size(), 0);
+    check(source != nullptr);
+    const zip_int64_t added =
+        zip_file_add(archive.get(), (name + std::string(suffix)).c_str(), source, ZIP_FL_ENC_UTF_8);
+    if (added < 0) zip_source_free(source);
+    check(added >= 0);
+    const auto index = static_cast<zip_uint64_t>(added);
+    constexpr zip_uint16_t first_of_january_1980 = (1 << 5) | 1;
+    check(zip_file_set_dostime(archive.get(), index, 0, first_of_january_1980, 0) == 0);
+    const bool deflate = compression == NpzCompression::deflated;
+    check(zip_set_file_compression(archive.get(), index, deflate ? ZIP_CM_DEFLATE : ZIP_CM_STORE,
+                                   0) == 0);
+  }
+  check(zip_close(archive.get()) == 0);
+  (void)archive.release();  // zip_close freed it
+}
+
+void check_names(const NpzArrays& arrays) {
+  require(!arrays.empty(), "arrays", "{}", "must have at least one");
+  require(!arrays.contains(""), "array name", "''", "must not be empty");
+}
+
+/// Copies the archive out of the source that libzip wrote it to.
+std::vector<std::byte> written_bytes(zip_source_t* source) {
+  zip_stat_t stat;
+  if (zip_source_stat(source, &stat) != 0 || zip_source_open(source) != 0) return {};
+  std::vector<std::byte> bytes(stat.size);
+  const zip_int64_t got = zip_source_read(source, bytes.data(), bytes.size());
+  zip_source_close(source);
+  bytes.resize(got < 0 ? 0 : static_cast<std::size_t>(got));
+  return bytes;
+}
+
+}  // namespace
+
+NpzArrays parse_npz(std::span<const std::byte> content, std::string_view file) {
+  return read_all(NpzReader(content, file));
+}
+
+NpzArrays read_npz(const std::filesystem::path& path) { return read_all(NpzReader(path)); }
+
+std::vector<std::byte> serialize_npz(const NpzArrays& arrays, NpzCompression compression) {
+  check_names(arrays);
+  Source buffer(zip_source_buffer_create(nullptr, 0, 0, nullptr));
+  if (!buffer) throw std::bad_alloc();
+  zip_source_keep(buffer.get());  // one for the archive, one for reading the result
+  pack(arrays, compression, Source(buffer.get()), "NPZ archive");
+  return written_bytes(buffer.get());
+}
+
+void write_npz(const std::filesystem::path& path, const NpzArrays& arrays, OutputPolicy policy,
+               NpzCompression compression) {
+  AtomicFile file(path, policy);  // before the work of packing, so that a bad path fails at once
+  check_names(arrays);
+  Source target(zip_source_file_create(file.temporary_path().c_str(), 0, -1, nullptr));
+  pack(arrays, compression, std::move(target), path.string());
+  file.commit();
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string_view>
+
+#include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/npy.hpp"
+
+namespace tofsmith {
+
+/// Column of measurement exposure x taps + tap.
+Eigen::Index column_of(int exposure, int tap, int exposures, int taps,
+                       std::optional<TapOrder> order);
+
+/// How many exposures the columns hold.
+/// @throws IoError if they are no multiple of the taps, or hold several in an order not told
+int exposures_of(Eigen::Index columns, const TapLayout& layout, std::string_view file);
+
+/// Fewest samples of a period, as of a camera.
+inline constexpr Eigen::Index fewest_samples = 8;
+
+/// The matrix of correlation functions in a file as it stands there: text (.csv, .txt), a NumPy
+/// array (.npy), or the array `corrfs` of an archive (.npz).
+/// @throws IoError naming the place for another shape or a value that is not finite
+Eigen::MatrixXd correlation_matrix_of(const std::filesystem::path& path);
+
+/// An array of shape (rows, columns) as a matrix.
+/// @param place  what errors call it, such as "code.npz: modfs"
+/// @throws IoError if it has another number of axes, an empty one, or a value that is not finite
+Eigen::MatrixXd matrix_of(const NpyArray& array, std::string_view place);
+
+/// The matrix as a float64 array of shape (rows, columns).
+NpyArray array_of(const Eigen::MatrixXd& matrix);
+
+}  // namespace tofsmith

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/code_file.hpp"
+
+#include <fmt/format.h>
+
+#include "core/shared/enum_words.hpp"
+#include "io/shared/file_kind.hpp"
+#include "io/shared/read_file.hpp"
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+namespace {
+
+std::string near_family(const std::string& name) {
+  std::vector<std::string> known;
+  for (const FamilyDescription& family : list_families()) known.push_back(family.example);
+  std::string near = nearest_word(name, known);
+  if (near.empty()) return "; `tofsmith codes` lists them";
+  // Keep the number the user asked for: only the word before it is wrong.
+  const auto without_number = [](const std::string& word) {
+    return word.substr(0, word.find_last_not_of("0123456789") + 1);
+  };
+  const std::string number = name.substr(without_number(name).size());
+  if (!number.empty() && is_family(without_number(near) + number))
+    near = without_number(near) + number;
+  return fmt::format("; did you mean {}?", near);
+}
+
+constexpr EnumWords<TapOrder, 2> tap_order_words("TapOrder", "tap order", "blocked", "interleaved");
+
+}  // namespace
+
+CodeSet read_code(const std::filesystem::path& path, const TapLayout& layout) {
+  if (known_extension(path, {".json", ".npz"}) == ".json")
+    return parse_code_json(read_text_file(path), path.string());
+  return parse_code_npz(read_binary_file(path), path.string(), layout);
+}
+
+void write_code(const std::filesystem::path& path, const CodeSet& code, OutputPolicy policy,
+                std::optional<TapOrder> order) {
+  if (known_extension(path, {".json", ".npz"}) == ".json")
+    write_file_atomically(path, code_to_json(code), policy);
+  else
+    write_file_atomically(path, serialize_code_npz(code, order), policy);
+}
+
+CodeSet load_code(const std::string& name_or_path, const Camera& camera,
+                  const CodeFileOptions& options) {
+  if (name_or_path.empty())
+    throw IoError("code", "found an empty name; expected a built-in family or a file");
+  if (is_family(name_or_path)) return build_family(name_or_path, camera);
+  std::error_code ignored;
+  if (!std::filesystem::exists(name_or_path, ignored))
+    throw IoError(name_or_path, fmt::format("there is no such file and no built-in family of that "
+                                            "name{}",
+                                            near_family(name_or_path)));
+  return read_code(name_or_path, {options.taps.value_or(camera.sensor.taps), options.tap_order});
+}
+
+TapOrder parse_tap_order(std::string_view word) { return tap_order_words.parse(word); }
+
+}  // namespace tofsmith

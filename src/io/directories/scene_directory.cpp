@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/scene_toml.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "io/documents/shared/document_text.hpp"
+#include "io/shared/read_file.hpp"
+#include "io/text/json_reader.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/io/image_file.hpp"
+
+namespace tofsmith {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+std::string depth_file_name(const std::string& light, const std::string& code) {
+  return fmt::format("{}-{}.npy", file_name_of(light), file_name_of(code));
+}
+
+Json error_json(const SceneError& e) {
+  return {{"mean_m", e.mean_m},
+          {"median_m", e.median_m},
+          {"outlier_rate", e.outlier_rate},
+          {"decoded_share", e.decoded_share},
+          {"pixels", e.pixels},
+          {"outlier_threshold_m", e.outlier_threshold_m}};
+}
+
+double share(const JsonReader& json, std::string_view member) {
+  return json.member(member).number(0.0, 1.0, 1e-9);
+}
+
+SceneError error_from_json(const JsonReader& json) {
+  const auto length_m = [&](std::string_view member) {
+    return json.member(member).number(0.0, infinity, 0.0);
+  };
+  return {.mean_m = length_m("mean_m"),
+          .median_m = length_m("median_m"),
+          .outlier_rate = share(json, "outlier_rate"),
+          .decoded_share = share(json, "decoded_share"),
+          .pixels = json.member("pixels").integer(0, std::numeric_limits<int>::max()),
+          .outlier_threshold_m = length_m("outlier_threshold_m")};
+}
+
+/// A plane of the scene's size.
+Image<float> read_image_plane(const fs::path& path, std::string_view what,
+                              const SceneImage& truth) {
+  Image<float> plane = read_float_image(path, what);
+  if (plane.height != truth.height() || plane.width != truth.width())
+    throw IoError(path.string(),
+                  fmt::format("found {} x {} pixels; expected the {} x {} of true_depth.npy",
+                              plane.height, plane.width, truth.height(), truth.width()));
+  return plane;
+}
+
+SceneImage read_truth(const fs::path& directory) {
+  SceneImage truth;
+  truth.depth_m = read_float_image(directory / "true_depth.npy", "depth");
+  truth.albedo = read_image_plane(directory / "albedo.npy", "albedo", truth);
+  truth.cosine = read_image_plane(directory / "cosine.npy", "cosine", truth);
+  try {
+    truth.validate();
+  } catch (const std::invalid_argument& error) {
+    throw IoError(directory.string(), error.what());
+  }
+  return truth;
+}
+
+SceneDecoding read_decoding(const JsonReader& json, const fs::path& directory,
+                            const SceneImage& truth) {
+  const std::string file = json.member("file").text();
+  if (fs::path(file).has_parent_path())
+    json.member("file").mistyped("a file of the same directory");
+  return {.code = json.member("code").text(),
+          .depth_m = read_image_plane(directory / file, "depth", truth),
+          .error = error_from_json(json.member("error"))};
+}
+
+}  // namespace
+
+void write_scene_result(const fs::path& directory, const SceneResult& scene, OutputPolicy policy) {
+  make_output_directory(directory);
+  std::error_code ignored;  // scene.json is gone while the others change
+  if (policy == OutputPolicy::overwrite) fs::remove(directory / "scene.json", ignored);
+  write_float_image(directory / "true_depth.npy", scene.truth.depth_m, "depth", policy);
+  write_float_image(directory / "albedo.npy", scene.truth.albedo, "albedo", policy);
+  write_float_image(directory / "cosine.npy", scene.truth.cosine, "cosine", policy);
+  Json document = {{"name", scene.name},
+                   {"reference_distance_m", scene.reference_distance_m},
+                   {"view",
+                    {{"fx_px", scene.view.fx_px},
+                     {"fy_px", scene.view.fy_px},
+                     {"cx_px", scene.view.cx_px},
+                     {"cy_px", scene.view.cy_px}}},
+                   {"captures", Json::array()}};
+  for (const SceneCapture& capture : scene.captures) {
+    Json decodings = Json::array();
+    for (const SceneDecoding& d : capture.decodings) {
+      const std::string file = depth_file_name(capture.light, d.code);
+      write_float_image(directory / file, d.depth_m, "depth", policy);
+      decodings.push_back({{"code", d.code}, {"file", file}, {"error", error_json(d.error)}});
+    }
+    document["captures"].push_back({{"light", capture.light},
+                                    {"signal_e_per_s", capture.point.signal_e_per_s},
+                                    {"ambient_e_per_s", capture.point.ambient_e_per_s},
+                                    {"decodings", std::move(decodings)}});
+  }
+  write_file_atomically(directory / "scene.json", document.dump(2), policy);
+}
+
+bool holds_scene_result(const fs::path& directory) { return fs::exists(directory / "scene.json"); }
+
+SceneResult read_scene_result(const fs::path& directory) {
+  const fs::path path = directory / "scene.json";
+  const std::string file = path.string();
+  const nlohmann::json json = parse_json(read_text_file(path), file);
+  const JsonReader document(json, file), view = document.member("view");
+  SceneResult scene{.name = document.member("name").text(),
+                    .truth = read_truth(directory),
+                    .reference_distance_m = document.member("reference_distance_m").number()};
+  scene.view = {.fx_px = view.member("fx_px").number(),
+                .fy_px = view.member("fy_px").number(),
+                .cx_px = view.member("cx_px").number(),
+                .cy_px = view.member("cy_px").number(),
+                .width = scene.truth.width(),
+                .height = scene.truth.height()};
+  try {
+    scene.view.validate();
+  } catch (const std::invalid_argument& error) {
+    view.fail(error.what());
+  }
+  for (const JsonReader& entry : document.member("captures").elements()) {
+    SceneCapture capture{.light = entry.member("light").text(),
+                         .point = {entry.member("signal_e_per_s").number(),
+                                   entry.member("ambient_e_per_s").number()}};
+    for (const JsonReader& decoding : entry.member("decodings").elements())
+      capture.decodings.push_back(read_decoding(decoding, directory, scene.truth));
+    scene.captures.push_back(std::move(capture));
+  }
+  return scene;
+}
+
+DesignedDirectory read_designed_directory(const fs::path& directory) {
+  if (!fs::exists(directory / "design.json"))
+    throw IoError(directory.string(),
+                  "holds no design.json; expected a directory made by `tofsmith design -o` or "
+                  "`tofsmith demo -o`");
+  DesignedDirectory found{DesignDirectory(directory).read(), {}};
+  if (holds_scene_result(directory / "scene")) found.scene = read_scene_result(directory / "scene");
+  return found;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <type_traits>
+#include <utility>
+
+#include "io/text/choices.hpp"
+#include "tofsmith/camera/camera.hpp"
+
+// The tables and keys of a camera file, described once for reading and for writing: `Table` is a
+// TableReader or a TableWriter, which sees const fields. Only a measured response is read and
+// written differently: visit_measured_response() is overloaded for both.
+namespace tofsmith::camera_fields {
+
+template <typename Enum>
+using Words = std::pair<std::string_view, Enum>;
+
+inline constexpr std::array kinds = {
+    Words<ImpulseResponse::Kind>{"none", ImpulseResponse::Kind::none},
+    Words<ImpulseResponse::Kind>{"hann", ImpulseResponse::Kind::hann},
+    Words<ImpulseResponse::Kind>{"gaussian", ImpulseResponse::Kind::gaussian},
+    Words<ImpulseResponse::Kind>{"lowpass", ImpulseResponse::Kind::lowpass},
+    Words<ImpulseResponse::Kind>{"file", ImpulseResponse::Kind::file}};
+inline constexpr std::array noise_models = {Words<NoiseModel>{"poisson", NoiseModel::poisson},
+                                            Words<NoiseModel>{"gaussian", NoiseModel::gaussian}};
+inline constexpr std::array readouts = {Words<Readout>{"separate", Readout::separate},
+                                        Words<Readout>{"difference", Readout::difference}};
+inline constexpr std::array depth_errors = {
+    Words<DepthErrorKind>{"linear", DepthErrorKind::linear},
+    Words<DepthErrorKind>{"circular", DepthErrorKind::circular}};
+
+/// The member that a reader may change and a writer only sees.
+template <typename Table, typename Value>
+using Field = std::conditional_t<Table::reads, Value, const Value>;
+
+template <typename Table>
+void visit_impulse_response(Table& table, Field<Table, ImpulseResponse>& response) {
+  using Kind = ImpulseResponse::Kind;
+  table.required("kind", "\"hann\"");
+  table.choice("kind", response.kind, Choices<Kind>(kinds));
+  const Kind kind = response.kind;
+  if (kind == Kind::hann)
+    table.required("f_max_hz", "150e6").value("f_max_hz", response.f_max_hz);
+  else
+    table.refuse({"f_max_hz"}, "kind = \"hann\"");
+  if (kind == Kind::gaussian || kind == Kind::lowpass)
+    table.required("cutoff_hz", "100e6").value("cutoff_hz", response.cutoff_hz);
+  else
+    table.refuse({"cutoff_hz"}, "kind = \"gaussian\" or \"lowpass\"");
+  if (kind == Kind::file)
+    visit_measured_response(table, response);
+  else
+    table.refuse({"file", "samples", "time_step_s"}, "kind = \"file\"");
+}
+
+template <typename Table>
+void visit_generator(Table& table, Field<Table, Generator>& generator) {
+  table.value("sample_rate_hz", generator.sample_rate_hz);
+  table.value("amplitude_bits", generator.amplitude_bits);
+  table.value("table_points", generator.table_points);
+  table.value("edge_grid_s", generator.edge_grid_s);
+}
+
+template <typename Table>
+void visit_light(Table& table, Field<Table, LightSource>& light) {
+  table.value("peak_factor", light.peak_factor);
+  table.value("binary", light.binary);
+  table.table("impulse_response", light.impulse_response, visit_impulse_response<Table>);
+  table.value("edge_jitter_s", light.edge_jitter_s);
+  table.table("generator", light.generator, visit_generator<Table>);
+}
+
+template <typename Table>
+void visit_sensor(Table& table, Field<Table, Sensor>& sensor) {
+  table.value("taps", sensor.taps);
+  table.value("binary", sensor.binary);
+  table.table("impulse_response", sensor.impulse_response, visit_impulse_response<Table>);
+  table.value("edge_jitter_s", sensor.edge_jitter_s);
+  table.table("generator", sensor.generator, visit_generator<Table>);
+  table.value("read_noise_e", sensor.read_noise_e);
+  table.choice("noise", sensor.noise, Choices<NoiseModel>(noise_models));
+  table.value("dark_current_e_per_s", sensor.dark_current_e_per_s);
+  table.value("modulation_contrast", sensor.modulation_contrast);
+  table.value("tap_mismatch", sensor.tap_mismatch);
+  table.value("full_well_e", sensor.full_well_e);
+  table.value("adc_bits", sensor.adc_bits);
+  table.value("gain_e_per_dn", sensor.gain_e_per_dn);
+  table.value("black_level_dn", sensor.black_level_dn);
+  table.value("shortest_pulse_s", sensor.shortest_pulse_s);
+  table.value("drain", sensor.drain);
+  table.choice("readout", sensor.readout, Choices<Readout>(readouts));
+}
+
+template <typename Table>
+void visit_lens(Table& table, Field<Table, Lens>& lens) {
+  table.required("fx_px", "525.0").value("fx_px", lens.fx_px);
+  table.required("fy_px", "525.0").value("fy_px", lens.fy_px);
+  table.required("cx_px", "319.5").value("cx_px", lens.cx_px);
+  table.required("cy_px", "239.5").value("cy_px", lens.cy_px);
+}
+
+template <typename Table>
+void visit_second_returns(Table& table, Field<Table, SecondReturns>& returns) {
+  table.value("ratio", returns.ratio);
+  table.value("delay_m", returns.delay_m);
+  table.value("weight", returns.weight);
+}
+
+template <typename Table>
+void visit_operating(Table& table, Field<Table, OperatingRange>& range) {
+  table.value("signal_e_per_s", range.signal_e_per_s);
+  table.value("ambient_e_per_s", range.ambient_e_per_s);
+  table.choice("error", range.error, Choices<DepthErrorKind>(depth_errors));
+  table.number_or_word("albedo", range.albedo, "uniform", range.uniform_albedo);
+  table.table("multipath", range.multipath, visit_second_returns<Table>);
+}
+
+template <typename Table>
+void visit_camera(Table& table, Field<Table, Camera>& camera) {
+  table.value("name", camera.name);
+  table.required("fundamental_frequency_hz", "15e6")
+      .value("fundamental_frequency_hz", camera.fundamental_frequency_hz);
+  table.number_or_list("exposure_s", camera.exposure_s.total_s, camera.exposure_s.each_s);
+  table.value("samples", camera.samples);
+  table.table("light", camera.light, visit_light<Table>);
+  table.table("sensor", camera.sensor, visit_sensor<Table>);
+  table.table("lens", camera.lens, visit_lens<Table>);
+  table.table("operating", camera.operating, visit_operating<Table>);
+}
+
+}  // namespace tofsmith::camera_fields

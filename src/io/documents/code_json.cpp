@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/code_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "io/documents/shared/document_text.hpp"
+#include "io/text/json_reader.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+constexpr std::string_view format_name = "tofsmith-code";
+constexpr int format_version = 1;
+constexpr int max_samples = 65536;  // as a camera's
+constexpr int max_measurements = 4096;
+constexpr double tolerance = 1e-9;  // as CodeSet's
+
+OrderedJson waveform_to_json(const Waveform& waveform) {
+  if (!waveform.is_binary()) {
+    const Eigen::VectorXd& samples = waveform.samples();
+    return {{"kind", "sampled"}, {"values", std::vector<double>(samples.begin(), samples.end())}};
+  }
+  OrderedJson on = OrderedJson::array();
+  for (const OnInterval& interval : waveform.on_intervals())
+    on.push_back(std::vector<double>{interval.rise, interval.fall});
+  return {{"kind", "binary"}, {"level", waveform.level()}, {"on", std::move(on)}};
+}
+
+OrderedJson provenance_to_json(const Provenance& provenance) {
+  for (const double residual : provenance.residuals)
+    require(std::isfinite(residual), "provenance.residuals", residual, "must be finite");
+  require(std::isfinite(provenance.depth_error_m), "provenance.depth_error_m",
+          provenance.depth_error_m, "must be finite");
+  return {{"method", provenance.method},       {"camera", provenance.camera},
+          {"seed", provenance.seed},           {"version", provenance.version},
+          {"residuals", provenance.residuals}, {"depth_error_m", provenance.depth_error_m}};
+}
+
+Waveform read_sampled(const JsonReader& json, int samples, double highest) {
+  json.only({"kind", "values"});
+  const auto values =
+      json.member("values").elements(static_cast<std::size_t>(samples), "as many as /samples says");
+  Eigen::VectorXd read(samples);
+  for (int n = 0; n < samples; ++n)
+    read[n] = values[static_cast<std::size_t>(n)].number(0.0, highest, tolerance);
+  return Waveform::sampled(std::move(read));
+}
+
+Waveform read_binary(const JsonReader& json, double highest) {
+  json.only({"kind", "level", "on"});
+  const JsonReader on_place = json.member("on");
+  std::vector<OnInterval> on;
+  for (const JsonReader& interval : on_place.elements()) {
+    const auto edges = interval.elements(2, "[rise, fall]");
+    on.push_back({edges[0].number(), edges[1].number()});
+  }
+  const JsonReader level_place = json.member("level");
+  const double level = level_place.number(0.0, highest, tolerance);
+  if (level <= 0.0) level_place.mistyped("a number > 0");
+  try {
+    return Waveform::binary(std::move(on), level);
+  } catch (const std::invalid_argument& error) {
+    on_place.fail(error.what());
+  }
+}
+
+/// @param highest  largest value the waveform may take
+Waveform read_waveform(const JsonReader& json, int samples, double highest) {
+  const JsonReader kind = json.member("kind");
+  if (kind.text() == "binary") return read_binary(json, highest);
+  if (kind.text() == "sampled") return read_sampled(json, samples, highest);
+  kind.mistyped("\"binary\" or \"sampled\"");
+}
+
+Provenance read_provenance(const JsonReader& json) {
+  json.only({"method", "camera", "seed", "version", "residuals", "depth_error_m"});
+  Provenance read;
+  if (const auto method = json.optional_member("method")) read.method = method->text();
+  if (const auto camera = json.optional_member("camera")) read.camera = camera->text();
+  if (const auto seed = json.optional_member("seed")) read.seed = seed->unsigned_integer();
+  if (const auto version = json.optional_member("version")) read.version = version->text();
+  if (const auto residuals = json.optional_member("residuals"))
+    for (const JsonReader& residual : residuals->elements())
+      read.residuals.push_back(residual.number());
+  if (const auto error = json.optional_member("depth_error_m"))
+    read.depth_error_m = error->number();
+  return read;
+}
+
+void check_format(const JsonReader& json) {
+  const JsonReader format = json.member("format");
+  if (format.text() != format_name) format.mistyped(fmt::format("\"{}\"", format_name));
+  const JsonReader version = json.member("version");
+  if (version.integer(1, std::numeric_limits<int>::max()) != format_version)
+    version.mistyped(fmt::format("{}: a newer tofsmith wrote this file", format_version));
+}
+
+/// The function that a field of CodeSet::create() belongs to ("demodulation 3 minimum").
+JsonReader place_of_field(const JsonReader& json, std::string_view field) {
+  for (const std::string_view list : {"modulation", "demodulation"}) {
+    if (!field.starts_with(list)) continue;
+    std::size_t index = 0;
+    const char* digits = field.data() + std::min(list.size() + 1, field.size());
+    std::from_chars(digits, field.data() + field.size(), index);
+    return json.member(list).elements().at(index);
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string code_to_json(const CodeSet& code) {
+  OrderedJson json = {{"format", format_name},         {"version", format_version},
+                      {"name", code.name()},           {"samples", code.samples()},
+                      {"exposures", code.exposures()}, {"taps", code.taps()}};
+  OrderedJson modulation = OrderedJson::array(), demodulation = modulation;
+  for (int e = 0; e < code.exposures(); ++e)
+    modulation.push_back(waveform_to_json(code.modulation(e)));
+  for (int i = 0; i < code.measurements(); ++i)
+    demodulation.push_back(waveform_to_json(code.demodulation(i)));
+  json["modulation"] = std::move(modulation);
+  json["demodulation"] = std::move(demodulation);
+  json["provenance"] = provenance_to_json(code.provenance);
+  return format_json(json) + "\n";
+}
+
+CodeSet parse_code_json(std::string_view text, std::string_view file) {
+  const nlohmann::json document = parse_json(text, file);
+  const JsonReader json(document, file);
+  check_format(json);
+  json.only({"format", "version", "name", "samples", "exposures", "taps", "modulation",
+             "demodulation", "provenance"});
+  const std::string name = json.member("name").text();
+  const int samples = json.member("samples").integer(2, max_samples);
+  const int exposures = json.member("exposures").integer(1, max_measurements);
+  const int taps = json.member("taps").integer(1, max_measurements / exposures);
+
+  const auto read_list = [&](const char* member, int count, const char* because, double highest) {
+    std::vector<Waveform> list;
+    for (const JsonReader& item :
+         json.member(member).elements(static_cast<std::size_t>(count), because))
+      list.push_back(read_waveform(item, samples, highest));
+    return list;
+  };
+  constexpr double any = std::numeric_limits<double>::infinity();
+  auto modulation = read_list("modulation", exposures, "as many as /exposures says", any);
+  auto demodulation =
+      read_list("demodulation", exposures * taps, "/exposures x /taps functions", 1.0);
+  try {
+    CodeSet code =
+        CodeSet::create(name, samples, taps, std::move(modulation), std::move(demodulation));
+    if (const auto provenance = json.optional_member("provenance"))
+      code.provenance = read_provenance(*provenance);
+    return code;
+  } catch (const InvalidArgument& error) {
+    place_of_field(json, error.field()).fail(error.what());
+  }
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/result_document.hpp"
+
+#include <utility>
+
+#include "io/documents/camera_json.hpp"
+#include "io/documents/shared/result_json.hpp"
+#include "io/text/field_json.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/version.hpp"
+
+namespace tofsmith {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// What `report` is compared with, and how many times as large its errors are.
+Json zncc_json(const DepthErrorReport& report, const DepthErrorReport& zncc) {
+  const auto over = [](const Estimate& error, const Estimate& other) {
+    return error.value / other.value;
+  };
+  Json entry = {
+      {"linear", fields_json(zncc.linear)},
+      {"circular", fields_json(zncc.circular)},
+      {"linear_ratio", over(report.linear.geometric_mean_m, zncc.linear.geometric_mean_m)},
+      {"circular_ratio", over(report.circular.geometric_mean_m, zncc.circular.geometric_mean_m)},
+      {"points", Json::array()}};
+  for (std::size_t i = 0; i < zncc.points.size(); ++i) {
+    const PointDepthError &p = report.points[i], &other = zncc.points[i];
+    Json point = fields_json(other, as_bits(Mark::apart) | as_bits(Mark::bound));
+    point["linear_ratio"] = over(p.linear_mde_m, other.linear_mde_m);
+    point["circular_ratio"] = over(p.circular_mde_m, other.circular_mde_m);
+    entry["points"].push_back(std::move(point));
+  }
+  return entry;
+}
+
+}  // namespace
+
+DepthErrorKind parse_word(const JsonReader& json, DepthErrorKind) {
+  for (const DepthErrorKind kind : {DepthErrorKind::linear, DepthErrorKind::circular})
+    if (json.text() == name_of(kind)) return kind;
+  json.mistyped("linear or circular");
+}
+
+Json depth_error_json(const DepthErrorReport& report, int rotation_bin) {
+  Json entry;
+  for_each_field(report, [&](const auto& field) {
+    if (field.is(Mark::apart)) return;
+    write_field(entry, field);
+    if (field.name == std::string_view("samples")) entry["rotation_bin"] = rotation_bin;
+  });
+  return entry;
+}
+
+DepthErrorReport depth_error_from_json(const JsonReader& entry, const JsonReader& document) {
+  auto report = fields_from_json<DepthErrorReport>(entry);
+  report.trials = static_cast<std::int64_t>(document.member("trials").unsigned_integer());
+  report.seed = document.member("seed").unsigned_integer();
+  report.outlier_threshold_m = document.member("outlier_threshold_m").number(0.0, infinity, 0.0);
+  for (PointDepthError& point : report.points) point.trials = report.trials;
+  return report;
+}
+
+Json robustness_json(const RobustnessReport& report) {
+  const auto add_ratio = [&](Json& error_m) {
+    error_m["ratio"] = error_m["geometric_mean_m"].get<double>() / report.nominal_m.value;
+  };
+  Json entry;
+  for_each_field(report, [&](const auto& field) {
+    write_field(entry, field);
+    if (field.name != std::string_view("nominal_m")) return;
+    entry["worst_calibrated"] = estimate_json(report.worst_calibrated_m());
+    entry["worst_uncalibrated"] = estimate_json(report.worst_uncalibrated_m());
+  });
+  for (const char* name : {"nominal", "worst_calibrated", "worst_uncalibrated"})
+    add_ratio(entry[name]);
+  for (Json& perturbed : entry["perturbations"])
+    for (const char* name : {"calibrated", "uncalibrated"}) add_ratio(perturbed[name]);
+  return entry;
+}
+
+Json measurements_json(const Candidate& candidate) {
+  Json list = Json::array();
+  for (const MeasurementReport& m : candidate.per_measurement) {
+    list.push_back(fields_json(m));
+    if (candidate.target.size() == 0)
+      list.back()["residual_rms"] = list.back()["smallest_residual_rms"] = nullptr;
+  }
+  return list;
+}
+
+std::vector<MeasurementReport> measurements_from_json(const JsonReader& entry) {
+  std::vector<MeasurementReport> reports;
+  if (const auto list = entry.optional_member("per_measurement"))
+    for (const JsonReader& m : list->elements())
+      reports.push_back(fields_from_json<MeasurementReport>(m));
+  return reports;
+}
+
+Json document_head(const Camera& camera, std::uint64_t seed, std::int64_t trials,
+                   double outlier_threshold_m) {
+  return {{"tofsmith", TOFSMITH_VERSION},
+          {"seed", seed},
+          {"trials", trials},
+          {"outlier_threshold_m", outlier_threshold_m},
+          {"camera", camera_document(camera)}};
+}
+
+Json design_json(const Camera& camera, const DesignResult& result, const DesignOptions& options) {
+  Json document = document_head(camera, options.seed, options.trials,
+                                result.winner().error.outlier_threshold_m);
+  document["best"] = result.winner().code.name();
+  document["codes"] = Json::array();
+  for (const Candidate& candidate : result.candidates) {
+    Json entry = depth_error_json(candidate.error, candidate.rotation_bin);
+    entry["method"] = candidate.method;
+    if (candidate.is_designed()) {
+      entry["iterations"] = candidate.iterations;
+      entry["seconds"] = candidate.seconds;
+      entry["per_measurement"] = measurements_json(candidate);
+    }
+    if (candidate.search) {
+      entry["proved"] = candidate.search->proved;
+      entry["account"] = candidate.search->account;
+    }
+    if (candidate.robustness) entry["robustness"] = robustness_json(*candidate.robustness);
+    if (candidate.second_returns) entry["second_returns"] = fields_json(*candidate.second_returns);
+    const Estimate gain = gain_over(result, candidate, camera.operating.error);
+    entry["times_best"] = {{"ratio", gain.value}, {"ratio_se", gain.standard_error}};
+    document["codes"].push_back(std::move(entry));
+  }
+  document["left_out"] = result.left_out;
+  document["explanation"] = result.explanation;
+  return document;
+}
+
+std::string evaluation_document(const Camera& camera, std::span<const EvaluatedCode> codes,
+                                const EvaluateOptions& options) {
+  Json document = document_head(camera, options.seed, options.trials, options.outlier_threshold_m);
+  document["method"] = name_of(options.method);
+  if (options.method == DecodeMethod::unwrap)
+    document["unwrap_weights"] = name_of(options.unwrap_weights);
+  if (options.target_standard_error > 0.0) {
+    document["target_standard_error"] = options.target_standard_error;
+    document["most_trials"] = options.most_trials;
+  }
+  document["codes"] = Json::array();
+  for (const EvaluatedCode& code : codes) {
+    Json entry = depth_error_json(code.error, code.rotation_bin);
+    if (options.target_standard_error > 0.0) {
+      entry["points_short_of_target"] = code.error.points_short_of_target;
+      for (std::size_t p = 0; p < code.error.points.size(); ++p)
+        entry["points"][p]["trials"] = code.error.points[p].trials;
+    }
+    if (code.zncc_error) entry["zncc"] = zncc_json(code.error, *code.zncc_error);
+    if (code.robustness) entry["robustness"] = robustness_json(*code.robustness);
+    document["codes"].push_back(std::move(entry));
+  }
+  return document.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string design_document(const Camera& camera, const DesignResult& result,
+                            const DesignOptions& options) {
+  return design_json(camera, result, options).dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,237 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/scene_toml.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <numbers>
+#include <optional>
+
+#include "io/image_limits.hpp"
+#include "io/shared/read_file.hpp"
+#include "io/text/shared/table_reader.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/image_file.hpp"
+#include "tofsmith/io/mesh_file.hpp"
+
+namespace tofsmith {
+namespace {
+
+constexpr double rad_per_deg = std::numbers::pi / 180.0;
+
+void read_positive(TableReader& table, std::string_view key, double& number) {
+  table.value(key, number);
+  if (!(number > 0.0)) table.fail(key, fmt::format("found {}; expected a number > 0", number));
+}
+
+void read_share(TableReader& table, std::string_view key, double& number) {
+  table.value(key, number);
+  if (!(number >= 0.0 && number <= 1.0))
+    table.fail(key, fmt::format("found {}; expected a number in [0, 1]", number));
+}
+
+/// What a file that the scene names holds; problems of that file get the place of its name.
+template <typename Read>
+auto read_named_file(TableReader& table, std::string_view key, Read&& read) {
+  std::string name;
+  table.value(key, name);
+  try {
+    return read(table.resolve(key, name));
+  } catch (const IoError& error) {
+    table.fail(key, error.what());
+  }
+}
+
+Eigen::Matrix3d read_rotation(TableReader& table) {
+  Eigen::Vector3d angles_deg = Eigen::Vector3d::Zero();
+  table.value("rotation_deg", angles_deg);
+  const auto about = [&](int axis) {
+    return Eigen::AngleAxisd(angles_deg[axis] * rad_per_deg, Eigen::Vector3d::Unit(axis));
+  };
+  return (about(2) * about(1) * about(0)).toRotationMatrix();
+}
+
+void read_texture_fields(TableReader& table, Texture& texture) {
+  using Pattern = Texture::Pattern;
+  constexpr std::array<std::pair<std::string_view, Pattern>, 3> patterns = {
+      {{"uniform", Pattern::uniform},
+       {"checker", Pattern::checker},
+       {"stripes", Pattern::stripes}}};
+  const bool is_image = table.contains("image");
+  if (is_image) {
+    table.refuse({"pattern", "other_albedo"}, "a pattern, not with image");
+    texture.pattern = Pattern::image;
+    texture.albedo = 1.0;
+    bool linear = false;
+    table.value("linear", linear);
+    texture.image = read_named_file(table, "image", [&](const std::filesystem::path& path) {
+      return albedo_of_picture(read_albedo(path, linear ? Transfer::linear : Transfer::srgb),
+                               path.string());
+    });
+  } else {
+    table.refuse({"linear"}, "image");
+    table.required("pattern", "\"checker\"")
+        .choice("pattern", texture.pattern, Choices<Pattern>(patterns));
+  }
+  read_share(table, "albedo", texture.albedo);
+  if (texture.pattern == Pattern::uniform) {
+    table.refuse({"other_albedo", "period_m"}, "pattern = \"checker\" or \"stripes\"");
+    return;
+  }
+  if (!is_image) {
+    table.required("other_albedo", "0.2");
+    read_share(table, "other_albedo", texture.other_albedo);
+  }
+  read_positive(table, "period_m", texture.period_m);
+}
+
+/// What every shape has.
+void read_surface(TableReader& table, Texture& texture) {
+  if (table.contains("texture")) table.refuse({"albedo"}, "no texture beside it");
+  read_share(table, "albedo", texture.albedo);
+  table.table("texture", texture, read_texture_fields);
+}
+
+Plane read_plane(TableReader& table) {
+  Plane plane;
+  table.required("point_m", "[0, 0, 2]").value("point_m", plane.point);
+  table.required("normal", "[0, 0, -1]").value("normal", plane.normal);
+  if (!(plane.normal.norm() > 0.0)) table.fail("normal", "has no length; expected a direction");
+  plane.normal /= plane.normal.cwiseAbs().maxCoeff();
+  return plane;
+}
+
+Box read_box(TableReader& table) {
+  Box box;
+  table.required("centre_m", "[0, 0, 2]").value("centre_m", box.centre);
+  table.required("size_m", "[0.3, 0.5, 0.1]").value("size_m", box.size_m);
+  if (!(box.size_m.minCoeff() > 0.0))
+    table.fail("size_m", fmt::format("found {}; expected edges > 0", box.size_m.minCoeff()));
+  box.rotation = read_rotation(table);
+  return box;
+}
+
+Sphere read_sphere(TableReader& table) {
+  Sphere sphere;
+  table.required("centre_m", "[0, 0, 2]").value("centre_m", sphere.centre);
+  read_positive(table.required("radius_m", "0.2"), "radius_m", sphere.radius_m);
+  return sphere;
+}
+
+Capsule read_capsule(TableReader& table) {
+  Capsule capsule;
+  table.required("start_m", "[0, 0, 2]").value("start_m", capsule.start);
+  table.required("end_m", "[0, 0.3, 2]").value("end_m", capsule.end);
+  read_positive(table.required("radius_m", "0.05"), "radius_m", capsule.radius_m);
+  return capsule;
+}
+
+Mesh read_placed_mesh(TableReader& table) {
+  Mesh mesh;
+  table.required("file", "\"hand.obj\"");
+  mesh.triangles = read_named_file(table, "file", read_mesh);
+  read_positive(table, "scale_m", mesh.scale_m);
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+  table.value("position_m", position_m);
+  mesh.mesh_to_world.linear() = read_rotation(table);
+  mesh.mesh_to_world.translation() = position_m;
+  return mesh;
+}
+
+void read_view(TableReader& table, PinholeView& view) {
+  int width = view.width, height = view.height;
+  table.value("width_px", width);
+  table.value("height_px", height);
+  for (const auto& [key, size] : {std::pair("width_px", width), std::pair("height_px", height)})
+    if (size < 1 || static_cast<std::uint64_t>(size) > max_image_side)
+      table.fail(key, fmt::format("found {}; expected 1 .. {}", size, max_image_side));
+  if (static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) > max_image_pixels)
+    table.fail("height_px", fmt::format("found {} x {} pixels; expected at most {} in all", height,
+                                        width, max_image_pixels));
+  double angle_deg = 60.0;
+  table.value("horizontal_angle_deg", angle_deg);
+  if (!(angle_deg > 0.0 && angle_deg < 180.0))
+    table.fail("horizontal_angle_deg",
+               fmt::format("found {}; expected more than 0 and less than 180", angle_deg));
+  view = PinholeView::centred(width, height, angle_deg * rad_per_deg);
+  if (!table.contains("fx_px")) {
+    table.refuse({"fy_px", "cx_px", "cy_px"}, "fx_px");
+    return;
+  }
+  table.refuse({"horizontal_angle_deg"}, "no fx_px beside it");
+  read_positive(table, "fx_px", view.fx_px);
+  view.fy_px = view.fx_px;
+  read_positive(table, "fy_px", view.fy_px);
+  table.value("cx_px", view.cx_px);
+  table.value("cy_px", view.cy_px);
+}
+
+/// Axes of a camera that looks at a point, its rows level: the world's y axis is down.
+Eigen::Matrix3d looking_along(const TableReader& table, const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d across = Eigen::Vector3d::UnitY().cross(direction);
+  if (!(direction.norm() > 0.0))
+    table.fail("look_at_m", "is where the camera stands; expected another point");
+  if (!(across.norm() > 1e-9 * direction.norm()))
+    table.fail("look_at_m", "is straight above or below; expected rotation_deg for such a camera");
+  Eigen::Matrix3d axes;
+  axes.col(0) = across.normalized();
+  axes.col(2) = direction.normalized();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return axes;
+}
+
+void read_camera(TableReader& table, Eigen::Isometry3d& camera_to_world) {
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Vector3d> look_at_m;
+  table.value("position_m", position_m);
+  table.value("look_at_m", look_at_m);
+  if (look_at_m) table.refuse({"rotation_deg"}, "no look_at_m beside it");
+  camera_to_world.translation() = position_m;
+  camera_to_world.linear() =
+      look_at_m ? looking_along(table, *look_at_m - position_m) : read_rotation(table);
+}
+
+/// All shapes of one kind.
+template <typename Read>
+void read_shapes(TableReader& table, std::string_view key, std::vector<Shape>& shapes,
+                 Read&& read) {
+  table.tables(key, [&](TableReader& inner) {
+    auto shape = read(inner);
+    read_surface(inner, shape.texture);
+    shapes.push_back(std::move(shape));
+  });
+}
+
+}  // namespace
+
+StagedScene parse_scene_toml(std::string_view text, std::string_view source_name,
+                             std::span<const std::string> settings) {
+  TomlDocument document(text, source_name);
+  for (const std::string& setting : settings) document.apply(setting);
+
+  StagedScene scene;
+  scene.view = PinholeView::centred(320, 240, std::numbers::pi / 3);
+  TableReader::Places places;
+  TableReader table(document, places);
+  table.table("view", scene.view, read_view);
+  table.table("camera", scene.camera_to_world, read_camera);
+  read_shapes(table, "plane", scene.shapes, read_plane);
+  read_shapes(table, "box", scene.shapes, read_box);
+  read_shapes(table, "sphere", scene.shapes, read_sphere);
+  read_shapes(table, "capsule", scene.shapes, read_capsule);
+  read_shapes(table, "mesh", scene.shapes, read_placed_mesh);
+  table.finish();
+  if (scene.shapes.empty())
+    throw IoError(source_name,
+                  "found no shapes; expected [[plane]], [[box]], [[sphere]], [[capsule]] or "
+                  "[[mesh]]");
+  return scene;
+}
+
+StagedScene read_scene_toml(const std::filesystem::path& path,
+                            std::span<const std::string> settings) {
+  return parse_scene_toml(read_text_file(path), path.string(), settings);
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/images/array_image.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "io/image_limits.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+Image<float> image_from_array(const NpyArray& array, std::string_view file) {
+  require_floats(array, file);
+  if (array.axes() != 2)
+    throw IoError(file, fmt::format("found an array of shape {}; expected (H, W)",
+                                    describe_shape(array.shape())));
+  check_image_size(file, array.shape()[0], array.shape()[1]);
+  Image<float> image;
+  image.height = static_cast<int>(array.shape()[0]);
+  image.width = static_cast<int>(array.shape()[1]);
+  image.pixels = array.to_floats();
+  return image;
+}
+
+std::string name_called_or_only(const NpzReader& archive, std::string_view name,
+                                std::string_view file) {
+  if (archive.contains(name)) return std::string(name);
+  if (archive.names().size() == 1) return archive.names()[0];
+  throw IoError(file, fmt::format("found the arrays {}; expected one called '{}', or only one",
+                                  fmt::join(archive.names(), ", "), name));
+}
+
+NpyArray array_called_or_only(const NpzReader& archive, std::string_view name,
+                              std::string_view file) {
+  return archive.read(name_called_or_only(archive, name, file));
+}
+
+void require_floats(const NpyArray& array, std::string_view file) {
+  if (array.type() == NpyType::float32 || array.type() == NpyType::float64) return;
+  throw IoError(file, fmt::format("found items of type {}; expected float32 or float64",
+                                  name_of(array.type())));
+}
+
+Image<float> image_from_pfm(PfmImage pfm, std::string_view file) {
+  if (pfm.channels != 1)
+    throw IoError(file, "found a colour image; expected one number per pixel ('Pf')");
+  Image<float> image;
+  image.height = pfm.height;
+  image.width = pfm.width;
+  image.pixels = std::move(pfm.values);
+  return image;
+}
+
+void require_pixels(const Image<float>& image) {
+  require(image.height >= 1, "height", image.height, "must be >= 1");
+  require(image.width >= 1, "width", image.width, "must be >= 1");
+  const std::size_t expected =
+      static_cast<std::size_t>(image.height) * static_cast<std::size_t>(image.width);
+  require(image.size() == expected, "number of pixels", image.size(),
+          fmt::format("must be height x width = {}", expected));
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "io/images/exr.hpp"
+#include "io/images/pfm.hpp"
+#include "tofsmith/core/array.hpp"
+#include "tofsmith/io/npy.hpp"
+
+namespace tofsmith {
+
+/// @throws IoError unless the array is float32 or float64 of shape (H, W)
+Image<float> image_from_array(const NpyArray& array, std::string_view file);
+
+/// `name` if an array is called so, else the name of the only one.
+/// @throws IoError if there is neither
+std::string name_called_or_only(const NpzReader& archive, std::string_view name,
+                                std::string_view file);
+/// The array called `name`, or the only one. @throws IoError if there is neither
+NpyArray array_called_or_only(const NpzReader& archive, std::string_view name,
+                              std::string_view file);
+
+/// @throws IoError unless the array holds float32 or float64
+void require_floats(const NpyArray& array, std::string_view file);
+
+/// @throws IoError if the image has colours
+Image<float> image_from_pfm(PfmImage pfm, std::string_view file);
+
+/// @throws std::invalid_argument if the image is empty
+void require_pixels(const Image<float>& image);
+
+}  // namespace tofsmith

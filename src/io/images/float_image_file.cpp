@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/image_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cstring>
+
+#include "io/images/array_image.hpp"
+#include "io/shared/file_kind.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+namespace {
+
+// The OpenEXR convention for distance along the viewing axis; other planes carry their own names.
+std::string exr_channel(std::string_view name) { return name == "depth" ? "Z" : std::string(name); }
+
+/// Bit by bit, so that NaN equals NaN.
+bool same_pixels(const Image<float>& a, const Image<float>& b) {
+  return std::memcmp(a.pixels.data(), b.pixels.data(), a.size() * sizeof(float)) == 0;
+}
+
+/// Renderers write depth under several names, or three times as if it were a colour.
+Image<float> only_plane(ExrPlanes planes, std::string_view name, const std::string& file) {
+  for (const std::string& usual : {std::string(name), std::string("Z"), std::string("Y")})
+    if (const auto found = planes.find(usual); found != planes.end())
+      return std::move(found->second);
+  if (planes.size() == 1) return std::move(planes.begin()->second);
+  const auto red = planes.find("R"), green = planes.find("G"), blue = planes.find("B");
+  const bool coloured = red != planes.end() && green != planes.end() && blue != planes.end();
+  if (coloured && same_pixels(red->second, green->second) && same_pixels(red->second, blue->second))
+    return std::move(red->second);
+
+  std::vector<std::string> names;
+  for (const auto& entry : planes) names.push_back(entry.first);
+  throw IoError(file, fmt::format("found the channels {}; expected '{}', Z or Y, or only one",
+                                  fmt::join(names, ", "), name));
+}
+
+}  // namespace
+
+Image<float> read_float_image(const std::filesystem::path& path, std::string_view name) {
+  const std::string file = path.string();
+  const std::string extension = known_extension(path, {".npy", ".npz", ".exr", ".pfm"});
+  if (extension == ".npy") return image_from_array(read_npy(path), file);
+  if (extension == ".npz")
+    return image_from_array(array_called_or_only(NpzReader(path), name, file), file);
+  if (extension == ".exr") return only_plane(read_exr(path), name, file);
+  return image_from_pfm(read_pfm(path), file);
+}
+
+void write_float_image(const std::filesystem::path& path, const Image<float>& image,
+                       std::string_view name, OutputPolicy policy) {
+  const std::string extension = known_extension(path, {".npy", ".npz", ".exr", ".pfm"});
+  require_pixels(image);
+  const auto array = [&image] {
+    return NpyArray::of<float>(
+        {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width)},
+        image.pixels);
+  };
+  if (extension == ".npy") write_npy(path, array(), policy);
+  if (extension == ".npz") write_npz(path, {{std::string(name), array()}}, policy);
+  if (extension == ".exr") write_exr(path, {{exr_channel(name), image}}, policy);
+  if (extension == ".pfm")
+    write_pfm(path, PfmImage{image.height, image.width, 1, 1.0, image.pixels}, policy);
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include "io/input_file.hpp"
+#include "tofsmith/io/raw_frames.hpp"
+
+namespace tofsmith {
+
+/// Reads rows of the frames of a dump in the memory of those rows.
+class RawDumpReader {
+ public:
+  /// @throws IoError if the file cannot be read or is not as long as the format says
+  RawDumpReader(const std::filesystem::path& path, RawFormat format);
+
+  const RawFormat& format() const { return format_; }
+  int frames() const { return frames_; }
+
+  /// Rows first_row .. first_row + rows - 1 as they stand in the scene, (rows, W, K) numbers, the
+  /// measurements of a pixel side by side and in order, black level and differences taken.
+  /// @throws IoError if the file cannot be read or became shorter
+  template <typename Number>
+  void read_rows(int frame, int first_row, int rows, Number* numbers) const;
+
+ private:
+  void read_file_row(int frame, std::size_t image, std::size_t row, std::vector<std::byte>& bytes,
+                     std::vector<double>& numbers) const;
+
+  InputFile file_;
+  RawFormat format_;
+  int frames_ = 0;
+};
+
+}  // namespace tofsmith

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/images/raw_sizes.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "io/image_limits.hpp"
+#include "tofsmith/core/error.hpp"
+
+#include "core/shared/enum_words.hpp"
+
+namespace tofsmith {
+namespace {
+
+/// The sizes that a shape has in a layout.
+struct Axes {
+  std::size_t frames, height, width, measurements;
+};
+
+Axes axes_of(const NpyShape& shape, RawLayout layout) {
+  const bool several = shape.size() == 4;
+  const std::size_t* axis = shape.data() + (several ? 1 : 0);
+  const std::size_t frames = several ? shape[0] : 1;
+  if (layout == RawLayout::planar) return {frames, axis[1], axis[2], axis[0]};
+  return {frames, axis[0], axis[1], axis[2]};
+}
+
+std::string_view shapes_of(RawLayout layout) {
+  return layout == RawLayout::planar ? "(K, H, W) or (F, K, H, W)" : "(H, W, K) or (F, H, W, K)";
+}
+
+void check_measurements(const NpyShape& shape, const RawReadOptions& options,
+                        const std::string& file) {
+  const std::size_t found = axes_of(shape, options.layout).measurements;
+  if (!options.measurements || found == static_cast<std::size_t>(*options.measurements)) return;
+  const RawLayout other =
+      options.layout == RawLayout::planar ? RawLayout::interleaved : RawLayout::planar;
+  const bool other_fits =
+      axes_of(shape, other).measurements == static_cast<std::size_t>(*options.measurements);
+  throw IoError(file,
+                fmt::format("found {} measurements per pixel, shape {}; expected {} as the code "
+                            "takes{}",
+                            found, describe_shape(shape), *options.measurements,
+                            other_fits ? fmt::format(" (as {} it would fit: --layout {})",
+                                                     shapes_of(other), name_of(other))
+                                       : ""));
+}
+
+constexpr EnumWords<RawLayout, 2> layout_words("RawLayout", "layout", "interleaved", "planar");
+
+}  // namespace
+
+RawFrames checked_raw_sizes(NpyType type, const NpyShape& shape, const RawReadOptions& options,
+                            const std::string& file) {
+  if (type != NpyType::uint8 && type != NpyType::uint16 && type != NpyType::int16 &&
+      type != NpyType::float32 && type != NpyType::float64)
+    throw IoError(file, fmt::format("found items of type {}; expected float32, float64, int16, "
+                                    "uint16 or uint8",
+                                    name_of(type)));
+  if (shape.size() != 3 && shape.size() != 4)
+    throw IoError(file, fmt::format("found an array of shape {}; expected {}",
+                                    describe_shape(shape), shapes_of(options.layout)));
+  const Axes axes = axes_of(shape, options.layout);
+  constexpr std::size_t most = std::numeric_limits<int>::max();
+  if (axes.frames < 1 || axes.frames > most || axes.measurements < 1 || axes.measurements > most)
+    throw IoError(file, fmt::format("found an array of shape {}; expected at least one frame and "
+                                    "one measurement, and at most {}",
+                                    describe_shape(shape), most));
+  check_measurements(shape, options, file);
+  check_image_size(file, axes.height, axes.width);
+  RawFrames sizes;
+  sizes.frames = static_cast<int>(axes.frames);
+  sizes.height = static_cast<int>(axes.height);
+  sizes.width = static_cast<int>(axes.width);
+  sizes.measurements = static_cast<int>(axes.measurements);
+  return sizes;
+}
+
+std::string_view name_of(RawLayout layout) { return layout_words.of(layout); }
+
+RawLayout parse_raw_layout(std::string_view name) { return layout_words.parse(name); }
+
+}  // namespace tofsmith

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "tofsmith/io/npy.hpp"
+#include "tofsmith/io/raw_frames.hpp"
+
+namespace tofsmith {
+
+/// Sizes without values, after everything about the array has been checked.
+/// @throws IoError if the type or the shape is none of raw frames, or K is not what is asked for
+RawFrames checked_raw_sizes(NpyType type, const NpyShape& shape, const RawReadOptions& options,
+                            const std::string& file);
+
+}  // namespace tofsmith

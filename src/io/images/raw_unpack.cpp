@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// Numbers of a dump out of their bytes.
+#include <array>
+
+#include "core/shared/bits.hpp"
+#include "io/shared/byte_order.hpp"
+#include "tofsmith/io/raw_frames.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// An unsigned number of `bits` bits as it counts.
+double counted(std::uint64_t word, const RawFormat& format) {
+  if (format.is_signed && word >> (format.bits - 1) != 0)
+    return static_cast<double>(static_cast<std::int64_t>(word) -
+                               static_cast<std::int64_t>(std::uint64_t{1} << format.bits));
+  return static_cast<double>(word);
+}
+
+/// Little end first in memory, whatever the file's order.
+template <typename Value>
+Value load(const std::byte* from, bool big_endian) {
+  if (!big_endian) return load_little_endian<Value>(from);
+  std::array<std::byte, sizeof(Value)> turned;
+  std::reverse_copy(from, from + sizeof(Value), turned.begin());
+  return load_little_endian<Value>(turned.data());
+}
+
+template <typename Container>
+void unpack_plain(const RawFormat& format, const std::byte* from, std::span<double> numbers) {
+  const int container_bits = 8 * static_cast<int>(sizeof(Container));
+  const int shift = format.align == RawAlignment::high ? container_bits - format.bits : 0;
+  const std::uint64_t mask = mask_of(format.bits);
+  for (double& number : numbers) {
+    number =
+        counted(std::uint64_t{load<Container>(from, format.big_endian)} >> shift & mask, format);
+    from += sizeof(Container);
+  }
+}
+
+template <typename Float>
+void unpack_floats(const RawFormat& format, const std::byte* from, std::span<double> numbers) {
+  for (double& number : numbers) {
+    number = static_cast<double>(load<Float>(from, format.big_endian));
+    from += sizeof(Float);
+  }
+}
+
+/// Groups of 4 (RAW10, RAW14) or 2 (RAW12) numbers: their high bytes, then their low bits, those of
+/// the first number lowest.
+void unpack_mipi(const RawFormat& format, const std::byte* from, std::span<double> numbers) {
+  const std::size_t group = format.bits == 12 ? 2 : 4;
+  const int low_bits = format.bits - 8;
+  const std::size_t low_bytes = group * static_cast<std::size_t>(low_bits) / 8;
+  for (std::size_t at = 0; at < numbers.size(); at += group) {
+    std::uint64_t low = 0;
+    for (std::size_t i = 0; i < low_bytes; ++i)
+      low |= std::to_integer<std::uint64_t>(from[group + i]) << (8 * i);
+    for (std::size_t i = 0; i < group; ++i) {
+      const std::uint64_t rest =
+          low >> (i * static_cast<std::size_t>(low_bits)) & mask_of(low_bits);
+      numbers[at + i] = counted(std::to_integer<std::uint64_t>(from[i]) << low_bits | rest, format);
+    }
+    from += group + low_bytes;
+  }
+}
+
+void unpack_stream(const RawFormat& format, std::span<const std::byte> row, int first_bit,
+                   std::span<double> numbers) {
+  const bool low_first = format.packing == RawPacking::lsb_first;
+  const std::uint64_t mask = mask_of(format.bits);
+  std::uint64_t held = 0;  // bits read but not used yet: the next one lowest, or highest of `count`
+  int count = 0;
+  std::size_t next = 0;
+  const auto take_byte = [&] {
+    const auto byte = std::to_integer<std::uint64_t>(row[next++]);
+    held = low_first ? held | byte << count : held << 8 | byte;
+    count += 8;
+  };
+  if (first_bit > 0) {
+    take_byte();
+    count -= first_bit;
+    held = low_first ? held >> first_bit : held & mask_of(count);
+  }
+  for (double& number : numbers) {
+    while (count < format.bits) take_byte();
+    count -= format.bits;
+    number = counted((low_first ? held : held >> count) & mask, format);
+    held = low_first ? held >> format.bits : held & mask_of(count);
+  }
+}
+
+}  // namespace
+
+void unpack_numbers(const RawFormat& format, std::span<const std::byte> row, int first_bit,
+                    std::span<double> numbers) {
+  if (format.numbers == RawNumbers::floats)
+    return format.bits == 32 ? unpack_floats<float>(format, row.data(), numbers)
+                             : unpack_floats<double>(format, row.data(), numbers);
+  if (format.packing == RawPacking::mipi) return unpack_mipi(format, row.data(), numbers);
+  if (format.packing != RawPacking::plain) return unpack_stream(format, row, first_bit, numbers);
+  const int container = format.container_bits > 0 ? format.container_bits
+                        : format.bits <= 8        ? 8
+                        : format.bits <= 16       ? 16
+                                                  : 32;
+  if (container == 8) return unpack_plain<std::uint8_t>(format, row.data(), numbers);
+  if (container == 16) return unpack_plain<std::uint16_t>(format, row.data(), numbers);
+  unpack_plain<std::uint32_t>(format, row.data(), numbers);
+}
+
+}  // namespace tofsmith

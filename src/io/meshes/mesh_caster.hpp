@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "tofsmith/scene/ray_caster.hpp"
+
+namespace tofsmith {
+
+template <typename Handle, void (*Release)(Handle)>
+struct EmbreeRelease {
+  void operator()(Handle handle) const { Release(handle); }
+};
+template <typename Handle, void (*Release)(Handle)>
+using EmbreeOwner = std::unique_ptr<std::remove_pointer_t<Handle>, EmbreeRelease<Handle, Release>>;
+using EmbreeDevice = std::shared_ptr<std::remove_pointer_t<RTCDevice>>;
+using EmbreeScene = EmbreeOwner<RTCScene, rtcReleaseScene>;
+
+/// @throws std::runtime_error
+EmbreeDevice new_embree_device();
+
+/// One mesh, ready for packets of rays.
+///
+/// The hierarchy works in single precision: in coordinates about the mesh's own centre, in units
+/// of its own size, and on rays that start where they reach it, so that neither the mesh's place
+/// nor the camera's distance costs digits. It only names the triangle.
+class MeshCaster : public MeshSearch {
+ public:
+  /// @param mesh  must outlive the caster
+  MeshCaster(const Mesh& mesh, EmbreeDevice device);
+
+  void trace(std::span<const Ray> rays, std::span<NearestHit> nearest,
+             std::int32_t shape) const override;
+
+ private:
+  /// A triangle of the world; weights of corners b and c are gradient . (point - corner).
+  struct Facet {
+    Eigen::Vector3d corner, normal, gradient_b, gradient_c;
+    std::uint32_t triangle;
+  };
+  Hit hit_facet(const Facet& facet, const Ray& ray, double share_b, double share_c) const;
+  void build();
+
+  EmbreeDevice device_;  ///< outlives scene_
+  const Mesh* mesh_;
+  std::vector<Facet> facets_;  ///< triangles without area are left out
+  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
+  double radius_m_ = 0.0;  ///< of a sphere about centre_ that holds the mesh
+  EmbreeScene scene_;
+};
+
+}  // namespace tofsmith

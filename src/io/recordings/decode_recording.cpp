@@ -1,0 +1,345 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/io/decode_recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "io/recordings/decoded_output.hpp"
+#include "io/recordings/read_ahead.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/decode/pixel_maps.hpp"
+#include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/io/image_file.hpp"
+#include "tofsmith/simulate/scene_result.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+bool finds_later_returns(const AnyDecoder& decoder) {
+  return std::holds_alternative<TwoReturnDecoder>(decoder) ||
+         std::holds_alternative<TailDecoder>(decoder);
+}
+
+/// Everything of a request that needs no file. @throws std::invalid_argument
+void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
+  const std::filesystem::path& output = request.output;
+  if (!(request.memory_mb > 0.0))
+    throw std::invalid_argument(fmt::format("memory_mb = {}; must be > 0", request.memory_mb));
+  if (request.frame && *request.frame < 0)
+    throw std::invalid_argument(fmt::format("frame {}: must be >= 0", *request.frame));
+  if (request.stack && output.extension() != ".npy")
+    throw std::invalid_argument(
+        fmt::format("stack: found the output {}; expected a .npy file", output.string()));
+  if (!finds_later_returns(decoder))
+    for (const DecodedPlane plane : request.outputs)
+      if (is_multipath_plane(plane))
+        throw std::invalid_argument(fmt::format(
+            "outputs {}: found the method {}; expected two-return or tail, which alone fill it",
+            name_of(plane), name_of(all_decode_methods[decoder.index()])));
+  const auto is_depth = [](DecodedPlane plane) { return plane == DecodedPlane::depth; };
+  if (holds_depth_only(output) && !request.stack && !std::ranges::all_of(request.outputs, is_depth))
+    throw std::invalid_argument(
+        fmt::format("outputs: a {} file holds depth only; .npz, .exr and .ply hold other planes, "
+                    "and .npy does with --stack",
+                    output.extension().string()));
+}
+
+/// The planes to write; every plane once.
+std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const AnyDecoder& decoder) {
+  if (request.outputs.empty())
+    return holds_depth_only(request.output) ? std::vector{DecodedPlane::depth}
+                                            : usual_planes(finds_later_returns(decoder));
+  std::vector<DecodedPlane> planes;
+  for (const DecodedPlane plane : request.outputs)
+    if (std::ranges::find(planes, plane) == planes.end()) planes.push_back(plane);
+  return planes;
+}
+
+RawFramesReader open_recording(const DecodeRequest& request, const DecodingTable& table) {
+  RawReadOptions options{.measurements = table.measurements(),
+                         .layout = request.layout,
+                         .largest_in_memory = static_cast<std::uint64_t>(1e6 * request.memory_mb),
+                         .format = {}};
+  if (!request.raw_format.empty()) options.format = read_raw_format(request.raw_format);
+  return RawFramesReader(request.raw, options);
+}
+
+DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
+                       const RawFramesReader& reader) {
+  if (request.frame && *request.frame >= reader.frames())
+    throw std::invalid_argument(fmt::format("frame {}: {} holds {} frame{}, counted from 0",
+                                            *request.frame, request.raw.string(), reader.frames(),
+                                            reader.frames() == 1 ? "" : "s"));
+  const PinholeView view = view_of(request.lens, reader.width(), reader.height());
+  if (request.lens) view.validate();
+  return {.path = request.output,
+          .policy = request.policy,
+          .stack = request.stack,
+          .planes = planes_to_write(request, decoder),
+          .count_statuses = request.outputs.empty() ||
+                            std::ranges::count(request.outputs, DecodedPlane::status) > 0,
+          .as_z = request.kind == DepthKind::z && request.output.extension() != ".ply",
+          .first_frame = request.frame.value_or(0),
+          .frames = request.frame ? 1 : reader.frames(),
+          .view = view};
+}
+
+/// Reads one map and checks it alone, so that errors name its file.
+void load_map(const std::filesystem::path& path, const char* name, const RawFramesReader& reader,
+              Image<float> PixelMaps::*map, PixelMaps& maps) {
+  if (path.empty()) return;
+  PixelMaps alone;
+  alone.*map = read_float_image(path, name);
+  try {
+    alone.validate(reader.height(), reader.width());
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path.string(), error.what());
+  }
+  maps.*map = std::move(alone.*map);
+}
+
+PixelMaps load_maps(const DecodeRequest& request, const RawFramesReader& reader) {
+  PixelMaps maps;
+  load_map(request.offset_map, "offset", reader, &PixelMaps::delay_offset_m, maps);
+  load_map(request.gain_map, "gain", reader, &PixelMaps::gain, maps);
+  return maps;
+}
+
+/// Not even OutputPolicy::overwrite may replace what is being read.
+void check_inputs_are_kept(const DecodeRequest& request, const DecodeTarget& target) {
+  std::vector<std::string> inputs = request.other_inputs;
+  for (const std::filesystem::path& path :
+       {request.raw, request.raw_format, request.offset_map, request.gain_map})
+    inputs.push_back(path.string());
+  for (const std::filesystem::path& path : target.paths()) check_not_input(path, inputs);
+}
+
+/// Before any frame is decoded.
+void check_range_fits(const std::filesystem::path& path, double range_m) {
+  constexpr double largest_m = 65.535;
+  if (path.extension() == ".png" && range_m > largest_m)
+    throw IoError(path.string(),
+                  fmt::format("found a range of {:.4g} m; expected at most {} m, all "
+                              "that 16 bits of millimetres hold (write .npy, .exr "
+                              "or .pfm)",
+                              range_m, largest_m));
+}
+
+/// Whole numbers that nothing was said about.
+std::optional<std::string> electrons_note(const RawFramesReader& reader,
+                                          const DecodingTable& table) {
+  if (!reader.holds_integers() || table.saturation_level ||
+      (table.gain_e_per_raw.array() != 1.0).any() || (table.black_level.array() != 0.0).any())
+    return std::nullopt;
+  return "raw numbers are taken as electrons: no gain, black level or saturation is set (--set "
+         "sensor.adc_bits=.. --set sensor.gain_e_per_dn=.. --set sensor.black_level_dn=..)";
+}
+
+/// What pixels without depth are most likely due to.
+std::string_view likely_cause(PixelStatus status) {
+  switch (status) {
+    case PixelStatus::invalid:
+      return "the raw numbers are NaN or infinite, or the maps mark every pixel as dead: were they "
+             "written, and read with the right --raw-format?";
+    case PixelStatus::saturated:
+      return "every pixel has a raw number at the saturation level: expose less, or correct "
+             "sensor.full_well_e, sensor.adc_bits and sensor.gain_e_per_dn";
+    default:
+      return "no signal is in the raw numbers: is the light on, --code the code that was played, "
+             "--layout how they run, and sensor.black_level_dn what is in the dark?";
+  }
+}
+
+/// Where no pixel of any frame has a depth: how many have which status, and what to look at.
+std::optional<std::string> no_depth_note(const StatusCounts& statuses) {
+  constexpr std::array without_depth = {PixelStatus::invalid, PixelStatus::no_return,
+                                        PixelStatus::saturated};
+  std::int64_t without = 0;
+  std::string counts;
+  for (const PixelStatus status : without_depth) {
+    without += statuses.of(status);
+    if (statuses.of(status) > 0)
+      counts +=
+          fmt::format("{}{} {}", counts.empty() ? "" : ", ", statuses.of(status), name_of(status));
+  }
+  if (without == 0 || without < statuses.pixels()) return std::nullopt;
+  const auto by_count = [&](PixelStatus status) { return statuses.of(status); };
+  return fmt::format("no pixel has a depth ({}); {}", counts,
+                     likely_cause(std::ranges::max(without_depth, {}, by_count)));
+}
+
+/// How many rows are read and decoded at a time so that all buffers together fit.
+/// @throws IoError if a frame of this format, or a single row, takes more
+int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target, double memory_bytes) {
+  const double row_planes =
+      static_cast<double>(bytes_per_pixel(target.needed_planes())) * target.view.width;
+  const bool in_rows = target.in_rows();
+  const double whole = static_cast<double>(reader.bytes_in_memory() + target.writing_bytes()) +
+                       (in_rows ? 0.0 : row_planes * target.view.height);
+  const double row =
+      (reader.bytes_in_memory() > 0 ? 0.0 : 2.0 * static_cast<double>(reader.row_bytes())) +
+      (in_rows ? row_planes : 0.0);
+  if (whole + row > memory_bytes)
+    throw IoError(
+        target.path.string(),
+        fmt::format("frames of {} x {} pixels take {:.3g} MB to be written so; expected at most "
+                    "{:.3g} MB (fewer --outputs take less{}; --memory-mb allows more)",
+                    target.view.height, target.view.width, 1e-6 * (whole + row),
+                    1e-6 * memory_bytes,
+                    in_rows ? "" : "; .npy is written row by row, with --stack every plane"));
+  // Larger bands are no faster: new memory costs more than another call.
+  constexpr double comfortable_bytes = 32e6;
+  const double rows =
+      row > 0.0 ? std::min(memory_bytes - whole, comfortable_bytes) / row : target.view.height;
+  return std::clamp(static_cast<int>(rows), 1, target.view.height);
+}
+
+/// Progress over all frames, which says how fast they come.
+class Pace {
+ public:
+  Pace(const Progress& progress, const DecodeTarget& target)
+      : progress_(progress), target_(target) {}
+
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+  /// The progress of one band. @param pixels  decoded before it
+  Progress of_band(const Band& band, std::int64_t pixels) const {
+    if (!progress_) return {};
+    const std::int64_t frame_pixels = std::int64_t{target_.view.height} * target_.view.width;
+    const double before = static_cast<double>(pixels),
+                 here = static_cast<double>(band.rows) * target_.view.width,
+                 frame = static_cast<double>(frame_pixels), all = frame * target_.frames;
+    return [this, band, before, here, frame, all](double fraction, std::string_view) {
+      const double done = before + fraction * here, seconds = this->seconds();
+      const double rate = seconds > 0.0 ? done / seconds : 0.0;
+      const std::string where =
+          target_.frames == 1
+              ? fmt::format("row {} of {}", static_cast<int>(done / target_.view.width),
+                            target_.view.height)
+              : fmt::format("frame {} of {}, {} frames/s", band.frame - target_.first_frame + 1,
+                            target_.frames, plain_number(rate / frame, 3));
+      return progress_(done / all,
+                       fmt::format("{}, {} Mpixel/s", where, plain_number(1e-6 * rate, 3)));
+    };
+  }
+
+ private:
+  const Progress& progress_;
+  const DecodeTarget& target_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// A decoder with what differs from pixel to pixel.
+struct MappedDecoder {
+  const AnyDecoder& decoder;
+  const DecodingTable& table;
+  PixelMaps maps;
+
+  /// Decodes one band to where it belongs in the planes and counts its statuses.
+  void decode(const RawView& raw, const Band& band, const DecodeTarget& target,
+              const DecodedView& decoded, const Progress& progress, StatusCounts& statuses) const {
+    const auto pixels = static_cast<std::size_t>(raw.pixels());
+    std::visit([&](const auto& d) { d.decode(raw, decoded, progress); }, decoder);
+    apply(maps, table.range_m, decoded,
+          static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(raw.width), pixels);
+    if (target.as_z && decoded.depth_m)
+      turn_into_z(decoded.depth_m, band.first_row, band.rows, target.view);
+    if (target.count_statuses) statuses.add({decoded.status, pixels});
+  }
+};
+
+/// Decodes the target's frames in bands of at most `rows` rows.
+void decode_frames(const RawFramesReader& reader, int rows, const MappedDecoder& decoder,
+                   DecodeOutput& output, const Progress& progress, DecodedRecording& result) {
+  const DecodeTarget& target = output.target();
+  const int height = target.view.height, width = target.view.width;
+  const bool in_rows = target.in_rows();
+  DecodedPlanes planes(target.needed_planes(), in_rows ? rows : height, width);
+  ReadAhead input(reader,
+                  bands_of(target.first_frame, target.first_frame + target.frames, height, rows));
+  const Pace pace(progress, target);
+  StatusCounts statuses;
+  for (const Band& band : input.bands()) {
+    const Progress here = pace.of_band(band, result.pixels);
+    report(here, 0.0, "reading");
+    const RawView raw = input.next();
+    const std::size_t first =
+        static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(width);
+    decoder.decode(raw, band, target, planes.view().from(in_rows ? 0 : first), here, statuses);
+    output.take(band.frame, band.first_row, band.rows, planes);
+    result.pixels += raw.pixels();
+    result.seconds = pace.seconds();
+    if (band.first_row + band.rows < height) continue;
+    result.frames.push_back(std::exchange(statuses, {}));
+    if (!target.stack) result.files.push_back(target.frame_path(band.frame));
+  }
+  output.finish();
+  if (target.stack) result.files = target.paths();
+  result.seconds = pace.seconds();
+}
+
+}  // namespace
+
+void StatusCounts::add(std::span<const PixelStatus> statuses) {
+  for (const PixelStatus status : statuses) ++counts_[static_cast<std::size_t>(status)];
+}
+
+void StatusCounts::add(const StatusCounts& other) {
+  for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += other.counts_[i];
+}
+
+std::int64_t StatusCounts::pixels() const {
+  return std::accumulate(counts_.begin(), counts_.end(), std::int64_t{0});
+}
+
+StatusCounts DecodedRecording::total() const {
+  StatusCounts sum;
+  for (const StatusCounts& frame : frames) sum.add(frame);
+  return sum;
+}
+
+void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
+                      const Progress& progress, DecodedRecording& result) {
+  // All that can be wrong is found before the first frame.
+  result = {};
+  check_request(request, decoder);
+  const DecodingTable& table =
+      std::visit([](const auto& d) -> const DecodingTable& { return d.table(); }, decoder);
+  const RawFramesReader reader = open_recording(request, table);
+  const DecodeTarget target = target_of(request, decoder, reader);
+  const MappedDecoder mapped{decoder, table, load_maps(request, reader)};
+  check_inputs_are_kept(request, target);
+  check_range_fits(target.path, table.range_m);
+  DecodeOutput output(target);
+  const int rows = rows_at_a_time(reader, target, 1e6 * request.memory_mb);
+
+  result.height = reader.height();
+  result.width = reader.width();
+  result.measurements = reader.measurements();
+  result.first_frame = target.first_frame;
+  result.frame_count = target.frames;
+  result.outputs = target.planes;
+  if (const auto note = electrons_note(reader, table)) result.notes.push_back(*note);
+  decode_frames(reader, rows, mapped, output, progress, result);
+  if (const auto note = no_depth_note(result.total())) result.notes.push_back(*note);
+}
+
+DecodedRecording decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
+                                  const Progress& progress) {
+  DecodedRecording result;
+  decode_recording(request, decoder, progress, result);
+  return result;
+}
+
+}  // namespace tofsmith

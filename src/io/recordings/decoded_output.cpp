@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/recordings/decoded_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "io/images/exr.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/depth_file.hpp"
+#include "tofsmith/io/mesh_file.hpp"
+#include "tofsmith/io/npy.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+NpzArrays arrays(const DecodedPlanes& decoded, const std::vector<DecodedPlane>& planes) {
+  NpzArrays result;
+  for (const DecodedPlane plane : planes) {
+    NpyArray array(type_of_plane(plane), {static_cast<std::size_t>(decoded.height()),
+                                          static_cast<std::size_t>(decoded.width())});
+    std::ranges::copy(decoded.items(plane, decoded.height()), array.bytes().begin());
+    result.emplace(name_of(plane), std::move(array));
+  }
+  return result;
+}
+
+PointCloud cloud(const DecodedPlanes& decoded, const std::vector<DecodedPlane>& planes,
+                 const PinholeView& view) {
+  PointCloud result;
+  std::vector<std::size_t> kept;
+  result.points_m.reserve(
+      decoded.depth_m().size());  // growing would take twice as much for a while
+  kept.reserve(decoded.depth_m().size());
+  for (int row = 0; row < decoded.height(); ++row)
+    for (int column = 0; column < decoded.width(); ++column) {
+      const float depth_m = decoded.depth_m()(row, column);
+      if (!std::isfinite(depth_m)) continue;
+      const Eigen::Vector3d point = view.ray(row, column) * static_cast<double>(depth_m);
+      result.points_m.push_back({static_cast<float>(point.x()), static_cast<float>(point.y()),
+                                 static_cast<float>(point.z())});
+      kept.push_back(static_cast<std::size_t>(row) * static_cast<std::size_t>(decoded.width()) +
+                     static_cast<std::size_t>(column));
+    }
+  for (const DecodedPlane plane : planes) {
+    const Image<float> values = decoded.floats(plane);
+    PointScalar scalar{std::string(name_of(plane)), {}};
+    scalar.values.reserve(kept.size());
+    for (const std::size_t i : kept) scalar.values.push_back(values.pixels[i]);
+    result.scalars.push_back(std::move(scalar));
+  }
+  return result;
+}
+
+std::filesystem::path with_suffix(std::filesystem::path path, const std::string& suffix) {
+  path.replace_filename(path.stem().string() + suffix + path.extension().string());
+  return path;
+}
+
+/// File of a plane of a stack: depth in name.npy, others in name-PLANE.npy.
+std::filesystem::path stack_path(const std::filesystem::path& path, DecodedPlane plane) {
+  return plane == DecodedPlane::depth ? path : with_suffix(path, "-" + std::string(name_of(plane)));
+}
+
+/// Memory that write_planes() takes for a while, beside the planes themselves [bytes per pixel];
+/// for all formats but .npy at most this much.
+std::size_t writing_bytes_per_pixel(std::string_view extension,
+                                    const std::vector<DecodedPlane>& planes) {
+  const std::size_t held = bytes_per_pixel(planes), depth = sizeof(float);
+  if (extension == ".npz") return held;  // as arrays
+  // The list of kept pixels, and the points with their scalars twice: as lists and as a file.
+  if (extension == ".ply") return sizeof(std::size_t) + 2 * (3 + planes.size()) * sizeof(float);
+  // Channels of floats, and at worst the same again in the file.
+  if (extension == ".exr") return 2 * planes.size() * sizeof(float);
+  return 2 * depth;  // .pfm, .png: converted, and the file
+}
+
+}  // namespace
+
+void write_planes(const std::filesystem::path& path, const DecodedPlanes& decoded,
+                  const std::vector<DecodedPlane>& planes, const PinholeView& view,
+                  OutputPolicy policy) {
+  const std::string extension = path.extension().string();
+  if (extension == ".npz") {
+    write_npz(path, arrays(decoded, planes), policy);
+  } else if (extension == ".ply") {
+    write_ply(path, cloud(decoded, planes, view), policy);
+  } else if (extension == ".exr") {
+    ExrPlanes channels;
+    for (const DecodedPlane plane : planes)
+      channels[plane == DecodedPlane::depth ? "Z" : std::string(name_of(plane))] =
+          decoded.floats(plane);
+    write_exr(path, channels, policy);
+  } else {
+    write_depth(path, decoded.depth_m(), policy);
+  }
+}
+
+void write_decoded(const std::filesystem::path& path, const DepthImage& image,
+                   const std::vector<DecodedPlane>& planes, const PinholeView& view,
+                   OutputPolicy policy) {
+  const DecodedPlanes decoded(image);
+  for (const DecodedPlane plane : planes)
+    if (!decoded.has(plane))
+      throw std::invalid_argument(
+          fmt::format("planes = {}; must be planes that the image has", name_of(plane)));
+  check_decoded_output(path, policy);
+  write_planes(path, decoded, planes, view, policy);
+}
+
+bool holds_depth_only(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  return extension == ".npy" || extension == ".pfm" || extension == ".png";
+}
+
+void check_decoded_output(const std::filesystem::path& path, OutputPolicy policy) {
+  const std::string extension = path.extension().string();
+  constexpr std::array<std::string_view, 6> known{".npy", ".npz", ".exr", ".pfm", ".png", ".ply"};
+  if (std::ranges::find(known, extension) == known.end())
+    throw IoError(path.string(),
+                  fmt::format("unknown extension \"{}\"; expected .npy, .npz, .exr, .pfm, .png "
+                              "(16 bits, mm) or .ply",
+                              extension));
+  const AtomicFile probe(path, policy);  // never committed
+}
+
+std::filesystem::path DecodeTarget::frame_path(int frame) const {
+  if (frames == 1) return path;
+  const std::size_t digits = std::to_string(first_frame + frames - 1).size();
+  return with_suffix(path, fmt::format("-{:0{}}", frame, digits));
+}
+
+std::vector<std::filesystem::path> DecodeTarget::paths() const {
+  std::vector<std::filesystem::path> all;
+  if (stack)
+    for (const DecodedPlane plane : planes) all.push_back(stack_path(path, plane));
+  else
+    for (int frame = first_frame; frame < first_frame + frames; ++frame)
+      all.push_back(frame_path(frame));
+  return all;
+}
+
+std::vector<DecodedPlane> DecodeTarget::needed_planes() const {
+  std::vector<DecodedPlane> needed = planes;
+  const auto need = [&](DecodedPlane plane) {
+    if (std::ranges::find(needed, plane) == needed.end()) needed.push_back(plane);
+  };
+  if (path.extension() == ".ply") need(DecodedPlane::depth);
+  if (count_statuses) need(DecodedPlane::status);
+  return needed;
+}
+
+std::size_t DecodeTarget::writing_bytes() const {
+  if (in_rows()) return 0;
+  return static_cast<std::size_t>(view.height) * static_cast<std::size_t>(view.width) *
+         writing_bytes_per_pixel(path.extension().string(), planes);
+}
+
+DecodeOutput::DecodeOutput(DecodeTarget target) : target_(std::move(target)) {
+  for (const std::filesystem::path& path : target_.paths())
+    check_decoded_output(path, target_.policy);
+}
+
+void DecodeOutput::take(int frame, int first_row, int rows, const DecodedPlanes& planes) {
+  const bool first = first_row == 0, last = first_row + rows == target_.view.height;
+  if (!target_.in_rows()) {
+    if (last)
+      write_planes(target_.frame_path(frame), planes, target_.planes, target_.view, target_.policy);
+    return;
+  }
+  if (first && !(target_.stack && frame > target_.first_frame)) open_files(frame);
+  for (std::size_t i = 0; i < files_.size(); ++i)
+    files_[i]->append(planes.items(target_.planes[i], rows));
+  if (last && !target_.stack) close_files();
+}
+
+void DecodeOutput::open_files(int frame) {
+  const auto height = static_cast<std::size_t>(target_.view.height);
+  const auto width = static_cast<std::size_t>(target_.view.width);
+  NpyShape shape = {height, width};
+  if (target_.stack) shape.insert(shape.begin(), static_cast<std::size_t>(target_.frames));
+  for (const DecodedPlane plane : target_.planes)
+    files_.push_back(std::make_unique<NpyItemWriter>(
+        target_.stack ? stack_path(target_.path, plane) : target_.frame_path(frame),
+        type_of_plane(plane), shape, target_.policy));
+}
+
+void DecodeOutput::close_files() {
+  for (const auto& file : files_) file->commit();
+  files_.clear();
+}
+
+void DecodeOutput::finish() { close_files(); }
+
+}  // namespace tofsmith

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/recordings/decoded_planes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "tofsmith/core/parallel.hpp"
+
+namespace tofsmith {
+
+std::string_view name_of(DecodedPlane plane) {
+  switch (plane) {
+    case DecodedPlane::depth:
+      return "depth";
+    case DecodedPlane::signal:
+      return "signal";
+    case DecodedPlane::ambient:
+      return "ambient";
+    case DecodedPlane::confidence:
+      return "confidence";
+    case DecodedPlane::deviation:
+      return "deviation";
+    case DecodedPlane::status:
+      return "status";
+    case DecodedPlane::delay:
+      return "delay";
+    case DecodedPlane::ratio:
+      return "ratio";
+    case DecodedPlane::returns:
+      return "returns";
+    case DecodedPlane::bin:
+      break;
+  }
+  return "bin";
+}
+
+DecodedPlane parse_decoded_plane(std::string_view name) {
+  std::string known;
+  for (const DecodedPlane plane : all_decoded_planes) {
+    if (name_of(plane) == name) return plane;
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", name_of(plane));
+  }
+  throw std::invalid_argument(fmt::format("plane = {}; must be one of {}", name, known));
+}
+
+std::string_view name_of(DepthKind kind) { return kind == DepthKind::z ? "z" : "radial"; }
+
+DepthKind parse_depth_kind(std::string_view name) {
+  for (const DepthKind kind : {DepthKind::radial, DepthKind::z})
+    if (name == name_of(kind)) return kind;
+  throw std::invalid_argument(fmt::format("kind = {}; must be radial or z", name));
+}
+
+bool is_multipath_plane(DecodedPlane plane) {
+  return plane == DecodedPlane::delay || plane == DecodedPlane::ratio ||
+         plane == DecodedPlane::returns;
+}
+
+std::vector<DecodedPlane> usual_planes(bool multipath) {
+  std::vector<DecodedPlane> planes;
+  for (const DecodedPlane plane : all_decoded_planes)
+    if (plane != DecodedPlane::bin && (multipath || !is_multipath_plane(plane)))
+      planes.push_back(plane);
+  return planes;
+}
+
+NpyType type_of_plane(DecodedPlane plane) {
+  if (plane == DecodedPlane::status || plane == DecodedPlane::returns) return NpyType::uint8;
+  return plane == DecodedPlane::bin ? NpyType::int32 : NpyType::float32;
+}
+
+std::size_t bytes_per_pixel(const std::vector<DecodedPlane>& planes) {
+  std::size_t bytes = 0;
+  for (const DecodedPlane plane : planes) bytes += item_size(type_of_plane(plane));
+  return bytes;
+}
+
+template <typename Planes, typename Use>
+auto DecodedPlanes::with(Planes& planes, DecodedPlane plane, const Use& use) {
+  switch (plane) {
+    case DecodedPlane::depth:
+      return use(planes.image_.depth_m);
+    case DecodedPlane::signal:
+      return use(planes.image_.signal_e_per_s);
+    case DecodedPlane::ambient:
+      return use(planes.image_.ambient_e_per_s);
+    case DecodedPlane::confidence:
+      return use(planes.image_.confidence);
+    case DecodedPlane::deviation:
+      return use(planes.image_.predicted_standard_deviation_m);
+    case DecodedPlane::status:
+      return use(planes.image_.status);
+    case DecodedPlane::delay:
+      return use(planes.delay_m_);
+    case DecodedPlane::ratio:
+      return use(planes.ratio_);
+    case DecodedPlane::returns:
+      return use(planes.returns_);
+    case DecodedPlane::bin:
+      break;
+  }
+  return use(planes.bin_);
+}
+
+DecodedPlanes::DecodedPlanes(const std::vector<DecodedPlane>& planes, int height, int width)
+    : height_(height), width_(width) {
+  for (const DecodedPlane plane : planes)
+    with(*this, plane, [&](auto& image) { image = {height, width}; });
+}
+
+DecodedPlanes::DecodedPlanes(DepthImage image)
+    : height_(image.height()), width_(image.width()), image_(std::move(image)) {}
+
+DecodedView DecodedPlanes::view() {
+  DecodedView view = DecodedView::of(image_);
+  view.bin = bin_.pixels.data();
+  view.delay_m = delay_m_.pixels.data();
+  view.ratio = ratio_.pixels.data();
+  view.returns = returns_.pixels.data();
+  return view;
+}
+
+bool DecodedPlanes::has(DecodedPlane plane) const {
+  return with(*this, plane, [](const auto& image) { return !image.empty(); });
+}
+
+Image<float> DecodedPlanes::floats(DecodedPlane plane) const {
+  return with(*this, plane, [](const auto& image) {
+    Image<float> floats(image.height, image.width);
+    std::ranges::transform(image.pixels, floats.pixels.begin(),
+                           [](auto value) { return static_cast<float>(value); });
+    return floats;
+  });
+}
+
+std::span<const std::byte> DecodedPlanes::items(DecodedPlane plane, int rows) const {
+  return with(*this, plane, [&](const auto& image) {
+    const std::size_t count =
+        static_cast<std::size_t>(rows) * static_cast<std::size_t>(image.width);
+    return std::as_bytes(std::span(image.pixels).first(count));
+  });
+}
+
+void turn_into_z(float* depth_m, int first_row, int rows, const PinholeView& view) {
+  parallel_for(rows, [&](std::int64_t row) {
+    float* depth = depth_m + row * view.width;
+    for (int column = 0; column < view.width; ++column)
+      depth[column] = static_cast<float>(
+          depth[column] * (1.0 / view.radial_per_z(first_row + static_cast<int>(row), column)));
+  });
+}
+
+}  // namespace tofsmith

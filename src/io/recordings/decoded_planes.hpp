@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tofsmith/core/array.hpp"
+#include "tofsmith/decode/depth_image.hpp"
+#include "tofsmith/io/decode_recording.hpp"
+#include "tofsmith/io/npy.hpp"
+#include "tofsmith/scene/scene_image.hpp"
+
+namespace tofsmith {
+
+/// Whether only decoders of several returns fill the plane.
+bool is_multipath_plane(DecodedPlane plane);
+/// Type of the items of a plane: status and returns uint8, bin int32, others float32.
+NpyType type_of_plane(DecodedPlane plane);
+/// What one pixel takes in these planes together [bytes].
+std::size_t bytes_per_pixel(const std::vector<DecodedPlane>& planes);
+
+/// Planes of a frame, or of some of its rows; those that nobody asked for are empty.
+class DecodedPlanes {
+ public:
+  DecodedPlanes(const std::vector<DecodedPlane>& planes, int height, int width);
+  /// All planes of an image; no bins and nothing of later returns.
+  explicit DecodedPlanes(DepthImage image);
+
+  int height() const { return height_; }
+  int width() const { return width_; }
+  /// Where a decoder writes; null for the planes that are empty.
+  DecodedView view();
+
+  const Image<float>& depth_m() const { return image_.depth_m; }
+  bool has(DecodedPlane plane) const;
+  /// A plane as floats: codes of status, numbers of bins.
+  Image<float> floats(DecodedPlane plane) const;
+  /// The first rows of a plane as they are.
+  std::span<const std::byte> items(DecodedPlane plane, int rows) const;
+
+ private:
+  /// Calls `use` with the image of a plane, of whatever type.
+  template <typename Planes, typename Use>
+  static auto with(Planes& planes, DecodedPlane plane, const Use& use);
+
+  int height_, width_;
+  DepthImage image_;
+  Image<std::int32_t> bin_;
+  Image<float> delay_m_, ratio_;
+  Image<ReturnStatus> returns_;
+};
+
+/// Turns radial distance into z-depth in place.
+/// @param depth_m    rows x view.width values
+/// @param first_row  of the view
+void turn_into_z(float* depth_m, int first_row, int rows, const PinholeView& view);
+
+}  // namespace tofsmith

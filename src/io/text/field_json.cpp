@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/text/field_json.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr std::string_view value_name = "geometric_mean_m";
+
+}  // namespace
+
+nlohmann::ordered_json estimate_json(const Estimate& estimate) {
+  return {{value_name, estimate.value}, {error_name(value_name), estimate.standard_error}};
+}
+
+namespace detail {
+
+double read_number(const JsonReader& json, std::string_view rule) {
+  if (json.is_null() && rule == ">= 0") return infinity;
+  const double found = json.number();
+  if (!keeps(found, rule)) json.mistyped(fmt::format("a number {}", rule));
+  return found;
+}
+
+int read_integer(const JsonReader& json, std::string_view rule) {
+  using Limits = std::numeric_limits<int>;
+  const int found = json.integer(Limits::min(), Limits::max());
+  if (!keeps(found, rule)) json.mistyped(fmt::format("an integer {}", rule));
+  return found;
+}
+
+void read_estimate(const JsonReader& object, const Field<Estimate>& field) {
+  const auto read = [&](const JsonReader& json, std::string_view name) {
+    field.value.value = read_number(json.member(name), field.rule);
+    if (!field.is(Mark::without_error))
+      field.value.standard_error = read_number(json.member(error_name(name)), field.rule);
+  };
+  if (field.is(Mark::as_object))
+    read(object.member(field.document_name), value_name);
+  else
+    read(object, field.document_name);
+}
+
+}  // namespace detail
+
+}  // namespace tofsmith

@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "io/text/json_reader.hpp"
+#include "tofsmith/core/fields.hpp"
+#include "tofsmith/core/statistics.hpp"
+
+// Structs as JSON objects, and back, by their fields (core/fields.hpp). Numbers that are not finite
+// are null; in lists, structs of nothing but doubles are lists themselves.
+namespace tofsmith {
+
+/// An estimate as an object of its own.
+nlohmann::ordered_json estimate_json(const Estimate& estimate);
+
+/// Adds a field to an object: an estimate "x_m" as that and "x_se_m", its standard error.
+template <typename Value>
+void write_field(nlohmann::ordered_json& object, const Field<Value>& field);
+
+/// All fields but those with one of the marks.
+template <typename Struct>
+nlohmann::ordered_json fields_json(const Struct& its, unsigned but = as_bits(Mark::apart)) {
+  nlohmann::ordered_json object = nlohmann::ordered_json::object();
+  for_each_field(its, [&](const auto& field) {
+    if ((field.marks & but) == 0) write_field(object, field);
+  });
+  return object;
+}
+
+/// The numbers of a struct as a list.
+template <typename Struct>
+nlohmann::ordered_json row_json(const Struct& its) {
+  nlohmann::ordered_json row = nlohmann::ordered_json::array();
+  for_each_field(its, [&](const auto& field) { row.push_back(field.value); });
+  return row;
+}
+
+/// The same fields back, but those that are Mark::apart.
+/// @throws IoError naming file and member that is missing or breaks the field's rule
+template <typename Struct>
+Struct fields_from_json(const JsonReader& json);
+template <typename Struct>
+Struct row_from_json(const JsonReader& json);
+
+namespace detail {
+
+/// A number that keeps a rule; null is infinity where that does.
+double read_number(const JsonReader& json, std::string_view rule);
+int read_integer(const JsonReader& json, std::string_view rule);
+void read_estimate(const JsonReader& object, const Field<Estimate>& field);
+
+inline void read_value(const JsonReader& json, double& value, std::string_view rule) {
+  value = read_number(json, rule);
+}
+inline void read_value(const JsonReader& json, int& value, std::string_view rule) {
+  value = read_integer(json, rule);
+}
+inline void read_value(const JsonReader& json, std::int64_t& value, std::string_view) {
+  value = static_cast<std::int64_t>(json.unsigned_integer());
+}
+inline void read_value(const JsonReader& json, std::uint64_t& value, std::string_view) {
+  value = json.unsigned_integer();
+}
+inline void read_value(const JsonReader& json, bool& value, std::string_view) {
+  value = json.boolean();
+}
+inline void read_value(const JsonReader& json, std::string& value, std::string_view) {
+  value = json.text();
+}
+
+template <typename Struct>
+void read_fields(const JsonReader& json, Struct& its);
+
+template <typename Value>
+void read_field(const JsonReader& object, const Field<Value>& field) {
+  if (field.is(Mark::apart)) return;
+  if constexpr (std::is_same_v<Value, Estimate>) {
+    read_estimate(object, field);
+  } else if constexpr (HasFields<Value>) {
+    read_fields(field.is(Mark::in_place) ? object : object.member(field.document_name),
+                field.value);
+  } else {
+    const JsonReader json = object.member(field.document_name);
+    if (field.is(Mark::may_be_null) && json.is_null()) return;
+    if constexpr (is_optional<Value>) {
+      if (!json.is_null()) read_fields(json, field.value.emplace());
+    } else if constexpr (is_list<Value>) {
+      using Item = typename Value::value_type;
+      for (const JsonReader& item : json.elements())
+        if constexpr (is_row<Item>)
+          field.value.push_back(row_from_json<Item>(item));
+        else
+          field.value.push_back(fields_from_json<Item>(item));
+    } else if constexpr (std::is_enum_v<Value>) {
+      field.value = parse_word(json, Value{});
+    } else {
+      read_value(json, field.value, field.rule);
+    }
+  }
+}
+
+template <typename Struct>
+void read_fields(const JsonReader& json, Struct& its) {
+  for_each_field(its, [&](const auto& field) { read_field(json, field); });
+}
+
+}  // namespace detail
+
+template <typename Struct>
+Struct fields_from_json(const JsonReader& json) {
+  Struct its;
+  detail::read_fields(json, its);
+  return its;
+}
+
+template <typename Struct>
+Struct row_from_json(const JsonReader& json) {
+  Struct its;
+  std::string names;
+  std::size_t count = 0;
+  for_each_field(its, [&](const auto& field) {
+    names += (count++ == 0 ? "" : ", ") + std::string(field.name);
+  });
+  const std::vector<JsonReader> row = json.elements(count, names);
+  count = 0;
+  for_each_field(
+      its, [&](const auto& field) { detail::read_value(row[count++], field.value, field.rule); });
+  return its;
+}
+
+template <typename Value>
+void write_field(nlohmann::ordered_json& object, const Field<Value>& field) {
+  using Type = std::remove_const_t<Value>;
+  const std::string name(field.document_name);
+  if constexpr (std::is_same_v<Type, Estimate>) {
+    if (field.is(Mark::as_object)) {
+      object[name] = estimate_json(field.value);
+    } else {
+      object[name] = field.value.value;
+      if (!field.is(Mark::without_error))
+        object[error_name(field.document_name)] = field.value.standard_error;
+    }
+  } else if constexpr (HasFields<Value>) {
+    if (field.is(Mark::in_place))
+      object.update(fields_json(field.value));
+    else
+      object[name] = fields_json(field.value);
+  } else if constexpr (is_optional<Type>) {
+    object[name] = field.value ? fields_json(*field.value) : nlohmann::ordered_json();
+  } else if constexpr (is_list<Type>) {
+    object[name] = nlohmann::ordered_json::array();
+    for (const auto& item : field.value)
+      if constexpr (is_row<typename Type::value_type>)
+        object[name].push_back(row_json(item));
+      else
+        object[name].push_back(fields_json(item));
+  } else if constexpr (std::is_enum_v<Type>) {
+    object[name] = name_of(field.value);
+  } else {
+    object[name] = field.value;
+  }
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/text/shared/line_cursor.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+std::string_view LineCursor::next() {
+  ++line_;
+  if (at_end()) fail("the text ends here; expected another line");
+  const std::size_t end = std::min(text_.find('\n', position_), text_.size());
+  const std::string_view line = text_.substr(position_, end - position_);
+  position_ = end + 1;
+  return trimmed(line);
+}
+
+void LineCursor::expect_end() {
+  while (!at_end())
+    if (const auto line = next(); !line.empty())
+      fail(fmt::format("found '{}'; expected the end of the file", line.substr(0, 60)));
+}
+
+void LineCursor::fail(std::string_view problem) const {
+  throw IoError(fmt::format("{}:{}", file_, line_), problem);
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\n";
+  const std::size_t begin = text.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
+}
+
+std::optional<double> finite_number_in(std::string_view text) {
+  text = trimmed(text);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double number = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || stopped != end || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/text/choices.hpp"
+
+namespace tofsmith {
+
+/// Writes the fields of one table, in the order in which they are named. The counterpart of
+/// TableReader: what describes a table for the one describes it for the other.
+class TableWriter {
+ public:
+  static constexpr bool reads = false;
+
+  template <typename Value>
+  void value(std::string_view key, const Value& value) {
+    document_[std::string(key)] = value;
+  }
+  template <typename Value>
+  void value(std::string_view key, const std::optional<Value>& optional) {
+    if (optional) value(key, *optional);
+  }
+  template <typename Enum>
+  void choice(std::string_view key, Enum chosen, Choices<Enum> choices) {
+    for (const auto& [word, meaning] : choices)
+      if (meaning == chosen) value(key, std::string(word));
+  }
+  void number_or_list(std::string_view key, double number, const std::vector<double>& list) {
+    list.empty() ? value(key, number) : value(key, list);
+  }
+  void number_or_word(std::string_view key, double number, std::string_view word, bool is_word) {
+    is_word ? value(key, std::string(word)) : value(key, number);
+  }
+  template <typename Value, typename Fields>
+  void table(std::string_view key, const Value& source, Fields&& fields) {
+    TableWriter inner;
+    fields(inner, source);
+    value(key, inner.document_);
+  }
+  template <typename Value, typename Fields>
+  void table(std::string_view key, const std::optional<Value>& source, Fields&& fields) {
+    if (source) table(key, *source, fields);
+  }
+  TableWriter& required(std::string_view /*key*/, std::string_view /*example*/) { return *this; }
+  void refuse(std::initializer_list<std::string_view> /*keys*/, std::string_view /*condition*/) {}
+
+  const nlohmann::ordered_json& document() const { return document_; }
+
+ private:
+  nlohmann::ordered_json document_ = nlohmann::ordered_json::object();
+};
+
+}  // namespace tofsmith

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/code/code_set.hpp"
+#include "tofsmith/report/figure.hpp"
+
+namespace tofsmith {
+
+inline constexpr int curve_points = 480;  ///< of a drawn period
+
+/// `points` equal steps over [0, end), end point left out: the x of a drawn period.
+std::vector<double> axis_values(int points, double end);
+
+/// A waveform over one period [ns], by its switching times and not on a grid: "told" (dotted, only
+/// where a generator changes it), "played", and, thick over a thin "played", what an impulse
+/// response leaves of it ("after the impulse response").
+std::vector<Series> arm_series(const Waveform& told, const Waveform& played,
+                               const ImpulseResponse& response, double fundamental_frequency_hz,
+                               const LineStyle& style);
+
+/// The columns of a grid of pairs: modulation, demodulation, correlation function.
+std::vector<PanelColumn> waveform_columns();
+
+}  // namespace tofsmith

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tofsmith/scene/built_in_scenes.hpp"
+#include "tofsmith/scene/scene_image.hpp"
+
+namespace tofsmith {
+
+/// The demo scene, after the table-top scene and the ball of the paper: three upright books on a
+/// table, 20 cm apart in depth, the leftmost dark; a wall 2 m behind the first book; a ball of
+/// radius 20 cm in front, about 1.2 m away. Distances run from about 1 to 4 m.
+/// @param width, height  resolution of the pinhole camera, > 0; the view is 60 degrees wide
+/// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 6
+StagedScene table_top_scene(int width = 320, int height = 240);
+
+/// The demo scene as the camera sees it.
+SceneImage table_top_image(int width = 320, int height = 240);
+
+}  // namespace tofsmith

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "simulate/shared/pixel_capture.hpp"
+#include "tofsmith/core/progress.hpp"
+#include "tofsmith/simulate/capture.hpp"
+
+namespace tofsmith {
+
+/// A scene in front of a camera, captured row by row. The scene must outlive it.
+class RowCapture {
+ public:
+  /// @throws std::invalid_argument if scene or options are invalid
+  RowCapture(const SceneImage& scene, const ForwardModel& model, const Camera& camera,
+             const CaptureOptions& options);
+  /// @param light  validated; must outlive the capture
+  RowCapture(const SceneImage& scene, const SceneLight& light, const ForwardModel& model,
+             const Camera& camera, const CaptureOptions& options);
+
+  int measurements() const { return pixel_.measurements(); }
+  /// Raw measurements of one row of one frame, (W, K).
+  void row(int frame, int row, float* raw) const;
+
+ private:
+  void add_all_light(int row, int column, std::vector<double>& work,
+                     std::vector<double>& light) const;
+
+  const SceneImage& scene_;
+  const SceneLight* light_ = nullptr;  // none: direct light alone
+  double bin_m_;
+  CaptureOptions options_;
+  PixelCapture pixel_;
+  std::optional<FineCorrelation> tail_, transient_;  // of what is the same for all pixels
+};
+
+/// All rows of all frames, on all threads.
+RawFrames captured_rows(const RowCapture& source, int height, int width, int frames,
+                        const Progress& progress);
+
+}  // namespace tofsmith

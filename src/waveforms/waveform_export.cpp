@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/waveforms/waveform_export.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "camera/shared/played_code.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr int most_periods = 4096;
+
+void check_options(const ExportOptions& options, const WaveformFormat& format) {
+  const std::string of_format = fmt::format(" ({})", format.name);
+  if (options.bits)
+    require(*options.bits >= 1 && *options.bits <= format.most_bits, "bits", *options.bits,
+            fmt::format("must be in [1, {}]{}", format.most_bits, of_format));
+  if (options.samples)
+    require(*options.samples >= 2 && *options.samples <= format.most_points, "samples",
+            *options.samples,
+            fmt::format("must be in [2, {}], what a memory of {} holds", format.most_points,
+                        format.name));
+  if (options.periods)
+    require(*options.periods >= 1 && *options.periods <= most_periods, "periods", *options.periods,
+            fmt::format("must be in [1, {}]", most_periods));
+  if (options.sample_rate_hz)
+    require(std::isfinite(*options.sample_rate_hz) && *options.sample_rate_hz > 0.0,
+            "sample_rate_hz", *options.sample_rate_hz, "must be finite and > 0");
+  require(std::isfinite(options.low_v) && std::isfinite(options.high_v) &&
+              options.high_v > options.low_v,
+          "high_v", options.high_v,
+          fmt::format("must be finite and above low_v = {}", options.low_v));
+}
+
+/// Points of the table of a period.
+int table_points(const ExportOptions& options, const WaveformFormat& format,
+                 const std::optional<Generator>& own, const Camera& camera) {
+  const double frequency_hz = camera.fundamental_frequency_hz;
+  if (options.samples) return *options.samples;
+  if (format.least_points == format.most_points) return format.most_points;
+  if (own && own->table_points) return std::min(*own->table_points, format.most_points);
+  int points = camera.samples;
+  if (options.sample_rate_hz)
+    points = Generator{.sample_rate_hz = *options.sample_rate_hz}.points_per_period(frequency_hz);
+  else if (own)
+    points = own->points_per_period(frequency_hz);
+  return std::min(points, format.most_points);
+}
+
+Generator generator_of(const ExportOptions& options, const WaveformFormat& format,
+                       const std::optional<Generator>& own, bool binary, const Camera& camera) {
+  Generator generator = own.value_or(Generator{});
+  const int points = table_points(options, format, own, camera);
+  const double frequency_hz = camera.fundamental_frequency_hz;
+  generator.table_points = points;
+  if (options.sample_rate_hz)
+    generator.sample_rate_hz = *options.sample_rate_hz;
+  else if (!own)
+    generator.sample_rate_hz = points * frequency_hz;
+  if (options.edge_grid_s) generator.edge_grid_s = options.edge_grid_s;
+  if (options.bits)
+    generator.amplitude_bits = *options.bits;
+  else if (format.content == FormatContent::words)
+    generator.amplitude_bits = binary ? 1 : own ? std::min(own->amplitude_bits, 16) : 8;
+  else
+    generator.amplitude_bits =
+        own ? std::min(own->amplitude_bits, format.most_bits) : format.default_bits;
+  require(format.skips_points || points * frequency_hz <= generator.sample_rate_hz * (1 + 1e-9),
+          "samples", points,
+          fmt::format("must be at most {}, what {:.6g} points per second give at {:.6g} Hz ({} "
+                      "plays every point)",
+                      std::floor(generator.sample_rate_hz / frequency_hz * (1 + 1e-12)),
+                      generator.sample_rate_hz, frequency_hz, format.name));
+  return generator;
+}
+
+bool is_binary(const CodeSet& code) {
+  for (int e = 0; e < code.exposures(); ++e)
+    if (!code.modulation(e).is_binary()) return false;
+  for (int i = 0; i < code.measurements(); ++i)
+    if (!code.demodulation(i).is_binary()) return false;
+  return true;
+}
+
+std::int32_t levels_of(const WaveformFormat& format, int variant, int bits) {
+  if (format.name == "tek-tfw" && variant == 1) return format.levels + 1;
+  return format.levels > 0 ? format.levels : 1 << bits;
+}
+
+/// As few as make a table that the format takes.
+int fitting_periods(const WaveformFormat& format, int points, const std::optional<int>& asked) {
+  const auto fits = [&](int periods) {
+    const std::int64_t all = std::int64_t{points} * periods;
+    return all >= format.least_points && all <= format.most_points && all % format.multiple_of == 0;
+  };
+  const std::string rule = fmt::format("{} takes {} .. {} points in multiples of {}", format.name,
+                                       format.least_points, format.most_points, format.multiple_of);
+  if (asked) {
+    require(fits(*asked), "points", std::int64_t{points} * *asked,
+            fmt::format("{} (found {} per period in {} periods)", rule, points, *asked));
+    return *asked;
+  }
+  for (int periods = 1; periods <= most_periods; ++periods)
+    if (fits(periods)) return periods;
+  reject("points", fmt::format("{}", points),
+         fmt::format("{}, and no number of periods gives that", rule));
+}
+
+/// What is the same for every waveform of an arm.
+struct ArmTables {
+  const Generator& generator;
+  double frequency_hz;
+  std::int32_t levels;
+  int periods;
+
+  QuantizedWaveform of(const Waveform& told, bool light) const {
+    const Waveform table = generator_table(told, generator, frequency_hz);
+    const double scale =
+        light ? average_power_scale(generated(told, generator, frequency_hz)) : 1.0;
+    const int points = generator.points_in_table(frequency_hz);
+    QuantizedWaveform waveform = quantized(table, points, levels, scale);
+    waveform.sample_rate_hz = points * frequency_hz;
+    waveform.periods = periods;
+    const std::vector<std::int32_t> period = waveform.codes;
+    for (int p = 1; p < periods; ++p)
+      waveform.codes.insert(waveform.codes.end(), period.begin(), period.end());
+    return waveform;
+  }
+};
+
+void set_volts(WaveformExport& exported, const ExportOptions& options) {
+  double light_peak = 0.0;
+  for (const QuantizedWaveform& waveform : exported.waveforms)
+    if (waveform.arm == Arm::light) light_peak = std::max(light_peak, waveform.full_scale);
+  const double range_v = options.high_v - options.low_v;
+  for (QuantizedWaveform& waveform : exported.waveforms) {
+    const double full = waveform.arm == Arm::light ? light_peak : 1.0;
+    const double share = full > 0.0 ? waveform.full_scale / full : 0.0;
+    waveform.low_v = options.low_v;
+    // A waveform that is never on keeps its range: nothing of it is played.
+    waveform.high_v = options.low_v + (share > 0.0 ? share : 1.0) * range_v;
+  }
+}
+
+}  // namespace
+
+Camera exporting_camera(const CodeSet& code, const Camera& camera, const ExportOptions& options) {
+  const WaveformFormat& format = waveform_format(options.format);
+  variant_index(format, options.variant);
+  check_options(options, format);
+  require_fits(code, camera);
+  const bool binary = is_binary(code);
+  if (format.content == FormatContent::words && !binary)
+    require(options.bits.value_or(8) >= 2, "bits", 1,
+            fmt::format("must be >= 2: not all waveforms of {} are binary", code.name()));
+  Camera played = camera;
+  played.light.generator = generator_of(options, format, camera.light.generator, binary, camera);
+  played.sensor.generator = generator_of(options, format, camera.sensor.generator, binary, camera);
+  played.validate();
+  return played;
+}
+
+WaveformExport export_waveforms(const CodeSet& code, const Camera& played,
+                                const ExportOptions& options) {
+  const double frequency_hz = played.fundamental_frequency_hz;
+  require(played.light.generator && played.sensor.generator, "generators", "none",
+          "must be there, as exporting_camera() makes them");
+  WaveformExport exported;
+  exported.format = waveform_format(options.format);
+  exported.variant = variant_index(exported.format, options.variant);
+  exported.code = code.name();
+  exported.camera = played.name;
+  exported.fundamental_frequency_hz = frequency_hz;
+  exported.exposures = code.exposures();
+  exported.taps = code.taps();
+  exported.shared_taps = taps_share_a_generator(code, played);
+  exported.light = *played.light.generator;
+  exported.sensor = *played.sensor.generator;
+  const auto arm = [&](const Generator& generator) {
+    return ArmTables{
+        generator, frequency_hz,
+        levels_of(exported.format, exported.variant, generator.amplitude_bits),
+        fitting_periods(exported.format, generator.points_in_table(frequency_hz), options.periods)};
+  };
+  const ArmTables light = arm(exported.light), sensor = arm(exported.sensor);
+  played_code(code, played);  // refuses pulses that vanish
+  for (int e = 0; e < code.exposures(); ++e) {
+    exported.waveforms.push_back(light.of(code.modulation(e), true));
+    exported.waveforms.back().name = fmt::format("modulation_{}", e + 1);
+    exported.waveforms.back().index = e;
+  }
+  for (int i = 0; i < code.measurements(); i += exported.shared_taps ? 2 : 1) {
+    exported.waveforms.push_back(sensor.of(code.demodulation(i), false));
+    exported.waveforms.back().name = fmt::format("demodulation_{}", i + 1);
+    exported.waveforms.back().arm = Arm::sensor;
+    exported.waveforms.back().index = i;
+  }
+  set_volts(exported, options);
+  return exported;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "waveforms/pattern_memory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "damaged_files.hpp"
+#include "io/shared/read_file.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::HasSubstr;
+
+struct Language {
+  std::string file;
+  std::string (*write)(const PatternMemory&);
+  PatternSyntax syntax;
+  bool says_width;
+};
+
+const Language languages[] = {
+    {"pattern.coe", xilinx_coe, PatternSyntax::coe, false},
+    {"pattern.mif", intel_mif, PatternSyntax::mif, true},
+    {"pattern.mem", verilog_mem, PatternSyntax::mem, false},
+    {"pattern.sv", systemverilog_package, PatternSyntax::systemverilog, true},
+    {"pattern.vhd", vhdl_package, PatternSyntax::vhdl, true},
+    {"pattern.h", c_header, PatternSyntax::c, true},
+};
+
+PatternMemory memory_of(int word_bits, std::vector<std::uint64_t> words) {
+  PatternMemory memory;
+  memory.comment = "two lines\nfor people";
+  memory.word_bits = word_bits;
+  memory.words = std::move(words);
+  return memory;
+}
+
+TEST(PatternMemory, IsWrittenAsTheGoldenFiles) {
+  PatternMemory memory = memory_of(4, {0b1011, 0b1001, 0b0100, 0b1101, 0b1010, 0b0001});
+  memory.points_per_exposure = 3;
+  memory.fields = {{"light", 0, 1}, {"tap_1", 1, 1}, {"tap_2", 2, 1}, {"trigger", 3, 1}};
+  for (const Language& language : languages)
+    EXPECT_EQ(language.write(memory),
+              read_text_file(TOFSMITH_SOURCE_DIR "/tests/io/golden/" + language.file))
+        << language.file;
+}
+
+TEST(PatternMemory, ReadsBackExactlyAtEveryWidth) {
+  for (int bits = 1; bits <= 64; ++bits) {
+    RandomStream random(17, static_cast<std::uint64_t>(bits));
+    std::vector<std::uint64_t> words = {0, ~std::uint64_t{0} >> (64 - bits)};
+    for (int i = 0; i < 30; ++i)
+      words.push_back((std::uint64_t{random()} << 32 | random()) >> (64 - bits));
+    const PatternMemory memory = memory_of(bits, words);
+    for (const Language& language : languages) {
+      const PatternWords back =
+          parse_pattern(language.write(memory), language.syntax, language.file);
+      EXPECT_EQ(back.words, words) << language.file << " " << bits;
+      EXPECT_EQ(back.word_bits, language.says_width ? bits : 0) << language.file;
+    }
+  }
+}
+
+TEST(PatternMemory, HoldsEveryOutputOfEveryExposure) {
+  std::vector<QuantizedWaveform> waveforms;
+  for (int i = 0; i < 6; ++i) {  // 2 exposures, 2 taps
+    RandomStream random(18, static_cast<std::uint64_t>(i));
+    QuantizedWaveform w{.name = "w", .levels = 8, .periods = 2, .sample_rate_hz = 1e6};
+    for (int j = 0; j < 10; ++j) w.codes.push_back(static_cast<int>(random() % 8));
+    waveforms.push_back(w);
+  }
+  const PatternMemory memory = pattern_memory(waveforms, 2, "");
+  EXPECT_EQ(memory.word_bits, 10);
+  ASSERT_EQ(memory.words.size(), 20u);
+  const auto codes = [&](std::size_t first, std::size_t second) {
+    std::vector<std::int32_t> joined = waveforms[first].codes;
+    joined.insert(joined.end(), waveforms[second].codes.begin(), waveforms[second].codes.end());
+    return joined;
+  };
+  EXPECT_EQ(codes_of(memory, memory.fields[0]), codes(0, 1));  // light
+  EXPECT_EQ(codes_of(memory, memory.fields[1]), codes(2, 4));  // tap 1
+  EXPECT_EQ(codes_of(memory, memory.fields[2]), codes(3, 5));  // tap 2
+  const std::vector<std::int32_t> period = {1, 1, 1, 0, 0};
+  for (std::size_t j = 0; j < 20; ++j)
+    EXPECT_EQ(codes_of(memory, memory.fields[3])[j], period[j % 5]) << j;
+}
+
+TEST(PatternMemory, RefusesWhatDoesNotFitInWords) {
+  QuantizedWaveform w{.name = "w", .levels = 2, .codes = {0, 1}, .sample_rate_hz = 1e6};
+  EXPECT_THROW(pattern_memory(std::vector{w}, 1, ""), std::invalid_argument);  // no sensor
+  EXPECT_THROW(pattern_memory(std::vector{w, w, w, w, w}, 2, ""), std::invalid_argument);
+  QuantizedWaveform other = w;
+  other.codes = {0, 1, 1};
+  EXPECT_THROW(pattern_memory(std::vector{w, other}, 1, ""), std::invalid_argument);
+  other = w;
+  other.levels = 4;
+  EXPECT_THROW(pattern_memory(std::vector{w, other}, 1, ""), std::invalid_argument);
+  other.levels = 3;
+  EXPECT_THROW(pattern_memory(std::vector{other, other}, 1, ""), std::invalid_argument);
+  other.levels = 1 << 16;
+  EXPECT_THROW(pattern_memory(std::vector{other, other, other, other}, 1, ""),
+               std::invalid_argument);
+}
+
+TEST(PatternParser, ReadsFilesOfOthers) {
+  const auto words = [](std::string_view text, PatternSyntax syntax) {
+    return parse_pattern(text, syntax, "f").words;
+  };
+  using Words = std::vector<std::uint64_t>;
+  EXPECT_EQ(words("; ROM\nMEMORY_INITIALIZATION_RADIX = 2 ; binary\n"
+                  "MEMORY_INITIALIZATION_VECTOR = 0, 101,\n11;",
+                  PatternSyntax::coe),
+            (Words{0, 5, 3}));
+  EXPECT_EQ(
+      words("WIDTH=8;\nDEPTH=6;\nADDRESS_RADIX=HEX;\nDATA_RADIX=BIN;\n% all of\nit %\nCONTENT "
+            "BEGIN\n[0..3] : 101; -- four\n4 : 1 11;\nEND;",
+            PatternSyntax::mif),
+      (Words{5, 5, 5, 5, 1, 3}));
+  EXPECT_EQ(words("/* a\nb */ 0f 1_0 // c\nFF", PatternSyntax::mem), (Words{15, 16, 255}));
+}
+
+TEST(PatternParser, SaysWhatIsWrong) {
+  const auto error = [](std::string_view text, PatternSyntax syntax) {
+    return io_error_of([&] { parse_pattern(text, syntax, "f"); });
+  };
+  EXPECT_THAT(error("radix=16;", PatternSyntax::coe), HasSubstr("f: found no memory_init"));
+  EXPECT_THAT(
+      error("memory_initialization_radix=8;\nmemory_initialization_vector=1;", PatternSyntax::coe),
+      HasSubstr("found the radix 8; expected 2, 10 or 16"));
+  const std::string mif = "DEPTH=2;WIDTH=4;ADDRESS_RADIX=UNS;DATA_RADIX=HEX;CONTENT BEGIN ";
+  EXPECT_THAT(error(mif + "0:1; END;", PatternSyntax::mif), HasSubstr("no word at the address 1"));
+  EXPECT_THAT(error(mif + "0:1; 2:1; END;", PatternSyntax::mif), HasSubstr("found the address 2"));
+  EXPECT_THAT(error(mif + "0:1; 1:1f; END;", PatternSyntax::mif), HasSubstr("at most 4 bits"));
+  EXPECT_THAT(error("12 x4", PatternSyntax::mem), HasSubstr("found 'x4'"));
+  EXPECT_THAT(error("@10 12", PatternSyntax::mem), HasSubstr("found an address"));
+  EXPECT_THAT(error("", PatternSyntax::mem), HasSubstr("found no word"));
+}
+
+TEST(PatternParser, ReadsOrRefusesDamagedFiles) {
+  for (const Language& language : languages) {
+    const FileBytes whole =
+        read_binary_file(TOFSMITH_SOURCE_DIR "/tests/io/golden/" + language.file);
+    EXPECT_GT(expect_damage_read_or_refused(
+                  whole, 200, 6,
+                  [&](std::span<const std::byte> bytes) {
+                    parse_pattern({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
+                                  language.syntax, "f");
+                  }),
+              10)
+        << language.file;
+  }
+}
+
+}  // namespace
+}  // namespace tofsmith
