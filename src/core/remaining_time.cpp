@@ -29,7 +29,9 @@ std::optional<double> RemainingTime::seconds() const {
 }
 
 double RemainingTime::fraction_at(double passed_s) const {
-  const auto after = std::ranges::upper_bound(past_, passed_s, {}, &Moment::passed_s);
+  const auto after =
+      std::upper_bound(past_.begin(), past_.end(), passed_s,
+                       [](const auto& value, const auto& item) { return value < item.passed_s; });
   const Moment before = *std::prev(after);
   const Moment next = after == past_.end() ? now_ : *after;
   const double step_s = next.passed_s - before.passed_s;

@@ -16,7 +16,10 @@ SharedProgress::SharedProgress(Progress progress, double pieces, std::string ste
 
 void SharedProgress::add(double pieces) {
   if (!progress_) return;
-  const double done = done_.fetch_add(pieces, std::memory_order_relaxed) + pieces;
+  double done = done_.load(std::memory_order_relaxed);  // libc++ 14 has no fetch_add of it
+  while (!done_.compare_exchange_weak(done, done + pieces, std::memory_order_relaxed)) {
+  }
+  done += pieces;
   if (is_stopped_.load(std::memory_order_relaxed)) throw Interrupted();
   if (std::this_thread::get_id() != caller_) return;
   const auto now = std::chrono::steady_clock::now();

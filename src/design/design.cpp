@@ -160,8 +160,9 @@ std::vector<const Candidate*> by_geometric_mean_error(const DesignResult& result
                                                       DepthErrorKind kind) {
   std::vector<const Candidate*> order;
   for (const Candidate& c : result.candidates) order.push_back(&c);
-  std::ranges::stable_sort(
-      order, {}, [&](const Candidate* c) { return geometric_mean_error_m(c->error, kind); });
+  std::stable_sort(order.begin(), order.end(), [&](const Candidate* a, const Candidate* b) {
+    return geometric_mean_error_m(a->error, kind) < geometric_mean_error_m(b->error, kind);
+  });
   return order;
 }
 

@@ -10,7 +10,7 @@ namespace tofsmith {
 void DesignOptions::validate() const {
   check_fields(*this, "DesignOptions::");
   for (const int e : exposures) {
-    require(std::ranges::count(exposures, e) == 1, "DesignOptions::exposures", e,
+    require(std::count(exposures.begin(), exposures.end(), e) == 1, "DesignOptions::exposures", e,
             "must be listed once");
     require(method != DesignMethod::factorize || (e >= 3 && e <= 6), "DesignOptions::exposures", e,
             "must be in [3, 6] to aim at Hamiltonian codes");

@@ -79,7 +79,7 @@ std::string what_limits_it(const DesignResult& result) {
   const auto by_error = [](const PointDepthError& a, const PointDepthError& b) {
     return a.circular_mde_m.value < b.circular_mde_m.value;
   };
-  const auto [least, most] = std::ranges::minmax_element(points, by_error);
+  const auto [least, most] = std::minmax_element(points.begin(), points.end(), by_error);
   const auto describe = [](const PointDepthError& p) {
     std::string text = plain_number(1e3 * p.circular_mde_m.value, 3) + " mm";
     if (p.cramer_rao_mae_m > 0.0)

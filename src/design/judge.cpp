@@ -82,8 +82,9 @@ void keep_best_of_each_name(const std::vector<double>& ranking_m, DesignResult& 
   std::vector<double> kept_m;
   for (std::size_t i = 0; i < result.candidates.size(); ++i) {
     Candidate& candidate = result.candidates[i];
-    const auto same = std::ranges::find(kept, candidate.code.name(),
-                                        [](const Candidate& c) { return c.code.name(); });
+    const auto same = std::find_if(kept.begin(), kept.end(), [&](const auto& item) {
+      return key(item) == candidate.code.name();
+    });
     const auto at = static_cast<std::size_t>(same - kept.begin());
     if (same == kept.end()) {
       kept.push_back(std::move(candidate));
@@ -94,7 +95,8 @@ void keep_best_of_each_name(const std::vector<double>& ranking_m, DesignResult& 
     }
   }
   result.candidates = std::move(kept);
-  result.best = static_cast<std::size_t>(std::ranges::min_element(kept_m) - kept_m.begin());
+  result.best =
+      static_cast<std::size_t>(std::min_element(kept_m.begin(), kept_m.end()) - kept_m.begin());
 }
 
 }  // namespace

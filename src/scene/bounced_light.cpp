@@ -147,7 +147,7 @@ std::vector<LaterReturn> BounceGatherer::gather(int row, int column) const {
   if (std::isfinite(options_.range_m))
     for (Bounce& b : found)  // a hair less than the range, so that distances rounded stay within
       b.delay_m = std::min(std::fmod(b.delay_m, options_.range_m), options_.range_m * (1 - 1e-5));
-  std::ranges::sort(found, comes_before);
+  std::sort(found.begin(), found.end(), comes_before);
   return merged(found, static_cast<float>(seen->distance_m));
 }
 

@@ -140,7 +140,8 @@ MultipathCell CellTrials::cell(const CellLight& light, std::uint64_t number,
   const MultipathImage image = decoder->decode(raw, 0, parts[1]);
   add_errors(image.direct.depth_m, true_m, result.bias_m, result.error_m);
   const auto share = [&](ReturnStatus status) {
-    return static_cast<double>(std::ranges::count(image.returns.pixels, status)) /
+    return static_cast<double>(
+               std::count(image.returns.pixels.begin(), image.returns.pixels.end(), status)) /
            static_cast<double>(true_m.size());
   };
   result.two_share = share(ReturnStatus::two);

@@ -35,7 +35,7 @@ class EnumWords {
 
   /// @throws std::invalid_argument for any other word
   Enum parse(std::string_view word) const {
-    const auto at = std::ranges::find(words_, word);
+    const auto at = std::find(words_.begin(), words_.end(), word);
     if (at == words_.end()) reject(field_, word, "must be " + listed());
     return static_cast<Enum>(at - words_.begin());
   }

@@ -19,7 +19,7 @@ std::string exposure_key(const ChipCode& code, int exposure, int shift, bool is_
           'a' + code.correlation(exposure * code.taps + i, is_mirror ? shift - s : shift + s));
     rows.push_back(std::move(row));
   }
-  std::ranges::sort(rows);
+  std::sort(rows.begin(), rows.end());
   std::string key;
   for (const std::string& row : rows) key += row;
   return key;
@@ -34,7 +34,7 @@ std::string symmetry_key(const ChipCode& code) {
       std::vector<std::string> parts;
       for (int e = 0; e < code.exposures(); ++e)
         parts.push_back(exposure_key(code, e, shift, is_mirror));
-      std::ranges::sort(parts);
+      std::sort(parts.begin(), parts.end());
       std::string key;
       for (const std::string& part : parts) key += part;
       if (least.empty() || key < least) least = std::move(key);
@@ -51,9 +51,12 @@ bool BestCodes::offer(const ChipCode& code, double score, double share) {
 }
 
 bool BestCodes::offer(ScoredCode code) {
-  const auto same = std::ranges::find(codes_, code.key, &ScoredCode::key);
+  const auto same = std::find_if(codes_.begin(), codes_.end(),
+                                 [&](const auto& item) { return item.key == code.key; });
   if (same != codes_.end()) return false;
-  const auto place = std::ranges::upper_bound(codes_, code.score, {}, &ScoredCode::score);
+  const auto place =
+      std::upper_bound(codes_.begin(), codes_.end(), code.score,
+                       [](const auto& value, const auto& item) { return value < item.score; });
   if (place == codes_.end() && codes_.size() == count_) return false;
   const bool is_best = place == codes_.begin();
   if (is_best) improvements_.push_back(code);

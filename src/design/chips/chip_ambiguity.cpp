@@ -25,7 +25,8 @@ using Direction = std::array<std::int64_t, 16>;
 std::vector<Direction> corner_directions(const ChipCode& code) {
   std::vector<std::int64_t> open;
   for (const ChipWord word : code.demodulation) open.push_back(std::popcount(word));
-  const auto reference = static_cast<int>(std::ranges::max_element(open) - open.begin());
+  const auto reference =
+      static_cast<int>(std::max_element(open.begin(), open.end()) - open.begin());
   std::vector<Direction> corners(static_cast<std::size_t>(code.chips), Direction{});
   for (int s = 0; s < code.chips; ++s)
     for (int i = 0; i < code.measurements(); ++i)  // 0 for the reference itself
@@ -79,8 +80,8 @@ bool have_positive_relation(std::span<const Direction> columns) {
     const auto relation = only_relation(std::span(chosen).first(count));
     if (!relation) continue;
     const std::span<const std::int64_t> x(relation->data(), count);
-    if (std::ranges::all_of(x, [](std::int64_t value) { return value > 0; }) ||
-        std::ranges::all_of(x, [](std::int64_t value) { return value < 0; }))
+    if (std::all_of(x.begin(), x.end(), [](std::int64_t value) { return value > 0; }) ||
+        std::all_of(x.begin(), x.end(), [](std::int64_t value) { return value < 0; }))
       return true;
   }
   return false;
@@ -109,7 +110,9 @@ bool is_ambiguous(const ChipCode& code) {
   code.validate();
   require(code.measurements() <= 16, "measurements of ChipCode", code.measurements(),
           "must be <= 16");
-  if (std::ranges::all_of(code.demodulation, [](ChipWord word) { return word == 0; })) return true;
+  if (std::all_of(code.demodulation.begin(), code.demodulation.end(),
+                  [](ChipWord word) { return word == 0; }))
+    return true;
   if (code.measurements() < 3) return true;  // as many unknowns as measurements
   const std::vector<Direction> corners = corner_directions(code);
   const std::size_t n = corners.size();

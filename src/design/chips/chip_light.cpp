@@ -22,7 +22,8 @@ std::optional<BrokenRule> why_not_plain(const Camera& camera) {
     return broken("sensor.readout", "difference",
                   "must be separate to search codes on a chip clock");
   const auto& times = camera.exposure_s.each_s;
-  if (std::ranges::any_of(times, [&](double time_s) { return time_s != times.front(); }))
+  if (std::any_of(times.begin(), times.end(),
+                  [&](double time_s) { return time_s != times.front(); }))
     return broken("exposure_s", "of different lengths",
                   "must be equal to search codes on a chip clock");
   return std::nullopt;

@@ -79,7 +79,7 @@ class FirstTapLister {
     for (int tap = 0; tap < rules_.taps; ++tap)
       if (tap != leading)
         moved[count++] = motion.of(current_.taps[static_cast<std::size_t>(tap)], rules_.chips);
-    std::ranges::sort(moved);
+    std::sort(moved.begin(), moved.end());
     const auto own = current_.taps.begin() + 1;
     const auto order = std::lexicographical_compare_three_way(moved.begin(), moved.begin() + count,
                                                               own, own + count);

@@ -37,7 +37,7 @@ std::string functions_of(const Exposure& exposure, const AssignmentRules& rules,
           exposure.taps[tap] &
           delayed_chips(exposure.light, is_mirror ? shift - s : shift + s, rules.chips)));
   }
-  std::ranges::sort(rows);  // those of no tap are empty
+  std::sort(rows.begin(), rows.end());  // those of no tap are empty
   std::string all;
   for (const std::string& row : rows) all += row;
   return all;
@@ -80,7 +80,8 @@ class ExposurePairSearch {
   explicit ExposurePairSearch(const ExhaustiveTask& task)
       : task_(task), n_(task.rules.chips), exposures_(distinct_exposures(task.rules)) {
     // Later orbits lie together behind earlier ones.
-    std::ranges::stable_sort(exposures_, {}, &Exposure::orbit);
+    std::stable_sort(exposures_.begin(), exposures_.end(),
+                     [](const auto& a, const auto& b) { return a.orbit < b.orbit; });
     for (std::size_t i = 0; i < exposures_.size(); ++i)
       if (exposures_[i].is_first) firsts_.push_back(i);
     const std::size_t blocks = blocks_from(0);

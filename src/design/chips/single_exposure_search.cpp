@@ -69,8 +69,10 @@ class ScanRows {
 
 /// Assignments of one duty together: the rows of their words then stay in the cache.
 std::vector<TapAssignment> by_duty(std::vector<TapAssignment> assignments) {
-  std::ranges::stable_sort(assignments, {},
-                           [](const TapAssignment& a) { return std::popcount(a.taps[0]); });
+  std::stable_sort(assignments.begin(), assignments.end(),
+                   [](const TapAssignment& a, const TapAssignment& b) {
+                     return std::popcount(a.taps[0]) < std::popcount(b.taps[0]);
+                   });
   return assignments;
 }
 

@@ -36,7 +36,7 @@ std::vector<MultiPhase> multi_phase_exposures(int chips, int taps) {
     for (int i = 0; i < taps; ++i)
       words.push_back(repeated_pulse(i * period / taps, open, period, chips));
     std::vector<int> widths = {open, period / 2, (period + 1) / 2};
-    std::ranges::sort(widths);
+    std::sort(widths.begin(), widths.end());
     widths.erase(std::unique(widths.begin(), widths.end()), widths.end());
     for (const int width : widths)
       if (width < period) all.push_back({repeated_pulse(0, width, period, chips), words});

@@ -85,7 +85,7 @@ bool drop_short_pulses(const PairModel& model, std::vector<PairCandidate>& candi
     return !keeps_shortest_run(c.pair.modulation, model.shortest_run()) ||
            !keeps_shortest_run(c.pair.demodulation, model.shortest_run());
   };
-  if (std::ranges::all_of(candidates, too_short)) return false;
+  if (std::all_of(candidates.begin(), candidates.end(), too_short)) return false;
   std::erase_if(candidates, too_short);
   return true;
 }
@@ -142,13 +142,13 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
 
   // 3. Structured pairs, and the naive one, compete as they stand.
   if (options.structured_starts)
-    std::ranges::move(structured_starts(model), std::back_inserter(result.candidates));
+    for (auto&& one : structured_starts(model)) result.candidates.push_back(std::move(one));
   drop_repeats(result.candidates);
 
   // 4. Move switching times continuously.
   if (options.refine_edges) refine_best(model, options, result.candidates, parts[1]);
   if (options.keep_naive)
-    std::ranges::move(naive_start(model), std::back_inserter(result.candidates));
+    for (auto&& one : naive_start(model)) result.candidates.push_back(std::move(one));
   const bool playable = drop_short_pulses(model, result.candidates);
   drop_repeats(result.candidates);
   report(progress, 1.0, "refining switching times");
@@ -159,7 +159,9 @@ Factorization factorize(const CorrelationTarget& target, const Camera& camera,
     if (std::ssize(kept) < options.kept || c.start == "naive") kept.push_back(std::move(c));
   result.candidates = std::move(kept);
   if (!runs.empty())
-    result.history = std::ranges::min_element(runs, by_residual, &StartResult::candidate)->history;
+    result.history = std::min_element(runs.begin(), runs.end(), [&](const auto& a, const auto& b) {
+                       return by_residual(a.candidate, b.candidate);
+                     })->history;
   result.message = describe(result, target);
   if (!playable) result.message += "; no pair found keeps the sensor's shortest_pulse_s";
   return result;

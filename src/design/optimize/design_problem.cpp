@@ -174,8 +174,9 @@ double CameraVariant::total_weight() const {
 }
 
 std::size_t CameraVariant::usual_levels() const {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      levels, [](const LightLevel& level) { return level.returns != TrialReturns::two; }));
+  return static_cast<std::size_t>(
+      std::count_if(levels.begin(), levels.end(),
+                    [](const LightLevel& level) { return level.returns != TrialReturns::two; }));
 }
 
 DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples,

@@ -207,8 +207,8 @@ OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeS
   for (const CodeSet& code : also)
     if (fits_space(space, code)) codes.push_back(code);
   for (CodeSet& family : families_of(space))
-    if (std::ranges::none_of(codes,
-                             [&](const CodeSet& code) { return code.name() == family.name(); }))
+    if (std::none_of(codes.begin(), codes.end(),
+                     [&](const CodeSet& code) { return code.name() == family.name(); }))
       codes.push_back(std::move(family));
   const auto count = static_cast<int>(codes.size());
   if (index < count)
