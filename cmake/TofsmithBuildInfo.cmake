@@ -11,15 +11,15 @@ set(write_commit ${CMAKE_COMMAND} -D "source=${PROJECT_SOURCE_DIR}" -D "output=$
 execute_process(COMMAND ${write_commit} COMMAND_ERROR_IS_FATAL ANY)  # lint reads it unbuilt
 add_custom_target(tofsmith_build_commit BYPRODUCTS "${commit_source}"
                   COMMAND ${write_commit} COMMENT "Looking up the commit" VERBATIM)
-add_dependencies(tofsmith tofsmith_build_commit)
-target_sources(tofsmith PRIVATE "${commit_source}")
+add_dependencies(tofsmith_core tofsmith_build_commit)
+target_sources(tofsmith_core PRIVATE "${commit_source}")
 set_source_files_properties("${commit_source}" PROPERTIES
   SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
 
-get_target_property(library_type tofsmith TYPE)
+get_target_property(library_type tofsmith_core TYPE)
 set(library_is_shared OFF)
 if(library_type STREQUAL "SHARED_LIBRARY")
   set(library_is_shared ON)
 endif()
 set_source_files_properties(core/build_info.cpp PROPERTIES SKIP_PRECOMPILE_HEADERS ON
-  COMPILE_DEFINITIONS "TOFSMITH_BUILD_COMPILER=\"${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}\";TOFSMITH_BUILD_TYPE=\"$<CONFIG>\";TOFSMITH_BUILD_SHARED=$<BOOL:${library_is_shared}>;TOFSMITH_BUILD_TBB=$<BOOL:${TBB_FOUND}>;TOFSMITH_BUILD_MPI=$<BOOL:${TOFSMITH_HAS_MPI}>;TOFSMITH_BUILD_LXI=$<BOOL:${TOFSMITH_HAS_LXI}>;TOFSMITH_BUILD_FFTW=$<BOOL:${TOFSMITH_USE_FFTW}>")
+  COMPILE_DEFINITIONS "TOFSMITH_BUILD_COMPILER=\"${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}\";TOFSMITH_BUILD_TYPE=\"$<CONFIG>\";TOFSMITH_BUILD_SHARED=$<BOOL:${library_is_shared}>;TOFSMITH_BUILD_TBB=$<BOOL:${TOFSMITH_HAS_TBB}>;TOFSMITH_BUILD_MPI=$<BOOL:${TOFSMITH_HAS_MPI}>;TOFSMITH_BUILD_LXI=$<BOOL:${TOFSMITH_HAS_LXI}>;TOFSMITH_BUILD_FFTW=$<BOOL:${TOFSMITH_USE_FFTW}>")

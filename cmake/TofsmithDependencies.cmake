@@ -2,42 +2,71 @@
 # SPDX-License-Identifier: Apache-2.0
 # Everything comes from Debian packages; scripts/packages.sh lists them.
 
+# What each component uses itself; what its users must find again is in
+# tofsmith<Component>Dependencies.cmake, which cmake/TofsmithInstall.cmake writes.
+
+# core
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(TBB REQUIRED)
 find_package(HWY REQUIRED)
 find_package(fmt REQUIRED)
-find_package(nlohmann_json REQUIRED)
-find_package(tomlplusplus REQUIRED)
-find_package(OpenEXR REQUIRED)
-find_package(PNG REQUIRED)
-find_package(embree 3.13 REQUIRED)
-find_package(assimp REQUIRED)
-find_package(SQLite3 REQUIRED)
-find_path(BOOST_ASIO_INCLUDE_DIR boost/asio.hpp REQUIRED)  # headers only
-find_package(PkgConfig REQUIRED)
-pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
-pkg_check_modules(LIBLXI IMPORTED_TARGET liblxi)  # VXI-11; can be missing
-find_library(TIRPC_LIBRARY tirpc)
-set(TOFSMITH_HAS_LXI OFF)
-if(LIBLXI_FOUND AND TIRPC_LIBRARY)
-  set(TOFSMITH_HAS_LXI ON)
-endif()
 find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
+set(TOFSMITH_HAS_TBB OFF)
+if(TOFSMITH_USE_TBB STREQUAL "AUTO")
+  find_package(TBB)
+elseif(TOFSMITH_USE_TBB)
+  find_package(TBB REQUIRED)
+endif()
+if(TOFSMITH_USE_TBB AND TBB_FOUND)
+  set(TOFSMITH_HAS_TBB ON)
+else()
+  message(STATUS "Without TBB: all work is done in one thread")
+endif()
+if(TOFSMITH_USE_FFTW OR TOFSMITH_HAS_io)
+  find_package(PkgConfig REQUIRED)
+endif()
 if(TOFSMITH_USE_FFTW)
   pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3)
   find_library(FFTW_THREADS_LIBRARY fftw3_threads REQUIRED)  # a planner that threads may share
 endif()
-set(TOFSMITH_HAS_MPI OFF)
-if(TOFSMITH_USE_MPI)
-  set(MPI_CXX_SKIP_MPICXX ON)  # the C interface is used
-  find_package(MPI COMPONENTS CXX)  # can be missing
-  if(MPI_CXX_FOUND)
-    set(TOFSMITH_HAS_MPI ON)
-  else()
-    message(STATUS "MPI not found: sweeps run in one process a machine")
+
+if(TOFSMITH_HAS_io OR TOFSMITH_BUILD_TESTS)
+  find_package(nlohmann_json REQUIRED)
+endif()
+if(TOFSMITH_HAS_io)
+  find_package(tomlplusplus REQUIRED)
+  find_package(OpenEXR REQUIRED)
+  find_package(PNG REQUIRED)
+  find_package(embree 3.13 REQUIRED)
+  find_package(TBB REQUIRED)  # Embree's threads
+  find_package(assimp REQUIRED)
+  pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
+endif()
+
+set(TOFSMITH_HAS_LXI OFF)
+if(TOFSMITH_HAS_lab)
+  find_path(BOOST_ASIO_INCLUDE_DIR boost/asio.hpp REQUIRED)  # headers only
+  pkg_check_modules(LIBLXI IMPORTED_TARGET liblxi)  # VXI-11; can be missing
+  find_library(TIRPC_LIBRARY tirpc)
+  if(LIBLXI_FOUND AND TIRPC_LIBRARY)
+    set(TOFSMITH_HAS_LXI ON)
   endif()
 endif()
+
+set(TOFSMITH_HAS_MPI OFF)
+if(TOFSMITH_HAS_sweep)
+  find_package(SQLite3 REQUIRED)
+  if(TOFSMITH_USE_MPI)
+    set(MPI_CXX_SKIP_MPICXX ON)  # the C interface is used
+    find_package(MPI COMPONENTS CXX)  # can be missing
+    if(MPI_CXX_FOUND)
+      set(TOFSMITH_HAS_MPI ON)
+    else()
+      message(STATUS "MPI not found: sweeps run in one process a machine")
+    endif()
+  endif()
+endif()
+
 if(TOFSMITH_BUILD_APPS OR TOFSMITH_BUILD_BENCHMARKS)
   find_package(CLI11 REQUIRED)
 endif()

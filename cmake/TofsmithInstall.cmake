@@ -1,24 +1,68 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# cmake --install: the library with its headers, CMake package and pkg-config file, the command line
-# with its manual pages and shell completion, examples, the licence. Components: library, dev, tool, python.
+# cmake --install: each component's library, headers, CMake targets and pkg-config file, the command
+# line with its manual pages and shell completion, examples, the licence. Parts that can be installed
+# alone: <component> and <component>_dev, dev, tool, python.
 
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tofsmith)
 
-get_target_property(library_type tofsmith TYPE)
+get_target_property(library_type tofsmith_core TYPE)
 if(library_type STREQUAL "STATIC_LIBRARY")
   set(TOFSMITH_IS_STATIC ON)
 else()
   set(TOFSMITH_IS_STATIC OFF)
 endif()
 
-install(TARGETS tofsmith EXPORT tofsmithTargets
-        LIBRARY COMPONENT library NAMELINK_COMPONENT dev
-        ARCHIVE COMPONENT dev)
-install(EXPORT tofsmithTargets NAMESPACE tofsmith:: DESTINATION ${package_dir} COMPONENT dev)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/tofsmith ${PROJECT_BINARY_DIR}/include/tofsmith
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev FILES_MATCHING PATTERN "*.hpp")
+# What the users of a component must find: of a static library all that it uses inside.
+set(finds_core "find_dependency(Eigen3 3.4)")
+if(TOFSMITH_IS_STATIC)
+  list(APPEND finds_core "find_dependency(Threads)" "find_dependency(HWY)" "find_dependency(fmt)")
+  if(TOFSMITH_HAS_TBB)
+    list(APPEND finds_core "find_dependency(TBB)")
+  endif()
+  if(TOFSMITH_USE_FFTW)
+    list(APPEND finds_core "find_dependency(PkgConfig)"
+         "pkg_check_modules(FFTW REQUIRED QUIET IMPORTED_TARGET fftw3)")
+  endif()
+  set(finds_io "find_dependency(TBB)" "find_dependency(tomlplusplus)" "find_dependency(OpenEXR)"
+      "find_dependency(PNG)" "find_dependency(embree 3.13)" "find_dependency(assimp)"
+      "find_dependency(PkgConfig)"
+      "pkg_check_modules(LIBZIP REQUIRED QUIET IMPORTED_TARGET libzip)")
+  if(TOFSMITH_HAS_LXI)
+    set(finds_lab "find_dependency(PkgConfig)"
+        "pkg_check_modules(LIBLXI REQUIRED QUIET IMPORTED_TARGET liblxi)")
+  endif()
+  set(finds_sweep "find_dependency(SQLite3)")
+  if(TOFSMITH_HAS_MPI)
+    list(APPEND finds_sweep "set(MPI_CXX_SKIP_MPICXX ON)" "find_dependency(MPI COMPONENTS CXX)")
+  endif()
+endif()
+
+foreach(component IN LISTS TOFSMITH_BUILT_COMPONENTS)
+  set(dev ${component}_dev)
+  install(TARGETS tofsmith_${component} EXPORT tofsmith_${component}
+          LIBRARY COMPONENT ${component} NAMELINK_COMPONENT ${dev}
+          ARCHIVE COMPONENT ${dev})
+  install(EXPORT tofsmith_${component} NAMESPACE tofsmith:: DESTINATION ${package_dir}
+          FILE tofsmith_${component}_targets.cmake COMPONENT ${dev})
+  set(dependencies ${PROJECT_BINARY_DIR}/tofsmith_${component}_dependencies.cmake)
+  list(JOIN finds_${component} "\n" finds)
+  file(CONFIGURE OUTPUT ${dependencies} CONTENT "# What tofsmith::${component} needs.\n@finds@\n" @ONLY)
+  install(FILES ${dependencies} DESTINATION ${package_dir} COMPONENT ${dev})
+  list(TRANSFORM tofsmith_${component}_folders PREPEND "${PROJECT_SOURCE_DIR}/include/tofsmith/"
+       OUTPUT_VARIABLE headers)
+  install(DIRECTORY ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tofsmith COMPONENT ${dev}
+          FILES_MATCHING PATTERN "*.hpp")
+  install(FILES ${PROJECT_SOURCE_DIR}/include/tofsmith/${component}.hpp
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tofsmith COMPONENT ${dev})
+endforeach()
+install(FILES ${PROJECT_SOURCE_DIR}/include/tofsmith/tofsmith.hpp
+              ${PROJECT_BINARY_DIR}/include/tofsmith/version.hpp
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tofsmith COMPONENT core_dev)
+foreach(component IN LISTS TOFSMITH_ALL_COMPONENTS)
+  string(APPEND component_needs "set(_tofsmith_${component}_needs ${tofsmith_${component}_needs})\n")
+endforeach()
 configure_package_config_file(
   ${PROJECT_SOURCE_DIR}/cmake/tofsmithConfig.cmake.in ${PROJECT_BINARY_DIR}/tofsmithConfig.cmake
   INSTALL_DESTINATION ${package_dir})
@@ -27,7 +71,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/tofsmithConfigVersion.cma
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/tofsmithConfig.cmake
               ${PROJECT_BINARY_DIR}/tofsmithConfigVersion.cmake
-        DESTINATION ${package_dir} COMPONENT dev)
+        DESTINATION ${package_dir} COMPONENT core_dev)
 include(TofsmithPkgConfig)
 
 # A Debian package has its licence in a file of Debian's form.

@@ -1,30 +1,54 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# tofsmith.pc, for `pkg-config --cflags --libs tofsmith`. Included from TofsmithInstall.cmake.
+# tofsmith-<component>.pc for each component and tofsmith.pc for all, for
+# `pkg-config --cflags --libs tofsmith-core`. Included from TofsmithInstall.cmake.
 
-set(pc_requires eigen3)
-set(pc_libs)
+# Not in Requires.private: --static would ask for static builds of these and of all that they use,
+# which Debian does not have.
+set(pc_requires_core eigen3)
 if(TOFSMITH_IS_STATIC)
-  # Not in Requires.private: --static would ask for static builds of these and of all that they use,
-  # which Debian does not have.
-  list(APPEND pc_requires tbb libhwy fmt tomlplusplus OpenEXR libpng libzip assimp sqlite3)
-  list(APPEND pc_libs -lembree3 -pthread)
+  list(APPEND pc_requires_core libhwy fmt)
+  set(pc_libs_core -pthread)
+  if(TOFSMITH_HAS_TBB)
+    list(APPEND pc_requires_core tbb)
+  endif()
   if(TOFSMITH_USE_FFTW)
-    list(APPEND pc_requires fftw3)
-    list(APPEND pc_libs -lfftw3_threads)
+    list(APPEND pc_requires_core fftw3)
+    list(APPEND pc_libs_core -lfftw3_threads)
   endif()
+  set(pc_requires_io tbb tomlplusplus OpenEXR libpng libzip assimp)
+  set(pc_libs_io -lembree3)
   if(TOFSMITH_HAS_LXI)
-    list(APPEND pc_requires liblxi)
-    list(APPEND pc_libs -ltirpc)
+    set(pc_requires_lab liblxi)
+    set(pc_libs_lab -ltirpc)
   endif()
+  set(pc_requires_sweep sqlite3)
   if(TOFSMITH_HAS_MPI)
-    list(APPEND pc_libs ${MPI_CXX_LIBRARIES})
+    set(pc_libs_sweep ${MPI_CXX_LIBRARIES})
   endif()
 endif()
-list(JOIN pc_requires ", " pc_requires)
-list(JOIN pc_libs " " pc_libs)
+
 set(pc_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 file(RELATIVE_PATH pc_to_prefix "/prefix/${pc_dir}" /prefix)
 string(REGEX REPLACE "/$" "" pc_to_prefix "${pc_to_prefix}")
-configure_file(${PROJECT_SOURCE_DIR}/cmake/tofsmith.pc.in ${PROJECT_BINARY_DIR}/tofsmith.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/tofsmith.pc DESTINATION ${pc_dir} COMPONENT dev)
+
+function(tofsmith_write_pc name about libs requires part)
+  set(pc_name ${name})
+  set(pc_about "${about}")
+  list(JOIN libs " " pc_libs)
+  list(JOIN requires ", " pc_requires)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/tofsmith.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${pc_dir} COMPONENT ${part})
+endfunction()
+
+set(pc_all)
+foreach(component IN LISTS TOFSMITH_BUILT_COMPONENTS)
+  set(requires ${pc_requires_${component}})
+  foreach(below IN LISTS tofsmith_${component}_needs)
+    list(PREPEND requires "tofsmith-${below} = ${PROJECT_VERSION}")
+  endforeach()
+  tofsmith_write_pc(tofsmith-${component} "${tofsmith_${component}_about}"
+                    "-ltofsmith_${component};${pc_libs_${component}}" "${requires}" ${component}_dev)
+  list(APPEND pc_all "tofsmith-${component} = ${PROJECT_VERSION}")
+endforeach()
+tofsmith_write_pc(tofsmith "all components" "" "${pc_all}" dev)

@@ -50,4 +50,4 @@ set_source_files_properties("${resource_assembler}" PROPERTIES OBJECT_DEPENDS "$
 
 # A target of its own: the C++ warning options mean nothing to an assembler.
 add_library(tofsmith_report_resources OBJECT "${resource_assembler}")
-target_sources(tofsmith PRIVATE $<TARGET_OBJECTS:tofsmith_report_resources>)
+target_sources(tofsmith_report PRIVATE $<TARGET_OBJECTS:tofsmith_report_resources>)

@@ -2,9 +2,10 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Installs what is missing, builds tofsmith as a shared library and makes Debian packages of it:
-# libtofsmith0.1, libtofsmith-dev, tofsmith and python3-tofsmith. The same commit makes the same
-# bytes, in whatever directory it is built.
+# Installs what is missing, builds tofsmith as shared libraries and makes Debian packages of it:
+# libtofsmith-core0.1 and libtofsmith-core-dev, so for design, io, lab, report and sweep;
+# libtofsmith-dev for all of them, tofsmith and python3-tofsmith. The same commit makes the same bytes,
+# in whatever directory it is built.
 #
 #   scripts/package.sh [DIR]      build there instead of in build-package
 set -euo pipefail
@@ -31,7 +32,7 @@ rm -f "$build/CMakeCache.txt"
 cmake --log-level=WARNING -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_INSTALL_PREFIX=/usr -DCMAKE_SKIP_INSTALL_RPATH=ON -DBUILD_SHARED_LIBS=ON \
   -DTOFSMITH_BUILD_APPS=ON -DTOFSMITH_BUILD_PYTHON=REQUIRED -DTOFSMITH_BUILD_TESTS=OFF \
-  -DTOFSMITH_UNITY=ON
+  -DTOFSMITH_UNITY=ON -DTOFSMITH_COMPONENTS=
 cmake --build "$build"
 
 rm -f "$build"/*.deb

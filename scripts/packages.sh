@@ -5,17 +5,25 @@
 # The Debian packages of the project, in one place. Sourced by the other scripts; run by hand it
 # installs what is missing of the groups named:
 #
-#   scripts/packages.sh build|python|package|test|docs|benchmark|check ..  install what is missing
+#   scripts/packages.sh core|design|build|python|package|test|docs|benchmark|check ..
+#                                                     install what is missing
 #   scripts/packages.sh --list GROUP                  print the names, one a line
 
-# The library and the command line.
-packages_build=(
+# The component core alone: codes, cameras, decoding and simulation.
+packages_core=(
   g++ cmake ninja-build pkgconf
   libeigen3-dev       # linear algebra, FFT
-  libtbb-dev          # threads
+  libtbb-dev          # threads; can be left out
   libhwy-dev          # SIMD
+  libfmt-dev
   librandom123-dev    # random streams
-  libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libfmt-dev
+)
+# core and design: nothing more.
+packages_design=("${packages_core[@]}")
+# All components and the command line.
+packages_build=(
+  "${packages_core[@]}"
+  libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
   libzip-dev libopenexr-dev libpng-dev
   libembree-dev libassimp-dev  # ray casting, meshes
   libsqlite3-dev      # sweep store
@@ -70,6 +78,8 @@ tofsmith_die() {
 # The packages of one group, one a line.
 packages_of() {
   case "$1" in
+    core) printf '%s\n' "${packages_core[@]}" ;;
+    design) printf '%s\n' "${packages_design[@]}" ;;
     build) printf '%s\n' "${packages_build[@]}" ;;
     python) printf '%s\n' "${packages_python[@]}" ;;
     package) printf '%s\n' "${packages_package[@]}" ;;
@@ -77,7 +87,7 @@ packages_of() {
     docs) printf '%s\n' "${packages_docs[@]}" ;;
     benchmark) printf '%s\n' "${packages_benchmark[@]}" ;;
     check) printf '%s\n' "${packages_check[@]}" ;;
-    *) tofsmith_die "no package group '$1'; there are build, python, package, test, docs, benchmark and check" ;;
+    *) tofsmith_die "no package group '$1'; there are core, design, build, python, package, test, docs, benchmark and check" ;;
   esac
 }
 
@@ -130,9 +140,9 @@ use_debian_tools() {
 
 if [[ "${BASH_SOURCE[0]}" == "$0" ]]; then
   set -euo pipefail
-  (($#)) || tofsmith_die "which group? build, python, package, test, docs, benchmark or check"
+  (($#)) || tofsmith_die "which group? core, design, build, python, package, test, docs, benchmark or check"
   if [[ "$1" == --list ]]; then
-    packages_of "${2:?which group? build, python, package, test, docs, benchmark or check}"
+    packages_of "${2:?which group? core, design, build, python, package, test, docs, benchmark or check}"
   else
     for group in "$@"; do
       install_packages "$group"

@@ -36,11 +36,11 @@ build="$root/build-$preset"
 results="$build/test-results.xml"
 
 targets=(all)
-left_out=
+components=
 if ((${#floors[@]})); then
   targets=()
-  # No other floor stands on these two.
-  [[ " ${floors[*]} " =~ \ (report|reproduce)\  ]] || left_out='report;reproduce'
+  # No other floor stands on these; without them nothing of the paper is built, either.
+  [[ " ${floors[*]} " =~ \ (report|paper|house)\  ]] || components='sweep;lab'
   for floor in "${floors[@]}"; do
     compgen -G "tests/$floor/*.cpp" >/dev/null || tofsmith_die "there are no tests in tests/$floor"
     targets+=("test_$floor")
@@ -48,7 +48,9 @@ if ((${#floors[@]})); then
   set -- -L "^($(IFS='|' && echo "${floors[*]}"))\$" "$@"
 fi
 echo "Building tofsmith and its tests in $build"
-cmake --log-level=WARNING --preset "$preset" -DTOFSMITH_LEAVE_OUT="$left_out"
+settings=(-DTOFSMITH_COMPONENTS="$components")
+[[ -z "$components" ]] || settings+=(-DTOFSMITH_BUILD_APPS=OFF -DTOFSMITH_BUILD_PYTHON=OFF)
+cmake --log-level=WARNING --preset "$preset" "${settings[@]}"
 cmake --build "$build" --target "${targets[@]}"
 
 failures="$build/Testing/Temporary/LastTestsFailed.log" # one a line, with those that could not run

@@ -15,6 +15,7 @@ Examples
 >>> report = tofsmith.evaluate(code, camera, trials=1000)
 """
 
+from . import _components  # isort: skip
 from . import _check, _tofsmith
 from ._bounds import CramerRaoBound, DirectTofBound, ReceiverBound
 from ._camera import Camera, built_in_camera_names, camera_keys

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Folders are floors: a folder includes only what stands on a floor below it.
+// Folders are floors: a folder includes only what stands on a floor below it. Floors have rooms,
+// with no circle between them; a private header is its floor's own unless it stands in shared/; and
+// floors make components.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -20,8 +22,9 @@ Folders operator+(Folders a, const Folders& b) {
 }
 
 const Folders data_types = {"core", "code", "scene", "camera", "decode", "simulate", "design"};
-const Folders products = data_types + Folders{"io", "sweep", "calibrate", "instrument", "report"};
-const Folders all = products + Folders{"reproduce"};
+const Folders products =
+    data_types + Folders{"io", "waveforms", "sweep", "calibrate", "instrument", "report"};
+const Folders all = products + Folders{"paper"};
 
 /// The house: which other folders each folder may include. simulate never includes design: the
 /// judge does not know the candidate's maker.
@@ -34,13 +37,30 @@ const std::map<std::string, Folders> may_include = {
     {"simulate", {"core", "code", "scene", "camera", "decode"}},
     {"design", {"core", "code", "scene", "camera", "decode", "simulate"}},
     {"io", data_types},
+    {"waveforms", data_types + Folders{"io"}},
     {"sweep", data_types + Folders{"io"}},
     {"calibrate", data_types + Folders{"io"}},
-    {"instrument", data_types + Folders{"io"}},
-    {"report", data_types + Folders{"io", "calibrate"}},
-    {"reproduce", products},
+    {"instrument", data_types + Folders{"io", "waveforms"}},
+    {"report", data_types + Folders{"io", "waveforms", "calibrate"}},
+    {"paper", products},
     {"apps", all},
 };
+
+/// What is installed together, and the component it stands on, as cmake/TofsmithComponents.cmake.
+struct Component {
+  Folders folders;
+  std::string below;
+};
+const std::map<std::string, Component> components = {
+    {"core", {{"core", "code", "scene", "camera", "decode", "simulate"}, ""}},
+    {"design", {{"design"}, "core"}},
+    {"io", {{"io"}, "design"}},
+    {"lab", {{"waveforms", "calibrate", "instrument"}, "io"}},
+    {"report", {{"report"}, "lab"}},
+    {"sweep", {{"sweep"}, "io"}},
+};
+
+constexpr std::size_t max_public_headers = 80;
 
 /// The folder a file lives in: "include/tofsmith/core/x.hpp", "src/core/x.cpp", "apps/x.cpp". A
 /// file directly in include/tofsmith/ gathers others for the user and stands where apps stand.
@@ -89,6 +109,138 @@ TEST(Floors, NoTwoFoldersMayIncludeEachOther) {
       EXPECT_FALSE(may_include.at(other).contains(folder)) << folder << " and " << other;
 }
 
+TEST(Floors, AComponentIncludesItselfAndWhatItStandsOn) {
+  for (const auto& [name, component] : components) {
+    Folders within = component.folders;
+    for (std::string below = component.below; !below.empty(); below = components.at(below).below)
+      within = within + components.at(below).folders;
+    for (const std::string& folder : component.folders)
+      for (const std::string& other : may_include.at(folder))
+        EXPECT_TRUE(within.contains(other)) << name << ": " << folder << " and " << other;
+  }
+}
+
+/// Where a private header of the library stands: "src/decode/search/shared/x.hpp" is floor
+/// "decode", room "search", shared. The ground of a floor is room "".
+struct Place {
+  std::string floor, room;
+  bool is_shared = false;
+};
+
+Place place_of(const std::string& private_path) {
+  static const std::regex parts("([^/]+)/(?:([^/]+)/)?(?:([^/]+)/)?[^/]+");
+  std::smatch match;
+  if (!std::regex_match(private_path, match, parts)) return {};
+  Place place{match[1], match[2], false};
+  if (place.room == "shared") return {match[1], "", true};
+  place.is_shared = match[3] == "shared";
+  return place;
+}
+
+/// The path below src/ of the private header that a line includes; "" if it is none.
+std::string private_include(const std::string& line) {
+  static const std::regex include("\\s*#\\s*include\\s*\"([^\"]+)\".*");
+  std::smatch match;
+  if (!std::regex_match(line, match, include)) return "";
+  const std::string path = match[1];
+  const std::string folder = path.substr(0, path.find('/'));
+  return folder != path && folder != "apps" && may_include.contains(folder) ? path : "";
+}
+
+std::vector<std::string> borrowed_headers(const SourceFile& file) {
+  const std::string here = folder_of(file.path);
+  std::vector<std::string> found;
+  for (std::size_t i = 0; i < file.lines.size(); ++i) {
+    const std::string header = private_include(file.lines[i]);
+    if (header.empty()) continue;
+    const Place there = place_of(header);
+    if (file.path.starts_with("include/"))
+      found.push_back(violation(file, i, "a public header includes public ones only"));
+    else if (here == "apps" && there.floor != "paper")
+      found.push_back(violation(file, i, "what users build upon is public: " + header));
+    else if (there.floor != here && here != "apps" && !there.is_shared)
+      found.push_back(
+          violation(file, i, header + " is " + there.floor + "/'s own: not in shared/"));
+  }
+  return found;
+}
+
+TEST(Rooms, APrivateHeaderIsUsedWithinItsFloorUnlessItIsShared) {
+  const auto files = read_sources({"include", "src", "apps", "python", "examples"});
+  EXPECT_EQ(violations_in(files, borrowed_headers), "");
+}
+
+TEST(Rooms, WhatIsSharedIsUsedFromAnotherFloor) {
+  const std::vector<SourceFile> files = read_sources({"src"});
+  Folders borrowed;
+  for (const SourceFile& file : files)
+    for (const std::string& line : file.lines) {
+      const std::string header = private_include(line);
+      if (!header.empty() && place_of(header).floor != folder_of(file.path))
+        borrowed.insert("src/" + header);
+    }
+  for (const SourceFile& file : files)
+    if (file.path.find("/shared/") != std::string::npos)
+      EXPECT_TRUE(borrowed.contains(file.path)) << file.path << " serves its own floor alone";
+}
+
+TEST(Rooms, NoCircleRunsBetweenTheRoomsOfAFloor) {
+  std::map<std::string, Folders> includes;  // by "floor/room"
+  std::string from_ground;
+  for (const SourceFile& file : read_sources({"src"})) {
+    const Place here = place_of(file.path.substr(4));
+    for (std::size_t i = 0; i < file.lines.size(); ++i) {
+      const std::string header = private_include(file.lines[i]);
+      const Place there = place_of(header);
+      if (header.empty() || there.floor != here.floor || there.room == here.room) continue;
+      if (!here.room.empty() && !there.room.empty())
+        includes[here.floor + "/" + here.room].insert(there.floor + "/" + there.room);
+      // The rooms stand on the headers of the ground; its sources put the rooms together.
+      if (here.room.empty() && file.path.ends_with(".hpp"))
+        from_ground += violation(file, i, "the ground includes a room: " + header) + '\n';
+    }
+  }
+  EXPECT_EQ(from_ground, "");
+  // Rooms that include only rooms already taken away can be taken away; a circle stays.
+  for (bool any = true; any;) {
+    any = false;
+    for (auto it = includes.begin(); it != includes.end();) {
+      std::erase_if(it->second, [&](const std::string& room) { return !includes.contains(room); });
+      any = any || it->second.empty();
+      it = it->second.empty() ? includes.erase(it) : std::next(it);
+    }
+  }
+  std::string circle;
+  for (const auto& [room, others] : includes)
+    for (const std::string& other : others) circle += room + " includes " + other + '\n';
+  EXPECT_EQ(circle, "");
+}
+
+TEST(PublicHeaders, AreFewAndEachUmbrellaHasThoseOfItsComponent) {
+  std::map<std::string, Folders> of_folder;
+  std::map<std::string, std::string> umbrellas;
+  std::size_t count = 1;  // version.hpp, which is made
+  for (const SourceFile& file : read_sources({"include"})) {
+    ++count;
+    const std::string name = file.path.substr(std::string("include/").size());
+    if (folder_of(file.path) == "apps")
+      for (const std::string& line : file.lines) umbrellas[name] += line + '\n';
+    else
+      of_folder[folder_of(file.path)].insert(name);
+  }
+  EXPECT_LE(count, max_public_headers);
+  for (const auto& [name, component] : components) {
+    const std::string umbrella = umbrellas["tofsmith/" + name + ".hpp"];
+    const std::string below = component.below;
+    if (!below.empty()) EXPECT_NE(umbrella.find("tofsmith/" + below + ".hpp"), std::string::npos);
+    for (const std::string& folder : component.folders)
+      for (const std::string& header : of_folder[folder])
+        EXPECT_NE(umbrella.find('"' + header + '"'), std::string::npos) << name << ": " << header;
+    EXPECT_NE(umbrellas["tofsmith/tofsmith.hpp"].find("\"tofsmith/" + name + ".hpp\""),
+              std::string::npos);
+  }
+}
+
 struct Example {
   const char* path;
   const char* line;
@@ -104,6 +256,8 @@ const Example examples[] = {
     {"src/io/x.cpp", "#include \"io/shared/byte_order.hpp\"", true},
     {"src/design/x.cpp", "#include \"tofsmith/simulate/bounds.hpp\"", true},
     {"src/report/x.cpp", "#include \"tofsmith/io/x.hpp\"", true},
+    {"src/decode/search/x.cpp", "#include \"core/shared/x.hpp\"", true},
+    {"src/decode/search/x.cpp", "#include \"simulate/shared/x.hpp\"", false},
     {"apps/x.cpp", "#include \"tofsmith/report/page.hpp\"", true},
     {"apps/x.cpp", "#include \"command.hpp\"", true},
     {"include/tofsmith/tofsmith.hpp", "#include \"tofsmith/io/x.hpp\"", true},
@@ -125,6 +279,21 @@ TEST(Floors, ExamplesAreJudgedAsTheHouseSays) {
     const auto found = upward_includes({example.path, {"// first line", example.line}});
     EXPECT_EQ(found.empty(), example.allowed);
   }
+}
+
+TEST(Rooms, ExamplesAreJudgedAsTheHouseSays) {
+  const auto borrows = [](const char* path, const char* line) {
+    return !borrowed_headers({path, {line}}).empty();
+  };
+  EXPECT_FALSE(borrows("src/decode/x.cpp", "#include \"decode/search/x.hpp\""));
+  EXPECT_FALSE(borrows("src/simulate/x.cpp", "#include \"decode/search/shared/x.hpp\""));
+  EXPECT_FALSE(borrows("src/simulate/x.cpp", "#include \"core/shared/x.hpp\""));
+  EXPECT_FALSE(borrows("apps/x.cpp", "#include \"paper/x.hpp\""));
+  EXPECT_FALSE(borrows("apps/x.cpp", "#include \"session.hpp\""));
+  EXPECT_TRUE(borrows("src/simulate/x.cpp", "#include \"decode/search/x.hpp\""));
+  EXPECT_TRUE(borrows("src/simulate/x.cpp", "#include \"core/x.hpp\""));
+  EXPECT_TRUE(borrows("apps/x.cpp", "#include \"io/shared/x.hpp\""));
+  EXPECT_TRUE(borrows("include/tofsmith/core/x.hpp", "#include \"core/shared/x.hpp\""));
 }
 
 TEST(Floors, AViolationNamesFileLineAndRule) {

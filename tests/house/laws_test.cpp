@@ -108,6 +108,24 @@ std::vector<std::string> types_defined_twice(const std::vector<SourceFile>& file
   return found;
 }
 
+std::vector<std::string> algorithms_of_ranges(const SourceFile& file) {
+  static const std::regex forbidden(
+      "std::(ranges|views)::|#\\s*include <ranges>|\\blexicographical_compare_three_way\\b");
+  std::vector<std::string> found;
+  for (std::size_t i = 0; i < file.lines.size(); ++i)
+    if (std::regex_search(file.lines[i].substr(0, file.lines[i].find("//")), forbidden))
+      found.push_back(violation(file, i, "Debian's emscripten has no std::ranges algorithms"));
+  return found;
+}
+
+TEST(House, CoreAndDesignCompileWithDebiansEmscripten) {
+  for (const char* floor : {"core", "code", "camera", "scene", "decode", "simulate", "design"})
+    EXPECT_EQ(violations_in(read_sources({std::string("include/tofsmith/") + floor,
+                                          std::string("src/") + floor}),
+                            algorithms_of_ranges),
+              "");
+}
+
 TEST(House, EveryFileNamesItsLicence) {
   EXPECT_EQ(violations_in(read_sources(everywhere), missing_licence), "");
 }
@@ -152,6 +170,9 @@ TEST(House, LawsFindWhatBreaksThem) {
   EXPECT_TRUE(breaks(missing_licence, {"", copyright, licence}));
   EXPECT_TRUE(breaks(missing_licence, {copyright}));
   EXPECT_TRUE(breaks(missing_licence, {}));
+
+  EXPECT_TRUE(breaks(algorithms_of_ranges, {"std::ranges::sort(x);"}));
+  EXPECT_FALSE(breaks(algorithms_of_ranges, {"std::sort(x.begin(), x.end());  // std::ranges::"}));
 
   EXPECT_FALSE(breaks(long_files, std::vector<std::string>(350)));
   EXPECT_TRUE(breaks(long_files, std::vector<std::string>(351)));

@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Configures, builds, tests and consumes core, and core with design, each where only its packages are
+# installed: in a fresh Debian root made by debootstrap, which needs to be root.
+#
+#   scripts/test_components.sh [COMPONENT ..]   core and design, unless named
+#
+# Without debootstrap or its rights it builds here, and CMake is kept from finding anything else.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# shellcheck source=scripts/packages.sh
+source "$root/scripts/packages.sh"
+
+case "${1:-}" in
+  -h | --help)
+    sed -n '/^# Configures/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+    exit 0
+    ;;
+esac
+components=("$@")
+((${#components[@]})) || components=(core design)
+mirror=${TOFSMITH_DEBIAN_MIRROR:-http://deb.debian.org/debian}
+
+# Built, tested, installed and consumed by a project of its own; $1 is the sources, $2 the build.
+# shellcheck disable=SC2016  # $1 belongs to the inner shell
+steps='set -euo pipefail
+cmake --log-level=WARNING -S "$1" -B "$2" -G Ninja -DCMAKE_BUILD_TYPE=Release -DTOFSMITH_UNITY=ON \
+  -DTOFSMITH_COMPONENTS="$3" -DTOFSMITH_BUILD_APPS=OFF -DTOFSMITH_BUILD_PYTHON=OFF \
+  -DTOFSMITH_BUILD_TESTS=ON "${@:4}"
+start=$SECONDS
+cmake --build "$2" --target "tofsmith_$3"
+echo "$3 alone was built in $((SECONDS - start)) s"
+cmake --build "$2"
+ctest --test-dir "$2" --output-on-failure --no-tests=error --parallel "$(nproc)"'
+
+# Packages that a component must do without.
+forbidden=(tomlplusplus OpenEXR PNG embree assimp SQLite3 MPI CLI11 pybind11)
+
+for component in "${components[@]}"; do
+  mapfile -t packages < <(packages_of "$component")
+  packages+=(libgtest-dev libgmock-dev nlohmann-json3-dev) # of the tests
+  if ((EUID == 0)) && command -v debootstrap >/dev/null; then
+    place=$(mktemp -d)
+    trap 'umount "$place/proc" 2>/dev/null || true; rm -rf --one-file-system "$place"' EXIT
+    echo "Making a Debian root for $component in $place"
+    debootstrap --variant=minbase bookworm "$place" "$mirror" >/dev/null
+    mount --bind /proc "$place/proc"
+    chroot "$place" env DEBIAN_FRONTEND=noninteractive \
+      apt-get -q -y install --no-install-recommends "${packages[@]}" >/dev/null
+    mkdir "$place/tofsmith"
+    tar -C "$root" --exclude='./build*' --exclude=./.git -cf - . | tar -C "$place/tofsmith" -xf -
+    chroot "$place" bash -c "$steps" steps /tofsmith /build "$component"
+    umount "$place/proc"
+    rm -rf --one-file-system "$place"
+    trap - EXIT
+  else
+    install_packages "$component"
+    use_debian_tools
+    settings=()
+    for package in "${forbidden[@]}"; do settings+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON"); done
+    bash -c "$steps" steps "$root" "$root/build-$component" "$component" "${settings[@]}"
+  fi
+done

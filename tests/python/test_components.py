@@ -1,0 +1,18 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""A component that is not installed is named with its Debian package."""
+
+from tofsmith import _components
+
+
+def test_a_missing_library_names_its_package():
+    loader = "libtofsmith_lab.so.0.1: cannot open shared object file: No such file or directory"
+    said = str(_components.explained(ImportError(loader, name="_tofsmith")))
+    assert "component lab, which is not installed" in said
+    assert "apt install libtofsmith-lab0.1 " in said
+    assert loader in said
+
+
+def test_other_errors_stay_as_they_are():
+    error = ImportError("libembree3.so.3: cannot open shared object file")
+    assert _components.explained(error) is error
