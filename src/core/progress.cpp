@@ -2,12 +2,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/core/progress.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
+
+void RemainingTime::add(double passed_s, double fraction) {
+  constexpr double least_step_s = 0.05, least_share = 0.02;
+  now_ = {passed_s, fraction};
+  const double last_s = past_.back().passed_s;
+  if (passed_s - last_s >= std::max(least_step_s, least_share * last_s)) past_.push_back(now_);
+}
+
+std::optional<double> RemainingTime::seconds() const {
+  constexpr double soon_s = 3.0, long_s = 30.0;
+  constexpr double little = 0.03;  // of the work, unless it takes long
+  constexpr double agreement = 1.5;
+  const auto [passed_s, fraction] = now_;
+  if (passed_s < soon_s || (fraction < little && passed_s < long_s)) return std::nullopt;
+  const double whole_per_s = fraction / passed_s;
+  const double half_per_s = (fraction - fraction_at(passed_s / 2)) / (passed_s / 2);
+  if (!(half_per_s > 0.0) || half_per_s > agreement * whole_per_s ||
+      whole_per_s > agreement * half_per_s)
+    return std::nullopt;
+  return (1.0 - fraction) / half_per_s;
+}
+
+double RemainingTime::fraction_at(double passed_s) const {
+  const auto after =
+      std::upper_bound(past_.begin(), past_.end(), passed_s,
+                       [](const auto& value, const auto& item) { return value < item.passed_s; });
+  const Moment before = *std::prev(after);
+  const Moment next = after == past_.end() ? now_ : *after;
+  const double step_s = next.passed_s - before.passed_s;
+  const double along = step_s > 0.0 ? (passed_s - before.passed_s) / step_s : 0.0;
+  return before.fraction + along * (next.fraction - before.fraction);
+}
 
 void report(const Progress& progress, double fraction, std::string_view step) {
   if (progress && !progress(fraction, step)) throw Interrupted();

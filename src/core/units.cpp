@@ -2,9 +2,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/core/units.hpp"
 
+#include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 
 namespace tofsmith {
+
+std::string plain_number(double value, int digits) {
+  if (!std::isfinite(value)) return fmt::format("{}", value);
+  constexpr int most_decimals = 9;
+  const double size = std::abs(value);
+  const int before_point = size > 0.0 ? static_cast<int>(std::floor(std::log10(size))) + 1 : 1;
+  return fmt::format("{:.{}f}", value, std::clamp(digits - before_point, 0, most_decimals));
+}
+
+std::string length_text(double metres) {
+  const double size = std::abs(metres);
+  if (size < 1e-3) return plain_number(metres * 1e6, 3) + " um";
+  if (size < 1.0) return plain_number(metres * 1e3, 3) + " mm";
+  return plain_number(metres, 3) + " m";
+}
+
+std::string estimate_text(const Estimate& estimate, double unit, int digits) {
+  return fmt::format("{} ± {}", plain_number(estimate.value / unit, digits),
+                     plain_number(estimate.standard_error / unit, 2));
+}
+
+std::string estimate_mm_text(const Estimate& error_m) { return estimate_text(error_m, 1e-3, 4); }
 
 double wrap(double position, double period) {
   const double wrapped = position - period * std::floor(position / period);

@@ -3,10 +3,10 @@
 #include "tofsmith/design/design.hpp"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <iterator>
 
+#include "core/shared/enum_words.hpp"
 #include "design/chips/searched_code.hpp"
 #include "design/chips/standard_chip_codes.hpp"
 #include "design/factorize/factorized_code.hpp"
@@ -17,8 +17,10 @@
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
-
 namespace {
+
+constexpr EnumWords<Termination, 4> termination_words("Termination", "termination", "not_run",
+                                                      "converged", "stalled", "iteration_limit");
 
 /// A code that is yet to be designed.
 struct Task {
@@ -135,6 +137,8 @@ std::vector<Candidate> run_or_load(const Task& task, const DesignStore& store,
 }
 
 }  // namespace
+
+std::string_view to_string(Termination termination) { return termination_words.of(termination); }
 
 std::string_view name_of(DesignMethod method) {
   switch (method) {

@@ -11,6 +11,46 @@
 
 namespace tofsmith {
 
+void SceneLight::validate(const SceneImage& scene, const Camera& camera) const {
+  const double range_m = camera.range_m();
+  if (!returns.empty()) returns.validate(scene, range_m);
+  if (tail) tail->validate(range_m);
+  if (transients.empty()) return;
+  require(returns.empty() && !tail, "transients", transients.size(),
+          "must not stand beside later returns or a tail, which they hold already");
+  require(
+      transients.size() == 1 || transients.size() == scene.depth_m.size(), "transients",
+      transients.size(),
+      "must be one, or one for each of the " + std::to_string(scene.depth_m.size()) + " pixels");
+  for (const Transient& transient : transients) transient.validate(range_m);
+}
+
+RawFrames capture(const SceneImage& scene, const SceneLight& light, const CodeSet& code,
+                  const Camera& camera, const CaptureOptions& options, const Progress& progress) {
+  light.validate(scene, camera);
+  return captured_rows(RowCapture(scene, light, ForwardModel(code, camera), camera, options),
+                       scene.height(), scene.width(), options.frames, progress);
+}
+
+ReturnsTruth returns_truth(const SceneImage& scene, const SceneLight& light,
+                           const CaptureOptions& options) {
+  ReturnsTruth truth;
+  truth.direct_m = scene.depth_m;
+  truth.direct_e_per_s = {scene.height(), scene.width()};
+  for (int row = 0; row < scene.height(); ++row)
+    for (int column = 0; column < scene.width(); ++column) {
+      const double signal = pixel_signal_e_per_s(scene, row, column, options);
+      truth.direct_e_per_s(row, column) = static_cast<float>(signal);
+      if (!light.returns.empty())
+        for (const LaterReturn& later : light.returns.of(row, column)) {
+          truth.distance_m.push_back(later.distance_m);
+          truth.signal_e_per_s.push_back(static_cast<float>(signal * later.ratio));
+        }
+      truth.first.push_back(static_cast<std::int64_t>(truth.distance_m.size()));
+    }
+  return truth;
+}
+
 void CaptureOptions::validate() const { check_fields(*this); }
 
 double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,

@@ -7,7 +7,6 @@
 #include "tofsmith/simulate/bounds.hpp"
 
 namespace tofsmith {
-
 namespace {
 
 /// A bound at an operating point of the camera, its albedo counted in.
@@ -18,6 +17,13 @@ double bound_mae_m(const Bound& bound, const Camera& camera, const OperatingPoin
 }
 
 }  // namespace
+
+Estimate table_depth_error_m(const DecodingTable& table, const OperatingPoint& light,
+                             std::int64_t trials, std::uint64_t seed) {
+  const EvaluateOptions options{.trials = trials, .seed = seed};
+  const DepthTrials of_table(table, light, options);
+  return sum_errors(of_table, of_table.first_rounds(), 0.0, {}).front().circular(table.bin_m());
+}
 
 void EvaluateOptions::validate() const { check_fields(*this); }
 

@@ -3,16 +3,21 @@
 #include "tofsmith/waveforms/waveform_export.hpp"
 
 #include <fmt/format.h>
-
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "camera/shared/played_code.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
-
 namespace {
+
+bool is_name(const std::string& name) {
+  return !name.empty() && std::isalpha(static_cast<unsigned char>(name.front())) != 0 &&
+         std::ranges::all_of(name,
+                             [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+}
 
 constexpr int most_periods = 4096;
 
@@ -149,6 +154,55 @@ void set_volts(WaveformExport& exported, const ExportOptions& options) {
 }
 
 }  // namespace
+
+void QuantizedWaveform::validate() const {
+  require(is_name(name), "waveform name", name,
+          "must be letters, digits and _, and begin with a letter");
+  require(levels >= 2 && levels <= 1 << 24, name + " levels", levels, "must be in [2, 2^24]");
+  require(codes.size() >= 2 && codes.size() <= std::size_t{1} << 26, name + " points", codes.size(),
+          "must be in [2, 2^26]");
+  require(periods >= 1 && points() % periods == 0, name + " periods", periods,
+          "must be >= 1 and divide the points");
+  const auto [least, most] = std::ranges::minmax(codes);
+  require(least >= 0 && most < levels, name + " code", least < 0 ? least : most,
+          "must be in [0, levels - 1]");
+  require(std::isfinite(sample_rate_hz) && sample_rate_hz > 0.0, name + " sample_rate_hz",
+          sample_rate_hz, "must be finite and > 0");
+  require(std::isfinite(full_scale) && full_scale >= 0.0, name + " full_scale", full_scale,
+          "must be finite and >= 0");
+  require(std::isfinite(low_v) && std::isfinite(high_v) && high_v > low_v, name + " high_v", high_v,
+          "must be finite and above low_v");
+}
+
+QuantizedWaveform quantized(const Waveform& table, int points, std::int32_t levels, double scale) {
+  QuantizedWaveform result;
+  result.levels = levels;
+  const double peak = table.peak();
+  result.full_scale = scale * peak;
+  const Eigen::VectorXd values = table.cell_averages(points);
+  result.codes.reserve(static_cast<std::size_t>(points));
+  for (const double value : values)
+    result.codes.push_back(
+        peak > 0.0 ? static_cast<std::int32_t>(std::lround(value / peak * (levels - 1))) : 0);
+  return result;
+}
+
+std::string waveforms_to_csv(const CodeSet& code, double fundamental_frequency_hz) {
+  std::string text = "time_s";
+  for (int e = 0; e < code.exposures(); ++e) text += fmt::format(",modulation_{}", e + 1);
+  for (int i = 0; i < code.measurements(); ++i) text += fmt::format(",demodulation_{}", i + 1);
+  text += "\n";
+  const Eigen::MatrixXd modulation = code.modulation_samples();
+  const Eigen::MatrixXd demodulation = code.demodulation_samples();
+  for (int n = 0; n < code.samples(); ++n) {
+    text += fmt::format("{:.9g}", n / (fundamental_frequency_hz * code.samples()));
+    for (int e = 0; e < code.exposures(); ++e) text += fmt::format(",{:.9g}", modulation(n, e));
+    for (int i = 0; i < code.measurements(); ++i)
+      text += fmt::format(",{:.9g}", demodulation(n, i));
+    text += "\n";
+  }
+  return text;
+}
 
 Camera exporting_camera(const CodeSet& code, const Camera& camera, const ExportOptions& options) {
   const WaveformFormat& format = waveform_format(options.format);

@@ -2,12 +2,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/decode/multipath_decoder.hpp"
 
+#include <cmath>
+#include <string>
+
 #include "decode/multipath/multipath_engine.hpp"
 #include "decode/multipath/multipath_support.hpp"
 #include "decode/output/pixel_output.hpp"
 #include "decode/search/nearest_bins.hpp"
+#include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
+
+void MultipathOptions::validate(double range_m) const {
+  const std::string of_range = " the range, " + std::to_string(range_m) + " m";
+  check_fields(*this, "MultipathOptions::");
+  require(shortest_delay_m < range_m, "MultipathOptions::shortest_delay_m", shortest_delay_m,
+          "must be > 0 and below" + of_range);
+  const double longest_m = longest_delay_m.value_or(range_m / 3);
+  require(longest_m > shortest_delay_m && longest_m < range_m, "MultipathOptions::longest_delay_m",
+          longest_m, "must be above shortest_delay_m and below" + of_range);
+  require(tail_m <= range_m, "MultipathOptions::tail_m", tail_m,
+          "must be > 0 and at most" + of_range);
+  doubt.validate();
+  if (prior) check_fields(*prior, "ReturnPrior::");
+}
+
+MultipathImage::MultipathImage(int height, int width)
+    : direct(height, width),
+      delay_m(direct.depth_m),
+      ratio(direct.depth_m),
+      returns(height, width, ReturnStatus::none) {}
+
+DecodedView MultipathImage::view() {
+  DecodedView view = DecodedView::of(direct);
+  view.delay_m = delay_m.pixels.data();
+  view.ratio = ratio.pixels.data();
+  view.returns = returns.pixels.data();
+  return view;
+}
 
 struct MultipathDecoder::Plan {
   MultipathEngine engine;

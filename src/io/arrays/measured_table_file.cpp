@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "io/arrays/shared/array_matrix.hpp"
 #include "io/shared/file_kind.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/npy.hpp"
 
 namespace tofsmith {
@@ -125,6 +125,29 @@ void sort_columns(MeasuredTable& table, const TapLayout& layout, const std::stri
 constexpr EnumWords<TableAxes, 2> axes_words("TableAxes", "axes of the table", "nk", "kn");
 
 }  // namespace
+
+Eigen::MatrixXd read_correlation_functions(const std::filesystem::path& path) {
+  Eigen::MatrixXd functions = correlation_matrix_of(path);
+  if (functions.rows() < fewest_samples)
+    throw IoError(path.string(), fmt::format("found {} samples of the period; expected at least {}",
+                                             functions.rows(), fewest_samples));
+  return functions;
+}
+
+bool is_correlation_table(const std::string& name_or_path) {
+  const std::string extension = std::filesystem::path(name_or_path).extension().string();
+  return extension == ".csv" || extension == ".txt" || extension == ".npy" || extension == ".npz";
+}
+
+TargetSet load_target(const std::string& name_or_path, const Camera& camera, bool normalize) {
+  const std::filesystem::path path = name_or_path;
+  if (is_correlation_table(name_or_path))
+    return targets_from_table(path.stem().string(), read_correlation_functions(path),
+                              camera.samples, normalize);
+  require(!normalize, "normalize", "true",
+          "goes with a target that is a table; codes are as they are");
+  return targets_of(load_code(name_or_path, ideal_camera(camera)).resampled(camera.samples));
+}
 
 TableAxes parse_table_axes(std::string_view word) { return axes_words.parse(word); }
 
