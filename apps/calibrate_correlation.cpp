@@ -75,13 +75,13 @@ std::vector<CodeSet> candidates(const CorrelationArguments& arguments, const Cam
 
 std::string brief(const IdealCodeFit& fit) {
   const bool limited = fit.response.kind != ImpulseResponse::Kind::none;
-  return fmt::format("{}: {:.2f} % left ({:.2f} % without a response), delay {:.4f} periods{}{}{}",
-                     fit.code, 100 * fit.residual, 100 * fit.ideal_residual, fit.delay_periods,
-                     fit.reversed ? ", delay runs backwards" : "",
-                     fit.inverted ? ", signs opposite" : "",
-                     limited ? fmt::format(", {} on both arms, {} MHz", name_of(fit.response.kind),
-                                           estimate_text(fit.parameter_hz, 1e6))
-                             : "");
+  return fmt::format(
+      "{}: residual {:.2f} % ({:.2f} % without a response), delay {:.4f} periods{}{}{}", fit.code,
+      100 * fit.residual, 100 * fit.ideal_residual, fit.delay_periods,
+      fit.reversed ? ", delay runs backwards" : "", fit.inverted ? ", signs opposite" : "",
+      limited ? fmt::format(", {} on both arms, {} MHz", name_of(fit.response.kind),
+                            estimate_text(fit.parameter_hz, 1e6))
+              : "");
 }
 
 nlohmann::ordered_json fit_json(const IdealCodeFit& fit) {
@@ -179,7 +179,7 @@ void run(const CorrelationArguments& arguments, const Session& session) {
     fits = fit_ideal_codes(found.table.correlation, found.standard_error, base, codes);
   if (!fits.empty() && fits.front().residual > 0.1)
     found.notes.push_back(
-        fmt::format("no ideal code comes near: {:.0f} % are left of the best; --code names another",
+        fmt::format("no ideal code fits: the best has a residual of {:.0f} %; --code names another",
                     100 * fits.front().residual));
 
   session.print_json(document_of(found, fits));

@@ -91,7 +91,7 @@ void show(const Session& session, const CodeSet& code, const Camera& camera) {
       coding_curve_length(table), coding_curve_rank(table), harmonics_used(table), text_table(rows),
       strips));
   if (!generators.empty())
-    session.say("What the generators really play, ahead of the arms' responses:\n" +
+    session.say("Nominal and actual waveforms of the generators, ahead of the arms' responses:\n" +
                 text_table(generator_report_rows(generators)));
 }
 

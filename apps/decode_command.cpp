@@ -10,8 +10,8 @@
 #include "method_arguments.hpp"
 #include "multipath_arguments.hpp"
 #include "number_checks.hpp"
-#include "tap_arguments.hpp"
 #include "table_arguments.hpp"
+#include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/decode_recording.hpp"
 
@@ -134,7 +134,7 @@ void add_decode_command(CLI::App& app, Session& session) {
   command
       ->add_option(
           "--code", arguments->code,
-          "the code that was played: a family or a file; or a measured table (.npz .npy .csv)")
+          "the code that the camera used: a family or a file; or a measured table (.npz .npy .csv)")
       ->required();
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);
@@ -169,7 +169,7 @@ void add_decode_command(CLI::App& app, Session& session) {
                    "signals below this many standard deviations are marked low_signal")
       ->capture_default_str();
   command
-      ->add_option("--minimum-confidence", arguments->options.minimum_confidence,
+      ->add_option("--min-confidence", arguments->options.min_confidence,
                    "pixels below are marked ambiguous")
       ->capture_default_str();
   command

@@ -12,7 +12,7 @@ namespace tofsmith::apps {
 
 namespace {
 
-constexpr std::size_t most_lines = 8, first_lines = 3, most_listed = 100'000;
+constexpr std::size_t max_lines = 8, first_lines = 3, max_listed = 100'000;
 
 std::string kind_of(const DecodeRequest& request) {
   if (request.output.extension() == ".ply") return "points";
@@ -44,7 +44,7 @@ std::string plural(std::size_t count, std::string_view what) {
 
 std::string frame_lines(const DecodeRequest& request, const DecodedRecording& result) {
   const std::size_t frames = result.frames.size();
-  const std::size_t listed = frames <= most_lines ? frames : first_lines;
+  const std::size_t listed = frames <= max_lines ? frames : first_lines;
   std::string lines;
   for (std::size_t i = 0; i < listed; ++i)
     lines += with_status(fmt::format("wrote {} ({})", result.files[i].string(), kind_of(request)),
@@ -84,7 +84,7 @@ void add_decode_summary(const DecodeRequest& request, const DecodedRecording& re
     if (!text.empty()) to["status"] = text;
   };
   document["frame_count"] = result.frames.size();
-  if (result.frames.size() <= most_listed) {
+  if (result.frames.size() <= max_listed) {
     nlohmann::ordered_json& frames = document["frames"] = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < result.frames.size(); ++i) {
       nlohmann::ordered_json entry = {{"frame", result.first_frame + static_cast<int>(i)}};

@@ -24,9 +24,9 @@
 namespace tofsmith::apps {
 namespace {
 
-/// Second returns that designed codes shall stand: `--second-returns`, `--second-return-weight`,
+/// Multipath that designed codes shall stand: `--multipath`, `--multipath-weight`,
 /// `--two-return-weight`.
-class SecondReturnArguments {
+class OperatingMultipathArguments {
  public:
   void add_to(CLI::App& command);
   /// Puts what was asked for into operating.multipath, over what the camera says there.
@@ -48,7 +48,7 @@ bool read_limits(const std::string& text, std::array<double, 2>& limits) {
   return true;
 }
 
-void read_returns(const std::string& text, SecondReturns& returns) {
+void read_multipath(const std::string& text, OperatingMultipath& returns) {
   for (const std::string& part : CLI::detail::split(text, ',')) {
     const std::size_t equals = part.find('=');
     const std::string key = part.substr(0, equals);
@@ -56,25 +56,25 @@ void read_returns(const std::string& text, SecondReturns& returns) {
     const bool is_known = key == "ratio" || key == "delta";
     if (!is_known || !read_limits(value, key == "ratio" ? returns.ratio : returns.delay_m))
       throw UsageError(fmt::format(
-          "--second-returns {}: found '{}'; expected ratio=a:b,delta=a:b (metres)", text, part));
+          "--multipath {}: found '{}'; expected ratio=a:b,delta=a:b (metres)", text, part));
   }
 }
 
-void require_second_returns(const Camera& camera, const char* option) {
+void require_operating_multipath(const Camera& camera, const char* option) {
   if (!camera.operating.multipath)
-    throw UsageError(
-        fmt::format("{}: found no second returns; expected --second-returns or a camera with "
-                    "[operating.multipath]",
-                    option));
+    throw UsageError(fmt::format(
+        "{}: found no multipath; expected --multipath or a camera with [operating.multipath]",
+        option));
 }
 
-void SecondReturnArguments::add_to(CLI::App& command) {
-  command.add_option("--second-returns", returns_,
-                     "reckon with pixels that have a second return: ratio=.1:.5,delta=.5:3 "
-                     "(metres), each uniform between its limits; over [operating.multipath]");
+void OperatingMultipathArguments::add_to(CLI::App& command) {
+  command.add_option("--multipath", returns_,
+                     "count with multipath, pixels that have a second return: "
+                     "ratio=.1:.5,delta=.5:3 (metres), each uniform between its limits; over "
+                     "[operating.multipath]");
   command
-      .add_option("--second-return-weight", weight_,
-                  "w of E1^(1-w) E2^w, the errors without and with second returns, in (0, 1)")
+      .add_option("--multipath-weight", weight_,
+                  "w of E1^(1-w) E2^w, the errors without and with multipath, in (0, 1)")
       ->check(number_that("in (0, 1)", [](double w) { return w > 0.0 && w < 1.0; }));
   command
       .add_option("--two-return-weight", two_return_weight_,
@@ -84,25 +84,25 @@ void SecondReturnArguments::add_to(CLI::App& command) {
       ->check(number_from_0_on());
 }
 
-void SecondReturnArguments::apply_to(Camera& camera) const {
-  std::optional<SecondReturns>& multipath = camera.operating.multipath;
+void OperatingMultipathArguments::apply_to(Camera& camera) const {
+  std::optional<OperatingMultipath>& multipath = camera.operating.multipath;
   if (!returns_.empty()) {
     if (!multipath) multipath.emplace();
-    read_returns(returns_, *multipath);
+    read_multipath(returns_, *multipath);
     try {
       multipath->validate(camera.range_m());
     } catch (const std::invalid_argument& error) {
-      throw UsageError(fmt::format("--second-returns {}: {}", returns_, error.what()));
+      throw UsageError(fmt::format("--multipath {}: {}", returns_, error.what()));
     }
   }
   if (!weight_) return;
-  require_second_returns(camera, "--second-return-weight");
+  require_operating_multipath(camera, "--multipath-weight");
   multipath->weight = *weight_;
 }
 
-void SecondReturnArguments::apply_to(OptimizeOptions& options, const Camera& camera) const {
+void OperatingMultipathArguments::apply_to(OptimizeOptions& options, const Camera& camera) const {
   if (!two_return_weight_) return;
-  require_second_returns(camera, "--two-return-weight");
+  require_operating_multipath(camera, "--two-return-weight");
   options.two_return_weight = *two_return_weight_;
 }
 
@@ -114,7 +114,7 @@ struct DesignArguments {
   std::vector<int> exposures;  // none: those of DesignOptions
   double effort = 1.0;
   bool robust = false;
-  SecondReturnArguments later;
+  OperatingMultipathArguments multipath;
   std::uint64_t seed = 1;
   int trials = 20000;
   std::string output;
@@ -143,11 +143,11 @@ DesignOptions options_for(const DesignArguments& arguments, const Camera& camera
     throw UsageError("--normalize goes with a --target that is a table; codes are as they are");
   if (camera.operating.multipath && options.robust)
     throw UsageError(
-        "--robust: found beside second returns (--second-returns or [operating.multipath]); "
+        "--robust: found beside multipath (--multipath or [operating.multipath]); "
         "expected one of them");
   options.exposures = arguments.exposures;
   options = with_effort(std::move(options), arguments.effort);
-  arguments.later.apply_to(options.optimize, camera);
+  arguments.multipath.apply_to(options.optimize, camera);
   options.seed = arguments.seed;
   options.trials = arguments.trials;
   if (!arguments.target.empty())
@@ -157,7 +157,7 @@ DesignOptions options_for(const DesignArguments& arguments, const Camera& camera
 
 void run(const DesignArguments& arguments, const Session& session) {
   Camera camera = arguments.camera.load();
-  arguments.later.apply_to(camera);
+  arguments.multipath.apply_to(camera);
   const DesignOptions options = options_for(arguments, camera);
   if (arguments.output.empty()) {
     const DesignResult result = design(camera, options, terminal_progress("designing"));
@@ -209,7 +209,7 @@ void add_design_command(CLI::App& app, Session& session) {
   command->add_flag("--robust", arguments->robust,
                     "optimize for the worst of ±20 % bandwidth, ±10 % peak, 50 ps edge jitter "
                     "and 2 % tap mismatch");
-  arguments->later.add_to(*command);
+  arguments->multipath.add_to(*command);
   command->add_option("--seed", arguments->seed, "seed of every random choice")
       ->capture_default_str();
   command->add_option("--trials", arguments->trials, "trials per operating point for final figures")

@@ -12,13 +12,13 @@ namespace tofsmith::apps {
 
 namespace {
 
-/// Columns of what second returns make of the codes, behind those without.
-void add_second_returns(std::vector<std::vector<std::string>>& rows, const DesignResult& result,
-                        DepthErrorKind kind) {
+/// Columns of the codes' errors in multipath, behind those without.
+void add_multipath(std::vector<std::vector<std::string>>& rows, const DesignResult& result,
+                   DepthErrorKind kind) {
   rows.front().insert(rows.front().end(), {"second return (mm)", "as two returns (mm)"});
   const std::vector<const Candidate*> order = by_geometric_mean_error(result, kind);
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const SecondReturnReport& report = *order[i]->second_returns;
+    const OperatingMultipathReport& report = *order[i]->multipath;
     rows[i + 1].push_back(estimate_mm_text(report.single_path.of(kind)));
     rows[i + 1].push_back(report.two_return ? estimate_mm_text(report.two_return->circular_m)
                                             : "cannot");
@@ -63,7 +63,7 @@ void print_design(const Session& session, const Camera& camera, const DesignResu
                     estimate_mm_text(c->error.linear.geometric_mean_m),
                     estimate_mm_text(c->error.circular.geometric_mean_m),
                     fmt::format("{}", c->rotation_bin), c->method});
-  if (camera.operating.multipath) add_second_returns(rows, result, kind);
+  if (camera.operating.multipath) add_multipath(rows, result, kind);
   session.say(text_table(rows));
   if (kind == DepthErrorKind::linear)
     session.say(

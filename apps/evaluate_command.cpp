@@ -128,9 +128,9 @@ void note_missed_targets(const Session& session, const std::vector<EvaluatedCode
     if (code.error.points_short_of_target > 0)
       session.say(fmt::format(
           "note: {}: {} of {} operating points stay short of a standard error of {:.3g} % after "
-          "{} trials; raise --most-trials or the target",
+          "{} trials; raise --max-trials or the target",
           code.error.code, code.error.points_short_of_target, code.error.points.size(),
-          100.0 * options.target_standard_error, options.most_trials));
+          100.0 * options.target_standard_error, options.max_trials));
 }
 
 void print(const Session& session, const Camera& camera, const std::vector<EvaluatedCode>& codes,
@@ -234,7 +234,7 @@ void run(EvaluateArguments& arguments, const Session& session) {
   if (perturbed) static_cast<void>(perturbations(camera, *perturbed));  // refused before long work
   std::vector<CodeSet> codes;
   for (const std::string& name : arguments.codes)
-    codes.push_back(load_played_code(name, camera, arguments.taps.file_options()));
+    codes.push_back(load_camera_code(name, camera, arguments.taps.file_options()));
   if (arguments.multipath.is_asked())
     return arguments.multipath.run(codes, camera,
                                    arguments.trials->count() > 0 ? arguments.options.trials : 0,
@@ -272,7 +272,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
           "1% or 0.01")
       ->transform(share_or_percentage(1e-5, 1.0));
   command
-      ->add_option("--most-trials", arguments->options.most_trials,
+      ->add_option("--max-trials", arguments->options.max_trials,
                    "with a target, trials per operating point after which to stop short of it")
       ->check(trials)
       ->capture_default_str();

@@ -74,50 +74,50 @@ nlohmann::ordered_json estimate_json(const Estimate& estimate) {
 nlohmann::ordered_json loss_json(const GeneratorLoss& loss, DepthErrorKind kind) {
   nlohmann::ordered_json json = {
       {"error", kind == DepthErrorKind::linear ? "linear" : "circular"},
-      {"trials", loss.told.trials},
-      {"seed", loss.told.seed},
-      {"told", estimate_json(loss.told.of(kind).geometric_mean_m)},
-      {"played", estimate_json(loss.played.of(kind).geometric_mean_m)},
+      {"trials", loss.nominal.trials},
+      {"seed", loss.nominal.seed},
+      {"nominal", estimate_json(loss.nominal.of(kind).geometric_mean_m)},
+      {"actual", estimate_json(loss.actual.of(kind).geometric_mean_m)},
       {"uncalibrated", estimate_json(loss.uncalibrated.of(kind).geometric_mean_m)},
-      {"played_over_told", loss.ratio(kind)},
-      {"uncalibrated_over_told", loss.uncalibrated_ratio(kind)},
+      {"actual_over_nominal", loss.ratio(kind)},
+      {"uncalibrated_over_nominal", loss.uncalibrated_ratio(kind)},
       {"correlation_change", loss.correlation_change}};
-  for (std::size_t i = 0; i < loss.told.points.size(); ++i) {
+  for (std::size_t i = 0; i < loss.nominal.points.size(); ++i) {
     const auto mde = [&](const DepthErrorReport& report) {
       const PointDepthError& p = report.points[i];
       return kind == DepthErrorKind::linear ? p.linear_mde_m.value : p.circular_mde_m.value;
     };
-    json["points"].push_back({{"signal_e_per_s", loss.told.points[i].point.signal_e_per_s},
-                              {"ambient_e_per_s", loss.told.points[i].point.ambient_e_per_s},
-                              {"told_m", mde(loss.told)},
-                              {"played_m", mde(loss.played)},
+    json["points"].push_back({{"signal_e_per_s", loss.nominal.points[i].point.signal_e_per_s},
+                              {"ambient_e_per_s", loss.nominal.points[i].point.ambient_e_per_s},
+                              {"nominal_m", mde(loss.nominal)},
+                              {"actual_m", mde(loss.actual)},
                               {"uncalibrated_m", mde(loss.uncalibrated)}});
   }
   return json;
 }
 
 void say_report(const Session& session, const std::vector<GeneratorReport>& reports,
-                const std::optional<GeneratorLoss>& loss, const Camera& played) {
-  session.say("What the hardware plays, ahead of the arms' responses:\n" +
+                const std::optional<GeneratorLoss>& loss, const Camera& actual) {
+  session.say("Nominal and actual waveforms of the hardware, ahead of the arms' responses:\n" +
               text_table(generator_report_rows(reports)));
   if (!loss) return;
-  const DepthErrorKind kind = played.operating.error;
+  const DepthErrorKind kind = actual.operating.error;
   session.say(fmt::format("{} depth error, {} trials each, same depths and noise:\n{}",
-                          kind == DepthErrorKind::linear ? "Linear" : "Circular", loss->told.trials,
-                          text_table(generator_loss_rows(*loss, kind))));
+                          kind == DepthErrorKind::linear ? "Linear" : "Circular",
+                          loss->nominal.trials, text_table(generator_loss_rows(*loss, kind))));
 }
 
 /// Where nobody said how fast the hardware is: files that no generator known here could play.
 std::vector<std::string> rate_notes(const WaveformExport& exported, const Camera& camera,
                                     const ExportOptions& options) {
-  const double most_hz = fastest_sample_rate_hz(exported.format.name);
+  const double max_hz = fastest_sample_rate_hz(exported.format.name);
   const double rate_hz = std::max(camera.light.generator ? 0.0 : exported.light.sample_rate_hz,
                                   camera.sensor.generator ? 0.0 : exported.sensor.sample_rate_hz);
-  if (options.sample_rate_hz || rate_hz <= most_hz) return {};
+  if (options.sample_rate_hz || rate_hz <= max_hz) return {};
   return {fmt::format(
       "the sample rate is {} MHz, and the fastest generator known here that could play these files "
       "has {} MHz; say how fast yours is with --rate, such as --rate {:g}",
-      plain_number(1e-6 * rate_hz, 4), plain_number(1e-6 * most_hz, 4), most_hz)};
+      plain_number(1e-6 * rate_hz, 4), plain_number(1e-6 * max_hz, 4), max_hz)};
 }
 
 void run(ExportArguments& arguments, const Session& session) {
@@ -131,8 +131,8 @@ void run(ExportArguments& arguments, const Session& session) {
   require_no_measured_table(arguments.code);
   const CodeSet code =
       load_code(arguments.code, camera, arguments.taps.file_options()).resampled(camera.samples);
-  const Camera played = exporting_camera(code, camera, arguments.options);
-  const WaveformExport exported = export_waveforms(code, played, arguments.options);
+  const Camera actual = exporting_camera(code, camera, arguments.options);
+  const WaveformExport exported = export_waveforms(code, actual, arguments.options);
   const std::vector<ExportedFile> files = export_files(exported);
   if (one_file && files.size() > 1)
     throw UsageError(
@@ -141,8 +141,8 @@ void run(ExportArguments& arguments, const Session& session) {
                     arguments.output, format.name, code.name(), files.size()));
   std::optional<GeneratorLoss> loss;
   if (!arguments.no_loss)
-    loss = generator_loss(code, played, arguments.evaluate, terminal_progress("evaluating"));
-  const std::vector<GeneratorReport> reports = generator_report(code, played);
+    loss = generator_loss(code, actual, arguments.evaluate, terminal_progress("evaluating"));
+  const std::vector<GeneratorReport> reports = generator_report(code, actual);
   const std::string manifest = export_manifest(exported, files);
 
   const std::filesystem::path output = arguments.output;
@@ -151,7 +151,7 @@ void run(ExportArguments& arguments, const Session& session) {
     write_all({{output, text_of(files.front().bytes)}}, session);
   } else {
     const std::string page =
-        render(export_page(code, played, exported, loss, session.command_line));
+        render(export_page(code, actual, exported, loss, session.command_line));
     make_output_directory(output);
     std::vector<Product> products;
     for (const ExportedFile& file : files)
@@ -164,11 +164,11 @@ void run(ExportArguments& arguments, const Session& session) {
   nlohmann::ordered_json document = {{"output", arguments.output},
                                      {"manifest", nlohmann::ordered_json::parse(manifest)},
                                      {"generators", generators_json(reports)}};
-  if (loss) document["depth_error"] = loss_json(*loss, played.operating.error);
+  if (loss) document["depth_error"] = loss_json(*loss, actual.operating.error);
   const std::vector<std::string> notes = rate_notes(exported, camera, arguments.options);
   document["notes"] = notes;
   session.print_json(document);
-  say_report(session, reports, loss, played);
+  say_report(session, reports, loss, actual);
   session.say(one_file ? fmt::format("wrote {}", arguments.output)
                        : fmt::format("wrote {} file{} of {}, manifest.json and report.html to {}",
                                      files.size(), files.size() == 1 ? "" : "s", format.name,

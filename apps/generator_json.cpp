@@ -13,14 +13,14 @@ nlohmann::ordered_json generators_json(const std::vector<GeneratorReport>& repor
                         {"index", r.index},
                         {"points_per_period", r.points_per_period},
                         {"clock_hz", r.clock_hz},
-                        {"duty_told", r.duty_told},
-                        {"duty_played", r.duty_played},
-                        {"mean_told", r.mean_told},
-                        {"mean_played", r.mean_played},
-                        {"peak_told", r.peak_told},
-                        {"peak_played", r.peak_played},
-                        {"edges_told", r.edges_told},
-                        {"edges_played", r.edges_played},
+                        {"duty_nominal", r.duty_nominal},
+                        {"duty_actual", r.duty_actual},
+                        {"mean_nominal", r.mean_nominal},
+                        {"mean_actual", r.mean_actual},
+                        {"peak_nominal", r.peak_nominal},
+                        {"peak_actual", r.peak_actual},
+                        {"edges_nominal", r.edges_nominal},
+                        {"edges_actual", r.edges_actual},
                         {"rms_difference", r.rms_difference}});
     if (r.largest_edge_move_s) document.back()["largest_edge_move_s"] = *r.largest_edge_move_s;
   }

@@ -32,7 +32,7 @@ class MethodArguments {
         ->needs(method);
   }
   DecodeMethod method() const { return parse_decode_method(method_); }
-  /// Whether it tells later returns from the direct one.
+  /// Whether it tells multipath returns from the direct one.
   bool is_multipath() const {
     return method() == DecodeMethod::two_return || method() == DecodeMethod::tail;
   }

@@ -9,7 +9,7 @@
 
 namespace tofsmith::apps {
 
-/// How later returns are looked for: `--threshold`, `--shortest-delay`, `--longest-delay`,
+/// How multipath is looked for: `--threshold`, `--shortest-delay`, `--longest-delay`,
 /// `--tail-length`, `--bayes` and its prior.
 class MultipathArguments {
  public:
@@ -48,8 +48,7 @@ class MultipathArguments {
         ->capture_default_str()
         ->needs(bayes);
     command
-        .add_option("--prior-ratio", prior_.largest_ratio,
-                    "prior of ratios: uniform from 0 to this")
+        .add_option("--prior-ratio", prior_.max_ratio, "prior of ratios: uniform from 0 to this")
         ->capture_default_str()
         ->needs(bayes);
   }

@@ -60,7 +60,7 @@ std::optional<MultipathScene> MultipathEvaluation::scene(
     const MultipathErrorOptions& options) const {
   if (scene_.scene.empty()) return std::nullopt;
   const LoadedScene loaded = load_scene(scene_, camera);
-  const LaterReturns returns =
+  const MultipathReturns returns =
       bounced_light_of(loaded, camera, bounce_, terminal_progress("gathering light"));
   const CaptureOptions light{.signal_e_per_s = std::ranges::max(options.signal_e_per_s),
                              .ambient_e_per_s = options.ambient_e_per_s,

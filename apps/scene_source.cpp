@@ -49,7 +49,7 @@ void refuse(bool given, std::string_view option, std::string_view why) {
 void check_options(const SceneSource& source, SceneKind kind) {
   if (kind != SceneKind::depth_image)
     refuse(!source.image.empty(), "--image " + source.image,
-           fmt::format("{} has its own albedo; give a depth image too", source.scene));
+           fmt::format("{} has its own albedo; --albedo goes with a depth image", source.scene));
   if (kind != SceneKind::mesh)
     refuse(source.scale_m.has_value(), "--scale-m",
            "only a mesh has units of its own; in a scene file every [[mesh]] has its scale_m");
@@ -146,8 +146,8 @@ LoadedScene load_scene(const SceneSource& source, const Camera& camera) {
   }
 }
 
-LaterReturns bounced_light_of(const LoadedScene& scene, const Camera& camera, BounceOptions options,
-                              const Progress& progress) {
+MultipathReturns bounced_light_of(const LoadedScene& scene, const Camera& camera,
+                                  BounceOptions options, const Progress& progress) {
   if (!scene.staged)
     throw UsageError(
         fmt::format("bounced light: found {}, a depth image; expected surfaces that light can meet "

@@ -12,7 +12,7 @@
 
 namespace tofsmith::apps {
 
-/// What a command is told about the scene it shall capture.
+/// Arguments that say which scene to capture.
 struct SceneSource {
   std::string scene;          ///< a built-in scene, a scene file (.toml), a mesh, or a depth image
   std::string image;          ///< albedo of a depth image; empty: albedo 1
@@ -49,8 +49,8 @@ LoadedScene load_scene(const SceneSource& source, const Camera& camera);
 
 /// Light that bounces once between the scene's surfaces, within the camera's range.
 /// @throws UsageError for a depth image, which has no surfaces; as bounced_light()
-LaterReturns bounced_light_of(const LoadedScene& scene, const Camera& camera, BounceOptions options,
-                              const Progress& progress);
+MultipathReturns bounced_light_of(const LoadedScene& scene, const Camera& camera,
+                                  BounceOptions options, const Progress& progress);
 
 /// "12.5 % of the depths lie beyond the unambiguous range of 9.99 m and wrap"; "" if none do.
 std::string beyond_range_remark(const SceneExtent& extent);

@@ -24,9 +24,10 @@
 namespace tofsmith::apps {
 namespace {
 
-/// Light that comes back by longer ways: `--second-return`, `--tail`, `--returns`, `--transient`,
-/// `--bounces`, and `--truth-returns` for what was simulated.
-class ReturnsArguments {
+/// Light that comes back by longer ways: `--multipath`, `--tail`, `--multipath-file`,
+/// `--transient`,
+/// `--bounces`, and `--truth-multipath` for what was simulated.
+class MultipathLightArguments {
  public:
   void add_to(CLI::App& command);
   /// @throws UsageError for words that do not fit each other; IoError as the files' readers;
@@ -34,7 +35,7 @@ class ReturnsArguments {
   SceneLight load(const LoadedScene& scene, const Camera& camera) const;
   /// Whether anything was asked for.
   bool is_used() const {
-    return !second_returns_.empty() || tail_m_ || !returns_.empty() || !transient_.empty() ||
+    return !multipath_.empty() || tail_m_ || !returns_.empty() || !transient_.empty() ||
            bounces_ > 0 || !truth_.empty();
   }
   /// Files that are read.
@@ -42,9 +43,9 @@ class ReturnsArguments {
   const std::string& truth() const { return truth_; }
 
  private:
-  LaterReturns bounced(const LoadedScene& scene, const Camera& camera) const;
+  MultipathReturns bounced(const LoadedScene& scene, const Camera& camera) const;
 
-  std::vector<std::string> second_returns_;
+  std::vector<std::string> multipath_;
   std::optional<double> tail_m_;
   double tail_ratio_ = 0.3;
   std::string returns_, transient_, truth_;
@@ -55,7 +56,7 @@ class ReturnsArguments {
 };
 
 /// Of "delta=1.0,ratio=.3", in any order.
-LaterReturn parse_second_return(const std::string& text) {
+MultipathReturn parse_multipath_return(const std::string& text) {
   std::optional<float> delay_m, ratio;
   for (const std::string& part : CLI::detail::split(text, ',')) {
     const std::size_t equals = part.find('=');
@@ -64,19 +65,18 @@ LaterReturn parse_second_return(const std::string& text) {
     const bool is_number =
         equals != std::string::npos && CLI::detail::lexical_cast(part.substr(equals + 1), value);
     if (!is_number || (key != "delta" && key != "ratio"))
-      throw UsageError(fmt::format(
-          "--second-return {}: found '{}'; expected delta=METRES,ratio=NUMBER", text, part));
+      throw UsageError(fmt::format("--multipath {}: found '{}'; expected delta=METRES,ratio=NUMBER",
+                                   text, part));
     (key == "delta" ? delay_m : ratio) = value;
   }
   if (!delay_m || !ratio)
-    throw UsageError(
-        fmt::format("--second-return {}: found no {}; expected delta=METRES,ratio=NUMBER", text,
-                    delay_m ? "ratio" : "delta"));
+    throw UsageError(fmt::format("--multipath {}: found no {}; expected delta=METRES,ratio=NUMBER",
+                                 text, delay_m ? "ratio" : "delta"));
   return {*delay_m, *ratio};
 }
 
-void ReturnsArguments::add_to(CLI::App& command) {
-  command.add_option("--second-return", second_returns_,
+void MultipathLightArguments::add_to(CLI::App& command) {
+  command.add_option("--multipath", multipath_,
                      "a return behind every direct one: delta=METRES,ratio=NUMBER; several in "
                      "order of their delays");
   CLI::Option* tail =
@@ -88,8 +88,8 @@ void ReturnsArguments::add_to(CLI::App& command) {
       ->check(number_from_0_on())
       ->capture_default_str()
       ->needs(tail);
-  command.add_option("--returns", returns_,
-                     "later returns of every pixel (.npz: first, distance_m, ratio)");
+  command.add_option("--multipath-file", returns_,
+                     "multipath returns of every pixel (.npz: first, distance_m, ratio)");
   CLI::Option* transient = command.add_option(
       "--transient", transient_,
       "light by time, over which each pixel's signal is spread: a histogram (T,) for all pixels "
@@ -123,36 +123,38 @@ void ReturnsArguments::add_to(CLI::App& command) {
       ->check(CLI::Range(16, 65536))
       ->capture_default_str()
       ->needs(bounces);
-  command.add_option("--truth-returns", truth_,
+  command.add_option("--truth-multipath", truth_,
                      "also write the true distance and signal of every return (.npz)");
 }
 
-LaterReturns ReturnsArguments::bounced(const LoadedScene& scene, const Camera& camera) const {
-  if (!second_returns_.empty() || !returns_.empty() || !transient_.empty())
+MultipathReturns MultipathLightArguments::bounced(const LoadedScene& scene,
+                                                  const Camera& camera) const {
+  if (!multipath_.empty() || !returns_.empty() || !transient_.empty())
     throw UsageError(
-        "--bounces: found beside --second-return, --returns or --transient; expected one of them");
+        "--bounces: found beside --multipath, --multipath-file or --transient; expected one of "
+        "them");
   return bounced_light_of(scene, camera, bounce_, terminal_progress("gathering light"));
 }
 
-SceneLight ReturnsArguments::load(const LoadedScene& loaded, const Camera& camera) const {
+SceneLight MultipathLightArguments::load(const LoadedScene& loaded, const Camera& camera) const {
   const SceneImage& scene = loaded.image;
-  if (!transient_.empty() && (!second_returns_.empty() || tail_m_ || !returns_.empty()))
+  if (!transient_.empty() && (!multipath_.empty() || tail_m_ || !returns_.empty()))
     throw UsageError(
-        "--transient: found beside --second-return, --tail or --returns; expected alone, as it "
+        "--transient: found beside --multipath, --tail or --multipath-file; expected alone, as it "
         "holds all light of a pixel");
-  if (!returns_.empty() && !second_returns_.empty())
-    throw UsageError("--returns: found beside --second-return; expected one of them");
+  if (!returns_.empty() && !multipath_.empty())
+    throw UsageError("--multipath-file: found beside --multipath; expected one of them");
   if (!transient_.empty() && !transient_bin_s_)
     throw UsageError(
         "--transient: found no --transient-bin-s; expected the time of one bin in seconds");
   SceneLight light;
-  if (!second_returns_.empty()) {
-    std::vector<LaterReturn> behind;
-    for (const std::string& text : second_returns_) behind.push_back(parse_second_return(text));
+  if (!multipath_.empty()) {
+    std::vector<MultipathReturn> behind;
+    for (const std::string& text : multipath_) behind.push_back(parse_multipath_return(text));
     light.returns = behind_every_pixel(scene, behind);
   }
   if (!returns_.empty())
-    light.returns = read_later_returns(returns_, scene.height(), scene.width());
+    light.returns = read_multipath_returns(returns_, scene.height(), scene.width());
   if (bounces_ > 0) light.returns = bounced(loaded, camera);
   if (tail_m_) light.tail = ExponentialTail{*tail_m_, tail_ratio_};
   if (!transient_.empty())
@@ -240,7 +242,7 @@ struct SimulateArguments {
   std::optional<double> signal_e_per_s, ambient_e_per_s;
   std::string signal_range, ambient_range, shard;
   CaptureOptions options;
-  ReturnsArguments returns;
+  MultipathLightArguments returns;
   std::string output, truth;
 };
 
@@ -249,7 +251,8 @@ void simulate_set(const SimulateArguments& arguments, Session& session) {
     throw UsageError("--truth: the truth of many scenes is always written");
   if (arguments.returns.is_used())
     throw UsageError(
-        "--second-return, --tail, --returns, --transient, --bounces, --truth-returns: found many "
+        "--multipath, --tail, --multipath-file, --transient, --bounces, --truth-multipath: found "
+        "many "
         "scenes; "
         "expected one");
   const Camera camera = arguments.camera.load();
@@ -264,7 +267,7 @@ void simulate_set(const SimulateArguments& arguments, Session& session) {
                                           arguments.ambient_e_per_s, middle.ambient_e_per_s),
                    .capture = arguments.options,
                    .shard = parse_shard(arguments.shard)}},
-      load_played_code(arguments.code, camera, arguments.taps.file_options()), camera, session);
+      load_camera_code(arguments.code, camera, arguments.taps.file_options()), camera, session);
 }
 
 /// What only many scenes have.
@@ -294,7 +297,7 @@ void run(SimulateArguments& arguments, Session& session) {
   check_is_of_one_scene(arguments);
   arguments.scene.scene = arguments.scenes.front();
   const Camera camera = arguments.camera.load();
-  const CodeSet code = load_played_code(arguments.code, camera, arguments.taps.file_options());
+  const CodeSet code = load_camera_code(arguments.code, camera, arguments.taps.file_options());
   check_outputs(arguments, session);
   const LoadedScene scene = load_scene(arguments.scene, camera);
   const SceneLight light = arguments.returns.load(scene, camera);
@@ -307,9 +310,9 @@ void run(SimulateArguments& arguments, Session& session) {
   if (!arguments.truth.empty())
     write_depth(arguments.truth, scene.image.depth_m, session.output_policy());
   if (!arguments.returns.truth().empty())
-    write_returns_truth(arguments.returns.truth(),
-                        returns_truth(scene.image, light, arguments.options), light,
-                        session.output_policy());
+    write_multipath_truth(arguments.returns.truth(),
+                          multipath_truth(scene.image, light, arguments.options), light,
+                          session.output_policy());
   const SceneExtent extent = scene_extent(scene.image, camera);
   session.print_json({{"scene", scene.name},
                       {"code", code.name()},

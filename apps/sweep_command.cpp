@@ -24,7 +24,7 @@
 namespace tofsmith::apps {
 namespace {
 
-constexpr std::size_t most_rows = 1000;
+constexpr std::size_t max_rows = 1000;
 constexpr double wide_ratio = 30.0;  // from here on an axis is logarithmic
 
 bool can_be_drawn(const SweepAxis& axis) {
@@ -107,15 +107,15 @@ Figure axis_figure(const WorkList& list, std::span<const SweepResult> results, s
 Table results_table(const WorkList& list, std::span<const SweepResult> results) {
   const SweepSpec& spec = list.spec();
   Table table{.caption = "Geometric means over the operating points of each item."};
-  if (results.size() > most_rows)
+  if (results.size() > max_rows)
     table.caption +=
-        fmt::format(" The first {} of {} items; --export writes all.", most_rows, results.size());
+        fmt::format(" The first {} of {} items; --export writes all.", max_rows, results.size());
   table.columns = {{"item", true}, {"code"}};
   for (const SweepAxis& axis : spec.axes)
     if (axis.key != "code") table.columns.push_back({axis.key, true});
   for (const char* header : {"linear (mm)", "circular (mm)", "outliers (%)"})
     table.columns.push_back({header, true});
-  for (const SweepResult& result : results.first(std::min(results.size(), most_rows))) {
+  for (const SweepResult& result : results.first(std::min(results.size(), max_rows))) {
     std::vector<std::string> row = {fmt::format("{}", result.item + 1), result.error.code};
     const std::vector<std::size_t> indices = spec.value_indices(result.item);
     for (std::size_t a = 0; a < spec.axes.size(); ++a)
@@ -160,7 +160,7 @@ Page sweep_page(const WorkList& list, std::span<const SweepResult> results,
   return page;
 }
 
-constexpr std::int64_t most_items_unasked = 10'000'000;
+constexpr std::int64_t max_items_unasked = 10'000'000;
 
 struct SweepArguments {
   std::string sweep, store, report, shard;
@@ -194,10 +194,10 @@ void check_outputs(const SweepArguments& arguments, const Session& session) {
 
 WorkList read_list(const SweepArguments& arguments) {
   WorkList list(read_sweep_toml(arguments.sweep));
-  if (list.size() > most_items_unasked && !arguments.yes)
+  if (list.size() > max_items_unasked && !arguments.yes)
     throw UsageError(fmt::format("{}: makes {:.3g} items; --yes to go on with more than {:.3g}",
                                  arguments.sweep, static_cast<double>(list.size()),
-                                 static_cast<double>(most_items_unasked)));
+                                 static_cast<double>(max_items_unasked)));
   return list;
 }
 
@@ -314,7 +314,7 @@ void add_sweep_command(CLI::App& app, Session& session) {
   command->add_option("--store", arguments->store,
                       "SQLite file of results; what is finished there is not computed again");
   command->add_flag("--status", arguments->status,
-                    "compute nothing: tell, export and report what is finished");
+                    "compute nothing: list, export and report what is finished");
   command->add_option("--export", arguments->exports, "write results (.csv .json .npz; repeatable)")
       ->take_all()
       ->allow_extra_args(false);
@@ -323,7 +323,7 @@ void add_sweep_command(CLI::App& app, Session& session) {
                       "i/n: compute only the i-th of n parts, to merge their stores later");
   command
       ->add_option("--lease", arguments->store_options.lease_s,
-                   "seconds of silence after which a worker of another machine is taken for dead")
+                   "seconds of silence after which a worker of another machine counts as dead")
       ->check(positive_number(1e6))
       ->capture_default_str();
   command->add_flag("--yes", arguments->yes, "go on even with more than 1e7 items");

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "number_checks.hpp"
-#include "tap_arguments.hpp"
 #include "session.hpp"
+#include "tap_arguments.hpp"
 
 namespace tofsmith::apps {
 
@@ -36,7 +36,7 @@ DecodingSource TableArguments::load(const std::string& code, const Camera& camer
                                 : keep_end_point_   ? "--keep-end-point"
                                                     : nullptr;
   if (of_tables && !names_measured_table(code)) {
-    load_played_code(code, camera, taps.file_options());  // what is wrong with it comes first
+    load_camera_code(code, camera, taps.file_options());  // what is wrong with it comes first
     throw UsageError(
         fmt::format("{} goes with a measured table; {} is a code, which the camera says all of",
                     of_tables, code));

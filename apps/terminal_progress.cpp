@@ -36,9 +36,9 @@ std::size_t line_width() {
 }
 
 /// What both ways of telling share: when the work began, and what there is to say.
-class Told {
+class ProgressText {
  public:
-  explicit Told(std::string_view title) : title_(title) {}
+  explicit ProgressText(std::string_view title) : title_(title) {}
 
   double passed_s() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   std::string text(double fraction, std::string_view step) {
@@ -58,7 +58,7 @@ class Told {
 /// One line of a terminal, drawn over and over.
 class Line {
  public:
-  explicit Line(std::string_view title) : told_(title) {}
+  explicit Line(std::string_view title) : text_(title) {}
   ~Line() { clear(); }
   Line(const Line&) = delete;
   Line& operator=(const Line&) = delete;
@@ -66,9 +66,9 @@ class Line {
   void tell(double fraction, std::string_view step) {
     if (fraction >= 1.0) return clear();  // what comes next may write where the line is
     constexpr double pause_s = 0.1;
-    if (told_.passed_s() < next_s_) return;
-    next_s_ = told_.passed_s() + pause_s;
-    std::string text = told_.text(fraction, step);
+    if (text_.passed_s() < next_s_) return;
+    next_s_ = text_.passed_s() + pause_s;
+    std::string text = text_.text(fraction, step);
     text.resize(line_width(), ' ');  // a line that wraps could not be drawn over
     fmt::print(stderr, "\r{}", text);
     std::fflush(stderr);
@@ -83,7 +83,7 @@ class Line {
     visible_ = false;
   }
 
-  Told told_;
+  ProgressText text_;
   double next_s_ = 0.0;
   bool visible_ = false;
 };
@@ -91,27 +91,27 @@ class Line {
 /// Plain lines in a log or a pipe.
 class Log {
  public:
-  explicit Log(std::string_view title) : told_(title) {}
+  explicit Log(std::string_view title) : text_(title) {}
 
   void tell(double fraction, std::string_view step) {
     constexpr double pause_s = 30.0;
     if (fraction >= 1.0) return;  // what comes next says so
-    const std::string text = told_.text(fraction, step);
-    if (told_.passed_s() < next_s_) return;
-    next_s_ = told_.passed_s() + pause_s;
+    const std::string text = text_.text(fraction, step);
+    if (text_.passed_s() < next_s_) return;
+    next_s_ = text_.passed_s() + pause_s;
     fmt::print(stderr, "tofsmith: {}\n", text);
     std::fflush(stderr);
   }
 
  private:
-  static constexpr double short_s = 5.0;  // of work that nobody needs to be told of
+  static constexpr double short_s = 5.0;  // of work too short for progress
 
-  Told told_;
+  ProgressText text_;
   double next_s_ = short_s;
 };
 
 template <typename Teller>
-Progress told_by(std::string_view title) {
+Progress progress_of(std::string_view title) {
   return [teller = std::make_shared<Teller>(title)](double fraction, std::string_view step) {
     teller->tell(fraction, step);
     return !interrupted();
@@ -124,7 +124,7 @@ bool is_silent = false;
 
 Progress terminal_progress(std::string_view title) {
   if (is_silent) return [](double, std::string_view) { return !interrupted(); };
-  return isatty(STDERR_FILENO) ? told_by<Line>(title) : told_by<Log>(title);
+  return isatty(STDERR_FILENO) ? progress_of<Line>(title) : progress_of<Log>(title);
 }
 
 void silence_progress() { is_silent = true; }

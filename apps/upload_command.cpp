@@ -90,7 +90,8 @@ nlohmann::ordered_json channels_json(const UploadRequest& request, const UploadR
     for (const QuantizedWaveform& waveform : channel.stored) stored.push_back(waveform.name);
     for (const ReadBackNumber& number : report.numbers)
       if (number.channel == channel.channel)
-        numbers[number.quantity] = {{"told", number.told}, {"read_back", number.read_back}};
+        numbers[number.quantity] = {{"requested", number.requested},
+                                    {"read_back", number.read_back}};
     json.push_back({{"channel", channel.channel},
                     {"arm", w.arm == Arm::light ? "light" : "sensor"},
                     {"plays", w.name},
@@ -154,7 +155,7 @@ void run(const UploadArguments& arguments, Session& session) {
   const GeneratorModel& model = given ? *given : identified_model(identity, scpi.name());
   const UploadRequest request = request_for(arguments, exported_for(arguments, model));
   const UploadScript script = upload_script(model, request);
-  session.tells_what_is_kept = true;  // an instrument keeps what it was told last
+  session.tells_what_is_kept = true;  // an instrument keeps its last settings
   const UploadReport report = upload(scpi, script, terminal_progress("uploading"));
 
   nlohmann::ordered_json steps = nlohmann::ordered_json::array();

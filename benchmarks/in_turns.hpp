@@ -33,12 +33,12 @@ class Turns {
       }
   }
 
-  double least_s(std::size_t i) const {
+  double min_s(std::size_t i) const {
     return *std::min_element(seconds_[i].begin(), seconds_[i].end());
   }
-  double pixels_per_s(std::size_t i) const { return 1.0 / least_s(i); }
+  double pixels_per_s(std::size_t i) const { return 1.0 / min_s(i); }
   /// How many times as fast as contender `other`, both at their fastest.
-  double speed_over(std::size_t i, std::size_t other) const { return least_s(other) / least_s(i); }
+  double speed_over(std::size_t i, std::size_t other) const { return min_s(other) / min_s(i); }
   /// The median over rounds of the same, each round for itself.
   double median_speed_over(std::size_t i, std::size_t other) const {
     std::vector<double> ratios;

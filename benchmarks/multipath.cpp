@@ -60,10 +60,10 @@ void run() {
                        {pixels, [&] { two.decode(view, image.view()); }},
                        {pixels, [&] { tail.decode(view, image.view()); }}},
                       7);
-    if (share == 0.0) none_s = turns.least_s(1);
-    const double per_two_us = share > 0.0 ? 1e6 * (turns.least_s(1) - none_s) / share : 0.0;
+    if (share == 0.0) none_s = turns.min_s(1);
+    const double per_two_us = share > 0.0 ? 1e6 * (turns.min_s(1) - none_s) / share : 0.0;
     fmt::print("{:>20.0f} %{:>16.4f}{:>16.4f}{:>16.4f}{:>12.3f}{:>16.3f}\n", 100 * share,
-               1e6 * turns.least_s(0), 1e6 * turns.least_s(1), 1e6 * turns.least_s(2),
+               1e6 * turns.min_s(0), 1e6 * turns.min_s(1), 1e6 * turns.min_s(2),
                turns.speed_over(1, 0), per_two_us);
     if (share == 1.0) asked.at_most("us per ambiguous pixel", per_two_us, 5.0);
     if (share == 0.1)

@@ -17,10 +17,10 @@
 #ifndef TOFSMITH_BENCHMARKS_RUNS
 #define TOFSMITH_BENCHMARKS_RUNS
 namespace tofsmith::benchmarks {
-inline constexpr int run_blocks = 2;        // blocks of rows in a run
-inline constexpr int group_blocks = 16;     // blocks of rows whose best scores are kept together
-inline constexpr int largest_groups = 128;  // hence N <= 16384
-inline constexpr int largest_run_blocks = 128;
+inline constexpr int run_blocks = 2;     // blocks of rows in a run
+inline constexpr int group_blocks = 16;  // blocks of rows whose best scores are kept together
+inline constexpr int max_groups = 128;   // hence N <= 16384
+inline constexpr int max_run_blocks = 128;
 inline constexpr int pixels_at_once = 4;
 }  // namespace tofsmith::benchmarks
 #endif
@@ -64,7 +64,7 @@ void brute_force(const double* rows, int blocks, const ReferencePixel* pixels, i
                  std::int32_t* bin) {
   const Doubles d;
   constexpr int stride = Rank * reference_block;
-  HWY_ALIGN double of_group[pixels_at_once][largest_groups][reference_block];
+  HWY_ALIGN double of_group[pixels_at_once][max_groups][reference_block];
   const int groups = (blocks + group_blocks - 1) / group_blocks;
   double best[pixels_at_once];
   for (double& value : best) value = -2.0;
@@ -100,7 +100,7 @@ std::int32_t branch_and_bound(const BranchAndBound::View& view, const double* un
   constexpr int stride = Rank * reference_block;
   // A sine from a cosine near 1 has lost half of its digits; the slacks cover it.
   const Vector one = hn::Set(d, 1.0), lost = hn::Set(d, 1e-14), slack = hn::Set(d, 1e-9);
-  HWY_ALIGN double highest[largest_run_blocks * reference_block];
+  HWY_ALIGN double highest[max_run_blocks * reference_block];
   Vector most = hn::Set(d, -2.0);
   for (int block = 0; block < view.run_blocks; ++block)
     for (int i = 0; i < reference_block; i += lanes()) {
@@ -113,7 +113,7 @@ std::int32_t branch_and_bound(const BranchAndBound::View& view, const double* un
       most = hn::Max(most, c);
     }
   double best = largest(most);  // a centre is a direction
-  int candidates[largest_run_blocks * reference_block], count = 0;
+  int candidates[max_run_blocks * reference_block], count = 0;
   for (int run = 0; run < view.run_blocks * reference_block; ++run)
     if (highest[run] >= best) candidates[count++] = run;
 
@@ -183,7 +183,7 @@ HWY_EXPORT(branch_and_bound_of_rank);
 
 void bins_by_brute_force(const ReferenceCurve& curve, const ReferencePixel* pixels, int count,
                          std::int32_t* bin) {
-  require(curve.blocks() <= group_blocks * largest_groups, "samples", curve.samples(),
+  require(curve.blocks() <= group_blocks * max_groups, "samples", curve.samples(),
           "must be at most 16384");
   for (int first = 0; first < count; first += pixels_at_once)
     HWY_DYNAMIC_DISPATCH(brute_force_of_rank)
@@ -195,7 +195,7 @@ BranchAndBound::BranchAndBound(const ReferenceCurve& curve) {
   const int rank = curve.rank(), run_rows = run_blocks * reference_block;
   const int runs = (curve.samples() + run_rows - 1) / run_rows;
   const int blocks = (runs + reference_block - 1) / reference_block;
-  require(blocks <= largest_run_blocks, "samples", curve.samples(), "must be at most 16384");
+  require(blocks <= max_run_blocks, "samples", curve.samples(), "must be at most 16384");
   // Runs that fill the last block stand for the last one again, and have no rows.
   const auto entries = static_cast<std::size_t>(blocks * reference_block);
   centre_.resize(entries * static_cast<std::size_t>(rank));

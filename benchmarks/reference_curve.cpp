@@ -28,7 +28,7 @@ ReferenceCurve::ReferenceCurve(const DecodingTable& table)
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(curve);
   qr.setThreshold(1e-11);
   rank_ = static_cast<int>(qr.rank());
-  require(rank_ >= 2 && rank_ <= largest_rank, "rank", rank_, "must be in [2, 8]");
+  require(rank_ >= 2 && rank_ <= max_rank, "rank", rank_, "must be in [2, 8]");
   const Eigen::MatrixXd basis =
       qr.householderQ() * Eigen::MatrixXd::Identity(table.measurements(), rank_);
   coordinates_ = basis.transpose();

@@ -12,21 +12,21 @@
 namespace tofsmith::benchmarks {
 
 inline constexpr int reference_block = 8;  ///< rows whose components stand side by side
-inline constexpr int largest_rank = 8;
+inline constexpr int max_rank = 8;
 inline constexpr double reference_tie = 1e-11;  ///< scores of unit vectors this close tie
 
 /// What ambient light does not explain of a pixel.
 struct ReferencePixel {
-  std::array<double, largest_rank> unit{};  ///< of length 1; zero if nothing is left
-  double rounding = 0.0;                    ///< by how much rounding may move a score of `unit`
-  bool is_number = false;                   ///< all raw numbers are finite
+  std::array<double, max_rank> unit{};  ///< of length 1; zero if nothing is left
+  double rounding = 0.0;                ///< by how much rounding may move a score of `unit`
+  bool is_number = false;               ///< all raw numbers are finite
 };
 
 /// The decoder's definition in double: directions of the bins and of pixels, in coordinates of the
 /// space that the bins span once ambient light is taken off. Made apart from the library's tables.
 class ReferenceCurve {
  public:
-  /// @throws std::invalid_argument for a table of another rank than 2 .. largest_rank, or with bins
+  /// @throws std::invalid_argument for a table of another rank than 2 .. max_rank, or with bins
   ///         without contrast
   explicit ReferenceCurve(const DecodingTable& table);
 

@@ -199,18 +199,18 @@ void compare(benchmarks::AskedFigures& asked) {
     fmt::print("{}\n  {:<26}{:>12}{:>22}{:>22}\n", levels[i].name, "code", "metric [mm]",
                "Monte Carlo ML [mm]", "mesh, mean/median [mm]");
     for (std::size_t k = 0; k < codes.size(); ++k) {
-      Camera played = camera;
-      played.samples = samples;
-      played.sensor.taps = codes[k].code.taps();
+      Camera fitted = camera;
+      fitted.samples = samples;
+      fitted.sensor.taps = codes[k].code.taps();
       CaptureOptions light;
       light.signal_e_per_s = levels[i].point.signal_e_per_s;
       light.ambient_e_per_s = levels[i].point.ambient_e_per_s;
       light.reference_distance_m = mean_distance_m;
-      const RawFrames raw = capture(ball, codes[k].code, played, light);
+      const RawFrames raw = capture(ball, codes[k].code, fitted, light);
       const LikelihoodDecoder decoder(
-          make_decoding_table(ForwardModel(codes[k].code, played), played));
+          make_decoding_table(ForwardModel(codes[k].code, fitted), fitted));
       const SceneError error =
-          scene_error(decoder.decode(raw).depth_m, ball, played, DepthErrorKind::circular);
+          scene_error(decoder.decode(raw).depth_m, ball, fitted, DepthErrorKind::circular);
       fmt::print("  {:<26}{:>12.3f}{:>14.3f} +- {:<5.3f}{:>14.2f} / {:.2f}\n", table[k].name,
                  1e3 * table[k].rms_m, 1e3 * table[k].circular_mde_m.value,
                  1e3 * table[k].circular_mde_m.standard_error, 1e3 * error.mean_m,

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 
 namespace tofsmith::python {
 

@@ -36,20 +36,20 @@ SceneImage scene_of(const py::dict& planes) {
 
 namespace {
 
-std::vector<LaterReturn> later_returns(const Floats& distance_m, const Floats& ratio) {
+std::vector<MultipathReturn> multipath_returns(const Floats& distance_m, const Floats& ratio) {
   if (distance_m.size() != ratio.size())
     refuse("returns.ratio", "shape " + shape_of(ratio),
            "shape " + shape_of(distance_m) + " as of distance_m");
-  std::vector<LaterReturn> returns;
+  std::vector<MultipathReturn> returns;
   for (py::ssize_t i = 0; i < ratio.size(); ++i) returns.push_back({distance_m.at(i), ratio.at(i)});
   return returns;
 }
 
-LaterReturns returns_of(const py::tuple& arrays, const SceneImage& scene) {
+MultipathReturns returns_of(const py::tuple& arrays, const SceneImage& scene) {
   const auto first = py::cast<py::array_t<std::int64_t, py::array::c_style>>(arrays[0]);
-  LaterReturns later(scene.height(), scene.width());
+  MultipathReturns later(scene.height(), scene.width());
   later.first.assign(first.data(), first.data() + first.size());
-  later.returns = later_returns(py::cast<Floats>(arrays[1]), py::cast<Floats>(arrays[2]));
+  later.returns = multipath_returns(py::cast<Floats>(arrays[1]), py::cast<Floats>(arrays[2]));
   const auto pixels = static_cast<py::ssize_t>(scene.height()) * scene.width();
   if (first.size() != pixels + 1)
     refuse("returns.first", "shape " + shape_of(first),
@@ -57,8 +57,8 @@ LaterReturns returns_of(const py::tuple& arrays, const SceneImage& scene) {
   return later;
 }
 
-LaterReturns behind_of(const Doubles& pairs, const SceneImage& scene) {
-  std::vector<LaterReturn> behind;
+MultipathReturns behind_of(const Doubles& pairs, const SceneImage& scene) {
+  std::vector<MultipathReturn> behind;
   for (py::ssize_t i = 0; i < pairs.shape(0); ++i)
     behind.push_back({static_cast<float>(pairs.at(i, 0)), static_cast<float>(pairs.at(i, 1))});
   return behind_every_pixel(scene, behind);

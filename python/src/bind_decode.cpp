@@ -28,18 +28,18 @@ struct BoundDecoder {
 
 BoundDecoder decoder_of(const DecodingTable& table, const py::dict& values) {
   DecodeMethod method = DecodeMethod::zncc;
-  DecodeOptions doubt;
+  DecodeOptions options;
   UnwrapWeights weights = UnwrapWeights::variance;
   OptionReader reader(values, "");
   reader.word("method", method, parse_decode_method)
       .word("unwrap_weights", weights, parse_unwrap_weights)
-      .value("low_signal_sigma", doubt.low_signal_sigma)
-      .value("minimum_confidence", doubt.minimum_confidence);
+      .value("low_signal_sigma", options.low_signal_sigma)
+      .value("min_confidence", options.min_confidence);
   const MultipathOptions multipath =
       multipath_options(reader.table("multipath"), "multipath", table.range_m);
   reader.finish();
   const py::gil_scoped_release release;
-  return {make_decoder(method, table, doubt, weights, multipath)};
+  return {make_decoder(method, table, options, weights, multipath)};
 }
 
 const DecodingTable& table_of(const BoundDecoder& decoder) {

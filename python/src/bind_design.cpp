@@ -55,9 +55,8 @@ py::dict candidate_dict(const Candidate& candidate, double ranking_error_m) {
   dict["message"] = candidate.message;
   dict["robustness"] =
       candidate.robustness ? py::object(robustness_dict(*candidate.robustness)) : py::none();
-  dict["second_returns"] = candidate.second_returns
-                               ? py::object(second_return_dict(*candidate.second_returns))
-                               : py::none();
+  dict["multipath"] =
+      candidate.multipath ? py::object(operating_multipath_dict(*candidate.multipath)) : py::none();
   return dict;
 }
 

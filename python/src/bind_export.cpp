@@ -29,10 +29,10 @@ py::dict format_dict(const WaveformFormat& format) {
   dict["name"] = format.name;
   dict["extension"] = format.extension;
   dict["description"] = format.description;
-  dict["least_points"] = format.least_points;
-  dict["most_points"] = format.most_points;
+  dict["min_points"] = format.min_points;
+  dict["max_points"] = format.max_points;
   dict["multiple_of"] = format.multiple_of;
-  dict["most_bits"] = format.most_bits;
+  dict["max_bits"] = format.max_bits;
   dict["variants"] = variants;
   return dict;
 }
@@ -50,8 +50,8 @@ py::tuple write_export(const CodeSet& code, const Camera& camera, const std::str
                        const std::string& format, const py::dict& values, bool overwrite) {
   const ExportOptions options = export_options(format, values);
   const CodeSet resampled = code.resampled(camera.samples);
-  const Camera played = exporting_camera(resampled, camera, options);
-  const std::vector<ExportedFile> files = all_files(export_waveforms(resampled, played, options));
+  const Camera actual = exporting_camera(resampled, camera, options);
+  const std::vector<ExportedFile> files = all_files(export_waveforms(resampled, actual, options));
   const std::filesystem::path folder = directory;
   make_output_directory(folder);
   std::vector<std::string> names;
@@ -64,7 +64,7 @@ py::tuple write_export(const CodeSet& code, const Camera& camera, const std::str
   for (const ExportedFile& file : files)
     write_file_atomically(folder / file.name, file.bytes, policy_of(overwrite));
   const std::vector<std::byte>& manifest = files.back().bytes;
-  return py::make_tuple(played, names,
+  return py::make_tuple(actual, names,
                         py::str(reinterpret_cast<const char*>(manifest.data()), manifest.size()));
 }
 

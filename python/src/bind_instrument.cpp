@@ -12,7 +12,7 @@ namespace tofsmith::python {
 
 namespace {
 
-/// What is played, and how the generator is told.
+/// Which code goes to the generator, and its settings.
 struct UploadOptions {
   UploadSelection selection;
   UploadRequest request;
@@ -59,33 +59,33 @@ py::dict model_dict(const GeneratorModel& model) {
   dict["format"] = model.format();
   dict["channels"] = model.channels;
   dict["sample_rate_hz"] = model.sample_rate_hz;
-  dict["most_repetition_hz"] = model.most_repetition_hz;
+  dict["max_repetition_hz"] = model.max_repetition_hz;
   dict["true_arb_rate_hz"] = model.true_arb_rate_hz;
-  dict["least_points"] = model.least_points;
-  dict["most_points"] = model.most_points;
+  dict["min_points"] = model.min_points;
+  dict["max_points"] = model.max_points;
   dict["memories"] = model.memories;
-  dict["least_vpp"] = model.least_vpp;
-  dict["most_vpp"] = model.most_vpp;
+  dict["min_vpp"] = model.min_vpp;
+  dict["max_vpp"] = model.max_vpp;
   return dict;
 }
 
 py::list channel_list(const UploadRequest& request) {
   py::list channels;
   for (const UploadChannel& channel : request.channels) {
-    const QuantizedWaveform& played = channel.selected_waveform();
+    const QuantizedWaveform& actual = channel.selected_waveform();
     py::dict dict;
     dict["channel"] = channel.channel;
-    dict["arm"] = played.arm == Arm::light ? "light" : "sensor";
-    dict["plays"] = played.name;
+    dict["arm"] = actual.arm == Arm::light ? "light" : "sensor";
+    dict["plays"] = actual.name;
     py::list stored;
     for (const QuantizedWaveform& waveform : channel.stored) stored.append(waveform.name);
     dict["stored"] = stored;
-    dict["points"] = played.points();
-    dict["periods"] = played.periods;
-    dict["sample_rate_hz"] = played.sample_rate_hz;
-    dict["repetition_hz"] = played.repetition_hz();
-    dict["low_v"] = played.low_v;
-    dict["high_v"] = played.high_v;
+    dict["points"] = actual.points();
+    dict["periods"] = actual.periods;
+    dict["sample_rate_hz"] = actual.sample_rate_hz;
+    dict["repetition_hz"] = actual.repetition_hz();
+    dict["low_v"] = actual.low_v;
+    dict["high_v"] = actual.high_v;
     channels.append(dict);
   }
   return channels;
@@ -126,7 +126,7 @@ Uploaded upload_code(const CodeSet& code, const Camera& camera, const Instrument
                      const std::optional<std::string>& model_name, double timeout_s,
                      const UploadOptions& options, const Progress& progress) {
   double done = 0.0;
-  const Progress told = [&](double fraction, std::string_view step) {
+  const Progress observer = [&](double fraction, std::string_view step) {
     done = fraction;
     return progress(fraction, step);
   };
@@ -139,7 +139,7 @@ Uploaded upload_code(const CodeSet& code, const Camera& camera, const Instrument
                                            : identified_model(uploaded.identity, session.name());
   uploaded.treated_as = model.name;
   uploaded.request = request_for(code, camera, model, options);
-  uploaded.report = upload(session, upload_script(model, uploaded.request), told);
+  uploaded.report = upload(session, upload_script(model, uploaded.request), observer);
   return uploaded;
 }
 
@@ -151,7 +151,7 @@ py::dict uploaded_dict(const Uploaded& uploaded, const InstrumentAddress& addres
     py::dict dict;
     dict["channel"] = number.channel;
     dict["quantity"] = number.quantity;
-    dict["told"] = number.told;
+    dict["requested"] = number.requested;
     dict["read_back"] = number.read_back;
     numbers.append(dict);
   }

@@ -9,7 +9,7 @@ namespace tofsmith::python {
 MultipathOptions multipath_options(const py::dict& values, const std::string& owner,
                                    double range_m) {
   MultipathOptions options;
-  OptionReader(values, owner).fields(options, {"doubt"}).finish();
+  OptionReader(values, owner).fields(options, {"status_thresholds"}).finish();
   options.validate(range_m);
   return options;
 }

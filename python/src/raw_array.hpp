@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "arrays.hpp"
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 
 namespace tofsmith::python {
 

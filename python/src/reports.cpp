@@ -32,8 +32,8 @@ DepthErrorReport report_of(const py::dict& values) {
 
 py::dict loss_dict(const GeneratorLoss& loss) {
   py::dict dict;
-  dict["told"] = report_dict(loss.told);
-  dict["played"] = report_dict(loss.played);
+  dict["nominal"] = report_dict(loss.nominal);
+  dict["actual"] = report_dict(loss.actual);
   dict["uncalibrated"] = report_dict(loss.uncalibrated);
   dict["correlation_change"] = adopt(std::vector<double>(loss.correlation_change));
   return dict;
@@ -46,16 +46,17 @@ py::dict robustness_dict(const RobustnessReport& report) {
   return dict;
 }
 
-py::dict second_return_dict(const SecondReturnReport& report) {
+py::dict operating_multipath_dict(const OperatingMultipathReport& report) {
   py::dict dict;
-  const auto add = [&](const std::string& decoded, const SecondReturnError& error, bool is_known) {
+  const auto add = [&](const std::string& decoded, const OperatingMultipathError& error,
+                       bool is_known) {
     for_each_field(error, [&](const auto& mean) {
       dict[py::str(decoded + mean.name)] =
           is_known ? py::object(pair_of(mean.value)) : py::object(py::none());
     });
   };
   add("single_path_", report.single_path, true);
-  add("two_return_", report.two_return.value_or(SecondReturnError{}),
+  add("two_return_", report.two_return.value_or(OperatingMultipathError{}),
       report.two_return.has_value());
   return dict;
 }

@@ -24,6 +24,6 @@ pybind11::dict report_dict(const DepthErrorReport& report);
 DepthErrorReport report_of(const pybind11::dict& values);
 pybind11::dict loss_dict(const GeneratorLoss& loss);
 pybind11::dict robustness_dict(const RobustnessReport& report);
-pybind11::dict second_return_dict(const SecondReturnReport& report);
+pybind11::dict operating_multipath_dict(const OperatingMultipathReport& report);
 
 }  // namespace tofsmith::python

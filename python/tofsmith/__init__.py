@@ -25,7 +25,7 @@ from ._camera_fields import (
     Lens,
     Light,
     Operating,
-    SecondReturns,
+    OperatingMultipath,
     Sensor,
 )
 from ._code import (
@@ -92,7 +92,7 @@ from ._instrument import (
     upload,
     upload_script,
 )
-from ._light import ExponentialTail, LaterReturns, Transients
+from ._light import ExponentialTail, MultipathReturns, Transients
 from ._multipath import (
     MultipathBound,
     MultipathCells,
@@ -109,7 +109,7 @@ from ._reports import (
     Estimate,
     GeneratorLoss,
     RobustnessReport,
-    SecondReturnReport,
+    OperatingMultipathReport,
 )
 from ._reproduce import CheckedStatement, ReproducedItem, paper_items, reproduce
 from ._response_calibration import (
@@ -187,7 +187,7 @@ __all__ = [
     "IdealCodeFit",
     "ImpulseResponse",
     "Interrupted",
-    "LaterReturns",
+    "MultipathReturns",
     "Lens",
     "Light",
     "MeasurementReport",
@@ -208,8 +208,8 @@ __all__ = [
     "RobustnessReport",
     "Scene",
     "SearchRecord",
-    "SecondReturnReport",
-    "SecondReturns",
+    "OperatingMultipathReport",
+    "OperatingMultipath",
     "Sensor",
     "SweepResults",
     "TrainingSetRun",

@@ -20,7 +20,7 @@ from ._camera_fields import (
     Lens,
     Light,
     Operating,
-    SecondReturns,
+    OperatingMultipath,
     Sensor,
 )
 from ._check import Path
@@ -207,12 +207,12 @@ class Camera:
     def operating(self) -> Operating:
         operating = _tuples(self._fields["operating"])
         if operating.get("multipath") is not None:
-            operating["multipath"] = SecondReturns(**_tuples(operating["multipath"]))
+            operating["multipath"] = OperatingMultipath(**_tuples(operating["multipath"]))
         return Operating(**operating)
 
     @property
     def range_m(self) -> float:
-        """Largest depth that can be told from zero [m]: c / (2 f0)."""
+        """Unambiguous range: depths repeat from here on [m]: c / (2 f0)."""
         return self._handle.range_m()
 
     @property

@@ -10,7 +10,7 @@ from typing import Optional, Union
 
 @dataclass(frozen=True)
 class ImpulseResponse:
-    """How a light source or a sensor smooths what it is told to play.
+    """How a light source or a sensor smooths the waveform that drives it.
 
     Attributes
     ----------
@@ -134,7 +134,7 @@ class Lens:
 
 
 @dataclass(frozen=True)
-class SecondReturns:
+class OperatingMultipath:
     """Second returns as a camera meets them, uniform between limits; see docs/multipath.md.
 
     Attributes
@@ -163,7 +163,7 @@ class Operating:
         linear or circular: which difference between true and decoded depth counts.
     albedo : float or str
         Scales the signal; "uniform": a fresh draw in (0, 1) for every trial.
-    multipath : SecondReturns, optional
+    multipath : OperatingMultipath, optional
         What designs reckon with; None: light comes back once.
     """
 
@@ -171,4 +171,4 @@ class Operating:
     ambient_e_per_s: tuple[float, ...]
     error: str
     albedo: Union[float, str]
-    multipath: Optional[SecondReturns] = None
+    multipath: Optional[OperatingMultipath] = None

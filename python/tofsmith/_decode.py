@@ -77,13 +77,13 @@ class Decoder:
         many independent means.
     low_signal_sigma : float, optional
         low_signal below so many standard deviations of the signal (3).
-    minimum_confidence : float, optional
+    min_confidence : float, optional
         ambiguous below this probability (0.9).
     unwrap_weights : {"variance", "frequency"}, optional
         Of unwrap.
     multipath : dict, optional
         Of two-return and tail: threshold, shortest_delay_m, longest_delay_m, tail_m, and prior, a
-        dict of single_probability, mean_delay_m, largest_ratio; see docs/multipath.md.
+        dict of single_probability, mean_delay_m, max_ratio; see docs/multipath.md.
 
     Raises
     ------
@@ -104,7 +104,7 @@ class Decoder:
         *,
         method: str = "zncc",
         low_signal_sigma: Optional[float] = None,
-        minimum_confidence: Optional[float] = None,
+        min_confidence: Optional[float] = None,
         unwrap_weights: Optional[str] = None,
         multipath: Optional[Mapping[str, Any]] = None,
     ) -> None:
@@ -123,7 +123,7 @@ class Decoder:
         options = {
             "method": method,
             "low_signal_sigma": low_signal_sigma,
-            "minimum_confidence": minimum_confidence,
+            "min_confidence": min_confidence,
             "unwrap_weights": unwrap_weights,
             "multipath": None if multipath is None else dict(multipath),
         }

@@ -142,7 +142,7 @@ class DecodingTable:
         Raises
         ------
         ValueError
-            If depths cannot be told apart, or table and camera do not fit.
+            If depths cannot be distinguished, or table and camera do not fit.
         """
         table = _check.finite_array(correlation, "correlation", "(N, K)")
         if camera is None:

@@ -16,7 +16,7 @@ from . import _check, _tofsmith
 from ._camera import Camera, CameraLike, camera_of
 from ._check import FloatArray, Path, Progress
 from ._code import CodeSet
-from ._reports import DepthErrorReport, RobustnessReport, SecondReturnReport, report_of
+from ._reports import DepthErrorReport, RobustnessReport, OperatingMultipathReport, report_of
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class Candidate:
     message : str
         One line on how it came out.
     robustness : RobustnessReport, optional
-    second_returns : SecondReturnReport, optional
+    multipath : OperatingMultipathReport, optional
         On cameras with `operating.multipath`.
     """
 
@@ -91,7 +91,7 @@ class Candidate:
     search: Optional[SearchRecord]
     message: str
     robustness: Optional[RobustnessReport]
-    second_returns: Optional[SecondReturnReport]
+    multipath: Optional[OperatingMultipathReport]
 
     @property
     def is_designed(self) -> bool:
@@ -180,8 +180,8 @@ def _candidate(values: dict[str, Any]) -> Candidate:
         values["search"] = SearchRecord(**values["search"])
     if values["robustness"] is not None:
         values["robustness"] = RobustnessReport(**values["robustness"])
-    if values["second_returns"] is not None:
-        values["second_returns"] = SecondReturnReport(**values["second_returns"])
+    if values["multipath"] is not None:
+        values["multipath"] = OperatingMultipathReport(**values["multipath"])
     return Candidate(**values)
 
 

@@ -27,7 +27,7 @@ def evaluate(
     method: Optional[str] = None,
     unwrap_weights: Optional[str] = None,
     target_standard_error: Optional[float] = None,
-    most_trials: Optional[int] = None,
+    max_trials: Optional[int] = None,
     draw_every_measurement: Optional[bool] = None,
     progress: Progress = None,
 ) -> DepthErrorReport:
@@ -54,7 +54,7 @@ def evaluate(
     target_standard_error : float, optional
         Trials go on at a point until the standard error is at most this share of the error that the
         camera is judged by; 0 (the default): no target.
-    most_trials : int, optional
+    max_trials : int, optional
         Per operating point with a target (50e6).
     draw_every_measurement : bool, optional
         Draw the noise of every measurement even where it could be drawn in the plane that ZNCC
@@ -77,7 +77,7 @@ def evaluate(
         "method": method,
         "unwrap_weights": unwrap_weights,
         "target_standard_error": target_standard_error,
-        "most_trials": most_trials,
+        "max_trials": max_trials,
         "draw_every_measurement": draw_every_measurement,
     }
     handle = code_of(code, camera)._handle
@@ -118,7 +118,7 @@ def generator_loss(
     ----------
     code : CodeSet, name of a family or file
     camera : Camera or its name
-        With generators, such as "prototype"; the camera without them is what was told.
+        With generators, such as "prototype"; the camera without them has the nominal waveforms.
     progress : callable, optional
     **options
         As of evaluate(): trials, seed, method, ..
@@ -127,10 +127,10 @@ def generator_loss(
     handle = code_of(code, camera)._handle
     callback = _check.progress(progress)
     values = _tofsmith.generator_loss(handle, camera._handle, options, callback)
-    told, played, uncalibrated = (
-        report_of(values[name]) for name in ("told", "played", "uncalibrated")
+    nominal, actual, uncalibrated = (
+        report_of(values[name]) for name in ("nominal", "actual", "uncalibrated")
     )
-    return GeneratorLoss(told, played, uncalibrated, values["correlation_change"])
+    return GeneratorLoss(nominal, actual, uncalibrated, values["correlation_change"])
 
 
 def table_depth_error_m(

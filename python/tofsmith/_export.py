@@ -23,9 +23,9 @@ class WaveformFormat:
     Attributes
     ----------
     name, extension, description : str
-    least_points, most_points, multiple_of : int
+    min_points, max_points, multiple_of : int
         Of a table.
-    most_bits : int
+    max_bits : int
         Of amplitude.
     variants : list of str
         Ways in which sources disagree about it, the default first.
@@ -34,10 +34,10 @@ class WaveformFormat:
     name: str
     extension: str
     description: str
-    least_points: int
-    most_points: int
+    min_points: int
+    max_points: int
     multiple_of: int
-    most_bits: int
+    max_bits: int
     variants: list[str]
 
 

@@ -41,7 +41,7 @@ class ForwardModel:
     """What a camera that plays a code measures: expected electrons and their variance.
 
     mu_i(z) = T_i (S chi_i(z) + A kappa_i + dark), variance mu_i + sigma_r^2 (+ step^2 / 12); chi
-    and kappa are those of the waveforms really played, behind both arms (Gutierrez-Barragan et al.,
+    and kappa are those of the actual waveforms, behind both arms (Gutierrez-Barragan et al.,
     CVPR 2019, Eq. 4). K here counts what leaves the sensor: differences count once.
 
     Parameters

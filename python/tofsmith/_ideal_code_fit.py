@@ -76,7 +76,7 @@ class IdealCodeFit:
 
     def __repr__(self) -> str:
         return (
-            f"<IdealCodeFit {self.code}: {100 * self.residual:.2f} % left "
+            f"<IdealCodeFit {self.code}: {100 * self.residual:.2f} % residual "
             f"({100 * self.ideal_residual:.2f} % without a response)>"
         )
 

@@ -22,13 +22,13 @@ class GeneratorModel:
     name, vendor : str
     format : str
         Of waveform_formats(), whose points it takes.
-    channels, least_points, most_points : int
+    channels, min_points, max_points : int
     memories : int
         Tables at a time; 0: as many as fit.
-    sample_rate_hz, most_repetition_hz, true_arb_rate_hz : float
+    sample_rate_hz, max_repetition_hz, true_arb_rate_hz : float
         Most points per second, repetitions of a table per second (0: as the rate allows), and
         points per second that are all played (0: it cannot).
-    least_vpp, most_vpp : float
+    min_vpp, max_vpp : float
         Into 50 ohm [V].
     """
 
@@ -37,13 +37,13 @@ class GeneratorModel:
     format: str
     channels: int
     sample_rate_hz: float
-    most_repetition_hz: float
+    max_repetition_hz: float
     true_arb_rate_hz: float
-    least_points: int
-    most_points: int
+    min_points: int
+    max_points: int
     memories: int
-    least_vpp: float
-    most_vpp: float
+    min_vpp: float
+    max_vpp: float
 
 
 @dataclass(frozen=True)
@@ -115,11 +115,11 @@ class UploadScript:
 
 @dataclass(frozen=True)
 class ReadBackNumber:
-    """A number that the instrument says of itself, next to what it was told; channel 0: of none."""
+    """A number that the instrument reads back, beside the one requested; channel 0: of none."""
 
     channel: int
     quantity: str
-    told: float
+    requested: float
     read_back: float
 
 
@@ -134,7 +134,7 @@ class UploadReport:
     treated_as : str
         The GeneratorModel.
     verified : bool
-        All points and settings were read back and are as told.
+        All points and settings were read back and are as requested.
     message : str
         One line, with what could not be read back.
     channels : list of UploadChannel

@@ -31,9 +31,9 @@ class ExponentialTail:
 
 
 @dataclass(frozen=True)
-class LaterReturns:
-    """Any number of later returns for every pixel of a scene, as one list, row by row; the arrays
-    of the files that `tofsmith simulate --returns` reads.
+class MultipathReturns:
+    """Any number of multipath returns for every pixel of a scene, as one list, row by row; the arrays
+    of the files that `tofsmith simulate --multipath-file` reads.
 
     Attributes
     ----------
@@ -70,14 +70,14 @@ class Transients:
 
 
 def light_dict(
-    returns: Union[LaterReturns, Sequence[tuple[float, float]], None],
+    returns: Union[MultipathReturns, Sequence[tuple[float, float]], None],
     tail: Union[ExponentialTail, None],
     transients: Union[Transients, None],
     depth_m: npt.NDArray[Any],
 ) -> dict[str, Any]:
     """The arguments of capture() as the compiled part takes them."""
     light: dict[str, Any] = {}
-    if isinstance(returns, LaterReturns):
+    if isinstance(returns, MultipathReturns):
         first = _check.real_array(returns.first, "returns.first", "(H W + 1,)")
         if first.dtype.kind not in "iu":
             raise ValueError(f"returns.first: got dtype {first.dtype}; needs whole numbers")

@@ -33,7 +33,7 @@ class MultipathCells:
     bias_m, error_m, error_se_m : ndarray
         The same of two-return (tail) decoding; NaN where the code cannot.
     two_share, unresolved_share : ndarray
-        Of pixels found to hold two returns, and of those found to be more than can be told.
+        Of pixels found to hold two returns, and of those found to be more than can be separated.
     cramer_rao_mae_m : ndarray
         Of MultipathBound.
     law_m : ndarray

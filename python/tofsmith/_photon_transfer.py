@@ -93,7 +93,7 @@ def photon_transfer(
     ------
     ValueError
         If frames are no pairs, sizes differ, the black level is unknown, the levels do not differ,
-        or the camera reads differences, whose mean does not tell their shot noise.
+        or the camera reads differences, from whose mean shot noise does not follow.
 
     Examples
     --------

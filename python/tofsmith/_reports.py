@@ -43,7 +43,7 @@ class DepthErrorReport:
     trials : int
         Made per operating point; with a target: at most.
     points_short_of_target : int
-        Operating points that reached most_trials first.
+        Operating points that reached max_trials first.
     seed : int
     outlier_threshold_m : float
     signal_e_per_s, ambient_e_per_s : ndarray
@@ -129,7 +129,7 @@ class RobustnessReport:
 
 
 @dataclass(frozen=True)
-class SecondReturnReport:
+class OperatingMultipathReport:
     """Depth error where every pixel has a second return of the camera's `operating.multipath`:
     geometric means over its operating points [m], each as (value, standard error).
 
@@ -153,26 +153,26 @@ class GeneratorLoss:
 
     Attributes
     ----------
-    told, played, uncalibrated : DepthErrorReport
-        On the camera without generators; with them, by a decoder that knows what is played; with
-        them, by one that believes what was told. Without bounds.
+    nominal, actual, uncalibrated : DepthErrorReport
+        On the camera without generators; with them, by a decoder that knows the actual waveforms; with
+        them, by one that assumes the nominal waveforms. Without bounds.
     correlation_change : ndarray, shape (K,)
-        Rms difference of the correlation functions told and played, over the rms of the one told
+        Rms difference of the nominal and actual correlation functions, over the rms of the nominal one
         about its mean.
     """
 
-    told: DepthErrorReport
-    played: DepthErrorReport
+    nominal: DepthErrorReport
+    actual: DepthErrorReport
     uncalibrated: DepthErrorReport
     correlation_change: FloatArray
 
     def ratio(self, kind: str = "linear") -> float:
-        """played / told, of the geometric means."""
-        return self.played.of(kind).geometric_mean_m / self.told.of(kind).geometric_mean_m
+        """actual / nominal, of the geometric means."""
+        return self.actual.of(kind).geometric_mean_m / self.nominal.of(kind).geometric_mean_m
 
     def uncalibrated_ratio(self, kind: str = "linear") -> float:
-        """uncalibrated / told, of the geometric means."""
-        return self.uncalibrated.of(kind).geometric_mean_m / self.told.of(kind).geometric_mean_m
+        """uncalibrated / nominal, of the geometric means."""
+        return self.uncalibrated.of(kind).geometric_mean_m / self.nominal.of(kind).geometric_mean_m
 
 
 def report_of(values: dict[str, Any]) -> DepthErrorReport:

@@ -18,7 +18,7 @@ from ._camera import CameraLike, camera_of
 from ._camera_fields import Lens
 from ._check import Path, Progress
 from ._code import CodeLike, code_of
-from ._light import ExponentialTail, LaterReturns, Transients, light_dict
+from ._light import ExponentialTail, MultipathReturns, Transients, light_dict
 
 FloatImage = npt.NDArray[np.float32]
 
@@ -135,7 +135,7 @@ def capture(
     falloff: Optional[bool] = None,
     seed: Optional[int] = None,
     frames: Optional[int] = None,
-    returns: Union[LaterReturns, Sequence[tuple[float, float]], None] = None,
+    returns: Union[MultipathReturns, Sequence[tuple[float, float]], None] = None,
     tail: Optional[ExponentialTail] = None,
     transients: Optional[Transients] = None,
     progress: Progress = None,
@@ -161,7 +161,7 @@ def capture(
         Of all noise (1); the same bits for any number of threads.
     frames : int, optional
         F, independent noise for each (1).
-    returns : LaterReturns or sequence of (delay_m, ratio), optional
+    returns : MultipathReturns or sequence of (delay_m, ratio), optional
         Light that comes back again: of each pixel, or the same behind all pixels.
     tail : ExponentialTail, optional
         Behind every direct return.

@@ -83,7 +83,7 @@ def write_training_set(
     Raises
     ------
     ValueError
-        For options that break a rule. A scene that cannot be had is told in `failures`.
+        For options that break a rule. A scene that fails is listed in `failures`.
     OSError
         If a file cannot be written.
 

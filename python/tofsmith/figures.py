@@ -45,8 +45,8 @@ def _figure(plotly_json: str) -> Figure:
 
 def waveforms(code: CodeLike, camera: CameraLike) -> Figure:
     """Modulation, demodulation and correlation function of every measurement."""
-    played, camera = code_and_camera(code, camera)
-    return _figure(_tofsmith.waveform_figure(played.name, played._handle, camera._handle))
+    fitted, camera = code_and_camera(code, camera)
+    return _figure(_tofsmith.waveform_figure(fitted.name, fitted._handle, camera._handle))
 
 
 def coding_curve(codes: Union[CodeLike, Sequence[CodeLike]], camera: CameraLike) -> Figure:

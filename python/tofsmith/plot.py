@@ -58,17 +58,17 @@ def waveforms(
     code: CodeLike, camera: CameraLike, *, figure: Optional[Figure] = None
 ) -> Figure:
     """Modulation, demodulation and correlation function of every measurement, a row each."""
-    played, camera = code_and_camera(code, camera)
-    model = ForwardModel(played, camera)
-    modulation, demodulation = played.modulation, played.demodulation
-    rows = played.measurements
+    fitted, camera = code_and_camera(code, camera)
+    model = ForwardModel(fitted, camera)
+    modulation, demodulation = fitted.modulation, fitted.demodulation
+    rows = fitted.measurements
     figure = new_figure(figure, page_in, 0.5 + 0.75 * rows)
     axes = figure.subplots(rows, 3, squeeze=False, sharex="col", sharey="col")
-    edges = np.arange(played.samples + 1) / played.samples
-    depth_m = np.arange(played.samples) * camera.bin_m
+    edges = np.arange(fitted.samples + 1) / fitted.samples
+    depth_m = np.arange(fitted.samples) * camera.bin_m
     chi = model.correlation_table() if model.measurements == rows else None
     for i in range(rows):
-        axes[i, 0].stairs(modulation[:, i // played.taps], edges, color=colours[0], lw=1.2)
+        axes[i, 0].stairs(modulation[:, i // fitted.taps], edges, color=colours[0], lw=1.2)
         axes[i, 1].stairs(demodulation[:, i], edges, color=colours[1], lw=1.2)
         if chi is not None:
             axes[i, 2].plot(depth_m, chi[:, i], color=colours[2])
@@ -97,8 +97,8 @@ def correlation_functions(
     code: CodeLike, camera: CameraLike, *, figure: Optional[Figure] = None
 ) -> Figure:
     """The K correlation functions over depth, behind the camera's impulse responses."""
-    played, camera = code_and_camera(code, camera)
-    chi = ForwardModel(played, camera).correlation_table()
+    fitted, camera = code_and_camera(code, camera)
+    chi = ForwardModel(fitted, camera).correlation_table()
     figure = new_figure(figure, column_in, 2.2)
     axis = figure.subplots()
     depth_m = np.linspace(0, camera.range_m, len(chi) + 1)
@@ -108,7 +108,7 @@ def correlation_functions(
     axis.set(xlabel="depth (m)", ylabel=r"correlation $\chi$")
     axis.set_xlim(0, camera.range_m)
     axis.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=min(chi.shape[1], 8),
-                columnspacing=1.0, handlelength=1.2, borderaxespad=0.3, title=played.name,
+                columnspacing=1.0, handlelength=1.2, borderaxespad=0.3, title=fitted.name,
                 alignment="left")
     return figure
 
@@ -132,8 +132,8 @@ def coding_curve(
                         (0.01, 0.02, 0.97, 0.92, 0.02, 0.15))
     lines = None
     for i, one in enumerate(listed):
-        played = code_of(one, camera)
-        curve = coding_curve_in_space(ForwardModel(played, camera).correlation_table())
+        fitted = code_of(one, camera)
+        curve = coding_curve_in_space(ForwardModel(fitted, camera).correlation_table())
         closed = np.vstack([curve, curve[:1]])
         axis = figure.add_subplot(rows, columns, i + 1, projection="3d")
         lines = Line3DCollection(np.stack([closed[:-1], closed[1:]], axis=1), cmap="viridis")
@@ -141,7 +141,7 @@ def coding_curve(
         axis.add_collection(lines)
         reach = 1.05 * np.abs(curve).max()
         axis.set(xlim=(-reach, reach), ylim=(-reach, reach), zlim=(-reach, reach))
-        axis.set(title=played.name, xticklabels=[], yticklabels=[], zticklabels=[])
+        axis.set(title=fitted.name, xticklabels=[], yticklabels=[], zticklabels=[])
         axis.set_box_aspect((1, 1, 1))
         for of_space in (axis.xaxis, axis.yaxis, axis.zaxis):
             of_space.set_tick_params(length=0)
@@ -256,11 +256,11 @@ def point_cloud(
     values: Optional[npt.ArrayLike] = None,
     *,
     label: str = "distance (m)",
-    most_points: int = 20000,
+    max_points: int = 20000,
     figure: Optional[Figure] = None,
 ) -> Figure:
     """Points in the camera's frame, coloured by radial distance or by `values` (H, W); of more
-    than `most_points`, every n-th is drawn. The half per cent farthest out on either side of each
+    than `max_points`, every n-th is drawn. The half per cent farthest out on either side of each
     axis is left out."""
     radial_m = depth_of(depth)
     shown = radial_m if values is None else _check.real_array(values, "values", "(H, W)")
@@ -268,7 +268,7 @@ def point_cloud(
         raise ValueError(f"values: got shape {shown.shape}; needs {radial_m.shape} as of depth")
     points = points_m(radial_m, lens).reshape(-1, 3)
     kept = np.flatnonzero(np.isfinite(points).all(axis=1) & np.isfinite(shown.reshape(-1)))
-    kept = kept[:: max(1, -(-len(kept) // _check.whole(most_points, "most_points", 1)))]
+    kept = kept[:: max(1, -(-len(kept) // _check.whole(max_points, "max_points", 1)))]
     if len(kept):
         low, high = np.percentile(points[kept], (0.5, 99.5), axis=0)
         kept = kept[((points[kept] >= low) & (points[kept] <= high)).all(axis=1)]

@@ -53,7 +53,7 @@ std::vector<Estimate> tap_imbalance(const Eigen::MatrixXd& table, const Eigen::M
   return mismatch;
 }
 
-constexpr int most_harmonics = 64;
+constexpr int max_harmonics = 64;
 
 /// What one sweep is taken apart with.
 struct Workbench {
@@ -83,7 +83,7 @@ Workbench workbench_of(const DelaySweep& sweep, std::vector<std::size_t> live) {
   DelayGroups groups = delay_groups(sweep.delay_periods);
   Eigen::MatrixXd mean = mean_curve(sweep.frames, live);
   SweepDrift drift = sweep_drift(mean, groups, mean_curve_variance(sweep.frames, groups, live));
-  int harmonics = std::min((groups.count() - 1) / 2, most_harmonics);
+  int harmonics = std::min((groups.count() - 1) / 2, max_harmonics);
   if (!groups.equal_steps) harmonics = std::max(1, harmonics * 3 / 4);  // gaps must stay narrow
   HarmonicBasis basis(places_of_frames(groups), harmonics);
   return {sweep.frames,    std::move(groups), std::move(live),
@@ -266,7 +266,7 @@ void add_notes(const Workbench& bench, const CorrelationCalibrationOptions& opti
         bench.groups.count(), bench.basis.harmonics()));
   if (!result.drift_known)
     notes.emplace_back(
-        "drift of light or level cannot be told: measure the first delay again at the end");
+        "drift of light or level is unknown: measure the first delay again at the end");
   else if (result.drift_corrected)
     notes.push_back(
         fmt::format("over the sweep the light changed by {:+.3g} ± {:.1g} % and the level by "

@@ -11,7 +11,7 @@ struct DelayGroups {
   std::vector<double> place;        ///< of each group in [0, 1), rising (G)
   std::vector<int> group_of_frame;  ///< (F)
   std::vector<int> repeats;         ///< frames of each group (G)
-  double span_periods = 0.0;        ///< of the delays as told
+  double span_periods = 0.0;        ///< of the delays as given
   double first_periods = 0.0;       ///< the least delay
   bool equal_steps = false;         ///< the places are equally spaced round the period
   bool from_zero = false;           ///< and one of them is 0, so that they are those of N = G rows

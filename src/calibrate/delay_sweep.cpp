@@ -64,7 +64,7 @@ DelaySweep read_text(const std::filesystem::path& path, DelaySweepOptions option
     throw IoError(path.string(),
                   "found one column; expected the delay and a value for each "
                   "measurement");
-  // The header's unit, unless one was told.
+  // The header's unit, unless one was given.
   if (options.unit == DelayUnit::second && options.unit_scale == 1.0 && !table.names.empty())
     if (const double unit_s = seconds_per_unit(table.names[0]); unit_s > 0.0)
       options.unit_scale = unit_s;

@@ -82,7 +82,7 @@ Eigen::MatrixXcd ordered(const Eigen::MatrixXcd& x, const std::vector<int>& orde
 
 /// Direction, sign and order that fit best without a response; leaves x so turned.
 void orient(const Eigen::MatrixXcd& y, Eigen::MatrixXcd& x, int taps, IdealCodeFit& fit) {
-  const Eigen::MatrixXcd told = x;
+  const Eigen::MatrixXcd original = x;
   std::vector<int> order(static_cast<std::size_t>(x.cols() / taps));
   std::iota(order.begin(), order.end(), 0);
   const bool permute = order.size() <= 5;
@@ -90,7 +90,7 @@ void orient(const Eigen::MatrixXcd& y, Eigen::MatrixXcd& x, int taps, IdealCodeF
   do {
     for (const bool reversed : {false, true})
       for (const bool inverted : {false, true}) {
-        Eigen::MatrixXcd turned = ordered(reversed ? told.conjugate() : told, order, taps);
+        Eigen::MatrixXcd turned = ordered(reversed ? original.conjugate() : original, order, taps);
         if (inverted) turned = -turned;
         const Match found = match(y, turned);
         // The plain reading wins a tie, which symmetric codes have.
@@ -141,7 +141,7 @@ void fit_response(const Eigen::MatrixXcd& y, const Eigen::MatrixXcd& x, double f
     best = found;
     fit.response = {.kind = kind};
     (kind == Kind::hann ? fit.response.f_max_hz : fit.response.cutoff_hz) = std::exp(log_hz);
-    // Curvature over the log of the parameter, noise as what is left.
+    // Curvature over the log of the parameter, noise as the residual.
     const double move = 1e-2;
     const double curvature =
         (left(log_hz + move) - 2 * found.left + left(log_hz - move)) / (move * move);

@@ -193,10 +193,10 @@ ResponseWindow window_of(const CalibratedResponse& result, const Eigen::VectorXd
 
 /// A period over a whole multiple of N, fine enough for the response.
 double output_step_s(const ResponseCalibrationOptions& options, double width_s, double span_s) {
-  constexpr double steps_per_width = 16.0, most_samples = 16384.0;
+  constexpr double steps_per_width = 16.0, max_samples = 16384.0;
   const double grid_s = 1.0 / (options.fundamental_frequency_hz * options.samples);
   const double wanted = std::ceil(grid_s * steps_per_width / width_s);
-  const double most = std::floor(most_samples * grid_s / span_s);
+  const double most = std::floor(max_samples * grid_s / span_s);
   return grid_s / std::max(1.0, std::min(wanted, most));
 }
 
@@ -326,8 +326,8 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
   result.peaks = peaks_of(result.response, denoised.noise_rms);
   for (std::size_t i = 1; i < result.peaks.size(); ++i)
     result.notes.push_back(fmt::format(
-        "{} peak of {:.2f} times the highest, {:+.4g} ns from it, was kept: expected of an "
-        "inner reflection or a second path; cut it from the record if it is not the arm's",
+        "{} peak of {:.2f} times the highest, {:+.4g} ns from it, was kept: an inner reflection "
+        "or a second path gives one; cut it from the record if it is not the arm's",
         i == 1 ? "a second" : "another", result.peaks[i].height, 1e9 * result.peaks[i].time_s));
   if (!result.fit_is_good())
     result.notes.push_back(fmt::format(
@@ -339,7 +339,7 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
   if (width_s < 2 * grid_s)
     result.notes.push_back(fmt::format(
         "the response, {:.3g} ns wide, is shorter than two of the camera's time samples of {:.3g} "
-        "ns: it changes next to nothing there",
+        "ns: it hardly changes anything there",
         1e9 * width_s, 1e9 * grid_s));
   if (result.snr_db < 20)
     result.notes.push_back(

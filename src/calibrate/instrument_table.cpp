@@ -128,7 +128,7 @@ Reading reading_of(const std::vector<Line>& lines, Dialect dialect) {
 }
 
 /// Whether lines such as "12,5" are two columns: their first numbers are whole and rise by equal
-/// steps, as those of bins do. Nothing if that cannot be told.
+/// steps, as those of bins do. Nothing if that is unknown.
 bool first_column_counts(const std::vector<Line>& lines, const Reading& reading) {
   double last = 0.0, step = 0.0;
   for (std::size_t r = 0; r < reading.rows; ++r) {

@@ -14,7 +14,7 @@ namespace tofsmith {
 namespace {
 
 constexpr double rounding_dn2 = 1.0 / 12.0;
-constexpr double most_clipped = 1e-4;  // share of pixels at the limit that a point may have
+constexpr double max_clipped = 1e-4;  // share of pixels at the limit that a point may have
 
 /// Values of one measurement of a frame that are numbers.
 struct PairStatistics {
@@ -84,7 +84,7 @@ void add_points(const RawFrames& raw, double limit, bool dark, PhotonTransfer& r
       point.variance_dn2 = {variance,
                             variance * std::sqrt(2.0 / static_cast<double>(s.pixels - 1))};
       point.saturated =
-          static_cast<double>(s.clipped) > most_clipped * static_cast<double>(s.pixels);
+          static_cast<double>(s.clipped) > max_clipped * static_cast<double>(s.pixels);
       result.points.push_back(point);
     }
 }
@@ -131,15 +131,16 @@ void set_black_level(const RawFrames& dark, const PhotonTransferOptions& options
     result.black_level_dn = {*options.black_level_dn, 0.0};
     return;
   }
-  require(dark.frames > 0, "dark frames", 0,
-          "must be given, or the black level: the line of variance over mean does not tell it");
+  require(
+      dark.frames > 0, "dark frames", 0,
+      "must be given, or the black level: it does not follow from the line of variance over mean");
   RunningStatistics mean;
   for (const float value : dark.values)
     if (std::isfinite(value)) mean.add(static_cast<double>(value));
   result.black_level_dn = mean.estimate();
 }
 
-int fewest_usual_bits(double highest_dn) {
+int min_usual_bits(double highest_dn) {
   for (const int bits : {8, 10, 12, 14, 16})
     if (highest_dn <= std::exp2(bits) - 1) return bits;
   return 24;
@@ -178,7 +179,7 @@ void set_gain_and_read_noise(const FittedLine& line, PhotonTransfer& result) {
   const double black_error_dn2 = b * result.black_level_dn.standard_error;  // moves a
   if (a <= 0.0) {
     result.read_noise_e = {0.0, gain * std::sqrt(std::sqrt(covariance(0, 0)))};
-    result.notes.emplace_back("the read noise is too small to be told from rounding");
+    result.notes.emplace_back("the read noise is too small to be separated from rounding");
     return;
   }
   const double root = std::sqrt(a);
@@ -208,7 +209,7 @@ PhotonTransfer photon_transfer(const std::vector<RawFrames>& levels, const RawFr
   set_black_level(dark, options, result);
   bool piled_up = false;
   result.saturation_dn = limit_of(levels, piled_up);
-  result.adc_bits = options.adc_bits.value_or(fewest_usual_bits(result.saturation_dn));
+  result.adc_bits = options.adc_bits.value_or(min_usual_bits(result.saturation_dn));
   if (!options.adc_bits)
     result.notes.push_back(
         fmt::format("the camera does not say adc_bits; {} bits hold the highest number {:.0f}",

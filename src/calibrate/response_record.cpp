@@ -18,7 +18,7 @@ namespace {
 
 constexpr double equal_steps = 0.01;  // of a step: room for times written with few digits
 constexpr double longest_gap = 10.0;  // steps
-constexpr Eigen::Index fewest_values = 16;
+constexpr Eigen::Index min_values = 16;
 
 /// Column of the values, from 0; the times, if there are any, are the first column.
 Eigen::Index value_column(const InstrumentTable& table, const std::string& wanted,
@@ -165,9 +165,9 @@ ResponseRecord read_response_record(const std::filesystem::path& path,
     read_array(path, record);
   else
     read_text(path, options, record);
-  if (record.values.size() < fewest_values)
+  if (record.values.size() < min_values)
     throw IoError(path.string(), fmt::format("found {} values; expected at least {}",
-                                             record.values.size(), fewest_values));
+                                             record.values.size(), min_values));
   if (record.time_step_s == 0.0) {
     if (!options.time_step_s)
       throw IoError(path.string(), "found values without times; expected --time-step");

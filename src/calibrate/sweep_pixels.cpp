@@ -11,7 +11,7 @@
 namespace tofsmith {
 namespace {
 
-/// What is left of x (F, K) without the means of its groups.
+/// Residual of x (F, K) about the means of its groups.
 Eigen::MatrixXd within_groups(const Eigen::MatrixXd& x, const DelayGroups& groups) {
   const Eigen::MatrixXd means = group_means(x, groups);
   Eigen::MatrixXd rest = x;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "camera/shared/played_code.hpp"
+#include "camera/shared/actual_code.hpp"
 #include "camera/shared/prototype.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
@@ -69,7 +69,7 @@ void validate_sensor(const Sensor& sensor) {
   if (sensor.shortest_pulse_s)
     require_positive(*sensor.shortest_pulse_s, "sensor.shortest_pulse_s");
   require(sensor.drain || sensor.taps >= 2, "sensor.drain", "false",
-          "needs sensor.taps >= 2: one tap that never lets go measures nothing");
+          "needs sensor.taps >= 2: one tap that is always open measures nothing");
   require(sensor.readout == Readout::separate || sensor.taps == 2, "sensor.readout", "difference",
           "needs sensor.taps = 2");
 }
@@ -104,11 +104,12 @@ Eigen::VectorXcd arm_transfer(const ImpulseResponse& response, double edge_jitte
 
 }  // namespace
 
-double SecondReturns::weighed(double single_return_error, double second_return_error) const {
-  return std::pow(single_return_error, 1.0 - weight) * std::pow(second_return_error, weight);
+double OperatingMultipath::weighed(double single_return_error,
+                                   double operating_multipath_error) const {
+  return std::pow(single_return_error, 1.0 - weight) * std::pow(operating_multipath_error, weight);
 }
 
-void SecondReturns::validate(double range_m) const {
+void OperatingMultipath::validate(double range_m) const {
   const auto limits = [](const std::array<double, 2>& ends) {
     return fmt::format("[{}, {}]", ends[0], ends[1]);
   };

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera/shared/played_code.hpp"
+#include "camera/shared/actual_code.hpp"
 
 namespace tofsmith {
 
@@ -69,12 +69,12 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
 
   const Eigen::VectorXcd transfer =
       camera.band_limited() ? camera.transfer(harmonics_kept(code.samples())) : Eigen::VectorXcd();
-  const PlayedCode played = played_code(code, camera);
+  const ActualCode actual = actual_code(code, camera);
   Eigen::RowVectorXd gain(tap_values);
   tap_exposure_s_.resize(tap_values);
   for (int i = 0; i < tap_values; ++i) {
-    const Waveform& d = played.demodulation[static_cast<std::size_t>(i)];
-    const Waveform& m = played.modulation[static_cast<std::size_t>(code.exposure_of(i))];
+    const Waveform& d = actual.demodulation[static_cast<std::size_t>(i)];
+    const Waveform& m = actual.modulation[static_cast<std::size_t>(code.exposure_of(i))];
     functions_.push_back(camera.band_limited() ? CorrelationFunction(d, m, transfer)
                                                : CorrelationFunction(d, m));
     gain[i] = d.mean();
@@ -141,11 +141,11 @@ Eigen::VectorXd ForwardModel::variance_e2(std::span<const Return> returns,
 Eigen::VectorXd unknown_ambient_gain(const ForwardModel& model, const Camera& camera) {
   constexpr double share_of_noise = 0.05;
   const std::vector<double>& ambient = camera.operating.ambient_e_per_s;
-  const double most_e_per_s =
+  const double max_e_per_s =
       ambient.empty() ? 0.0 : *std::max_element(ambient.begin(), ambient.end());
-  const Eigen::VectorXd light_e = most_e_per_s * model.exposure_s();
+  const Eigen::VectorXd light_e = max_e_per_s * model.exposure_s();
   const Eigen::ArrayXd leak_e = light_e.cwiseProduct(model.ambient_gain()).array().abs();
-  const Eigen::ArrayXd variance_e2 = model.variance_e2({}, most_e_per_s).array();
+  const Eigen::ArrayXd variance_e2 = model.variance_e2({}, max_e_per_s).array();
   const bool cancels = camera.sensor.readout == Readout::difference && !ambient.empty() &&
                        (leak_e <= share_of_noise * variance_e2.sqrt()).all();
   if (cancels) return Eigen::VectorXd::Zero(model.measurements());

@@ -15,7 +15,7 @@ namespace {
 
 // Switching times that a grid was meant to hold are off it by rounding only [points].
 constexpr double rounding = 1e-9;
-constexpr double most_points = 1 << 20;  // far more than any code's detail
+constexpr double max_points = 1 << 20;  // far more than any code's detail
 
 /// First point of a pulse and the first behind it.
 struct Pulse {
@@ -57,11 +57,11 @@ Waveform on_points(const Waveform& waveform, int points) {
 }
 
 /// The value at the middle of every point.
-Eigen::VectorXd values_at_middles(const Eigen::VectorXd& told, int points) {
+Eigen::VectorXd values_at_middles(const Eigen::VectorXd& nominal, int points) {
   Eigen::VectorXd values(points);
   for (int j = 0; j < points; ++j) {
-    const double middle = (j + 0.5) / points * static_cast<double>(told.size());
-    values[j] = told[static_cast<Eigen::Index>(middle + rounding)];
+    const double middle = (j + 0.5) / points * static_cast<double>(nominal.size());
+    values[j] = nominal[static_cast<Eigen::Index>(middle + rounding)];
   }
   return values;
 }
@@ -73,7 +73,7 @@ Eigen::VectorXd rounded_amplitudes(Eigen::VectorXd values, double peak, int bits
   return values;
 }
 
-double most_points_per_period(double sample_rate_hz, double frequency_hz) {
+double max_points_per_period(double sample_rate_hz, double frequency_hz) {
   return sample_rate_hz / frequency_hz * (1 + 1e-12);
 }
 
@@ -86,22 +86,21 @@ void validate_edge_grid(const std::string& field, double edge_grid_s, double fre
   require(std::isfinite(edge_grid_s) && edge_grid_s > 0.0, field, edge_grid_s,
           "must be finite and > 0");
   const double steps = 1.0 / (edge_grid_s * frequency_hz);
-  require(
-      steps >= 2.0 - 1e-6 && steps <= most_points && std::abs(steps - std::round(steps)) <= 1e-6,
-      field, edge_grid_s,
-      fmt::format("must divide the period of fundamental_frequency_hz = {} into 2 .. {:.0f} "
-                  "whole steps{}",
-                  frequency_hz, most_points,
-                  steps >= 2.0 && steps <= most_points
-                      ? fmt::format(" (it gives {:.6g}; {:.9g} s would give {:.0f})", steps,
-                                    1.0 / (std::round(steps) * frequency_hz), std::round(steps))
-                      : ""));
+  require(steps >= 2.0 - 1e-6 && steps <= max_points && std::abs(steps - std::round(steps)) <= 1e-6,
+          field, edge_grid_s,
+          fmt::format("must divide the period of fundamental_frequency_hz = {} into 2 .. {:.0f} "
+                      "whole steps{}",
+                      frequency_hz, max_points,
+                      steps >= 2.0 && steps <= max_points
+                          ? fmt::format(" (it gives {:.6g}; {:.9g} s would give {:.0f})", steps,
+                                        1.0 / (std::round(steps) * frequency_hz), std::round(steps))
+                          : ""));
 }
 
 }  // namespace
 
 int Generator::points_per_period(double fundamental_frequency_hz) const {
-  const double most = most_points_per_period(sample_rate_hz, fundamental_frequency_hz);
+  const double most = max_points_per_period(sample_rate_hz, fundamental_frequency_hz);
   return table_points && *table_points <= most ? *table_points : static_cast<int>(std::floor(most));
 }
 
@@ -116,13 +115,13 @@ void Generator::validate(std::string_view field, double fundamental_frequency_hz
   require(amplitude_bits >= 1 && amplitude_bits <= 24, prefix + "amplitude_bits", amplitude_bits,
           "must be in [1, 24]");
   if (table_points)
-    require(*table_points >= 2 && *table_points <= most_points, prefix + "table_points",
-            *table_points, fmt::format("must be in [2, {:.0f}]", most_points));
-  const double points = most_points_per_period(sample_rate_hz, fundamental_frequency_hz);
-  require(points >= 2.0 && (table_points || points <= most_points), prefix + "sample_rate_hz",
+    require(*table_points >= 2 && *table_points <= max_points, prefix + "table_points",
+            *table_points, fmt::format("must be in [2, {:.0f}]", max_points));
+  const double points = max_points_per_period(sample_rate_hz, fundamental_frequency_hz);
+  require(points >= 2.0 && (table_points || points <= max_points), prefix + "sample_rate_hz",
           sample_rate_hz,
           fmt::format("must give 2 .. {:.0f} points per period at fundamental_frequency_hz = {}",
-                      most_points, fundamental_frequency_hz));
+                      max_points, fundamental_frequency_hz));
   if (edge_grid_s)
     validate_edge_grid(prefix + "edge_grid_s", *edge_grid_s, fundamental_frequency_hz);
 }
@@ -139,9 +138,9 @@ double generated_switching_time(double switching_time_periods, const Generator& 
   };
   if (generator.edge_grid_s) moved_to(grid_steps(*generator.edge_grid_s, fundamental_frequency_hz));
   const int table = generator.points_in_table(fundamental_frequency_hz),
-            played = generator.points_per_period(fundamental_frequency_hz);
+            actual_points = generator.points_per_period(fundamental_frequency_hz);
   moved_to(table);
-  if (played != table) moved_to(played);
+  if (actual_points != table) moved_to(actual_points);
   return switching_time_periods;
 }
 
@@ -162,10 +161,10 @@ Waveform generator_table(const Waveform& waveform, const Generator& generator,
 Waveform generated(const Waveform& waveform, const Generator& generator,
                    double fundamental_frequency_hz) {
   Waveform table = generator_table(waveform, generator, fundamental_frequency_hz);
-  const int played = generator.points_per_period(fundamental_frequency_hz);
-  if (played == generator.points_in_table(fundamental_frequency_hz)) return table;
-  return table.is_binary() ? on_points(table, played)
-                           : Waveform::sampled(values_at_middles(table.samples(), played));
+  const int actual_points = generator.points_per_period(fundamental_frequency_hz);
+  if (actual_points == generator.points_in_table(fundamental_frequency_hz)) return table;
+  return table.is_binary() ? on_points(table, actual_points)
+                           : Waveform::sampled(values_at_middles(table.samples(), actual_points));
 }
 
 }  // namespace tofsmith

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera/shared/played_code.hpp"
+#include "camera/shared/actual_code.hpp"
 
 namespace tofsmith {
 
@@ -42,33 +42,33 @@ double rms_difference(const Waveform& a, const Waveform& b) {
   return std::sqrt(sum);
 }
 
-double largest_edge_move_periods(const Waveform& told, const Generator& generator,
+double largest_edge_move_periods(const Waveform& nominal, const Generator& generator,
                                  double frequency_hz) {
   double largest = 0.0;
-  for (const OnInterval& on : told.on_intervals())
+  for (const OnInterval& on : nominal.on_intervals())
     for (const double edge : {on.rise, on.fall})
       largest = std::max(largest,
                          std::abs(generated_switching_time(edge, generator, frequency_hz) - edge));
   return largest;
 }
 
-GeneratorReport compare(Arm arm, int index, const Waveform& told, const Waveform& played,
+GeneratorReport compare(Arm arm, int index, const Waveform& nominal, const Waveform& actual,
                         const Generator& generator, double frequency_hz) {
   GeneratorReport report{.arm = arm, .index = index};
   report.points_per_period = generator.points_per_period(frequency_hz);
   report.clock_hz = report.points_per_period * frequency_hz;
-  report.duty_told = told.duty();
-  report.duty_played = played.duty();
-  report.mean_told = told.mean();
-  report.mean_played = played.mean();
-  report.peak_told = told.peak();
-  report.peak_played = played.peak();
-  report.edges_told = told.edges();
-  report.edges_played = played.edges();
-  if (told.is_binary())
+  report.duty_nominal = nominal.duty();
+  report.duty_actual = actual.duty();
+  report.mean_nominal = nominal.mean();
+  report.mean_actual = actual.mean();
+  report.peak_nominal = nominal.peak();
+  report.peak_actual = actual.peak();
+  report.edges_nominal = nominal.edges();
+  report.edges_actual = actual.edges();
+  if (nominal.is_binary())
     report.largest_edge_move_s =
-        largest_edge_move_periods(told, generator, frequency_hz) / frequency_hz;
-  report.rms_difference = rms_difference(told, played);
+        largest_edge_move_periods(nominal, generator, frequency_hz) / frequency_hz;
+  report.rms_difference = rms_difference(nominal, actual);
   return report;
 }
 
@@ -77,17 +77,17 @@ GeneratorReport compare(Arm arm, int index, const Waveform& told, const Waveform
 std::vector<GeneratorReport> generator_report(const CodeSet& code, const Camera& camera) {
   camera.validate();
   require_fits(code, camera);
-  const PlayedCode played = played_code(code, camera);
+  const ActualCode actual = actual_code(code, camera);
   const double frequency_hz = camera.fundamental_frequency_hz;
   std::vector<GeneratorReport> reports;
   for (int e = 0; camera.light.generator && e < code.exposures(); ++e)
     reports.push_back(compare(Arm::light, e, code.modulation(e),
-                              played.modulation[static_cast<std::size_t>(e)],
+                              actual.modulation[static_cast<std::size_t>(e)],
                               *camera.light.generator, frequency_hz));
   const int step = taps_share_a_generator(code, camera) ? 2 : 1;
   for (int i = 0; camera.sensor.generator && i < code.measurements(); i += step)
     reports.push_back(compare(Arm::sensor, i, code.demodulation(i),
-                              played.demodulation[static_cast<std::size_t>(i)],
+                              actual.demodulation[static_cast<std::size_t>(i)],
                               *camera.sensor.generator, frequency_hz));
   return reports;
 }

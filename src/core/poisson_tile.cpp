@@ -12,8 +12,8 @@
 #define TOFSMITH_CORE_POISSON_TILE_CONSTANTS
 namespace tofsmith {
 namespace {
-constexpr double least_rejection_mean = 10.0;
-constexpr double least_stirling_count = 16.0;
+constexpr double min_rejection_mean = 10.0;
+constexpr double min_stirling_count = 16.0;
 }  // namespace
 }  // namespace tofsmith
 #endif
@@ -46,7 +46,7 @@ HWY_INLINE Double open_uniform(const std::uint32_t* word) {
 /// A vector of attempts of PTRS.
 struct Attempt {
   HWY_INLINE Attempt(const std::uint32_t* u_word, const std::uint32_t* v_word, const double* means)
-      : mean(hn::Max(hn::LoadU(Doubles(), means), all(least_rejection_mean))),
+      : mean(hn::Max(hn::LoadU(Doubles(), means), all(min_rejection_mean))),
         b(hn::MulAdd(all(2.53), hn::Sqrt(mean), all(0.931))),
         a(hn::MulAdd(all(0.02483), b, all(-0.059))),
         v(open_uniform(v_word)) {
@@ -192,7 +192,7 @@ struct OpenTrials {
   /// One attempt of each; what is accepted goes to `counts`, the others stay.
   void attempt(double* counts) {
     for (std::size_t i = static_cast<std::size_t>(size); i % 8 != 0; ++i) {
-      mean[i] = least_rejection_mean;  // whole vectors
+      mean[i] = min_rejection_mean;  // whole vectors
       u_word[i] = v_word[i] = 0;
     }
     HWY_DYNAMIC_DISPATCH(full_poisson)
@@ -200,7 +200,7 @@ struct OpenTrials {
     const int before = size;
     size = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(before); ++i) {
-      const bool is_few = count[i] < least_stirling_count;
+      const bool is_few = count[i] < min_stirling_count;
       if (is_few ? is_few_accepted(mean[i], count[i], u_word[i], v_word[i]) : is_accepted[i] != 0)
         counts[trial[i]] = count[i];
       else
@@ -221,7 +221,7 @@ void draw_poisson(const TrialStreams& streams, int draw, int trials, const doubl
 
   OpenTrials open;
   for (int i = 0; i < trials; ++i) {
-    if (mean[i] < least_rejection_mean)
+    if (mean[i] < min_rejection_mean)
       count[i] = mean[i] > 0.0 ? by_inversion(mean[i], words[i], words[trials_per_tile + i]) : 0.0;
     else if (is_accepted[i] == 0)
       open.add(i, mean[i]);

@@ -12,10 +12,10 @@
 namespace tofsmith {
 
 void RemainingTime::add(double passed_s, double fraction) {
-  constexpr double least_step_s = 0.05, least_share = 0.02;
+  constexpr double min_step_s = 0.05, min_share = 0.02;
   now_ = {passed_s, fraction};
   const double last_s = past_.back().passed_s;
-  if (passed_s - last_s >= std::max(least_step_s, least_share * last_s)) past_.push_back(now_);
+  if (passed_s - last_s >= std::max(min_step_s, min_share * last_s)) past_.push_back(now_);
 }
 
 std::optional<double> RemainingTime::seconds() const {

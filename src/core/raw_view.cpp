@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 
 #include <string>
 

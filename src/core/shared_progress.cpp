@@ -23,8 +23,8 @@ void SharedProgress::add(double pieces) {
   if (is_stopped_.load(std::memory_order_relaxed)) throw Interrupted();
   if (std::this_thread::get_id() != caller_) return;
   const auto now = std::chrono::steady_clock::now();
-  if (now - told_at_ < std::chrono::milliseconds(50)) return;
-  told_at_ = now;
+  if (now - reported_at_ < std::chrono::milliseconds(50)) return;
+  reported_at_ = now;
   if (progress_(std::min(1.0, done / pieces_), step_)) return;
   is_stopped_.store(true, std::memory_order_relaxed);
   throw Interrupted();

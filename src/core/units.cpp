@@ -10,10 +10,10 @@ namespace tofsmith {
 
 std::string plain_number(double value, int digits) {
   if (!std::isfinite(value)) return fmt::format("{}", value);
-  constexpr int most_decimals = 9;
+  constexpr int max_decimals = 9;
   const double size = std::abs(value);
   const int before_point = size > 0.0 ? static_cast<int>(std::floor(std::log10(size))) + 1 : 1;
-  return fmt::format("{:.{}f}", value, std::clamp(digits - before_point, 0, most_decimals));
+  return fmt::format("{:.{}f}", value, std::clamp(digits - before_point, 0, max_decimals));
 }
 
 std::string length_text(double metres) {

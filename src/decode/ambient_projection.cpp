@@ -7,7 +7,7 @@
 namespace tofsmith {
 
 namespace {
-// Below these shares of the whole, what is left is rounding.
+// Below these shares of the whole, a residual is rounding.
 constexpr double no_ambient = 1e-9;
 constexpr double no_dimension = 1e-12;
 constexpr double no_contrast = 1e-9;

@@ -11,7 +11,7 @@ namespace tofsmith {
 /// Most measurements of a pixel a decoder takes: bounds the work space it keeps on the stack.
 inline constexpr int max_measurements = 64;
 
-/// Below this share of what is measured, what is left of it without ambient light is rounding.
+/// Below this share of what is measured, its residual without ambient light is rounding.
 inline constexpr double nothing_left = 1e-12;
 
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

@@ -16,17 +16,19 @@ std::string_view name_of(DecodeMethod method) { return method_words.of(method); 
 
 DecodeMethod parse_decode_method(std::string_view name) { return method_words.parse(name); }
 
-AnyDecoder make_decoder(DecodeMethod method, DecodingTable table, const DecodeOptions& doubt,
-                        UnwrapWeights unwrap_weights, const MultipathOptions& multipath) {
-  if (method == DecodeMethod::zncc) return Decoder(std::move(table), doubt);
-  if (method == DecodeMethod::ml) return LikelihoodDecoder(std::move(table), doubt);
+AnyDecoder make_decoder(DecodeMethod method, DecodingTable table,
+                        const DecodeOptions& status_thresholds, UnwrapWeights unwrap_weights,
+                        const MultipathOptions& multipath) {
+  if (method == DecodeMethod::zncc) return Decoder(std::move(table), status_thresholds);
+  if (method == DecodeMethod::ml) return LikelihoodDecoder(std::move(table), status_thresholds);
   if (method == DecodeMethod::two_return || method == DecodeMethod::tail) {
     MultipathOptions options = multipath;
-    options.doubt = doubt;
+    options.status_thresholds = status_thresholds;
     if (method == DecodeMethod::tail) return TailDecoder(std::move(table), options);
     return TwoReturnDecoder(std::move(table), options);
   }
-  return UnwrapDecoder(std::move(table), {.doubt = doubt, .weights = unwrap_weights});
+  return UnwrapDecoder(std::move(table),
+                       {.status_thresholds = status_thresholds, .weights = unwrap_weights});
 }
 
 }  // namespace tofsmith

@@ -130,7 +130,7 @@ void Decoder::Plan::write(PixelTile& tile, const DecodedView& planes) const {
       for (int i = 0; i < tile.pixels; ++i)
         if (tile.raw[k * pixels_per_tile + i] >= *table.saturation_level)
           saturated[static_cast<std::size_t>(i)] = 1;
-  if (outputs.needs_rivals(planes)) matcher.find_rivals(tile);
+  if (outputs.needs_second_peaks(planes)) matcher.find_second_peaks(tile);
   if (outputs.needs_electrons(planes))
     for (int k = 0; k < model.measurements(); ++k)
       for (int i = 0; i < tile.pixels; ++i) {
@@ -141,7 +141,7 @@ void Decoder::Plan::write(PixelTile& tile, const DecodedView& planes) const {
                  .plane = tile.plane,
                  .electrons = tile.raw,
                  .bin = tile.bin,
-                 .rival = tile.rival,
+                 .second_peak = tile.second_peak,
                  .saturated = saturated.data()},
                 planes);
 }

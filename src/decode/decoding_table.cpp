@@ -47,10 +47,10 @@ std::optional<BrokenRule> correlation_not_decodable(const DecodingTable& table) 
   const AmbientProjection projection(table);
   if (table.measurements() < 3 && !projection.ambient.isZero(0.0))
     return broken("measurements", table.measurements(),
-                  "must be >= 3: signal, ambient light and depth are unknown");
+                  "must be >= 3: there are three unknowns, signal, ambient light and depth");
   if (projection.rank() < 2)
     return broken("rank of correlation without ambient light", projection.rank(),
-                  "must be >= 2, or depth cannot be told from signal");
+                  "must be >= 2, or depth cannot be separated from signal");
   return std::nullopt;
 }
 

@@ -17,6 +17,6 @@ struct ExpectedNoise {
 };
 
 /// Keeps a noiseless table from dividing by zero [e^2].
-inline constexpr double least_variance_e2 = 1e-12;
+inline constexpr double min_variance_e2 = 1e-12;
 
 }  // namespace tofsmith

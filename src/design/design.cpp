@@ -33,7 +33,7 @@ struct Task {
 
 /// Of a search that found nothing.
 BrokenRule no_code_found(const std::string& name) {
-  return broken(name, "none", "no code on the camera's chip clock tells all depths apart");
+  return broken(name, "none", "no code on the camera's chip clock distinguishes all depths");
 }
 
 bool includes(DesignMethod asked, DesignMethod method) {
@@ -138,7 +138,7 @@ std::vector<Candidate> run_or_load(const Task& task, const DesignStore& store,
 
 }  // namespace
 
-std::string_view to_string(Termination termination) { return termination_words.of(termination); }
+std::string_view name_of(Termination termination) { return termination_words.of(termination); }
 
 std::string_view name_of(DesignMethod method) {
   switch (method) {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <map>
 
-#include "design/exposure_sweep.hpp"
+#include "design/suggested_exposures.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
@@ -31,7 +31,7 @@ std::string what_it_beats(const Camera& camera, const DesignResult& result, Dept
   const Candidate& winner = result.winner();
   std::string text =
       fmt::format("{} measures depth best{}: {} of {} error", winner.code.name(),
-                  camera.operating.multipath ? " where second returns count too" : "",
+                  camera.operating.multipath ? " where multipath counts too" : "",
                   length_mm(winner.error.of(kind).geometric_mean_m), kind_name(kind));
   const Candidate* baseline = best_baseline(result, kind);
   if (!baseline) return text + ".";
@@ -67,8 +67,9 @@ std::string why_so_many_exposures(const Camera& camera, const DesignResult& resu
                                ? std::string("no band limit")
                                : fmt::format("a band that passes {} harmonics", harmonics);
   return fmt::format(
-      "With {} and {} per exposure it takes {} exposure{}{}: more of them, or more taps, tell more "
-      "depths apart, but share the same light and add read noise.",
+      "With {} and {} per exposure it takes {} exposure{}{}: more of them, or more taps, resolve "
+      "more "
+      "depths, but share the same light and add read noise.",
       band, winner.taps == 1 ? std::string("one tap") : fmt::format("{} taps", winner.taps),
       winner.exposures, winner.exposures == 1 ? "" : "s",
       others.empty() ? std::string() : fmt::format(" ({})", others));
@@ -99,19 +100,19 @@ std::string what_limits_it(const DesignResult& result) {
       describe(*most));
 }
 
-std::string behind_second_returns(const SecondReturns& returns, const DesignResult& result,
-                                  DepthErrorKind kind) {
+std::string behind_multipath(const OperatingMultipath& returns, const DesignResult& result,
+                             DepthErrorKind kind) {
   const Candidate& winner = result.winner();
-  const Estimate its = winner.second_returns->single_path.of(kind);
+  const Estimate its = winner.multipath->single_path.of(kind);
   std::string text = fmt::format(
       "Where a second return of ratio {} to {} comes {} to {} m behind, its {} error is {}",
       returns.ratio[0], returns.ratio[1], returns.delay_m[0], returns.delay_m[1], kind_name(kind),
       length_mm(its));
   if (const Candidate* baseline = best_baseline(result, kind)) {
-    const Estimate other = baseline->second_returns->single_path.of(kind);
+    const Estimate other = baseline->multipath->single_path.of(kind);
     text += fmt::format(", that of {} {}", baseline->code.name(), length_mm(other));
   }
-  if (const auto& two_return = winner.second_returns->two_return)
+  if (const auto& two_return = winner.multipath->two_return)
     return text + fmt::format("; decoded as two returns it is {} (circular).",
                               length_mm(two_return->circular_m));
   return text + "; it holds too few independent means to be decoded as two returns.";
@@ -125,7 +126,7 @@ std::vector<std::string> explain(const Camera& camera, const DesignResult& resul
                                      why_so_many_exposures(camera, result, kind),
                                      what_limits_it(result)};
   if (camera.operating.multipath)
-    sentences.push_back(behind_second_returns(*camera.operating.multipath, result, kind));
+    sentences.push_back(behind_multipath(*camera.operating.multipath, result, kind));
   return sentences;
 }
 

@@ -27,7 +27,7 @@ void leave_out_what_tells_no_depth(const Camera& camera, DesignResult& result) {
     return true;
   });
   require(!result.candidates.empty(), "target", fmt::format("{}", fmt::join(result.left_out, "; ")),
-          "nothing that was designed can tell depth, and the camera can play no baseline");
+          "no designed code measures depth, and no baseline is playable on the camera");
 }
 
 /// Judges a candidate with random numbers it was not chosen by, at its best origin if asked.
@@ -47,8 +47,8 @@ void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& 
   }
   candidate.error = evaluate(candidate.code, camera, judging, parts[1]);
   if (later)
-    candidate.second_returns =
-        second_return_report(candidate.code, camera, *later, judging, parts[2]);
+    candidate.multipath =
+        operating_multipath_report(candidate.code, camera, *later, judging, parts[2]);
   candidate.code.provenance.depth_error_m =
       geometric_mean_error_m(candidate.error, camera.operating.error);
 }
@@ -56,22 +56,22 @@ void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& 
 /// Judges it again on the camera's perturbations.
 void judge_robustness(Candidate& candidate, const Camera& camera, const DesignOptions& options,
                       const Progress& progress) {
-  constexpr int most_trials = 4000;  // ratios, with the same trials on every camera
+  constexpr int max_trials = 4000;  // ratios, with the same trials on every camera
   candidate.robustness =
       robustness(candidate.code, camera,
-                 {.trials = std::min(options.trials, most_trials), .seed = options.seed}, progress);
+                 {.trials = std::min(options.trials, max_trials), .seed = options.seed}, progress);
 }
 
 /// What all candidates are ranked by [m], with what two-return decoding copes with badly counting
 /// as so many times worse.
 std::vector<double> ranking_of(const std::vector<Candidate>& candidates, const Camera& camera,
                                const DesignOptions& options) {
-  TwoReturnLimit two_returns(options.optimize.most_two_return_loss);
+  TwoReturnLimit two_returns(options.optimize.max_two_return_loss);
   for (const Candidate& c : candidates)
-    if (!c.is_designed()) two_returns.add_given(c.second_returns);
+    if (!c.is_designed()) two_returns.add_given(c.multipath);
   std::vector<double> ranking_m;
   for (const Candidate& c : candidates)
-    ranking_m.push_back(two_returns.excess(c.second_returns) * ranking_error_m(c, camera, options));
+    ranking_m.push_back(two_returns.excess(c.multipath) * ranking_error_m(c, camera, options));
   return ranking_m;
 }
 
@@ -111,7 +111,7 @@ void require_judgeable(const Camera& camera, const DesignOptions& options) {
   options.validate();
   camera.validate();
   require(!options.robust || !camera.operating.multipath, "DesignOptions::robust", "true",
-          "must be false where operating.multipath says to reckon with second returns");
+          "must be false with operating.multipath");
 }
 
 std::optional<std::string> why_no_depth(const CodeSet& code, const Camera& camera) {
@@ -145,9 +145,9 @@ double ranking_error_m(const Candidate& candidate, const Camera& camera,
     return candidate.robustness->worst_calibrated_m().value;
   const DepthErrorKind kind = camera.operating.error;
   const double error_m = geometric_mean_error_m(candidate.error, kind);
-  if (!camera.operating.multipath || !candidate.second_returns) return error_m;
+  if (!camera.operating.multipath || !candidate.multipath) return error_m;
   return camera.operating.multipath->weighed(error_m,
-                                             candidate.second_returns->single_path.of(kind).value);
+                                             candidate.multipath->single_path.of(kind).value);
 }
 
 DesignResult judge(const Camera& camera, std::vector<Candidate> candidates,

@@ -18,7 +18,7 @@ std::uint64_t search_seed(const DesignOptions& options);
 bool rotates(const Camera& camera, const DesignOptions& options);
 
 /// Why no depth can be told with a code: the camera cannot play it, or what it measures does not
-/// tell depths apart. None: depth can be told.
+/// tell depths apart. None: depth can be decoded.
 std::optional<std::string> why_no_depth(const CodeSet& code, const Camera& camera);
 
 /// @throws std::invalid_argument for bad options or camera, or if together they ask for codes that

@@ -17,18 +17,18 @@ namespace {
 constexpr std::string_view known_families =
     "Siglent SDG1000X, SDG2000X, SDG6000X; Keysight 33500, 33600; Tektronix AFG3000";
 
-GeneratorModel siglent(std::string name, double rate_hz, double most_hz, double true_arb_hz,
+GeneratorModel siglent(std::string name, double rate_hz, double max_hz, double true_arb_hz,
                        int points) {
   return {.name = std::move(name),
           .vendor = "Siglent Technologies",
           .family = GeneratorFamily::siglent_x,
           .sample_rate_hz = rate_hz,
-          .most_repetition_hz = most_hz,
+          .max_repetition_hz = max_hz,
           .true_arb_rate_hz = true_arb_hz,
-          .least_points = 8,
-          .most_points = points,
-          .least_vpp = 0.002,
-          .most_vpp = 10.0};
+          .min_points = 8,
+          .max_points = points,
+          .min_vpp = 0.002,
+          .max_vpp = 10.0};
 }
 
 GeneratorModel keysight(std::string name, int channels, double rate_hz, int least, int points) {
@@ -37,26 +37,26 @@ GeneratorModel keysight(std::string name, int channels, double rate_hz, int leas
           .family = GeneratorFamily::keysight_trueform,
           .channels = channels,
           .sample_rate_hz = rate_hz,
-          .least_points = least,
-          .most_points = points,
-          .least_vpp = 0.001,
-          .most_vpp = 10.0};
+          .min_points = least,
+          .max_points = points,
+          .min_vpp = 0.001,
+          .max_vpp = 10.0};
 }
 
-GeneratorModel tektronix(std::string name, double rate_hz, double most_hz, double least_vpp,
-                         double most_vpp) {
+GeneratorModel tektronix(std::string name, double rate_hz, double max_hz, double min_vpp,
+                         double max_vpp) {
   const int channels = name.back() - '0';
   return {.name = std::move(name),
           .vendor = "TEKTRONIX",
           .family = GeneratorFamily::tektronix_afg3000,
           .channels = channels,
           .sample_rate_hz = rate_hz,
-          .most_repetition_hz = most_hz,
-          .least_points = 2,
-          .most_points = 131072,
+          .max_repetition_hz = max_hz,
+          .min_points = 2,
+          .max_points = 131072,
           .memories = 4,
-          .least_vpp = least_vpp,
-          .most_vpp = most_vpp};
+          .min_vpp = min_vpp,
+          .max_vpp = max_vpp};
 }
 
 std::vector<GeneratorModel> make_models() {

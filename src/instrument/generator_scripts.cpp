@@ -22,7 +22,7 @@ void check_scpi_outputs(std::vector<UploadStep>& steps, const UploadRequest& req
 
 }  // namespace
 
-UploadStep told(std::string what, std::string message) {
+UploadStep message_step(std::string what, std::string message) {
   UploadStep step;
   step.what = std::move(what);
   step.message = std::move(message);
@@ -30,13 +30,13 @@ UploadStep told(std::string what, std::string message) {
 }
 
 UploadStep output_on(std::string message) {
-  UploadStep step = told("switch outputs on", std::move(message));
+  UploadStep step = message_step("switch outputs on", std::move(message));
   step.switches_on = true;
   return step;
 }
 
 UploadStep asked(std::string what, std::string message, std::vector<AnswerCheck> checks) {
-  UploadStep step = told(std::move(what), std::move(message));
+  UploadStep step = message_step(std::move(what), std::move(message));
   step.answer = UploadStep::Answer::line;
   step.checks = std::move(checks);
   return step;
@@ -70,7 +70,8 @@ double frequency_tolerance_hz(double frequency_hz, double relative) {
 }
 
 void ChannelSteps::set(std::string_view what, std::string message) {
-  steps_.push_back(told(fmt::format("set {} of channel {}", what, channel_), std::move(message)));
+  steps_.push_back(
+      message_step(fmt::format("set {} of channel {}", what, channel_), std::move(message)));
 }
 
 void ChannelSteps::ask(std::string message, std::vector<AnswerCheck> checks) {
@@ -87,9 +88,9 @@ std::vector<std::string> scpi_outputs_off(const UploadRequest& request) {
 
 void begin_scpi(std::vector<UploadStep>& steps, const UploadRequest& request) {
   for (const std::string& message : scpi_outputs_off(request))
-    steps.push_back(told("switch outputs off", message));
+    steps.push_back(message_step("switch outputs off", message));
   if (request.reset) {
-    steps.push_back(told("reset to defaults", "*RST"));
+    steps.push_back(message_step("reset to defaults", "*RST"));
     steps.back().more_s = request.patience_s;
   }
   check_scpi_outputs(steps, request, false);

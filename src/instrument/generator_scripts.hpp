@@ -21,7 +21,7 @@ std::vector<std::string> siglent_outputs_off(const UploadRequest& request);
 std::vector<std::string> scpi_outputs_off(const UploadRequest& request);
 
 /// A message without answer.
-UploadStep told(std::string what, std::string message);
+UploadStep message_step(std::string what, std::string message);
 /// The same, which switches an output on.
 UploadStep output_on(std::string message);
 /// A question and its answer's checks.
@@ -53,7 +53,7 @@ double scpi_load_ohm(double load_ohm);
 
 std::string text_of(std::span<const std::byte> bytes);
 
-/// How far a frequency that an instrument prints may be from what it was told [Hz].
+/// How far a frequency that an instrument reads back may be from the one requested [Hz].
 double frequency_tolerance_hz(double frequency_hz, double relative);
 inline constexpr double scpi_frequency_tolerance = 1e-6;  ///< relative; Keysight and Tektronix
 inline constexpr double volt_tolerance_v = 1e-3;

@@ -16,12 +16,12 @@ void add_keysight_waveform(std::vector<UploadStep>& steps, const UploadRequest& 
                            int channel, const QuantizedWaveform& waveform) {
   const std::string name = memory_name(waveform);
   UploadStep load =
-      told("load " + waveform.name, fmt::format("SOUR{}:DATA:ARB:DAC {},", channel, name));
+      message_step("load " + waveform.name, fmt::format("SOUR{}:DATA:ARB:DAC {},", channel, name));
   load.data = text_of(ieee488_block(keysight_dac_bytes(waveform)));
   load.more_s = request.patience_s;
   steps.push_back(std::move(load));
-  steps.push_back(
-      told("select " + waveform.name, fmt::format("SOUR{}:FUNC:ARB \"{}\"", channel, name)));
+  steps.push_back(message_step("select " + waveform.name,
+                               fmt::format("SOUR{}:FUNC:ARB \"{}\"", channel, name)));
   if (!request.read_back) {
     steps.push_back(asked(
         "count the points of " + waveform.name,
@@ -31,11 +31,12 @@ void add_keysight_waveform(std::vector<UploadStep>& steps, const UploadRequest& 
   }
   // Its memory of points cannot be read; a file made of it can.
   const std::string file = fmt::format("\"INT:\\{}.arb\"", name);
-  steps.push_back(told("save it to a file", fmt::format("MMEM:STOR:DATA{} {}", channel, file)));
+  steps.push_back(
+      message_step("save it to a file", fmt::format("MMEM:STOR:DATA{} {}", channel, file)));
   steps.back().more_s = request.patience_s;
-  UploadStep check = told("read back " + waveform.name, "MMEM:UPL? " + file);
+  UploadStep check = message_step("read back " + waveform.name, "MMEM:UPL? " + file);
   check.answer = UploadStep::Answer::block;
-  check.most_bytes = 4096 + 16 * waveform.codes.size();
+  check.max_bytes = 4096 + 16 * waveform.codes.size();
   check.problem = [codes = waveform.codes](const std::string& bytes) {
     std::vector<std::int32_t> found;
     for (const int point : parse_keysight_arb(bytes, "answer").points)
@@ -44,7 +45,7 @@ void add_keysight_waveform(std::vector<UploadStep>& steps, const UploadRequest& 
   };
   check.more_s = request.patience_s;
   steps.push_back(std::move(check));
-  steps.push_back(told("delete the file", "MMEM:DEL " + file));
+  steps.push_back(message_step("delete the file", "MMEM:DEL " + file));
 }
 
 void set_keysight_channel(std::vector<UploadStep>& steps, const UploadRequest& request,
@@ -89,17 +90,17 @@ void check_keysight_channel(std::vector<UploadStep>& steps, const UploadRequest&
 std::vector<UploadStep> keysight_steps(const UploadRequest& request) {
   std::vector<UploadStep> steps;
   begin_scpi(steps, request);
-  steps.push_back(told("send the high byte first", "FORM:BORD NORM"));
+  steps.push_back(message_step("send the high byte first", "FORM:BORD NORM"));
   for (const UploadChannel& channel : request.channels) {
-    steps.push_back(told(fmt::format("clear the memory of channel {}", channel.channel),
-                         fmt::format("SOUR{}:DATA:VOL:CLE", channel.channel)));
+    steps.push_back(message_step(fmt::format("clear the memory of channel {}", channel.channel),
+                                 fmt::format("SOUR{}:DATA:VOL:CLE", channel.channel)));
     for (const QuantizedWaveform& waveform : channel.stored)
       add_keysight_waveform(steps, request, channel.channel, waveform);
   }
   for (const UploadChannel& channel : request.channels)
     set_keysight_channel(steps, request, channel);
   if (request.channels.size() > 1)
-    steps.push_back(told("start both waveforms at once", "FUNC:ARB:SYNC"));
+    steps.push_back(message_step("start both waveforms at once", "FUNC:ARB:SYNC"));
   for (const UploadChannel& channel : request.channels)
     check_keysight_channel(steps, request, channel);
   end_scpi(steps, request);

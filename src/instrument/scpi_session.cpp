@@ -15,7 +15,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr std::size_t longest_line = 65536, longest_wave_header = 1000;
+constexpr std::size_t max_line = 65536, max_wave_header = 1000;
 constexpr double block_bytes_per_s = 100e3, wait_slice_s = 0.05;
 
 using SteadyClock = std::chrono::steady_clock;
@@ -112,7 +112,7 @@ std::string ScpiSession::read_line(double more_s) {
       while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
       return line;
     }
-    if (received_.size() > longest_line)
+    if (received_.size() > max_line)
       fail(fmt::format("found '{}'; expected a line of text", printable(received_)));
     if (!receive_more(seconds - seconds_since(start)))
       fail(received_.empty()
@@ -124,7 +124,7 @@ std::string ScpiSession::read_line(double more_s) {
   }
 }
 
-std::string ScpiSession::read_block(std::size_t most_bytes, double more_s) {
+std::string ScpiSession::read_block(std::size_t max_bytes, double more_s) {
   do {
     skip_line_ends();
     if (received_.empty()) fill(1, "a block of data", more_s);
@@ -142,21 +142,21 @@ std::string ScpiSession::read_block(std::size_t most_bytes, double more_s) {
   const char* const begin = received_.data() + 2;
   const auto [end, error] = std::from_chars(begin, begin + digits, length);
   if (error != std::errc() || end != begin + digits) no_block();
-  if (length > most_bytes)
-    fail(fmt::format("found a block of {} bytes; expected at most {}", length, most_bytes));
+  if (length > max_bytes)
+    fail(fmt::format("found a block of {} bytes; expected at most {}", length, max_bytes));
   fill(2 + digits + length, fmt::format("a block of {} bytes", length));
   received_.erase(0, 2 + digits);
   return take(length);
 }
 
-std::string ScpiSession::read_wave_data(std::size_t expected_bytes, std::size_t most_bytes) {
+std::string ScpiSession::read_wave_data(std::size_t expected_bytes, std::size_t max_bytes) {
   constexpr std::string_view mark = "WAVEDATA,", length_key = "LENGTH,";
   std::size_t at = 0;
   for (;;) {
     skip_line_ends();
-    at = received_.substr(0, longest_wave_header).find(mark);
+    at = received_.substr(0, max_wave_header).find(mark);
     if (at != std::string::npos) break;
-    if (received_.size() >= longest_wave_header || received_.find('\n') != std::string::npos)
+    if (received_.size() >= max_wave_header || received_.find('\n') != std::string::npos)
       fail(fmt::format("found '{}'; expected a header that ends with '{}'", printable(received_),
                        mark));
     fill(received_.size() + 1, "a waveform's header and data");
@@ -166,9 +166,9 @@ std::string ScpiSession::read_wave_data(std::size_t expected_bytes, std::size_t 
   if (const std::size_t key = header.find(length_key); key != std::string::npos) {
     const char* const begin = header.data() + key + length_key.size();
     const auto [end, error] = std::from_chars(begin, header.data() + header.size(), length);
-    if (error != std::errc() || length > most_bytes)
+    if (error != std::errc() || length > max_bytes)
       fail(fmt::format("found '{}'; expected a LENGTH of at most {} bytes", printable(header, 200),
-                       most_bytes));
+                       max_bytes));
     if (end != header.data() + header.size() && *end == 'K') length *= 1024;
   }
   const std::size_t whole = at + mark.size() + length;

@@ -40,17 +40,17 @@ void add_siglent_waveform(std::vector<UploadStep>& steps, const UploadRequest& r
   command.name = memory_name(waveform);
   const std::string message = wvdt_message(command, request.wave_header);
   const std::size_t data = message.find("WAVEDATA,") + 9;
-  UploadStep load = told("load " + waveform.name, message.substr(0, data));
+  UploadStep load = message_step("load " + waveform.name, message.substr(0, data));
   load.data = message.substr(data);
   load.line_end = false;  // it would be a point
   load.pause_s = request.settle_s;
   steps.push_back(std::move(load));
   steps.push_back(siglent_settled("wait until it has " + waveform.name, request.patience_s));
   if (!request.read_back) return;
-  UploadStep check = told("read back " + waveform.name, "WVDT? USER," + command.name);
+  UploadStep check = message_step("read back " + waveform.name, "WVDT? USER," + command.name);
   check.answer = UploadStep::Answer::wave_data;
   check.expected_bytes = 2 * command.points.size();
-  check.most_bytes = 2 * command.points.size() + 65536;
+  check.max_bytes = 2 * command.points.size() + 65536;
   check.problem = [points = command.points, name = command.name](const std::string& bytes) {
     const WvdtCommand found = parse_wvdt(std::as_bytes(std::span(bytes)), x_points, "answer");
     if (found.name.substr(0, found.name.find('.')) != name)
@@ -132,9 +132,9 @@ std::vector<UploadStep> siglent_steps(const GeneratorModel& model, const UploadR
   std::vector<UploadStep> steps;
   const bool has_rate = model.true_arb_rate_hz > 0.0;
   for (const std::string& message : siglent_outputs_off(request))
-    steps.push_back(told("switch outputs off", message));
+    steps.push_back(message_step("switch outputs off", message));
   if (request.reset) {
-    steps.push_back(told("reset to defaults", "*RST"));
+    steps.push_back(message_step("reset to defaults", "*RST"));
     steps.push_back(siglent_settled("wait until it is reset", request.patience_s));
   }
   for (const UploadChannel& channel : request.channels)
@@ -146,7 +146,7 @@ std::vector<UploadStep> siglent_steps(const GeneratorModel& model, const UploadR
     set_siglent_channel(steps, request, channel, has_rate);
   if (request.channels.size() > 1)  // sources spell it in two ways; it keeps what it understands
     for (const char* spelling : {"MODE PHASE-LOCKED", "MODE PHASELOCKED"})
-      steps.push_back(told("lock the phases of the channels", spelling));
+      steps.push_back(message_step("lock the phases of the channels", spelling));
   for (const UploadChannel& channel : request.channels)
     check_siglent_channel(steps, request, channel, has_rate);
   if (request.channels.size() > 1)

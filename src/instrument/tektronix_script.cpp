@@ -36,27 +36,27 @@ int selected_memory(const UploadRequest& request, const UploadChannel& channel) 
 
 void load_user_memory(std::vector<UploadStep>& steps, const UserMemory& memory, double more_s) {
   const std::string& name = memory.waveform->name;
-  UploadStep load = told("load " + name, "TRAC:DATA EMEM,");
+  UploadStep load = message_step("load " + name, "TRAC:DATA EMEM,");
   load.data = text_of(ieee488_block(tektronix_afg_bytes(*memory.waveform)));
   load.more_s = more_s;
   steps.push_back(std::move(load));
-  steps.push_back(told(fmt::format("keep {} as user memory {}", name, memory.number),
-                       fmt::format("TRAC:COPY USER{},EMEM", memory.number)));
+  steps.push_back(message_step(fmt::format("keep {} as user memory {}", name, memory.number),
+                               fmt::format("TRAC:COPY USER{},EMEM", memory.number)));
   steps.back().more_s = more_s;
 }
 
 void check_user_memory(std::vector<UploadStep>& steps, const UserMemory& memory, bool read_back) {
   const std::string& name = memory.waveform->name;
   const auto points = static_cast<double>(memory.waveform->codes.size());
-  steps.push_back(told(fmt::format("fetch user memory {}", memory.number),
-                       fmt::format("TRAC:COPY EMEM,USER{}", memory.number)));
+  steps.push_back(message_step(fmt::format("fetch user memory {}", memory.number),
+                               fmt::format("TRAC:COPY EMEM,USER{}", memory.number)));
   steps.push_back(asked("count the points of " + name, "TRAC:POIN? EMEM",
                         {number_check(0, "points", "", points, 0.0)}));
   if (!read_back) return;
   const std::string wanted = text_of(tektronix_afg_bytes(*memory.waveform));
-  UploadStep check = told("read back " + name, "TRAC:DATA? EMEM");
+  UploadStep check = message_step("read back " + name, "TRAC:DATA? EMEM");
   check.answer = UploadStep::Answer::block;
-  check.most_bytes = wanted.size() + 65536;
+  check.max_bytes = wanted.size() + 65536;
   check.problem = [wanted](const std::string& bytes) {
     return bytes == wanted ? "" : points_problem(bytes, wanted) + " (bytes, two for a point)";
   };
@@ -111,7 +111,7 @@ std::vector<UploadStep> tektronix_steps(const UploadRequest& request) {
   for (const UserMemory& memory : memories) check_user_memory(steps, memory, request.read_back);
   for (const UploadChannel& channel : request.channels)
     set_tektronix_channel(steps, request, channel);
-  steps.push_back(told("start all channels at phase 0", "SOUR1:PHAS:INIT"));
+  steps.push_back(message_step("start all channels at phase 0", "SOUR1:PHAS:INIT"));
   for (const UploadChannel& channel : request.channels)
     check_tektronix_channel(steps, request, channel);
   end_scpi(steps, request);

@@ -14,7 +14,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int most_old_errors = 64;
+constexpr int max_old_errors = 64;
 
 /// "0,\"No error\"", "+0,..", "-222,\"Data out of range\""
 bool is_no_error(const std::string& answer) {
@@ -62,7 +62,7 @@ class Uploader {
   void forget_old_errors() {
     session_.send("*CLS\n");
     if (!script_.model.has_error_queue()) return;
-    for (int i = 0; i < most_old_errors; ++i) {
+    for (int i = 0; i < max_old_errors; ++i) {
       session_.send("SYST:ERR?\n");
       if (is_no_error(session_.read_line())) return;
     }
@@ -85,10 +85,10 @@ class Uploader {
         check_line(step, session_.read_line(step.more_s));
         break;
       case UploadStep::Answer::block:
-        check_data(step, session_.read_block(step.most_bytes, step.more_s));
+        check_data(step, session_.read_block(step.max_bytes, step.more_s));
         break;
       case UploadStep::Answer::wave_data:
-        check_data(step, session_.read_wave_data(step.expected_bytes, step.most_bytes));
+        check_data(step, session_.read_wave_data(step.expected_bytes, step.max_bytes));
         break;
     }
   }

@@ -19,32 +19,32 @@ void check_rate(const GeneratorModel& model, const UploadRequest& request,
                 const QuantizedWaveform& waveform) {
   const bool plays_every_point =
       request.true_arb || model.family == GeneratorFamily::keysight_trueform;
-  const double most_hz = request.true_arb ? model.true_arb_rate_hz : model.sample_rate_hz;
+  const double max_hz = request.true_arb ? model.true_arb_rate_hz : model.sample_rate_hz;
   if (plays_every_point)
-    require(waveform.sample_rate_hz <= most_hz * rounding, waveform.name + " sample_rate_hz",
+    require(waveform.sample_rate_hz <= max_hz * rounding, waveform.name + " sample_rate_hz",
             waveform.sample_rate_hz,
             fmt::format("must be at most {:g}, what {} plays: fewer --samples or a lower "
                         "frequency fit",
-                        most_hz, model.name));
-  if (model.most_repetition_hz > 0.0)
-    require(waveform.repetition_hz() <= model.most_repetition_hz * rounding,
+                        max_hz, model.name));
+  if (model.max_repetition_hz > 0.0)
+    require(waveform.repetition_hz() <= model.max_repetition_hz * rounding,
             waveform.name + " repetition_hz", waveform.repetition_hz(),
             fmt::format("must be at most {:g}, what {} repeats a table at: more --periods in a "
                         "table or a lower frequency fit",
-                        model.most_repetition_hz, model.name));
+                        model.max_repetition_hz, model.name));
 }
 
 void check_volts(const GeneratorModel& model, double load_ohm, const QuantizedWaveform& waveform) {
   const double gain = load_gain(load_ohm);
-  require(waveform.amplitude_vpp() >= model.least_vpp * gain / rounding &&
-              waveform.amplitude_vpp() <= model.most_vpp * gain * rounding,
+  require(waveform.amplitude_vpp() >= model.min_vpp * gain / rounding &&
+              waveform.amplitude_vpp() <= model.max_vpp * gain * rounding,
           waveform.name + " amplitude_vpp", waveform.amplitude_vpp(),
           fmt::format("must be in [{:g}, {:g}], what {} gives at a load of {:g} ohm",
-                      model.least_vpp * gain, model.most_vpp * gain, model.name, load_ohm));
+                      model.min_vpp * gain, model.max_vpp * gain, model.name, load_ohm));
   const double reach = std::max(std::abs(waveform.low_v), std::abs(waveform.high_v));
-  require(reach <= 0.5 * model.most_vpp * gain * rounding, waveform.name + " volts", reach,
+  require(reach <= 0.5 * model.max_vpp * gain * rounding, waveform.name + " volts", reach,
           fmt::format("must be at most {:g} from zero, what {} gives at a load of {:g} ohm",
-                      0.5 * model.most_vpp * gain, model.name, load_ohm));
+                      0.5 * model.max_vpp * gain, model.name, load_ohm));
 }
 
 void check_table(const GeneratorModel& model, const QuantizedWaveform& waveform) {
@@ -52,11 +52,11 @@ void check_table(const GeneratorModel& model, const QuantizedWaveform& waveform)
   const WaveformFormat& format = waveform_format(model.format());
   require(waveform.levels == format.levels, waveform.name + " levels", waveform.levels,
           fmt::format("must be the {} of {}", format.levels, format.name));
-  require(waveform.points() >= model.least_points && waveform.points() <= model.most_points,
+  require(waveform.points() >= model.min_points && waveform.points() <= model.max_points,
           waveform.name + " points", waveform.points(),
           fmt::format("must be in [{}, {}], what the memory of {} holds: other --samples or "
                       "--periods fit",
-                      model.least_points, model.most_points, model.name));
+                      model.min_points, model.max_points, model.name));
 }
 
 void check_channels(const GeneratorModel& model, const UploadRequest& request) {
@@ -80,11 +80,10 @@ void check_memory(const GeneratorModel& model, const UploadRequest& request) {
     std::int64_t points = 0;
     for (const QuantizedWaveform& waveform : channel.stored) points += waveform.points();
     if (model.family == GeneratorFamily::keysight_trueform)
-      require(points <= model.most_points, fmt::format("channel {} points", channel.channel),
-              points,
+      require(points <= model.max_points, fmt::format("channel {} points", channel.channel), points,
               fmt::format("must be at most {}, what the memory of {} holds: upload one exposure "
                           "at a time, or fewer --samples",
-                          model.most_points, model.name));
+                          model.max_points, model.name));
   }
   if (model.memories > 0)
     require(tables <= static_cast<std::size_t>(model.memories), "waveforms", tables,

@@ -22,7 +22,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr double least_wait_s = 1.0;
+constexpr double min_wait_s = 1.0;
 
 int milliseconds(double seconds) { return static_cast<int>(seconds * 1e3) + 1; }
 
@@ -71,11 +71,11 @@ class Vxi11Connection : public InstrumentConnection {
   Vxi11Connection& operator=(const Vxi11Connection&) = delete;
 
   void send(std::string_view message, double deadline_s) override {
-    if (message.size() > most_vxi11_bytes)
+    if (message.size() > max_vxi11_bytes)
       throw IoError(name_,
                     fmt::format("a message of {} bytes is too long for VXI-11 here; expected "
                                 "at most {}: use the raw socket (tcp://) or fewer points",
-                                message.size(), most_vxi11_bytes));
+                                message.size(), max_vxi11_bytes));
     const WithoutBrokenPipeSignal guard;
     const int sent = lxi_send(device_, message.data(), static_cast<int>(message.size()),
                               milliseconds(deadline_s));
@@ -89,7 +89,7 @@ class Vxi11Connection : public InstrumentConnection {
     std::string bytes(65536, '\0');
     const WithoutBrokenPipeSignal guard;
     const int got = lxi_receive(device_, bytes.data(), static_cast<int>(bytes.size()),
-                                milliseconds(std::max(deadline_s, least_wait_s)));
+                                milliseconds(std::max(deadline_s, min_wait_s)));
     bytes.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
     return bytes;
   }

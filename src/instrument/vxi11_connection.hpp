@@ -9,8 +9,8 @@
 
 namespace tofsmith {
 
-/// Messages over VXI-11: queries and writes of at most `most_vxi11_bytes`.
-inline constexpr std::size_t most_vxi11_bytes = 16384;
+/// Messages over VXI-11: queries and writes of at most `max_vxi11_bytes`.
+inline constexpr std::size_t max_vxi11_bytes = 16384;
 std::unique_ptr<InstrumentConnection> connect_vxi11(const InstrumentAddress& address,
                                                     double deadline_s);
 

@@ -24,7 +24,7 @@ SurfacePrecision surface_precision(const ReproduceContext& context) {
   if (!context.options.fast) return {.seed = context.options.seed};
   return {.standard_error = 0.1,
           .first_trials = 16000,
-          .most_trials = 16000,
+          .max_trials = 16000,
           .rotation_trials = 4000,
           .seed = context.options.seed};
 }
@@ -67,7 +67,7 @@ ErrorSurface measure_surface(const Contender& contender, const Camera& camera,
   // 2. Every light level, with as many trials as it needs.
   options.trials = precision.first_trials;
   options.target_standard_error = precision.standard_error;
-  options.most_trials = precision.most_trials;
+  options.max_trials = precision.max_trials;
   options.seed = precision.seed + 2;
   Camera judged = camera;
   judged.operating.error = DepthErrorKind::linear;

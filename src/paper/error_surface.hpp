@@ -21,10 +21,10 @@ struct Contender {
 
 /// How exactly a surface is measured.
 struct SurfacePrecision {
-  double standard_error = 0.02;           ///< of every value, relative, unless most_trials is less
-  std::int64_t first_trials = 8000;       ///< per light level, before more are found needed
-  std::int64_t most_trials = 50'000'000;  ///< per light level
-  std::int64_t rotation_trials = 20000;   ///< per light level, to find the best origin
+  double standard_error = 0.02;          ///< of every value, relative, unless max_trials is less
+  std::int64_t first_trials = 8000;      ///< per light level, before more are found needed
+  std::int64_t max_trials = 50'000'000;  ///< per light level
+  std::int64_t rotation_trials = 20000;  ///< per light level, to find the best origin
   std::uint64_t seed = 1;
 };
 

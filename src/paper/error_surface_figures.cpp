@@ -51,9 +51,9 @@ std::vector<Series> slices(const ErrorSurfaceGroup& group, const std::vector<std
 }
 
 std::string estimate_mm(const Estimate& e) {
-  const double doubt = 1e3 * e.standard_error;
-  return doubt < 1.0 ? fmt::format("{:.1f} ± {:.1g}", 1e3 * e.value, doubt)
-                     : fmt::format("{:.0f} ± {:.0f}", 1e3 * e.value, doubt);
+  const double uncertainty = 1e3 * e.standard_error;
+  return uncertainty < 1.0 ? fmt::format("{:.1f} ± {:.1g}", 1e3 * e.value, uncertainty)
+                           : fmt::format("{:.0f} ± {:.0f}", 1e3 * e.value, uncertainty);
 }
 
 }  // namespace

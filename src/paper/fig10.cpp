@@ -15,7 +15,7 @@
 #include "paper/range_emulation.hpp"
 #include "paper/scene_views.hpp"
 #include "report/shared/bar_figure.hpp"
-#include "report/shared/error_map.hpp"
+#include "report/shared/depth_error_scale.hpp"
 #include "report/shared/level_text.hpp"
 #include "tofsmith/report/figure.hpp"
 

@@ -340,7 +340,7 @@ Reproduction reproduce_fig2(const ReproduceContext& context, const Progress& pro
              .title = "Designed functions",
              .caption = fmt::format(
                  "The same target with p = {:g}, without a band limit (problem 6, above) and at "
-                 "{:g} f0 (problem 7, below). Thin: the input as told to the arms, binary. Thick: "
+                 "{:g} f0 (problem 7, below). Thin: the nominal input of the arms, binary. Thick: "
                  "the smoothed output that leaves them. Sharp corners of the target are lost "
                  "where the band ends.",
                  fig2_peak_factor, fig2_f_max_in_f0)},

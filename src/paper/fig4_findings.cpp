@@ -100,13 +100,13 @@ CheckedStatement factor_at_5_f0(const ErrorSurfaceGroup& panel) {
   const Eigen::MatrixXd ratio = sinusoid.linear_m.cwiseQuotient(ours.linear_m);
   const Eigen::MatrixXd circular = sinusoid.circular_m.cwiseQuotient(ours.circular_m);
   Eigen::Index inside = 0;
-  double most_signal_outside = 0.0;
+  double max_signal_outside = 0.0;
   for (Eigen::Index column = 0; column < ratio.cols(); ++column)
     for (Eigen::Index row = 0; row < ratio.rows(); ++row)
       if (ratio(row, column) >= 2.0 && ratio(row, column) <= 5.0)
         ++inside;
       else
-        most_signal_outside = ours.signal_e_per_s[static_cast<std::size_t>(column)];
+        max_signal_outside = ours.signal_e_per_s[static_cast<std::size_t>(column)];
   CheckedStatement finding{
       .verdict = inside == ratio.size()      ? Verdict::holds
                  : 2 * inside > ratio.size() ? Verdict::in_part
@@ -119,7 +119,7 @@ CheckedStatement factor_at_5_f0(const ErrorSurfaceGroup& panel) {
           ours.name, panel.title, linear.least, linear.most, linear.mean, inside, ratio.size(),
           inside == ratio.size()
               ? ""
-              : fmt::format(", outside at S = {} e/s and below", level_text(most_signal_outside)),
+              : fmt::format(", outside at S = {} e/s and below", level_text(max_signal_outside)),
           circular.minCoeff(), circular.maxCoeff(), multi.least, multi.most, multi.mean)};
   if (finding.verdict != Verdict::holds)
     finding.why =
@@ -282,8 +282,8 @@ Comparison compare(const ErrorSurface& ours, const ErrorSurface& theirs) {
       .least = ratio.minCoeff(), .most = ratio.maxCoeff(), .mean = geometric_mean(ratio)};
   for (Eigen::Index i = 0; i < ratio.size(); ++i) {
     const double gain = theirs.linear_m(i) - ours.linear_m(i);
-    const double doubt = 2.0 * std::hypot(theirs.linear_se_m(i), ours.linear_se_m(i));
-    ++(gain > doubt ? result.better : gain < -doubt ? result.worse : result.even);
+    const double threshold = 2.0 * std::hypot(theirs.linear_se_m(i), ours.linear_se_m(i));
+    ++(gain > threshold ? result.better : gain < -threshold ? result.worse : result.even);
   }
   return result;
 }

@@ -59,7 +59,7 @@ SurfacePrecision precision_for(bool drawn, const ReproduceContext& context) {
     return precision;
   }
   if (context.options.fast)
-    precision.first_trials = precision.most_trials = precision.rotation_trials = 2000;
+    precision.first_trials = precision.max_trials = precision.rotation_trials = 2000;
   return precision;
 }
 

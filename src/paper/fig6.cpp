@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera/shared/played_waveform.hpp"
+#include "camera/shared/arm_output.hpp"
 #include "paper/code_styles.hpp"
 #include "paper/data_tables.hpp"
 #include "paper/figures.hpp"
@@ -23,10 +23,10 @@ constexpr int measurements = 5;
 
 /// Largest change from one of 480 points of a period to the next, over the waveform's peak: 1 for
 /// an edge.
-double steepest_step(const Eigen::VectorXd& played, double peak) {
+double steepest_step(const Eigen::VectorXd& actual, double peak) {
   double steepest = 0.0;
-  for (Eigen::Index n = 0; n < played.size(); ++n)
-    steepest = std::max(steepest, std::abs(played[(n + 1) % played.size()] - played[n]));
+  for (Eigen::Index n = 0; n < actual.size(); ++n)
+    steepest = std::max(steepest, std::abs(actual[(n + 1) % actual.size()] - actual[n]));
   return steepest / peak;
 }
 
@@ -37,7 +37,7 @@ struct DesignedCode {
   double residual_share = 0.0;  // of the target's variation
   double coefficient = 0.0;     // between correlation function and target
   double contrast = 0.0;        // variation of the correlation function over the target's
-  double steepest = 0.0;        // of both played waveforms
+  double steepest = 0.0;        // of both waveforms behind the arms
 };
 
 DesignedCode design_code(const CorrelationTarget& target, const Camera& camera,
@@ -56,10 +56,10 @@ DesignedCode design_code(const CorrelationTarget& target, const Camera& camera,
   code.contrast = seen.norm() / wanted.norm();
   constexpr int points = 480;
   const double f0_hz = camera.fundamental_frequency_hz;
-  const Eigen::VectorXd m = played_waveform(code.pair.modulation, camera.light.impulse_response,
-                                            f0_hz, points),
-                        d = played_waveform(code.pair.demodulation, camera.sensor.impulse_response,
-                                            f0_hz, points);
+  const Eigen::VectorXd m = arm_output(code.pair.modulation, camera.light.impulse_response, f0_hz,
+                                       points),
+                        d = arm_output(code.pair.demodulation, camera.sensor.impulse_response,
+                                       f0_hz, points);
   code.steepest = std::max(steepest_step(m, code.pair.modulation.peak()),
                            steepest_step(d, code.pair.demodulation.peak()));
   return code;
@@ -163,10 +163,11 @@ Reproduction reproduce_fig6(const ReproduceContext& context, const Progress& pro
        {small_multiples(
             {.id = "codes",
              .title = "Inputs and outputs",
-             .caption = "Codes 1 and 3 of the Hamiltonian K = 5 set, redesigned for p = 15 and "
-                        "10 f0. Thin: what the arms are told, binary. Thick: what leaves them, "
-                        "smooth. The correlation function follows its target, with rounded "
-                        "corners."},
+             .caption =
+                 "Codes 1 and 3 of the Hamiltonian K = 5 set, redesigned for p = 15 and "
+                 "10 f0. Thin: the nominal input of the arms, binary. Thick: what leaves them, "
+                 "smooth. The correlation function follows its target, with rounded "
+                 "corners."},
             waveform_columns(), panels),
         table}}};
   result.files["codes.csv"] =

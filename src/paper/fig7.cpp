@@ -10,7 +10,7 @@
 #include "paper/figures.hpp"
 #include "paper/range_emulation.hpp"
 #include "paper/scene_views.hpp"
-#include "report/shared/error_map.hpp"
+#include "report/shared/depth_error_scale.hpp"
 #include "report/shared/level_text.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/mesh_file.hpp"

@@ -186,7 +186,7 @@ Reproduction reproduce_fig9(const ReproduceContext& context, const Progress& pro
         waveform_figure(
             {.id = "waveforms",
              .title = "Waveforms",
-             .caption = "As designed, as the generators play them, and as the arms leave "
+             .caption = "As designed, as the generators emit them, and as the arms leave "
                         "them."},
             codes[0], camera)}},
       {"Settings",

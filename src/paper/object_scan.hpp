@@ -16,7 +16,7 @@ namespace tofsmith {
 /// Errors beyond are outliers, as in the paper [m].
 inline constexpr double scan_outlier_m = 0.3;
 
-/// An object whose errors are told apart.
+/// An object whose errors are listed by themselves.
 struct ScannedObject {
   std::string name;
   bool sphere = false;         ///< else a plane

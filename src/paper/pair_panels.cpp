@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "camera/shared/played_waveform.hpp"
+#include "camera/shared/arm_output.hpp"
 #include "design/chips/shared/pair_model.hpp"
 #include "paper/data_tables.hpp"
 #include "report/shared/waveform_series.hpp"
@@ -78,10 +78,10 @@ void PairArrays::add(const WaveformPair& pair, const Camera& camera,
   const double f0_hz = camera.fundamental_frequency_hz;
   rows_["modulation"].push_back(pair.modulation.cell_averages(samples));
   rows_["demodulation"].push_back(pair.demodulation.cell_averages(samples));
-  rows_["modulation_played"].push_back(
-      played_waveform(pair.modulation, camera.light.impulse_response, f0_hz, samples));
-  rows_["demodulation_played"].push_back(
-      played_waveform(pair.demodulation, camera.sensor.impulse_response, f0_hz, samples));
+  rows_["modulation_output"].push_back(
+      arm_output(pair.modulation, camera.light.impulse_response, f0_hz, samples));
+  rows_["demodulation_output"].push_back(
+      arm_output(pair.demodulation, camera.sensor.impulse_response, f0_hz, samples));
   rows_["correlation"].push_back(correlation_table(pair, camera, samples));
   rows_["target"].push_back(target);
 }

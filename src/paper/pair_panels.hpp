@@ -26,7 +26,7 @@ double residual_rms(const WaveformPair& pair, const CorrelationTarget& target,
 /// half the period: drawings of different pairs can be compared. Sampled pairs stay.
 WaveformPair centred(const WaveformPair& pair);
 
-/// One row: what the arms are told and what leaves them, and the correlation function over the
+/// One row: nominal input and output of the arms, and the correlation function over the
 /// target, which is grey and dotted.
 PanelRow pair_row(std::string title, const WaveformPair& pair, const Camera& camera,
                   const Eigen::VectorXd& target, const LineStyle& style);
@@ -41,8 +41,8 @@ class PairArrays {
  public:
   /// Adds a row.
   void add(const WaveformPair& pair, const Camera& camera, const Eigen::VectorXd& target);
-  /// Stores PREFIX_modulation, _demodulation (rows, N; averages over cells, as told),
-  /// _modulation_played, _demodulation_played (what leaves the arms), _correlation and _target.
+  /// Stores PREFIX_modulation, _demodulation (rows, N; averages over cells, nominal),
+  /// _modulation_output, _demodulation_output (output of the arms), _correlation and _target.
   void store(Reproduction& result, const std::string& prefix) const;
 
  private:

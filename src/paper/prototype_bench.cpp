@@ -24,13 +24,13 @@ const PrototypeSetting& setting() {
   return value;
 }
 
-std::vector<std::string> played_row(const CodeSet& code, const Camera& camera) {
+std::vector<std::string> actual_row(const CodeSet& code, const Camera& camera) {
   double edge_move_s = 0.0, duty_change = 0.0;
   int points = 0;
   for (const GeneratorReport& report : generator_report(code, camera)) {
     points = report.points_per_period;
     edge_move_s = std::max(edge_move_s, report.largest_edge_move_s.value_or(0.0));
-    duty_change = std::max(duty_change, std::abs(report.duty_played - report.duty_told));
+    duty_change = std::max(duty_change, std::abs(report.duty_actual - report.duty_nominal));
   }
   return {code.name(),
           fmt::format("{}", code.exposures()),
@@ -54,7 +54,7 @@ OperatingPoint PrototypeBench::light(double optical_density) {
 }
 
 Section PrototypeBench::section(const std::string& scan) const {
-  Table played{.id = "played",
+  Table actual{.id = "actual",
                .caption =
                    "What the generators make of each code: peak over average power, points per "
                    "period, and how far edges and duties move at most.",
@@ -64,7 +64,7 @@ Section PrototypeBench::section(const std::string& scan) const {
                            {"points", true},
                            {"edge move (ns)", true},
                            {"duty change (%)", true}}};
-  for (const CodeSet& code : codes) played.rows.push_back(played_row(code, camera));
+  for (const CodeSet& code : codes) actual.rows.push_back(actual_row(code, camera));
   return {"The scan",
           {Paragraph{scan},
            KeyValueList{
@@ -80,7 +80,7 @@ Section PrototypeBench::section(const std::string& scan) const {
                 {"ambient light", fmt::format("A = {} e/s", level_text(bench_ambient_e_per_s))},
                 {"generators", "500 MS/s, 14 bits, 150 MHz, one on each arm"},
                 {"exposure", "300 ms per estimate in all; read noise 20 e per measurement"}}},
-           std::move(played)}};
+           std::move(actual)}};
 }
 
 PrototypeBench prototype_bench(const ReproduceContext& context, const Progress& progress) {

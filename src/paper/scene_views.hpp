@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/scene/scene_image.hpp"

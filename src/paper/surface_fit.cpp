@@ -46,8 +46,8 @@ std::optional<Plane> plane_through(const Points& points) {
 /// Gauss-Newton on the orthogonal distances.
 Sphere refined(Sphere sphere, const Points& points) {
   const auto count = static_cast<Eigen::Index>(points.size());
-  constexpr int most_steps = 30;
-  for (int step = 0; step < most_steps; ++step) {
+  constexpr int max_steps = 30;
+  for (int step = 0; step < max_steps; ++step) {
     Eigen::MatrixXd jacobian(count, 4);
     Eigen::VectorXd residual(count);
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -143,8 +143,8 @@ SurfaceFit<Surface> fit(const Points& given, std::size_t minimal, Through&& thro
   require(surface.has_value(), "points", points.size(), degenerate_rule);
 
   Points kept;
-  constexpr int most_rounds = 50;  // it takes 3 to 10
-  for (int round = 0; round < most_rounds; ++round) {
+  constexpr int max_rounds = 50;  // it takes 3 to 10
+  for (int round = 0; round < max_rounds; ++round) {
     const std::vector<double> distances = distances_to(*surface, points);
     double extent = 0.0;
     for (const Eigen::Vector3d& p : points) extent = std::max(extent, p.norm());

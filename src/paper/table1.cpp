@@ -80,7 +80,7 @@ Reproduction reproduce_table1(const ReproduceContext& context, const Progress& p
 
   // 2. What the generators make of the codes.
   const Camera camera = prototype_camera();
-  Table played{.id = "played",
+  Table actual{.id = "actual",
                .caption =
                    "What 500 MS/s and 14 bits change: the farthest that a switching time moves, "
                    "and the circular depth error (geometric mean over the camera's light levels) "
@@ -97,7 +97,7 @@ Reproduction reproduce_table1(const ReproduceContext& context, const Progress& p
   std::vector<std::string> spoiled;
   double worst_of_others = 1.0;
   for (const CodeSet& code : codes) {
-    const Progress part = measuring[played.rows.size()];
+    const Progress part = measuring[actual.rows.size()];
     report(part, 0.0, "table1: " + code.name());
     const double cost = cost_of_generators(
         code, camera, {.trials = context.pick(40000, 2000), .seed = context.options.seed}, part);
@@ -105,7 +105,7 @@ Reproduction reproduce_table1(const ReproduceContext& context, const Progress& p
       spoiled.push_back(fmt::format("{} by {:.0f} %", code.name(), 100 * (cost - 1)));
     else
       worst_of_others = std::max(worst_of_others, cost);
-    played.rows.push_back({code.name(),
+    actual.rows.push_back({code.name(),
                            fmt::format("{:.3g}", largest_edge_move_s(code, camera) * 1e9),
                            fmt::format("x {:.3f}", cost)});
   }
@@ -138,12 +138,12 @@ Reproduction reproduce_table1(const ReproduceContext& context, const Progress& p
             "and 1 - d. Use a camera with `tofsmith evaluate hamiltonian-k4 --camera "
             "prototype.toml`, or the first by its name, `--camera prototype`."},
         camera_description(camera)}},
-      {"What the generators really play",
-       {played,
-        waveform_figure({.id = "waveforms",
-                         .title = "hamiltonian-k4 on the bench",
-                         .caption = "As told, as played from 100 points, and as 150 MHz leave it."},
-                        build_family("hamiltonian-k4", camera), camera)}}};
+      {"What the generators actually emit",
+       {actual, waveform_figure(
+                    {.id = "waveforms",
+                     .title = "hamiltonian-k4 on the bench",
+                     .caption = "Nominal, actual from 100 points, and behind a band of 150 MHz."},
+                    build_family("hamiltonian-k4", camera), camera)}}};
   return result;
 }
 

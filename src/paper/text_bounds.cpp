@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera/shared/played_waveform.hpp"
+#include "camera/shared/arm_output.hpp"
 #include "paper/data_tables.hpp"
 #include "paper/pair_panels.hpp"
 #include "paper/text_statements.hpp"
@@ -28,14 +28,14 @@ OutputBounds output_bounds(const CodeSet& code, const Camera& camera) {
   constexpr int points = 2400;
   constexpr double far = 1e300;
   OutputBounds bounds{far, -far, far, -far, 0.0};
-  const auto add = [&](const Waveform& told, const ImpulseResponse& response, double& low,
+  const auto add = [&](const Waveform& nominal, const ImpulseResponse& response, double& low,
                        double& high) {
-    const Eigen::VectorXd played =
-        played_waveform(told, response, camera.fundamental_frequency_hz, points);
-    low = std::min(low, played.minCoeff());
-    high = std::max(high, played.maxCoeff());
+    const Eigen::VectorXd actual =
+        arm_output(nominal, response, camera.fundamental_frequency_hz, points);
+    low = std::min(low, actual.minCoeff());
+    high = std::max(high, actual.maxCoeff());
     bounds.largest_change_of_mean =
-        std::max(bounds.largest_change_of_mean, std::abs(played.mean() - told.mean()));
+        std::max(bounds.largest_change_of_mean, std::abs(actual.mean() - nominal.mean()));
   };
   for (int i = 0; i < code.measurements(); ++i) {
     add(code.modulation_of(i), camera.light.impulse_response, bounds.modulation_low,
@@ -125,7 +125,7 @@ void add_zero_error_at_p30(Reproduction& result, const ReproduceContext& context
         {scheme, from, fmt::format("{:.1e}", residual), fmt::format("{:.3g}", peak)});
   };
 
-  // Hamiltonian codes are factorized; the search is not told the answer.
+  // Hamiltonian codes are factorized; the search does not know the answer.
   const ProgressParts parts(progress, 3);
   for (const std::size_t order : {3, 4, 5}) {
     const Progress part = parts[order - 3];

@@ -13,7 +13,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int most_iterations = 100;
+constexpr int max_counted_iterations = 100;
 
 /// The paper's range for one kind of camera.
 struct Claim {
@@ -43,7 +43,7 @@ std::vector<int> count_iterations(const Claim& claim, const Rule& rule,
   FactorizeOptions options;
   options.seed = context.options.seed;
   options.random_starts = context.pick(20, 4);
-  options.max_iterations = most_iterations;
+  options.max_iterations = max_counted_iterations;
   options.objective_tolerance = rule.tolerance;
   options.feed_back_projection = rule.feedback;
   options.structured_starts = options.keep_naive = options.refine_edges = false;
@@ -72,9 +72,9 @@ double share_within(const std::vector<int>& counts, int low, int high) {
   return static_cast<double>(inside) / static_cast<double>(counts.size());
 }
 
-/// Share of the starts that took n iterations, n = 1 .. most_iterations.
+/// Share of the starts that took n iterations, n = 1 .. max_counted_iterations.
 std::vector<double> histogram(const std::vector<int>& counts) {
-  std::vector<double> shares(most_iterations, 0.0);
+  std::vector<double> shares(max_counted_iterations, 0.0);
   for (const int n : counts)
     shares[static_cast<std::size_t>(n - 1)] += 1.0 / static_cast<double>(counts.size());
   return shares;
@@ -117,7 +117,7 @@ void add_convergence(Reproduction& result, const ReproduceContext& context,
       Series curve{.name = fmt::format("{}, {}", c == 0 ? "no limit" : "band limit", rule.name),
                    .style = {colours[c], rule.dash}};
       double sum = 0.0;
-      for (int n = 1; n <= most_iterations; ++n) {
+      for (int n = 1; n <= max_counted_iterations; ++n) {
         sum += 100 * shares[static_cast<std::size_t>(n - 1)];
         curve.x.push_back(n);
         curve.y.push_back(sum);
@@ -166,7 +166,7 @@ void add_convergence(Reproduction& result, const ReproduceContext& context,
                          "Pairs of convex steps until the objective changes by less than 1e-4, "
                          "relative (or the projection is exact). The few beyond 30 are in "
                          "[[cumulative]]. At most {} are allowed.",
-                         most_iterations)},
+                         max_counted_iterations)},
                     bars, {.label = "iterations", .unit = "", .from_zero = true},
                     {.label = "starts", .unit = "%", .from_zero = true}),
         line_figure(

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "camera/shared/played_code.hpp"
+#include "camera/shared/actual_code.hpp"
 #include "report/shared/waveform_series.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/code/families.hpp"
@@ -66,7 +66,7 @@ Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camer
                   correlation = colours.style("correlation");
   const double frequency_hz = camera.fundamental_frequency_hz;
   const ForwardModel model(code, camera);
-  const PlayedCode played = played_code(code, camera);
+  const ActualCode actual = actual_code(code, camera);
   const Eigen::MatrixXd table = model.tap_correlation_table(curve_points);
   const double range_m = camera.range_m();
 
@@ -88,9 +88,9 @@ Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camer
         {.title = fmt::format("{}", i + 1),
          .panels = {
              arm_series(code.modulation_of(i),
-                        played.modulation[static_cast<std::size_t>(code.exposure_of(i))],
+                        actual.modulation[static_cast<std::size_t>(code.exposure_of(i))],
                         camera.light.impulse_response, frequency_hz, light),
-             arm_series(code.demodulation(i), played.demodulation[static_cast<std::size_t>(i)],
+             arm_series(code.demodulation(i), actual.demodulation[static_cast<std::size_t>(i)],
                         camera.sensor.impulse_response, frequency_hz, sensor),
              std::move(correlations)}});
   }

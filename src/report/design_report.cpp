@@ -32,15 +32,14 @@ struct Judged {
   double weighed_m;
 };
 
-std::vector<Judged> by_weighed_error(const SecondReturns& returns, const DesignResult& result,
+std::vector<Judged> by_weighed_error(const OperatingMultipath& returns, const DesignResult& result,
                                      DepthErrorKind kind) {
   std::vector<Judged> all;
   for (const Candidate& c : result.candidates) {
-    if (!c.second_returns) continue;
-    Judged judged{&c, c.error.of(kind).geometric_mean_m, c.second_returns->single_path.of(kind),
+    if (!c.multipath) continue;
+    Judged judged{&c, c.error.of(kind).geometric_mean_m, c.multipath->single_path.of(kind),
                   std::nullopt, 0.0};
-    if (c.second_returns->two_return)
-      judged.two_return_m = c.second_returns->two_return->circular_m;
+    if (c.multipath->two_return) judged.two_return_m = c.multipath->two_return->circular_m;
     judged.weighed_m = returns.weighed(judged.single_m.value, judged.behind_m.value);
     all.push_back(judged);
   }
@@ -48,10 +47,10 @@ std::vector<Judged> by_weighed_error(const SecondReturns& returns, const DesignR
   return all;
 }
 
-Table second_return_table(const SecondReturns& returns, const std::vector<Judged>& codes,
-                          const Candidate& winner, std::string_view kind) {
+Table operating_multipath_table(const OperatingMultipath& returns, const std::vector<Judged>& codes,
+                                const Candidate& winner, std::string_view kind) {
   Table table{
-      .id = "second-returns",
+      .id = "operating-multipath",
       .caption = fmt::format(
           "Geometric means over the operating points of the {} error of single returns (E1) and "
           "behind a second return of ratio {} to {}, {} to {} m late, decoded as single-path (E2); "
@@ -73,7 +72,7 @@ Table second_return_table(const SecondReturns& returns, const std::vector<Judged
   return table;
 }
 
-Figure second_return_bars(const std::vector<Judged>& codes) {
+Figure operating_multipath_bars(const std::vector<Judged>& codes) {
   ColourAssignment colours;
   BarSeries single{.name = "one return"}, behind{.name = "second return, single-path"},
       two{.name = "second return, as two"};
@@ -91,23 +90,23 @@ Figure second_return_bars(const std::vector<Judged>& codes) {
   }
   std::vector<BarSeries> series{std::move(single), std::move(behind), std::move(two)};
   for (BarSeries& bars : series) bars.style = colours.style(bars.name);
-  return bar_figure({.id = "second-return-errors",
-                     .title = "Depth error without and behind second returns",
+  return bar_figure({.id = "operating-multipath-errors",
+                     .title = "Depth error without and with multipath",
                      .caption = "What a second return adds to the error of each code, and what "
                                 "two-return decoding takes away again; no bar where a code cannot "
                                 "be decoded so."},
                     names, series, {.label = "depth error", .unit = "mm", .from_zero = true});
 }
 
-/// The candidates' errors without and behind second returns, decoded as single-path and as two
+/// The candidates' errors without and with multipath, decoded as single-path and as two
 /// returns, in the order of what they were chosen by.
-Section second_return_section(const SecondReturns& returns, const DesignResult& result,
-                              DepthErrorKind kind) {
+Section operating_multipath_section(const OperatingMultipath& returns, const DesignResult& result,
+                                    DepthErrorKind kind) {
   const std::vector<Judged> codes = by_weighed_error(returns, result, kind);
   return {"Second returns",
-          {second_return_table(returns, codes, result.winner(),
-                               kind == DepthErrorKind::linear ? "linear" : "circular"),
-           second_return_bars(codes)}};
+          {operating_multipath_table(returns, codes, result.winner(),
+                                     kind == DepthErrorKind::linear ? "linear" : "circular"),
+           operating_multipath_bars(codes)}};
 }
 
 /// Residuals against iterations of every measurement that was designed.
@@ -200,10 +199,10 @@ KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
   numbers.entries.push_back(
       {kind == DepthErrorKind::linear ? "linear depth error" : "circular depth error",
        fmt::format("{:.1f} mm", 1e3 * geometric_mean_error_m(winner.error, kind))});
-  if (winner.second_returns)
+  if (winner.multipath)
     numbers.entries.push_back(
-        {"behind second returns",
-         fmt::format("{:.1f} mm", 1e3 * winner.second_returns->single_path.of(kind).value)});
+        {"with multipath",
+         fmt::format("{:.1f} mm", 1e3 * winner.multipath->single_path.of(kind).value)});
   for (const char* baseline : {"sinusoid-k4", "square-k4"})
     if (const std::string gain = gain_text(result, baseline, kind); !gain.empty())
       numbers.entries.push_back({fmt::format("better than {}", baseline), gain});
@@ -213,7 +212,7 @@ KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
 /// Why the winner won. A table, whose cells are set as they are: the names in them are users'.
 Table explanation(const DesignResult& result, DepthErrorKind kind) {
   constexpr std::array questions = {"What does it beat?", "Why so many exposures?",
-                                    "What limits it?", "And behind second returns?"};
+                                    "What limits it?", "And with multipath?"};
   Table table{.caption = "Why this code.", .columns = {{"question"}, {"answer"}}};
   if (kind == DepthErrorKind::linear)
     table.caption +=
@@ -239,10 +238,11 @@ Section waveform_section(const Camera& camera, const DesignResult& result) {
     section.blocks.push_back(waveform_figure(
         {.id = id,
          .title = fmt::format("Waveforms of {}", c.code.name()),
-         .caption = c.target.size() > 0
-                        ? "One row per measurement: what is played, what the camera's impulse "
-                          "responses leave of it, and the correlation function with its target."
-                        : "One row per measurement, over one period."},
+         .caption =
+             c.target.size() > 0
+                 ? "One row per measurement: the actual waveforms, what the camera's impulse "
+                   "responses leave of it, and the correlation function with its target."
+                 : "One row per measurement, over one period."},
         c.code, camera, rotated_target(c)));
   };
   add(result.winner());
@@ -360,7 +360,7 @@ Page design_report(const Camera& camera, const DesignResult& result,
   page.sections.push_back(depth_error_section(camera, compared, result.best));
   if (camera.operating.multipath)
     page.sections.push_back(
-        second_return_section(*camera.operating.multipath, result, camera.operating.error));
+        operating_multipath_section(*camera.operating.multipath, result, camera.operating.error));
   page.sections.push_back(gain_section(camera, result));
   std::vector<JudgedCode> perturbed;
   for (const Candidate& c : result.candidates)

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "report/shared/bar_figure.hpp"
-#include "report/shared/error_map.hpp"
+#include "report/shared/depth_error_scale.hpp"
 #include "report/shared/level_text.hpp"
 #include "tofsmith/report/figure.hpp"
 

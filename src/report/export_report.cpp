@@ -26,27 +26,27 @@ Table table_of(std::string id, std::string caption, std::vector<Row> rows) {
   return table;
 }
 
-/// Correlation functions as told, dotted, and as played.
-Figure correlation_figure(const CodeSet& code, const Camera& played) {
-  Camera ideal = played;
+/// Nominal correlation functions, dotted, and actual ones.
+Figure correlation_figure(const CodeSet& code, const Camera& actual) {
+  Camera ideal = actual;
   ideal.light.generator.reset();
   ideal.sensor.generator.reset();
-  const double range_m = played.range_m();
+  const double range_m = actual.range_m();
   const std::vector<double> depth_m = axis_values(curve_points, range_m);
-  const Eigen::MatrixXd told = ForwardModel(code, ideal).correlation_table(curve_points),
-                        now = ForwardModel(code, played).correlation_table(curve_points);
+  const Eigen::MatrixXd nominal = ForwardModel(code, ideal).correlation_table(curve_points),
+                        now = ForwardModel(code, actual).correlation_table(curve_points);
   std::vector<Series> series;
   ColourAssignment colours;
-  for (Eigen::Index k = 0; k < told.cols(); ++k) {
+  for (Eigen::Index k = 0; k < nominal.cols(); ++k) {
     const auto values = [](const auto& column) {
       return std::vector<double>(column.begin(), column.end());
     };
-    series.push_back({.name = fmt::format("{} as told", k + 1),
+    series.push_back({.name = fmt::format("{} nominal", k + 1),
                       .x = depth_m,
-                      .y = values(told.col(k)),
+                      .y = values(nominal.col(k)),
                       .period = range_m,
                       .style = reference_style()});
-    const std::string name = fmt::format("{} as played", k + 1);
+    const std::string name = fmt::format("{} actual", k + 1);
     series.push_back({.name = name,
                       .x = depth_m,
                       .y = values(now.col(k)),
@@ -55,7 +55,7 @@ Figure correlation_figure(const CodeSet& code, const Camera& played) {
   }
   return line_figure({.id = "correlation",
                       .title = "Correlation functions",
-                      .caption = "Dotted: of the waveforms as told. Lines: of those played."},
+                      .caption = "Dotted: nominal waveforms. Lines: actual ones."},
                      series, {.label = "depth", .unit = "m"}, {.label = "chi"});
 }
 
@@ -70,7 +70,7 @@ KeyValueList description(const WaveformExport& exported) {
   add("frequency", fmt::format("{:.9g} Hz", frequency_hz));
   for (const auto* generator : {&exported.light, &exported.sensor})
     add(generator == &exported.light ? "light" : "sensor",
-        fmt::format("table of {} points, {} played, {:.6g} MS/s, {} bits{}",
+        fmt::format("table of {} points, {} of them played, {:.6g} MS/s, {} bits{}",
                     generator->points_in_table(frequency_hz),
                     generator->points_per_period(frequency_hz), generator->sample_rate_hz / 1e6,
                     generator->amplitude_bits,
@@ -86,73 +86,74 @@ KeyValueList description(const WaveformExport& exported) {
 }  // namespace
 
 std::vector<Row> generator_report_rows(const std::vector<GeneratorReport>& reports) {
-  std::vector<Row> rows{{"generator", "points", "clock (MHz)", "duty told", "played", "mean told",
-                         "played", "edge move (ns)", "rms change"}};
+  std::vector<Row> rows{{"generator", "points", "clock (MHz)", "duty nominal", "actual",
+                         "mean nominal", "actual", "edge move (ns)", "rms change"}};
   for (const GeneratorReport& r : reports)
     rows.push_back(
         {fmt::format("{}{}", r.arm == Arm::light ? "m" : "d", r.index + 1),
          fmt::format("{}", r.points_per_period), fmt::format("{:.4g}", r.clock_hz / 1e6),
-         fmt::format("{:.4f}", r.duty_told), fmt::format("{:.4f}", r.duty_played),
-         fmt::format("{:.4f}", r.mean_told), fmt::format("{:.4f}", r.mean_played),
+         fmt::format("{:.4f}", r.duty_nominal), fmt::format("{:.4f}", r.duty_actual),
+         fmt::format("{:.4f}", r.mean_nominal), fmt::format("{:.4f}", r.mean_actual),
          r.largest_edge_move_s ? fmt::format("{:.3f}", *r.largest_edge_move_s * 1e9) : "-",
          fmt::format("{:.4g}", r.rms_difference)});
   return rows;
 }
 
 std::vector<Row> generator_loss_rows(const GeneratorLoss& loss, DepthErrorKind kind) {
-  std::vector<Row> rows{{"signal, ambient (e/s)", "told (mm)", "played (mm)", "x told",
-                         "uncalibrated (mm)", "x told"}};
-  const auto row = [](std::string name, const Estimate& told, const Estimate& played,
+  std::vector<Row> rows{{"signal, ambient (e/s)", "nominal (mm)", "actual (mm)", "x nominal",
+                         "uncalibrated (mm)", "x nominal"}};
+  const auto row = [](std::string name, const Estimate& nominal, const Estimate& actual,
                       const Estimate& uncalibrated) {
     return Row{std::move(name),
-               estimate_mm_text(told),
-               estimate_mm_text(played),
-               fmt::format("{:.3f}", played.value / told.value),
+               estimate_mm_text(nominal),
+               estimate_mm_text(actual),
+               fmt::format("{:.3f}", actual.value / nominal.value),
                estimate_mm_text(uncalibrated),
-               fmt::format("{:.3f}", uncalibrated.value / told.value)};
+               fmt::format("{:.3f}", uncalibrated.value / nominal.value)};
   };
   const auto error = kind == DepthErrorKind::linear ? &PointDepthError::linear_mde_m
                                                     : &PointDepthError::circular_mde_m;
-  for (std::size_t i = 0; i < loss.told.points.size(); ++i) {
-    const OperatingPoint& point = loss.told.points[i].point;
+  for (std::size_t i = 0; i < loss.nominal.points.size(); ++i) {
+    const OperatingPoint& point = loss.nominal.points[i].point;
     rows.push_back(row(fmt::format("{:.3g}, {:.3g}", point.signal_e_per_s, point.ambient_e_per_s),
-                       loss.told.points[i].*error, loss.played.points[i].*error,
+                       loss.nominal.points[i].*error, loss.actual.points[i].*error,
                        loss.uncalibrated.points[i].*error));
   }
-  rows.push_back(row("geometric mean", loss.told.of(kind).geometric_mean_m,
-                     loss.played.of(kind).geometric_mean_m,
+  rows.push_back(row("geometric mean", loss.nominal.of(kind).geometric_mean_m,
+                     loss.actual.of(kind).geometric_mean_m,
                      loss.uncalibrated.of(kind).geometric_mean_m));
   return rows;
 }
 
-Page export_page(const CodeSet& code, const Camera& played, const WaveformExport& exported,
+Page export_page(const CodeSet& code, const Camera& actual, const WaveformExport& exported,
                  const std::optional<GeneratorLoss>& loss, const std::string& command_line) {
-  const DepthErrorKind kind = played.operating.error;
+  const DepthErrorKind kind = actual.operating.error;
   Page page{.title = fmt::format("{} as {}", code.name(), exported.format.name),
-            .subtitle = fmt::format("what the hardware's limits change, on {}", played.name),
+            .subtitle = fmt::format("what the hardware's limits change, on {}", actual.name),
             .footer = "tofsmith " TOFSMITH_VERSION};
   page.sections.push_back({"Export", {description(exported)}});
   page.sections.push_back(
       {"Waveforms",
-       {table_of("generators", "Each waveform as told and as played, ahead of the arms' responses.",
-                 generator_report_rows(generator_report(code, played))),
+       {table_of("generators", "Each nominal and actual waveform, ahead of the arms' responses.",
+                 generator_report_rows(generator_report(code, actual))),
         waveform_figure({.id = "waveforms",
                          .title = "Waveforms and correlation functions",
-                         .caption = "One row per measurement, over one period. Dotted: as told, "
+                         .caption = "One row per measurement, over one period. Dotted: nominal, "
                                     "where the hardware changes it."},
-                        code, played),
-        correlation_figure(code, played)}});
+                        code, actual),
+        correlation_figure(code, actual)}});
   if (loss)
     page.sections.push_back(
         {"Depth error",
-         {table_of("loss",
-                   fmt::format(
-                       "{} depth error of the waveforms as told, as played by a decoder that knows "
-                       "what is played, and by one that believes what was told (uncalibrated). All "
-                       "see the same depths and the same noise, {} trials each, seed {}.",
-                       kind == DepthErrorKind::linear ? "Linear" : "Circular", loss->told.trials,
-                       loss->told.seed),
-                   generator_loss_rows(*loss, kind))}});
+         {table_of(
+             "loss",
+             fmt::format(
+                 "{} depth error of the nominal waveforms, of the actual ones with a decoder that "
+                 "knows them, and with one that assumes the nominal ones (uncalibrated). All "
+                 "see the same depths and the same noise, {} trials each, seed {}.",
+                 kind == DepthErrorKind::linear ? "Linear" : "Circular", loss->nominal.trials,
+                 loss->nominal.seed),
+             generator_loss_rows(*loss, kind))}});
   if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
   return page;
 }

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/shared/error_map.hpp"
+#include "report/shared/depth_error_scale.hpp"
 #include "report/shared/level_text.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
@@ -63,7 +63,7 @@ Figure error_figure(const MultipathScene& scene) {
   const double limit_mm = std::max(1.0, 2e3 * scene.all.error_m[0]);
   return image_figure({.id = "multipath-scene-error",
                        .title = "Depth error",
-                       .caption = "Decoded minus true depth; its mean where later light falls "
+                       .caption = "Decoded minus true depth; its mean where multipath light falls "
                                   "beside each name.",
                        .alt_text = "Maps of depth error"},
                       images, depth_error_scale(limit_mm));
@@ -72,9 +72,9 @@ Figure error_figure(const MultipathScene& scene) {
 Figure later_light_figure(const MultipathScene& scene) {
   return image_figure({.id = "multipath-scene-ratio",
                        .title = "Light that bounced",
-                       .caption = "All later light over the direct light of a pixel.",
-                       .alt_text = "Map of the share of later light"},
-                      {{.title = "later light", .pixels = scene.later_ratio}},
+                       .caption = "Multipath light of a pixel over its direct light.",
+                       .alt_text = "Map of the share of multipath light"},
+                      {{.title = "multipath light", .pixels = scene.multipath_ratio}},
                       {.label = "ratio", .map = ColourMap::cividis});
 }
 
@@ -168,7 +168,7 @@ Section multipath_scene_section(const MultipathScene& scene, const Camera& camer
   std::vector<Row> rows = multipath_scene_rows(scene);
   Table table{.id = "multipath-scene",
               .caption =
-                  "Errors by the mean delay of later light; 1: single-path decoding, 2: of "
+                  "Errors by the mean delay of multipath light; 1: single-path decoding, 2: of "
                   "two returns; gain: bias 1 over bias 2."};
   for (std::size_t i = 0; i < rows.front().size(); ++i)
     table.columns.push_back({rows.front()[i], i != 0});

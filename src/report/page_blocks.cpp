@@ -66,10 +66,10 @@ std::string html_of(const KeyNumbers& numbers, const Numbering&) {
 
 std::string html_of(const Table& table, const Numbering& numbering) {
   const auto cell = [&](const char* tag, std::size_t column, const std::string& content) {
-    constexpr std::size_t most_unbroken = 60;  // what is longer is a sentence
-    const char* kind = table.columns[column].numeric    ? " class=\"number\""
-                       : content.size() > most_unbroken ? " class=\"long\""
-                                                        : "";
+    constexpr std::size_t max_unbroken = 60;  // what is longer is a sentence
+    const char* kind = table.columns[column].numeric   ? " class=\"number\""
+                       : content.size() > max_unbroken ? " class=\"long\""
+                                                       : "";
     return fmt::format("<{}{}>{}</{}>", tag, kind, content, std::string_view(tag).substr(0, 2));
   };
   std::string header, rows;

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/shared/error_map.hpp"
+#include "report/shared/depth_error_scale.hpp"
 #include "report/shared/level_text.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/figure.hpp"

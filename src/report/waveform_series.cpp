@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/shared/waveform_series.hpp"
 
-#include "camera/shared/played_waveform.hpp"
+#include "camera/shared/arm_output.hpp"
 
 namespace tofsmith {
 
@@ -28,23 +28,24 @@ std::vector<double> axis_values(int points, double end) {
   return values;
 }
 
-std::vector<Series> arm_series(const Waveform& told, const Waveform& played,
+std::vector<Series> arm_series(const Waveform& nominal, const Waveform& actual,
                                const ImpulseResponse& response, double fundamental_frequency_hz,
                                const LineStyle& style) {
   const double period_ns = 1e9 / fundamental_frequency_hz;
   LineStyle faint = style;
   faint.width_px = 1.0;
   std::vector<Series> series;
-  if (!(told == played)) series.push_back(stepped("told", told, period_ns, reference_style()));
+  if (!(nominal == actual))
+    series.push_back(stepped("nominal", nominal, period_ns, reference_style()));
   if (response.kind == ImpulseResponse::Kind::none) {
-    series.push_back(stepped("played", played, period_ns, style));
+    series.push_back(stepped("actual", actual, period_ns, style));
     return series;
   }
-  series.push_back(stepped("played", played, period_ns, faint));
+  series.push_back(stepped("actual", actual, period_ns, faint));
   series.push_back(
       {.name = "after the impulse response",
        .x = axis_values(curve_points, period_ns),
-       .y = to_values(played_waveform(played, response, fundamental_frequency_hz, curve_points)),
+       .y = to_values(arm_output(actual, response, fundamental_frequency_hz, curve_points)),
        .period = period_ns,
        .style = style});
   return series;

@@ -21,7 +21,7 @@ namespace {
 constexpr double lift = 4e-5;
 /// What stands closer before a point, in units of the point's distance, does not shade it.
 constexpr double shadow_slack = 1e-5;
-constexpr double least_cosine = 1e-6;
+constexpr double min_cosine = 1e-6;
 
 /// Light of one direction.
 struct Bounce {
@@ -49,14 +49,14 @@ class BounceGatherer {
         caster_(scene.shapes, search_of),
         light_(scene.camera_to_world.translation()) {}
 
-  /// Later returns of a pixel, by increasing distance.
-  std::vector<LaterReturn> gather(int row, int column) const;
+  /// Multipath returns of a pixel, by increasing distance.
+  std::vector<MultipathReturn> gather(int row, int column) const;
 
  private:
   std::optional<SeenPoint> seen_point(int row, int column) const;
   std::vector<Bounce> bounces(const SeenPoint& seen, RandomStream& random) const;
   std::optional<Bounce> bounce(const SeenPoint& seen, const Ray& ray, const Hit& hit) const;
-  std::vector<LaterReturn> merged(const std::vector<Bounce>& bounces, float direct_m) const;
+  std::vector<MultipathReturn> merged(const std::vector<Bounce>& bounces, float direct_m) const;
 
   const StagedScene& scene_;
   const BounceOptions& options_;
@@ -69,7 +69,7 @@ std::optional<SeenPoint> BounceGatherer::seen_point(int row, int column) const {
   const std::optional<Hit> hit = caster_.nearest(ray);
   if (!hit || !std::isfinite(static_cast<float>(hit->distance_m))) return std::nullopt;
   const double along = hit->normal.dot(ray.direction);
-  if (std::abs(along) < least_cosine) return std::nullopt;
+  if (std::abs(along) < min_cosine) return std::nullopt;
   return SeenPoint{light_ + hit->distance_m * ray.direction,
                    along > 0.0 ? Eigen::Vector3d(-hit->normal) : hit->normal, hit->distance_m,
                    hit->distance_m * hit->distance_m / std::abs(along) / options_.rays};
@@ -114,9 +114,9 @@ std::vector<Bounce> BounceGatherer::bounces(const SeenPoint& seen, RandomStream&
   return result;
 }
 
-std::vector<LaterReturn> BounceGatherer::merged(const std::vector<Bounce>& bounces,
-                                                float direct_m) const {
-  std::vector<LaterReturn> returns;
+std::vector<MultipathReturn> BounceGatherer::merged(const std::vector<Bounce>& bounces,
+                                                    float direct_m) const {
+  std::vector<MultipathReturn> returns;
   double bin = -1.0;
   Bounce sum;  // of the bin; delays weighted by light
   const auto close_bin = [&] {
@@ -137,7 +137,7 @@ std::vector<LaterReturn> BounceGatherer::merged(const std::vector<Bounce>& bounc
   return returns;
 }
 
-std::vector<LaterReturn> BounceGatherer::gather(int row, int column) const {
+std::vector<MultipathReturn> BounceGatherer::gather(int row, int column) const {
   const std::optional<SeenPoint> seen = seen_point(row, column);
   if (!seen) return {};
   RandomStream random(options_.seed, static_cast<std::uint64_t>(row) *
@@ -160,22 +160,22 @@ void BounceOptions::validate() const {
   require(range_m > 0.0, "BounceOptions::range_m", range_m, "must be > 0");
 }
 
-LaterReturns bounced_light(const StagedScene& scene, const BounceOptions& options,
-                           const Progress& progress, const MeshSearchMaker& search_of) {
+MultipathReturns bounced_light(const StagedScene& scene, const BounceOptions& options,
+                               const Progress& progress, const MeshSearchMaker& search_of) {
   options.validate();
   scene.view.validate();
   require_rigid(scene.camera_to_world, "camera_to_world");
   const BounceGatherer gatherer(scene, options, search_of);
   const int height = scene.view.height, width = scene.view.width;
-  LaterReturns result(height, width);
-  std::vector<std::vector<LaterReturn>> of_row(static_cast<std::size_t>(width));
+  MultipathReturns result(height, width);
+  std::vector<std::vector<MultipathReturn>> of_row(static_cast<std::size_t>(width));
   SharedProgress shared(progress, static_cast<double>(height) * width, "gathering bounced light");
   for (int row = 0; row < height; ++row) {
     parallel_for(width, [&](std::int64_t column) {
       of_row[static_cast<std::size_t>(column)] = gatherer.gather(row, static_cast<int>(column));
       shared.add();
     });
-    for (const std::vector<LaterReturn>& of_pixel : of_row) result.append_pixel(of_pixel);
+    for (const std::vector<MultipathReturn>& of_pixel : of_row) result.append_pixel(of_pixel);
   }
   report(progress, 1.0, "gathering bounced light");
   return result;

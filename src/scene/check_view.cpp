@@ -23,7 +23,7 @@ namespace {
 using Place = std::tuple<double, double, double>;
 using Edge = std::pair<Place, Place>;
 
-/// Readers of meshes may give neighbours vertices of their own: edges are told by place.
+/// Readers of meshes may give neighbours vertices of their own: edges are identified by place.
 bool is_closed(const TriangleMesh& mesh) {
   const auto place = [&](std::uint32_t index) {
     const Eigen::Vector3d& at = mesh.vertices[index];

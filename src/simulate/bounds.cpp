@@ -33,7 +33,7 @@ void middles_and_slopes(const Eigen::MatrixXd& fine, Eigen::MatrixXd& middle,
   }
 }
 
-/// What is left of `vector` across `direction` (unit length or zero).
+/// Residual of `vector` across `direction` (unit length or zero).
 template <typename Vector, typename Direction>
 void take_out(Vector& vector, const Direction& direction) {
   vector -= vector.dot(direction) * direction;
@@ -127,10 +127,10 @@ Eigen::VectorXd CramerRaoBound::sigma_m(const OperatingPoint& point) const {
   Eigen::VectorXd sigma(signal_.rows());
   for (Eigen::Index j = 0; j < sigma.size(); ++j) {
     for (Eigen::Index i = 0; i < K; ++i) {
-      constexpr double least_e2 = 1e-9;  // a measurement without any light or noise tells nothing
-      const double variance = std::max(least_e2, point.signal_e_per_s * shot_signal_(j, i) +
-                                                     point.ambient_e_per_s * shot_ambient_[i] +
-                                                     constant_variance_e2_[i]);
+      constexpr double min_e2 = 1e-9;  // a measurement without any light or noise tells nothing
+      const double variance =
+          std::max(min_e2, point.signal_e_per_s * shot_signal_(j, i) +
+                               point.ambient_e_per_s * shot_ambient_[i] + constant_variance_e2_[i]);
       const double weight = 1.0 / std::sqrt(variance);
       by_depth[i] = weight * point.signal_e_per_s * signal_slope_(j, i);
       by_signal[i] = weight * signal_(j, i);
@@ -142,7 +142,7 @@ Eigen::VectorXd CramerRaoBound::sigma_m(const OperatingPoint& point) const {
       by_ambient[K + i] = variance_weight * shot_ambient_[i];
     }
     // [F^-1]_zz = 1 / |part of the depth column across the other two|^2: well defined even where
-    // ambient or signal cannot be told apart, and the matrix has no inverse.
+    // ambient light and signal cannot be separated, and the matrix has no inverse.
     const double depth_norm = by_depth.norm();
     normalize_or_drop(by_ambient, by_ambient.norm());
     const double signal_norm = by_signal.norm();

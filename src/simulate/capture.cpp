@@ -17,7 +17,7 @@ void SceneLight::validate(const SceneImage& scene, const Camera& camera) const {
   if (tail) tail->validate(range_m);
   if (transients.empty()) return;
   require(returns.empty() && !tail, "transients", transients.size(),
-          "must not stand beside later returns or a tail, which they hold already");
+          "must not stand beside multipath returns or a tail, which they hold already");
   require(
       transients.size() == 1 || transients.size() == scene.depth_m.size(), "transients",
       transients.size(),
@@ -32,9 +32,9 @@ RawFrames capture(const SceneImage& scene, const SceneLight& light, const CodeSe
                        scene.height(), scene.width(), options.frames, progress);
 }
 
-ReturnsTruth returns_truth(const SceneImage& scene, const SceneLight& light,
-                           const CaptureOptions& options) {
-  ReturnsTruth truth;
+MultipathTruth multipath_truth(const SceneImage& scene, const SceneLight& light,
+                               const CaptureOptions& options) {
+  MultipathTruth truth;
   truth.direct_m = scene.depth_m;
   truth.direct_e_per_s = {scene.height(), scene.width()};
   for (int row = 0; row < scene.height(); ++row)
@@ -42,7 +42,7 @@ ReturnsTruth returns_truth(const SceneImage& scene, const SceneLight& light,
       const double signal = pixel_signal_e_per_s(scene, row, column, options);
       truth.direct_e_per_s(row, column) = static_cast<float>(signal);
       if (!light.returns.empty())
-        for (const LaterReturn& later : light.returns.of(row, column)) {
+        for (const MultipathReturn& later : light.returns.of(row, column)) {
           truth.distance_m.push_back(later.distance_m);
           truth.signal_e_per_s.push_back(static_cast<float>(signal * later.ratio));
         }

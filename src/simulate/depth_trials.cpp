@@ -19,7 +19,7 @@ constexpr std::uint32_t albedo_block = 1u << 29;
 EvaluateOptions with_even_trials(EvaluateOptions options) {
   options.validate();
   options.trials += options.trials % 2;
-  options.most_trials += options.most_trials % 2;
+  options.max_trials += options.max_trials % 2;
   return options;
 }
 
@@ -43,9 +43,9 @@ DepthTrials::DepthTrials(const ForwardModel& model, const Camera& camera,
   for (const OperatingPoint& point : points_) {
     if (in_plane) plane_noise_.emplace_back(model_, *map, point.ambient_e_per_s);
     mean_floor_e_.push_back(in_floats(model_.mean_floor_e(point.ambient_e_per_s)));
-    most_e_.emplace_back();
+    max_e_.emplace_back();
     if (options_.clip_to_open_sensor)
-      most_e_.back() =
+      max_e_.back() =
           in_floats((point.signal_e_per_s + point.ambient_e_per_s) * model_.exposure_s());
   }
 }
@@ -132,7 +132,7 @@ void DepthTrials::draw_measurements(const TrialStreams& streams, std::size_t poi
       for (std::size_t i = 0; i < static_cast<std::size_t>(trials); ++i)
         row[i] = static_cast<float>(count[i]);
     }
-  read_out_taps(model_, most_e_[point], trials, tile);
+  read_out_taps(model_, max_e_[point], trials, tile);
 }
 
 }  // namespace tofsmith

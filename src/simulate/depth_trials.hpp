@@ -77,7 +77,7 @@ class DepthTrials {
   TrialModel model_;
   TrialDecoder decoder_;
   std::vector<PlaneNoise> plane_noise_;  // of every point; none where it is not exact
-  std::vector<std::vector<float>> mean_floor_e_, most_e_;  // of every point: (taps)
+  std::vector<std::vector<float>> mean_floor_e_, max_e_;  // of every point: (taps)
 };
 
 template <typename Sums, typename Add>

@@ -17,21 +17,21 @@ namespace {
 constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
 constexpr std::array delay_edges_m = {0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 1e9};
 
-/// Sums of later light, pixel by pixel.
-void sum_later_light(MultipathScene& scene, const LaterReturns& returns) {
-  scene.later_ratio = {scene.truth.height(), scene.truth.width(), no_value};
-  scene.later_delay_m = scene.later_ratio;
+/// Sums of multipath light, pixel by pixel.
+void sum_multipath_light(MultipathScene& scene, const MultipathReturns& returns) {
+  scene.multipath_ratio = {scene.truth.height(), scene.truth.width(), no_value};
+  scene.multipath_delay_m = scene.multipath_ratio;
   for (int row = 0; row < scene.truth.height(); ++row)
     for (int column = 0; column < scene.truth.width(); ++column) {
       const double direct_m = scene.truth.depth_m(row, column);
       if (!std::isfinite(direct_m)) continue;
       double ratio = 0.0, delay_m = 0.0;
-      for (const LaterReturn& later : returns.of(row, column)) {
+      for (const MultipathReturn& later : returns.of(row, column)) {
         ratio += later.ratio;
         delay_m += later.ratio * (later.distance_m - direct_m);
       }
-      scene.later_ratio(row, column) = static_cast<float>(ratio);
-      if (ratio > 0.0) scene.later_delay_m(row, column) = static_cast<float>(delay_m / ratio);
+      scene.multipath_ratio(row, column) = static_cast<float>(ratio);
+      if (ratio > 0.0) scene.multipath_delay_m(row, column) = static_cast<float>(delay_m / ratio);
     }
 }
 
@@ -41,11 +41,11 @@ DelayClass class_of(const MultipathScene& scene, double from_m, double to_m) {
   found.error_m = found.bias_m;
   std::vector<std::int64_t> decoded(scene.decodings.size(), 0);
   std::int64_t two = 0, unresolved = 0;
-  for (std::size_t i = 0; i < scene.later_delay_m.size(); ++i) {
-    const double delay_m = scene.later_delay_m.pixels[i];
+  for (std::size_t i = 0; i < scene.multipath_delay_m.size(); ++i) {
+    const double delay_m = scene.multipath_delay_m.pixels[i];
     if (!(delay_m >= from_m && delay_m < to_m)) continue;
     ++found.pixels;
-    found.ratio += scene.later_ratio.pixels[i];
+    found.ratio += scene.multipath_ratio.pixels[i];
     two += scene.returns.pixels[i] == ReturnStatus::two;
     unresolved += scene.returns.pixels[i] == ReturnStatus::unresolved;
     for (std::size_t d = 0; d < scene.decodings.size(); ++d) {
@@ -71,13 +71,13 @@ DelayClass class_of(const MultipathScene& scene, double from_m, double to_m) {
 }  // namespace
 
 MultipathScene multipath_scene(std::string name, const SceneImage& truth, const PinholeView& view,
-                               const LaterReturns& returns, const CodeSet& code,
+                               const MultipathReturns& returns, const CodeSet& code,
                                const Camera& camera, const CaptureOptions& light,
                                const MultipathOptions& decoding, const Progress& progress) {
   MultipathScene scene{
       .name = std::move(name), .code = code.name(), .truth = truth, .view = view, .light = light};
   returns.validate(truth, camera.range_m());
-  sum_later_light(scene, returns);
+  sum_multipath_light(scene, returns);
   const DecodingTable table = make_decoding_table(ForwardModel(code, camera), camera);
   const TwoReturnDecoder two_return(table, decoding);
   SceneLight scene_light;

@@ -30,7 +30,7 @@ PixelNoise::PixelNoise(const Sensor& sensor)
   if (!has_adc_) return;
   gain_e_per_dn_ = *sensor.gain_e_per_dn;
   black_level_dn_ = sensor.black_level_dn.value_or(0.0);
-  largest_dn_ = std::exp2(*sensor.adc_bits) - 1.0;
+  max_dn_ = std::exp2(*sensor.adc_bits) - 1.0;
 }
 
 double PixelNoise::draw_electrons(double expected_e, RandomStream& random) const {
@@ -43,7 +43,7 @@ double PixelNoise::draw_electrons(double expected_e, RandomStream& random) const
 double PixelNoise::convert(double electrons) const {
   const double kept = std::min(electrons, full_well_e_);
   if (!has_adc_) return kept;
-  return std::clamp(std::round(kept / gain_e_per_dn_ + black_level_dn_), 0.0, largest_dn_);
+  return std::clamp(std::round(kept / gain_e_per_dn_ + black_level_dn_), 0.0, max_dn_);
 }
 
 void PixelNoise::read_out(double* raw, int tap_values) const {

@@ -37,7 +37,7 @@ class PixelNoise {
   double read_noise_e_;
   double full_well_e_;  // infinite: none
   bool has_adc_;
-  double gain_e_per_dn_ = 1.0, black_level_dn_ = 0.0, largest_dn_ = 0.0;
+  double gain_e_per_dn_ = 1.0, black_level_dn_ = 0.0, max_dn_ = 0.0;
 };
 
 }  // namespace tofsmith

@@ -60,11 +60,11 @@ double PhotonInformation::of_impulses(double signal_e, double other_e) const {
 }
 
 double PhotonInformation::of_ripple(double signal_e, double other_e, double peak_factor) const {
-  const double least_e = other_e - signal_e * undershoot(peak_factor);
-  if (least_e <= 0.0) return infinity;
+  const double min_e = other_e - signal_e * undershoot(peak_factor);
+  if (min_e <= 0.0) return infinity;
   // Mean square less squared mean of what lies in [0, p] with mean mu <= 1: at most mu (p - mu).
   const double mean = std::min(1.0, 0.5 * peak_factor);
-  return signal_e * signal_e * largest_slope_power_ * mean * (peak_factor - mean) / least_e;
+  return signal_e * signal_e * largest_slope_power_ * mean * (peak_factor - mean) / min_e;
 }
 
 double PhotonInformation::largest(double signal_e, double other_e, double peak_factor) const {

@@ -12,9 +12,10 @@
 namespace tofsmith {
 namespace {
 
-std::vector<double> correlation_changes(const ForwardModel& told, const ForwardModel& played,
-                                        int points) {
-  const Eigen::MatrixXd a = told.correlation_table(points), b = played.correlation_table(points);
+std::vector<double> correlation_changes(const ForwardModel& nominal,
+                                        const ForwardModel& actual_code, int points) {
+  const Eigen::MatrixXd a = nominal.correlation_table(points),
+                        b = actual_code.correlation_table(points);
   std::vector<double> changes;
   for (Eigen::Index k = 0; k < a.cols(); ++k) {
     const double variation = (a.col(k).array() - a.col(k).mean()).matrix().norm();
@@ -50,11 +51,11 @@ class Judge {
 }  // namespace
 
 double GeneratorLoss::ratio(DepthErrorKind kind) const {
-  return played.of(kind).geometric_mean_m.value / told_m(kind).value;
+  return actual_code.of(kind).geometric_mean_m.value / nominal_m(kind).value;
 }
 
 double GeneratorLoss::uncalibrated_ratio(DepthErrorKind kind) const {
-  return uncalibrated.of(kind).geometric_mean_m.value / told_m(kind).value;
+  return uncalibrated.of(kind).geometric_mean_m.value / nominal_m(kind).value;
 }
 
 GeneratorLoss generator_loss(const CodeSet& code, const Camera& camera,
@@ -63,19 +64,19 @@ GeneratorLoss generator_loss(const CodeSet& code, const Camera& camera,
   Camera ideal = camera;
   ideal.light.generator.reset();
   ideal.sensor.generator.reset();
-  const ForwardModel told(code, ideal), played(code, camera);
-  const DecodingTable told_table = make_decoding_table(told, ideal),
-                      played_table = make_decoding_table(played, camera);
+  const ForwardModel nominal(code, ideal), actual_code(code, camera);
+  const DecodingTable nominal_table = make_decoding_table(nominal, ideal),
+                      actual_table = make_decoding_table(actual_code, camera);
   const ProgressParts parts(progress, 3);
   const auto error = [&](const ForwardModel& model, const DecodingTable& believed,
                          std::size_t part) {
     const DepthTrials trials(model, camera, options, believed);
     return trial_errors(trials, code, camera, options, parts[part]);
   };
-  return {.told = error(told, told_table, 0),
-          .played = error(played, played_table, 1),
-          .uncalibrated = error(played, told_table, 2),
-          .correlation_change = correlation_changes(told, played, 8 * camera.samples)};
+  return {.nominal = error(nominal, nominal_table, 0),
+          .actual_code = error(actual_code, actual_table, 1),
+          .uncalibrated = error(actual_code, nominal_table, 2),
+          .correlation_change = correlation_changes(nominal, actual_code, 8 * camera.samples)};
 }
 
 void RobustnessOptions::validate() const { check_fields(*this); }
@@ -108,13 +109,14 @@ RobustnessReport robustness(const CodeSet& code, const Camera& camera,
                           .perturbed = {}};
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const Camera& actual = cameras[i].camera;
-    const CodeSet played = perturbed_code(code, cameras[i]);
-    const ForwardModel model(played, actual);
+    const CodeSet actual_code = perturbed_code(code, cameras[i]);
+    const ForwardModel model(actual_code, actual);
     const DecodingTable table = make_decoding_table(model, actual);
     report.perturbed.push_back(
         {.name = cameras[i].name,
-         .calibrated_m = judge.error_m(played, actual, model, table, parts[2 * i + 1]),
-         .uncalibrated_m = judge.error_m(played, actual, model, said_table, parts[2 * i + 2])});
+         .calibrated_m = judge.error_m(actual_code, actual, model, table, parts[2 * i + 1]),
+         .uncalibrated_m =
+             judge.error_m(actual_code, actual, model, said_table, parts[2 * i + 2])});
   }
   return report;
 }

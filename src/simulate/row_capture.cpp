@@ -45,7 +45,7 @@ void RowCapture::add_all_light(int row, int column, std::vector<double>& work,
   }
   pixel_.add_light(depth_m, signal_e_per_s, work, light);
   if (!light_->returns.empty())
-    for (const LaterReturn& later : light_->returns.of(row, column))
+    for (const MultipathReturn& later : light_->returns.of(row, column))
       pixel_.add_light(later.distance_m, signal_e_per_s * later.ratio, work, light);
   if (tail_) pixel_.add_light(*tail_, depth_m, signal_e_per_s * light_->tail->ratio, work, light);
 }

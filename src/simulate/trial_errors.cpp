@@ -35,16 +35,16 @@ class AdaptiveTrials {
 
   /// Trials to add to those of a point that does not meet the target; 0 if it may have no more.
   std::int64_t more_trials(const ErrorSums& sums) const {
-    constexpr double margin = 1.1, least_growth = 1.5, most_growth = 16.0;
+    constexpr double margin = 1.1, min_growth = 1.5, max_growth = 16.0;
     const auto made = static_cast<double>(sums.trials);
     const Estimate error = judged(sums);
     const double miss = error.standard_error / (options_.target_standard_error * error.value);
     const double needed =
         std::max(margin * made * miss * miss, static_cast<double>(foreseen_trials(sums)));
     const double next = std::isfinite(needed)
-                            ? std::clamp(needed, least_growth * made, most_growth * made)
-                            : most_growth * made;
-    const auto total = std::min(static_cast<double>(options_.most_trials), next);
+                            ? std::clamp(needed, min_growth * made, max_growth * made)
+                            : max_growth * made;
+    const auto total = std::min(static_cast<double>(options_.max_trials), next);
     return std::max<std::int64_t>(0, static_cast<std::int64_t>((total - made) / 2)) * 2;
   }
 
@@ -64,7 +64,7 @@ class AdaptiveTrials {
     const double target = options_.target_standard_error;
     if (!(circular_m > 0.0)) return 0;
     return static_cast<std::int64_t>(
-        std::min(static_cast<double>(options_.most_trials),
+        std::min(static_cast<double>(options_.max_trials),
                  camera_.range_m() / (4 * circular_m * target * target)));
   }
 

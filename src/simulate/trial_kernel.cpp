@@ -97,7 +97,7 @@ HWY_INLINE void add_noise(int rank, Vector* c, const float* normals, Vector* q) 
 /// `Rank` 0 stands for any rank, known only when running.
 template <int Rank>
 void plane_of_rank(const TrialModel& model, const PlaneNoise& noise, int trials, TrialTile& tile) {
-  constexpr int most_rank = Rank > 0 ? Rank : max_measurements;
+  constexpr int max_rank = Rank > 0 ? Rank : max_measurements;
   const int rank = Rank > 0 ? Rank : noise.rank, pairs = rank * (rank + 1) / 2;
   const Floats d;
   const int taps = model.taps();
@@ -109,7 +109,7 @@ void plane_of_rank(const TrialModel& model, const PlaneNoise& noise, int trials,
     for (int i = 0; i < count; i += lanes_of(d)) {
       const Vector share = hn::Load(d, tile.share + first + i);
       const Vector signal = hn::Load(d, tile.signal + first + i);
-      Vector q[most_rank], c[most_rank * (most_rank + 1) / 2];
+      Vector q[max_rank], c[max_rank * (max_rank + 1) / 2];
       for (int j = 0; j < rank; ++j) q[j] = all(noise.offset[static_cast<std::size_t>(j)]);
       for (int p = 0; p < pairs; ++p) c[p] = all(noise.floor[static_cast<std::size_t>(p)]);
       const float* weight = noise.weight.data();
@@ -128,7 +128,7 @@ void plane_of_rank(const TrialModel& model, const PlaneNoise& noise, int trials,
         for (int j = 0; j < rank; ++j) q[j] = hn::MulAdd(mean, all(weight[j]), q[j]);
         for (int p = 0; p < pairs; ++p) c[p] = hn::MulAdd(shot, all(products[p]), c[p]);
       }
-      add_noise<most_rank>(rank, c, tile.normals + first + i, q);
+      add_noise<max_rank>(rank, c, tile.normals + first + i, q);
       for (int j = 0; j < rank; ++j)
         hn::Store(q[j], d, tile.pixels.plane + j * trials_per_tile + first + i);
     }
@@ -168,7 +168,7 @@ void expect(const TrialModel& model, const float* mean_floor_e, int trials, Tria
   }
 }
 
-void read_out(const TapConversion& sensor, const float* most_e, int taps, int trials,
+void read_out(const TapConversion& sensor, const float* max_e, int taps, int trials,
               TrialTile& tile) {
   const Floats d;
   const Vector zero = hn::Zero(d), sigma = all(sensor.read_noise_e);
@@ -181,12 +181,12 @@ void read_out(const TapConversion& sensor, const float* most_e, int taps, int tr
         deviation = hn::Mul(variance, reciprocal_sqrt(variance));
       }
       e = hn::MulAdd(deviation, hn::Load(d, tile.normals + k * trials_per_tile + i), e);
-      if (most_e) e = hn::Min(hn::Max(e, zero), all(most_e[k]));
+      if (max_e) e = hn::Min(hn::Max(e, zero), all(max_e[k]));
       e = hn::Min(e, all(sensor.full_well_e));
       if (sensor.has_adc) {
         const Vector dn =
             hn::Round(hn::MulAdd(e, all(sensor.dn_per_e), all(sensor.black_level_dn)));
-        e = hn::Min(hn::Max(dn, zero), all(sensor.largest_dn));
+        e = hn::Min(hn::Max(dn, zero), all(sensor.max_dn));
       }
       hn::Store(e, d, value);
     }
@@ -300,10 +300,10 @@ void expect_electrons(const TrialModel& model, const std::vector<float>& mean_fl
   HWY_DYNAMIC_DISPATCH(expect)(model, mean_floor_e.data(), trials, tile);
 }
 
-void read_out_taps(const TrialModel& model, const std::vector<float>& most_e, int trials,
+void read_out_taps(const TrialModel& model, const std::vector<float>& max_e, int trials,
                    TrialTile& tile) {
   HWY_DYNAMIC_DISPATCH(read_out)
-  (model.conversion(), most_e.empty() ? nullptr : most_e.data(), model.taps(), trials, tile);
+  (model.conversion(), max_e.empty() ? nullptr : max_e.data(), model.taps(), trials, tile);
 }
 
 TileSums sum_errors(const double* true_bin, const double* decoded_bin, int trials, double samples,

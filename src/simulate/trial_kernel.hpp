@@ -60,8 +60,8 @@ void expect_electrons(const TrialModel& model, const std::vector<float>& mean_fl
                       TrialTile& tile);
 
 /// Adds normal noise to expected electrons, or read noise to Poisson counts; clips and converts.
-/// @param most_e  electrons beyond [0, most_e] are clipped first (taps); empty: none are
-void read_out_taps(const TrialModel& model, const std::vector<float>& most_e, int trials,
+/// @param max_e  electrons beyond [0, max_e] are clipped first (taps); empty: none are
+void read_out_taps(const TrialModel& model, const std::vector<float>& max_e, int trials,
                    TrialTile& tile);
 
 /// Sums over a tile whose order follows depth.

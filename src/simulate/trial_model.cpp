@@ -25,7 +25,7 @@ TapConversion conversion_of(const Sensor& sensor) {
   if (c.has_adc) {
     c.dn_per_e = static_cast<float>(1.0 / *sensor.gain_e_per_dn);
     c.black_level_dn = static_cast<float>(sensor.black_level_dn.value_or(0.0));
-    c.largest_dn = static_cast<float>(std::exp2(*sensor.adc_bits) - 1.0);
+    c.max_dn = static_cast<float>(std::exp2(*sensor.adc_bits) - 1.0);
   }
   return c;
 }

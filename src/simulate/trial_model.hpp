@@ -20,7 +20,7 @@ struct TapConversion {
   float full_well_e = 0.0f;  ///< infinite: none
   float dn_per_e = 0.0f;
   float black_level_dn = 0.0f;
-  float largest_dn = 0.0f;
+  float max_dn = 0.0f;
 };
 
 /// Electrons of the taps of a pixel at any depth, laid out for trials: of every tap j

@@ -68,7 +68,7 @@ std::string item_key(std::string_view setup, const OperatingRange& light,
                                  options.trials, options.seed, setup);
   append(text, "outlier ", {&options.outlier_threshold_m, 1});
   if (options.target_standard_error > 0.0) {
-    const double goal[] = {options.target_standard_error, static_cast<double>(options.most_trials)};
+    const double goal[] = {options.target_standard_error, static_cast<double>(options.max_trials)};
     append(text, "target ", goal);
   }
   append(text, "signal ", light.signal_e_per_s);

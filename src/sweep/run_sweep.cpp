@@ -72,8 +72,8 @@ class OpenItems {
   std::size_t next_ = 0, settled_ = 0, count_ = 0;
 };
 
-/// Most items that a store is asked about, or told of, at a time.
-constexpr std::size_t most_asked_at_once = 4096;
+/// Most items that a store is asked about, or given, at a time.
+constexpr std::size_t max_asked_at_once = 4096;
 
 OpenItems::OpenItems(std::span<const std::string> keys, const SweepShard& shard)
     : keys_(keys), items_(key_order(keys)) {
@@ -85,9 +85,9 @@ OpenItems::OpenItems(std::span<const std::string> keys, const SweepShard& shard)
 void OpenItems::add_to(SweepStore& store, const WorkList& list, const Progress& progress) {
   // In the order of the keys, which is the store's own: then it grows at its end.
   const std::span<const std::int64_t> items(items_);
-  for (std::size_t begin = 0; begin < items.size(); begin += most_asked_at_once) {
+  for (std::size_t begin = 0; begin < items.size(); begin += max_asked_at_once) {
     report(progress, 0.0, fmt::format("adding items: {} of {}", begin, items.size()));
-    const auto part = items.subspan(begin, std::min(most_asked_at_once, items.size() - begin));
+    const auto part = items.subspan(begin, std::min(max_asked_at_once, items.size() - begin));
     store.add(keys_of(part), [&](std::size_t i) { return list.settings_json(part[i]); });
   }
   std::ranges::sort(items_);
@@ -98,7 +98,7 @@ std::vector<ClaimedItem> OpenItems::claim(SweepStore& store, std::size_t most) {
     items_ = std::exchange(taken_, {});
     next_ = 0;
   }
-  const std::size_t some = std::min(most_asked_at_once, items_.size() - next_);
+  const std::size_t some = std::min(max_asked_at_once, items_.size() - next_);
   const std::vector<std::string> keys = keys_of(std::span(items_).subspan(next_, some));
   std::vector<ClaimedItem> ours;
   for (const ClaimAnswer answer : store.claim(keys, most)) {
@@ -241,7 +241,7 @@ class Runner {
         options_(options),
         progress_(progress),
         open_(open),
-        crew_(list, ranks, ranks == nullptr || ranks->count() <= options.most_ranks_computing),
+        crew_(list, ranks, ranks == nullptr || ranks->count() <= options.max_ranks_computing),
         loads_(crew_.size()) {}
 
   SweepRun run() {
@@ -380,7 +380,7 @@ void SweepRunOptions::validate() const {
   shard.validate();
   require(lease_s > 0.0, "lease_s", lease_s, "must be > 0");
   require(batch_s > 0.0, "batch_s", batch_s, "must be > 0");
-  require(most_ranks_computing >= 1, "most_ranks_computing", most_ranks_computing, "must be >= 1");
+  require(max_ranks_computing >= 1, "max_ranks_computing", max_ranks_computing, "must be >= 1");
 }
 
 SweepRun run_sweep(const WorkList& list, std::span<const std::string> keys, SweepStore& store,

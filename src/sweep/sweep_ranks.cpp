@@ -22,7 +22,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds moment(1);
 /// After so long, a rank that was sent home and says nothing is lost.
-constexpr std::chrono::seconds longest_goodbye(5);
+constexpr std::chrono::seconds max_goodbye(5);
 /// Results are sent together if they come so soon after one another: rank 0 serves many.
 constexpr std::chrono::milliseconds gathering(100);
 
@@ -144,7 +144,7 @@ std::vector<ItemOutcome> SweepRanks::State::send_home() {
   for (int rank = 1; rank < world->size(); ++rank) send(rank, RankTag::go_home);
   int away = world->size() - 1;
   const Clock::time_point begin = Clock::now();
-  while ((away > 0 || !world->all_sent()) && Clock::now() - begin < longest_goodbye) {
+  while ((away > 0 || !world->all_sent()) && Clock::now() - begin < max_goodbye) {
     const std::optional<RankMessage> message = world->receive();
     if (!message) std::this_thread::sleep_for(moment);
     if (!message) continue;

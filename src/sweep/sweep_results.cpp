@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What is told of every point.
+/// What is reported of every point.
 struct PointColumn {
   const char* name;
   double (*of)(const PointDepthError&);
@@ -42,7 +42,7 @@ constexpr std::array<PointColumn, 10> point_columns = {{
 
 /// Axes with a column of their own: not those that every point tells, nor the code, which is named
 /// in full.
-std::vector<std::size_t> told_axes(const SweepSpec& spec) {
+std::vector<std::size_t> reported_axes(const SweepSpec& spec) {
   std::vector<std::size_t> axes;
   for (std::size_t a = 0; a < spec.axes.size(); ++a) {
     const std::string& key = spec.axes[a].key;
@@ -114,7 +114,7 @@ std::vector<SweepResult> sweep_results(const WorkList& list, std::span<const std
 
 std::string sweep_csv(const WorkList& list, std::span<const SweepResult> results) {
   const SweepSpec& spec = list.spec();
-  const std::vector<std::size_t> axes = told_axes(spec);
+  const std::vector<std::size_t> axes = reported_axes(spec);
   std::string text = "item,code";
   for (const std::size_t a : axes) text += fmt::format(",{}", csv_field(spec.axes[a].key));
   for (const PointColumn& column : point_columns) text += fmt::format(",{}", column.name);
@@ -165,7 +165,7 @@ NpzArrays sweep_arrays(const WorkList& list, std::span<const SweepResult> result
   });
   arrays["item"] = integers(items);
   add_texts(arrays, "code", codes);
-  for (const std::size_t a : told_axes(spec)) {
+  for (const std::size_t a : reported_axes(spec)) {
     const SweepAxis& axis = spec.axes[a];
     std::vector<double> numbers;
     std::vector<std::string> texts;

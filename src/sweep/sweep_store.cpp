@@ -19,7 +19,7 @@ namespace tofsmith {
 namespace {
 
 /// Most items that one transaction looks at or adds: others wait for its end.
-constexpr std::size_t most_at_once = 4096;
+constexpr std::size_t max_at_once = 4096;
 
 constexpr std::array<std::string_view, 4> status_words = {"pending", "running", "finished",
                                                           "failed"};
@@ -95,8 +95,8 @@ void SweepStore::add(std::span<const std::string> keys,
   SqliteStatement find = database.prepare("SELECT 1 FROM items WHERE key = ?");
   SqliteStatement insert = database.prepare(
       "INSERT OR IGNORE INTO items (key, settings, status) VALUES (?, ?, 'pending')");
-  for (std::size_t begin = 0; begin < keys.size(); begin += most_at_once) {
-    const std::size_t end = std::min(begin + most_at_once, keys.size());
+  for (std::size_t begin = 0; begin < keys.size(); begin += max_at_once) {
+    const std::size_t end = std::min(begin + max_at_once, keys.size());
     SqliteTransaction transaction(database);
     for (std::size_t i = begin; i < end; ++i) {
       const bool is_there = find.bind(1, keys[i]).step();
@@ -118,7 +118,7 @@ std::vector<ClaimAnswer> SweepStore::claim(std::span<const std::string> keys, st
   std::vector<ClaimAnswer> answers;
   std::set<std::string> living, gone;  // asked once per transaction
   std::size_t ours = 0;
-  for (const std::string& key : keys.first(std::min(keys.size(), most_at_once))) {
+  for (const std::string& key : keys.first(std::min(keys.size(), max_at_once))) {
     if (ours == most) break;
     if (!find.bind(1, key).step())
       throw IoError(state_->path.string(), fmt::format("holds no item {} any more", key));

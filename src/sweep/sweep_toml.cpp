@@ -185,7 +185,7 @@ constexpr std::array combinations = {CombineWord{"product", SweepCombination::pr
 
 void read_options(TableReader& table, EvaluateOptions& options) {
   auto trials = static_cast<std::uint64_t>(options.trials);
-  auto most_trials = static_cast<std::uint64_t>(options.most_trials);
+  auto max_trials = static_cast<std::uint64_t>(options.max_trials);
   std::array<MethodWord, all_decode_methods.size()> methods;
   std::ranges::transform(all_decode_methods, methods.begin(), [](DecodeMethod method) {
     return MethodWord{name_of(method), method};
@@ -194,11 +194,11 @@ void read_options(TableReader& table, EvaluateOptions& options) {
   table.choice("unwrap_weights", options.unwrap_weights, Choices<UnwrapWeights>(weights));
   table.value("trials", trials);
   table.value("target_standard_error", options.target_standard_error);
-  table.value("most_trials", most_trials);
+  table.value("max_trials", max_trials);
   table.value("seed", options.seed);
   table.value("outlier_threshold_m", options.outlier_threshold_m);
   options.trials = static_cast<std::int64_t>(trials);
-  options.most_trials = static_cast<std::int64_t>(most_trials);
+  options.max_trials = static_cast<std::int64_t>(max_trials);
   try {
     options.validate();
   } catch (const InvalidArgument& error) {

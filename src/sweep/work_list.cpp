@@ -142,7 +142,7 @@ class SetupCache {
     std::string key;
     OperatingRange light;
   };
-  static constexpr std::size_t most_kept = 100'000;
+  static constexpr std::size_t max_kept = 100'000;
   static constexpr std::array<std::string_view, 6> light_keys = {
       "signal_e_per_s", "ambient_e_per_s", "seed", "trials", "method", "unwrap_weights"};
 
@@ -154,7 +154,7 @@ class SetupCache {
     {
       const std::lock_guard lock(mutex_);
       if (const auto found = setups_.find(own); found != setups_.end()) return found->second;
-      if (setups_.size() >= most_kept) return std::nullopt;
+      if (setups_.size() >= max_kept) return std::nullopt;
     }
     const WorkItem built = list_.item(item);
     const Setup setup{setup_key(built.camera, built.code), built.camera.operating};

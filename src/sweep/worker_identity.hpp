@@ -13,7 +13,7 @@ struct WorkerIdentity {
   std::string host;     ///< the machine's name, for people
   std::string machine;  ///< names this boot of this machine and its process numbers; "" if unknown
   std::int64_t process = 0;
-  std::string process_start;  ///< tells it from a later process of the same number
+  std::string process_start;  ///< distinguishes it from a later process of the same number
 
   /// This process. Each call makes another worker.
   static WorkerIdentity own();

@@ -70,7 +70,7 @@ using Json = nlohmann::ordered_json;
 
 Json generator_json(const Generator& generator, double frequency_hz) {
   Json json = {{"table_points", generator.points_in_table(frequency_hz)},
-               {"played_points", generator.points_per_period(frequency_hz)},
+               {"actual_points", generator.points_per_period(frequency_hz)},
                {"sample_rate_hz", generator.sample_rate_hz},
                {"amplitude_bits", generator.amplitude_bits}};
   if (generator.edge_grid_s) json["edge_grid_s"] = *generator.edge_grid_s;

@@ -13,7 +13,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int most_bits = 64;
+constexpr int max_bits = 64;
 
 /// Bits of one output; all waveforms have as many.
 int bits_per_output(std::span<const QuantizedWaveform> waveforms) {
@@ -41,7 +41,7 @@ void put(PatternMemory& memory, const QuantizedWaveform& waveform, int exposure,
 }  // namespace
 
 void PatternMemory::validate() const {
-  require(word_bits >= 1 && word_bits <= most_bits, "word bits", word_bits, "must be in [1, 64]");
+  require(word_bits >= 1 && word_bits <= max_bits, "word bits", word_bits, "must be in [1, 64]");
   require(!words.empty(), "words", words.size(), "must be at least one");
   for (const PatternField& field : fields)
     require(field.first_bit >= 0 && field.bits >= 1 && field.first_bit + field.bits <= word_bits,
@@ -64,7 +64,7 @@ PatternMemory pattern_memory(std::span<const QuantizedWaveform> waveforms, int e
   PatternMemory memory;
   memory.comment = std::move(comment);
   memory.word_bits = (1 + taps) * bits + 1;
-  require(memory.word_bits <= most_bits, "word bits", memory.word_bits,
+  require(memory.word_bits <= max_bits, "word bits", memory.word_bits,
           "must be <= 64 (fewer bits per output make words shorter)");
   memory.points_per_exposure = light.front().points();
   memory.words.resize(static_cast<std::size_t>(exposures) *

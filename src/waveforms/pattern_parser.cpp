@@ -16,7 +16,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr std::size_t most_words = std::size_t{1} << 26;
+constexpr std::size_t max_words = std::size_t{1} << 26;
 
 std::string lower(std::string_view text) {
   std::string result(text);
@@ -188,9 +188,9 @@ PatternWords parse_mif(std::string_view text, const Reader& reader) {
   };
   const std::uint64_t depth = reader.number(setting("depth"), 10),
                       width = reader.number(setting("width"), 10);
-  if (depth < 1 || depth > most_words || width < 1 || width > 64)
+  if (depth < 1 || depth > max_words || width < 1 || width > 64)
     reader.fail(fmt::format("found DEPTH {} and WIDTH {}; expected 1 .. {} words of 1 .. 64 bits",
-                            depth, width, most_words));
+                            depth, width, max_words));
   MifContent content(reader, depth, mif_radix(setting("address_radix"), reader),
                      mif_radix(setting("data_radix"), reader));
   std::string_view rest =

@@ -136,12 +136,12 @@ void check_command(const WvdtCommand& command, int bits) {
 /// Where "WAVEDATA," ends, at most some hundred bytes from the beginning.
 std::size_t find_data(std::string_view text, std::string_view place) {
   constexpr std::string_view mark = "WAVEDATA,";
-  constexpr std::size_t longest_header = 1000;
-  const std::size_t at = text.substr(0, longest_header).find(mark);
+  constexpr std::size_t max_header_bytes = 1000;
+  const std::size_t at = text.substr(0, max_header_bytes).find(mark);
   if (at == std::string_view::npos)
     throw IoError(fmt::format("{}: byte 0", place),
                   fmt::format("found no '{}' in the first {} bytes; expected a WVDT command", mark,
-                              longest_header));
+                              max_header_bytes));
   return at + mark.size();
 }
 

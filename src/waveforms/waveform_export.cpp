@@ -7,7 +7,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "camera/shared/played_code.hpp"
+#include "camera/shared/actual_code.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -19,21 +19,21 @@ bool is_name(const std::string& name) {
                              [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
-constexpr int most_periods = 4096;
+constexpr int max_periods = 4096;
 
 void check_options(const ExportOptions& options, const WaveformFormat& format) {
   const std::string of_format = fmt::format(" ({})", format.name);
   if (options.bits)
-    require(*options.bits >= 1 && *options.bits <= format.most_bits, "bits", *options.bits,
-            fmt::format("must be in [1, {}]{}", format.most_bits, of_format));
+    require(*options.bits >= 1 && *options.bits <= format.max_bits, "bits", *options.bits,
+            fmt::format("must be in [1, {}]{}", format.max_bits, of_format));
   if (options.samples)
-    require(*options.samples >= 2 && *options.samples <= format.most_points, "samples",
+    require(*options.samples >= 2 && *options.samples <= format.max_points, "samples",
             *options.samples,
-            fmt::format("must be in [2, {}], what a memory of {} holds", format.most_points,
+            fmt::format("must be in [2, {}], what a memory of {} holds", format.max_points,
                         format.name));
   if (options.periods)
-    require(*options.periods >= 1 && *options.periods <= most_periods, "periods", *options.periods,
-            fmt::format("must be in [1, {}]", most_periods));
+    require(*options.periods >= 1 && *options.periods <= max_periods, "periods", *options.periods,
+            fmt::format("must be in [1, {}]", max_periods));
   if (options.sample_rate_hz)
     require(std::isfinite(*options.sample_rate_hz) && *options.sample_rate_hz > 0.0,
             "sample_rate_hz", *options.sample_rate_hz, "must be finite and > 0");
@@ -48,14 +48,14 @@ int table_points(const ExportOptions& options, const WaveformFormat& format,
                  const std::optional<Generator>& own, const Camera& camera) {
   const double frequency_hz = camera.fundamental_frequency_hz;
   if (options.samples) return *options.samples;
-  if (format.least_points == format.most_points) return format.most_points;
-  if (own && own->table_points) return std::min(*own->table_points, format.most_points);
+  if (format.min_points == format.max_points) return format.max_points;
+  if (own && own->table_points) return std::min(*own->table_points, format.max_points);
   int points = camera.samples;
   if (options.sample_rate_hz)
     points = Generator{.sample_rate_hz = *options.sample_rate_hz}.points_per_period(frequency_hz);
   else if (own)
     points = own->points_per_period(frequency_hz);
-  return std::min(points, format.most_points);
+  return std::min(points, format.max_points);
 }
 
 Generator generator_of(const ExportOptions& options, const WaveformFormat& format,
@@ -75,7 +75,7 @@ Generator generator_of(const ExportOptions& options, const WaveformFormat& forma
     generator.amplitude_bits = binary ? 1 : own ? std::min(own->amplitude_bits, 16) : 8;
   else
     generator.amplitude_bits =
-        own ? std::min(own->amplitude_bits, format.most_bits) : format.default_bits;
+        own ? std::min(own->amplitude_bits, format.max_bits) : format.default_bits;
   require(format.skips_points || points * frequency_hz <= generator.sample_rate_hz * (1 + 1e-9),
           "samples", points,
           fmt::format("must be at most {}, what {:.6g} points per second give at {:.6g} Hz ({} "
@@ -102,16 +102,16 @@ std::int32_t levels_of(const WaveformFormat& format, int variant, int bits) {
 int fitting_periods(const WaveformFormat& format, int points, const std::optional<int>& asked) {
   const auto fits = [&](int periods) {
     const std::int64_t all = std::int64_t{points} * periods;
-    return all >= format.least_points && all <= format.most_points && all % format.multiple_of == 0;
+    return all >= format.min_points && all <= format.max_points && all % format.multiple_of == 0;
   };
   const std::string rule = fmt::format("{} takes {} .. {} points in multiples of {}", format.name,
-                                       format.least_points, format.most_points, format.multiple_of);
+                                       format.min_points, format.max_points, format.multiple_of);
   if (asked) {
     require(fits(*asked), "points", std::int64_t{points} * *asked,
             fmt::format("{} (found {} per period in {} periods)", rule, points, *asked));
     return *asked;
   }
-  for (int periods = 1; periods <= most_periods; ++periods)
+  for (int periods = 1; periods <= max_periods; ++periods)
     if (fits(periods)) return periods;
   reject("points", fmt::format("{}", points),
          fmt::format("{}, and no number of periods gives that", rule));
@@ -124,10 +124,10 @@ struct ArmTables {
   std::int32_t levels;
   int periods;
 
-  QuantizedWaveform of(const Waveform& told, bool light) const {
-    const Waveform table = generator_table(told, generator, frequency_hz);
+  QuantizedWaveform of(const Waveform& nominal, bool light) const {
+    const Waveform table = generator_table(nominal, generator, frequency_hz);
     const double scale =
-        light ? average_power_scale(generated(told, generator, frequency_hz)) : 1.0;
+        light ? average_power_scale(generated(nominal, generator, frequency_hz)) : 1.0;
     const int points = generator.points_in_table(frequency_hz);
     QuantizedWaveform waveform = quantized(table, points, levels, scale);
     waveform.sample_rate_hz = points * frequency_hz;
@@ -213,29 +213,29 @@ Camera exporting_camera(const CodeSet& code, const Camera& camera, const ExportO
   if (format.content == FormatContent::words && !binary)
     require(options.bits.value_or(8) >= 2, "bits", 1,
             fmt::format("must be >= 2: not all waveforms of {} are binary", code.name()));
-  Camera played = camera;
-  played.light.generator = generator_of(options, format, camera.light.generator, binary, camera);
-  played.sensor.generator = generator_of(options, format, camera.sensor.generator, binary, camera);
-  played.validate();
-  return played;
+  Camera actual = camera;
+  actual.light.generator = generator_of(options, format, camera.light.generator, binary, camera);
+  actual.sensor.generator = generator_of(options, format, camera.sensor.generator, binary, camera);
+  actual.validate();
+  return actual;
 }
 
-WaveformExport export_waveforms(const CodeSet& code, const Camera& played,
+WaveformExport export_waveforms(const CodeSet& code, const Camera& actual,
                                 const ExportOptions& options) {
-  const double frequency_hz = played.fundamental_frequency_hz;
-  require(played.light.generator && played.sensor.generator, "generators", "none",
+  const double frequency_hz = actual.fundamental_frequency_hz;
+  require(actual.light.generator && actual.sensor.generator, "generators", "none",
           "must be there, as exporting_camera() makes them");
   WaveformExport exported;
   exported.format = waveform_format(options.format);
   exported.variant = variant_index(exported.format, options.variant);
   exported.code = code.name();
-  exported.camera = played.name;
+  exported.camera = actual.name;
   exported.fundamental_frequency_hz = frequency_hz;
   exported.exposures = code.exposures();
   exported.taps = code.taps();
-  exported.shared_taps = taps_share_a_generator(code, played);
-  exported.light = *played.light.generator;
-  exported.sensor = *played.sensor.generator;
+  exported.shared_taps = taps_share_a_generator(code, actual);
+  exported.light = *actual.light.generator;
+  exported.sensor = *actual.sensor.generator;
   const auto arm = [&](const Generator& generator) {
     return ArmTables{
         generator, frequency_hz,
@@ -243,7 +243,7 @@ WaveformExport export_waveforms(const CodeSet& code, const Camera& played,
         fitting_periods(exported.format, generator.points_in_table(frequency_hz), options.periods)};
   };
   const ArmTables light = arm(exported.light), sensor = arm(exported.sensor);
-  played_code(code, played);  // refuses pulses that vanish
+  actual_code(code, actual);  // refuses pulses that vanish
   for (int e = 0; e < code.exposures(); ++e) {
     exported.waveforms.push_back(light.of(code.modulation(e), true));
     exported.waveforms.back().name = fmt::format("modulation_{}", e + 1);

@@ -47,7 +47,7 @@ class Evaluate(CommandLineTest):
                 self.assertLessEqual(point["linear_se_m"], 0.05 * point["linear_mde_m"])
                 self.assertGreaterEqual(point["trials"], document["trials"])
         text = self.do("evaluate", "sinusoid-k4", *FAST, "--target-standard-error", "0.1%",
-                       "--most-trials", "3000")
+                       "--max-trials", "3000")
         self.assertIn("25 of 25 operating points stay short of a standard error of 0.1 %", text)
         self.assertIn("3000 trials", text)
 

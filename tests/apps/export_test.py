@@ -43,10 +43,10 @@ class Export(CommandLineTest):
         light = [word & 1 for word in words[:12]]
         self.assertEqual(sum(light), 2)  # a pulse of 1/6 of the period
         self.assertEqual([word >> 2 for word in words[:12]], [1] * 6 + [0] * 6)
-        self.assertAlmostEqual(document["depth_error"]["played_over_told"], 1.0, places=6)
+        self.assertAlmostEqual(document["depth_error"]["actual_over_nominal"], 1.0, places=6)
         self.assertEqual(len(document["generators"]), 6)
 
-    def test_limits_that_hurt_are_told(self):
+    def test_limits_that_hurt_are_reported(self):
         text = self.do("export", "hamiltonian-k5", "--format", "csv", "--rate", "360e6",
                        "--edge-grid", "2.777777777777778e-9", "-o", "w.csv", *QUICK)
         self.assertIn("edge move (ns)", text)
@@ -55,7 +55,7 @@ class Export(CommandLineTest):
         rows = np.genfromtxt(self.path("w.csv"), delimiter=",", names=True)
         self.assertEqual(len(rows), 24)
 
-    def test_a_rate_that_nothing_plays_is_told(self):
+    def test_a_rate_that_nothing_plays_is_reported(self):
         def notes(name, *more):
             return self.do_json("export", "hamiltonian-k3", "--format", name, "-o", "d", "--force",
                                 "--no-loss", *more)["notes"]

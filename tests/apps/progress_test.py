@@ -14,7 +14,7 @@ LONG = ("evaluate", "sinusoid-k4", "--trials", "1000000000")
 
 
 class ProgressLines(CommandLineTest):
-    def start_told(self, *arguments):
+    def start_watched(self, *arguments):
         return subprocess.Popen([command_line.TOOL, *arguments], cwd=self.directory,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
@@ -26,20 +26,20 @@ class ProgressLines(CommandLineTest):
 
     def test_long_work_tells_plain_lines(self):
         for json in ((), ("--json",)):
-            process = self.start_told(*LONG, *json)
+            process = self.start_watched(*LONG, *json)
             first = process.stderr.readline()
             self.assertRegex(first, rb"^tofsmith: evaluating \d+ %  \w[^\r\x1b]*\n$")
             self.assertEqual(self.end(process), b"tofsmith: interrupted; nothing was written\n")
 
     def test_short_work_tells_nothing(self):
-        process = self.start_told("evaluate", "sinusoid-k4", "--trials", "100", "--set",
+        process = self.start_watched("evaluate", "sinusoid-k4", "--trials", "100", "--set",
                                   "samples=60", "--json")
         self.assertEqual(process.communicate(timeout=60)[1], b"")
 
     def test_quiet_work_tells_nothing(self):
         for arguments in (("--quiet", *LONG), (*LONG, "--quiet")):
-            process = self.start_told(*arguments)
-            time.sleep(7)  # longer than work that is told of
+            process = self.start_watched(*arguments)
+            time.sleep(7)  # longer than work without progress
             self.assertEqual(self.end(process), b"tofsmith: interrupted; nothing was written\n")
 
 

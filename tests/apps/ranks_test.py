@@ -143,7 +143,7 @@ class Ranks(RanksTest):
                           "command goes on from there\n", error.decode())
             self.assertEqual(self.status(store)["running"], 0)
 
-    def test_what_fails_on_rank_0_is_told_once(self):
+    def test_what_fails_on_rank_0_is_reported_once(self):
         _, error = self.finish(self.ranks(3, "sweep", "none.toml", "--store", "s.sqlite"), code=1)
         self.assertEqual(error.count("tofsmith: none.toml: there is no such file"), 1)
 

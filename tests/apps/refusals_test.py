@@ -43,7 +43,7 @@ class Refusals(CommandLineTest):
                 (["evaluate", "sinusoid-k4", "--target-standard-error", "100%"],
                  ["found 100%", "[1e-05, 1)"]),
                 (["evaluate", "sinusoid-k4", "--target-standard-error", "0"], ["found 0"]),
-                (["evaluate", "sinusoid-k4", "--most-trials", "1"], ["--most-trials", "1"]),
+                (["evaluate", "sinusoid-k4", "--max-trials", "1"], ["--max-trials", "1"]),
                 (["evaluate", "sinusoid-k4", "-o", "x.xls"], ["x.xls", "expected .csv"]),
                 (["evaluate", "sinusoid-k4", "--threads", "-1"], ["--threads"]),
                 (["evaluate", "sinusoid-k4", "--method", "magic"], ["magic", "ml", "unwrap"]),

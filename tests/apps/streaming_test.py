@@ -183,8 +183,8 @@ class Streaming(CommandLineTest):
             self.refuse(self.arguments("--memory-mb", value), "--memory-mb",
                         f"found {value}; must be > 0", code=2)
 
-    def test_whole_numbers_without_an_adc_are_told(self):
-        told = "taken as electrons: no gain, black level or saturation is set"
+    def test_whole_numbers_without_an_adc_are_reported(self):
+        expected_note = "taken as electrons: no gain, black level or saturation is set"
 
         def notes_of(*more):
             """Without that of numbers that are clipped, here by u1 and by 12 bits."""
@@ -193,7 +193,7 @@ class Streaming(CommandLineTest):
 
         for dtype, expected in (("u1", True), ("u2", True), ("f4", False), ("f8", False)):
             self.record(dtype=dtype)
-            self.assertEqual([told in note for note in notes_of()], [True] if expected else [])
+            self.assertEqual([expected_note in note for note in notes_of()], [True] if expected else [])
         self.record()
         for setting in ("sensor.gain_e_per_dn=1", "sensor.full_well_e=60000"):
             more = ("--set", "sensor.adc_bits=12") if "gain" in setting else ()

@@ -48,31 +48,31 @@ class Tables(CommandLineTest):
         half, _ = self.decode("t.npy", "--range-m", str(RANGE_M / 2))
         np.testing.assert_allclose(half, depth / 2, rtol=1e-5)
 
-    def test_the_range_and_where_it_comes_from_are_told(self):
+    def test_the_range_and_where_it_comes_from_are_reported(self):
         np.save(self.path("t.npy"), self.sweep())
         self.frame()
         self.write("c.toml", "fundamental_frequency_hz = 30e6\n")
 
-        def told(code, *more):
+        def range_lines(code, *more):
             arguments = ["decode", "raw.npy", "--code", code, "-o", "d.npy", "--force", *more]
             lines = [line for line in self.do(*arguments).splitlines() if "range" in line[:5]]
             document = self.do_json(*arguments)
             return lines, document["range_m"], document["range_source"]
-        line, range_m, source = told("t.npy")
+        line, range_m, source = range_lines("t.npy")
         self.assertEqual(line, ["range 9.993 m (of the default camera paper-10f0; --range-m or "
                                 "--camera say otherwise)"])
         self.assertAlmostEqual(range_m, RANGE_M)
         self.assertIn("default camera paper-10f0", source)
-        self.assertEqual(told("t.npy", "--range-m", "3"), (["range 3 m (--range-m)"], 3,
+        self.assertEqual(range_lines("t.npy", "--range-m", "3"), (["range 3 m (--range-m)"], 3,
                                                            "--range-m"))
-        line, range_m, _ = told("t.npy", "--camera", "c.toml")
+        line, range_m, _ = range_lines("t.npy", "--camera", "c.toml")
         self.assertEqual(line, ["range 4.997 m (of the camera c)"])
         self.assertAlmostEqual(range_m, RANGE_M / 2)
-        self.assertEqual(told("hamiltonian-k3")[0], ["range 9.993 m (of the default camera "
+        self.assertEqual(range_lines("hamiltonian-k3")[0], ["range 9.993 m (of the default camera "
                                                      "paper-10f0; --camera says otherwise)"])
-        self.assertEqual(told("hamiltonian-k3", "--camera", "paper-10f0")[0], [])
+        self.assertEqual(range_lines("hamiltonian-k3", "--camera", "paper-10f0")[0], [])
 
-    def test_quirks_are_told(self):
+    def test_quirks_are_reported(self):
         table = self.sweep()
         self.frame()
         np.save(self.path("t.npy"), table)
@@ -118,7 +118,7 @@ class Tables(CommandLineTest):
         depth, _ = self.decode("pairs.npy", "--ambient", "none")
         self.assertLess(np.abs(depth - truth).max(), 0.02)
 
-    def test_unequal_duties_are_told(self):
+    def test_unequal_duties_are_reported(self):
         np.save(self.path("t.npy"), self.sweep() * [1, 0.5, 0.8])
         self.frame()
         note = self.decode("t.npy")[1][0]
@@ -126,7 +126,7 @@ class Tables(CommandLineTest):
         self.assertIn("dark offset was not subtracted: an array 'offset_dn'", note)
         self.assertEqual(self.decode("t.npy", "--ambient", "mean")[1], [])
 
-    def test_equal_rows_are_told(self):
+    def test_equal_rows_are_reported(self):
         twice = np.tile(self.sweep()[::2], (2, 1))
         np.save(self.path("t.npy"), twice)
         self.frame()

@@ -109,8 +109,8 @@ void export_code() {
   const Camera camera = small_camera();
   const ExportOptions options{.format = "csv", .samples = 60};
   const CodeSet code = load_code("square-k4", camera);
-  const Camera played = exporting_camera(code, camera, options);
-  const WaveformExport exported = export_waveforms(code, played, options);
+  const Camera actual = exporting_camera(code, camera, options);
+  const WaveformExport exported = export_waveforms(code, actual, options);
   const std::vector<ExportedFile> files = export_files(exported);
   make_output_directory("export");
   for (const ExportedFile& file : files)

@@ -85,9 +85,9 @@ TEST(PhotonTransfer, SaysWhenTheConverterEndsFirst) {
   camera.sensor.adc_bits = 11;
   const PhotonTransfer found = calibrated(camera, 4, 8e7, {});
   EXPECT_EQ(found.adc_bits, 12);  // 2047 is none of the usual 8, 10, 12, ..
-  const PhotonTransfer told = calibrated(camera, 4, 8e7, {.adc_bits = 11});
-  EXPECT_FALSE(told.full_well_e);
-  EXPECT_THAT(told.notes, testing::Contains(HasSubstr("last number 2047")));
+  const PhotonTransfer with_bits = calibrated(camera, 4, 8e7, {.adc_bits = 11});
+  EXPECT_FALSE(with_bits.full_well_e);
+  EXPECT_THAT(with_bits.notes, testing::Contains(HasSubstr("last number 2047")));
 }
 
 TEST(PhotonTransfer, AsksForWhatItNeeds) {

@@ -19,27 +19,27 @@ TEST(GeneratorTable, IsPlayedPointByPointWhereTheRateAllows) {
   EXPECT_EQ(generator.points_in_table(frequency_hz), 100);
   generator.table_points = 48;
   EXPECT_EQ(generator.points_per_period(frequency_hz), 48);
-  const Waveform told = Waveform::binary({{0.13, 0.71}});
-  EXPECT_EQ(generated(told, generator, frequency_hz),
-            generator_table(told, generator, frequency_hz));
-  EXPECT_EQ(generated(told, generator, frequency_hz),
-            generated(told, {.sample_rate_hz = 48 * frequency_hz}, frequency_hz));
+  const Waveform nominal = Waveform::binary({{0.13, 0.71}});
+  EXPECT_EQ(generated(nominal, generator, frequency_hz),
+            generator_table(nominal, generator, frequency_hz));
+  EXPECT_EQ(generated(nominal, generator, frequency_hz),
+            generated(nominal, {.sample_rate_hz = 48 * frequency_hz}, frequency_hz));
 }
 
 TEST(GeneratorTable, OfMorePointsThanTheRateAllowsIsSkippedThrough) {
   const Generator generator{.sample_rate_hz = 500e6, .table_points = 16384};
   EXPECT_EQ(generator.points_per_period(frequency_hz), 100);
   EXPECT_EQ(generator.points_in_table(frequency_hz), 16384);
-  const Waveform told = Waveform::binary({{0.123456, 0.654321}});
-  const Waveform table = generator_table(told, generator, frequency_hz);
-  const Waveform played = generated(told, generator, frequency_hz);
+  const Waveform nominal = Waveform::binary({{0.123456, 0.654321}});
+  const Waveform table = generator_table(nominal, generator, frequency_hz);
+  const Waveform actual = generated(nominal, generator, frequency_hz);
   EXPECT_NEAR(table.on_intervals()[0].rise, 0.123456, 0.5 / 16384);
   for (int j = 0; j < 100; ++j) {
     const double middle = (j + 0.5) / 100;
     const auto is_on = [middle](const Waveform& w) {
       return w.on_intervals()[0].rise <= middle && middle < w.on_intervals()[0].fall;
     };
-    EXPECT_EQ(is_on(played), is_on(table)) << j;
+    EXPECT_EQ(is_on(actual), is_on(table)) << j;
   }
   Eigen::VectorXd samples(1000);
   for (int i = 0; i < 1000; ++i) samples[i] = 1.0 + std::sin(0.01 * i);
@@ -55,8 +55,8 @@ TEST(EdgeGrid, MovesEverySwitchingTimeToTheNearestMultiple) {
   for (std::uint32_t i = 0; i < 50; ++i) {
     RandomStream random(31, i);
     const double rise = 0.4 * random.uniform(), fall = 0.5 + 0.4 * random.uniform();
-    const Waveform played = generated(Waveform::binary({{rise, fall}}), generator, frequency_hz);
-    const OnInterval on = played.on_intervals()[0];
+    const Waveform actual = generated(Waveform::binary({{rise, fall}}), generator, frequency_hz);
+    const OnInterval on = actual.on_intervals()[0];
     EXPECT_NEAR(on.rise * 20, std::round(rise * 20), 1e-9);
     EXPECT_NEAR(on.fall * 20, std::round(fall * 20), 1e-9);
     EXPECT_EQ(on.rise, generated_switching_time(rise, generator, frequency_hz));
@@ -71,7 +71,7 @@ TEST(EdgeGrid, IsInTheReport) {
   const auto reports = generator_report(code, camera);
   // Rise 4 ns to 0, fall 64 ns to 60 ns.
   EXPECT_NEAR(*reports[0].largest_edge_move_s, 4e-9, 1e-15);
-  EXPECT_NEAR(reports[0].duty_played, 0.3, 1e-12);
+  EXPECT_NEAR(reports[0].duty_actual, 0.3, 1e-12);
 }
 
 TEST(Generator, RefusesTablesAndGridsThatCannotBe) {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera/shared/played_code.hpp"
+#include "camera/shared/actual_code.hpp"
 #include "camera/shared/prototype.hpp"
 #include "core/shared/random.hpp"
 #include "tofsmith/camera/forward_model.hpp"
@@ -45,14 +45,14 @@ Waveform random_binary(RandomStream& random) {
 TEST(Generator, PlaysTheValueAtTheMiddleOfEveryPoint) {
   for (std::uint32_t i = 0; i < 300; ++i) {
     RandomStream random(21, i);
-    const Waveform told = random_binary(random);
+    const Waveform nominal = random_binary(random);
     const int points = 2 + static_cast<int>(random() % 30);
-    const Waveform played = generated(told, generator_of(points), frequency_hz);
-    ASSERT_TRUE(played.is_binary());
+    const Waveform actual = generated(nominal, generator_of(points), frequency_hz);
+    ASSERT_TRUE(actual.is_binary());
     for (int j = 0; j < points; ++j) {
       const double middle = (j + 0.5) / points;
-      EXPECT_EQ(value_at(played, middle), value_at(told, middle)) << "case " << i;
-      EXPECT_EQ(value_at(played, (j + 0.01) / points), value_at(played, (j + 0.99) / points));
+      EXPECT_EQ(value_at(actual, middle), value_at(nominal, middle)) << "case " << i;
+      EXPECT_EQ(value_at(actual, (j + 0.01) / points), value_at(actual, (j + 0.99) / points));
     }
   }
 }
@@ -62,20 +62,20 @@ TEST(Generator, ABinaryWaveformOnItsPointsDoesNotChange) {
     RandomStream random(22, i);
     Eigen::VectorXd samples(100);
     for (double& sample : samples) sample = random() % 2;
-    const Waveform told = Waveform::binary_from_samples(samples, 3.0);
-    EXPECT_EQ(generated(told, generator_of(100), frequency_hz), told);
-    EXPECT_EQ(generated(told, generator_of(300), frequency_hz), told);
+    const Waveform nominal = Waveform::binary_from_samples(samples, 3.0);
+    EXPECT_EQ(generated(nominal, generator_of(100), frequency_hz), nominal);
+    EXPECT_EQ(generated(nominal, generator_of(300), frequency_hz), nominal);
   }
 }
 
 TEST(Generator, MovesSwitchingTimesByAtMostHalfAPointAndTiesAlike) {
-  const Waveform told = Waveform::binary({{0.125, 0.375}, {0.625, 0.875}});
-  const Waveform played = generated(told, generator_of(100), frequency_hz);
-  ASSERT_EQ(played.on_intervals().size(), 2u);
-  EXPECT_DOUBLE_EQ(played.on_intervals()[0].rise, 0.12);
-  EXPECT_DOUBLE_EQ(played.on_intervals()[0].fall, 0.37);
-  EXPECT_DOUBLE_EQ(played.on_intervals()[1].rise, 0.62);
-  EXPECT_DOUBLE_EQ(played.on_intervals()[1].fall, 0.87);
+  const Waveform nominal = Waveform::binary({{0.125, 0.375}, {0.625, 0.875}});
+  const Waveform actual = generated(nominal, generator_of(100), frequency_hz);
+  ASSERT_EQ(actual.on_intervals().size(), 2u);
+  EXPECT_DOUBLE_EQ(actual.on_intervals()[0].rise, 0.12);
+  EXPECT_DOUBLE_EQ(actual.on_intervals()[0].fall, 0.37);
+  EXPECT_DOUBLE_EQ(actual.on_intervals()[1].rise, 0.62);
+  EXPECT_DOUBLE_EQ(actual.on_intervals()[1].fall, 0.87);
   for (std::uint32_t i = 0; i < 100; ++i) {
     RandomStream random(23, i);
     const double t = random.uniform();
@@ -87,13 +87,13 @@ TEST(Generator, RoundsAmplitudesByAtMostHalfAStep) {
   RandomStream random(24, 0);
   Eigen::VectorXd samples(60);
   for (double& sample : samples) sample = 0.8 * random.uniform();
-  const Waveform told = Waveform::sampled(samples);
+  const Waveform nominal = Waveform::sampled(samples);
   for (const int bits : {1, 3, 8, 14}) {
-    const double step = told.peak() / (std::exp2(bits) - 1);
-    const Waveform played = generated(told, generator_of(60, bits), frequency_hz);
-    EXPECT_LE((played.samples() - samples).cwiseAbs().maxCoeff(), step / 2 + 1e-12) << bits;
-    EXPECT_EQ(played.peak(), told.peak());
-    for (const double value : played.samples())
+    const double step = nominal.peak() / (std::exp2(bits) - 1);
+    const Waveform actual = generated(nominal, generator_of(60, bits), frequency_hz);
+    EXPECT_LE((actual.samples() - samples).cwiseAbs().maxCoeff(), step / 2 + 1e-12) << bits;
+    EXPECT_EQ(actual.peak(), nominal.peak());
+    for (const double value : actual.samples())
       EXPECT_NEAR(value / step, std::round(value / step), 1e-6);
   }
 }
@@ -119,23 +119,23 @@ TEST(Generator, RefusesWhatItCannotPlay) {
   camera = built_in_camera("paper-30x");
   camera.light.generator = Generator{.sample_rate_hz = 5 * 15e6};
   const CodeSet code = build_family("hamiltonian-k5", camera);
-  EXPECT_THROW(played_code(code, camera), std::invalid_argument);
+  EXPECT_THROW(actual_code(code, camera), std::invalid_argument);
 }
 
-TEST(PlayedCode, KeepsTheAveragePowerThePeakAndTheComplement) {
+TEST(ActualCode, KeepsTheAveragePowerThePeakAndTheComplement) {
   const Camera camera = built_in_camera("prototype");
   for (const char* name : {"hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5", "sinusoid-k4",
                            "square-k3", "multifrequency-k5", "pulsed-multifrequency-k5"}) {
     const CodeSet code = build_family(name, camera);
-    const PlayedCode played = played_code(code, camera);
-    for (const Waveform& m : played.modulation) {
+    const ActualCode actual = actual_code(code, camera);
+    for (const Waveform& m : actual.modulation) {
       EXPECT_LE(m.mean(), 1 + 1e-12) << name;
       EXPECT_GT(m.mean(), 0.85) << name;
       EXPECT_LE(m.peak(), camera.light.peak_factor * (1 + 1e-12)) << name;
     }
-    for (std::size_t i = 0; i < played.demodulation.size(); i += 2)
-      EXPECT_LT((played.demodulation[i].cell_averages(100) +
-                 played.demodulation[i + 1].cell_averages(100) - Eigen::VectorXd::Ones(100))
+    for (std::size_t i = 0; i < actual.demodulation.size(); i += 2)
+      EXPECT_LT((actual.demodulation[i].cell_averages(100) +
+                 actual.demodulation[i + 1].cell_averages(100) - Eigen::VectorXd::Ones(100))
                     .cwiseAbs()
                     .maxCoeff(),
                 1e-12)
@@ -143,17 +143,17 @@ TEST(PlayedCode, KeepsTheAveragePowerThePeakAndTheComplement) {
   }
 }
 
-TEST(PlayedCode, IsWhatTheForwardModelCorrelates) {
+TEST(ActualCode, IsWhatTheForwardModelCorrelates) {
   const Camera camera = built_in_camera("prototype");
   for (const char* name : {"hamiltonian-k4", "sinusoid-k3"}) {
     const CodeSet code = build_family(name, camera);
-    const PlayedCode played = played_code(code, camera);
+    const ActualCode actual = actual_code(code, camera);
     const ForwardModel model(code, camera);
     const Eigen::MatrixXd table = model.tap_correlation_table(90);
     const Eigen::VectorXcd transfer = camera.transfer(2400);
     for (int i = 0; i < code.measurements(); ++i) {
-      const Waveform& d = played.demodulation[static_cast<std::size_t>(i)];
-      const Waveform& m = played.modulation[static_cast<std::size_t>(code.exposure_of(i))];
+      const Waveform& d = actual.demodulation[static_cast<std::size_t>(i)];
+      const Waveform& m = actual.modulation[static_cast<std::size_t>(code.exposure_of(i))];
       EXPECT_LT((CorrelationFunction(d, m, transfer).table(90) - table.col(i)).norm(), 1e-12);
       EXPECT_NEAR(model.tap_ambient_gain()[i], d.mean(), 1e-15);
     }
@@ -165,18 +165,18 @@ TEST(GeneratorReport, SaysWhatTheLimitsChange) {
   const CodeSet code = build_family("hamiltonian-k4", camera);
   const std::vector<GeneratorReport> reports = generator_report(code, camera);
   ASSERT_EQ(reports.size(), 8u);  // 4 exposures on each arm; second taps need no generator
-  const PlayedCode played = played_code(code, camera);
+  const ActualCode actual = actual_code(code, camera);
   for (const GeneratorReport& r : reports) {
     const bool light = r.arm == Arm::light;
     const auto index = static_cast<std::size_t>(r.index);
-    const Waveform& told = light ? code.modulation(r.index) : code.demodulation(r.index);
-    const Waveform& really = light ? played.modulation[index] : played.demodulation[index];
+    const Waveform& nominal = light ? code.modulation(r.index) : code.demodulation(r.index);
+    const Waveform& really = light ? actual.modulation[index] : actual.demodulation[index];
     EXPECT_EQ(r.points_per_period, 100);
     EXPECT_DOUBLE_EQ(r.clock_hz, 500e6);
-    EXPECT_DOUBLE_EQ(r.duty_told, told.duty());
-    EXPECT_DOUBLE_EQ(r.mean_played, really.mean());
+    EXPECT_DOUBLE_EQ(r.duty_nominal, nominal.duty());
+    EXPECT_DOUBLE_EQ(r.mean_actual, really.mean());
     EXPECT_LE(*r.largest_edge_move_s, 0.5 / r.clock_hz + 1e-15);
-    const Eigen::VectorXd difference = really.cell_averages(6000) - told.cell_averages(6000);
+    const Eigen::VectorXd difference = really.cell_averages(6000) - nominal.cell_averages(6000);
     EXPECT_NEAR(r.rms_difference, std::sqrt(difference.squaredNorm() / 6000), 1e-9);
   }
   EXPECT_TRUE(generator_report(build_family("sinusoid-k3", built_in_camera("paper-5f0")),
@@ -190,14 +190,14 @@ TEST(Prototype, IsABipolarMixer) {
   const CodeSet code = build_family("hamiltonian-k4", camera);
   const ForwardModel model(code, camera);
   ASSERT_EQ(model.measurements(), 4);
-  const PlayedCode played = played_code(code, camera);
+  const ActualCode actual = actual_code(code, camera);
   const Eigen::VectorXcd transfer = camera.transfer(2400);
   for (int i = 0; i < 4; ++i) {
     // (2 d - 1) behind both arms: 2 chi - mean m.
     const auto tap = static_cast<std::size_t>(2 * i), exposure = static_cast<std::size_t>(i);
-    const CorrelationFunction chi(played.demodulation[tap], played.modulation[exposure], transfer);
+    const CorrelationFunction chi(actual.demodulation[tap], actual.modulation[exposure], transfer);
     EXPECT_NEAR(model.correlation(77.7)[i],
-                2 * chi(77.7 / 300) - played.modulation[exposure].mean(), 1e-9);
+                2 * chi(77.7 / 300) - actual.modulation[exposure].mean(), 1e-9);
     EXPECT_NEAR(model.constant_variance_e2()[i], 400.0, 1e-9);
   }
 }

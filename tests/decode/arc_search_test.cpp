@@ -117,7 +117,7 @@ double expect_agreement(const DirectionTable& directions, const ArcSearch& searc
     units.push_back(unit_of(vectors[i], vectors.rank));
     chosen.push_back(lowest_best_row(directions, units.back().data(), score));
   }
-  std::size_t least_proven = expected.size();
+  std::size_t min_proven = expected.size();
   for_each_target([&](std::int64_t target) {
     const std::vector<std::int32_t> rows = search_all(search, vectors);
     std::size_t proven = 0, wrong = 0, wrongly_chosen = 0;
@@ -128,9 +128,9 @@ double expect_agreement(const DirectionTable& directions, const ArcSearch& searc
     }
     EXPECT_EQ(wrong, 0u);
     EXPECT_EQ(wrongly_chosen, 0u);
-    if (target != HWY_SCALAR) least_proven = std::min(least_proven, proven);
+    if (target != HWY_SCALAR) min_proven = std::min(min_proven, proven);
   });
-  return static_cast<double>(least_proven) / static_cast<double>(expected.size());
+  return static_cast<double>(min_proven) / static_cast<double>(expected.size());
 }
 
 constexpr double noise_levels[] = {0.0, 0.02, 0.15, 0.6, 100.0};
@@ -166,7 +166,7 @@ struct CodeCase {
   const char* code;
   int code_samples;
   int samples;
-  double least_proven;
+  double min_proven;
 };
 
 class ArcSearchOfCode : public testing::TestWithParam<CodeCase> {};
@@ -175,7 +175,7 @@ TEST_P(ArcSearchOfCode, AgreesAndProvesNearlyAll) {
   const CodeCase& c = GetParam();
   const DirectionTable directions = directions_of(c.code, c.code_samples, c.samples);
   const double proven = expect_agreement_at_all_levels(directions, vectors_per_level);
-  EXPECT_GT(proven, c.least_proven);
+  EXPECT_GT(proven, c.min_proven);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The rivals that confidence compares with, against a search of all bins.
+// The second peaks that confidence compares with, against a search of all bins.
 #include "decode/search/bin_matcher.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ struct Case {
   double signal, ambient;
 };
 
-void expect_rivals(const Case& c) {
+void expect_second_peaks(const Case& c) {
   Camera camera = camera_with("paper-10f0");
   camera.exposure_s.each_s = c.exposures_s;
   const DecodeSetup setup(c.code, camera);
@@ -33,7 +33,7 @@ void expect_rivals(const Case& c) {
   int close = 0, seen = 0;
   for (int first = 0; first + pixels_per_tile <= pixels; first += pixels_per_tile) {
     matcher.match(view, first, pixels_per_tile, true, *tile);
-    matcher.find_rivals(*tile);
+    matcher.find_second_peaks(*tile);
     for (int i = 0; i < pixels_per_tile; ++i) {
       const Lobe lobe = directions.main_lobe(tile->bin[i]);
       const auto score = [&](std::int32_t bin) {
@@ -43,15 +43,15 @@ void expect_rivals(const Case& c) {
         return sum;
       };
       if (lobe.end - lobe.begin >= table.samples()) {
-        ASSERT_EQ(tile->rival[i], -1);
+        ASSERT_EQ(tile->second_peak[i], -1);
         continue;
       }
       std::int32_t best = -1;
       for (std::int32_t n = lobe.end; n < lobe.begin + table.samples(); ++n)
         if (best < 0 || score(n % table.samples()) > score(best)) best = n % table.samples();
-      const std::int32_t rival = tile->rival[i];
-      ASSERT_GE(rival, 0);
-      const std::int32_t after = (rival - lobe.begin + table.samples()) % table.samples();
+      const std::int32_t second_peak = tile->second_peak[i];
+      ASSERT_GE(second_peak, 0);
+      const std::int32_t after = (second_peak - lobe.begin + table.samples()) % table.samples();
       ASSERT_GE(after, lobe.end - lobe.begin) << "inside the main lobe";
       double length2 = 0.0;
       for (int j = 0; j < directions.rank(); ++j) {
@@ -59,7 +59,7 @@ void expect_rivals(const Case& c) {
         length2 += q * q;
       }
       ++seen;
-      if (score(best) - score(rival) <= 0.02 * std::sqrt(length2)) ++close;
+      if (score(best) - score(second_peak) <= 0.02 * std::sqrt(length2)) ++close;
     }
   }
   EXPECT_GE(close, static_cast<int>(0.98 * seen)) << c.code;
@@ -69,13 +69,13 @@ TEST(BinMatcher, FindsRivalsOutsideTheMainLobe) {
   for (const Case& c :
        {Case{"hamiltonian-k4", {}, 3e3, 1e4}, Case{"hamiltonian-k5", {}, 3e3, 1e4},
         Case{"multifrequency-k5", {}, 1e4, 1e4}, Case{"hamiltonian-k6", {}, 3e3, 1e4}})
-    expect_rivals(c);
+    expect_second_peaks(c);
 }
 
 TEST(BinMatcher, FindsRivalsOfPixelsThatDoubleArithmeticDecides) {
   // With unequal exposures, bright ambient light leaves single precision unsure.
-  expect_rivals({"multifrequency-k5", {0.02, 0.05, 0.1, 0.13, 0.08}, 1e3, 1e7});
-  expect_rivals({"hamiltonian-k4", {0.02, 0.05, 0.1, 0.13}, 1e3, 1e7});
+  expect_second_peaks({"multifrequency-k5", {0.02, 0.05, 0.1, 0.13, 0.08}, 1e3, 1e7});
+  expect_second_peaks({"hamiltonian-k4", {0.02, 0.05, 0.1, 0.13}, 1e3, 1e7});
 }
 
 }  // namespace

@@ -22,13 +22,13 @@ struct Cells {
   explicit Cells(DirectionTable table)
       : directions(std::move(table)),
         arcs(directions),
-        rivals(directions, arcs),
+        second_peaks(directions, arcs),
         distinct(directions),
-        cells(distinct, rivals) {}
+        cells(distinct, second_peaks) {}
 
   DirectionTable directions;
   ArcSearch arcs;
-  RivalSearch rivals;
+  SecondPeakSearch second_peaks;
   DistinctDirections distinct;
   CellTable cells;
 };

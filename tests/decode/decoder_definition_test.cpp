@@ -17,8 +17,8 @@ struct Case {
   Readout readout = Readout::separate;
 };
 
-/// The search may know a rival for pixels nearby instead of the pixel's own, or one that float
-/// scores take for the best.
+/// The search may know a second peak for pixels nearby instead of the pixel's own, or one that
+/// float scores take for the best.
 void expect_close_confidence(const std::vector<float>& confidence,
                              const std::vector<float>& expected) {
   double sum = 0.0;

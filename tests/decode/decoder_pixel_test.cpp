@@ -99,7 +99,7 @@ TEST(Decoder, APixelBetweenTwoDepthsIsAmbiguous) {
   EXPECT_LT(image.confidence(0, 0), 0.9f);
   EXPECT_TRUE(std::isfinite(image.depth_m(0, 0)));
   DecodeOptions trusting;
-  trusting.minimum_confidence = 0.0;
+  trusting.min_confidence = 0.0;
   const DecodeSetup trusting_setup("hamiltonian-k5", camera_with("paper-30x"), trusting);
   EXPECT_EQ(decode_pixels(trusting_setup.decoder, raw).status(0, 0), PixelStatus::ok);
 }

@@ -38,7 +38,7 @@ std::string name_of_case(const Case& c) {
 }
 
 /// Depths at which the code has clear contrast, and that no other depth equals in direction.
-std::vector<bool> is_told_apart(const DecodingTable& table) {
+std::vector<bool> is_distinguishable(const DecodingTable& table) {
   const Eigen::VectorXd a = table.exposure_s.cwiseProduct(table.ambient_gain);
   Eigen::MatrixXd x = table.correlation * table.exposure_s.asDiagonal();
   if (a.norm() > 1e-9) x -= x * a * a.transpose() / a.squaredNorm();
@@ -53,7 +53,7 @@ std::vector<bool> is_told_apart(const DecodingTable& table) {
 
 /// Largest error [bin] over many depths that no noise touches.
 double largest_error_bin(const DecodeSetup& setup) {
-  const std::vector<bool> unique = is_told_apart(setup.decoder.table());
+  const std::vector<bool> unique = is_distinguishable(setup.decoder.table());
   const int samples = setup.decoder.samples();
   std::vector<double> truth;
   std::vector<float> raw;
@@ -227,12 +227,12 @@ TEST(Decoder, StopsWhenAsked) {
 
 TEST(DecodeOptions, NamesTheFieldTheValueAndTheRule) {
   DecodeOptions options;
-  options.minimum_confidence = 1.5;
+  options.min_confidence = 1.5;
   try {
     options.validate();
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "DecodeOptions::minimum_confidence = 1.5; must be in [0, 1]");
+    EXPECT_STREQ(error.what(), "DecodeOptions::min_confidence = 1.5; must be in [0, 1]");
   }
   options = {.low_signal_sigma = -1.0};
   EXPECT_THROW(options.validate(), std::invalid_argument);

@@ -56,7 +56,7 @@ TEST_P(LikelihoodOf, IsNeverLessThanTheBestOfADenseGrid) {
       const double ambient = reference.sees_ambient() ? image.ambient_e_per_s(0, i) : 0.0;
       const double found = reference.cost(y, image.depth_m(0, i) / table.bin_m(),
                                           image.signal_e_per_s(0, i), ambient);
-      EXPECT_LE(found, reference.least_cost(y, 4) + 1e-3)
+      EXPECT_LE(found, reference.min_cost(y, 4) + 1e-3)
           << "pixel " << i << " at " << point.signal_e_per_s << ", " << point.ambient_e_per_s;
       EXPECT_GE(image.signal_e_per_s(0, i), 0.0f);
       EXPECT_GE(ambient, 0.0);
@@ -144,7 +144,7 @@ TEST(LikelihoodDecoder, RefusesWhatDoesNotFitAndStopsWhenAsked) {
   EXPECT_THROW(setup.decoder.decode(frame_of(std::vector<float>(300, 1.0f), 3), 0,
                                     [](double, std::string_view) { return false; }),
                Interrupted);
-  EXPECT_THROW(LikelihoodDecoder(setup.decoder.table(), {.minimum_confidence = 2.0}),
+  EXPECT_THROW(LikelihoodDecoder(setup.decoder.table(), {.min_confidence = 2.0}),
                std::invalid_argument);
 }
 

@@ -83,7 +83,7 @@ TEST(LikelihoodDecoder, ConfidentPixelsAreRightAsOftenAsTheySay) {
     said[at].add(confidence);
     right[at].add(error_m < 0.1 * setup.camera.range_m());
   });
-  // One rival is counted, so that the surest are a little less often right than they say.
+  // One second peak is counted, so that the surest are a little less often right than they say.
   for (int c = 0; c < classes; ++c) {
     EXPECT_GT(said[c].count(), 1000);
     EXPECT_NEAR(said[c].mean(), right[c].mean(), 0.06) << "class " << c;

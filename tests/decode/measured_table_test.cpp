@@ -143,7 +143,7 @@ TEST(MeasuredTable, NamesWhatIsWrong) {
                 t.taps = 1;
                 t.correlation = Eigen::MatrixXd::Random(40, 2);
               }),
-              HasSubstr("must be >= 3: signal, ambient light and depth are unknown"));
+              HasSubstr("must be >= 3: there are three unknowns, signal, ambient light and depth"));
   EXPECT_THAT(refusal([](MeasuredTable& t, Camera&) {
                 t.correlation = Eigen::VectorXd::Random(40) * Eigen::RowVectorXd::Random(6);
               }),

@@ -214,7 +214,7 @@ TEST(TwoReturnDecoder, RefusesOptionsThatMakeNoSense) {
   refused({.shortest_delay_m = 0.0}, "shortest_delay_m = 0");
   refused({.longest_delay_m = 20.0}, "longest_delay_m = 20");
   refused({.tail_m = 11.0}, "tail_m = 11");
-  refused({.prior = ReturnPrior{.largest_ratio = 2.0}}, "largest_ratio = 2");
+  refused({.prior = ReturnPrior{.max_ratio = 2.0}}, "max_ratio = 2");
 }
 
 TEST(TailDecoder, LowersTheErrorOfATailFivefold) {

@@ -34,7 +34,7 @@ DecodingTable random_table(int measurements, bool is_equal, RandomStream& random
   return table;
 }
 
-/// Raw numbers with ambient light of up to 1e5 times what is left of them.
+/// Raw numbers with ambient light of up to 1e5 times their residual.
 template <typename Number>
 std::vector<Number> random_raw(const DecodingTable& table, int pixels, RandomStream& random) {
   std::vector<Number> raw;

@@ -56,7 +56,7 @@ ChipCode random_code(int chips, int taps, int exposures, std::uint64_t seed) {
 /// Whitened distance between two depths, light levels of the second free, by brute force: the
 /// definition, on the forward model's own numbers.
 double distance(const ChipCode& code, const Camera& camera, const OperatingPoint& point, double z,
-                double rival) {
+                double alternative) {
   const ForwardModel model(to_code_set(code, camera, "code"), camera);
   const Return returned{point.signal_e_per_s, z * camera.samples / code.chips};
   const Eigen::VectorXd mean = model.expected_electrons({&returned, 1}, point.ambient_e_per_s);
@@ -70,7 +70,8 @@ double distance(const ChipCode& code, const Camera& camera, const OperatingPoint
     return w;
   };
   const Eigen::VectorXd truth = whitened(mean);
-  const Eigen::VectorXd other = whitened(model.correlation(rival * camera.samples / code.chips));
+  const Eigen::VectorXd other =
+      whitened(model.correlation(alternative * camera.samples / code.chips));
   const double signal = std::max(0.0, truth.dot(other) / std::max(1e-300, other.squaredNorm()));
   return (truth - signal * other).norm();
 }

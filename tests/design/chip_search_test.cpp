@@ -203,10 +203,10 @@ TEST(Search, CountsEveryCodeOnce) {
 }
 
 TEST(Search, IsTheSameForAnyThreadsAndInstructions) {
-  const auto search = [](int taps, int exposures, double largest_exhaustive) {
+  const auto search = [](int taps, int exposures, double max_exhaustive) {
     ChipSearchOptions options;
     options.exposures = exposures;
-    options.largest_exhaustive = largest_exhaustive;
+    options.max_exhaustive = max_exhaustive;
     options.annealing_starts = 2;
     options.annealing_steps = 200;
     return search_chip_codes(camera_of(6, taps, low_ambient), options);

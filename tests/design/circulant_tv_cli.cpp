@@ -32,6 +32,6 @@ int main() {
   output["x"] = std::vector<double>(result.x.begin(), result.x.end());
   output["objective"] = result.objective;
   output["certificate"] = result.certificate;
-  output["termination"] = std::string(to_string(result.termination));
+  output["termination"] = std::string(name_of(result.termination));
   std::cout << output << '\n';
 }

@@ -41,7 +41,7 @@ TrialBatch trials_for(const Setting& setting, int count, bool ends_matter = fals
   RandomStream random(7, 2);
   OperatingRange range;
   range.uniform_albedo = true;
-  const LaterTrials second{{}, setting.camera.range_m()};
+  const MultipathTrials second{{}, setting.camera.range_m()};
   return draw_trials(count, setting.sampled().measurements(), range, ends_matter, random, nullptr,
                      later ? &second : nullptr);
 }
@@ -156,7 +156,7 @@ TEST(DepthErrorLoss, WeightsAndPointsAdd) {
 /// Trials of two returns that are decoded as such.
 TrialBatch two_return_trials(const Setting& setting, int count, TwoReturnGrid grid) {
   RandomStream random(7, 3);
-  const LaterTrials later{{{0.2, 0.9}, {1.0, 4.0}}, setting.camera.range_m(), grid};
+  const MultipathTrials later{{{0.2, 0.9}, {1.0, 4.0}}, setting.camera.range_m(), grid};
   return draw_trials(count, setting.sampled().measurements(), {}, true, random, nullptr, &later);
 }
 

@@ -94,22 +94,22 @@ TEST(Optimize, BeatsTheHamiltonianCodeThatItStartsFrom) {
             0.97 * result.find("hamiltonian-k4")->error.circular.geometric_mean_m.value);
 }
 
-TEST(Optimize, ReckonsWithSecondReturnsWhereTheCameraSaysSo) {
+TEST(Optimize, CountsMultipathWhereTheCameraHasIt) {
   Camera camera = small_camera();
   camera.sensor.taps = 2;
   camera.operating.signal_e_per_s = {1e5};
   const std::vector<CodeSet> also = {build_family("hamiltonian-k5", camera)};
-  const SecondReturns later{{0.2, 0.5}, {0.5, 3.0}, 0.5};
+  const OperatingMultipath later{{0.2, 0.5}, {0.5, 3.0}, 0.5};
   camera.operating.multipath = later;
   const DesignResult result = judged(camera, optimize(camera, 5, small_options(), also), also);
   const Candidate& given = *result.find("hamiltonian-k5");
   const Candidate& found = *result.find("optimized-k5");
-  ASSERT_TRUE(given.second_returns && given.second_returns->two_return);
-  ASSERT_TRUE(found.second_returns && found.second_returns->two_return);
+  ASSERT_TRUE(given.multipath && given.multipath->two_return);
+  ASSERT_TRUE(found.multipath && found.multipath->two_return);
   // Less error by what was minimized, and two returns can still be told.
   EXPECT_LT(ranking_error_m(found, camera, {}), ranking_error_m(given, camera, {}));
-  EXPECT_LT(found.second_returns->two_return->circular_m.value,
-            1.4 * given.second_returns->two_return->circular_m.value);
+  EXPECT_LT(found.multipath->two_return->circular_m.value,
+            1.4 * given.multipath->two_return->circular_m.value);
 }
 
 TEST(Optimize, GivesTheSameBitsOnAnyNumberOfThreads) {

@@ -19,7 +19,7 @@ Camera camera_with(int taps, Readout readout = Readout::separate) {
   camera.sensor.readout = readout;
   camera.operating.signal_e_per_s = {1e4};
   camera.operating.ambient_e_per_s = {1e4};
-  camera.operating.multipath = SecondReturns{{0.2, 0.5}, {0.5, 3.0}, 0.2};
+  camera.operating.multipath = OperatingMultipath{{0.2, 0.5}, {0.5, 3.0}, 0.2};
   return camera;
 }
 
@@ -34,7 +34,7 @@ double two_return_error_bin(const DesignProblem& problem, const WaveformParamete
   DepthErrorLoss loss(camera, camera.measure(code).table, DepthErrorKind::circular);
   RandomStream random(5, 1);
   const TrialBatch batch = draw_trials(300, camera.measurements(), problem.operating, false, random,
-                                       nullptr, &*problem.later_as_two);
+                                       nullptr, &*problem.multipath_as_two);
   const OperatingPoint& point = problem.variants.front().levels.front().point;
   return loss.soft_error(point, batch, 3.0 / loss.mean_variance_e2(point));
 }
@@ -61,8 +61,8 @@ TEST(TwoReturnProblem, HasLevelsOfTwoReturnsWhereMeansMaySuffice) {
     const DesignProblem problem = problem_of(camera, exposures, 0.1);
     const CameraVariant& variant = problem.variants.front();
     EXPECT_EQ(variant.usual_levels(), 2u);
-    EXPECT_EQ(variant.levels.size() > 2, problem.later_as_two.has_value());
-    return problem.later_as_two.has_value();
+    EXPECT_EQ(variant.levels.size() > 2, problem.multipath_as_two.has_value());
+    return problem.multipath_as_two.has_value();
   };
   EXPECT_TRUE(has_them(camera_with(2), 5));
   EXPECT_FALSE(has_them(camera_with(2), 4));
@@ -70,7 +70,7 @@ TEST(TwoReturnProblem, HasLevelsOfTwoReturnsWhereMeansMaySuffice) {
   EXPECT_FALSE(has_them(camera_with(1), 5));
   EXPECT_TRUE(has_them(camera_with(2, Readout::difference), 5));
   EXPECT_TRUE(has_them(camera_with(4), 2));
-  EXPECT_FALSE(problem_of(camera_with(2), 5, 0.0).later_as_two);
+  EXPECT_FALSE(problem_of(camera_with(2), 5, 0.0).multipath_as_two);
 }
 
 TEST(TwoReturnProblem, LooksForReturnsOnAGridThatIsNotTooFine) {
@@ -79,7 +79,7 @@ TEST(TwoReturnProblem, LooksForReturnsOnAGridThatIsNotTooFine) {
   for (const int samples : {48, 120, 480, 960}) {
     const DesignProblem problem =
         make_design_problem(std::span<const Camera>(&camera, 1), 5, samples, 0.1);
-    const TwoReturnGrid grid = *problem.later_as_two->decoded_as_two;
+    const TwoReturnGrid grid = *problem.multipath_as_two->decoded_as_two;
     EXPECT_LE(grid.bins, 160);
     EXPECT_EQ(problem.space.samples() % grid.bins, 0);
     EXPECT_GE(grid.delays.shortest, 1);

@@ -50,10 +50,10 @@ class Pages(unittest.TestCase):
         self.assertIn(("decode",), commands)
         for words, command in commands.items():
             text = subprocess.run([TOOL, *words, "--help"], capture_output=True, text=True).stdout
-            told = set(re.findall(r"^  (?:-\w,)?(--[\w-]+)", text, re.M))
+            shown = set(re.findall(r"^  (?:-\w,)?(--[\w-]+)", text, re.M))
             found = {name for entries in command.sections.values() for entry in entries
                      for name in entry.names if name.startswith("--")}
-            self.assertEqual(told, found, command.name)
+            self.assertEqual(shown, found, command.name)
         output = {e.names[-1]: e for e in commands[("decode",)].sections["Options"]}["--output"]
         self.assertEqual((output.names, output.required), (["-o", "--output"], True))
 

@@ -89,12 +89,12 @@ inline bool plays(const SimulatedGenerator& generator, const UploadRequest& requ
     const QuantizedWaveform& w = wanted.selected_waveform();
     const SimulatedGenerator::Channel& c = generator.channel(wanted.channel);
     const bool by_rate = model.family == GeneratorFamily::keysight_trueform;
-    const double told_hz = by_rate ? w.sample_rate_hz : w.repetition_hz(),
+    const double requested_hz = by_rate ? w.sample_rate_hz : w.repetition_hz(),
                  set_hz = by_rate ? c.sample_rate_hz : c.frequency_hz;
     if (generator.played_codes(wanted.channel) != w.codes || c.on != request.output_on ||
         !near(c.amplitude_vpp, w.amplitude_vpp(), 2e-3) || !near(c.offset_v, w.offset_v(), 2e-3) ||
-        !near(set_hz, told_hz, 2e-5 * told_hz) || !near(c.load_ohm, request.load_ohm, 1.0) ||
-        !near(c.phase, 0.0, 0.02))
+        !near(set_hz, requested_hz, 2e-5 * requested_hz) ||
+        !near(c.load_ohm, request.load_ohm, 1.0) || !near(c.phase, 0.0, 0.02))
       return false;
   }
   return model.family != GeneratorFamily::siglent_x || generator.phases_locked();

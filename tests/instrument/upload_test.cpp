@@ -27,7 +27,7 @@ TEST(Upload, EveryFamilyPlaysWhatWasSent) {
       EXPECT_TRUE(plays(generator, request, model));
       EXPECT_FALSE(report.numbers.empty());
       for (const ReadBackNumber& number : report.numbers)
-        EXPECT_NEAR(number.read_back, number.told, 1e-5 * std::abs(number.told) + 1e-3);
+        EXPECT_NEAR(number.read_back, number.requested, 1e-5 * std::abs(number.requested) + 1e-3);
     }
   }
 }

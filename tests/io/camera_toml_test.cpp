@@ -85,7 +85,7 @@ Camera every_field_set() {
   camera.sensor.readout = Readout::difference;
   camera.lens = Lens{500, 501, -1.5, 0};
   camera.operating = {{1e3}, {0.0, 1e2}, DepthErrorKind::circular, 1.0, true};
-  camera.operating.multipath = SecondReturns{{0.0, 1.0}, {0.25, 1.0 / 3}, 0.125};
+  camera.operating.multipath = OperatingMultipath{{0.0, 1.0}, {0.25, 1.0 / 3}, 0.125};
   return camera;
 }
 
@@ -106,7 +106,7 @@ TEST(CameraToml, ReadsEveryTableOfTheDocumentation) {
   EXPECT_EQ(camera.lens->cx_px, 319.5);
   EXPECT_THAT(camera.operating.signal_e_per_s, ElementsAre(1e3, 3.1623e3, 1e4, 3.1623e4, 1e5));
   EXPECT_EQ(camera.operating.error, DepthErrorKind::linear);
-  EXPECT_EQ(camera.operating.multipath, (SecondReturns{{0.1, 0.4}, {0.5, 3.0}, 0.2}));
+  EXPECT_EQ(camera.operating.multipath, (OperatingMultipath{{0.1, 0.4}, {0.5, 3.0}, 0.2}));
 }
 
 TEST(CameraToml, AllButTheFrequencyHasADefault) {
@@ -229,7 +229,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "as `time_step_s = 1e-9`"}));
 
 INSTANTIATE_TEST_SUITE_P(
-    SecondReturns, CameraTomlRefuses,
+    OperatingMultipath, CameraTomlRefuses,
     testing::Values(
         BadLine{"[operating.multipath]\nrato = [0.1, 0.5]",
                 "c.toml:3:1: unknown key operating.multipath.rato; did you mean "

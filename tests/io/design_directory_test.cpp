@@ -103,7 +103,7 @@ TEST(DesignDirectory, ReadingUndoesWriting) {
     expect_same_candidate(record.result.candidates[i], designed().candidates[i]);
 }
 
-TEST(DesignDirectory, KeepsErrorsBehindSecondReturns) {
+TEST(DesignDirectory, KeepsErrorsOfOperatingMultipath) {
   Camera two_buckets = small_camera("paper-10f0", DepthErrorKind::circular);
   two_buckets.sensor.taps = 2;
   two_buckets.operating.multipath.emplace();
@@ -119,8 +119,7 @@ TEST(DesignDirectory, KeepsErrorsBehindSecondReturns) {
   EXPECT_EQ(record.camera, two_buckets);
   ASSERT_EQ(record.result.candidates.size(), result.candidates.size());
   for (std::size_t i = 0; i < result.candidates.size(); ++i) {
-    const auto &a = record.result.candidates[i].second_returns,
-               &b = result.candidates[i].second_returns;
+    const auto &a = record.result.candidates[i].multipath, &b = result.candidates[i].multipath;
     ASSERT_TRUE(a && b);
     EXPECT_EQ(a->single_path.linear_m.value, b->single_path.linear_m.value);
     EXPECT_EQ(a->single_path.circular_m.standard_error, b->single_path.circular_m.standard_error);

@@ -59,14 +59,14 @@ TEST(PublishedScenes, TheGrooveIsTwoWallsWhoseBouncedLightBendsItAsTheLawSays) {
   // Later light comes some centimetres late: too close for any decoder to tell apart.
   Camera camera = built_in_camera("paper-10f0");
   camera.sensor.taps = 2;
-  const LaterReturns returns = bounced_light(groove, {.rays = 32, .range_m = camera.range_m()});
+  const MultipathReturns returns = bounced_light(groove, {.rays = 32, .range_m = camera.range_m()});
   const MultipathScene scene = multipath_scene(
       "v-groove", image, view, returns, build_family("hamiltonian-k5", camera), camera,
       {.signal_e_per_s = 1e7, .ambient_e_per_s = 0.0, .reference_distance_m = 0.6});
   double law_m = 0.0;
-  for (std::size_t i = 0; i < scene.later_ratio.size(); ++i)
-    law_m += single_path_bias_m(scene.later_ratio.pixels[i], scene.later_delay_m.pixels[i]);
-  law_m /= static_cast<double>(scene.later_ratio.size());
+  for (std::size_t i = 0; i < scene.multipath_ratio.size(); ++i)
+    law_m += single_path_bias_m(scene.multipath_ratio.pixels[i], scene.multipath_delay_m.pixels[i]);
+  law_m /= static_cast<double>(scene.multipath_ratio.size());
   EXPECT_GT(law_m, 0.01);
   EXPECT_LT(scene.all.bias_m[0], law_m) << "some light comes later than the law reaches";
   EXPECT_GT(scene.all.bias_m[0], 0.8 * law_m);

@@ -220,7 +220,7 @@ TEST(RawFramesReader, KeepsWithinTheMemoryItIsGiven) {
   const NpyArray array(NpyType::float32, {100, 100, 4});  // 160 kB
   write_npz(directory / "a.npz", {{"raw", array}}, overwrite);
   const auto open = [&](std::uint64_t bytes) {
-    return RawFramesReader(directory / "a.npz", {.largest_in_memory = bytes}).bytes_in_memory();
+    return RawFramesReader(directory / "a.npz", {.max_in_memory = bytes}).bytes_in_memory();
   };
   EXPECT_EQ(open(400'000), 160'000u);
   EXPECT_THAT(io_error_of([&] { open(300'000); }),

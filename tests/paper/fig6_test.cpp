@@ -22,12 +22,12 @@ class Fig6 : public testing::Test {
 TEST_F(Fig6, TellsBinaryInputsAndPlaysSmoothOutputs) {
   EXPECT_EQ(verdict_on(made(), "inputs are binary"), Verdict::holds);
   EXPECT_EQ(verdict_on(made(), "outputs, smoothed"), Verdict::holds);
-  const auto played = values_of(made(), "codes_demodulation_played", {5, 240});
+  const auto actual = values_of(made(), "codes_demodulation_output", {5, 240});
   double steepest = 0.0;
   for (std::size_t n = 0; n + 1 < 240; ++n)
-    steepest = std::max(steepest, std::abs(played[n + 1] - played[n]));
+    steepest = std::max(steepest, std::abs(actual[n + 1] - actual[n]));
   EXPECT_LT(steepest, 0.1);
-  EXPECT_GT(std::ranges::max(played), 0.95);
+  EXPECT_GT(std::ranges::max(actual), 0.95);
 }
 
 TEST_F(Fig6, FollowsTheTargetsThatTheBandHolds) {

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "camera/shared/played_code.hpp"
+#include "camera/shared/actual_code.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
@@ -39,16 +39,16 @@ TEST(RangeEmulation, WithoutNoiseEveryShiftIsRecovered) {
 TEST(RangeEmulation, IsWhatADelayedGeneratorMeasures) {
   // The generator's own waveforms are on its points: delaying those is delaying what is played.
   Camera camera = built_in_camera("prototype");
-  const CodeSet told = build_family("hamiltonian-k4", camera);
-  const PlayedCode played = played_code(told, camera);
+  const CodeSet nominal = build_family("hamiltonian-k4", camera);
+  const ActualCode actual = actual_code(nominal, camera);
   camera.light.generator = camera.sensor.generator = std::nullopt;
   for (const int shift : {1, 7, 13}) {
     std::vector<Waveform> delayed;
-    for (const Waveform& m : played.modulation) delayed.push_back(m.delayed(shift / 20.0));
-    const ForwardModel moved(CodeSet::create("delayed", 300, 2, delayed, played.demodulation),
+    for (const Waveform& m : actual.modulation) delayed.push_back(m.delayed(shift / 20.0));
+    const ForwardModel moved(CodeSet::create("delayed", 300, 2, delayed, actual.demodulation),
                              camera);
     const ForwardModel still(
-        CodeSet::create("still", 300, 2, played.modulation, played.demodulation), camera);
+        CodeSet::create("still", 300, 2, actual.modulation, actual.demodulation), camera);
     EXPECT_LT((moved.correlation(7.0) - still.correlation(wrap(7.0 + shift * 15.0, 300.0))).norm(),
               1e-9);
   }

@@ -17,7 +17,7 @@ narrow = {"kind": "hann", "f_max_hz": 75e6}
 sensor = {"impulse_response": narrow, "adc_bits": 12, "gain_e_per_dn": 8, "black_level_dn": 100}
 
 
-def told(cli, directory, *arguments):
+def printed(cli, directory, *arguments):
     """What the command line prints with --json, run in a directory."""
     done = subprocess.run([cli, "--json", "calibrate", *map(str, arguments)], cwd=directory,
                           capture_output=True, text=True)
@@ -57,7 +57,7 @@ def scope(both):
 
 
 def test_a_response_is_that_of_the_command(both, scope, cli):
-    said = told(cli, both[0], "impulse-response", scope, "--camera", "base.toml", "-o", "mine.toml",
+    said = printed(cli, both[0], "impulse-response", scope, "--camera", "base.toml", "-o", "mine.toml",
                 "--report", "mine.html")
     found = ts.calibrate_impulse_response(scope, base)
     for name in ("excitation", "background", "height", "snr_db", "delay_s", "fit_is_good", "notes"):
@@ -103,7 +103,7 @@ def test_a_sweep_gives_what_the_command_writes(both, sweep, cli):
     measured = sweep[0]
     ts.write_raw(both[0] / "frames.npy", measured.frames)
     np.savetxt(both[0] / "shifts.txt", measured.delay_periods, "%.17g")
-    said = told(cli, both[0], "correlation", "frames.npy", "--shifts", "shifts.txt",
+    said = printed(cli, both[0], "correlation", "frames.npy", "--shifts", "shifts.txt",
                 "--shift-unit", "period", "--camera", "base.toml", "--table", "table.npz",
                 "--offset-map", "offset.npy", "--gain-map", "gain.npy", "-o", "fitted.toml",
                 "--report", "sweep.html")
@@ -148,7 +148,7 @@ def test_noise_is_that_of_the_command(both, cli):
     names = ["dark.npy", "a.npy", "b.npy", "c.npy"]
     for name, frames in zip(names, levels):
         ts.write_raw(both[0] / name, frames)
-    said = told(cli, both[0], "noise", *names[1:], "--dark", names[0], "--camera", "base.toml",
+    said = printed(cli, both[0], "noise", *names[1:], "--dark", names[0], "--camera", "base.toml",
                 "-o", "noisy.toml", "--report", "noise.html")
     found = ts.photon_transfer(levels[1:], base, dark=levels[0])
     found.camera(base).write(both[1] / "noisy.toml")

@@ -34,7 +34,7 @@ def test_cameras_come_from_names_files_and_keywords_alike(tmp_path):
 
 def test_every_key_of_a_camera_file_is_an_attribute():
     parts = {"light": ts.Light, "sensor": ts.Sensor, "lens": ts.Lens, "operating": ts.Operating,
-             "multipath": ts.SecondReturns, "impulse_response": ts.ImpulseResponse, "generator": ts.Generator}
+             "multipath": ts.OperatingMultipath, "impulse_response": ts.ImpulseResponse, "generator": ts.Generator}
     for key in ts.camera_keys():
         *path, last = key.split(".")
         owner = parts[path[-1]] if path else ts.Camera
@@ -205,15 +205,15 @@ def test_design_keeps_baselines_and_reports_itself(camera):
     assert again.linear.geometric_mean_m == designed.error.linear.geometric_mean_m
 
 
-def test_design_says_what_second_returns_make_of_codes(camera):
+def test_design_says_what_multipath_makes_of_codes(camera):
     later = {"ratio": [0.2, 0.4], "delay_m": [0.5, 3], "weight": 0.2}
     meets = camera.replace(operating={"multipath": later})
-    assert meets.operating.multipath == ts.SecondReturns((0.2, 0.4), (0.5, 3.0), 0.2)
+    assert meets.operating.multipath == ts.OperatingMultipath((0.2, 0.4), (0.5, 3.0), 0.2)
     quick = {"random_starts": 1, "max_iterations": 1, "refined": 1, "structured_starts": False}
     chi = ts.ForwardModel("hamiltonian-k3", "paper-30x").correlation_table()
     result = ts.design(meets, method="factorize", target=chi, trials=1000, search_trials=100,
                        baselines=["hamiltonian-k3"], factorize=quick)
-    report = result["hamiltonian-k3"].second_returns
+    report = result["hamiltonian-k3"].multipath
     assert report.single_path_linear_m[0] > result["hamiltonian-k3"].error.linear.geometric_mean_m
     assert report.two_return_linear_m is None  # three means cannot tell them
 

@@ -39,7 +39,7 @@ def test_trials_go_on_until_the_target(small, cli):
     assert said["trials"] == report.point_trials[0]
     assert said["linear_mde_m"] == report.linear_mde_m[0]
     few = ts.evaluate("hamiltonian-k4", small, trials=100, target_standard_error=1e-4,
-                      most_trials=200)
+                      max_trials=200)
     assert few.points_short_of_target == 1 and few.trials <= 200
 
 
@@ -57,20 +57,20 @@ def test_tables_are_judged_as_their_codes(small):
     assert error_m == pytest.approx(report.circular_mde_m[0], abs=5 * (se_m + report.circular_se_m[0]))
 
 
-def test_captures_of_later_returns_are_those_of_the_command_line(cli, tmp_path):
+def test_captures_of_multipath_are_those_of_the_command_line(cli, tmp_path):
     file = tmp_path / "raw.npy"
     scene = ts.built_in_scene("wall", 8, 6)
     light = {"signal_e_per_s": 1e6, "ambient_e_per_s": 1e3}
     direct = ts.capture(scene, code, "paper-10f0", **light)
     for option, words, keywords in (
-            ("--second-return", ["delta=0.8,ratio=0.3"], {"returns": [(0.8, 0.3)]}),
+            ("--multipath", ["delta=0.8,ratio=0.3"], {"returns": [(0.8, 0.3)]}),
             ("--tail", [0.5, "--tail-ratio", 0.4], {"tail": ts.ExponentialTail(0.5, 0.4)})):
         run(cli, "simulate", "wall", "--width", 8, "--height", 6, "--code", code, "--signal", 1e6,
             "--ambient", 1e3, option, *words, "-o", file, "--force")
         raw = ts.capture(scene, code, "paper-10f0", **light, **keywords)
         assert np.array_equal(raw, np.load(file)) and raw.sum() > direct.sum()
     pixels = 48
-    listed = ts.LaterReturns(np.arange(pixels + 1), scene.depth_m.ravel() + np.float32(0.8),
+    listed = ts.MultipathReturns(np.arange(pixels + 1), scene.depth_m.ravel() + np.float32(0.8),
                              np.full(pixels, 0.3))
     behind = ts.capture(scene, code, "paper-10f0", **light, returns=[(0.8, 0.3)])
     assert np.array_equal(ts.capture(scene, code, "paper-10f0", **light, returns=listed), behind)
@@ -119,13 +119,13 @@ def test_generators_cost_what_the_command_line_says(cli, tmp_path):
     assert written.camera.light.generator is not None
     loss = ts.generator_loss("hamiltonian-k3", written.camera, trials=500)
     assert loss.correlation_change.shape == (3,) and loss.ratio("circular") > 0.5
-    assert loss.told.of("linear").geometric_mean_m > 0 and loss.uncalibrated_ratio() > 0.5
+    assert loss.digest.of("linear").geometric_mean_m > 0 and loss.uncalibrated_ratio() > 0.5
     sets = [word for setting in settings[1:] for word in ("--set", setting)]
     run(cli, "export", "hamiltonian-k3", "--camera", "prototype", *sets, "--format", "keysight-arb",
         "--samples", 100, "--no-loss", "-o", tmp_path / "said")
     for path in written.files:
-        told = hashlib.sha256(path.read_bytes()).digest()
-        assert told == hashlib.sha256((tmp_path / "said" / path.name).read_bytes()).digest(), path
+        digest = hashlib.sha256(path.read_bytes()).digest()
+        assert digest == hashlib.sha256((tmp_path / "said" / path.name).read_bytes()).digest(), path
     with pytest.raises(OSError, match="exists"):
         ts.export_waveforms("hamiltonian-k3", camera, folder, "keysight-arb", samples=100)
     assert "keysight-arb" in [f.name for f in ts.waveform_formats()]

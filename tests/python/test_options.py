@@ -27,7 +27,7 @@ structs = [
     ("ChipSearchOptions", "design/chip_search.hpp",
      lambda o: ts.design("paper-10f0", **quick, search=o), {"seed", "exposures"}),
     ("MultipathOptions", "decode/multipath_decoder.hpp",
-     lambda o: ts.Decoder("hamiltonian-k4", "paper-10f0", multipath=o), {"doubt"}),
+     lambda o: ts.Decoder("hamiltonian-k4", "paper-10f0", multipath=o), {"status_thresholds"}),
     ("ReturnPrior", "decode/multipath_decoder.hpp",
      lambda o: ts.Decoder("hamiltonian-k4", "paper-10f0", multipath={"prior": o}), set()),
 ]

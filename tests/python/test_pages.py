@@ -127,7 +127,7 @@ def test_an_upload_is_verified():
         generator.stdin.close()
     assert report.verified, report.message
     assert (report.model, report.channels[0].plays) == ("33622A", "modulation_1")
-    assert all(abs(n.read_back - n.told) <= 1e-3 * abs(n.told) + 1e-3 for n in report.numbers)
+    assert all(abs(n.read_back - n.requested) <= 1e-3 * abs(n.requested) + 1e-3 for n in report.numbers)
     assert seen and seen[-1] == 1
 
 

@@ -40,7 +40,7 @@ def test_the_files_are_those_of_the_command(cli, tmp_path):
     assert (again.written, again.kept) == (0, 2)
 
 
-def test_a_scene_that_cannot_be_had_is_told(tmp_path):
+def test_a_scene_that_cannot_be_had_is_reported(tmp_path):
     scenes = {"good": depths["far.npy"], "none": lambda: 1 // 0, "flat": np.ones(3)}
     run = ts.write_training_set(tmp_path / "set", scenes, "square-k4", camera, frames=2)
     assert run.written == 1

@@ -30,13 +30,13 @@ std::vector<const Figure*> figures_of(const Page& page) {
 }
 
 /// The page renders, its figures have ids of their own, and `name` stands in it as text only.
-void expect_sound(const Page& page, std::size_t least_figures) {
+void expect_sound(const Page& page, std::size_t min_figures) {
   std::set<std::string> ids;
   for (const Figure* figure : figures_of(page)) {
     EXPECT_TRUE(ids.insert(figure->text().id).second) << figure->text().id;
     EXPECT_TRUE(nlohmann::json::accept(figure->plotly_json())) << figure->text().id;
   }
-  EXPECT_GE(ids.size(), least_figures);
+  EXPECT_GE(ids.size(), min_figures);
   const std::string html = render(page);
   EXPECT_THAT(html, Not(HasSubstr("\xc3\xbc<script>")));
   for (const std::string& id : ids) EXPECT_THAT(html, HasSubstr("<figure id=\"" + id + "\">"));
@@ -86,14 +86,14 @@ TEST(DesignReport, ShowsCamerasOfManyKinds) {
     expect_sound(design_report(camera, design(camera, small_options()), std::nullopt, ""), 5);
 }
 
-TEST(DesignReport, ShowsErrorsBehindSecondReturnsEvenWhereNoCodeCanTellTwo) {
+TEST(DesignReport, ShowsErrorsOfOperatingMultipathEvenWhereNoCodeCanSeparateTwo) {
   Camera camera = small_camera("paper-5f0", DepthErrorKind::circular);
-  camera.operating.multipath = SecondReturns{{0.25, 0.5}, {1.0, 2.0}};
+  camera.operating.multipath = OperatingMultipath{{0.25, 0.5}, {1.0, 2.0}};
   const Page page = design_report(camera, design(camera, small_options()), std::nullopt, "");
   expect_sound(page, 6);
   const std::string html = render(page);
   for (const char* words : {"Second returns", "ratio 0.25 to 0.5", "as two returns (mm)", "cannot",
-                            "And behind second returns?", "too few independent means"})
+                            "And with multipath?", "too few independent means"})
     EXPECT_THAT(html, HasSubstr(words));
 }
 

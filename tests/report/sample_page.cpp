@@ -74,7 +74,7 @@ Figure waveforms(ColourAssignment& colours) {
   }
   return small_multiples(
       {"waveforms", "Waveforms in and out of the band limit",
-       "What the light source and the sensor are told (grey), and what they do at 150 MHz.",
+       "Nominal input of light source and sensor (grey), and their output at 150 MHz.",
        "Four rows of modulation, demodulation and correlation functions"},
       columns, rows);
 }

@@ -16,15 +16,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// All later light of a pixel over its direct light, and its mean delay.
+/// All multipath light of a pixel over its direct light, and its mean delay.
 struct Sum {
   double ratio = 0.0;
   double delay_m = 0.0;
 };
 
-Sum sum_of(const LaterReturns& light, int row, int column, double direct_m) {
+Sum sum_of(const MultipathReturns& light, int row, int column, double direct_m) {
   Sum sum;
-  for (const LaterReturn& later : light.of(row, column)) {
+  for (const MultipathReturn& later : light.of(row, column)) {
     sum.ratio += static_cast<double>(later.ratio);
     sum.delay_m +=
         static_cast<double>(later.ratio) * (static_cast<double>(later.distance_m) - direct_m);
@@ -85,7 +85,7 @@ TEST(BouncedLight, OfAFarSourceBetweenPerpendicularWallsIsHalfTheAlbedo) {
   // The other wall fills half of the hemisphere's cosine-weighted area and is lit as this one.
   const auto scene = looking({wall(Vector3d::UnitX(), 0.3), wall(Vector3d::UnitY(), 0.8)},
                              {2e4, 2e4, 0}, {0, 1, 0});
-  const LaterReturns light = bounced_light(scene, {.rays = 8192});
+  const MultipathReturns light = bounced_light(scene, {.rays = 8192});
   EXPECT_NEAR(sum_of(light, 0, 0, 0.0).ratio, 0.5 * 0.8, 0.002);
 }
 
@@ -115,15 +115,15 @@ TEST(BouncedLight, WithinASphereIsTheAlbedoAndTwoThirdsOfTheRadiusLate) {
 
 TEST(BouncedLight, IsTheSameLightAndDelayInBinsOfAnyWidthAndWrapsAtTheRange) {
   const StagedScene scene = built_in_scene("corner", 3, 2);
-  const LaterReturns fine = bounced_light(scene, {.rays = 64, .bin_m = 1e-6});
-  const LaterReturns coarse = bounced_light(scene, {.rays = 64, .bin_m = 0.2});
+  const MultipathReturns fine = bounced_light(scene, {.rays = 64, .bin_m = 1e-6});
+  const MultipathReturns coarse = bounced_light(scene, {.rays = 64, .bin_m = 0.2});
   const SceneImage image = RayCaster(scene.shapes).see(scene.view, scene.camera_to_world).image;
   const double direct_m = static_cast<double>(image.depth_m(0, 0));
   const Sum a = sum_of(fine, 0, 0, direct_m), b = sum_of(coarse, 0, 0, direct_m);
   EXPECT_GT(fine.of(0, 0).size(), coarse.of(0, 0).size());
   EXPECT_NEAR(a.ratio, b.ratio, 1e-6);
   EXPECT_NEAR(a.delay_m, b.delay_m, 1e-5);
-  const LaterReturns wrapped = bounced_light(scene, {.rays = 64, .range_m = 0.5});
+  const MultipathReturns wrapped = bounced_light(scene, {.rays = 64, .range_m = 0.5});
   wrapped.validate(image, 0.5);
   EXPECT_NEAR(sum_of(wrapped, 0, 0, direct_m).ratio, a.ratio, 1e-6);
 }
@@ -132,7 +132,7 @@ TEST(BouncedLight, IsGatheredWithLessThanAPerCentOfNoiseAndConverges) {
   const StagedScene scene = built_in_scene("corner", 24, 1);
   const auto ratios = [&](int rays, std::uint64_t seed) {
     Eigen::ArrayXd all(24);
-    const LaterReturns light = bounced_light(scene, {.rays = rays, .seed = seed});
+    const MultipathReturns light = bounced_light(scene, {.rays = rays, .seed = seed});
     for (int i = 0; i < 24; ++i) all[i] = sum_of(light, 0, i, 0.0).ratio;
     return all;
   };
@@ -165,9 +165,9 @@ TEST(BouncedLight, ComesFromLitSurfacesOnly) {
 
 TEST(BouncedLight, HasTheSameBitsForAnyNumberOfThreads) {
   const StagedScene scene = built_in_scene("room", 9, 7);
-  const LaterReturns many = bounced_light(scene, {.rays = 32});
+  const MultipathReturns many = bounced_light(scene, {.rays = 32});
   const ThreadLimit one(1);
-  const LaterReturns alone = bounced_light(scene, {.rays = 32});
+  const MultipathReturns alone = bounced_light(scene, {.rays = 32});
   EXPECT_EQ(many.first, alone.first);
   ASSERT_EQ(many.returns.size(), alone.returns.size());
   for (std::size_t i = 0; i < many.returns.size(); ++i) {

@@ -234,7 +234,7 @@ TEST(AdaptiveTrials, MeetTheTargetOrSaySo) {
     EXPECT_GT(report.trials, 2000);
   }
   const DepthErrorReport capped =
-      evaluate(code, camera, {.trials = 2000, .target_standard_error = 1e-4, .most_trials = 5000});
+      evaluate(code, camera, {.trials = 2000, .target_standard_error = 1e-4, .max_trials = 5000});
   EXPECT_EQ(capped.points_short_of_target, 2);
   for (const PointDepthError& point : capped.points) EXPECT_EQ(point.trials, 5000);
 }
@@ -280,7 +280,7 @@ TEST(AdaptiveTrials, RefuseTargetsThatMakeNoSense) {
   const CodeSet code = build_family("hamiltonian-k3", camera);
   for (const double target : {-0.1, 1.0, std::nan("")})
     EXPECT_THROW(evaluate(code, camera, {.target_standard_error = target}), std::invalid_argument);
-  EXPECT_THROW(evaluate(code, camera, {.target_standard_error = 0.1, .most_trials = 1}),
+  EXPECT_THROW(evaluate(code, camera, {.target_standard_error = 0.1, .max_trials = 1}),
                std::invalid_argument);
 }
 

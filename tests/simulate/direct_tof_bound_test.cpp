@@ -9,7 +9,7 @@
 #include <numbers>
 #include <utility>
 
-#include "camera/shared/played_waveform.hpp"
+#include "camera/shared/arm_output.hpp"
 #include "core/shared/random.hpp"
 
 namespace tofsmith {
@@ -47,8 +47,8 @@ TEST(DirectTofBound, OfAModulationIsThePlainIntegral) {
   const OperatingPoint point{3e3, 2e4};
   const Waveform pulse = rectangular_pulse(1.0 / 15);
   constexpr int points = 20000;
-  const Eigen::VectorXd m = played_waveform(pulse, camera.light.impulse_response,
-                                            camera.fundamental_frequency_hz, points);
+  const Eigen::VectorXd m =
+      arm_output(pulse, camera.light.impulse_response, camera.fundamental_frequency_hz, points);
   double sum = 0.0;
   for (int j = 0; j < points; ++j) {
     const double slope = (m[(j + 1) % points] - m[(j + points - 1) % points]) * points / 2;
@@ -64,16 +64,16 @@ TEST(DirectTofBound, NoModulationBeatsIt) {
     for (const auto& [name, cutoff_hz] : {std::pair("narrow", 45e6), std::pair("wide", 200e6)}) {
       const Camera camera = gaussian_light(cutoff_hz, peak_factor);
       const DirectTofBound bound(camera);
-      const double least_duty = 1.0 / peak_factor;
+      const double min_duty = 1.0 / peak_factor;
       std::vector<Waveform> lights;
-      for (const double duty : {least_duty, std::min(0.95, 1.5 * least_duty), 0.5})
+      for (const double duty : {min_duty, std::min(0.95, 1.5 * min_duty), 0.5})
         for (const int pulses : {1, 3, 6, 13})
-          if (duty >= least_duty) lights.push_back(pulse_train(pulses, duty));
+          if (duty >= min_duty) lights.push_back(pulse_train(pulses, duty));
       if (peak_factor < 2.0) lights.push_back(Waveform::binary({{0.0, 0.5}}, peak_factor));
       for (std::uint64_t item = 0; item < 3; ++item) {
         RandomStream random(5, item);
         Eigen::VectorXd word(60);
-        for (double& x : word) x = random.uniform() < least_duty ? 1.0 : 0.0;
+        for (double& x : word) x = random.uniform() < min_duty ? 1.0 : 0.0;
         word[0] = 1.0;
         const double level = std::min(peak_factor, 1.0 / word.mean());
         lights.push_back(Waveform::binary_from_samples(word, level));

@@ -29,11 +29,11 @@ TEST(GeneratorLoss, OfFewPointsIsSeenByTheSameTrialsAsEvaluate) {
   Camera camera = small_camera();
   const CodeSet code = build_family("hamiltonian-k4", camera);
   const EvaluateOptions options{.trials = 1000, .seed = 7};
-  const double told_m = evaluate(code, camera, options).linear.geometric_mean_m.value;
+  const double nominal_m = evaluate(code, camera, options).linear.geometric_mean_m.value;
   camera.light.generator = camera.sensor.generator = Generator{.sample_rate_hz = 16 * 15e6};
   const GeneratorLoss loss = generator_loss(code, camera, options);
-  EXPECT_EQ(loss.told.linear.geometric_mean_m.value, told_m);
-  EXPECT_EQ(loss.played.linear.geometric_mean_m.value,
+  EXPECT_EQ(loss.nominal.linear.geometric_mean_m.value, nominal_m);
+  EXPECT_EQ(loss.actual.linear.geometric_mean_m.value,
             evaluate(code, camera, options).linear.geometric_mean_m.value);
   EXPECT_GT(loss.uncalibrated_ratio(DepthErrorKind::linear), 1.05);
   EXPECT_GT(loss.uncalibrated_ratio(DepthErrorKind::linear), loss.ratio(DepthErrorKind::linear));

@@ -71,7 +71,7 @@ TEST(MultipathCapture, AddsReturnsTailAndTransientAsTheModelDoes) {
   const double bin_m = setup.camera.bin_m(), s = setup.options.signal_e_per_s;
   const double at = scene.depth_m(0, 1) / bin_m;
 
-  const std::vector<LaterReturn> behind = {{0.5f, 0.3f}, {9.5f, 0.1f}};
+  const std::vector<MultipathReturn> behind = {{0.5f, 0.3f}, {9.5f, 0.1f}};
   SceneLight points;
   points.returns = behind_every_pixel(scene, behind);
   setup.expect_close(setup.measured(scene, points, 1),
@@ -106,11 +106,12 @@ TEST(MultipathCapture, OfDirectLightAloneIsTheSameBitByBit) {
 TEST(MultipathCapture, TellsTheTruthOfEveryReturn) {
   const SceneImage scene = flat_scene(2);
   SceneLight light;
-  light.returns = LaterReturns(1, 2);
-  const std::vector<LaterReturn> two = {{1.5f, 0.5f}, {2.0f, 0.25f}};
+  light.returns = MultipathReturns(1, 2);
+  const std::vector<MultipathReturn> two = {{1.5f, 0.5f}, {2.0f, 0.25f}};
   light.returns.append_pixel(two);
   light.returns.append_pixel({});
-  const ReturnsTruth truth = returns_truth(scene, light, {.signal_e_per_s = 8.0, .falloff = false});
+  const MultipathTruth truth =
+      multipath_truth(scene, light, {.signal_e_per_s = 8.0, .falloff = false});
   EXPECT_THAT(truth.first, testing::ElementsAre(0, 2, 2));
   EXPECT_THAT(truth.distance_m, testing::ElementsAre(1.5f, 2.0f));
   EXPECT_THAT(truth.signal_e_per_s, testing::ElementsAre(4.0f, 2.0f));
@@ -124,7 +125,7 @@ TEST(MultipathCapture, RefusesLightThatMakesNoSense) {
     EXPECT_THAT([&] { light.validate(scene, camera); },
                 ThrowsMessage<std::invalid_argument>(HasSubstr(what)));
   };
-  const auto behind = [&](std::vector<LaterReturn> returns) {
+  const auto behind = [&](std::vector<MultipathReturn> returns) {
     SceneLight light;
     light.returns = behind_every_pixel(scene, returns);
     return light;

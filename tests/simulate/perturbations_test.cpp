@@ -53,18 +53,18 @@ TEST(PerturbedCode, SwitchesOnThePointsOfAClock) {
   const CodeSet code = build_family("hamiltonian-k4", camera);
   const double clock_s = 5e-9;
   const double points = std::floor(1.0 / (camera.fundamental_frequency_hz * clock_s));
-  const CodeSet played = perturbed_code(code, of_clock(camera, clock_s));
-  const auto on_points = [&](const Waveform& w, const Waveform& told) {
-    ASSERT_EQ(w.on_intervals().size(), told.on_intervals().size());
+  const CodeSet actual = perturbed_code(code, of_clock(camera, clock_s));
+  const auto on_points = [&](const Waveform& w, const Waveform& nominal) {
+    ASSERT_EQ(w.on_intervals().size(), nominal.on_intervals().size());
     for (std::size_t i = 0; i < w.on_intervals().size(); ++i) {
       const double rise = w.on_intervals()[i].rise * points;
       EXPECT_NEAR(rise, std::round(rise), 1e-9);
     }
   };
   for (int k = 0; k < 4; ++k) {
-    on_points(played.demodulation(k), code.demodulation(k));
-    on_points(played.modulation(k), code.modulation(k));
-    EXPECT_LE(played.modulation(k).mean(), 1.0 + 1e-12);
+    on_points(actual.demodulation(k), code.demodulation(k));
+    on_points(actual.modulation(k), code.modulation(k));
+    EXPECT_LE(actual.modulation(k).mean(), 1.0 + 1e-12);
   }
   EXPECT_THROW(perturbed_code(code, of_clock(camera, 60e-9)), std::invalid_argument);
 }
@@ -73,15 +73,15 @@ TEST(PerturbedCode, DroopsFromEveryRiseOn) {
   const Camera camera = built_in_camera("paper-10f0");
   const CodeSet square = build_family("square-k4", camera);  // on for half the period
   const PerturbedCamera droopy{.name = "droop", .camera = camera, .droop = 0.1};
-  const CodeSet played = perturbed_code(square, droopy);
-  const Waveform& told = square.modulation(0);
-  ASSERT_TRUE(told.is_binary());
-  const double length = told.on_intervals()[0].fall - told.on_intervals()[0].rise;
+  const CodeSet actual = perturbed_code(square, droopy);
+  const Waveform& nominal = square.modulation(0);
+  ASSERT_TRUE(nominal.is_binary());
+  const double length = nominal.on_intervals()[0].fall - nominal.on_intervals()[0].rise;
   const double rate = -std::log(0.9) / 0.5;
-  EXPECT_NEAR(played.modulation(0).mean(), told.level() * (1 - std::exp(-rate * length)) / rate,
+  EXPECT_NEAR(actual.modulation(0).mean(), nominal.level() * (1 - std::exp(-rate * length)) / rate,
               1e-12);
-  EXPECT_LT(played.modulation(0).peak(), told.level());
-  EXPECT_EQ(played.demodulation(0), square.demodulation(0));
+  EXPECT_LT(actual.modulation(0).peak(), nominal.level());
+  EXPECT_EQ(actual.demodulation(0), square.demodulation(0));
   // The last cell of a plateau of half a period is a tenth lower.
   const CodeSet half = CodeSet::create("half", 240, 1, {Waveform::binary({{0.0, 0.5}}, 2.0)},
                                        {Waveform::binary({{0.0, 0.5}})});

@@ -195,7 +195,7 @@ TEST(Robustness, CalibratedIsTheDepthErrorOfThePerturbedCamera) {
 }
 
 TEST(Robustness, ADecoderThatBelievesAWrongCameraErrs) {
-  // So bright that what is left is bias. (Jitter blurs to both sides alike and leaves next to
+  // So bright that the residual is bias. (Jitter blurs to both sides alike and leaves next to
   // none.)
   Camera camera = small_camera();
   camera.operating.signal_e_per_s = {1e9};

@@ -99,7 +99,7 @@ class Matched {
     plane_.resize(tiles * rank() * tile_size);
     electrons_.resize(tiles * k_count() * tile_size);
     bin_.assign(tiles * tile_size, std::numeric_limits<std::int32_t>::max());
-    rival_ = bin_;
+    second_peak_ = bin_;
     saturated_.resize(bin_.size());
     for (std::size_t i = 0; i < pixels_; ++i) match(i);
   }
@@ -116,7 +116,7 @@ class Matched {
             &plane_[first * rank()],
             &electrons_[first * k_count()],
             &bin_[first],
-            &rival_[first],
+            &second_peak_[first],
             &saturated_[first]};
   }
 
@@ -151,8 +151,8 @@ class Matched {
     const Position position = model_.refine(q.data(), bin_[i]);
     PixelDecoding decoding{position.in_bins(table_.samples()),
                            model_.estimate(y.data(), q.data(), position, variance_e2.data()), 1.0};
-    if (rival_[i] >= 0) {
-      const Eigen::VectorXd apart = direction(bin_[i]) - direction(rival_[i]);
+    if (second_peak_[i] >= 0) {
+      const Eigen::VectorXd apart = direction(bin_[i]) - direction(second_peak_[i]);
       decoding.confidence =
           confidence_of(apart.dot(q), model_.deviation_along(apart.data(), variance_e2.data()));
     }
@@ -207,12 +207,12 @@ class Matched {
     saturated_[i] = table_.saturation_level && std::any_of(raw, raw + k_count(), [&](float value) {
                       return value >= *table_.saturation_level;
                     });
-    bin_[i] = rival_[i] = -1;
+    bin_[i] = second_peak_[i] = -1;
     if (!y.allFinite()) return;
     bin_[i] = best_bin(q, 0, table_.samples());
     const Lobe lobe = directions_.main_lobe(bin_[i]);
     if (lobe.end - lobe.begin < table_.samples())
-      rival_[i] = best_bin(q, lobe.end, lobe.begin + table_.samples());
+      second_peak_[i] = best_bin(q, lobe.end, lobe.begin + table_.samples());
   }
 
   DecodingTable table_;
@@ -225,7 +225,7 @@ class Matched {
   std::vector<float> raw_;
   std::size_t pixels_;
   std::vector<float> plane_, electrons_;
-  std::vector<std::int32_t> bin_, rival_;
+  std::vector<std::int32_t> bin_, second_peak_;
   std::vector<std::uint8_t> saturated_;
 };
 
@@ -262,7 +262,7 @@ inline void expect_similar(const std::vector<float>& deviations,
   EXPECT_LE(others, 0.02 * finite);
 }
 
-/// All but confidence, whose rival may be another.
+/// All but confidence, whose second peak may be another.
 inline void expect_definition(const Outputs& outputs, const Matched& matched) {
   const DecodingTable& table = matched.table();
   const Outputs expected = matched.expected();

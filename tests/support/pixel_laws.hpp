@@ -41,10 +41,10 @@ void expect_strong_signal_is_ok(const Setup& setup, double signal, double signal
 }
 
 /// Of so many noisy pixels some in the middle are made NaN or infinite, in one or all measurements.
-/// @param most_apart_bin  how far the positions of others are from their bins
+/// @param max_apart_bin  how far the positions of others are from their bins
 template <typename AnyDecoder>
 void expect_not_a_number_disturbs_no_neighbour(const AnyDecoder& decoder, int pixels,
-                                               double most_apart_bin = 0.5) {
+                                               double max_apart_bin = 0.5) {
   std::vector<float> raw = noisy_pixels(decoder.table(), 1e4, 1e4, pixels, 1);
   const DepthImage before = decode_pixels(decoder, raw);
   const auto count = static_cast<std::size_t>(pixels), first = count / 2;
@@ -70,7 +70,7 @@ void expect_not_a_number_disturbs_no_neighbour(const AnyDecoder& decoder, int pi
     EXPECT_EQ(after.status.pixels[i], before.status.pixels[i]);
     EXPECT_EQ(after.depth_m.pixels[i], before.depth_m.pixels[i]);
     EXPECT_EQ(after.confidence.pixels[i], before.confidence.pixels[i]);
-    EXPECT_LE(std::abs(circular_difference(bins[i], positions[i], samples)), most_apart_bin);
+    EXPECT_LE(std::abs(circular_difference(bins[i], positions[i], samples)), max_apart_bin);
     EXPECT_LT(bins[i], samples);
   }
 }

@@ -40,9 +40,9 @@ inline Eigen::VectorXd reference_electrons(const SampledCamera& camera,
         const double fraction = bins - bin;
         return (1 - fraction) * chi(bin % samples, i) + fraction * chi((bin + 1) % samples, i);
       };
-      return camera.exposure_s()[i] *
-             (trial.albedo * point.signal_e_per_s * (at(position) + trial.later_ratio * at(later)) +
-              point.ambient_e_per_s * kappa[i]);
+      return camera.exposure_s()[i] * (trial.albedo * point.signal_e_per_s *
+                                           (at(position) + trial.multipath_ratio * at(later)) +
+                                       point.ambient_e_per_s * kappa[i]);
     };
     const double variance =
         light(table.shot(), table.shot_ambient()) + camera.constant_variance_e2()[i];
@@ -54,7 +54,7 @@ inline Eigen::VectorXd reference_electrons(const SampledCamera& camera,
 
 /// The differentiable depth error written out in double, trial by trial and chord by chord, with no
 /// thought of speed: what DepthErrorLoss is compared with.
-/// @param decoded_bin  if given, where the decoder that does not doubt puts the last trial
+/// @param decoded_bin  if given, where the hard decoder puts the last trial
 inline double reference_soft_error(const SampledCamera& camera, const MeasurementTable& table,
                                    const OperatingPoint& point, const TrialBatch& batch,
                                    double sharpness, bool circular, double* decoded_bin = nullptr) {

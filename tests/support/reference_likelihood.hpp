@@ -41,7 +41,7 @@ class ReferenceLikelihood {
 
   /// The least cost on a grid over depth. At every depth light is fitted by weighted least squares
   /// again and again, and every step of it counts.
-  double least_cost(const Eigen::VectorXd& y, int depths_per_bin) const {
+  double min_cost(const Eigen::VectorXd& y, int depths_per_bin) const {
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i < table_.samples() * depths_per_bin; ++i) {
       const double depth_bin = static_cast<double>(i) / depths_per_bin;

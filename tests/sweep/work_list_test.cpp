@@ -53,7 +53,7 @@ TEST(WorkList, AKeyDependsOnAllThatDeterminesTheResult) {
 TEST(WorkList, AKeyDependsOnNothingElse) {
   EXPECT_EQ(key_of(""), key_of("camera = \"paper-10f0\"\nseed = 1\n"));
   EXPECT_EQ(key_of(""), key_of(axis("name", "\"other\"")));
-  EXPECT_EQ(key_of(""), key_of("most_trials = 1000\n"));  // without a target
+  EXPECT_EQ(key_of(""), key_of("max_trials = 1000\n"));  // without a target
   EXPECT_EQ(key_of(""), key_of(axis("unwrap_weights", "\"frequency\"")));
   EXPECT_EQ(key_of(axis("signal_e_per_s", "5e3")), key_of(axis("signal_e_per_s", "5000, 1")));
 }

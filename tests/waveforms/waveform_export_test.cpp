@@ -9,7 +9,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "camera/shared/played_code.hpp"
+#include "camera/shared/actual_code.hpp"
 #include "core/shared/sha256.hpp"
 #include "tofsmith/io/csv.hpp"
 #include "waveforms/pattern_memory.hpp"
@@ -72,17 +72,17 @@ TEST(WaveformExport, FilesHoldWhatIsPlayedWithinHalfAStep) {
       for (const std::optional<int> bits : {std::optional<int>(), std::optional<int>(6)}) {
         SCOPED_TRACE(fmt::format("{} {} {}", family, format.name, bits.value_or(0)));
         const ExportOptions options{.format = format.name, .bits = bits};
-        const Camera played = exporting_camera(code, camera, options);
-        const WaveformExport exported = export_waveforms(code, played, options);
-        const PlayedCode truth = played_code(code, played);
+        const Camera actual = exporting_camera(code, camera, options);
+        const WaveformExport exported = export_waveforms(code, actual, options);
+        const ActualCode truth = actual_code(code, actual);
         const auto files = export_files(exported);
         ASSERT_EQ(files.size(), exported.waveforms.size());
         for (std::size_t i = 0; i < files.size(); i += 3) {
           const QuantizedWaveform& w = exported.waveforms[i];
           const auto index = static_cast<std::size_t>(w.index);
-          const Waveform& told =
+          const Waveform& nominal =
               w.arm == Arm::light ? truth.modulation[index] : truth.demodulation[index];
-          const Eigen::VectorXd expected = told.cell_averages(w.points_per_period());
+          const Eigen::VectorXd expected = nominal.cell_averages(w.points_per_period());
           const std::vector<double> values = values_read_back(files[i], w, exported);
           ASSERT_EQ(values.size(), w.codes.size());
           double largest = 0.0;
@@ -134,9 +134,9 @@ TEST(WaveformExport, TapsThatShareAGeneratorAreExportedOnce) {
   const Camera camera = built_in_camera("prototype");
   const CodeSet code = build_family("hamiltonian-k4", camera);
   const ExportOptions options{.format = "keysight-arb"};
-  const Camera played = exporting_camera(code, camera, options);
-  EXPECT_EQ(played.light.generator->points_per_period(5e6), 100);  // its own generator's
-  const WaveformExport exported = export_waveforms(code, played, options);
+  const Camera actual = exporting_camera(code, camera, options);
+  EXPECT_EQ(actual.light.generator->points_per_period(5e6), 100);  // its own generator's
+  const WaveformExport exported = export_waveforms(code, actual, options);
   EXPECT_TRUE(exported.shared_taps);
   ASSERT_EQ(exported.waveforms.size(), 8u);
   EXPECT_EQ(exported.waveforms[5].name, "demodulation_3");

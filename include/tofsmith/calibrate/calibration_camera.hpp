@@ -23,8 +23,8 @@ Image<float> flat_target_geometry_m(double distance_m, const Camera& camera, int
 
 /// What the camera says of the noise of frames that it took: bits and, without dark frames, the
 /// black level.
-/// @throws std::invalid_argument for a camera that reads differences, whose mean does not tell
-///         their shot noise
+/// @throws std::invalid_argument for a camera that reads differences, from whose mean shot noise
+///         does not follow
 PhotonTransferOptions noise_options(const Camera& camera, bool has_dark_frames);
 
 /// Whose response was recorded.

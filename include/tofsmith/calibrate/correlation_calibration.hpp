@@ -10,7 +10,7 @@
 
 #include "tofsmith/calibrate/instrument_table.hpp"
 #include "tofsmith/camera/camera.hpp"
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
@@ -20,7 +20,7 @@
 
 namespace tofsmith {
 
-/// What a delay is told in.
+/// Unit in which delays are given.
 enum class DelayUnit { second, metre, bin, period };
 
 /// "s", "m", "bin" or "period"; "ns" and the like through seconds_per_unit().

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/core/statistics.hpp"
 
 namespace tofsmith {
@@ -45,7 +45,7 @@ struct PhotonTransfer {
 /// Photon transfer. Each two frames of a recording that follow one another saw the same light; the
 /// difference of the two leaves out what is fixed in a pixel, half its variance is that in time.
 /// The darkest and dark frames fix read noise, the rise of variance with the mean the gain.
-///   1. Black level: mean of the dark frames, or as told.
+///   1. Black level: mean of the dark frames, or as given.
 ///   2. Mean and variance of every pair and measurement; a change of light between the two frames
 ///      of a pair is taken out.
 ///   3. Full well: where pixels pile up at one number below the converter's last.
@@ -53,7 +53,7 @@ struct PhotonTransfer {
 ///      from its value at black, less 1/12 of rounding.
 /// @param levels  one recording per level of light or one of them all, raw numbers of single taps
 ///                (not differences), an even number of frames
-/// @param dark    frames without light; may have no frames if the black level is told
+/// @param dark    frames without light; may have no frames if the black level is given
 /// @throws std::invalid_argument if frames are no pairs, sizes differ, the black level is unknown,
 ///         or the levels do not differ
 PhotonTransfer photon_transfer(const std::vector<RawFrames>& levels, const RawFrames& dark,

@@ -14,8 +14,8 @@
 
 namespace tofsmith {
 
-/// How a light source or a sensor smooths what it is told to play. Its transfer function is 1 at
-/// frequency 0, so mean power and duty stay.
+/// How a light source or a sensor smooths the waveform that drives it. Its transfer function is 1
+/// at frequency 0, so mean power and duty stay.
 struct ImpulseResponse {
   enum class Kind { none, hann, gaussian, lowpass, file };
 
@@ -44,9 +44,9 @@ struct ImpulseResponse {
 /// "none", "hann", "gaussian", "lowpass", "file".
 std::string_view name_of(ImpulseResponse::Kind kind);
 
-/// Second returns as a camera meets them: ratio and delay are uniform between their limits. Field
-/// names are the keys of [operating.multipath] in the TOML file.
-struct SecondReturns {
+/// Multipath that a camera meets, as second returns: ratio and delay are uniform between their
+/// limits. Field names are the keys of [operating.multipath] in the TOML file.
+struct OperatingMultipath {
   std::array<double, 2> ratio{0.1, 0.5};    ///< r = S2 / S1, least and largest, in [0, 1]
   std::array<double, 2> delay_m{0.5, 3.0};  ///< behind the direct return, in (0, range) [m]
   /// How much they count where codes are designed: what is minimized is E1^(1 - weight) E2^weight,
@@ -61,12 +61,12 @@ struct SecondReturns {
   }
 
   /// E1^(1 - weight) E2^weight.
-  double weighed(double single_return_error, double second_return_error) const;
+  double weighed(double single_return_error, double operating_multipath_error) const;
 
   /// @throws std::invalid_argument naming the field as operating.multipath.*, value and rule
   void validate(double range_m) const;
 
-  friend bool operator==(const SecondReturns&, const SecondReturns&) = default;
+  friend bool operator==(const OperatingMultipath&, const OperatingMultipath&) = default;
 };
 
 /// An arbitrary waveform generator, or a memory of patterns, that drives one arm of a camera from a
@@ -94,7 +94,7 @@ struct Generator {
   friend bool operator==(const Generator&, const Generator&) = default;
 };
 
-/// What a generator's table holds of a waveform it is told, each point held for 1/n of the period.
+/// What a generator's table holds of a nominal waveform, each point held for 1/n of the period.
 ///   - Switching times of a binary waveform first move to the edge grid, if there is one.
 ///   - A point takes the waveform's value at the middle of its time, as in a table that a user
 ///     loads. So a switching time moves to the nearest point, by at most half a point (from the
@@ -106,8 +106,8 @@ struct Generator {
 Waveform generator_table(const Waveform& waveform, const Generator& generator,
                          double fundamental_frequency_hz);
 
-/// What a generator makes of a waveform it is told: its table; of a table of more points than it
-/// plays, the points at the middles of those it plays.
+/// The actual waveform of a generator for a nominal one: its table; of a table of more points than
+/// it plays, the points at the middles of those it plays.
 /// @throws std::invalid_argument as generator_table()
 Waveform generated(const Waveform& waveform, const Generator& generator,
                    double fundamental_frequency_hz);
@@ -208,8 +208,8 @@ struct OperatingRange {
   DepthErrorKind error = DepthErrorKind::linear;
   double albedo = 1.0;          ///< scales the signal, (0, 1]
   bool uniform_albedo = false;  ///< instead: a fresh uniform draw in (0, 1) for every trial
-  /// Second returns that designs reckon with; none: light comes back once.
-  std::optional<SecondReturns> multipath = {};
+  /// Multipath that designs count with; none: light comes back once.
+  std::optional<OperatingMultipath> multipath = {};
 
   /// All pairs, signal by signal.
   std::vector<OperatingPoint> points() const;

@@ -43,7 +43,7 @@ struct Return {
 
 /// What a camera that plays a code measures: expected electrons and their variance.
 ///   mu_i(z) = T_i (S chi_i(z) + A kappa_i + dark),  variance mu_i + sigma_r^2 (+ step^2 / 12)
-/// chi and kappa are those of the waveforms really played (see played_code), behind both arms.
+/// chi and kappa are those of the actual waveforms (see actual_code), behind both arms.
 /// @see Gutierrez-Barragan et al., CVPR 2019, Eq. (4); several returns add.
 ///
 /// A *tap value* is what one tap collects (E x taps of them); a *measurement* is what leaves the

@@ -20,7 +20,7 @@ using Progress = std::function<bool(double fraction, std::string_view step)>;
 /// @throws Interrupted if the callback asks to stop
 void report(const Progress& progress, double fraction, std::string_view step);
 
-/// Splits progress among the parts of a work, which follow one another; each part is told as a
+/// Splits progress among the parts of a work, which follow one another; each part is reported as a
 /// progress of its own, from 0 to 1, and may be split again.
 class ProgressParts {
  public:

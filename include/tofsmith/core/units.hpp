@@ -26,7 +26,7 @@ double wrap(double position, double period);
 /// period/2).
 double circular_difference(double to, double from, double period);
 
-/// A number for people: rounded to so many significant digits, at least to a whole number, and
+/// A number as text: rounded to so many significant digits, at least to a whole number, and
 /// never a power of ten: "61.23", "0.0123", "175312". "nan", "inf" as they are.
 std::string plain_number(double value, int digits);
 

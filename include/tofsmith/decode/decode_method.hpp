@@ -36,9 +36,10 @@ using AnyDecoder =
 
 /// The decoder of a method, with its defaults but for what is given.
 /// @param unwrap_weights  of DecodeMethod::unwrap
-/// @param multipath       of DecodeMethod::two_return and tail, but for `doubt`
+/// @param multipath       of DecodeMethod::two_return and tail, but for `status_thresholds`
 /// @throws std::invalid_argument if the method cannot decode this table
-AnyDecoder make_decoder(DecodeMethod method, DecodingTable table, const DecodeOptions& doubt = {},
+AnyDecoder make_decoder(DecodeMethod method, DecodingTable table,
+                        const DecodeOptions& status_thresholds = {},
                         UnwrapWeights unwrap_weights = UnwrapWeights::variance,
                         const MultipathOptions& multipath = {});
 

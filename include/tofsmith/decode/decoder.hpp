@@ -5,20 +5,20 @@
 #include <cstdint>
 #include <memory>
 
-#include "tofsmith/core/array.hpp"
 #include "tofsmith/core/fields.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 
 namespace tofsmith {
 
-/// When a depth is doubted.
+/// Thresholds of a pixel's status.
 struct DecodeOptions {
   /// low_signal below this many standard deviations of the signal estimate; >= 0.
   double low_signal_sigma = 3.0;
   /// ambiguous below this probability that the main lobe is the right one; in [0, 1].
-  double minimum_confidence = 0.9;
+  double min_confidence = 0.9;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
@@ -26,7 +26,7 @@ struct DecodeOptions {
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<DecodeOptions> auto& o) {
   return std::tuple(Field("low_signal_sigma", o.low_signal_sigma, "finite and >= 0"),
-                    Field("minimum_confidence", o.minimum_confidence, "in [0, 1]"));
+                    Field("min_confidence", o.min_confidence, "in [0, 1]"));
 }
 
 /// Depth by zero-mean normalized cross-correlation, with what ambient light explains projected out
@@ -52,7 +52,7 @@ class Decoder {
   const DecodeOptions& options() const;
   int measurements() const { return table().measurements(); }
   int samples() const { return table().samples(); }
-  /// Dimension of what is left of the measurements without ambient light, 2 .. K.
+  /// Dimension of the measurements' residual without ambient light, 2 .. K.
   int rank() const;
 
   /// Decodes one frame on all threads into the caller's planes, so that a stream of frames needs no
@@ -63,12 +63,12 @@ class Decoder {
   ///     variance, averaged over a quarter of the chord), carried through the least squares over
   ///     (z, S, A) that z_hat solves;
   ///   confidence: normal probability that the best score beats, beyond noise at the best bin, the
-  ///     best score outside the main lobe, which is the run of bins around the best along which the
-  ///     code's own score falls (1 if nothing is outside). The bin that scores best there may be
-  ///     taken from a vector nearby;
-  ///   status: as PixelStatus says, low_signal by the noise at the best bin. What is left of a
-  ///   pixel
-  ///     without ambient light is nothing, and no_return, below 1e-12 of sum_i |y'_i|.
+  ///     second peak, the best score outside the main lobe, which is the run of bins around the
+  ///     best along which the code's own score falls (1 if nothing is outside). The bin that scores
+  ///     best there may be taken from a vector nearby;
+  ///   status: as PixelStatus says, low_signal by the noise at the best bin. The residual of a
+  ///   pixel without
+  ///     ambient light counts as 0, and no_return, below 1e-12 of sum_i |y'_i|.
   /// All but bins is computed in single precision: depth errs by about 1e-7 / (angle between
   /// neighbour bins) of a bin, signal and ambient light by about 1e-6 of the brightest measurement.
   /// Pixels that are invalid or have no return are NaN in all planes of floats; the bin is -1 for
@@ -78,8 +78,8 @@ class Decoder {
   ///                 and each has the same values whichever others are
   /// @throws std::invalid_argument if the shape does not fit; Interrupted if progress says so
   /// @note the same bits for any number of threads and any layout of the raw numbers; also on every
-  ///       processor, but for confidence, and with it the status ambiguous, where the rival near
-  ///       the border of a cell of the search may be that of either side
+  ///       processor, but for confidence, and with it the status ambiguous, where the second peak
+  ///       near the border of a cell of the search may be that of either side
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress = {}) const;
   /// The same for frame `frame` of several (F, H, W, K), into a new image.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;

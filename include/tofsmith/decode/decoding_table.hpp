@@ -59,8 +59,8 @@ struct DecodingTable : MeasurementTable {
   /// Depth of one bin [m].
   double bin_m() const { return range_m / samples(); }
 
-  /// Whether depths can be told apart at all: shapes agree, everything is finite, there are 3 to 64
-  /// measurements (2 are enough where ambient light cancels), and the correlation without what
+  /// Whether depths can be distinguished at all: shapes agree, everything is finite, there are 3 to
+  /// 64 measurements (2 are enough where ambient light cancels), and the correlation without what
   /// ambient light explains has rank >= 2 and at least two different directions.
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
@@ -76,9 +76,9 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
 /// are then in raw numbers, of which noise is taken as if they were electrons.
 DecodingTable make_decoding_table(const Eigen::MatrixXd& correlation, double range_m);
 
-/// Why no depth can be told from what `table` measures, though its numbers are in order: too few
+/// Why no depth can be decoded from what `table` measures, though its numbers are in order: too few
 /// measurements or too many, or a correlation that leaves depth, signal and ambient light mixed up.
-/// None: depth can be told.
+/// None: depth can be decoded.
 std::optional<std::string> why_not_decodable(const DecodingTable& table);
 
 /// Two depths that look the same in every measurement once ambient light is unknown.

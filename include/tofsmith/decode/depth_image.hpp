@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 
 namespace tofsmith {
 

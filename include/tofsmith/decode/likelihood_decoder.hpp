@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/decoder.hpp"
 

@@ -6,28 +6,28 @@
 #include <memory>
 #include <optional>
 
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 
 namespace tofsmith {
 
-/// What is believed of later returns before a pixel is seen; depth itself may be anything. The
+/// What is assumed of multipath returns before a pixel is seen; depth itself may be anything. The
 /// answer leans on it where light is scarce.
 struct ReturnPrior {
-  double single_probability = 0.5;  ///< that there is no later return, in [0, 1)
+  double single_probability = 0.5;  ///< that there is no multipath return, in [0, 1)
   double mean_delay_m = 0.5;        ///< delays are exponential with this mean [m], > 0
-  double largest_ratio = 0.5;       ///< ratios are uniform from 0 to this, in (0, 1]
+  double max_ratio = 0.5;           ///< ratios are uniform from 0 to this, in (0, 1]
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<ReturnPrior> auto& p) {
   return std::tuple(Field("single_probability", p.single_probability, "in [0, 1)"),
                     Field("mean_delay_m", p.mean_delay_m, "finite and > 0"),
-                    Field("largest_ratio", p.largest_ratio, "in (0, 1]"));
+                    Field("max_ratio", p.max_ratio, "in (0, 1]"));
 }
 
-/// How returns beside the direct one are looked for.
+/// How multipath is looked for.
 struct MultipathOptions {
   /// A second return is accepted if it lowers chi^2 by more than this, >= 0. Single returns exceed
   /// 9 in about one pixel of a hundred.
@@ -40,7 +40,7 @@ struct MultipathOptions {
   /// If set, depth is the posterior median under this prior where one return does not explain the
   /// pixel, instead of the most likely one.
   std::optional<ReturnPrior> prior;
-  DecodeOptions doubt;  ///< of the single return
+  DecodeOptions status_thresholds;  ///< of the single return
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate(double range_m) const;
@@ -50,7 +50,7 @@ auto fields_of(ConstOrNot<MultipathOptions> auto& o) {
   return std::tuple(Field("threshold", o.threshold, "finite and >= 0"),
                     Field("shortest_delay_m", o.shortest_delay_m, "> 0"),
                     Field("longest_delay_m", o.longest_delay_m), Field("tail_m", o.tail_m, "> 0"),
-                    Field("prior", o.prior), Field("doubt", o.doubt));
+                    Field("prior", o.prior), Field("status_thresholds", o.status_thresholds));
 }
 
 /// What a decoder of several returns says about every pixel of a frame; all planes are (H, W).
@@ -84,7 +84,7 @@ class MultipathDecoder {
   int samples() const { return table().samples(); }
 
   /// Decodes one frame on all threads into the caller's planes; as Decoder::decode for single and
-  /// unresolved pixels. Where later light was found
+  /// unresolved pixels. Where multipath was found
   ///   depth, signal: of the direct return; ambient light: least squares beside both;
   ///   predicted standard deviation: from the Fisher information on (z, delta, S1, S2, A); S1 >= S2
   ///     is not counted as knowledge;
@@ -152,8 +152,8 @@ class TwoReturnDecoder : public MultipathDecoder {
   ///         frequencies do
   explicit TwoReturnDecoder(DecodingTable table, const MultipathOptions& options = {});
 
-  /// Why two returns cannot be told apart with a table whose numbers are in order: no depth can be
-  /// told at all, or there are too few independent means. None: they can, well or badly.
+  /// Why two returns cannot be separated with a table whose numbers are in order: no depth can be
+  /// decoded at all, or there are too few independent means. None: they can, well or badly.
   static std::optional<std::string> why_not_decodable(const DecodingTable& table);
 };
 

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 
 namespace tofsmith {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/decoder.hpp"
 
@@ -27,9 +27,9 @@ std::string_view name_of(UnwrapWeights weights);
 /// @throws std::invalid_argument for any other word
 UnwrapWeights parse_unwrap_weights(std::string_view name);
 
-/// How phases become depths, and when these are doubted.
+/// How phases become depths, and the thresholds of a pixel's status.
 struct UnwrapOptions {
-  DecodeOptions doubt;
+  DecodeOptions status_thresholds;
   UnwrapWeights weights = UnwrapWeights::variance;
   /// A correlation function is a sinusoid if no more than this share of its variance is outside its
   /// strongest harmonic; in [0, 1]. What is there turns into an error of depth.

@@ -77,8 +77,8 @@ struct Candidate {
   /// DesignOptions::robust of all.
   std::optional<RobustnessReport> robustness;
 
-  /// Error behind second returns; on cameras with operating.multipath.
-  std::optional<SecondReturnReport> second_returns;
+  /// Error in the operating multipath; on cameras with operating.multipath.
+  std::optional<OperatingMultipathReport> multipath;
 
   /// Made for this camera, by any method; not a family, a reference or a naive code.
   bool is_designed() const { return !per_measurement.empty(); }

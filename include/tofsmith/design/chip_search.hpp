@@ -20,7 +20,7 @@ namespace tofsmith {
 using ChipWord = std::uint32_t;
 
 /// Most chips of a period that a word holds here.
-inline constexpr int most_chips = 24;
+inline constexpr int max_chips = 24;
 
 /// The word, `shift` chips later on a circle of `chips`. Any shift.
 ChipWord delayed_chips(ChipWord word, int shift, int chips);
@@ -57,7 +57,7 @@ struct ChipCode {
 };
 
 /// Why a camera has no chip clock: no shortest pulse, or a period that is not a whole number of
-/// them, 3 .. most_chips. None: it has one.
+/// them, 3 .. max_chips. None: it has one.
 std::optional<BrokenRule> why_no_chip_clock(const Camera& camera);
 
 /// Chips per period of a camera's clock: period / sensor.shortest_pulse_s.
@@ -89,7 +89,7 @@ struct ChipSearchOptions {
   bool equal_duty = true;  ///< the taps of an exposure are open equally long
   /// Codes, after symmetry, up to which all are searched; beyond, codes are annealed without proof.
   /// One of three taps of equal duty in one exposure counts 1, another 20, for the time it takes.
-  double largest_exhaustive = 3e11;
+  double max_exhaustive = 3e11;
   int finalists = 4;                     ///< best codes by the metric to keep, 1 .. 100
   int annealing_starts = 24;             ///< where not all codes are searched; 0 .. 10000
   std::int64_t annealing_steps = 20000;  ///< per start, >= 1
@@ -104,7 +104,7 @@ auto fields_of(ConstOrNot<ChipSearchOptions> auto& o) {
       Field("exposures", o.exposures, "in [1, 4]", Mark::from_above),
       Field("margin_sigma", o.margin_sigma, "finite and >= 0"),
       Field("separation_periods", o.separation_periods, "in (0, 1/2)"),
-      Field("equal_duty", o.equal_duty), Field("largest_exhaustive", o.largest_exhaustive, ">= 0"),
+      Field("equal_duty", o.equal_duty), Field("max_exhaustive", o.max_exhaustive, ">= 0"),
       Field("finalists", o.finalists, "in [1, 100]"),
       Field("annealing_starts", o.annealing_starts, "in [0, 10000]", ByEffort{2}),
       Field("annealing_steps", o.annealing_steps, ">= 1"), Field("seed", o.seed, Mark::from_above));

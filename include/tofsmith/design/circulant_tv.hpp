@@ -47,7 +47,7 @@ enum class CirculantTvMethod {
   admm,                   ///< alternating directions
   active_set_after_admm,  ///< the active set, started from the pieces ADMM found
 };
-std::string_view to_string(CirculantTvMethod method);
+std::string_view name_of(CirculantTvMethod method);
 
 struct CirculantTvResult {
   Termination termination = Termination::not_run;

@@ -24,7 +24,7 @@ enum class Termination {
 };
 
 /// The enumerator's name.
-std::string_view to_string(Termination termination);
+std::string_view name_of(Termination termination);
 
 /// How codes are found.
 enum class DesignMethod {
@@ -92,8 +92,8 @@ struct DesignResult {
 
 /// What candidates are ranked by [m]: the depth error by the camera's choice or, where options ask
 /// for robust codes, that on the worst perturbed camera, to which the decoder is calibrated; on
-/// cameras with operating.multipath the error behind second returns is weighed in. (Codes that two
-/// returns are decoded badly with count as worse, see OptimizeOptions::most_two_return_loss.)
+/// cameras with operating.multipath the error in that multipath is weighed in. (Codes that two
+/// returns are decoded badly with count as worse, see OptimizeOptions::max_two_return_loss.)
 double ranking_error_m(const Candidate& candidate, const Camera& camera,
                        const DesignOptions& options);
 

@@ -31,14 +31,14 @@ struct OptimizeOptions {
   int polish_steps = 250;       ///< >= 0
   std::uint64_t seed = 1;
   /// On cameras with operating.multipath and enough measurements: weight of log E3 in the loss,
-  /// beside log E1^(1 - w) E2^w of SecondReturns::weight, with E3 the error of the direct depth
-  /// where pairs of returns are looked for on the bins of a grid. It keeps pairs from looking like
-  /// others, so that two returns can be decoded; >= 0.
+  /// beside log E1^(1 - w) E2^w of OperatingMultipath::weight, with E3 the error of the direct
+  /// depth where pairs of returns are looked for on the bins of a grid. It keeps pairs from looking
+  /// like others, so that two returns can be decoded; >= 0.
   double two_return_weight = 0.02;
   /// On cameras with operating.multipath: two-return decoding of a code may err this many times as
   /// much as it does of the best baseline that can be decoded so, if there is one; what errs more
   /// counts to the judge as so many times worse, up to 1.25 times; >= 1.
-  double most_two_return_loss = 3.0;
+  double max_two_return_loss = 3.0;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
@@ -55,14 +55,14 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
       Field("pool_trials", o.pool_trials, ">= 1000"), Field("polish", o.polish),
       Field("polish_steps", o.polish_steps, ">= 0"), Field("seed", o.seed, Mark::from_above),
       Field("two_return_weight", o.two_return_weight, "finite and >= 0"),
-      Field("most_two_return_loss", o.most_two_return_loss, ">= 1"));
+      Field("max_two_return_loss", o.max_two_return_loss, ">= 1"));
 }
 
 /// Optimizes all pairs of modulation and demodulation together for the depth error of a camera:
 /// geometric mean over its operating points, linear or circular as the camera asks.
 ///
 /// Waveforms go downhill along stochastic gradients through band limit, correlation, noise and a
-/// decoder that doubts, from a pool of starts (all families, random codes and the codes given);
+/// soft decoder, from a pool of starts (all families, random codes and the codes given);
 /// the best are changed and go downhill again; the best of all are refined, made to switch where
 /// arms are binary, and their edges polished. Light may use less than its peak. Taps: one; two
 /// buckets that share all charge; more, exclusive, with a drain where the camera has one. Every

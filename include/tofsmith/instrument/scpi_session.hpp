@@ -78,11 +78,11 @@ class ScpiSession {
   /// A line without its end. @throws IoError if none comes in time
   std::string read_line(double more_s = 0.0);
   /// The data of a definite-length block.
-  /// @param most_bytes  longer ones are refused
-  std::string read_block(std::size_t most_bytes, double more_s = 0.0);
+  /// @param max_bytes  longer ones are refused
+  std::string read_block(std::size_t max_bytes, double more_s = 0.0);
   /// A generator's answer to WVDT?: a header, "WAVEDATA,", and as many bytes as its LENGTH says, or
   /// `expected_bytes` if it has none.
-  std::string read_wave_data(std::size_t expected_bytes, std::size_t most_bytes);
+  std::string read_wave_data(std::size_t expected_bytes, std::size_t max_bytes);
 
   /// @throws IoError if something came that was not asked for
   void expect_silence();

@@ -15,7 +15,7 @@
 
 namespace tofsmith {
 
-/// Generators that are told in the same words.
+/// Families of generators that take the same commands.
 enum class GeneratorFamily {
   siglent_x,          ///< SDG1000X, SDG2000X, SDG6000X
   keysight_trueform,  ///< 33500 and 33600
@@ -29,13 +29,13 @@ struct GeneratorModel {
   std::string vendor;  ///< as in its answer to *IDN?
   GeneratorFamily family = GeneratorFamily::siglent_x;
   int channels = 2;
-  double sample_rate_hz = 0.0;             ///< most points played per second
-  double most_repetition_hz = 0.0;         ///< of a whole table; 0: as the sample rate allows
-  double true_arb_rate_hz = 0.0;           ///< most points per second that are all played, where a
-                                           ///< generator otherwise skips (Siglent); 0: it cannot
-  int least_points = 2, most_points = 0;   ///< of a table
-  int memories = 0;                        ///< tables at a time; 0: as many as fit
-  double least_vpp = 0.0, most_vpp = 0.0;  ///< into 50 ohm
+  double sample_rate_hz = 0.0;          ///< most points played per second
+  double max_repetition_hz = 0.0;       ///< of a whole table; 0: as the sample rate allows
+  double true_arb_rate_hz = 0.0;        ///< most points per second that are all played, where a
+                                        ///< generator otherwise skips (Siglent); 0: it cannot
+  int min_points = 2, max_points = 0;   ///< of a table
+  int memories = 0;                     ///< tables at a time; 0: as many as fit
+  double min_vpp = 0.0, max_vpp = 0.0;  ///< into 50 ohm
 
   /// Name of the WaveformFormat whose points it takes.
   std::string format() const;
@@ -72,7 +72,7 @@ struct UploadChannel {
   const QuantizedWaveform& selected_waveform() const;
 };
 
-/// How a Siglent is told the waveform; sources disagree, see docs/instruments.md.
+/// How a waveform is announced to a Siglent; sources disagree, see docs/instruments.md.
 enum class WaveHeader {
   length,   ///< with LENGTH, so that the message says where it ends
   plain,    ///< as Siglent's application note
@@ -116,7 +116,7 @@ struct UploadStep {
   std::vector<AnswerCheck> checks;  ///< of a line
   /// Of a block or wave data: what is wrong with it, or "".
   std::function<std::string(const std::string& bytes)> problem;
-  std::size_t expected_bytes = 0, most_bytes = 0;
+  std::size_t expected_bytes = 0, max_bytes = 0;
   double more_s = 0.0;   ///< that an answer may take longer than usual
   double pause_s = 0.0;  ///< behind the message
 };
@@ -167,7 +167,7 @@ WaveformExport export_for_model(const CodeSet& code, const Camera& camera,
 std::vector<UploadChannel> selected_channels(const WaveformExport& exported,
                                              const UploadSelection& selection);
 
-/// "step", "normal" or "off" as a Keysight is told it. @throws std::invalid_argument
+/// "step", "normal" or "off" as in a Keysight's command. @throws std::invalid_argument
 std::string parse_output_filter(std::string_view word);
 /// "length", "plain" or "minimal". @throws std::invalid_argument for any other word
 WaveHeader parse_wave_header(std::string_view word);
@@ -177,16 +177,16 @@ struct UploadedStep {
   std::string what, sent, answer;  ///< answer: "" for none, large ones summarized
 };
 
-/// A number that the instrument says of itself, next to what it was told.
+/// A number that the instrument reads back, beside the one requested.
 struct ReadBackNumber {
   int channel = 0;  ///< 0: none
   std::string quantity;
-  double told = 0.0, read_back = 0.0;
+  double requested = 0.0, read_back = 0.0;
 };
 
 /// What an upload did.
 struct UploadReport {
-  bool verified = false;  ///< all points and all settings were read back and are as told
+  bool verified = false;  ///< all points and all settings were read back and are as requested
   std::string message;    ///< one line, with what could not be read back
   std::vector<UploadedStep> steps;
   std::vector<ReadBackNumber> numbers;

@@ -57,7 +57,7 @@ CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file
 std::vector<std::byte> serialize_code_npz(const CodeSet& code,
                                           std::optional<TapOrder> order = std::nullopt);
 
-/// What load_code() must be told about NPZ files with several taps.
+/// What load_code() must know about NPZ files with several taps.
 struct CodeFileOptions {
   std::optional<int> taps;            ///< values read out of one exposure; none = as the camera's
   std::optional<TapOrder> tap_order;  ///< never guessed

@@ -20,7 +20,7 @@ void require_no_measured_table(const std::string& code);
 
 /// The code that the camera plays, of its number of samples.
 /// @throws IoError as load_code(), or for a measured table
-CodeSet load_played_code(const std::string& code, const Camera& camera,
+CodeSet load_camera_code(const std::string& code, const Camera& camera,
                          const CodeFileOptions& options = {});
 
 /// What the file of a code or of a measured table does not say.
@@ -41,13 +41,13 @@ struct LoadedDecodingTable {
 };
 
 /// The table of a family, of a code's file, or of measured correlation functions.
-/// @throws IoError as load_played_code() and read_measured_table(), or naming the file whose table
+/// @throws IoError as load_camera_code() and read_measured_table(), or naming the file whose table
 ///         tells no depths apart
 /// @throws std::invalid_argument if a code is given what only measured tables need
 LoadedDecodingTable load_decoding_table(const std::string& code, const Camera& camera,
                                         const DecodingTableOptions& options = {});
 
-/// Which depths look the same, the farthest apart first; nothing if all can be told apart.
+/// Which depths look the same, the farthest apart first; nothing if all can be distinguished.
 std::optional<std::string> ambiguity_note(const DecodingTable& table);
 
 }  // namespace tofsmith

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/simulate/capture.hpp"
 
@@ -25,10 +25,11 @@ Image<float> read_depth(const std::filesystem::path& path);
 void write_depth(const std::filesystem::path& path, const Image<float>& depth_m,
                  OutputPolicy policy);
 
-/// Later returns of a scene from an NPZ: `first` (H W + 1), integers; `distance_m` and `ratio`, one
-/// number per return. See LaterReturns; they are checked against the scene by its validate().
+/// Multipath returns of a scene from an NPZ: `first` (H W + 1), integers; `distance_m` and `ratio`,
+/// one number per return. See MultipathReturns; they are checked against the scene by its
+/// validate().
 /// @throws IoError naming file and array
-LaterReturns read_later_returns(const std::filesystem::path& path, int height, int width);
+MultipathReturns read_multipath_returns(const std::filesystem::path& path, int height, int width);
 
 /// Where the zero of a measured transient's time is.
 enum class TransientOrigin {
@@ -51,11 +52,11 @@ std::vector<Transient> read_transients(const std::filesystem::path& path, int he
                                        const TransientFileOptions& options);
 
 /// The truth of every return as an NPZ: `depth_m` and `direct_e_per_s` (H, W), `first` (H W + 1),
-/// `distance_m`, `signal_e_per_s` and `ratio` of later returns, as
-/// read_later_returns() takes them; `tail` (mean delay [m], ratio) if there is
+/// `distance_m`, `signal_e_per_s` and `ratio` of multipath returns, as
+/// read_multipath_returns() takes them; `tail` (mean delay [m], ratio) if there is
 /// one; `transient` (T) or (H W, T), of unit sum, with `transient_bin_m` and `transient_first_m`.
 /// @throws IoError as AtomicFile does
-void write_returns_truth(const std::filesystem::path& path, const ReturnsTruth& truth,
-                         const SceneLight& light, OutputPolicy policy);
+void write_multipath_truth(const std::filesystem::path& path, const MultipathTruth& truth,
+                           const SceneLight& light, OutputPolicy policy);
 
 }  // namespace tofsmith

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/npy.hpp"
 
@@ -135,7 +135,7 @@ struct RawReadOptions {
   /// Never guessed; where the other one would fit, the error says so.
   RawLayout layout = RawLayout::interleaved;
   /// Most memory [bytes] for files that cannot be read in parts: .npz, and .npy in Fortran order.
-  std::uint64_t largest_in_memory = max_npz_bytes;
+  std::uint64_t max_in_memory = max_npz_bytes;
   /// How a dump without header is laid out; the file is then read as one, whatever its extension,
   /// and `layout` does not count.
   std::optional<RawFormat> format;

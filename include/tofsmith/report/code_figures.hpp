@@ -17,8 +17,8 @@ namespace tofsmith {
 std::string figure_id(const std::string& prefix, const std::string& name);
 
 /// Modulation, demodulation and correlation function of every measurement, one row each: as the
-/// arms are told to play them (dotted, where a generator changes them), as they play them, and as
-/// the camera's impulse responses leave them.
+/// code says (nominal: dotted, where a generator changes them), as the generators make them
+/// (actual), and as the camera's impulse responses leave them.
 /// @param target  what the correlation functions were designed for (N, K), drawn dotted; may be
 ///                empty
 Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camera,

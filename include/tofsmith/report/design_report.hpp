@@ -69,7 +69,7 @@ std::vector<std::vector<std::string>> multipath_rows(
 /// one panel per code and signal; and the table.
 Section multipath_section(const std::vector<MultipathErrorReport>& codes);
 
-/// The lines of a table of errors by mean delay of the later light, headings first.
+/// The lines of a table of errors by mean delay of the multipath light, headings first.
 std::vector<std::vector<std::string>> multipath_scene_rows(const MultipathScene& scene);
 
 /// True, single-path and two-return depth and errors, where two returns were found, the middle row

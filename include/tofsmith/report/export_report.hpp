@@ -20,11 +20,11 @@ std::vector<std::vector<std::string>> generator_report_rows(
 std::vector<std::vector<std::string>> generator_loss_rows(const GeneratorLoss& loss,
                                                           DepthErrorKind kind);
 
-/// A page of an export: what was told and what is played, correlation functions, and the depth
+/// A page of an export: nominal and actual waveforms, correlation functions, and the depth
 /// error that the limits cost.
-/// @param played  the camera that exporting_camera() made
+/// @param actual  the camera that exporting_camera() made
 /// @param loss    none if it was not measured
-Page export_page(const CodeSet& code, const Camera& played, const WaveformExport& exported,
+Page export_page(const CodeSet& code, const Camera& actual, const WaveformExport& exported,
                  const std::optional<GeneratorLoss>& loss, const std::string& command_line);
 
 }  // namespace tofsmith

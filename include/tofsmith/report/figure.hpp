@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 
 namespace tofsmith {
 
-/// What a reader is told about a figure.
+/// What a figure says about itself.
 struct FigureText {
   std::string id = {};        ///< unique on a page; letters, digits and dashes, e.g. "coding-curve"
   std::string title = {};     ///< a few words; stands in bold before the caption

@@ -14,27 +14,27 @@
 
 namespace tofsmith {
 
-/// Light that reaches a pixel by a longer way than the direct light does.
-struct LaterReturn {
+/// Multipath light of a pixel that comes at one distance.
+struct MultipathReturn {
   float distance_m = 0.0f;  ///< half the way it went [m]: the depth a camera sees it at
   float ratio = 0.0f;       ///< its signal over that of the pixel's direct return, >= 0
 };
 
-/// Any number of later returns for every pixel of a scene, as one list, row by row.
-struct LaterReturns {
+/// Any number of multipath returns for every pixel of a scene, as one list, row by row.
+struct MultipathReturns {
   int height = 0;
   int width = 0;
-  std::vector<std::int64_t> first{0};  ///< of pixel i: returns first[i] .. first[i + 1] - 1
-  std::vector<LaterReturn> returns;    ///< of each pixel by increasing distance
+  std::vector<std::int64_t> first{0};    ///< of pixel i: returns first[i] .. first[i + 1] - 1
+  std::vector<MultipathReturn> returns;  ///< of each pixel by increasing distance
 
-  LaterReturns() = default;
+  MultipathReturns() = default;
   /// Room for the pixels of a picture, to be filled by append_pixel().
-  LaterReturns(int height_, int width_) : height(height_), width(width_) {}
+  MultipathReturns(int height_, int width_) : height(height_), width(width_) {}
 
   bool empty() const { return returns.empty(); }
   /// Adds the next pixel, row by row from the top left.
-  void append_pixel(std::span<const LaterReturn> of_pixel);
-  std::span<const LaterReturn> of(int row, int column) const;
+  void append_pixel(std::span<const MultipathReturn> of_pixel);
+  std::span<const MultipathReturn> of(int row, int column) const;
 
   /// Every pixel has its list; distances increase from the direct depth on and stay within a
   /// range of it; ratios are finite and not negative; pixels without direct return have none.
@@ -44,7 +44,8 @@ struct LaterReturns {
 
 /// The same returns behind every direct one.
 /// @param behind  distance_m is the delay behind the direct return [m]
-LaterReturns behind_every_pixel(const SceneImage& scene, std::span<const LaterReturn> behind);
+MultipathReturns behind_every_pixel(const SceneImage& scene,
+                                    std::span<const MultipathReturn> behind);
 
 /// How light is gathered that bounces once more.
 struct BounceOptions {
@@ -71,7 +72,8 @@ struct BounceOptions {
 /// @param search_of  how meshes are searched: see RayCaster
 /// @throws std::invalid_argument if scene or options are invalid; Interrupted if progress says so
 /// @note the same for any number of threads
-LaterReturns bounced_light(const StagedScene& scene, const BounceOptions& options = {},
-                           const Progress& progress = {}, const MeshSearchMaker& search_of = {});
+MultipathReturns bounced_light(const StagedScene& scene, const BounceOptions& options = {},
+                               const Progress& progress = {},
+                               const MeshSearchMaker& search_of = {});
 
 }  // namespace tofsmith

@@ -12,7 +12,7 @@
 #include <optional>
 #include <span>
 
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/scene/scene_image.hpp"
 #include "tofsmith/scene/shapes.hpp"
@@ -95,8 +95,8 @@ SceneImage ray_cast(std::span<const Shape> shapes, const PinholeView& view,
 /// Whether a point lies inside a solid: a box, a sphere, a capsule or a closed mesh. Planes and
 /// meshes with an opening have no inside.
 ///
-/// A mesh is closed if every edge, told by the places of its ends, belongs to an even number of
-/// triangles. A point is inside if rays from it cross the mesh an odd number of times, by the
+/// A mesh is closed if every edge, identified by the places of its ends, belongs to an even number
+/// of triangles. A point is inside if rays from it cross the mesh an odd number of times, by the
 /// majority of three directions; orientation does not matter.
 bool is_inside(const Shape& shape, const Eigen::Vector3d& point);
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 
 namespace tofsmith {
 

@@ -69,7 +69,7 @@ class CramerRaoBound {
 
   /// Smallest standard deviation [m] at each of the 4 N depths: the root of the depth entry of the
   /// inverse Fisher matrix over (depth, S, A), variance mu_i + constant variance. Infinite where
-  /// depth cannot be told from signal and ambient.
+  /// depth cannot be separated from signal and ambient.
   Eigen::VectorXd sigma_m(const OperatingPoint& point) const;
   /// Mean over depth of sqrt(2 / pi) sigma: the mean absolute error of a normal deviation [m].
   double mae_m(const OperatingPoint& point) const;

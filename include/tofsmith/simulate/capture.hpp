@@ -8,8 +8,8 @@
 
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/camera/forward_model.hpp"
-#include "tofsmith/core/array.hpp"
 #include "tofsmith/core/fields.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/scene/bounced_light.hpp"
 #include "tofsmith/scene/scene_image.hpp"
@@ -51,11 +51,11 @@ double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,
 RawFrames capture(const SceneImage& scene, const CodeSet& code, const Camera& camera,
                   const CaptureOptions& options = {}, const Progress& progress = {});
 
-/// How light comes back to the pixels of a scene, beside its one direct way. Later returns and a
-/// tail add to the direct return; a transient takes its place: the pixel's signal is shared out
+/// How light comes back to the pixels of a scene, beside its one direct way. Multipath returns and
+/// a tail add to the direct return; a transient takes its place: the pixel's signal is shared out
 /// over the histogram.
 struct SceneLight {
-  LaterReturns returns;                 ///< empty: none
+  MultipathReturns returns;             ///< empty: none
   std::optional<ExponentialTail> tail;  ///< behind every direct return
   /// One for all pixels, or one for each, row by row; empty: none.
   std::vector<Transient> transients;
@@ -75,14 +75,14 @@ RawFrames capture(const SceneImage& scene, const SceneLight& light, const CodeSe
 
 /// Truth of a capture: where each pixel's light came from. Tails and transients are in what made
 /// them.
-struct ReturnsTruth {
+struct MultipathTruth {
   Image<float> direct_m;               ///< depth of the direct return; NaN: none
   Image<float> direct_e_per_s;         ///< its signal, with a transient all of the pixel's
-  std::vector<std::int64_t> first{0};  ///< as LaterReturns
-  std::vector<float> distance_m;       ///< of every later return [m]
-  std::vector<float> signal_e_per_s;   ///< of every later return [e/s]
+  std::vector<std::int64_t> first{0};  ///< as MultipathReturns
+  std::vector<float> distance_m;       ///< of every multipath return [m]
+  std::vector<float> signal_e_per_s;   ///< of every multipath return [e/s]
 };
-ReturnsTruth returns_truth(const SceneImage& scene, const SceneLight& light,
-                           const CaptureOptions& options);
+MultipathTruth multipath_truth(const SceneImage& scene, const SceneLight& light,
+                               const CaptureOptions& options);
 
 }  // namespace tofsmith

@@ -37,7 +37,7 @@ struct EvaluateOptions {
   /// Trials go on at a point, in rounds, until the standard error of the error that the camera is
   /// judged by (linear or circular) is at most this share of it, [0, 1); 0: no target.
   double target_standard_error = 0.0;
-  std::int64_t most_trials = 50'000'000;  ///< per operating point with a target, >= 2, <= 4e9
+  std::int64_t max_trials = 50'000'000;  ///< per operating point with a target, >= 2, <= 4e9
   /// Draw the noise of every measurement even where it could be drawn in the plane that ZNCC looks
   /// at: methods are so compared on the same noise.
   bool draw_every_measurement = false;
@@ -53,7 +53,7 @@ auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
                     Field("clip_to_open_sensor", o.clip_to_open_sensor), Field("method", o.method),
                     Field("unwrap_weights", o.unwrap_weights),
                     Field("target_standard_error", o.target_standard_error, "in [0, 1)"),
-                    Field("most_trials", o.most_trials, "in [2, 4e9]"),
+                    Field("max_trials", o.max_trials, "in [2, 4e9]"),
                     Field("draw_every_measurement", o.draw_every_measurement));
 }
 
@@ -98,7 +98,7 @@ struct DepthErrorReport {
   int measurements = 0;  ///< that leave the sensor
   int samples = 0;
   std::int64_t trials = 0;         ///< made per operating point, with a target: at most
-  int points_short_of_target = 0;  ///< that reached most_trials first
+  int points_short_of_target = 0;  ///< that reached max_trials first
   std::uint64_t seed = 0;
   double outlier_threshold_m = 0.0;
   DepthErrorMean linear, circular;
@@ -169,7 +169,7 @@ Estimate table_depth_error_m(const DecodingTable& table, const OperatingPoint& l
                              std::int64_t trials = 20000, std::uint64_t seed = 1);
 
 /// Error of the direct depth [m]: geometric means over the operating points of mean |error|.
-struct SecondReturnError {
+struct OperatingMultipathError {
   Estimate linear_m, circular_m;
 
   const Estimate& of(DepthErrorKind kind) const {
@@ -177,7 +177,7 @@ struct SecondReturnError {
   }
 };
 /// Its fields (core/fields.hpp).
-auto fields_of(ConstOrNot<SecondReturnError> auto& e) {
+auto fields_of(ConstOrNot<OperatingMultipathError> auto& e) {
   return std::tuple(Field("linear_m", e.linear_m, "finite and >= 0"),
                     Field("circular_m", e.circular_m, "finite and >= 0"));
 }
@@ -186,32 +186,33 @@ auto fields_of(ConstOrNot<SecondReturnError> auto& e) {
 /// point draws depth, uniform on the t-th slice of the range, albedo, return and noise from a
 /// stream of its own. Of the options, trials (per point) and seed count.
 /// @throws std::invalid_argument as evaluate(); Interrupted
-SecondReturnError second_return_error(const CodeSet& code, const Camera& camera,
-                                      const SecondReturns& later,
-                                      const EvaluateOptions& options = {},
-                                      const Progress& progress = {});
+OperatingMultipathError operating_multipath_error(const CodeSet& code, const Camera& camera,
+                                                  const OperatingMultipath& later,
+                                                  const EvaluateOptions& options = {},
+                                                  const Progress& progress = {});
 
 /// The same trials, decoded as two returns.
-/// @throws std::invalid_argument also for codes that cannot tell two returns
-SecondReturnError two_return_error(const CodeSet& code, const Camera& camera,
-                                   const SecondReturns& later, const EvaluateOptions& options = {},
-                                   const Progress& progress = {});
+/// @throws std::invalid_argument also for codes that cannot separate two returns
+OperatingMultipathError two_return_error(const CodeSet& code, const Camera& camera,
+                                         const OperatingMultipath& later,
+                                         const EvaluateOptions& options = {},
+                                         const Progress& progress = {});
 
-/// What second returns make of a code.
-struct SecondReturnReport {
-  SecondReturnError single_path;                ///< decoded as single-path
-  std::optional<SecondReturnError> two_return;  ///< as two returns; none: the code cannot
+/// Errors of a code in the operating multipath.
+struct OperatingMultipathReport {
+  OperatingMultipathError single_path;                ///< decoded as single-path
+  std::optional<OperatingMultipathError> two_return;  ///< as two returns; none: the code cannot
 };
 /// Its fields (core/fields.hpp).
-auto fields_of(ConstOrNot<SecondReturnReport> auto& r) {
+auto fields_of(ConstOrNot<OperatingMultipathReport> auto& r) {
   return std::tuple(Field("single_path", r.single_path), Field("two_return", r.two_return));
 }
 
 /// Both, on the same trials.
-/// @throws as second_return_error()
-SecondReturnReport second_return_report(const CodeSet& code, const Camera& camera,
-                                        const SecondReturns& later,
-                                        const EvaluateOptions& options = {},
-                                        const Progress& progress = {});
+/// @throws as operating_multipath_error()
+OperatingMultipathReport operating_multipath_report(const CodeSet& code, const Camera& camera,
+                                                    const OperatingMultipath& later,
+                                                    const EvaluateOptions& options = {},
+                                                    const Progress& progress = {});
 
 }  // namespace tofsmith

@@ -22,11 +22,11 @@ struct MultipathSceneDecoding {
   Image<float> error_m;  ///< decoded - true, the shorter way round; NaN where unknown
 };
 
-/// Pixels whose later light comes about as late, and how far off decoders are there.
+/// Pixels whose multipath light comes about as late, and how far off decoders are there.
 struct DelayClass {
-  double from_m = 0.0, to_m = 0.0;  ///< mean delay of the later light
+  double from_m = 0.0, to_m = 0.0;  ///< mean delay of the multipath light
   std::int64_t pixels = 0;
-  double ratio = 0.0;           ///< mean of later light over direct light
+  double ratio = 0.0;           ///< mean of multipath light over direct light
   std::vector<double> bias_m;   ///< mean of decoded - true, of each decoding
   std::vector<double> error_m;  ///< mean of |decoded - true|
   double two_share = 0.0;       ///< found to hold two returns
@@ -40,18 +40,18 @@ struct MultipathScene {
   SceneImage truth;
   PinholeView view;
   CaptureOptions light;
-  Image<float> later_ratio;    ///< all later light over direct light; 0: none; NaN: no return
-  Image<float> later_delay_m;  ///< mean delay of the later light; NaN: none
+  Image<float> multipath_ratio;    ///< multipath light over direct light; 0: none; NaN: no return
+  Image<float> multipath_delay_m;  ///< mean delay of the multipath light; NaN: none
   std::vector<MultipathSceneDecoding> decodings;  ///< single-path, then two-return
   Image<ReturnStatus> returns;                    ///< of two-return decoding
   std::vector<DelayClass> classes;                ///< by mean delay; those without pixels left out
-  DelayClass all;                                 ///< all pixels with later light
+  DelayClass all;                                 ///< all pixels with multipath light
 };
 
-/// Captures and decodes. Pixels without later light are in no class.
+/// Captures and decodes. Pixels without multipath light are in no class.
 /// @throws std::invalid_argument as capture(), TwoReturnDecoder and returns.validate(); Interrupted
 MultipathScene multipath_scene(std::string name, const SceneImage& truth, const PinholeView& view,
-                               const LaterReturns& returns, const CodeSet& code,
+                               const MultipathReturns& returns, const CodeSet& code,
                                const Camera& camera, const CaptureOptions& light,
                                const MultipathOptions& decoding = {},
                                const Progress& progress = {});
@@ -118,8 +118,7 @@ auto fields_of(ConstOrNot<MultipathMaps> auto& m) {
   return std::tuple(Field("signal_e_per_s", m.signal_e_per_s),
                     Field("single", m.single, InDocuments{"single_return"}),
                     Field("single_by_tail", m.single_by_tail, InDocuments{"single_return_by_tail"}),
-                    Field("points", m.points, InDocuments{"second_returns"}),
-                    Field("tails", m.tails));
+                    Field("points", m.points, InDocuments{"multipath"}), Field("tails", m.tails));
 }
 
 /// What a code does where light comes back twice.

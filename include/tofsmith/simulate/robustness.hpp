@@ -126,22 +126,22 @@ RobustnessReport robustness(const CodeSet& code, const Camera& camera,
 /// What the limits of a camera's generators do to a code. All three errors are of the same depths
 /// and the same noise, without bounds.
 struct GeneratorLoss {
-  DepthErrorReport told;          ///< on the camera without generators
-  DepthErrorReport played;        ///< with them, by a decoder that knows what is played
-  DepthErrorReport uncalibrated;  ///< with them, by a decoder that believes what was told
-  /// Rms difference of the correlation functions told and played, per measurement (K), over the rms
-  /// of the one told about its mean.
+  DepthErrorReport nominal;       ///< on the camera without generators
+  DepthErrorReport actual;        ///< with them, by a decoder that knows the actual waveforms
+  DepthErrorReport uncalibrated;  ///< with them, by a decoder that assumes the nominal waveforms
+  /// Rms difference of the nominal and actual correlation functions, per measurement (K), over the
+  /// rms of the nominal one about its mean.
   std::vector<double> correlation_change;
 
   /// Geometric mean over the operating points [m], of the kind the camera is judged by.
-  Estimate told_m(DepthErrorKind kind) const { return told.of(kind).geometric_mean_m; }
-  /// played / told
+  Estimate nominal_m(DepthErrorKind kind) const { return nominal.of(kind).geometric_mean_m; }
+  /// actual / nominal
   double ratio(DepthErrorKind kind) const;
-  /// uncalibrated / told
+  /// uncalibrated / nominal
   double uncalibrated_ratio(DepthErrorKind kind) const;
 };
 
-/// @param camera  with generators; the camera without them is what was told
+/// @param camera  with generators; the camera without them has the nominal waveforms
 /// @throws std::invalid_argument as evaluate(); Interrupted if progress says so
 /// @note same bits for any number of threads
 GeneratorLoss generator_loss(const CodeSet& code, const Camera& camera,

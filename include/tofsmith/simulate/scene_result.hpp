@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/scene/scene_image.hpp"
 

@@ -41,7 +41,7 @@ enum class SweepCombination {
 ///     set = ["samples=120"]        # keys of the camera that are other than there
 ///     codes = ["hamiltonian-k4", "mine.code.json"]   # or code = "hamiltonian-k{exposures}"
 ///     method = "zncc"
-///     trials = 20000               # or target_standard_error = 0.01, most_trials = 50000000
+///     trials = 20000               # or target_standard_error = 0.01, max_trials = 50000000
 ///     seed = 1
 ///     outlier_threshold_m = 0.5
 ///     combine = "product"
@@ -84,7 +84,7 @@ SweepSpec read_sweep_toml(const std::filesystem::path& path);
 
 /// How a store is used.
 struct SweepStoreOptions {
-  /// A worker of another machine that gave no sign of life for so long is taken for dead, and its
+  /// A worker of another machine that gave no sign of life for so long counts as dead, and its
   /// unfinished items are done again [s], > 0. No two clocks are compared: each process times by
   /// its own how long others stay silent.
   double lease_s = 60.0;
@@ -241,7 +241,8 @@ class SweepRanks {
   std::unique_ptr<State> state_;
 };
 
-/// Computes what rank 0 asks for, until it sends us home. What goes wrong here is told by rank 0.
+/// Computes what rank 0 asks for, until it says that nothing remains. What goes wrong here is
+/// reported by rank 0.
 /// @param list      reads the sweep that rank 0 runs; called once there is work
 /// @param progress  when it asks to stop, so does the whole job
 void work_for_sweep(SweepRanks& ranks, const std::function<WorkList()>& list,
@@ -267,7 +268,7 @@ struct SweepRunOptions {
   double batch_s = 1.0;  ///< work that is taken at a time, so lost when killed [s], > 0
   /// Of a job of more ranks than that, rank 0 hands out and stores only; it computes too in smaller
   /// ones. >= 1
-  int most_ranks_computing = 64;
+  int max_ranks_computing = 64;
 
   void validate() const;
 };

@@ -83,12 +83,12 @@ struct WaveformFormat {
   std::string extension;    ///< ".csv", ..
   std::string description;  ///< one line
   FormatContent content = FormatContent::one_waveform;
-  int least_points = 2;  ///< of a table
-  int most_points = 1 << 20;
+  int min_points = 2;  ///< of a table
+  int max_points = 1 << 20;
   int multiple_of = 1;      ///< points of a table
   std::int32_t levels = 0;  ///< of a point; 0: 2^bits, whatever bits are asked for
   int default_bits = 14;
-  int most_bits = 16;         ///< of amplitude
+  int max_bits = 16;          ///< of amplitude
   bool skips_points = false;  ///< a table of more points than the sample rate allows is played
   std::string trigger;        ///< where the trigger stands; empty: nowhere
   std::vector<FormatVariant> variants;
@@ -149,11 +149,11 @@ struct WaveformExport {
 ///         hardware
 Camera exporting_camera(const CodeSet& code, const Camera& camera, const ExportOptions& options);
 
-/// The code as tables of the generators of `played`, which exporting_camera() made. A value read
+/// The code as tables of the generators of `actual`, which exporting_camera() made. A value read
 /// back from a table differs from the one that evaluation sees by at most half a step of the
 /// format.
 /// @throws std::invalid_argument as exporting_camera(), or if no number of periods fits the format
-WaveformExport export_waveforms(const CodeSet& code, const Camera& played,
+WaveformExport export_waveforms(const CodeSet& code, const Camera& actual,
                                 const ExportOptions& options);
 
 /// One file of an export.

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 
 namespace tofsmith {
 

@@ -30,7 +30,7 @@ class SharedProgress {
   const double pieces_;
   const std::string step_;
   const std::thread::id caller_ = std::this_thread::get_id();
-  std::chrono::steady_clock::time_point told_at_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point reported_at_ = std::chrono::steady_clock::now();
   std::atomic<double> done_ = 0.0;
   std::atomic<bool> is_stopped_ = false;
 };

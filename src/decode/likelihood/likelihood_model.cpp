@@ -11,10 +11,10 @@ namespace tofsmith {
 namespace {
 
 /// Share of the mean measurement below which no variance is believed.
-constexpr double least_share = 1e-4;
+constexpr double min_share = 1e-4;
 /// Costs that differ by less, per unit where they are large, are one.
 double same_cost(double cost) { return 1e-10 * std::max(1.0, std::abs(cost)); }
-constexpr int most_steps = 30, most_halvings = 8, most_chords = 16, most_bins_apart = 3;
+constexpr int max_steps = 30, max_halvings = 8, max_chords = 16, max_bins_apart = 3;
 
 }  // namespace
 
@@ -29,7 +29,7 @@ LikelihoodModel::LikelihoodModel(const DecodingTable& table, const AmbientProjec
 LikelihoodPixel LikelihoodModel::pixel(const double* electrons) const {
   double size = 0.0;
   for (int k = 0; k < measurements_; ++k) size += std::abs(electrons[k]);
-  return {electrons, std::max(least_variance_e2, least_share * size / measurements_)};
+  return {electrons, std::max(min_variance_e2, min_share * size / measurements_)};
 }
 
 double LikelihoodModel::cost(const LikelihoodPixel& pixel, std::int32_t bin,
@@ -41,10 +41,9 @@ double LikelihoodModel::cost(const LikelihoodPixel& pixel, std::int32_t bin,
   double squares = 0.0, logs = 0.0, product = 1.0;
   for (int k = 0; k < measurements_; ++k) {
     const double mean = light[0] * x0[k] + light[1] * x1[k] + light[2] * ambient_[k];
-    const double variance =
-        std::max(pixel.least_variance_e2, light[0] * s0[k] + light[1] * s1[k] +
-                                              light[2] * noise_.shot_ambient[k] +
-                                              noise_.floor_variance_e2[k]);
+    const double variance = std::max(pixel.min_variance_e2, light[0] * s0[k] + light[1] * s1[k] +
+                                                                light[2] * noise_.shot_ambient[k] +
+                                                                noise_.floor_variance_e2[k]);
     const double residual = pixel.electrons[k] - mean;
     squares += residual * residual / variance;
     product *= variance;
@@ -87,8 +86,8 @@ Quadratic LikelihoodModel::scoring(const LikelihoodPixel& pixel, std::int32_t bi
       residual -= light[i] * mean[i];
       variance += light[i] * shot[i];
     }
-    if (variance < pixel.least_variance_e2) {
-      variance = pixel.least_variance_e2;
+    if (variance < pixel.min_variance_e2) {
+      variance = pixel.min_variance_e2;
       shot = {};
     }
     const double by_mean = residual / variance;
@@ -110,10 +109,10 @@ ChordFit LikelihoodModel::fit(const LikelihoodPixel& pixel, std::int32_t bin,
                               const double* weight) const {
   ChordFit best{bin, least_squares(pixel, bin, weight).x};
   best.cost = cost(pixel, bin, best.light);
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < max_steps; ++step) {
     const Quadratic::Vector aim = minimize_bounded(scoring(pixel, bin, best.light), unknowns_).x;
     double length = 1.0, fall = 0.0;
-    for (int i = 0; i < most_halvings && !(fall > 0.0); ++i, length *= 0.5) {
+    for (int i = 0; i < max_halvings && !(fall > 0.0); ++i, length *= 0.5) {
       ChordFit tried = best;
       for (std::size_t j = 0; j < 3; ++j)
         tried.light[j] = length == 1.0 ? aim[j] : best.light[j] + length * (aim[j] - best.light[j]);
@@ -132,7 +131,7 @@ ChordFit LikelihoodModel::fit_around(const LikelihoodPixel& pixel, std::int32_t 
   const ChordFit after = fit(pixel, bin, weight);
   const bool upwards = after.cost < best.cost - same_cost(best.cost);
   if (upwards) best = after;
-  for (int i = 0; i < most_chords; ++i) {
+  for (int i = 0; i < max_chords; ++i) {
     if (upwards ? !best.is_at_next() : !best.is_at_bin()) break;
     const ChordFit beyond = fit(pixel, upwards ? next(best.bin) : previous(best.bin), weight);
     if (!(beyond.cost < best.cost - same_cost(best.cost))) break;
@@ -145,7 +144,7 @@ ChordFit LikelihoodModel::fit_near(const LikelihoodPixel& pixel, const ChordFit&
                                    const double* weight) const {
   ChordFit best = found;
   std::int32_t below = found.bin, above = found.bin;
-  for (int distance = 1; distance <= most_bins_apart; ++distance) {
+  for (int distance = 1; distance <= max_bins_apart; ++distance) {
     below = previous(below), above = next(above);
     for (const std::int32_t bin : {below, above}) {
       const ChordFit other = fit(pixel, bin, weight);
@@ -166,9 +165,9 @@ PixelEstimate LikelihoodModel::estimate(const LikelihoodPixel& pixel, const Chor
   Quadratic information;
   for (int k = 0; k < measurements_; ++k) {
     const double variance =
-        std::max(pixel.least_variance_e2, fit.light[0] * s0[k] + fit.light[1] * s1[k] +
-                                              fit.light[2] * noise_.shot_ambient[k] +
-                                              noise_.floor_variance_e2[k]);
+        std::max(pixel.min_variance_e2, fit.light[0] * s0[k] + fit.light[1] * s1[k] +
+                                            fit.light[2] * noise_.shot_ambient[k] +
+                                            noise_.floor_variance_e2[k]);
     // Per bin; at a bin, the mean of both sides.
     const double slope = t <= 0.0   ? 0.5 * (x1[k] - before[k])
                          : t >= 1.0 ? 0.5 * (after[k] - x0[k])

@@ -11,7 +11,7 @@ namespace tofsmith {
 /// Measurements of one pixel, as the likelihood takes them.
 struct LikelihoodPixel {
   const double* electrons = nullptr;  ///< without dark (K)
-  double least_variance_e2 = 0.0;     ///< smaller expected variances count as this
+  double min_variance_e2 = 0.0;       ///< smaller expected variances count as this
 };
 
 /// The most likely light on the chord from bin `bin` to the next: mean and variance of every

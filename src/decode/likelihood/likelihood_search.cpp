@@ -94,8 +94,8 @@ class LikelihoodSearch::Peaks {
   void add(const Peak& peak) {
     std::size_t at = count_;
     while (at > 0 && peaks_[at - 1].squares > peak.squares) --at;
-    if (at == most_peaks) return;
-    count_ = std::min(count_ + 1, most_peaks);
+    if (at == max_peaks) return;
+    count_ = std::min(count_ + 1, max_peaks);
     std::copy_backward(peaks_.begin() + at, peaks_.begin() + count_ - 1, peaks_.begin() + count_);
     peaks_[at] = peak;
   }
@@ -103,7 +103,7 @@ class LikelihoodSearch::Peaks {
   const Peak* end() const { return peaks_.data() + count_; }
 
  private:
-  std::array<Peak, most_peaks> peaks_{};
+  std::array<Peak, max_peaks> peaks_{};
   std::size_t count_ = 0;
 };
 
@@ -160,9 +160,9 @@ MostLikely LikelihoodSearch::most_likely(const LikelihoodPixel& pixel,
   scores_.weighted_fall(pixel.electrons, result.weight.data(), fall.data());
 
   const Peaks found = peaks(pixel, result.weight.data(), fall);
-  const double most_squares = squares_ratio * std::max(found.begin()->squares, 0.0) + squares_lead;
+  const double max_squares = squares_ratio * std::max(found.begin()->squares, 0.0) + squares_lead;
   for (const Peak& peak : found) {
-    if (peak.squares > most_squares) break;
+    if (peak.squares > max_squares) break;
     const ChordFit fit = model_.fit_around(pixel, peak.bin, result.weight.data());
     const double tie = cost_tie * std::max(1.0, std::abs(result.best.cost));
     const bool is_first = result.count == 0;
@@ -183,17 +183,17 @@ double LikelihoodSearch::confidence(const LikelihoodPixel& pixel, const MostLike
   const Lobe lobe = directions_.main_lobe(nearest);
   if (lobe.end - lobe.begin >= samples) return 1.0;
 
-  std::int32_t rival = lobe.end % samples;
+  std::int32_t second_peak = lobe.end % samples;
   for (std::int32_t n = lobe.end; n < lobe.begin + samples; ++n)
-    if (fall[static_cast<std::size_t>(n % samples)] > fall[static_cast<std::size_t>(rival)])
-      rival = n % samples;
-  double rival_cost = model_.fit(pixel, rival, found.weight.data()).cost;
+    if (fall[static_cast<std::size_t>(n % samples)] > fall[static_cast<std::size_t>(second_peak)])
+      second_peak = n % samples;
+  double second_peak_cost = model_.fit(pixel, second_peak, found.weight.data()).cost;
   for (std::size_t i = 0; i < found.count; ++i) {
     const double above = wrap(depth_bin(found.followed[i]) - lobe.begin, samples);
     if (above > lobe.end - 1 - lobe.begin)
-      rival_cost = std::min(rival_cost, found.followed[i].cost);
+      second_peak_cost = std::min(second_peak_cost, found.followed[i].cost);
   }
-  return 1.0 / (1.0 + std::exp(-0.5 * std::max(rival_cost - found.best.cost, 0.0)));
+  return 1.0 / (1.0 + std::exp(-0.5 * std::max(second_peak_cost - found.best.cost, 0.0)));
 }
 
 }  // namespace tofsmith

@@ -35,13 +35,13 @@ class DepthScores {
 };
 
 /// Most peaks over bins that are followed to the least cost beside them.
-inline constexpr std::size_t most_peaks = 16;
+inline constexpr std::size_t max_peaks = 16;
 
 /// The most likely light of a pixel, and what followed peaks it won against.
 struct MostLikely {
   std::array<double, max_measurements> weight;  ///< first estimate of inverse variances [1/e^2]
   ChordFit best;
-  std::array<ChordFit, most_peaks> followed;
+  std::array<ChordFit, max_peaks> followed;
   std::size_t count = 0;  ///< of followed peaks
 };
 

@@ -11,9 +11,9 @@ namespace tofsmith {
 
 namespace {
 
-constexpr double least_direction = 1e-2;  // of the main one: what tells returns apart
-constexpr double least_kept = 1e-3;       // of the main one: below, noise is all there is
-constexpr int least_points = 900;
+constexpr double min_direction = 1e-2;  // of the main one: what separates returns
+constexpr double min_kept = 1e-3;       // of the main one: below, noise is all there is
+constexpr int min_points = 900;
 
 std::vector<float> as_floats(const RowMajorMatrix& values) {
   std::vector<float> floats;
@@ -39,7 +39,7 @@ RowMajorMatrix thinned(const RowMajorMatrix& table, Eigen::Index rows) {
 
 /// So many places that the curve turns little from one to the next.
 int coarse_places(const RowMajorMatrix& curve) {
-  constexpr double most_turn = 0.165;  // of the curve's own length
+  constexpr double max_turn = 0.165;  // of the curve's own length
   const double length = curve.norm();
   for (const int count : {80, 96, 120, 160, 200}) {
     if (count >= curve.rows()) break;
@@ -48,7 +48,7 @@ int coarse_places(const RowMajorMatrix& curve) {
     for (Eigen::Index j = 0; j < count; ++j)
       turn2 += (rows.row((j + 1) % count) - rows.row(j)).squaredNorm() *
                static_cast<double>(curve.rows()) / count;
-    if (std::sqrt(turn2) < most_turn * length) return count;
+    if (std::sqrt(turn2) < max_turn * length) return count;
   }
   return std::min(240, static_cast<int>(curve.rows()));
 }
@@ -61,7 +61,7 @@ Eigen::VectorXd sizes_of_directions(const AmbientProjection& projection) {
 
 int independent_directions(const AmbientProjection& projection) {
   const Eigen::VectorXd size = sizes_of_directions(projection);
-  return static_cast<int>((size.array() > least_direction * size.maxCoeff()).count());
+  return static_cast<int>((size.array() > min_direction * size.maxCoeff()).count());
 }
 
 RowMajorMatrix drawn_finer(const RowMajorMatrix& table, int factor) {
@@ -93,9 +93,8 @@ MultipathCurve::MultipathCurve(const DecodingTable& table, const AmbientProjecti
                                double tail_m)
     : measurements(table.measurements()), sees_ambient(!projection.ambient.isZero(0.0)) {
   const Eigen::VectorXd size = sizes_of_directions(projection);
-  span =
-      std::min(most_span, static_cast<int>((size.array() > least_kept * size.maxCoeff()).count()));
-  points_per_bin = (least_points + table.samples() - 1) / table.samples();
+  span = std::min(max_span, static_cast<int>((size.array() > min_kept * size.maxCoeff()).count()));
+  points_per_bin = (min_points + table.samples() - 1) / table.samples();
   points = points_per_bin * table.samples();
 
   const RowMajorMatrix curve = drawn_finer(projection.curve.leftCols(span), points_per_bin);

@@ -8,9 +8,9 @@
 
 namespace tofsmith {
 
-/// Most dimensions in which returns are told apart; those in which a code hardly moves are left
+/// Most dimensions in which returns are separated; those in which a code hardly moves are left
 /// out.
-inline constexpr int most_span = 12;
+inline constexpr int max_span = 12;
 /// Pixels that a search takes at a time; a multiple of any vector length used.
 inline constexpr int pixels_per_group = 16;
 
@@ -21,7 +21,7 @@ struct MultipathCurve {
   MultipathCurve(const DecodingTable& table, const AmbientProjection& projection, double tail_m);
 
   int measurements = 0;
-  int span = 0;            ///< dimensions r of what is left without ambient light
+  int span = 0;            ///< dimensions r of the residual without ambient light
   int points = 0;          ///< fine points of a period
   int points_per_bin = 0;  ///< of the table
   int coarse = 0;          ///< places at which pairs are tried first
@@ -39,7 +39,7 @@ struct MultipathCurve {
   int pairs() const { return dims() * (dims() + 1) / 2; }
 };
 
-/// Dimensions in which a code on a camera tells returns apart by more than 1 % of its main one.
+/// Dimensions in which a code on a camera separates returns by more than 1 % of its main one.
 int independent_directions(const AmbientProjection& projection);
 
 /// Rows between rows, `factor` for one: by cubics through four rows, or by chords where the table's

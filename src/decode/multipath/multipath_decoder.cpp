@@ -23,7 +23,7 @@ void MultipathOptions::validate(double range_m) const {
           longest_m, "must be above shortest_delay_m and below" + of_range);
   require(tail_m <= range_m, "MultipathOptions::tail_m", tail_m,
           "must be > 0 and at most" + of_range);
-  doubt.validate();
+  status_thresholds.validate();
   if (prior) check_fields(*prior, "ReturnPrior::");
 }
 
@@ -52,15 +52,15 @@ MultipathDecoder& MultipathDecoder::operator=(MultipathDecoder&&) noexcept = def
 
 TwoReturnDecoder::TwoReturnDecoder(DecodingTable table, const MultipathOptions& options)
     : MultipathDecoder(std::make_unique<const Plan>(
-          Plan{MultipathEngine(std::move(table), options, LaterLight::second_return)})) {}
+          Plan{MultipathEngine(std::move(table), options, MultipathKind::second_return)})) {}
 
 TailDecoder::TailDecoder(DecodingTable table, const MultipathOptions& options)
     : MultipathDecoder(std::make_unique<const Plan>(
-          Plan{MultipathEngine(std::move(table), options, LaterLight::tail)})) {}
+          Plan{MultipathEngine(std::move(table), options, MultipathKind::tail)})) {}
 
 namespace {
 
-std::optional<std::string> why_not(const DecodingTable& table, LaterLight later) {
+std::optional<std::string> why_not(const DecodingTable& table, MultipathKind later) {
   if (auto no_depth = why_not_decodable(table)) return no_depth;
   return text_of(missing_support(AmbientProjection(table), later));
 }
@@ -68,11 +68,11 @@ std::optional<std::string> why_not(const DecodingTable& table, LaterLight later)
 }  // namespace
 
 std::optional<std::string> TwoReturnDecoder::why_not_decodable(const DecodingTable& table) {
-  return why_not(table, LaterLight::second_return);
+  return why_not(table, MultipathKind::second_return);
 }
 
 std::optional<std::string> TailDecoder::why_not_decodable(const DecodingTable& table) {
-  return why_not(table, LaterLight::tail);
+  return why_not(table, MultipathKind::tail);
 }
 
 const DecodingTable& MultipathDecoder::table() const { return plan_->engine.table(); }

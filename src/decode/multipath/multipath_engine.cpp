@@ -90,7 +90,7 @@ ReturnPosterior::ReturnPosterior(const MultipathCurve& curve, const ReturnPrior&
                          : 0);
   }
   for (int i = 0; i < ratios_taken; ++i)
-    ratio_.push_back(prior.largest_ratio * (i + 0.5) / ratios_taken);
+    ratio_.push_back(prior.max_ratio * (i + 0.5) / ratios_taken);
 }
 
 DepthPosterior ReturnPosterior::around(const MultipathCurve& curve, const PixelGroup& pixels,
@@ -148,27 +148,27 @@ struct MultipathEngine::Queue {
 };
 
 MultipathEngine::MultipathEngine(DecodingTable table, const MultipathOptions& options,
-                                 LaterLight later)
+                                 MultipathKind later)
     : MultipathEngine(checked(table, options), options, later, AmbientProjection(table)) {}
 
 MultipathEngine::MultipathEngine(DecodingTable table, const MultipathOptions& options,
-                                 LaterLight later, const AmbientProjection& projection)
+                                 MultipathKind later, const AmbientProjection& projection)
     : options_(options),
-      later_(later),
-      single_(std::move(table), options.doubt),
+      kind_(later),
+      single_(std::move(table), options.status_thresholds),
       scale_(single_.table()),
       noise_(single_.table()),
       has_own_shot_noise_(single_.table().shot_correlation.size() > 0),
       ambient_(projection.ambient),
       gated_(projection.gated),
-      curve_(single_.table(), projection, later == LaterLight::tail ? options.tail_m : 0.0) {
+      curve_(single_.table(), projection, later == MultipathKind::tail ? options.tail_m : 0.0) {
   require(missing_support(projection, later));
   const DecodingTable& known = single_.table();
   const double points_per_m = curve_.points / known.range_m;
   const double longest_m = options.longest_delay_m.value_or(known.range_m / 3);
   delays_ = {static_cast<float>(points_per_m * options.shortest_delay_m),
              static_cast<float>(points_per_m * longest_m)};
-  if (later == LaterLight::tail)
+  if (later == MultipathKind::tail)
     gated_tail_ = exponential_average(gated_, options.tail_m / known.bin_m());
   const double freedom = curve_.span - 2;
   unexplained_chi2_ =
@@ -208,7 +208,7 @@ void MultipathEngine::load(const float* raw, float depth_m, int lane, PixelGroup
     const double electrons = is_valid ? scale_.electrons(raw[k], k) : 0.0;
     group.electrons[k][lane] = static_cast<float>(electrons);
     group.variance_e2[k][lane] = static_cast<float>(
-        std::max(least_variance_e2, std::max(electrons, 0.0) + noise_.floor_variance_e2[k]));
+        std::max(min_variance_e2, std::max(electrons, 0.0) + noise_.floor_variance_e2[k]));
     if (!has_own_shot_noise_) continue;
     const double x = on_chord(gated_, bin, k);
     along += x * electrons;
@@ -218,9 +218,9 @@ void MultipathEngine::load(const float* raw, float depth_m, int lane, PixelGroup
   if (!has_own_shot_noise_) return;
   const double signal = own > 0.0 ? std::max(along / own, 0.0) : 0.0;
   for (int k = 0; k < k_count; ++k)
-    group.variance_e2[k][lane] = static_cast<float>(
-        std::max(least_variance_e2,
-                 signal * on_chord(noise_.shot_gated, bin, k) + noise_.floor_variance_e2[k]));
+    group.variance_e2[k][lane] =
+        static_cast<float>(std::max(min_variance_e2, signal * on_chord(noise_.shot_gated, bin, k) +
+                                                         noise_.floor_variance_e2[k]));
 }
 
 void MultipathEngine::decode_block(const float* raw, std::int64_t pixels,
@@ -280,7 +280,7 @@ double MultipathEngine::ambient_e_per_s(const PixelGroup& group, const PairFits&
   const double bin = fits.position[lane] * per_bin;
   double later_bin = bin + fits.delay[lane] * per_bin;
   if (later_bin >= table().samples()) later_bin -= table().samples();
-  const RowMajorMatrix& later = later_ == LaterLight::tail ? gated_tail_ : gated_;
+  const RowMajorMatrix& later = kind_ == MultipathKind::tail ? gated_tail_ : gated_;
   double along = 0.0, own = 0.0;
   for (int k = 0; k < table().measurements(); ++k) {
     const double left = group.electrons[k][lane] -
@@ -322,13 +322,13 @@ void MultipathEngine::store(std::int64_t pixel, const PixelGroup& group, const P
   if (decoded.ambient_e_per_s)
     decoded.ambient_e_per_s[at] = static_cast<float>(ambient_e_per_s(group, fits, lane));
   if (decoded.confidence) {
-    const double lead = std::max(fits.rival_chi2[lane] - fits.chi2[lane], 0.0f);
+    const double lead = std::max(fits.second_best_chi2[lane] - fits.chi2[lane], 0.0f);
     decoded.confidence[at] = static_cast<float>(1.0 / (1.0 + std::exp(-0.5 * lead)));
   }
   if (decoded.ratio) decoded.ratio[at] = fits.second_e_per_s[lane] / fits.signal_e_per_s[lane];
   if (decoded.delay_m)
     decoded.delay_m[at] = static_cast<float>(
-        later_ == LaterLight::tail ? options_.tail_m : fits.delay[lane] * point_m);
+        kind_ == MultipathKind::tail ? options_.tail_m : fits.delay[lane] * point_m);
 }
 
 }  // namespace tofsmith

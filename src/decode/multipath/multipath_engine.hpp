@@ -11,7 +11,7 @@
 
 namespace tofsmith {
 
-/// What is known of the direct depth of a pixel once all later returns the prior allows are
+/// What is known of the direct depth of a pixel once all multipath returns the prior allows are
 /// averaged over.
 struct DepthPosterior {
   double median = 0.0;     ///< [fine points], in [0, points)
@@ -37,14 +37,14 @@ class ReturnPosterior {
 };
 
 /// What is beside the direct return.
-enum class LaterLight { second_return, tail };
+enum class MultipathKind { second_return, tail };
 
 /// Decodes pixels of up to two returns: the single return by the fast decoder, and what one return
 /// does not explain by a search for a second.
 class MultipathEngine {
  public:
   /// @throws std::invalid_argument if table or options are invalid, or the code cannot support it
-  MultipathEngine(DecodingTable table, const MultipathOptions& options, LaterLight later);
+  MultipathEngine(DecodingTable table, const MultipathOptions& options, MultipathKind later);
 
   const DecodingTable& table() const { return single_.table(); }
   const MultipathOptions& options() const { return options_; }
@@ -63,11 +63,11 @@ class MultipathEngine {
   double ambient_e_per_s(const PixelGroup& group, const PairFits& fits, int lane) const;
   bool is_single(float chi2) const { return !(chi2 > static_cast<float>(options_.threshold)); }
 
-  MultipathEngine(DecodingTable table, const MultipathOptions& options, LaterLight later,
+  MultipathEngine(DecodingTable table, const MultipathOptions& options, MultipathKind later,
                   const AmbientProjection& projection);
 
   MultipathOptions options_;
-  LaterLight later_;
+  MultipathKind kind_;
   Decoder single_;
   RawScale scale_;
   ExpectedNoise noise_;

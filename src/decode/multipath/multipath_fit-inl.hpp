@@ -37,22 +37,22 @@ HWY_INLINE Vector dot(const Row* a, const Row* b, int span) {
   return sum;
 }
 
-constexpr int most_dims = most_span + 1;
+constexpr int max_dims = max_span + 1;
 constexpr int packed(int row, int column) { return row * (row + 1) / 2 + column; }
 
 /// A pixel in coordinates in which noise is the same in all directions and what ambient light
 /// explains is gone: with the Cholesky factor L of B^T W B, B the ambient direction and the plane,
 /// a curve point p becomes L_pp^T p, the measurements the plane's part of L^-1 B^T W y.
 struct White {
-  alignas(64) Row factor[packed(most_dims, 0)];
-  alignas(64) Row target[most_span];
+  alignas(64) Row factor[packed(max_dims, 0)];
+  alignas(64) Row target[max_span];
   int span = 0, first = 0;  // rows of the factor before the plane's
 
   HWY_INLINE void make(const MultipathCurve& curve, const PixelGroup& pixels, int lane) {
     span = curve.span;
     first = curve.sees_ambient ? 1 : 0;
     const int dims = curve.dims(), pairs = curve.pairs();
-    alignas(64) Row sums[most_dims], inverse[most_dims];
+    alignas(64) Row sums[max_dims], inverse[max_dims];
     for (int a = 0; a < pairs; ++a) store(hn::Zero(Floats()), factor[a]);
     for (int a = 0; a < dims; ++a) store(hn::Zero(Floats()), sums[a]);
     for (int k = 0; k < curve.measurements; ++k) {
@@ -79,7 +79,7 @@ struct White {
         left = hn::NegMulAdd(l, l, left);
         sum = hn::NegMulAdd(l, load(sums[k]), sum);
       }
-      // What is left of a direction by rounding alone tells nothing.
+      // A residual of rounding alone tells nothing.
       const Mask is_left = hn::Gt(left, hn::Mul(all(1e-6f), whole));
       const Vector root = hn::Sqrt(hn::IfThenElseZero(is_left, left));
       const Vector inverse_root = hn::IfThenElseZero(is_left, hn::Div(all(1.0f), root));
@@ -176,7 +176,7 @@ HWY_INLINE Place look(const MultipathCurve& curve, const White& white, Vector fi
                       bool free_signals = false) {
   const int span = curve.span;
   const Vector zero = hn::Zero(Floats());
-  alignas(64) Row g1[most_span], d1[most_span], g2[most_span], d2[most_span];
+  alignas(64) Row g1[max_span], d1[max_span], g2[max_span], d2[max_span];
   point_at(curve, curve.fine, white, first, g1, d1);
   Place place{first, second, zero, zero, zero, zero, zero, zero, zero, zero};
   Mask are_equal = hn::Gt(zero, zero);
@@ -258,7 +258,7 @@ HWY_INLINE Place choose(Mask which, const Place& yes, const Place& no) {
 /// Levenberg-Marquardt from a start. A lane that has arrived stays where it is.
 template <Fitted What, int Span>
 HWY_INLINE Place downhill(const MultipathCurve& curve, const DelayBounds& delays,
-                          const White& white, Vector first, Vector second, int most_steps) {
+                          const White& white, Vector first, Vector second, int max_steps) {
   const Vector zero = hn::Zero(Floats()), one = all(1.0f);
   const Vector near = all(1e-3f * static_cast<float>(curve.points_per_bin));
   const Vector reach =
@@ -266,7 +266,7 @@ HWY_INLINE Place downhill(const MultipathCurve& curve, const DelayBounds& delays
   Place best = look<What, Span>(curve, white, first, second);
   Vector damping = all(0.01f);
   Mask moves = hn::Gt(best.s1, zero);
-  for (int step = 0; step < most_steps && !hn::AllFalse(Floats(), moves); ++step) {
+  for (int step = 0; step < max_steps && !hn::AllFalse(Floats(), moves); ++step) {
     const Vector raised = hn::Add(one, damping);
     const Vector h11 = hn::MulAdd(best.h11, raised, all(1e-20f));
     Vector by_first, by_second = zero;

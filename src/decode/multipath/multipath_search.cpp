@@ -18,15 +18,15 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-constexpr int most_coarse = 240;
-constexpr int most_starts = 3;
-constexpr int most_single_steps = 6, most_pair_steps = 14;
+constexpr int max_coarse = 240;
+constexpr int max_starts = 3;
+constexpr int max_single_steps = 6, max_pair_steps = 14;
 
 /// White coarse points of all lanes, with <g, g> and <g, target>.
 struct CoarsePoints {
-  alignas(64) Row point[most_coarse * most_span];
-  alignas(64) Row own[most_coarse];
-  alignas(64) Row along[most_coarse];
+  alignas(64) Row point[max_coarse * max_span];
+  alignas(64) Row own[max_coarse];
+  alignas(64) Row along[max_coarse];
 
   template <int Span>
   HWY_INLINE void make(const MultipathCurve& curve, const std::vector<float>& table,
@@ -60,10 +60,10 @@ HWY_INLINE Vector pair_score(Vector b1, Vector b2, Vector g11, Vector g12, Vecto
 
 /// The best few of scores that come in order of place, those that top both neighbours only.
 struct Starts {
-  alignas(64) Row score[most_starts], place[most_starts], lag[most_starts];
+  alignas(64) Row score[max_starts], place[max_starts], lag[max_starts];
 
   HWY_INLINE Starts() {
-    for (int i = 0; i < most_starts; ++i) {
+    for (int i = 0; i < max_starts; ++i) {
       store(all(-1.0f), score[i]);
       store(hn::Zero(Floats()), place[i]);
       store(all(1.0f), lag[i]);
@@ -71,7 +71,7 @@ struct Starts {
   }
   HWY_INLINE void add(Mask is_top, Vector value, int at, Vector by) {
     Vector v = choose(is_top, value, all(-1.0f)), p = all(static_cast<float>(at)), l = by;
-    for (int i = 0; i < most_starts; ++i) {
+    for (int i = 0; i < max_starts; ++i) {
       const Vector s = load(score[i]), q = load(place[i]), m = load(lag[i]);
       const Mask above = hn::Gt(v, s);
       store(choose(above, v, s), score[i]);
@@ -132,9 +132,9 @@ HWY_INLINE Place best_single(const MultipathCurve& curve, const White& white,
   }
   const Vector zero = hn::Zero(Floats());
   const Place from_guess =
-      downhill<Fitted::single, Span>(curve, {}, white, guess, zero, most_single_steps);
+      downhill<Fitted::single, Span>(curve, {}, white, guess, zero, max_single_steps);
   const Place from_coarse = downhill<Fitted::single, Span>(
-      curve, {}, white, fine_position(curve, place), zero, most_single_steps);
+      curve, {}, white, fine_position(curve, place), zero, max_single_steps);
   return choose(hn::Lt(from_coarse.chi2, from_guess.chi2), from_coarse, from_guess);
 }
 
@@ -148,7 +148,7 @@ HWY_INLINE void search_lanes(const MultipathCurve& curve, const DelayBounds& del
   if constexpr (What == Fitted::tail) behind.make<Span>(curve, curve.coarse_tail, white);
   const Place single = best_single<Span>(curve, white, direct, load(pixels.guess + lane));
 
-  alignas(64) Row score[most_coarse], lag[most_coarse];
+  alignas(64) Row score[max_coarse], lag[max_coarse];
   score_coarse<What, Span>(curve, delays, direct, behind, score, lag);
   Starts starts;
   for (int j = 0; j < curve.coarse; ++j) {
@@ -167,18 +167,18 @@ HWY_INLINE void search_lanes(const MultipathCurve& curve, const DelayBounds& del
             : hn::Min(hn::Max(hn::Mul(load(starts.lag[i]), step), all(delays.shortest)),
                       all(delays.longest));
     return downhill<What, Span>(curve, delays, white, fine_position(curve, load(starts.place[i])),
-                                delay, most_pair_steps);
+                                delay, max_pair_steps);
   };
   Place best = start_from(0);
-  Vector rival = single.chi2;
+  Vector second_best = single.chi2;
   const Vector half = all(0.5f * static_cast<float>(curve.points));
-  for (int i = 1; i < most_starts; ++i) {
+  for (int i = 1; i < max_starts; ++i) {
     const Place other = start_from(i);
     const Mask better = hn::Lt(other.chi2, best.chi2);
     const Vector apart = hn::Abs(
         hn::Sub(wrapped(hn::Add(hn::Sub(other.first, best.first), half), curve.points), half));
     const Vector worse = hn::Max(other.chi2, best.chi2);
-    rival = choose(hn::Gt(apart, step), hn::Min(rival, worse), rival);
+    second_best = choose(hn::Gt(apart, step), hn::Min(second_best, worse), second_best);
     best = choose(better, other, best);
   }
   const Place free = look<What, Span>(curve, white, best.first, best.second, true);
@@ -192,7 +192,7 @@ HWY_INLINE void search_lanes(const MultipathCurve& curve, const DelayBounds& del
   store(best.s2, fits.second_e_per_s + lane);
   store(best.chi2, fits.chi2 + lane);
   store(single.chi2, fits.single_chi2 + lane);
-  store(rival, fits.rival_chi2 + lane);
+  store(second_best, fits.second_best_chi2 + lane);
   const Vector least =
       all(12.0f / static_cast<float>(curve.points) / static_cast<float>(curve.points));
   store(hn::Div(all(1.0f), hn::Sqrt(hn::Max(information, least))), fits.deviation + lane);
@@ -218,7 +218,7 @@ void single(const MultipathCurve& curve, const PixelGroup& pixels, SingleFits& f
     White white;
     white.make(curve, pixels, lane);
     const Place best = downhill<Fitted::single, 0>(curve, {}, white, load(pixels.guess + lane),
-                                                   hn::Zero(Floats()), most_single_steps);
+                                                   hn::Zero(Floats()), max_single_steps);
     store(best.first, fits.position + lane);
     store(best.chi2, fits.chi2 + lane);
   }

@@ -28,7 +28,8 @@ struct PairFits {
   alignas(64) float second_e_per_s[pixels_per_group];  ///< S2, in [0, S1]
   alignas(64) float chi2[pixels_per_group];
   alignas(64) float single_chi2[pixels_per_group];  ///< of the best single return anywhere
-  alignas(64) float rival_chi2[pixels_per_group];   ///< of the best fit with another direct depth
+  alignas(
+      64) float second_best_chi2[pixels_per_group];  ///< of the best fit with another direct depth
   /// Of the direct position [fine points]; at most that of any depth at all.
   alignas(64) float deviation[pixels_per_group];
 };

@@ -27,14 +27,15 @@ int harmonics_of(const AmbientProjection& projection) {
 
 }  // namespace
 
-std::optional<BrokenRule> missing_support(const AmbientProjection& projection, LaterLight later) {
+std::optional<BrokenRule> missing_support(const AmbientProjection& projection,
+                                          MultipathKind later) {
   const bool sees_ambient = !projection.ambient.isZero(0.0);
   const int means = independent_directions(projection) + (sees_ambient ? 1 : 0);
-  const int needed = (later == LaterLight::tail ? 5 : 6) - (sees_ambient ? 0 : 1);
+  const int needed = (later == MultipathKind::tail ? 5 : 6) - (sees_ambient ? 0 : 1);
   if (means >= needed) return std::nullopt;
   const int harmonics = harmonics_of(projection);
   std::string rule = "must be >= " + std::to_string(needed) + " to tell ";
-  rule += later == LaterLight::tail ? "a tail" : "two returns";
+  rule += later == MultipathKind::tail ? "a tail" : "two returns";
   rule += " from one";
   if (harmonics <= 2)
     rule += harmonics == 1

@@ -9,12 +9,12 @@
 
 namespace tofsmith {
 
-enum class LaterLight;
+enum class MultipathKind;
 
 /// How measurements fall short of what is unknown: depth, signal, ambient light, and delay and
 /// strength of a second return (5; a tail of known delay: 4), and one more to judge the fit by.
 /// Says how many independent means there are, how many are needed and what would do; none: they
 /// are enough.
-std::optional<BrokenRule> missing_support(const AmbientProjection& projection, LaterLight later);
+std::optional<BrokenRule> missing_support(const AmbientProjection& projection, MultipathKind later);
 
 }  // namespace tofsmith

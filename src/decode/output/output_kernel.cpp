@@ -43,7 +43,7 @@ HWY_INLINE void write_chunk(const BinRecords& records, const OutputConstants& c,
   if (planes.predicted_standard_deviation_m)
     write_depth_noise(chunk, planes.predicted_standard_deviation_m);
   if (steps.confidence) {
-    find_rows(records.directions, chunk.rival, chunk.pixels, chunk.rival_start);
+    find_rows(records.directions, chunk.second_peak, chunk.pixels, chunk.second_peak_start);
     find_confidence(c, records, rank, chunk);
   }
   if (planes.confidence) write_values(chunk, chunk.confidence, planes.confidence);
@@ -67,7 +67,7 @@ HWY_INLINE void write_tile(const BinRecords& records, const OutputConstants& c,
   for (int first = 0; first < tile.pixels; first += pixels_per_chunk) {
     chunk.pixels = std::min(tile.pixels - first, pixels_per_chunk);
     copy_rows(tile.bin + first, chunk.pixels, chunk.bin);
-    if (steps.confidence) copy_rows(tile.rival + first, chunk.pixels, chunk.rival);
+    if (steps.confidence) copy_rows(tile.second_peak + first, chunk.pixels, chunk.second_peak);
     chunk.plane = tile.plane + first;
     chunk.electrons = tile.electrons ? tile.electrons + first : nullptr;
     write_chunk<Rank>(records, c, steps, tile.saturated ? tile.saturated + first : nullptr, chunk,
@@ -178,13 +178,13 @@ OutputKernel::OutputKernel(const DecodingTable& table, const AmbientProjection& 
   constants_.basis.assign(basis.data(), basis.data() + basis.size());
   constants_.shot_ambient = in_floats(noise.shot_ambient);
   constants_.floor_noise_e2 = in_floats(noise.floor_variance_e2);
-  constants_.most_shot = static_cast<float>(std::max(0.0, noise.shot_gated.maxCoeff()));
-  constants_.most_shot_ambient = static_cast<float>(std::max(0.0, noise.shot_ambient.maxCoeff()));
-  constants_.most_floor_e2 =
-      static_cast<float>(std::max(least_variance_e2, noise.floor_variance_e2.maxCoeff()));
+  constants_.max_shot = static_cast<float>(std::max(0.0, noise.shot_gated.maxCoeff()));
+  constants_.max_shot_ambient = static_cast<float>(std::max(0.0, noise.shot_ambient.maxCoeff()));
+  constants_.max_floor_e2 =
+      static_cast<float>(std::max(min_variance_e2, noise.floor_variance_e2.maxCoeff()));
   constants_.low_signal_sigma2 = static_cast<float>(std::min<double>(
       options.low_signal_sigma * options.low_signal_sigma, std::numeric_limits<float>::max()));
-  constants_.minimum_confidence = static_cast<float>(options.minimum_confidence);
+  constants_.min_confidence = static_cast<float>(options.min_confidence);
 }
 
 bool OutputKernel::needs_electrons(const DecodedView& planes) const {
@@ -192,14 +192,14 @@ bool OutputKernel::needs_electrons(const DecodedView& planes) const {
                                      planes.predicted_standard_deviation_m || planes.status);
 }
 
-bool OutputKernel::needs_rivals(const DecodedView& planes) const {
-  return planes.confidence || (planes.status && constants_.minimum_confidence > 0.0f);
+bool OutputKernel::needs_second_peaks(const DecodedView& planes) const {
+  return planes.confidence || (planes.status && constants_.min_confidence > 0.0f);
 }
 
 void OutputKernel::write(const MatchedTile& tile, const DecodedView& planes) const {
   const RecordLayout& layout = records_.layout;
   OutputSteps steps;
-  steps.confidence = needs_rivals(planes);
+  steps.confidence = needs_second_peaks(planes);
   steps.noise = steps.confidence || planes.predicted_standard_deviation_m || planes.status;
   steps.ambient = steps.noise || planes.ambient_e_per_s;
   steps.fields = steps.confidence ? layout.end_of_directions()

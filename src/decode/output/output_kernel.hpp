@@ -16,12 +16,13 @@ namespace tofsmith {
 /// first `pixels` does not matter. Rows that the wanted planes do not need (see OutputKernel) may
 /// be null.
 struct MatchedTile {
-  int pixels = 0;                           ///< at most pixels_per_tile
-  const float* plane = nullptr;             ///< q = V^T y' [e], [rank][pixels_per_tile]; 0 where
-                                            ///< what is left without ambient light is rounding
-  const float* electrons = nullptr;         ///< without dark ones [e], [K][pixels_per_tile]
-  const std::int32_t* bin = nullptr;        ///< of the best score; -1 for an invalid pixel
-  const std::int32_t* rival = nullptr;      ///< best bin outside the main lobe; -1 if there is none
+  int pixels = 0;                     ///< at most pixels_per_tile
+  const float* plane = nullptr;       ///< q = V^T y' [e], [rank][pixels_per_tile]; 0 where
+                                      ///< the residual without ambient light is rounding
+  const float* electrons = nullptr;   ///< without dark ones [e], [K][pixels_per_tile]
+  const std::int32_t* bin = nullptr;  ///< of the best score; -1 for an invalid pixel
+  const std::int32_t* second_peak =
+      nullptr;                              ///< best bin outside the main lobe; -1 if there is none
   const std::uint8_t* saturated = nullptr;  ///< 1 where a measurement is clipped, else 0
 };
 
@@ -45,7 +46,7 @@ class OutputKernel {
 
   /// Which rows of a tile these planes need besides `plane` and `bin`.
   bool needs_electrons(const DecodedView& planes) const;
-  bool needs_rivals(const DecodedView& planes) const;
+  bool needs_second_peaks(const DecodedView& planes) const;
   bool needs_saturation(const DecodedView& planes) const { return planes.status != nullptr; }
 
   /// Writes the tile's pixels to the planes that are not null, from their first value on.

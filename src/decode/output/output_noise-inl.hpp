@@ -64,16 +64,17 @@ HWY_INLINE Vector normal_probability(Vector z) {
   return hn::Sub(all(1.0f), hn::Div(all(0.5f), power));
 }
 
-/// Difference d of the directions of bins and rivals, instead of the rivals'. Returns <d, q>, and
-/// in `square` |d|^2.
+/// Difference d of the directions of bins and second peaks, instead of the second peaks'. Returns
+/// <d, q>, and in `square` |d|^2.
 HWY_INLINE Vector lead_of(const RecordLayout& layout, int rank, OutputChunk& chunk, int i,
                           Vector& square) {
   const Floats d;
   Vector lead = square = hn::Zero(d);
   for (int j = 0; j < rank; ++j) {
-    float* const rival = chunk.rival_direction + j * pixels_per_chunk + i;
-    const Vector apart = hn::Sub(load(chunk.field(layout.direction() + j), i), load(rival, 0));
-    hn::StoreU(apart, d, rival);
+    float* const second_peak = chunk.second_peak_direction + j * pixels_per_chunk + i;
+    const Vector apart =
+        hn::Sub(load(chunk.field(layout.direction() + j), i), load(second_peak, 0));
+    hn::StoreU(apart, d, second_peak);
     lead = product_plus(apart, load(chunk.plane + j * pixels_per_tile, i), lead);
     square = product_plus(apart, apart, square);
   }
@@ -89,37 +90,39 @@ HWY_INLINE Vector lead_variance(const OutputConstants& c, const RecordLayout& la
     const float* const basis = c.basis.data() + k * rank;
     Vector weight = hn::Zero(Floats());
     for (int j = 0; j < rank; ++j)
-      weight = product_plus(load(chunk.rival_direction + j * pixels_per_chunk, i), all(basis[j]),
-                            weight);
+      weight = product_plus(load(chunk.second_peak_direction + j * pixels_per_chunk, i),
+                            all(basis[j]), weight);
     const Vector without_signal =
         product_plus(ambient, all(c.shot_ambient.data()[k]), all(c.floor_noise_e2.data()[k]));
     const Vector noise =
         product_plus(signal, load(chunk.field(layout.shot() + k), i), without_signal);
     variance = product_plus(hn::Mul(weight, weight),
-                            hn::Max(noise, all(static_cast<float>(least_variance_e2))), variance);
+                            hn::Max(noise, all(static_cast<float>(min_variance_e2))), variance);
   }
   return variance;
 }
 
-/// Probability that the bin scores higher than its rival, for noise on the lead. Most leads are so
-/// many deviations of the most noise there can be that their probability is 1 as a float: the noise
-/// of others alone is computed.
+/// Probability that the bin scores higher than its second peak, for noise on the lead. Most leads
+/// are so many deviations of the most noise there can be that their probability is 1 as a float:
+/// the noise of others alone is computed.
 HWY_INLINE void find_confidence(const OutputConstants& c, const BinRecords& records, int rank,
                                 OutputChunk& chunk) {
   const Floats d;
   const RecordLayout& layout = records.layout;
   const Vector zero = hn::Zero(d), one = all(1.0f);
   for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
-    gather(records.directions.data(), chunk.rival_start + i, 0, rank, chunk.rival_direction + i);
+    gather(records.directions.data(), chunk.second_peak_start + i, 0, rank,
+           chunk.second_peak_direction + i);
     Vector square;
     const Vector lead = hn::Max(lead_of(layout, rank, chunk, i, square), zero);
-    const Vector most_noise = product_plus(
-        load(chunk.signal, i), all(c.most_shot),
-        product_plus(noisy_ambient(chunk, i), all(c.most_shot_ambient), all(c.most_floor_e2)));
+    const Vector max_noise = product_plus(
+        load(chunk.signal, i), all(c.max_shot),
+        product_plus(noisy_ambient(chunk, i), all(c.max_shot_ambient), all(c.max_floor_e2)));
     const Mask is_sure =
-        hn::Ge(hn::Mul(lead, lead), hn::Mul(hn::Mul(square, all(sure_sigma2)), most_noise));
-    const auto has_rival = hn::Gt(hn::LoadU(Indices(), chunk.rival + i), hn::Set(Indices(), -1));
-    const Mask is_open = hn::And(hn::And(hn::RebindMask(d, has_rival), hn::Not(is_sure)),
+        hn::Ge(hn::Mul(lead, lead), hn::Mul(hn::Mul(square, all(sure_sigma2)), max_noise));
+    const auto has_second_peak =
+        hn::Gt(hn::LoadU(Indices(), chunk.second_peak + i), hn::Set(Indices(), -1));
+    const Mask is_open = hn::And(hn::And(hn::RebindMask(d, has_second_peak), hn::Not(is_sure)),
                                  hn::Gt(load(chunk.signal, i), zero));
     Vector confidence = one;
     if (!hn::AllFalse(d, is_open)) {
@@ -146,7 +149,7 @@ HWY_INLINE void write_status(const OutputConstants& c, const OutputChunk& chunk,
     const Vector signal = load(chunk.signal, i);
     const Vector least2 = hn::Mul(all(c.low_signal_sigma2), load(chunk.signal_variance, i));
     const auto is_ambiguous =
-        hn::RebindMask(di, hn::Lt(load(chunk.confidence, i), all(c.minimum_confidence)));
+        hn::RebindMask(di, hn::Lt(load(chunk.confidence, i), all(c.min_confidence)));
     const auto is_low = hn::RebindMask(di, hn::Lt(hn::Mul(signal, signal), least2));
     const auto is_nothing = hn::RebindMask(di, hn::Not(hn::Gt(signal, hn::Zero(d))));
     const auto is_saturated =

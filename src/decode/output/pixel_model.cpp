@@ -102,9 +102,9 @@ PixelEstimate PixelModel::estimate(const double* electrons, const double* plane,
   const double* s0 = noise_.shot_gated.row(from).data();
   const double* s1 = noise_.shot_gated.row(to).data();
   for (int k = 0; k < k_count; ++k)
-    variance_e2[k] = std::max(least_variance_e2, signal * ((1 - t) * s0[k] + t * s1[k]) +
-                                                     ambient * noise_.shot_ambient[k] +
-                                                     noise_.floor_variance_e2[k]);
+    variance_e2[k] = std::max(min_variance_e2, signal * ((1 - t) * s0[k] + t * s1[k]) +
+                                                   ambient * noise_.shot_ambient[k] +
+                                                   noise_.floor_variance_e2[k]);
 
   // dS = <p, noise> / |p|^2, and dz = <d, noise> / (S |d|^2) with d the slope across p.
   result.signal_standard_deviation_e_per_s = deviation_along(point.data(), variance_e2) / length2;

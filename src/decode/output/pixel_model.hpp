@@ -43,7 +43,7 @@ class PixelModel {
   int measurements() const { return static_cast<int>(projection_.basis.rows()); }
   int rank() const { return projection_.rank(); }
 
-  /// What is left of electrons - dark (K) without ambient light, in the plane (rank); exactly 0
+  /// Residual of electrons - dark (K) without ambient light, in the plane (rank); exactly 0
   /// where that is rounding.
   void project(const double* electrons, double* plane) const;
 

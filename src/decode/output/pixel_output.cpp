@@ -29,7 +29,7 @@ PixelStatus status_of(const DecodingTable& table, const DecodeOptions& options, 
   if (estimate.signal_e_per_s <
       options.low_signal_sigma * estimate.signal_standard_deviation_e_per_s)
     return PixelStatus::low_signal;
-  if (pixel.confidence < options.minimum_confidence) return PixelStatus::ambiguous;
+  if (pixel.confidence < options.min_confidence) return PixelStatus::ambiguous;
   return PixelStatus::ok;
 }
 

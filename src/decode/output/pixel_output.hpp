@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "decode/output/pixel_model.hpp"
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/decoder.hpp"

@@ -72,7 +72,7 @@ HWY_INLINE std::int32_t leader_of_window(const float* window, const Query& q, fl
   return std::has_single_bit(reached) ? std::countr_zero(reached) : -1;
 }
 
-/// Around the best score, rows are told apart by differences of directions, which are short and
+/// Around the best score, rows are distinguished by differences of directions, which are short and
 /// hence exact. All others have to be behind by whole scores.
 template <int Rank>
 HWY_INLINE std::int32_t prove(const ArcTable& table, const Query& q, const Leaders& leaders,

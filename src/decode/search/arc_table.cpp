@@ -97,13 +97,13 @@ std::vector<float> offsets_of_rows(const DirectionTable& directions) {
 }
 
 /// So that no more bundles are needed than a search keeps in mind.
-std::int32_t least_blocks_per_arc(std::int32_t samples) {
-  constexpr std::int32_t most = most_bundle_blocks * arcs_per_block * arcs_per_block * block_lanes;
+std::int32_t min_blocks_per_arc(std::int32_t samples) {
+  constexpr std::int32_t most = max_bundle_blocks * arcs_per_block * arcs_per_block * block_lanes;
   return (samples + most - 1) / most;
 }
 
-float rounded_up(double value) { return std::nextafter(static_cast<float>(value), infinity); }
-float rounded_down(double value) { return std::nextafter(static_cast<float>(value), -infinity); }
+float float_above(double value) { return std::nextafter(static_cast<float>(value), infinity); }
+float float_below(double value) { return std::nextafter(static_cast<float>(value), -infinity); }
 
 }  // namespace
 
@@ -143,8 +143,8 @@ KnotLevel::KnotLevel(const DirectionTable& directions, std::int32_t rows_per_arc
       for (std::int32_t n = arc * rows_per_arc; n < std::min((arc + 1) * rows_per_arc, samples);
            ++n)
         bound.include(bound_of(direction_of(directions, n), start, end));
-      bounds[0].lane[i] = bounds[2].lane[i + 1] = rounded_down(1.0 / bound.growth);
-      bounds[1].lane[i] = bounds[3].lane[i + 1] = rounded_up(bound.reach / bound.growth);
+      bounds[0].lane[i] = bounds[2].lane[i + 1] = float_below(1.0 / bound.growth);
+      bounds[1].lane[i] = bounds[3].lane[i + 1] = float_above(bound.reach / bound.growth);
     }
   }
 }
@@ -153,7 +153,7 @@ ArcTable::ArcTable(const DirectionTable& directions, std::int32_t blocks_per_arc
     : samples_(directions.samples()),
       rank_(directions.rank()),
       lanes_per_block_(static_cast<std::size_t>(rank_) + 1),
-      arcs_(directions, std::max(blocks_per_arc, least_blocks_per_arc(samples_)) * block_lanes),
+      arcs_(directions, std::max(blocks_per_arc, min_blocks_per_arc(samples_)) * block_lanes),
       bundles_(directions, arcs_.rows_per_arc() * arcs_per_block) {
   const std::vector<float> offset = offsets_of_rows(directions);
   fill_rows(directions, offset);
@@ -189,7 +189,7 @@ void ArcTable::fill_windows(const DirectionTable& directions, const std::vector<
       for (int j = 0; j < rank_; ++j) lanes[1 + j].lane[i] = static_cast<float>(left[j]);
       radius = std::max(radius, left.norm());
     }
-    window_radius_[static_cast<std::size_t>(w)] = rounded_up(radius);
+    window_radius_[static_cast<std::size_t>(w)] = float_above(radius);
   }
 }
 

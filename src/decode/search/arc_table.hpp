@@ -20,7 +20,7 @@ struct alignas(64) BlockLanes {
 inline constexpr int arcs_per_block = block_lanes - 1;
 
 /// Of bundles of arcs; bounds what a search keeps in mind.
-inline constexpr int most_bundle_blocks = 64;
+inline constexpr int max_bundle_blocks = 64;
 
 /// A curve of directions u as arcs of equally many rows. A knot is the first row of an arc, or the
 /// curve's last row. For every row n of an arc between the knots a and b, and any vector q,
@@ -55,7 +55,7 @@ class ArcTable {
   int samples() const { return samples_; }
   int rank() const { return rank_; }
   const KnotLevel& arcs() const { return arcs_; }
-  /// Bundles of 15 arcs, which are a block of `arcs()` each; at most most_bundle_blocks blocks.
+  /// Bundles of 15 arcs, which are a block of `arcs()` each; at most max_bundle_blocks blocks.
   const KnotLevel& bundles() const { return bundles_; }
 
   /// Blocks of rows in an arc: 1, or more where curves are very long.

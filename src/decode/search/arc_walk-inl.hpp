@@ -27,7 +27,7 @@ namespace {
 static_assert(block_lanes == widest_vector);
 constexpr float no_score = -std::numeric_limits<float>::infinity();
 constexpr float unit_roundoff = 0.5f * std::numeric_limits<float>::epsilon();
-constexpr int most_flat_blocks = 16;  // of arcs that are looked at one by one
+constexpr int max_flat_blocks = 16;  // of arcs that are looked at one by one
 
 HWY_INLINE float largest(Vector v) { return hn::GetLane(hn::MaxOfLanes(Floats(), v)); }
 
@@ -80,8 +80,8 @@ HWY_INLINE Margins margins_of(int rank) {
 
 /// The arcs of one query that may hold its best row: of all, or of the bundles that may.
 struct Walk {
-  std::uint64_t near[most_bundle_blocks / 4];  // bits of arcs (flat) or bundles, 16 a block
-  float threshold;                             // bounds below it are passed over
+  std::uint64_t near[max_bundle_blocks / 4];  // bits of arcs (flat) or bundles, 16 a block
+  float threshold;                            // bounds below it are passed over
 };
 
 /// All rows count.
@@ -154,7 +154,7 @@ HWY_INLINE Vector score_knots(const KnotLevel& level, int b, const Query& q, con
   return best;
 }
 
-HWY_INLINE bool is_flat(const ArcTable& table) { return table.arcs().blocks() <= most_flat_blocks; }
+HWY_INLINE bool is_flat(const ArcTable& table) { return table.arcs().blocks() <= max_flat_blocks; }
 HWY_INLINE const KnotLevel& first_level(const ArcTable& table) {
   return is_flat(table) ? table.arcs() : table.bundles();
 }
@@ -163,7 +163,7 @@ HWY_INLINE const KnotLevel& first_level(const ArcTable& table) {
 template <int Rank, typename Where>
 HWY_INLINE void start_walk(const ArcTable& table, const Query& q, float slack, const Where& where,
                            Walk& walk) {
-  HWY_ALIGN float score[most_bundle_blocks * block_lanes];
+  HWY_ALIGN float score[max_bundle_blocks * block_lanes];
   const KnotLevel& level = first_level(table);
   Vector best = all(no_score);
   for (int b = 0; b < level.blocks(); ++b)

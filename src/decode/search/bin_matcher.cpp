@@ -33,14 +33,14 @@ Value normalized(const PixelTile& tile, int pixel, int rank,
 BinMatcher::BinMatcher(const DecodingTable& table, const AmbientProjection& projection)
     : directions_(projection),
       arcs_(directions_),
-      rivals_(directions_, arcs_),
+      second_peaks_(directions_, arcs_),
       distinct_(directions_),
       projection_(table, projection),
       exact_(table, projection) {
   if (CircleSearch::serves(distinct_))
-    search_.emplace<CircleSearch>(distinct_, rivals_);
+    search_.emplace<CircleSearch>(distinct_, second_peaks_);
   else if (CellTable::serves(distinct_))
-    search_.emplace<CellSearch>(distinct_, rivals_);
+    search_.emplace<CellSearch>(distinct_, second_peaks_);
 }
 
 void BinMatcher::match(const RawView& view, std::int64_t first, int pixels, bool for_outputs,
@@ -64,10 +64,10 @@ void BinMatcher::match_plane(PixelTile& tile) const {
 }
 
 /// @returns whether all bins are proven
-bool BinMatcher::search(bool wants_rivals, PixelTile& tile) const {
+bool BinMatcher::search(bool wants_second_peaks, PixelTile& tile) const {
   if (const auto* circle = std::get_if<CircleSearch>(&search_)) return circle->search(tile);
   if (const auto* cells = std::get_if<CellSearch>(&search_))
-    return cells->search(wants_rivals, tile);
+    return cells->search(wants_second_peaks, tile);
   arcs_.search(tile.plane, pixels_per_tile, tile.error, tile.pixels, tile.bin);
   bool all_proven = true;
   for (int i = 0; i < tile.pixels; ++i) {
@@ -78,28 +78,28 @@ bool BinMatcher::search(bool wants_rivals, PixelTile& tile) const {
   return all_proven;
 }
 
-void BinMatcher::find_rivals(PixelTile& tile) const {
+void BinMatcher::find_second_peaks(PixelTile& tile) const {
   const auto* circle = std::get_if<CircleSearch>(&search_);
   const bool has_cells = std::holds_alternative<CellSearch>(search_);
   for (int i = 0; i < tile.pixels; ++i) {
-    std::int32_t& rival = tile.rival[i];
+    std::int32_t& second_peak = tile.second_peak[i];
     if (tile.bin[i] < 0)
-      rival = -1;
+      second_peak = -1;
     else if (circle)
-      rival = circle->rival(tile.bin[i]);
+      second_peak = circle->second_peak(tile.bin[i]);
     else if (has_cells)
-      rival = rivals_.moved_out(tile.bin[i], CellRecord::rival_in(rival));
+      second_peak = second_peaks_.moved_out(tile.bin[i], CellRecord::second_peak_in(second_peak));
     else
-      rival = RivalSearch::unknown;
-    if (rival == RivalSearch::unknown) rival = rival_of(tile, i);
+      second_peak = SecondPeakSearch::unknown;
+    if (second_peak == SecondPeakSearch::unknown) second_peak = second_peak_of(tile, i);
   }
 }
 
-/// The rival of one pixel, for its own vector.
-std::int32_t BinMatcher::rival_of(const PixelTile& tile, int pixel) const {
+/// The second peak of one pixel, for its own vector.
+std::int32_t BinMatcher::second_peak_of(const PixelTile& tile, int pixel) const {
   std::array<float, max_measurements> unit;
   normalized(tile, pixel, directions_.rank(), unit);
-  return rivals_.rival(tile.bin[pixel], unit.data());
+  return second_peaks_.second_peak(tile.bin[pixel], unit.data());
 }
 
 /// Whether single precision tells where a pixel is. No search proves the bin of one that is not.

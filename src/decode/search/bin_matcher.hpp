@@ -31,21 +31,21 @@ class BinMatcher {
   /// The same for vectors that already lie in the tile's plane and are what they are: exact. Bins
   /// are -1 where one is not finite.
   void match_plane(PixelTile& tile) const;
-  /// Completes `rival` of a matched tile: what the search found with the bin (rank 3 and 4: for the
-  /// centre of the cell; rank 2: for the bin's own direction) if it is outside the main lobe of the
-  /// pixel's bin, else the best for the pixel's own vector.
-  void find_rivals(PixelTile& tile) const;
+  /// Completes `second_peak` of a matched tile: what the search found with the bin (rank 3 and 4:
+  /// for the centre of the cell; rank 2: for the bin's own direction) if it is outside the main
+  /// lobe of the pixel's bin, else the best for the pixel's own vector.
+  void find_second_peaks(PixelTile& tile) const;
 
  private:
-  bool search(bool wants_rivals, PixelTile& tile) const;
+  bool search(bool wants_second_peaks, PixelTile& tile) const;
   bool is_precise(const PixelTile& tile, int pixel) const;
   void decide(const RawView& view, std::int64_t first, int pixel, PixelTile& tile) const;
   std::int32_t choose(const double* unit) const;
-  std::int32_t rival_of(const PixelTile& tile, int pixel) const;
+  std::int32_t second_peak_of(const PixelTile& tile, int pixel) const;
 
   DirectionTable directions_;
   ArcSearch arcs_;
-  RivalSearch rivals_;
+  SecondPeakSearch second_peaks_;
   DistinctDirections distinct_;
   TileProjection projection_;
   ExactProjection exact_;

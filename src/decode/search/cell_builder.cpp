@@ -44,10 +44,10 @@ CellBox CellBox::child(int part, int rank) const {
   return box;
 }
 
-CellBuilder::CellBuilder(const DistinctDirections& directions, const RivalSearch& rivals,
+CellBuilder::CellBuilder(const DistinctDirections& directions, const SecondPeakSearch& second_peaks,
                          double fit_unit)
     : directions_(&directions),
-      rivals_(&rivals),
+      second_peaks_(&second_peaks),
       rank_(directions.rank()),
       corner_count_(1 << (directions.rank() - 1)),
       count_(directions.count()),
@@ -95,19 +95,19 @@ void CellBuilder::winners(const CellBox& box, const std::vector<std::int32_t>& c
 
   // The best in the middle, and at every corner, rule out most others.
   const auto corner_count = static_cast<std::size_t>(corner_count_);
-  std::array<std::size_t, most_corners + 1> rivals{};
+  std::array<std::size_t, max_corners + 1> second_peaks{};
   double best_sum = -1e300;
   for (std::size_t k = 0; k < scores_.size(); ++k) {
     double sum = 0.0;
     for (std::size_t i = 0; i < corner_count; ++i) {
-      if (scores_[k][i] > scores_[rivals[i + 1]][i]) rivals[i + 1] = k;
+      if (scores_[k][i] > scores_[second_peaks[i + 1]][i]) second_peaks[i + 1] = k;
       sum += scores_[k][i];
     }
     if (sum <= best_sum) continue;
     best_sum = sum;
-    rivals[0] = k;
+    second_peaks[0] = k;
   }
-  const auto last = rivals.begin() + corner_count_ + 1;
+  const auto last = second_peaks.begin() + corner_count_ + 1;
   const auto loses_to = [&](const Scores& own, const Scores& other) {
     for (std::size_t i = 0; i < corner_count; ++i)
       if (!(own[i] - other[i] < -certain_loss)) return false;
@@ -115,7 +115,7 @@ void CellBuilder::winners(const CellBox& box, const std::vector<std::int32_t>& c
   };
   kept.clear();
   for (std::size_t k = 0; k < scores_.size(); ++k)
-    if (std::none_of(rivals.begin(), last,
+    if (std::none_of(second_peaks.begin(), last,
                      [&](std::size_t m) { return m != k && loses_to(scores_[k], scores_[m]); }))
       kept.push_back(candidates[k]);
 }
@@ -170,8 +170,8 @@ void CellBuilder::split(const CellBox& box, const Corners& corners, std::int32_t
     run.length = static_cast<std::uint16_t>(end - begin);
     fit(corners, std::span(leads_).subspan(static_cast<std::size_t>(begin - first), run.length),
         run);
-    const std::int32_t bin = rival(box, run);
-    if (bin >= 0) run.rival = static_cast<std::uint16_t>(bin);
+    const std::int32_t bin = second_peak(box, run);
+    if (bin >= 0) run.second_peak = static_cast<std::uint16_t>(bin);
     found.push_back(run);
   };
   std::int32_t begin = first;
@@ -268,7 +268,7 @@ double CellBuilder::slack(const Corners& corners, std::span<const Scores> leads,
 }
 
 /// The best bin outside the main lobe of the run's winner, for the centre of the box.
-std::int32_t CellBuilder::rival(const CellBox& box, const CellRecord& run) const {
+std::int32_t CellBuilder::second_peak(const CellBox& box, const CellRecord& run) const {
   const Eigen::Map<const Eigen::VectorXd> centre(box.centre.data(), rank_);
   std::int32_t winner = 0;
   double highest = -1e300;
@@ -281,7 +281,8 @@ std::int32_t CellBuilder::rival(const CellBox& box, const CellRecord& run) const
   std::array<float, max_cell_rank> unit{};
   for (int j = 0; j < rank_; ++j)
     unit[static_cast<std::size_t>(j)] = static_cast<float>(centre[j] / centre.norm());
-  return rivals_->rival(directions_->bin[static_cast<std::size_t>(winner)], unit.data());
+  return second_peaks_->second_peak(directions_->bin[static_cast<std::size_t>(winner)],
+                                    unit.data());
 }
 
 }  // namespace tofsmith

@@ -9,7 +9,7 @@
 
 #include "decode/search/cell_table.hpp"
 #include "decode/search/distinct_directions.hpp"
-#include "decode/search/rival_search.hpp"
+#include "decode/search/second_peak_search.hpp"
 
 namespace tofsmith {
 
@@ -31,7 +31,8 @@ struct CellBox {
 class CellBuilder {
  public:
   /// @param fit_unit  of the records' fits
-  CellBuilder(const DistinctDirections& directions, const RivalSearch& rivals, double fit_unit);
+  CellBuilder(const DistinctDirections& directions, const SecondPeakSearch& second_peaks,
+              double fit_unit);
 
   /// Those of `candidates` that can win somewhere in a box, ascending.
   void winners(const CellBox& box, const std::vector<std::int32_t>& candidates,
@@ -43,14 +44,14 @@ class CellBuilder {
   double closeness(const CellBox& box, const std::vector<std::int32_t>& candidates) const;
 
  private:
-  static constexpr int most_corners = 8;
-  using Scores = std::array<double, most_corners>;
+  static constexpr int max_corners = 8;
+  using Scores = std::array<double, max_corners>;
   using Place = Eigen::Matrix<double, max_cell_rank, 1>;  // 1, t_1, t_2 ..
   struct Corners {
     int axis = 0;
     double side = 0.0;
     std::array<double, max_cell_rank> lowest{};  // the corner with the least coordinates
-    std::array<Place, most_corners> place;
+    std::array<Place, max_corners> place;
   };
 
   Corners corners_of(const CellBox& box) const;
@@ -60,10 +61,10 @@ class CellBuilder {
              std::vector<CellRecord>& found);
   void fit(const Corners& corners, std::span<const Scores> leads, CellRecord& run) const;
   double slack(const Corners& corners, std::span<const Scores> leads, const CellRecord& run) const;
-  std::int32_t rival(const CellBox& box, const CellRecord& run) const;
+  std::int32_t second_peak(const CellBox& box, const CellRecord& run) const;
 
   const DistinctDirections* directions_;
-  const RivalSearch* rivals_;
+  const SecondPeakSearch* second_peaks_;
   int rank_;
   int corner_count_;
   std::int32_t count_;

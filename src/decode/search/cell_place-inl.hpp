@@ -142,7 +142,7 @@ HWY_INLINE Vector high_number(IndexVector words) {
 /// The bins of pixels whose cell proves them, and where to begin in the run of the others, which
 /// are listed; so are pixels with several runs.
 template <int Rank>
-HWY_INLINE void predict(const CellSearchView& view, int padded, bool wants_rivals,
+HWY_INLINE void predict(const CellSearchView& view, int padded, bool wants_second_peaks,
                         PixelTile& pixels, Scratch& scratch) {
   const Floats d;
   const Indices di;
@@ -160,9 +160,9 @@ HWY_INLINE void predict(const CellSearchView& view, int padded, bool wants_rival
                fit23 = hn::GatherIndex(di, words + 2, word);
     // Of rank 3 the slack stands in place of the fourth fit.
     auto slack = high_number(fit23);
-    if (Rank == 4 || wants_rivals) {
+    if (Rank == 4 || wants_second_peaks) {
       const auto beside = hn::GatherIndex(di, words + 3, word);
-      hn::Store(beside, di, pixels.rival + i);
+      hn::Store(beside, di, pixels.second_peak + i);
       if (Rank == 4) slack = high_number(beside);
     }
     auto x = hn::MulAdd(high_number(fit01), hn::Load(d, scratch.place[0] + i), low_number(fit01));
@@ -181,12 +181,12 @@ HWY_INLINE void predict(const CellSearchView& view, int padded, bool wants_rival
     hn::Store(once, di, pixels.bin + i);
 
     // x must be further from the borders of its direction than it may be off.
-    const auto doubt =
+    const auto rounding =
         hn::MulAdd(slack, slack_unit, hn::Mul(steepest, hn::Load(d, scratch.slip + i)));
     const auto place = hn::Sub(x, after);
     const auto above = hn::IfThenElse(hn::Eq(after, last_after), no_border, hn::Sub(half, place));
     const auto below = hn::IfThenElse(hn::Eq(after, hn::Zero(d)), no_border, hn::Add(half, place));
-    const auto is_proven = hn::RebindMask(di, hn::Gt(hn::Min(above, below), doubt));
+    const auto is_proven = hn::RebindMask(di, hn::Gt(hn::Min(above, below), rounding));
     const auto is_list = hn::Lt(run, hn::Zero(di));
     const auto is_unproven = hn::AndNot(is_list, hn::Not(is_proven));
     const auto is_left = hn::Or(is_list, is_unproven);

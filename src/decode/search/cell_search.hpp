@@ -33,15 +33,16 @@ struct CellSearchView {
 class CellSearch {
  public:
   /// @param directions  with CellTable::serves(directions)
-  CellSearch(const DistinctDirections& directions, const RivalSearch& rivals);
+  CellSearch(const DistinctDirections& directions, const SecondPeakSearch& second_peaks);
 
   const CellTable& table() const { return table_; }
 
   /// Fills bin of a tile from plane and error: -1 where single precision does not prove that it
   /// beats all others by more than tie_tolerance.
-  /// @param wants_rivals  whether `rival` is filled too, with what CellRecord::rival_in() reads
+  /// @param wants_second_peaks  whether `second_peak` is filled too, with what
+  /// CellRecord::second_peak_in() reads
   /// @returns whether all are proven
-  bool search(bool wants_rivals, PixelTile& tile) const;
+  bool search(bool wants_second_peaks, PixelTile& tile) const;
   /// The lowest bin whose score ties with the best, in double arithmetic.
   /// @param unit  (rank) of length 1
   std::int32_t choose(const double* unit) const;

@@ -101,10 +101,11 @@ CellRecord CellRecord::list(std::uint32_t begin, std::uint32_t count) {
 
 bool CellTable::serves(const DistinctDirections& directions) {
   return (directions.rank() == 3 || directions.rank() == 4) &&
-         directions.bin.back() < CellRecord::no_rival && directions.count() <= max_cell_directions;
+         directions.bin.back() < CellRecord::no_second_peak &&
+         directions.count() <= max_cell_directions;
 }
 
-CellTable::CellTable(const DistinctDirections& directions, const RivalSearch& rivals)
+CellTable::CellTable(const DistinctDirections& directions, const SecondPeakSearch& second_peaks)
     : rank_(directions.rank()),
       root_bits_(root_bits_for(rank_, directions.count())),
       cut_bits_(cut_bits_for(rank_, directions.count())),
@@ -115,7 +116,7 @@ CellTable::CellTable(const DistinctDirections& directions, const RivalSearch& ri
   std::iota(all.begin(), all.end(), 0);
   parallel_for(faces * parts, [&](std::int64_t i) {
     const int face = static_cast<int>(i) / parts, part = static_cast<int>(i) % parts;
-    CellBuilder builder(directions, rivals, fit_unit_);
+    CellBuilder builder(directions, second_peaks, fit_unit_);
     std::array<std::size_t, max_cell_rank> index{};
     for (int s = 0; s < sides; ++s) index[static_cast<std::size_t>(s)] = part >> s & 1;
     split(builder, rank_, face, CellBox::face(face).child(part, rank_), root_bits_ - 1, index, all,
@@ -139,7 +140,7 @@ CellTable::CellTable(const DistinctDirections& directions, const RivalSearch& ri
 
   std::vector<Runs> runs(cells);
   parallel_for_blocks(static_cast<std::int64_t>(roots.size()), 64, [&](IndexRange block) {
-    CellBuilder builder(directions, rivals, fit_unit_);
+    CellBuilder builder(directions, second_peaks, fit_unit_);
     for (auto i = static_cast<std::size_t>(block.begin); i < static_cast<std::size_t>(block.end);
          ++i) {
       const std::size_t first = roots_[i] >> 1;

@@ -99,7 +99,8 @@ bool CircleSearch::serves(const DistinctDirections& directions) {
   return directions.rank() == 2 && directions.bin.back() <= 0xffff;
 }
 
-CircleSearch::CircleSearch(const DistinctDirections& directions, const RivalSearch& rivals) {
+CircleSearch::CircleSearch(const DistinctDirections& directions,
+                           const SecondPeakSearch& second_peaks) {
   std::vector<std::int32_t> order(static_cast<std::size_t>(directions.count()));
   std::iota(order.begin(), order.end(), 0);
   const auto angle_of = [&](std::int32_t n) {
@@ -108,7 +109,7 @@ CircleSearch::CircleSearch(const DistinctDirections& directions, const RivalSear
   std::sort(order.begin(), order.end(),
             [&](std::int32_t a, std::int32_t b) { return angle_of(a) < angle_of(b); });
   unit_ = directions.unit(order, Eigen::all);
-  double least_gap = 2 * pi;
+  double min_gap = 2 * pi;
   for (std::size_t i = 0; i < order.size(); ++i) {
     angle_.push_back(angle_of(order[i]));
     bin_.push_back(directions.bin[static_cast<std::size_t>(order[i])]);
@@ -116,17 +117,18 @@ CircleSearch::CircleSearch(const DistinctDirections& directions, const RivalSear
   for (std::size_t i = 0; i < angle_.size(); ++i) {
     const double next = i + 1 < angle_.size() ? angle_[i + 1] : angle_[0] + 2 * pi;
     border_.push_back(0.5 * (angle_[i] + next));
-    least_gap = std::min(least_gap, next - angle_[i]);
+    min_gap = std::min(min_gap, next - angle_[i]);
   }
   // Scores that tie are closer to a border than this; c moves by no more than twice the angle.
-  margin_ = static_cast<float>(rounding + 20 * tie_tolerance / least_gap);
+  margin_ = static_cast<float>(rounding + 20 * tie_tolerance / min_gap);
   cut_into_pieces();
-  rival_of_bin_.assign(static_cast<std::size_t>(directions.bin.back()) + 1, -1);
+  second_peak_of_bin_.assign(static_cast<std::size_t>(directions.bin.back()) + 1, -1);
   for (std::size_t i = 0; i < bin_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     const std::array<float, 2> unit = {static_cast<float>(unit_(row, 0)),
                                        static_cast<float>(unit_(row, 1))};
-    rival_of_bin_[static_cast<std::size_t>(bin_[i])] = rivals.rival(bin_[i], unit.data());
+    second_peak_of_bin_[static_cast<std::size_t>(bin_[i])] =
+        second_peaks.second_peak(bin_[i], unit.data());
   }
 }
 

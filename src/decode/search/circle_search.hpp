@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "decode/search/distinct_directions.hpp"
-#include "decode/search/rival_search.hpp"
+#include "decode/search/second_peak_search.hpp"
 #include "decode/search/shared/pixel_tile.hpp"
 
 namespace tofsmith {
@@ -26,13 +26,13 @@ class CircleSearch {
  public:
   static bool serves(const DistinctDirections& directions);
   /// @param directions  with serves(directions)
-  CircleSearch(const DistinctDirections& directions, const RivalSearch& rivals);
+  CircleSearch(const DistinctDirections& directions, const SecondPeakSearch& second_peaks);
 
-  /// As CellSearch::search, without rivals.
+  /// As CellSearch::search, without second peaks.
   bool search(PixelTile& tile) const;
-  /// As PixelTile::rival, for the direction of a bin.
-  std::int32_t rival(std::int32_t bin) const {
-    return rival_of_bin_[static_cast<std::size_t>(bin)];
+  /// As PixelTile::second_peak, for the direction of a bin.
+  std::int32_t second_peak(std::int32_t bin) const {
+    return second_peak_of_bin_[static_cast<std::size_t>(bin)];
   }
   /// As CellSearch::choose.
   std::int32_t choose(const double* unit) const;
@@ -45,7 +45,7 @@ class CircleSearch {
 
   int resolution_ = 0;  // pieces of a side
   std::vector<CirclePiece> pieces_;
-  std::vector<std::int32_t> rival_of_bin_;
+  std::vector<std::int32_t> second_peak_of_bin_;
   std::vector<double> angle_;      // of the distinct directions, ascending
   std::vector<double> border_;     // angle half-way to the next one
   std::vector<std::int32_t> bin_;  // of the same

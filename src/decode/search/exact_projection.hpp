@@ -6,14 +6,14 @@
 
 #include "decode/ambient_projection.hpp"
 #include "decode/raw_scale.hpp"
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 
 namespace tofsmith {
 
-/// What is left of a pixel without ambient light, q = V^T y', as length and unit vector.
+/// Residual of a pixel without ambient light, q = V^T y', as length and unit vector.
 struct PlaneVector {
   double length =
-      0.0;  ///< |q| [e]; 0 if what is left is rounding, NaN if a raw number is no number
+      0.0;  ///< |q| [e]; 0 if the residual is rounding, NaN if a raw number is no number
   std::array<double, max_measurements> unit;  ///< (rank)
 };
 

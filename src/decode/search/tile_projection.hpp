@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "decode/search/shared/pixel_tile.hpp"
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 
 namespace tofsmith {
 

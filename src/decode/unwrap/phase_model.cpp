@@ -18,7 +18,7 @@ namespace tofsmith {
 
 namespace {
 
-// Below these shares of the whole, what is left is rounding ..
+// Below these shares of the whole, a residual is rounding ..
 constexpr double no_variation = 1e-10;
 constexpr double no_offset = 1e-9;
 constexpr double no_second_phase = 1e-6;

@@ -21,7 +21,7 @@ class PhaseModel {
  public:
   /// @throws std::invalid_argument if a correlation function is no single harmonic (up to
   ///         `largest_other_energy`, a share of its variance), if a frequency is not seen in two
-  ///         phases, if the offset cannot be told, or if the frequencies share a divisor
+  ///         phases, if the offset is unknown, or if the frequencies share a divisor
   PhaseModel(const DecodingTable& table, double largest_other_energy);
 
   /// Ascending, in multiples of f0.

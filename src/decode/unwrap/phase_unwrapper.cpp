@@ -56,7 +56,7 @@ Wraps PhaseUnwrapper::nearest(const double* phase) const {
   return best;
 }
 
-std::optional<Wraps> PhaseUnwrapper::rival(const double* phase, const Wraps& best) const {
+std::optional<Wraps> PhaseUnwrapper::second_best(const double* phase, const Wraps& best) const {
   std::optional<Wraps> found;
   for_each_choice(phase, [&](const Wraps& wraps) {
     if (std::abs(circular_difference(wraps.depth, best.depth, 1.0)) * highest_ <= 0.5) return;

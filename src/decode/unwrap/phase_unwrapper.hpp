@@ -33,7 +33,7 @@ class PhaseUnwrapper {
   /// @param phase  (count) [periods of the frequency]
   Wraps nearest(const double* phase) const;
   /// The best choice whose depth is more than half a wrap of the highest frequency from `best`.
-  std::optional<Wraps> rival(const double* phase, const Wraps& best) const;
+  std::optional<Wraps> second_best(const double* phase, const Wraps& best) const;
 
  private:
   template <typename Use>

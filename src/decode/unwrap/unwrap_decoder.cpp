@@ -49,7 +49,7 @@ std::string_view name_of(UnwrapWeights weights) { return weights_words.of(weight
 UnwrapWeights parse_unwrap_weights(std::string_view name) { return weights_words.parse(name); }
 
 void UnwrapOptions::validate() const {
-  doubt.validate();
+  status_thresholds.validate();
   require(largest_other_energy >= 0.0 && largest_other_energy <= 1.0,
           "UnwrapOptions::largest_other_energy", largest_other_energy, "must be in [0, 1]");
 }
@@ -171,7 +171,7 @@ void UnwrapDecoder::Plan::decode_pixel(const float* raw, std::size_t at,
     pixel.estimate.depth_standard_deviation_bin = deviation(share, pixel, variance_e2);
     pixel.confidence = confidence(phase, wraps, pixel, variance_e2);
   }
-  store_pixel(table, options.doubt, raw, pixel, at, decoded);
+  store_pixel(table, options.status_thresholds, raw, pixel, at, decoded);
 }
 
 /// Standard deviation of sum_f factor_f z_f, z_f the depth of one frequency [periods]: an electron
@@ -201,13 +201,15 @@ double UnwrapDecoder::Plan::deviation(const PerFrequency& factor, const PixelDec
 double UnwrapDecoder::Plan::confidence(const PerFrequency& phase, const Wraps& best,
                                        const PixelDecoding& pixel,
                                        const PerMeasurement& variance_e2) const {
-  const std::optional<Wraps> rival = unwrapper.rival(phase.data(), best);
-  if (!rival) return 1.0;
+  const std::optional<Wraps> second_best = unwrapper.second_best(phase.data(), best);
+  if (!second_best) return 1.0;
   PerFrequency factor;
   for (std::size_t j = 0; j < weights.size(); ++j)
     factor[j] =
-        2 * weights[j] * ((rival->candidate[j] - best.candidate[j]) - (rival->depth - best.depth));
-  return confidence_of(rival->distance - best.distance, deviation(factor, pixel, variance_e2));
+        2 * weights[j] *
+        ((second_best->candidate[j] - best.candidate[j]) - (second_best->depth - best.depth));
+  return confidence_of(second_best->distance - best.distance,
+                       deviation(factor, pixel, variance_e2));
 }
 
 }  // namespace tofsmith

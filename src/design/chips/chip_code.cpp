@@ -49,8 +49,8 @@ std::string chip_text(ChipWord word, int chips) {
 }
 
 ChipWord chip_word(std::string_view text) {
-  require(!text.empty() && text.size() <= most_chips, "chips", text,
-          fmt::format("must be 1 to {} digits", most_chips));
+  require(!text.empty() && text.size() <= max_chips, "chips", text,
+          fmt::format("must be 1 to {} digits", max_chips));
   ChipWord word = 0;
   for (std::size_t k = 0; k < text.size(); ++k) {
     require(text[k] == '0' || text[k] == '1', "chips", text, "must be digits 0 and 1");
@@ -83,8 +83,8 @@ std::string ChipCode::text() const {
 }
 
 void ChipCode::validate() const {
-  require(chips >= 3 && chips <= most_chips, "ChipCode::chips", chips,
-          fmt::format("must be in [3, {}]", most_chips));
+  require(chips >= 3 && chips <= max_chips, "ChipCode::chips", chips,
+          fmt::format("must be in [3, {}]", max_chips));
   require(taps >= 1 && taps <= 16, "ChipCode::taps", taps, "must be in [1, 16]");
   require(exposures() >= 1, "ChipCode::modulation", "[]", "must list at least one exposure");
   require(measurements() == exposures() * taps, "number of ChipCode::demodulation", measurements(),
@@ -111,12 +111,12 @@ std::optional<BrokenRule> why_no_chip_clock(const Camera& camera) {
   const double chip_s = *camera.sensor.shortest_pulse_s;
   const double chips = 1.0 / (camera.fundamental_frequency_hz * chip_s);
   if (std::abs(chips - std::round(chips)) < 1e-6 * chips && std::round(chips) >= 3 &&
-      std::round(chips) <= most_chips)
+      std::round(chips) <= max_chips)
     return std::nullopt;
   return broken("sensor.shortest_pulse_s", chip_s,
                 fmt::format("must be the period divided by a whole number, 3 to {}; here {:.6g} s "
                             "/ shortest_pulse_s = {:.6g}",
-                            most_chips, 1.0 / camera.fundamental_frequency_hz, chips));
+                            max_chips, 1.0 / camera.fundamental_frequency_hz, chips));
 }
 
 int chips_of(const Camera& camera) {

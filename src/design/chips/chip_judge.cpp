@@ -24,7 +24,7 @@ constexpr std::array<double, nodes_per_chip> node_weight = {
 
 /// Whether the very same measurements come from two depths that are whole chips.
 bool repeats(const ChipCode& code) {
-  std::array<std::array<int, most_chip_measurements>, most_chips> corners{};
+  std::array<std::array<int, max_chip_measurements>, max_chips> corners{};
   for (int s = 0; s < code.chips; ++s) {
     auto& corner = corners[static_cast<std::size_t>(s)];
     for (int i = 0; i < code.measurements(); ++i)
@@ -98,7 +98,7 @@ double mean_depth_variance(const FisherMatrix* nodes, int chips, double limit) {
 }
 
 double chip_gamma(const ChipCode& code, const ChipLight& light, double limit) {
-  std::array<FisherMatrix, std::size_t{most_chips} * nodes_per_chip> nodes{};
+  std::array<FisherMatrix, std::size_t{max_chips} * nodes_per_chip> nodes{};
   for (int e = 0; e < code.exposures(); ++e)
     add_exposure(code.modulation[static_cast<std::size_t>(e)], code.taps_of(e), code.taps, light,
                  nodes.data());
@@ -154,7 +154,7 @@ double ChipJudge::score(const ChipCode& code) const {
 double ChipJudge::score_with_last(const ChipCode& code, const std::vector<FisherMatrix>& nodes,
                                   double limit) const {
   const auto nodes_per_point = static_cast<std::size_t>(chips_) * nodes_per_chip;
-  std::array<FisherMatrix, std::size_t{most_chips} * nodes_per_chip> sum;
+  std::array<FisherMatrix, std::size_t{max_chips} * nodes_per_chip> sum;
   double log_sum = 0.0;
   for (std::size_t p = 0; p < lights_.size(); ++p) {
     const auto begin = nodes.begin() + static_cast<std::ptrdiff_t>(p * nodes_per_point);
@@ -204,12 +204,12 @@ double ChipJudge::sampled_margin_share(const ChipCode& code) const {
 }
 
 double ChipJudge::proven_margin_sigma(const ChipCode& code) const {
-  double sigma = 0.0, least_share = std::numeric_limits<double>::infinity();
+  double sigma = 0.0, min_share = std::numeric_limits<double>::infinity();
   for (std::size_t p = 0; p < lights_.size(); ++p) {
     const double here = ChipMargin(code, lights_[p], separation_periods_).proven_sigma();
     const double share = here / std::max(1e-9, asked_sigma_[p]);
-    if (share < least_share) {
-      least_share = share;
+    if (share < min_share) {
+      min_share = share;
       sigma = here;
     }
   }

@@ -17,7 +17,7 @@ struct FisherMatrix {
   double zz = 0.0, zs = 0.0, ss = 0.0, za = 0.0, sa = 0.0, aa = 0.0;
 
   FisherMatrix& operator+=(const FisherMatrix& other);
-  /// [inverse]_zz; infinite where depth cannot be told from the other two.
+  /// [inverse]_zz; infinite where depth cannot be separated from the other two.
   double depth_variance() const;
 };
 

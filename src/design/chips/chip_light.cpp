@@ -46,9 +46,9 @@ ChipLight::ChipLight(const Camera& camera, const OperatingPoint& point, int code
   const double time_s = camera.exposure_s.of(0, exposures);
   signal_e = time_s * point.signal_e_per_s / chips;
   ambient_e = time_s * point.ambient_e_per_s / chips;
-  constexpr double least_e2 = 1e-9;  // a measurement without any light or noise tells nothing
-  constant_e2 = std::max(least_e2, constant_variance_e2_of(camera.sensor) +
-                                       time_s * camera.sensor.dark_current_e_per_s);
+  constexpr double min_e2 = 1e-9;  // a measurement without any light or noise tells nothing
+  constant_e2 = std::max(
+      min_e2, constant_variance_e2_of(camera.sensor) + time_s * camera.sensor.dark_current_e_per_s);
 }
 
 }  // namespace tofsmith

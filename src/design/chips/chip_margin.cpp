@@ -81,7 +81,7 @@ ChipMargin::Whitening ChipMargin::whitening(const Values& variance) const {
 }
 
 /// The parts of `chip` that are far enough from some true depth in [first, last].
-ChipMargin::Stretches ChipMargin::rivals(double first, double last, int chip) const {
+ChipMargin::Stretches ChipMargin::alternatives(double first, double last, int chip) const {
   Stretches stretches;
   stretches.add({chip, 0.0, 1.0});
   for (const int turn : {-chips_, 0, chips_}) {
@@ -98,10 +98,11 @@ ChipMargin::Stretches ChipMargin::rivals(double first, double last, int chip) co
   return stretches;
 }
 
-double ChipMargin::squared_distance(int chip, double place, const Stretch& rival) const {
+double ChipMargin::squared_distance(int chip, double place, const Stretch& alternative) const {
   const Whitening w = whitening(variance_at(chip, place));
   const Values truth = values_at(chip, place);
-  const Values a = values_at(rival.chip, rival.begin), b = values_at(rival.chip, rival.end);
+  const Values a = values_at(alternative.chip, alternative.begin),
+               b = values_at(alternative.chip, alternative.end);
   Quadratic quadratic;
   quadratic.h[0] = {w.product(a, a), w.product(a, b), 0.0};
   quadratic.h[1] = {quadratic.h[0][1], w.product(b, b), 0.0};
@@ -110,15 +111,17 @@ double ChipMargin::squared_distance(int chip, double place, const Stretch& rival
 }
 
 /// With the largest variances of the stretch in place of all others, the distance from the line of
-/// its measurements to the cone of the rival's is a convex problem in three unknowns.
-double ChipMargin::lower_bound(int chip, double begin, double end, const Stretch& rival) const {
+/// its measurements to the cone of the other stretch's is a convex problem in three unknowns.
+double ChipMargin::lower_bound(int chip, double begin, double end,
+                               const Stretch& alternative) const {
   Values variance = variance_at(chip, begin);
   const Values other = variance_at(chip, end);
   for (std::size_t i = 0; i < static_cast<std::size_t>(measurements_); ++i)
     variance[i] = std::max(variance[i], other[i]);
   const Whitening w = whitening(variance);
   const Values first = values_at(chip, begin), last = values_at(chip, end);
-  const Values a = values_at(rival.chip, rival.begin), b = values_at(rival.chip, rival.end);
+  const Values a = values_at(alternative.chip, alternative.begin),
+               b = values_at(alternative.chip, alternative.end);
   Values step{};  // first - last: x_0 of it is taken off
   for (std::size_t i = 0; i < static_cast<std::size_t>(measurements_); ++i)
     step[i] = first[i] - last[i];
@@ -142,26 +145,26 @@ double ChipMargin::lower_bound(int chip, double begin, double end, const Stretch
 double ChipMargin::nearest(int chip, double place) const {
   double least = infinity;
   for (int u = 0; u < chips_; ++u)
-    for (const Stretch& rival : rivals(chip + place, chip + place, u))
-      least = std::min(least, squared_distance(chip, place, rival));
+    for (const Stretch& alternative : alternatives(chip + place, chip + place, u))
+      least = std::min(least, squared_distance(chip, place, alternative));
   return least;
 }
 
-/// Whether no rival on a chip is nearer to a stretch of true depths than sqrt(factor least), by
-/// bounds that are refined by halving. A true distance below `least` found on the way lowers it.
-bool ChipMargin::clears(int chip, double begin, double end, int rival_chip, double& least,
+/// Whether no other depth on a chip is nearer to a stretch of true depths than sqrt(factor least),
+/// by bounds that are refined by halving. A true distance below `least` found on the way lowers it.
+bool ChipMargin::clears(int chip, double begin, double end, int alternative_chip, double& least,
                         double factor) const {
   double bound = infinity;
-  for (const Stretch& rival : rivals(chip + begin, chip + end, rival_chip))
-    bound = std::min(bound, lower_bound(chip, begin, end, rival));
+  for (const Stretch& alternative : alternatives(chip + begin, chip + end, alternative_chip))
+    bound = std::min(bound, lower_bound(chip, begin, end, alternative));
   if (bound >= factor * least) return true;
   const double middle = (begin + end) / 2;
-  for (const Stretch& rival : rivals(chip + middle, chip + middle, rival_chip))
-    least = std::min(least, squared_distance(chip, middle, rival));
+  for (const Stretch& alternative : alternatives(chip + middle, chip + middle, alternative_chip))
+    least = std::min(least, squared_distance(chip, middle, alternative));
   if (bound >= factor * least) return true;
   if (end - begin < shortest_stretch) return false;
-  return clears(chip, begin, middle, rival_chip, least, factor) &&
-         clears(chip, middle, end, rival_chip, least, factor);
+  return clears(chip, begin, middle, alternative_chip, least, factor) &&
+         clears(chip, middle, end, alternative_chip, least, factor);
 }
 
 double ChipMargin::sampled_sigma(int per_chip, double stop_below_sigma) const {
@@ -198,7 +201,7 @@ double ChipMargin::proven_sigma() const {
 double ambiguity_margin_sigma(const ChipCode& code, const Camera& camera,
                               const OperatingPoint& point, double separation_periods) {
   code.validate();
-  require(code.measurements() <= most_chip_measurements, "measurements of ChipCode",
+  require(code.measurements() <= max_chip_measurements, "measurements of ChipCode",
           code.measurements(), "must be <= 16");
   require(separation_periods > 0.0 && separation_periods < 0.5, "separation_periods",
           separation_periods, "must be in (0, 1/2)");

@@ -10,7 +10,7 @@
 namespace tofsmith {
 
 /// Most measurements that codes on a chip clock may have.
-inline constexpr int most_chip_measurements = 16;
+inline constexpr int max_chip_measurements = 16;
 
 /// Whitened distances between the measurements of different depths of one code.
 class ChipMargin {
@@ -25,8 +25,8 @@ class ChipMargin {
   double sampled_sigma(int per_chip, double stop_below_sigma = 0.0) const;
 
  private:
-  using Values = std::array<double, most_chip_measurements>;
-  /// Part of a chip that holds rival depths.
+  using Values = std::array<double, max_chip_measurements>;
+  /// Part of a chip that holds depths to compare with.
   struct Stretch {
     int chip;
     double begin, end;
@@ -43,11 +43,11 @@ class ChipMargin {
   Values values_at(int chip, double place) const;
   Whitening whitening(const Values& variance) const;
   Values variance_at(int chip, double place) const;
-  Stretches rivals(double first, double last, int chip) const;
-  double squared_distance(int chip, double place, const Stretch& rival) const;
-  double lower_bound(int chip, double begin, double end, const Stretch& rival) const;
+  Stretches alternatives(double first, double last, int chip) const;
+  double squared_distance(int chip, double place, const Stretch& alternative) const;
+  double lower_bound(int chip, double begin, double end, const Stretch& alternative) const;
   double nearest(int chip, double place) const;
-  bool clears(int chip, double begin, double end, int rival_chip, double& least,
+  bool clears(int chip, double begin, double end, int alternative_chip, double& least,
               double factor) const;
 
   int chips_, measurements_;

@@ -11,7 +11,7 @@ namespace tofsmith {
 ///   sqrt(gamma), gamma = mean over z of [inverse Fisher matrix over (z, S, A)]_zz,
 /// with variances v_i = T_e (S chi_i + A kappa_i + dark) + constant. chi is linear within a chip;
 /// the mean over a chip is taken by Gauss-Legendre quadrature with four nodes. Infinite where depth
-/// cannot be told from signal and ambient light.
+/// cannot be separated from signal and ambient light.
 /// @throws std::invalid_argument if the code or the camera is invalid, or the camera has what the
 ///         metric leaves out: impulse responses, generators, contrast below 1, differences of taps,
 ///         exposures of different lengths

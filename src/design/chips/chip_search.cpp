@@ -40,9 +40,9 @@ class Annealing {
         cost_(cost(start, infinity)) {}
 
   void run(std::int64_t steps, ChipSearchCounts& counts, SharedProgress& progress) {
-    constexpr std::int64_t steps_told = 64;  // at a time
+    constexpr std::int64_t steps_reported = 64;  // at a time
     for (std::int64_t step = 0; step < steps; ++step) {
-      if (step % steps_told == 0) progress.add(steps_told);
+      if (step % steps_reported == 0) progress.add(steps_reported);
       const double share = static_cast<double>(step) / static_cast<double>(steps);
       const double temperature = hottest * std::pow(coldest / hottest, share);
       ChipCode changed = code_;
@@ -182,11 +182,11 @@ BestCodes anneal_chip_codes(const ChipJudge& judge, const std::vector<ChipCode>&
 
 /// Whether all codes can be tried, and how many about that is.
 bool can_be_exhaustive(const AssignmentRules& rules, const ChipSearchOptions& options) {
-  const bool is_enumerated = rules.taps >= 2 && rules.taps <= most_assigned_taps &&
+  const bool is_enumerated = rules.taps >= 2 && rules.taps <= max_assigned_taps &&
                              options.exposures <= 2 && (options.exposures == 2 || rules.taps >= 3);
   const double effort = options.exposures == 1 && rules.taps == 3 && rules.equal_duty ? 1.0 : 20.0;
   return is_enumerated &&
-         effort * exhaustive_size(rules, options.exposures) <= options.largest_exhaustive;
+         effort * exhaustive_size(rules, options.exposures) <= options.max_exhaustive;
 }
 
 ChipFinalist finalist_of(const ScoredCode& scored, const ChipJudge& judge) {
@@ -199,8 +199,8 @@ std::string proof_text(const ChipSearchCounts& counts, const AssignmentRules& ru
                        const ChipSearchOptions& options, bool is_found) {
   return fmt::format(
       "All codes of {} exposure{}, {} taps of {} duty and {} chips were tried: {:.0f} of {:.4g} "
-      "are "
-      "left after symmetry. {} by the metric among those that are not ambiguous and keep the "
+      "remain "
+      "after symmetry. {} by the metric among those that are not ambiguous and keep the "
       "margin.",
       options.exposures, options.exposures == 1 ? "" : "s", rules.taps,
       options.equal_duty ? "equal" : "any", rules.chips, counts.after_symmetry, counts.raw,
@@ -214,9 +214,9 @@ std::optional<BrokenRule> why_not_searchable(const Camera& camera, int exposures
     return broken("ChipSearchOptions::exposures", exposures, "must be in [1, 4]");
   if (auto reason = why_not_plain(camera)) return reason;
   const int taps = camera.sensor.taps, values = taps * exposures;
-  if (values < 3 || values > most_chip_measurements)
+  if (values < 3 || values > max_chip_measurements)
     return broken("exposures x sensor.taps", values,
-                  "must be in [3, 16]: signal, ambient light and depth are unknown");
+                  "must be in [3, 16]: there are three unknowns, signal, ambient light and depth");
   if (auto reason = why_no_chip_clock(camera)) return reason;
   if (taps > chips_of(camera))
     return broken("sensor.taps", taps, "must not exceed the chips of the clock");

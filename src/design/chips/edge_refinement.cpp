@@ -17,7 +17,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double duty_weight = 2.0;  // of (mean d - target's) beside the harmonics
 constexpr double fading_run = 2e-3;  // of the period; shorter runs fade away in the fit
-constexpr int most_rounds = 4;       // of fitting and dropping short runs
+constexpr int max_rounds = 4;        // of fitting and dropping short runs
 
 /// Fourier coefficients of a unit-level binary waveform by its switching times, and their
 /// derivatives: X[n] = sum_j s_j exp(-2 pi i n e_j) / (2 pi i n), s = +1 at rises, -1 at falls.
@@ -163,7 +163,7 @@ bool switches(const Waveform& waveform) {
 std::optional<WaveformPair> refine_edges(const PairModel& model, const WaveformPair& start) {
   if (!switches(start.modulation) || !switches(start.demodulation)) return std::nullopt;
   WaveformPair pair = start;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     HarmonicFit fit(model, pair);
     Eigen::VectorXd parameters = fit.start();
     Eigen::LevenbergMarquardt<HarmonicFit> solver(fit);

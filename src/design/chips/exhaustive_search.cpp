@@ -73,7 +73,7 @@ class FirstTapLister {
   }
 
   bool stays_least(const Motion& motion, int leading) {
-    std::array<ChipWord, most_assigned_taps> moved;
+    std::array<ChipWord, max_assigned_taps> moved;
     moved.fill(~ChipWord{0});  // behind all words
     std::size_t count = 0;
     for (int tap = 0; tap < rules_.taps; ++tap)

@@ -13,11 +13,11 @@
 namespace tofsmith {
 
 /// Most taps that assignments are enumerated for.
-inline constexpr int most_assigned_taps = 4;
+inline constexpr int max_assigned_taps = 4;
 
 /// What each chip of a period is given to: one of the taps, or none.
 struct TapAssignment {
-  std::array<ChipWord, most_assigned_taps> taps{};
+  std::array<ChipWord, max_assigned_taps> taps{};
   bool is_achiral = false;  ///< played backwards it is itself, but for a delay and the taps' order
 };
 

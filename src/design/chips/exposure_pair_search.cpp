@@ -19,7 +19,7 @@ constexpr std::int64_t firsts_at_once = 4;
 /// Light and taps of one exposure.
 struct Exposure {
   ChipWord light = 0;
-  std::array<ChipWord, most_assigned_taps> taps{};
+  std::array<ChipWord, max_assigned_taps> taps{};
   std::int32_t orbit = 0;  ///< exposures that a common delay or mirror image makes of each other
   bool is_first = false;   ///< the one of its orbit that stands for it
 };
@@ -28,7 +28,7 @@ struct Exposure {
 /// equal for exposures that measure the same.
 std::string functions_of(const Exposure& exposure, const AssignmentRules& rules, int shift,
                          bool is_mirror) {
-  std::array<std::string, most_assigned_taps> rows;
+  std::array<std::string, max_assigned_taps> rows;
   for (std::size_t tap = 0; tap < static_cast<std::size_t>(rules.taps); ++tap) {
     // How long the tap is open tells apart what ambient light does.
     rows[tap] += static_cast<char>(std::popcount(exposure.taps[tap]));

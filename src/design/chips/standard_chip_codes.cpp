@@ -118,11 +118,11 @@ std::vector<std::vector<ComparedCode>> compare_chip_codes(const std::vector<Stan
   const ProgressParts parts(progress, codes.size());
   for (std::size_t i = 0; i < codes.size(); ++i) {
     const CodeSet& code = codes[i].code;
-    Camera played = camera;
-    played.sensor.taps = code.taps();
-    played.samples = code.samples();
-    const DepthErrorReport report = evaluate(code, played, options, parts[i]);
-    const CramerRaoBound bound(ForwardModel(code, played), played);
+    Camera fitted = camera;
+    fitted.sensor.taps = code.taps();
+    fitted.samples = code.samples();
+    const DepthErrorReport report = evaluate(code, fitted, options, parts[i]);
+    const CramerRaoBound bound(ForwardModel(code, fitted), fitted);
     for (std::size_t p = 0; p < points.size(); ++p) {
       const Eigen::VectorXd sigma_m = bound.sigma_m(points[p]);
       table[p].push_back({.name = codes[i].name,

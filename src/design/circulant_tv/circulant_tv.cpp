@@ -55,7 +55,7 @@ void CirculantTvOptions::validate() const {
           "must be finite and > 0");
 }
 
-std::string_view to_string(CirculantTvMethod method) { return tv_method_words.of(method); }
+std::string_view name_of(CirculantTvMethod method) { return tv_method_words.of(method); }
 
 bool CirculantTvResult::is_usable() const {
   return termination == Termination::converged || certificate <= 1e-4;
@@ -63,7 +63,7 @@ bool CirculantTvResult::is_usable() const {
 
 std::string CirculantTvResult::brief() const {
   return fmt::format("{} by {}: objective {:.10g}, certificate {:.2g}, {} iterations, {} pieces",
-                     to_string(termination), to_string(method), objective, certificate, iterations,
+                     name_of(termination), name_of(method), objective, certificate, iterations,
                      pieces);
 }
 

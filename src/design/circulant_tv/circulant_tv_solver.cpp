@@ -166,10 +166,10 @@ void CirculantTvSolver::Workspace::update_scan() {
 void CirculantTvSolver::Workspace::make_moves(bool one_at_a_time) {
   double best = 0;
   for (const IntervalMove& move : scan.moves) best = std::min(best, move.slope);
-  const double least_slope = (one_at_a_time ? 1.0 : worthwhile_share) * best;
+  const double min_slope = (one_at_a_time ? 1.0 : worthwhile_share) * best;
   // From the last piece to the first, so that a split leaves the indices still to come alone.
   for (auto move = scan.moves.rbegin(); move != scan.moves.rend(); ++move)
-    if (move->slope <= least_slope) x.split(move->piece, move->first, move->last, move->direction);
+    if (move->slope <= min_slope) x.split(move->piece, move->first, move->last, move->direction);
   update_slopes();
 }
 

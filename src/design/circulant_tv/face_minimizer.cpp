@@ -120,7 +120,7 @@ void FaceMinimizer::solve_for_step(const PiecewiseConstant& x, BudgetState& budg
   solve(direction_);
   budget.multiplier = 0;
   if (budget.active) {
-    // [H l; l^T 0] [step; multiplier] = [-gradient; what is left of the budget], l the lengths
+    // [H l; l^T 0] [step; multiplier] = [-gradient; residual of the budget], l the lengths
     pull_.resize(count);
     for (int a = 0; a < count; ++a) pull_[a] = x[free_[a]].length;
     solve(pull_);

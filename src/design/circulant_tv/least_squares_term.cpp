@@ -13,7 +13,7 @@ namespace tofsmith {
 
 Eigen::VectorXd least_squares_within_bounds(const CirculantTvProblem& problem,
                                             const Eigen::VectorXd& start) {
-  constexpr int most_steps = 500;
+  constexpr int max_steps = 500;
   constexpr double still = 1e-7;  // largest move of a sample, in units of the upper bound
   const PeriodicTransform transform(problem.samples());
   Eigen::VectorXcd kernel, target, half;
@@ -26,7 +26,7 @@ Eigen::VectorXd least_squares_within_bounds(const CirculantTvProblem& problem,
   if (lipschitz <= 0.0) return x;
   Eigen::VectorXd ahead = x, gradient;
   double momentum = 1.0;
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < max_steps; ++step) {
     transform.forward(ahead, half);
     half = kernel.conjugate().cwiseProduct(kernel.cwiseProduct(half) - target);
     transform.inverse(half, gradient);

@@ -16,25 +16,25 @@ IntervalMove best_move(const PiecewiseConstant& x, int j, const double* sums, do
   const double left_edge = sign * piece.rise * weight;
   const double right_edge = -sign * x[x.next(j)].rise * weight;
   IntervalMove best{j, 0, 0, direction, 0};
-  double least_entry = left_edge - sign * sums[0];  // slope of the best left end so far
+  double min_entry = left_edge - sign * sums[0];  // slope of the best left end so far
   int entry = 0;
   double least = weight * 4;
   const int last = piece.length - 1;
   for (int k = 0; k < last; ++k) {
-    const double slope = sign * sums[k + 1] + least_entry;
+    const double slope = sign * sums[k + 1] + min_entry;
     if (slope < least) {
       least = slope;
       best.first = entry;
       best.last = k;
     }
     const double next_entry = weight - sign * sums[k + 1];
-    if (next_entry < least_entry) {
-      least_entry = next_entry;
+    if (next_entry < min_entry) {
+      min_entry = next_entry;
       entry = k + 1;
     }
   }
   best.slope = least + weight;
-  const double to_the_end = sign * sums[piece.length] + least_entry + right_edge;
+  const double to_the_end = sign * sums[piece.length] + min_entry + right_edge;
   if (to_the_end < best.slope) {
     best.slope = to_the_end;
     best.first = entry;

@@ -13,16 +13,16 @@ void PiecewiseConstant::make_constant(double value) {
 }
 
 void PiecewiseConstant::take_pieces_of(const Eigen::VectorXd& x, double upper_bound) {
-  const double least_jump = 1e-12 * upper_bound;
+  const double min_jump = 1e-12 * upper_bound;
   pieces_.clear();
   for (int n = 0; n < samples_; ++n) {
     const double jump = x[n] - x[n > 0 ? n - 1 : samples_ - 1];
-    if (std::abs(jump) <= least_jump) continue;
+    if (std::abs(jump) <= min_jump) continue;
     Piece piece{n, 0, x[n], jump > 0 ? 1 : -1, PieceState::free, 0};
-    if (piece.value <= least_jump) {
+    if (piece.value <= min_jump) {
       piece.value = 0;
       piece.state = PieceState::at_lower;
-    } else if (piece.value >= upper_bound - least_jump) {
+    } else if (piece.value >= upper_bound - min_jump) {
       piece.value = upper_bound;
       piece.state = PieceState::at_upper;
     }

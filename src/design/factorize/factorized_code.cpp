@@ -19,14 +19,14 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int fewest_exposures = 3, most_exposures = 6;  // of the Hamiltonian codes to aim at
+constexpr int min_exposures = 3, max_exposures = 6;  // of the Hamiltonian codes to aim at
 
 /// Numbers of exposures of the Hamiltonian codes to aim at.
 std::vector<int> factorizable_exposures(const Camera& camera, const DesignOptions& options) {
   std::vector<int> exposures = options.exposures;
   if (exposures.empty()) exposures = suggested_exposures(camera, DesignMethod::factorize);
   std::erase_if(exposures, [](int count) {  // the others are for other methods
-    return count < fewest_exposures || count > most_exposures;
+    return count < min_exposures || count > max_exposures;
   });
   return exposures;
 }
@@ -43,9 +43,10 @@ std::optional<BrokenRule> why_not_designable(const TargetSet& targets, const Cam
                   fmt::format("must equal the camera's samples = {}", camera.samples));
   const std::size_t values = targets.measurements.size() * camera.sensor.taps;
   if (values < 3 && camera.sensor.readout != Readout::difference)
-    return broken("number of correlation functions", targets.measurements.size(),
-                  fmt::format("must be >= {}: signal, ambient light and depth are unknown",
-                              camera.sensor.taps == 2 ? 2 : 3));
+    return broken(
+        "number of correlation functions", targets.measurements.size(),
+        fmt::format("must be >= {}: there are three unknowns, signal, ambient light and depth",
+                    camera.sensor.taps == 2 ? 2 : 3));
   const std::size_t listed = camera.exposure_s.each_s.size();
   if (listed != 0 && listed != targets.measurements.size())
     return broken("number of exposure_s", listed,

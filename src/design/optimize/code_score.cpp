@@ -11,7 +11,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr double least_error_bin = 1e-9;  // errors have logarithms
+constexpr double min_error_bin = 1e-9;  // errors have logarithms
 
 /// The same waveforms on the grid they are judged on.
 SampledCode on_grid_of(const SampledCamera& judge, const SampledCode& code) {
@@ -46,7 +46,7 @@ std::vector<TrialBatch> draw_batches(const DesignProblem& problem, int trials, b
     const LightLevel& level = most->levels[p];
     batches.push_back(draw_trials(DesignProblem::trials_of(level, trials), problem.measurements(),
                                   problem.operating, ends_matter, random, nullptr,
-                                  problem.later_of(level)));
+                                  problem.multipath_of(level)));
   }
   return batches;
 }
@@ -90,10 +90,9 @@ double CodeJudge::log_error(const SampledCode& code) const {
     double sum = 0.0;
     for (std::size_t p = 0; p < variant.levels.size(); ++p) {
       loss.decode(variant.levels[p].point, judging_[p], decoded_bin);
-      sum +=
-          variant.levels[p].weight *
-          std::log(std::max(least_error_bin, mean_error_bin(judging_[p], decoded_bin,
-                                                            code.samples(), problem_->linear())));
+      sum += variant.levels[p].weight *
+             std::log(std::max(min_error_bin, mean_error_bin(judging_[p], decoded_bin,
+                                                             code.samples(), problem_->linear())));
     }
     worst = std::max(worst, sum / variant.total_weight());
   }
@@ -116,7 +115,7 @@ int CodeJudge::best_rotation(const SampledCode& code) const {
                    std::min(decoded_bin[t], std::nextafter(samples, 0.0)));
       const std::vector<double> sums = errors.sums();
       for (std::size_t r = 0; r < sums.size(); ++r)
-        log_error[r] += variant.levels[p].weight * std::log(std::max(least_error_bin, sums[r])) /
+        log_error[r] += variant.levels[p].weight * std::log(std::max(min_error_bin, sums[r])) /
                         variant.total_weight();
     }
     for (std::size_t r = 0; r < worst.size(); ++r) worst[r] = std::max(worst[r], log_error[r]);

@@ -16,7 +16,7 @@ struct CodeScore {
   int rotation_bin = 0;        ///< at which the linear error is judged; 0 for the circular one
 };
 
-/// Judges codes by the error of a decoder that does not doubt, all of them on the same trials. For
+/// Judges codes by the error of the hard decoder, all of them on the same trials. For
 /// the linear error, one set of trials finds the best common rotation and another, denser at the
 /// ends of the range, judges the code there.
 class CodeJudge {

@@ -56,9 +56,9 @@ void DepthErrorLoss::read(const OperatingPoint& point, const TrialBatch& batch, 
   const DepthTrial& truth = batch.trials[trial];
   const double signal_e_per_s = truth.albedo * point.signal_e_per_s;
   reading_.places = {place_at(truth.depth_periods, signal_e_per_s)};
-  if (truth.later_ratio > 0.0)
+  if (truth.multipath_ratio > 0.0)
     reading_.places.push_back(place_at(wrap(truth.depth_periods + truth.later_delay_periods, 1.0),
-                                       truth.later_ratio * signal_e_per_s));
+                                       truth.multipath_ratio * signal_e_per_s));
   const double* normals = batch.normals_of(trial);
   const Eigen::MatrixXd& shot = table_.shot();
   const Eigen::VectorXd& shot_ambient = table_.shot_ambient();

@@ -12,7 +12,7 @@
 namespace tofsmith {
 
 /// Depth error of a code on a grid, and its gradient by the code's correlation functions: noise is
-/// drawn, y_i = mu_i + sigma_i e_i, and decoded by a decoder that doubts, so that the error is a
+/// drawn, y_i = mu_i + sigma_i e_i, and decoded by a soft decoder, so that the error is a
 /// smooth function. The noise itself depends on the code, and the gradient knows.
 ///   mu_i = T_i (S chi_i(z) + A kappa_i),  sigma_i^2 = T_i (S shot_i(z) + A shot_kappa_i) +
 ///   constant
@@ -26,13 +26,13 @@ class DepthErrorLoss {
   /// Variance of a measurement [e^2], averaged over depth and measurements.
   double mean_variance_e2(const OperatingPoint& point) const;
 
-  /// Mean error [bin] of a decoder that doubts, over the trials.
+  /// Mean error [bin] of the soft decoder, over the trials.
   /// @param sharpness  of its decisions, per unit of log likelihood, over the mean variance [1/e^2]
   double soft_error(const OperatingPoint& point, const TrialBatch& batch, double sharpness);
   /// The same; adds `weight` times the gradient at fixed sharpness.
   double soft_error(const OperatingPoint& point, const TrialBatch& batch, double sharpness,
                     double weight);
-  /// Decoded positions [bin], one per trial, of a decoder that does not doubt.
+  /// Decoded positions [bin], one per trial, of the hard decoder.
   void decode(const OperatingPoint& point, const TrialBatch& batch,
               std::vector<double>& decoded_bin);
 

@@ -16,8 +16,8 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int fewest_samples = 96;  // of the correlation functions, however long the cells
-constexpr int fewest_cells = 4;
+constexpr int min_samples = 96;  // of the correlation functions, however long the cells
+constexpr int min_cells = 4;
 
 /// Lengths whose transform is fast.
 bool factors_are_small(int count) {
@@ -32,15 +32,15 @@ double usable_peak(int cells, double peak_factor) {
 }
 
 int cells_within(int most, double peak_factor) {
-  const auto largest = [&](double least_usable) {
-    for (int cells = most; cells >= fewest_cells && 5 * cells >= 4 * most; --cells)
+  const auto largest = [&](double min_usable) {
+    for (int cells = most; cells >= min_cells && 5 * cells >= 4 * most; --cells)
       if (cells % 2 == 0 && factors_are_small(cells) &&
-          usable_peak(cells, peak_factor) >= least_usable)
+          usable_peak(cells, peak_factor) >= min_usable)
         return cells;
     return 0;
   };
-  for (const double least_usable : {0.98, 0.9, 0.0})
-    if (const int cells = largest(least_usable)) return cells;
+  for (const double min_usable : {0.98, 0.9, 0.0})
+    if (const int cells = largest(min_usable)) return cells;
   return most;
 }
 
@@ -63,8 +63,8 @@ std::vector<double> in_between(std::vector<double> levels, int count, double flo
 /// How many pulses of the shortest length the period holds.
 int runs_per_period(double shortest) { return static_cast<int>(std::floor(1.0 / shortest + 1e-9)); }
 
-/// Whether the means of a good code suffice to tell two returns: two strengths and two depths, and
-/// ambient light where it is seen, and one more.
+/// Whether the means of a good code suffice to separate two returns: two strengths and two depths,
+/// and ambient light where it is seen, and one more.
 bool may_tell_two_returns(const Camera& camera, int exposures) {
   const int taps = camera.sensor.taps;
   if (camera.sensor.readout == Readout::difference) return exposures >= 5;
@@ -74,9 +74,9 @@ bool may_tell_two_returns(const Camera& camera, int exposures) {
 }
 
 /// Second returns on a grid that is coarse enough to try all pairs of bins.
-LaterTrials decoded_as_two(LaterTrials later, int samples) {
-  constexpr int most_bins = 160;
-  int step = (samples + most_bins - 1) / most_bins;
+MultipathTrials decoded_as_two(MultipathTrials later, int samples) {
+  constexpr int max_bins = 160;
+  int step = (samples + max_bins - 1) / max_bins;
   while (samples % step != 0) ++step;
   const int bins = samples / step;
   const auto bin_of = [&](double delay_m) {
@@ -89,7 +89,8 @@ LaterTrials decoded_as_two(LaterTrials later, int samples) {
 }
 
 /// The camera's points, and the same with second returns where those matter.
-std::vector<LightLevel> levels_of(const Camera& camera, const std::optional<SecondReturns>& later,
+std::vector<LightLevel> levels_of(const Camera& camera,
+                                  const std::optional<OperatingMultipath>& later,
                                   double two_return_weight) {
   const std::vector<OperatingPoint> points = training_points(camera);
   std::vector<LightLevel> levels;
@@ -122,15 +123,15 @@ std::optional<BrokenRule> why_not_optimizable(const Camera& camera, int exposure
   if (!camera.band_limited() && !camera.sensor.shortest_pulse_s)
     return broken(
         "sensor.shortest_pulse_s", "none",
-        fmt::format("is needed to optimize for a camera without band limit, where ever shorter "
-                    "pulses are ever better; try {:.2g}",
+        fmt::format("is needed to optimize for a camera without band limit, on which shorter "
+                    "pulses are always better; try {:.2g}",
                     suggested_shortest_pulse_s(camera)));
   const std::size_t listed = camera.exposure_s.each_s.size();
   if (listed != 0 && listed != static_cast<std::size_t>(exposures))
     return broken("number of exposure_s", listed,
                   fmt::format("must equal the {} exposures", exposures));
   const double shortest = shortest_run_periods(camera);
-  if (shortest > 0.0 && runs_per_period(shortest) < fewest_cells)
+  if (shortest > 0.0 && runs_per_period(shortest) < min_cells)
     return broken("sensor.shortest_pulse_s", *camera.sensor.shortest_pulse_s,
                   "must fit into the period four times");
   return std::nullopt;
@@ -145,7 +146,7 @@ WaveformSpace waveform_space(const Camera& camera, int exposures, int samples) {
   const int most = shortest > 0.0 ? std::min(samples, runs_per_period(shortest)) : samples;
   WaveformSpace space;
   space.cells = cells_within(most, camera.light.peak_factor);
-  space.repeat = (std::min(samples, fewest_samples) + space.cells - 1) / space.cells;
+  space.repeat = (std::min(samples, min_samples) + space.cells - 1) / space.cells;
   space.exposures = exposures;
   space.taps = camera.sensor.taps;
   space.drain = space.taps == 1 || (space.taps > 2 && camera.sensor.drain);
@@ -192,10 +193,10 @@ DesignProblem make_design_problem(std::span<const Camera> variants, int exposure
   problem.binary_modulation = camera.light.binary;
   problem.binary_demodulation = camera.sensor.binary;
   if (const auto& later = camera.operating.multipath)
-    problem.later = LaterTrials{*later, camera.range_m(), {}};
+    problem.later = MultipathTrials{*later, camera.range_m(), {}};
   if (!may_tell_two_returns(camera, exposures)) two_return_weight = 0.0;
   if (problem.later && two_return_weight > 0.0)
-    problem.later_as_two = decoded_as_two(*problem.later, problem.space.samples());
+    problem.multipath_as_two = decoded_as_two(*problem.later, problem.space.samples());
   for (const Camera& variant : variants) {
     variant.validate();
     require(variant.sensor.taps == camera.sensor.taps &&

@@ -42,20 +42,20 @@ struct CameraVariant {
 /// variants of a camera; of each, the weighted geometric mean over its light levels.
 struct DesignProblem {
   WaveformSpace space;
-  std::vector<CameraVariant> variants;      ///< the first is the camera itself; never empty
-  OperatingRange operating;                 ///< kind of error and albedo
-  double shortest_run_periods = 0.0;        ///< of binary waveforms
-  std::optional<LaterTrials> later;         ///< second returns of the levels that have them
-  std::optional<LaterTrials> later_as_two;  ///< the same, decoded as two returns
+  std::vector<CameraVariant> variants;              ///< the first is the camera itself; never empty
+  OperatingRange operating;                         ///< kind of error and albedo
+  double shortest_run_periods = 0.0;                ///< of binary waveforms
+  std::optional<MultipathTrials> later;             ///< second returns of the levels that have them
+  std::optional<MultipathTrials> multipath_as_two;  ///< the same, decoded as two returns
   bool binary_modulation = true, binary_demodulation = true;
 
   /// Second returns of a level's trials; null: none.
-  const LaterTrials* later_of(const LightLevel& level) const {
+  const MultipathTrials* multipath_of(const LightLevel& level) const {
     if (level.returns == TrialReturns::one) return nullptr;
-    return level.returns == TrialReturns::two ? &*later_as_two : &*later;
+    return level.returns == TrialReturns::two ? &*multipath_as_two : &*later;
   }
   int measurements() const { return variants.front().camera.measurements(); }
-  /// How many trials a level takes where one of single returns takes so many: pairs are dear.
+  /// How many trials a level takes where one of single returns takes so many: pairs are expensive.
   static int trials_of(const LightLevel& level, int trials) {
     constexpr int fewest = 8;
     return std::max(fewest, level.returns == TrialReturns::two ? trials / 4 : trials);

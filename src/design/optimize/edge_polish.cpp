@@ -126,19 +126,19 @@ EdgeGradient pull_back_to_edges(const WaveformSpace& space, const SwitchedCode& 
 SwitchedCode polish_edges(const DesignProblem& problem, SwitchedCode code, int steps,
                           int trials_per_step, std::uint64_t seed, std::uint64_t work_item,
                           SharedProgress* progress) {
-  constexpr double least_run = 1e-3;   // periods: edges do not pass through each other
+  constexpr double min_run = 1e-3;     // periods: edges do not pass through each other
   constexpr double first_rate = 0.15;  // cells per step
   const WaveformSpace& space = problem.space;
-  const double shortest = std::max(least_run, problem.shortest_run_periods);
+  const double shortest = std::max(min_run, problem.shortest_run_periods);
   if (space.equal_duties && code.light.empty()) return code;
-  constexpr double doubt = 3.0;
+  constexpr double decision_sharpness = 3.0;
   StochasticGradient gradient(problem, trials_per_step, RandomStream(seed, work_item, 0xffffffffu));
   std::vector<Adam> light(code.light.size()), gates(code.gates.size());
   for (int step = 0; step < steps; ++step) {
     if (progress) progress->add();
     const double done = static_cast<double>(step) / steps;
     RandomStream random(seed, work_item, static_cast<std::uint32_t>(step));
-    const SampledCode by_samples = gradient.at(sampled_on(space, code), doubt, random);
+    const SampledCode by_samples = gradient.at(sampled_on(space, code), decision_sharpness, random);
     const EdgeGradient by_edges = pull_back_to_edges(space, code, by_samples);
     const double rate = first_rate / space.cells * std::max(0.03, 1.0 - done);
     for (std::size_t e = 0; e < light.size(); ++e)

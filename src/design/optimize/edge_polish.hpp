@@ -15,7 +15,7 @@ namespace tofsmith {
 /// the problem's shortest, and no pulse exceeds the peak. Gates of equal duties stay where they
 /// are.
 /// @param steps, trials_per_step  as in DescentSchedule
-/// @param progress  told of every step
+/// @param progress called at every step
 SwitchedCode polish_edges(const DesignProblem& problem, SwitchedCode code, int steps,
                           int trials_per_step, std::uint64_t seed, std::uint64_t work_item,
                           SharedProgress* progress = nullptr);

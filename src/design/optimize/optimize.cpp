@@ -26,17 +26,17 @@ namespace {
 
 constexpr std::uint64_t polish_key = 103;
 
-/// Whether two returns can be told apart, well or badly.
+/// Whether two returns can be separated, well or badly.
 bool tells_two_returns(const CodeSet& code, const Camera& camera) {
   return !TwoReturnDecoder::why_not_decodable(
       make_decoding_table(ForwardModel(code, camera), camera));
 }
 
-/// Which of the pool are made playable: the best and, on cameras that reckon with second returns,
+/// Which of the pool are made playable: the best and, on cameras with operating multipath,
 /// the best few of the others that can be decoded as two returns.
-std::vector<PoolEntry> entries_to_play(const DesignProblem& problem, const OptimizePool& pool,
-                                       const Camera& camera, const OptimizeOptions& options,
-                                       const Sharpness& sharpness) {
+std::vector<PoolEntry> playable_entries(const DesignProblem& problem, const OptimizePool& pool,
+                                        const Camera& camera, const OptimizeOptions& options,
+                                        const Sharpness& sharpness) {
   constexpr std::size_t most_others = 3;
   const std::vector<PoolEntry>& all = pool.entries();
   const std::size_t best = std::min(static_cast<std::size_t>(options.refined), all.size());
@@ -67,7 +67,8 @@ std::vector<Candidate> playable_candidates(const DesignProblem& problem, Optimiz
   Sharpness sharpness{6.0, 8.0};
   if (!problem.binary_modulation) sharpness.modulation = 1.0;
   if (!problem.binary_demodulation) sharpness.demodulation = 1.0;
-  const std::vector<PoolEntry> entries = entries_to_play(problem, pool, camera, options, sharpness);
+  const std::vector<PoolEntry> entries =
+      playable_entries(problem, pool, camera, options, sharpness);
   const auto count = std::ssize(entries);
   std::vector<SwitchedCode> codes(2 * static_cast<std::size_t>(count));
   SharedProgress shared(progress, static_cast<double>(count) * options.polish_steps, "edges");

@@ -37,7 +37,7 @@ void rotate_gates(const WaveformSpace& space, int exposure, int cells,
 enum Phase : std::uint64_t { judging = 1, starting, hopping, refining, drawing_starts };
 constexpr std::size_t together = 10;  // descents before the pool is sorted
 constexpr std::size_t hops_together = 5;
-constexpr std::size_t largest_pool = 24;
+constexpr std::size_t max_pool = 24;
 constexpr double refinement_softness = 1.5;
 
 std::uint64_t work_item(std::uint64_t phase, std::size_t item) {
@@ -84,12 +84,13 @@ WaveformParameters descend(const DesignProblem& problem, WaveformParameters para
     if (progress) progress->add();
     const double done = static_cast<double>(step) / schedule.steps;
     const Sharpness sharpness = sharpness_at(schedule, done);
-    const double doubt =
-        schedule.doubt_begin * std::pow(schedule.doubt_end / schedule.doubt_begin, done);
+    const double decision_sharpness =
+        schedule.decision_sharpness_begin *
+        std::pow(schedule.decision_sharpness_end / schedule.decision_sharpness_begin, done);
     RandomStream random(seed, work_item, static_cast<std::uint32_t>(step));
     const SampledCode code = render(problem.space, parameters, sharpness);
     const WaveformParameters gradient =
-        pull_back(problem.space, code, sharpness, objective.at(code, doubt, random));
+        pull_back(problem.space, code, sharpness, objective.at(code, decision_sharpness, random));
     // Sharper waveforms move further with the same parameters.
     const double rate = schedule.rate * (done < 0.7 ? 1.0 : std::max(0.05, (1.0 - done) / 0.3));
     modulation.step(parameters.modulation, gradient.modulation,
@@ -182,7 +183,7 @@ void OptimizePool::keep(std::vector<PoolEntry> entries) {
   std::stable_sort(entries_.begin(), entries_.end(), [](const PoolEntry& a, const PoolEntry& b) {
     return a.score.log_error_bin < b.score.log_error_bin;
   });
-  if (entries_.size() > largest_pool) entries_.resize(largest_pool);
+  if (entries_.size() > max_pool) entries_.resize(max_pool);
 }
 
 void OptimizePool::run_starts(std::span<const CodeSet> also, const Progress& progress) {

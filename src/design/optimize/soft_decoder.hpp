@@ -6,7 +6,7 @@
 
 namespace tofsmith {
 
-/// How a decoder that doubts is asked: chord j of the curve is chosen with probability
+/// How the soft decoder decides: chord j of the curve is chosen with probability
 ///   exp(sharpness S_j) / sum,  S_j = 1/2 max(<y, p>, 0)^2 / |p|^2 at the best point of the chord.
 struct SoftQuestion {
   double true_bin = 0.0;

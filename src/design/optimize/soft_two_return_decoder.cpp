@@ -22,8 +22,8 @@ using Pairs = SoftTwoReturnDecoder::Pairs;
 
 /// Strengths and scores of all pairs; scores are -1 in the padding. @return the largest
 float score_all_pairs(Pairs& pairs) {
-  constexpr float least_square = 1e-10f;      // of a pair whose points cancel
-  constexpr float least_determinant = 1e-6f;  // relative: nearer pairs are one return
+  constexpr float least_square = 1e-10f;    // of a pair whose points cancel
+  constexpr float min_determinant = 1e-6f;  // relative: nearer pairs are one return
   const Floats d;
   const int lanes = lanes_of(d);
   const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
@@ -41,7 +41,7 @@ float score_all_pairs(Pairs& pairs) {
       const auto square = hn::Mul(q11, q22);
       const auto inverse =
           hn::Div(one, hn::Max(hn::NegMulAdd(q12, q12, square),
-                               hn::MulAdd(hn::Set(d, least_determinant), square,
+                               hn::MulAdd(hn::Set(d, min_determinant), square,
                                           hn::Set(d, least_square * least_square))));
       const auto free1 = hn::Mul(inverse, hn::NegMulAdd(q12, b2, hn::Mul(q22, b1)));
       const auto free2 = hn::Mul(inverse, hn::NegMulAdd(q12, b1, hn::Mul(q11, b2)));

@@ -41,7 +41,8 @@ void StochasticGradient::add(std::size_t variant, std::size_t point, double erro
   average = average > 0.0 ? 0.9 * average + 0.1 * error : error;
 }
 
-SampledCode StochasticGradient::at(const SampledCode& code, double doubt, RandomStream& random) {
+SampledCode StochasticGradient::at(const SampledCode& code, double decision_sharpness,
+                                   RandomStream& random) {
   SampledCode gradient{Eigen::MatrixXd::Zero(code.modulation.rows(), code.modulation.cols()),
                        Eigen::MatrixXd::Zero(code.demodulation.rows(), code.demodulation.cols())};
   for (std::size_t v = 0; v < problem_->variants.size(); ++v) {
@@ -54,8 +55,8 @@ SampledCode StochasticGradient::at(const SampledCode& code, double doubt, Random
       const LightLevel& level = variant.levels[p];
       const TrialBatch batch = draw_trials(
           DesignProblem::trials_of(level, trials), variant.camera.measurements(),
-          problem_->operating, problem_->linear(), random, &noise_, problem_->later_of(level));
-      const double sharpness = doubt / loss.mean_variance_e2(level.point);
+          problem_->operating, problem_->linear(), random, &noise_, problem_->multipath_of(level));
+      const double sharpness = decision_sharpness / loss.mean_variance_e2(level.point);
       if (average_error_[v][p] == 0.0)
         add(v, p, std::max(1e-9, loss.soft_error(level.point, batch, sharpness)));
       add(v, p, std::max(1e-9, loss.soft_error(level.point, batch, sharpness, weight(v, p))));

@@ -17,8 +17,8 @@ class StochasticGradient {
   /// @param random  of the noise that is kept in store
   StochasticGradient(const DesignProblem& problem, int trials, RandomStream random);
 
-  /// @param doubt  sharpness of the decoder's decisions per log likelihood
-  SampledCode at(const SampledCode& code, double doubt, RandomStream& random);
+  /// @param decision_sharpness  sharpness of the decoder's decisions per log likelihood
+  SampledCode at(const SampledCode& code, double decision_sharpness, RandomStream& random);
 
  private:
   double mean_log(std::size_t variant) const;

@@ -52,7 +52,8 @@ std::vector<double> NoiseStore::window(std::size_t count, RandomStream& random) 
 }
 
 TrialBatch draw_trials(int count, int measurements, const OperatingRange& range, bool ends_matter,
-                       RandomStream& random, const NoiseStore* store, const LaterTrials* later) {
+                       RandomStream& random, const NoiseStore* store,
+                       const MultipathTrials* later) {
   TrialBatch batch;
   batch.measurements = measurements;
   if (later) batch.two_returns = later->decoded_as_two;
@@ -69,7 +70,7 @@ TrialBatch draw_trials(int count, int measurements, const OperatingRange& range,
     if (ends_matter) trial.weight = 1.0 / mixture_density(trial.depth_periods);
     trial.albedo = range.uniform_albedo ? random.uniform() : range.albedo;
     if (later) {
-      trial.later_ratio = later->returns.ratio_at(random.uniform());
+      trial.multipath_ratio = later->returns.ratio_at(random.uniform());
       trial.later_delay_periods = later->returns.delay_at_m(random.uniform()) / later->range_m;
       if (later->decoded_as_two) move_to(*later->decoded_as_two, trial);
     }

@@ -16,7 +16,7 @@ struct DepthTrial {
   double depth_periods = 0.0;        ///< in [0, 1)
   double weight = 1.0;               ///< uniform density over the density it was drawn from
   double albedo = 1.0;               ///< scales the signal
-  double later_ratio = 0.0;          ///< of a second return over the direct one
+  double multipath_ratio = 0.0;      ///< of a second return over the direct one
   double later_delay_periods = 0.0;  ///< behind the direct return, in [0, 1)
 };
 
@@ -52,8 +52,8 @@ struct TrialBatch {
 };
 
 /// Second returns of trials, with delays in periods.
-struct LaterTrials {
-  SecondReturns returns;
+struct MultipathTrials {
+  OperatingMultipath returns;
   double range_m = 1.0;
   std::optional<TwoReturnGrid> decoded_as_two;  ///< depths and delays lie on this grid then
 };
@@ -65,6 +65,6 @@ struct LaterTrials {
 /// @param later  every trial has such a second return; null: none
 TrialBatch draw_trials(int count, int measurements, const OperatingRange& range, bool ends_matter,
                        RandomStream& random, const NoiseStore* store = nullptr,
-                       const LaterTrials* later = nullptr);
+                       const MultipathTrials* later = nullptr);
 
 }  // namespace tofsmith

@@ -18,11 +18,11 @@
 namespace tofsmith {
 namespace {
 
-constexpr Eigen::Index most_samples = 65536, most_measurements = 64;
+constexpr Eigen::Index max_samples = 65536, max_measurements = 64;
 
 bool can_be_table(Eigen::Index samples, Eigen::Index measurements) {
-  return samples >= fewest_samples && samples <= most_samples && measurements >= 1 &&
-         measurements <= most_measurements;
+  return samples >= min_samples && samples <= max_samples && measurements >= 1 &&
+         measurements <= max_measurements;
 }
 
 /// The matrix as (N, K).
@@ -34,8 +34,8 @@ void turn(Eigen::MatrixXd& matrix, const std::string& place, std::optional<Table
   if (axes ? !(told_lying ? lying : upright) : !(upright || lying))
     throw IoError(place, fmt::format("found the shape ({}, {}); expected {} with N in [{}, {}] and "
                                      "K at most {}",
-                                     rows, columns, told_lying ? "(K, N)" : "(N, K)",
-                                     fewest_samples, most_samples, most_measurements));
+                                     rows, columns, told_lying ? "(K, N)" : "(N, K)", min_samples,
+                                     max_samples, max_measurements));
   if (!axes && upright && lying && rows <= columns)
     throw IoError(place, fmt::format("found the shape ({}, {}), which could be (N, K) or (K, N); "
                                      "expected the axes, --table-axes nk or kn",
@@ -67,10 +67,10 @@ void drop_repeated_end(Eigen::MatrixXd& matrix, const std::string& place,
                     place, last + 1));
     return;
   }
-  if (last < fewest_samples)
+  if (last < min_samples)
     throw IoError(place, fmt::format("found {} samples and a repeated end point; expected at least "
                                      "{} samples of the period",
-                                     last, fewest_samples));
+                                     last, min_samples));
   matrix.conservativeResize(last, Eigen::NoChange);
   notes.push_back(
       fmt::format("{}: its last sample repeats the first and was dropped: N = {}, which makes "
@@ -128,9 +128,9 @@ constexpr EnumWords<TableAxes, 2> axes_words("TableAxes", "axes of the table", "
 
 Eigen::MatrixXd read_correlation_functions(const std::filesystem::path& path) {
   Eigen::MatrixXd functions = correlation_matrix_of(path);
-  if (functions.rows() < fewest_samples)
+  if (functions.rows() < min_samples)
     throw IoError(path.string(), fmt::format("found {} samples of the period; expected at least {}",
-                                             functions.rows(), fewest_samples));
+                                             functions.rows(), min_samples));
   return functions;
 }
 

@@ -233,8 +233,7 @@ DesignRecord DesignDirectory::read() const {
     if (const auto robustness = entry.optional_member("robustness"))
       candidate.robustness = fields_from_json<RobustnessReport>(*robustness);
     if (record.camera.operating.multipath)
-      candidate.second_returns =
-          fields_from_json<SecondReturnReport>(entry.member("second_returns"));
+      candidate.multipath = fields_from_json<OperatingMultipathReport>(entry.member("multipath"));
     if (name == best) result.best = result.candidates.size();
     result.candidates.push_back(std::move(candidate));
   }

@@ -102,7 +102,7 @@ void visit_lens(Table& table, Field<Table, Lens>& lens) {
 }
 
 template <typename Table>
-void visit_second_returns(Table& table, Field<Table, SecondReturns>& returns) {
+void visit_operating_multipath(Table& table, Field<Table, OperatingMultipath>& returns) {
   table.value("ratio", returns.ratio);
   table.value("delay_m", returns.delay_m);
   table.value("weight", returns.weight);
@@ -114,7 +114,7 @@ void visit_operating(Table& table, Field<Table, OperatingRange>& range) {
   table.value("ambient_e_per_s", range.ambient_e_per_s);
   table.choice("error", range.error, Choices<DepthErrorKind>(depth_errors));
   table.number_or_word("albedo", range.albedo, "uniform", range.uniform_albedo);
-  table.table("multipath", range.multipath, visit_second_returns<Table>);
+  table.table("multipath", range.multipath, visit_operating_multipath<Table>);
 }
 
 template <typename Table>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/io/result_document.hpp"
 
-#include "io/documents/camera_json.hpp"
+#include "io/documents/camera_document.hpp"
 #include "io/text/field_json.hpp"
 #include "tofsmith/version.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "io/documents/camera_json.hpp"
+#include "io/documents/camera_document.hpp"
 #include "io/documents/shared/result_json.hpp"
 #include "io/text/field_json.hpp"
 #include "tofsmith/core/units.hpp"
@@ -127,7 +127,7 @@ Json design_json(const Camera& camera, const DesignResult& result, const DesignO
       entry["account"] = candidate.search->account;
     }
     if (candidate.robustness) entry["robustness"] = robustness_json(*candidate.robustness);
-    if (candidate.second_returns) entry["second_returns"] = fields_json(*candidate.second_returns);
+    if (candidate.multipath) entry["multipath"] = fields_json(*candidate.multipath);
     const Estimate gain = gain_over(result, candidate, camera.operating.error);
     entry["times_best"] = {{"ratio", gain.value}, {"ratio_se", gain.standard_error}};
     document["codes"].push_back(std::move(entry));
@@ -145,7 +145,7 @@ std::string evaluation_document(const Camera& camera, std::span<const EvaluatedC
     document["unwrap_weights"] = name_of(options.unwrap_weights);
   if (options.target_standard_error > 0.0) {
     document["target_standard_error"] = options.target_standard_error;
-    document["most_trials"] = options.most_trials;
+    document["max_trials"] = options.max_trials;
   }
   document["codes"] = Json::array();
   for (const EvaluatedCode& code : codes) {

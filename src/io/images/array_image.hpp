@@ -7,7 +7,7 @@
 
 #include "io/images/exr.hpp"
 #include "io/images/pfm.hpp"
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/io/npy.hpp"
 
 namespace tofsmith {

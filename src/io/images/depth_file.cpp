@@ -16,7 +16,7 @@ namespace tofsmith {
 namespace {
 
 constexpr double m_per_mm = 1e-3;
-constexpr int largest_png_mm = 65535;
+constexpr int max_png_mm = 65535;
 
 std::string depth_extension(const std::filesystem::path& path) {
   return known_extension(path, {".npy", ".npz", ".exr", ".pfm", ".png"});
@@ -39,12 +39,12 @@ PngImage png_from_depth(const Image<float>& depth_m, const std::string& file) {
   for (std::size_t i = 0; i < depth_m.size(); ++i) {
     const double mm = std::nearbyint(static_cast<double>(depth_m.pixels[i]) / m_per_mm);
     const bool returned = std::isfinite(mm);
-    if (returned && (mm < 0.0 || mm > largest_png_mm))
+    if (returned && (mm < 0.0 || mm > max_png_mm))
       throw IoError(file,
                     fmt::format("row {}, column {}: found a depth of {} m; expected 0 .. {} m, "
                                 "all that 16 bits of millimetres hold (write .npy, .exr or .pfm)",
                                 i / depth_m.width, i % depth_m.width, depth_m.pixels[i],
-                                largest_png_mm * m_per_mm));
+                                max_png_mm * m_per_mm));
     png.values.push_back(returned ? static_cast<std::uint16_t>(mm) : std::uint16_t{0});
   }
   return png;

@@ -102,9 +102,9 @@ void check_tile_count(const Layout& layout, std::size_t file_bytes, const ByteCu
 /// A flat image can be packed almost without end, so a bound on the ratio alone would refuse small
 /// ones; the ratio is what a constant image reaches in large DWA blocks.
 void check_unpacked_size(const Layout& layout, std::size_t file_bytes, const ByteCursor& cursor) {
-  constexpr std::uint64_t harmless_bytes = std::uint64_t{1} << 26, largest_ratio = 65536;
+  constexpr std::uint64_t harmless_bytes = std::uint64_t{1} << 26, max_ratio = 65536;
   const std::uint64_t unpacked = layout.channels * layout.height * layout.width * sizeof(float);
-  if (unpacked > harmless_bytes && unpacked / largest_ratio > file_bytes)
+  if (unpacked > harmless_bytes && unpacked / max_ratio > file_bytes)
     cursor.fail(
         fmt::format("found {} channels of {} x {} pixels; expected at most what a file of "
                     "{} bytes can unpack to",

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 
 namespace tofsmith {

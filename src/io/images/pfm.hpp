@@ -17,7 +17,8 @@ struct PfmImage {
   int height = 0;
   int width = 0;
   int channels = 1;  ///< 1 grey, 3 RGB
-  /// Size of the scale in the header. Programs disagree on its meaning: it is told, not applied.
+  /// Size of the scale in the header. Programs disagree on its meaning: it is reported, not
+  /// applied.
   double scale = 1.0;
   std::vector<float> values;
 };

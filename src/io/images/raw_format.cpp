@@ -12,9 +12,9 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int most_pixels = 1 << 16;  // of a side, as of every image
-constexpr int most_raw_measurements = 256;
-constexpr std::uint64_t most_gap_bytes = std::uint64_t{1} << 30;
+constexpr int max_pixels = 1 << 16;  // of a side, as of every image
+constexpr int max_raw_measurements = 256;
+constexpr std::uint64_t max_gap_bytes = std::uint64_t{1} << 30;
 
 int container_of(const RawFormat& format) {
   if (format.container_bits > 0) return format.container_bits;
@@ -110,18 +110,18 @@ std::uint64_t RawFormat::frame_bytes() const {
 }
 
 void RawFormat::validate() const {
-  require(width >= 1 && width <= most_pixels, "width", width,
-          fmt::format("must be in [1, {}]", most_pixels));
-  require(height >= 1 && height <= most_pixels, "height", height,
-          fmt::format("must be in [1, {}]", most_pixels));
-  require(measurements >= 1 && measurements <= most_raw_measurements, "measurements", measurements,
-          fmt::format("must be in [1, {}]", most_raw_measurements));
+  require(width >= 1 && width <= max_pixels, "width", width,
+          fmt::format("must be in [1, {}]", max_pixels));
+  require(height >= 1 && height <= max_pixels, "height", height,
+          fmt::format("must be in [1, {}]", max_pixels));
+  require(measurements >= 1 && measurements <= max_raw_measurements, "measurements", measurements,
+          fmt::format("must be in [1, {}]", max_raw_measurements));
   require(frames >= 0, "frames", frames, "must be >= 0 (0: as many as the file holds)");
   for (const auto& [field, value] :
        {std::pair{"header_bytes", header_bytes},
         std::pair{"frame_header_bytes", frame_header_bytes},
         std::pair{"image_header_bytes", image_header_bytes}, std::pair{"row_bytes", row_bytes}})
-    require(value <= most_gap_bytes, field, value, fmt::format("must be <= {}", most_gap_bytes));
+    require(value <= max_gap_bytes, field, value, fmt::format("must be <= {}", max_gap_bytes));
   validate_numbers(*this);
   validate_order(*this);
   if (!rows_start_bytes) {

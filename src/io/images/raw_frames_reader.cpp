@@ -23,12 +23,12 @@ namespace {
 /// Unpacking, or turning axes round, takes a second copy for a while.
 void check_memory(std::uint64_t bytes, const RawReadOptions& options, const std::string& file,
                   std::string_view what) {
-  if (bytes <= options.largest_in_memory / 2) return;
+  if (bytes <= options.max_in_memory / 2) return;
   throw IoError(file, fmt::format("{} cannot be read in parts and would take {:.3g} MB of memory; "
                                   "expected at most {:.3g} MB (save it as .npy in C order; "
                                   "--memory-mb allows more)",
                                   what, 2e-6 * static_cast<double>(bytes),
-                                  1e-6 * static_cast<double>(options.largest_in_memory)));
+                                  1e-6 * static_cast<double>(options.max_in_memory)));
 }
 
 NpyArray read_npz_array(const std::filesystem::path& path, const RawReadOptions& options) {

@@ -33,8 +33,8 @@ class NoOtherFiles : public Assimp::IOSystem {
 };
 
 /// What the importer reads must be sound before its next step works on it.
-/// @param fewest_corners  OBJ has points and lines beside its faces
-void check_parts(const aiScene& scene, const std::string& file, unsigned fewest_corners) {
+/// @param min_corners  OBJ has points and lines beside its faces
+void check_parts(const aiScene& scene, const std::string& file, unsigned min_corners) {
   bool any = false;
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
     const aiMesh& mesh = *scene.mMeshes[m];
@@ -46,7 +46,7 @@ void check_parts(const aiScene& scene, const std::string& file, unsigned fewest_
     }
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices < fewest_corners)
+      if (face.mNumIndices < min_corners)
         throw IoError(file, fmt::format("face {}: found {} corners; expected 3 or more", f,
                                         face.mNumIndices));
       for (unsigned k = 0; k < face.mNumIndices; ++k)

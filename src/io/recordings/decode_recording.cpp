@@ -67,7 +67,7 @@ std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const An
 RawFramesReader open_recording(const DecodeRequest& request, const DecodingTable& table) {
   RawReadOptions options{.measurements = table.measurements(),
                          .layout = request.layout,
-                         .largest_in_memory = static_cast<std::uint64_t>(1e6 * request.memory_mb),
+                         .max_in_memory = static_cast<std::uint64_t>(1e6 * request.memory_mb),
                          .format = {}};
   if (!request.raw_format.empty()) options.format = read_raw_format(request.raw_format);
   return RawFramesReader(request.raw, options);
@@ -154,7 +154,8 @@ std::string_view likely_cause(PixelStatus status) {
       return "every pixel has a raw number at the saturation level: expose less, or correct "
              "sensor.full_well_e, sensor.adc_bits and sensor.gain_e_per_dn";
     default:
-      return "no signal is in the raw numbers: is the light on, --code the code that was played, "
+      return "no signal is in the raw numbers: is the light on, --code the code that the camera "
+             "used, "
              "--layout how they run, and sensor.black_level_dn what is in the dark?";
   }
 }

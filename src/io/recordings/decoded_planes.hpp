@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/io/npy.hpp"
@@ -26,7 +26,7 @@ std::size_t bytes_per_pixel(const std::vector<DecodedPlane>& planes);
 class DecodedPlanes {
  public:
   DecodedPlanes(const std::vector<DecodedPlane>& planes, int height, int width);
-  /// All planes of an image; no bins and nothing of later returns.
+  /// All planes of an image; no bins and nothing of multipath returns.
   explicit DecodedPlanes(DepthImage image);
 
   int height() const { return height_; }

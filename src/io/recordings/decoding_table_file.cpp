@@ -71,7 +71,7 @@ LoadedDecodingTable load_measured(const std::string& path, const Camera& camera,
 }  // namespace
 
 std::optional<std::string> ambiguity_note(const DecodingTable& table) {
-  constexpr std::size_t most_shown = 3;
+  constexpr std::size_t max_shown = 3;
   std::vector<AmbiguousDepths> pairs = ambiguous_depths(table);
   if (pairs.empty()) return std::nullopt;
   const auto distance_bin = [&](const AmbiguousDepths& pair) {
@@ -79,11 +79,11 @@ std::optional<std::string> ambiguity_note(const DecodingTable& table) {
   };
   std::ranges::stable_sort(pairs, std::ranges::greater(), distance_bin);
   std::vector<std::string> shown;
-  for (std::size_t i = 0; i < std::min(pairs.size(), most_shown); ++i)
+  for (std::size_t i = 0; i < std::min(pairs.size(), max_shown); ++i)
     shown.push_back(fmt::format("{:.4g} m as {:.4g} m", pairs[i].second_m, pairs[i].first_m));
   return fmt::format("{} of {} bins look like a nearer one and decode to it: {}{}", pairs.size(),
                      table.samples(), fmt::join(shown, ", "),
-                     pairs.size() > most_shown ? ", .." : "");
+                     pairs.size() > max_shown ? ", .." : "");
 }
 
 bool names_measured_table(const std::string& code) {
@@ -99,15 +99,15 @@ void require_no_measured_table(const std::string& code) {
                   "one of .json, .npz with modfs and demodfs");
 }
 
-CodeSet load_played_code(const std::string& code, const Camera& camera,
+CodeSet load_camera_code(const std::string& code, const Camera& camera,
                          const CodeFileOptions& options) {
   require_no_measured_table(code);
-  CodeSet played = load_code(code, camera, options);
-  if (played.samples() != camera.samples)
+  CodeSet actual = load_code(code, camera, options);
+  if (actual.samples() != camera.samples)
     throw IoError(code, fmt::format("found {} samples per period; expected {} as of the camera "
                                     "(--set samples={} makes it fit)",
-                                    played.samples(), camera.samples, played.samples()));
-  return played;
+                                    actual.samples(), camera.samples, actual.samples()));
+  return actual;
 }
 
 LoadedDecodingTable load_decoding_table(const std::string& code, const Camera& camera,
@@ -116,10 +116,10 @@ LoadedDecodingTable load_decoding_table(const std::string& code, const Camera& c
   if (names_measured_table(code)) {
     loaded = load_measured(code, camera, options);
   } else {
-    const CodeSet played = load_played_code(code, camera, options.file);
+    const CodeSet actual = load_camera_code(code, camera, options.file);
     refuse_table_options(code, options);
-    loaded.name = played.name();
-    loaded.table = make_decoding_table(ForwardModel(played, camera), camera);
+    loaded.name = actual.name();
+    loaded.table = make_decoding_table(ForwardModel(actual, camera), camera);
   }
   if (const auto note = ambiguity_note(loaded.table)) loaded.notes.push_back(*note);
   return loaded;

@@ -15,10 +15,10 @@ inline constexpr int curve_points = 480;  ///< of a drawn period
 /// `points` equal steps over [0, end), end point left out: the x of a drawn period.
 std::vector<double> axis_values(int points, double end);
 
-/// A waveform over one period [ns], by its switching times and not on a grid: "told" (dotted, only
-/// where a generator changes it), "played", and, thick over a thin "played", what an impulse
+/// A waveform over one period [ns], by its switching times and not on a grid: "nominal" (dotted,
+/// only where a generator changes it), "actual", and, thick over a thin "actual", what an impulse
 /// response leaves of it ("after the impulse response").
-std::vector<Series> arm_series(const Waveform& told, const Waveform& played,
+std::vector<Series> arm_series(const Waveform& nominal, const Waveform& actual,
                                const ImpulseResponse& response, double fundamental_frequency_hz,
                                const LineStyle& style);
 

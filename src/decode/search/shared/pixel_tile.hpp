@@ -16,7 +16,7 @@ struct PixelTile {
   int pixels = 0;
   /// Raw numbers, [K][pixels_per_tile].
   alignas(64) float raw[max_measurements * pixels_per_tile];
-  /// What is left without ambient light, q = V^T y' [e], [rank][pixels_per_tile].
+  /// Residual without ambient light, q = V^T y' [e], [rank][pixels_per_tile].
   alignas(64) float plane[max_measurements * pixels_per_tile];
   /// Bound on the distance of `plane` from exact arithmetic [e]; NaN or infinite where a raw number
   /// is.
@@ -25,7 +25,7 @@ struct PixelTile {
   alignas(64) std::int32_t bin[pixels_per_tile];
   /// Bin of the best score outside the main lobe, for the vector of the pixel or one near it; -1
   /// where there is none.
-  alignas(64) std::int32_t rival[pixels_per_tile];
+  alignas(64) std::int32_t second_peak[pixels_per_tile];
 };
 
 }  // namespace tofsmith

@@ -16,11 +16,12 @@ Eigen::Index column_of(int exposure, int tap, int exposures, int taps,
                        std::optional<TapOrder> order);
 
 /// How many exposures the columns hold.
-/// @throws IoError if they are no multiple of the taps, or hold several in an order not told
+/// @throws IoError if they are no multiple of the taps, or hold several in an order that is not
+/// given
 int exposures_of(Eigen::Index columns, const TapLayout& layout, std::string_view file);
 
 /// Fewest samples of a period, as of a camera.
-inline constexpr Eigen::Index fewest_samples = 8;
+inline constexpr Eigen::Index min_samples = 8;
 
 /// The matrix of correlation functions in a file as it stands there: text (.csv, .txt), a NumPy
 /// array (.npy), or the array `corrfs` of an archive (.npz).

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "design/exposure_sweep.hpp"
+#include "design/suggested_exposures.hpp"
 
 #include "tofsmith/design/design.hpp"
 

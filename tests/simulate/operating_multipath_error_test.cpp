@@ -24,30 +24,30 @@ Camera bright_camera() {
   return camera;
 }
 
-TEST(SecondReturnError, FollowsTheLawOfCloseReturnsAndTwoReturnDecodingIsBetterFarOff) {
+TEST(OperatingMultipathError, FollowsTheLawOfCloseReturnsAndTwoReturnDecodingIsBetterFarOff) {
   const Camera camera = bright_camera();
   const CodeSet code = build_family("hamiltonian-k5", camera);
   EvaluateOptions options;
   options.trials = 1000;
-  const auto single_path = [&](const SecondReturns& later) {
-    return second_return_error(code, camera, later, options).circular_m.value;
+  const auto single_path = [&](const OperatingMultipath& later) {
+    return operating_multipath_error(code, camera, later, options).circular_m.value;
   };
   EXPECT_NEAR(single_path({{0.3, 0.3}, {0.15, 0.15}}), single_path_bias_m(0.3, 0.15), 0.005);
-  const SecondReturns far{{0.3, 0.3}, {1.0, 2.0}};
+  const OperatingMultipath far{{0.3, 0.3}, {1.0, 2.0}};
   EXPECT_LT(4 * two_return_error(code, camera, far, options).circular_m.value, single_path(far));
   EXPECT_NEAR(single_path({{0.0, 0.0}, {1.0, 1.0}}),
               evaluate(code, camera, options).circular.geometric_mean_m.value, 0.001);
 }
 
-TEST(SecondReturnError, IsReportedWithoutTwoReturnsWhereTheCodeCannotTellThem) {
+TEST(OperatingMultipathError, IsReportedWithoutTwoReturnsWhereTheCodeCannotTellThem) {
   const Camera camera = bright_camera();
   EvaluateOptions options;
   options.trials = 200;
   for (const char* name : {"hamiltonian-k5", "sinusoid-k5"}) {
     const CodeSet code = build_family(name, camera);
-    const SecondReturnReport report = second_return_report(code, camera, {}, options);
+    const OperatingMultipathReport report = operating_multipath_report(code, camera, {}, options);
     EXPECT_EQ(report.single_path.circular_m.value,
-              second_return_error(code, camera, {}, options).circular_m.value);
+              operating_multipath_error(code, camera, {}, options).circular_m.value);
     EXPECT_EQ(report.two_return.has_value(), code.name() == "hamiltonian-k5");
     if (report.two_return) {
       EXPECT_EQ(report.two_return->linear_m.value,
@@ -56,22 +56,22 @@ TEST(SecondReturnError, IsReportedWithoutTwoReturnsWhereTheCodeCannotTellThem) {
   }
 }
 
-TEST(SecondReturnError, RefusesWhatCannotBe) {
+TEST(OperatingMultipathError, RefusesWhatCannotBe) {
   const Camera camera = bright_camera();
   const CodeSet code = build_family("hamiltonian-k5", camera);
-  for (const SecondReturns& later :
-       {SecondReturns{.ratio = {-0.1, 0.5}}, SecondReturns{.ratio = {0.5, 0.1}},
-        SecondReturns{.ratio = {0.1, 1.5}}, SecondReturns{.delay_m = {0.0, 1.0}},
-        SecondReturns{.delay_m = {2.0, 1.0}}, SecondReturns{.delay_m = {2.0, 11.0}},
-        SecondReturns{.weight = 1.0}})
-    EXPECT_THROW(second_return_error(code, camera, later), std::invalid_argument);
+  for (const OperatingMultipath& later :
+       {OperatingMultipath{.ratio = {-0.1, 0.5}}, OperatingMultipath{.ratio = {0.5, 0.1}},
+        OperatingMultipath{.ratio = {0.1, 1.5}}, OperatingMultipath{.delay_m = {0.0, 1.0}},
+        OperatingMultipath{.delay_m = {2.0, 1.0}}, OperatingMultipath{.delay_m = {2.0, 11.0}},
+        OperatingMultipath{.weight = 1.0}})
+    EXPECT_THROW(operating_multipath_error(code, camera, later), std::invalid_argument);
 }
 
 TEST(MultipathScene, OfACornerIsBentInSinglePathDecodingAndCountsEveryPixel) {
   const Camera camera = bright_camera();
   const StagedScene corner = built_in_scene("corner", 32, 8);
   const SceneImage image = RayCaster(corner.shapes).see(corner.view).image;
-  const LaterReturns returns = bounced_light(corner, {.rays = 64, .range_m = camera.range_m()});
+  const MultipathReturns returns = bounced_light(corner, {.rays = 64, .range_m = camera.range_m()});
   const MultipathScene scene =
       multipath_scene("corner", image, corner.view, returns, build_family("hamiltonian-k5", camera),
                       camera, {.signal_e_per_s = 1e6, .reference_distance_m = 2.0});

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "tofsmith/core/array.hpp"
+#include "tofsmith/core/image.hpp"
 #include "tofsmith/report/figure.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 

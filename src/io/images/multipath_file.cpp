@@ -48,7 +48,7 @@ NpyArray as_array(NpyShape shape, const std::vector<Item>& values) {
 
 }  // namespace
 
-LaterReturns read_later_returns(const std::filesystem::path& path, int height, int width) {
+MultipathReturns read_multipath_returns(const std::filesystem::path& path, int height, int width) {
   const NpzReader file(path);
   const std::vector<double> first = list(file, path, "first"),
                             distance_m = list(file, path, "distance_m"),
@@ -64,7 +64,7 @@ LaterReturns read_later_returns(const std::filesystem::path& path, int height, i
                   fmt::format("array 'ratio': found {} entries; expected {}, as many as "
                               "'distance_m' has",
                               ratio.size(), distance_m.size()));
-  LaterReturns returns(height, width);
+  MultipathReturns returns(height, width);
   returns.first.clear();
   for (const double at : first) {
     if (!(at >= 0.0 && at <= static_cast<double>(ratio.size()) && at == std::floor(at)))
@@ -113,8 +113,8 @@ std::vector<Transient> read_transients(const std::filesystem::path& path, int he
   return transients;
 }
 
-void write_returns_truth(const std::filesystem::path& path, const ReturnsTruth& truth,
-                         const SceneLight& light, OutputPolicy policy) {
+void write_multipath_truth(const std::filesystem::path& path, const MultipathTruth& truth,
+                           const SceneLight& light, OutputPolicy policy) {
   const auto height = static_cast<std::size_t>(truth.direct_m.height),
              width = static_cast<std::size_t>(truth.direct_m.width);
   NpzArrays arrays;
@@ -124,7 +124,7 @@ void write_returns_truth(const std::filesystem::path& path, const ReturnsTruth& 
   arrays.emplace("distance_m", as_array({truth.distance_m.size()}, truth.distance_m));
   arrays.emplace("signal_e_per_s", as_array({truth.signal_e_per_s.size()}, truth.signal_e_per_s));
   std::vector<float> ratio;
-  for (const LaterReturn& later : light.returns.returns) ratio.push_back(later.ratio);
+  for (const MultipathReturn& later : light.returns.returns) ratio.push_back(later.ratio);
   arrays.emplace("ratio", as_array({ratio.size()}, ratio));
   if (light.tail)
     arrays.emplace("tail",

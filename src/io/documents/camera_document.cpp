@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/documents/camera_json.hpp"
+#include "io/documents/camera_document.hpp"
 
 #include "io/documents/camera_fields.hpp"
 #include "io/documents/shared/document_text.hpp"

@@ -11,19 +11,20 @@
 namespace tofsmith {
 namespace {
 
-TEST(ReturnsFile, TruthThatIsWrittenIsReadAsTheSameReturns) {
+TEST(MultipathFile, TruthThatIsWrittenIsReadAsTheSameReturns) {
   SceneImage scene(1, 3);
   scene.depth_m.pixels = {1.0f, 2.0f, 3.0f};
   SceneLight light;
-  light.returns = LaterReturns(1, 3);
-  const std::vector<LaterReturn> two = {{1.5f, 0.5f}, {2.25f, 0.125f}}, one = {{3.0f, 0.0f}};
+  light.returns = MultipathReturns(1, 3);
+  const std::vector<MultipathReturn> two = {{1.5f, 0.5f}, {2.25f, 0.125f}}, one = {{3.0f, 0.0f}};
   light.returns.append_pixel(two);
   light.returns.append_pixel({});
   light.returns.append_pixel(one);
   const TemporaryDirectory directory;
   const auto path = directory / "truth.npz";
-  write_returns_truth(path, returns_truth(scene, light, {}), light, OutputPolicy::refuse_existing);
-  const LaterReturns read = read_later_returns(path, 1, 3);
+  write_multipath_truth(path, multipath_truth(scene, light, {}), light,
+                        OutputPolicy::refuse_existing);
+  const MultipathReturns read = read_multipath_returns(path, 1, 3);
   EXPECT_EQ(read.first, light.returns.first);
   ASSERT_EQ(read.returns.size(), light.returns.returns.size());
   for (std::size_t i = 0; i < read.returns.size(); ++i) {
@@ -33,7 +34,7 @@ TEST(ReturnsFile, TruthThatIsWrittenIsReadAsTheSameReturns) {
   read.validate(scene, 10.0);
 }
 
-TEST(ReturnsFile, RefusesListsThatDoNotFitTheScene) {
+TEST(MultipathFile, RefusesListsThatDoNotFitTheScene) {
   const TemporaryDirectory directory;
   const auto refuses = [&](const std::vector<double>& first, const std::vector<float>& distance_m,
                            const std::vector<float>& ratio, const char* words) {
@@ -43,7 +44,7 @@ TEST(ReturnsFile, RefusesListsThatDoNotFitTheScene) {
     arrays.emplace("distance_m", NpyArray::of<float>({distance_m.size()}, distance_m));
     arrays.emplace("ratio", NpyArray::of<float>({ratio.size()}, ratio));
     write_npz(path, arrays, OutputPolicy::overwrite);
-    EXPECT_THAT([&] { read_later_returns(path, 1, 2); },
+    EXPECT_THAT([&] { read_multipath_returns(path, 1, 2); },
                 testing::ThrowsMessage<IoError>(testing::HasSubstr(words)));
   };
   refuses({0, 1}, {1.0f}, {0.1f}, "found 2 entries; expected 3");

@@ -20,8 +20,9 @@ struct TrialFrame {
   std::vector<double> true_m;
 };
 
-TrialFrame draw_frame(const PixelCapture& pixel, const Camera& camera, const SecondReturns& later,
-                      const EvaluateOptions& options, std::size_t point) {
+TrialFrame draw_frame(const PixelCapture& pixel, const Camera& camera,
+                      const OperatingMultipath& later, const EvaluateOptions& options,
+                      std::size_t point) {
   const OperatingPoint light = camera.operating.points()[point];
   const std::int64_t trials = options.trials;
   TrialFrame frame;
@@ -55,9 +56,9 @@ TrialFrame draw_frame(const PixelCapture& pixel, const Camera& camera, const Sec
 
 /// @param depth_of  decodes a frame, with progress
 template <typename DepthOf>
-SecondReturnError error_of(const PixelCapture& pixel, const Camera& camera,
-                           const SecondReturns& later, const EvaluateOptions& options,
-                           const Progress& progress, DepthOf&& depth_of) {
+OperatingMultipathError error_of(const PixelCapture& pixel, const Camera& camera,
+                                 const OperatingMultipath& later, const EvaluateOptions& options,
+                                 const Progress& progress, DepthOf&& depth_of) {
   const double range_m = camera.range_m();
   std::vector<Estimate> linear_m, circular_m;
   const std::size_t points = camera.operating.points().size();
@@ -81,12 +82,12 @@ SecondReturnError error_of(const PixelCapture& pixel, const Camera& camera,
 }
 
 /// What every decoding of a code's trials shares.
-struct SecondReturnTrials {
-  SecondReturnTrials(const CodeSet& code, const Camera& on, const SecondReturns& met,
-                     const EvaluateOptions& how)
+struct OperatingMultipathTrials {
+  OperatingMultipathTrials(const CodeSet& code, const Camera& on, const OperatingMultipath& met,
+                           const EvaluateOptions& how)
       : camera(on), later(met), options(how), model(checked_model(code)), pixel(model, on) {}
 
-  SecondReturnError single_path(const Progress& progress) const {
+  OperatingMultipathError single_path(const Progress& progress) const {
     const Decoder decoder(make_decoding_table(model, camera));
     return error_of(pixel, camera, later, options, progress,
                     [&](const RawFrames& raw, const Progress& part) {
@@ -94,8 +95,8 @@ struct SecondReturnTrials {
                     });
   }
 
-  /// @throws std::invalid_argument for codes that cannot tell two returns
-  SecondReturnError two_return(const Progress& progress) const {
+  /// @throws std::invalid_argument for codes that cannot separate two returns
+  OperatingMultipathError two_return(const Progress& progress) const {
     MultipathOptions decoding;
     decoding.shortest_delay_m = std::min(decoding.shortest_delay_m, later.delay_m[0]);
     decoding.longest_delay_m = std::max(later.delay_m[1], camera.range_m() / 3);
@@ -113,7 +114,7 @@ struct SecondReturnTrials {
   }
 
   const Camera& camera;
-  const SecondReturns& later;
+  const OperatingMultipath& later;
   const EvaluateOptions& options;
   ForwardModel model;
   PixelCapture pixel;
@@ -121,24 +122,26 @@ struct SecondReturnTrials {
 
 }  // namespace
 
-SecondReturnError second_return_error(const CodeSet& code, const Camera& camera,
-                                      const SecondReturns& later, const EvaluateOptions& options,
-                                      const Progress& progress) {
-  return SecondReturnTrials(code, camera, later, options).single_path(progress);
+OperatingMultipathError operating_multipath_error(const CodeSet& code, const Camera& camera,
+                                                  const OperatingMultipath& later,
+                                                  const EvaluateOptions& options,
+                                                  const Progress& progress) {
+  return OperatingMultipathTrials(code, camera, later, options).single_path(progress);
 }
 
-SecondReturnError two_return_error(const CodeSet& code, const Camera& camera,
-                                   const SecondReturns& later, const EvaluateOptions& options,
-                                   const Progress& progress) {
-  return SecondReturnTrials(code, camera, later, options).two_return(progress);
+OperatingMultipathError two_return_error(const CodeSet& code, const Camera& camera,
+                                         const OperatingMultipath& later,
+                                         const EvaluateOptions& options, const Progress& progress) {
+  return OperatingMultipathTrials(code, camera, later, options).two_return(progress);
 }
 
-SecondReturnReport second_return_report(const CodeSet& code, const Camera& camera,
-                                        const SecondReturns& later, const EvaluateOptions& options,
-                                        const Progress& progress) {
-  const SecondReturnTrials trials(code, camera, later, options);
+OperatingMultipathReport operating_multipath_report(const CodeSet& code, const Camera& camera,
+                                                    const OperatingMultipath& later,
+                                                    const EvaluateOptions& options,
+                                                    const Progress& progress) {
+  const OperatingMultipathTrials trials(code, camera, later, options);
   const ProgressParts parts(progress, {30, 70});
-  SecondReturnReport result;
+  OperatingMultipathReport result;
   result.single_path = trials.single_path(parts[0]);
   if (TwoReturnDecoder::why_not_decodable(make_decoding_table(trials.model, camera)))
     report(progress, 1.0, "second returns");

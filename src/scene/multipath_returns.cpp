@@ -16,7 +16,7 @@ std::string name_of_return(int row, int column, std::size_t number, const char* 
          std::to_string(column) + "): " + field;
 }
 
-void validate_pixel(std::span<const LaterReturn> returns, int row, int column, double direct_m,
+void validate_pixel(std::span<const MultipathReturn> returns, int row, int column, double direct_m,
                     double range_m) {
   double before_m = direct_m;
   for (std::size_t i = 0; i < returns.size(); ++i) {
@@ -39,45 +39,46 @@ void validate_pixel(std::span<const LaterReturn> returns, int row, int column, d
 
 }  // namespace
 
-void LaterReturns::append_pixel(std::span<const LaterReturn> of_pixel) {
+void MultipathReturns::append_pixel(std::span<const MultipathReturn> of_pixel) {
   returns.insert(returns.end(), of_pixel.begin(), of_pixel.end());
   first.push_back(static_cast<std::int64_t>(returns.size()));
 }
 
-std::span<const LaterReturn> LaterReturns::of(int row, int column) const {
+std::span<const MultipathReturn> MultipathReturns::of(int row, int column) const {
   const auto pixel = static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
                      static_cast<std::size_t>(column);
   return std::span(returns).subspan(static_cast<std::size_t>(first[pixel]),
                                     static_cast<std::size_t>(first[pixel + 1] - first[pixel]));
 }
 
-void LaterReturns::validate(const SceneImage& scene, double range_m) const {
-  require(height == scene.height(), "later returns: height", height,
+void MultipathReturns::validate(const SceneImage& scene, double range_m) const {
+  require(height == scene.height(), "multipath returns: height", height,
           "must equal the scene's " + std::to_string(scene.height()));
-  require(width == scene.width(), "later returns: width", width,
+  require(width == scene.width(), "multipath returns: width", width,
           "must equal the scene's " + std::to_string(scene.width()));
   const std::size_t pixels = scene.depth_m.size();
-  require(first.size() == pixels + 1, "later returns: entries of first", first.size(),
+  require(first.size() == pixels + 1, "multipath returns: entries of first", first.size(),
           "must be one more than the scene's " + std::to_string(pixels) + " pixels");
-  require(first.front() == 0, "later returns: first[0]", first.front(), "must be 0");
+  require(first.front() == 0, "multipath returns: first[0]", first.front(), "must be 0");
   for (std::size_t i = 0; i < pixels; ++i)
-    require(first[i + 1] >= first[i], "later returns: first[" + std::to_string(i + 1) + "]",
+    require(first[i + 1] >= first[i], "multipath returns: first[" + std::to_string(i + 1) + "]",
             first[i + 1], "must not fall");
   require(first.back() == static_cast<std::int64_t>(returns.size()),
-          "later returns: last entry of first", first.back(),
+          "multipath returns: last entry of first", first.back(),
           "must be the number of returns, " + std::to_string(returns.size()));
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column)
       validate_pixel(of(row, column), row, column, scene.depth_m(row, column), range_m);
 }
 
-LaterReturns behind_every_pixel(const SceneImage& scene, std::span<const LaterReturn> behind) {
-  LaterReturns result(scene.height(), scene.width());
-  std::vector<LaterReturn> of_pixel;
+MultipathReturns behind_every_pixel(const SceneImage& scene,
+                                    std::span<const MultipathReturn> behind) {
+  MultipathReturns result(scene.height(), scene.width());
+  std::vector<MultipathReturn> of_pixel;
   for (const float depth_m : scene.depth_m.pixels) {
     of_pixel.clear();
     if (!std::isnan(depth_m))
-      for (const LaterReturn& r : behind) of_pixel.push_back({depth_m + r.distance_m, r.ratio});
+      for (const MultipathReturn& r : behind) of_pixel.push_back({depth_m + r.distance_m, r.ratio});
     result.append_pixel(of_pixel);
   }
   return result;

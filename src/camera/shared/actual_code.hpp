@@ -10,20 +10,21 @@
 
 namespace tofsmith {
 
-/// The waveforms of a code as the arms of a camera are driven, ahead of their impulse responses.
-struct PlayedCode {
+/// The actual waveforms of a code: what drives the arms of a camera, ahead of their impulse
+/// responses.
+struct ActualCode {
   std::vector<Waveform> modulation;    ///< one per exposure, mean at most 1
   std::vector<Waveform> demodulation;  ///< one per tap value
 };
 
-/// What the camera's generators make of a code; as told, where an arm has none.
+/// What the camera's generators make of a code; the nominal waveforms where an arm has none.
 ///   - Rounding may lengthen the pulses of a modulation. The source's average power is fixed: above
 ///     a mean of 1 the whole waveform is scaled down. Below, it is left as it is, since the peak
-///     may be at its limit: the light is then less than told.
+///     may be at its limit: the light is then less than nominal.
 ///   - A sensor of two taps without drain has one generator, which plays the first tap; the second
 ///     is what the first leaves, 1 - d.
 /// @throws std::invalid_argument if a modulation has no pulse that the generator can play
-PlayedCode played_code(const CodeSet& code, const Camera& camera);
+ActualCode actual_code(const CodeSet& code, const Camera& camera);
 
 /// The first modulation of which the light's generator plays nothing: every pulse falls between
 /// its points.

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/shared/played_waveform.hpp"
+#include "camera/shared/arm_output.hpp"
 
 #include "core/shared/periodic.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 
-Eigen::VectorXd played_waveform(const Waveform& waveform, const ImpulseResponse& response,
-                                double fundamental_frequency_hz, int points) {
+Eigen::VectorXd arm_output(const Waveform& waveform, const ImpulseResponse& response,
+                           double fundamental_frequency_hz, int points) {
   require(points >= 2, "points", points, "must be >= 2");
   if (response.kind == ImpulseResponse::Kind::none) return waveform.cell_averages(points);
   const PeriodicTransform transform(points);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/shared/played_code.hpp"
+#include "camera/shared/actual_code.hpp"
 
 #include <fmt/format.h>
 
@@ -20,9 +20,9 @@ Waveform scaled(const Waveform& waveform, double factor) {
 /// `points` is what the generator makes of modulation e.
 std::optional<BrokenRule> lost_pulse(const CodeSet& code, int e, const Waveform& points,
                                      const Generator& generator, double frequency_hz) {
-  const Waveform& told = code.modulation(e);
-  if (points.mean() > 0.0 || told.mean() == 0.0) return std::nullopt;
-  return broken(fmt::format("code {} modulation {} duty", code.name(), e), told.duty(),
+  const Waveform& nominal = code.modulation(e);
+  if (points.mean() > 0.0 || nominal.mean() == 0.0) return std::nullopt;
+  return broken(fmt::format("code {} modulation {} duty", code.name(), e), nominal.duty(),
                 fmt::format("has no pulse that light.generator can play: its points are 1/{} of a "
                             "period",
                             generator.points_per_period(frequency_hz)));
@@ -49,30 +49,30 @@ std::optional<BrokenRule> pulse_not_generated(const CodeSet& code, const Camera&
   return std::nullopt;
 }
 
-PlayedCode played_code(const CodeSet& code, const Camera& camera) {
+ActualCode actual_code(const CodeSet& code, const Camera& camera) {
   const double frequency_hz = camera.fundamental_frequency_hz;
-  PlayedCode played;
+  ActualCode actual;
   for (int e = 0; e < code.exposures(); ++e) {
-    const Waveform& told = code.modulation(e);
+    const Waveform& nominal = code.modulation(e);
     if (!camera.light.generator) {
-      played.modulation.push_back(told);
+      actual.modulation.push_back(nominal);
       continue;
     }
-    const Waveform points = generated(told, *camera.light.generator, frequency_hz);
+    const Waveform points = generated(nominal, *camera.light.generator, frequency_hz);
     require(lost_pulse(code, e, points, *camera.light.generator, frequency_hz));
     const double scale = average_power_scale(points);
-    played.modulation.push_back(scale < 1.0 ? scaled(points, scale) : points);
+    actual.modulation.push_back(scale < 1.0 ? scaled(points, scale) : points);
   }
   for (int i = 0; i < code.measurements(); ++i) {
     if (!camera.sensor.generator)
-      played.demodulation.push_back(code.demodulation(i));
+      actual.demodulation.push_back(code.demodulation(i));
     else if (taps_share_a_generator(code, camera) && i % 2 == 1)
-      played.demodulation.push_back(played.demodulation.back().complement());
+      actual.demodulation.push_back(actual.demodulation.back().complement());
     else
-      played.demodulation.push_back(
+      actual.demodulation.push_back(
           generated(code.demodulation(i), *camera.sensor.generator, frequency_hz));
   }
-  return played;
+  return actual;
 }
 
 }  // namespace tofsmith
