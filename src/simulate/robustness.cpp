@@ -12,10 +12,9 @@
 namespace tofsmith {
 namespace {
 
-std::vector<double> correlation_changes(const ForwardModel& nominal,
-                                        const ForwardModel& actual, int points) {
-  const Eigen::MatrixXd a = nominal.correlation_table(points),
-                        b = actual.correlation_table(points);
+std::vector<double> correlation_changes(const ForwardModel& nominal, const ForwardModel& actual,
+                                        int points) {
+  const Eigen::MatrixXd a = nominal.correlation_table(points), b = actual.correlation_table(points);
   std::vector<double> changes;
   for (Eigen::Index k = 0; k < a.cols(); ++k) {
     const double variation = (a.col(k).array() - a.col(k).mean()).matrix().norm();
@@ -109,14 +108,14 @@ RobustnessReport robustness(const CodeSet& code, const Camera& camera,
                           .perturbed = {}};
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const Camera& actual = cameras[i].camera;
-    const CodeSet actual = perturbed_code(code, cameras[i]);
-    const ForwardModel model(actual, actual);
+    const CodeSet actual_code = perturbed_code(code, cameras[i]);
+    const ForwardModel model(actual_code, actual);
     const DecodingTable table = make_decoding_table(model, actual);
     report.perturbed.push_back(
         {.name = cameras[i].name,
-         .calibrated_m = judge.error_m(actual, actual, model, table, parts[2 * i + 1]),
+         .calibrated_m = judge.error_m(actual_code, actual, model, table, parts[2 * i + 1]),
          .uncalibrated_m =
-             judge.error_m(actual, actual, model, said_table, parts[2 * i + 2])});
+             judge.error_m(actual_code, actual, model, said_table, parts[2 * i + 2])});
   }
   return report;
 }
