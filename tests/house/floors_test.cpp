@@ -180,8 +180,9 @@ TEST(Rooms, WhatIsSharedIsUsedFromAnotherFloor) {
         borrowed.insert("src/" + header);
     }
   for (const SourceFile& file : files)
-    if (file.path.find("/shared/") != std::string::npos)
+    if (file.path.find("/shared/") != std::string::npos) {
       EXPECT_TRUE(borrowed.contains(file.path)) << file.path << " serves its own floor alone";
+    }
 }
 
 TEST(Rooms, NoCircleRunsBetweenTheRoomsOfAFloor) {
@@ -232,7 +233,9 @@ TEST(PublicHeaders, AreFewAndEachUmbrellaHasThoseOfItsComponent) {
   for (const auto& [name, component] : components) {
     const std::string umbrella = umbrellas["tofsmith/" + name + ".hpp"];
     const std::string below = component.below;
-    if (!below.empty()) EXPECT_NE(umbrella.find("tofsmith/" + below + ".hpp"), std::string::npos);
+    if (!below.empty()) {
+      EXPECT_NE(umbrella.find("tofsmith/" + below + ".hpp"), std::string::npos);
+    }
     for (const std::string& folder : component.folders)
       for (const std::string& header : of_folder[folder])
         EXPECT_NE(umbrella.find('"' + header + '"'), std::string::npos) << name << ": " << header;

@@ -39,7 +39,9 @@ TEST(RayCaster, TriesEveryTriangleOfAMeshUnlessToldHowToSearch) {
     const Ray ray = random_ray(i);
     const auto hit = caster.nearest(ray), expected = nearest_hit(shapes, ray);
     ASSERT_EQ(hit.has_value(), expected.has_value()) << i;
-    if (hit) EXPECT_EQ(hit->distance_m, expected->distance_m) << i;
+    if (hit) {
+      EXPECT_EQ(hit->distance_m, expected->distance_m) << i;
+    }
   }
 }
 
