@@ -164,7 +164,7 @@ class Operating:
     albedo : float or str
         Scales the signal; "uniform": a fresh draw in (0, 1) for every trial.
     multipath : OperatingMultipath, optional
-        What designs reckon with; None: light comes back once.
+        What designs take into account; None: light comes back once.
     """
 
     signal_e_per_s: tuple[float, ...]
