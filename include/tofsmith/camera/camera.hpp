@@ -44,13 +44,13 @@ struct ImpulseResponse {
 /// "none", "hann", "gaussian", "lowpass", "file".
 std::string_view name_of(ImpulseResponse::Kind kind);
 
-/// Multipath that a camera meets, as second returns: ratio and delay are uniform between their
+/// Multipath that a camera meets: one second return, of ratio and delay uniform between their
 /// limits. Field names are the keys of [operating.multipath] in the TOML file.
 struct OperatingMultipath {
   std::array<double, 2> ratio{0.1, 0.5};    ///< r = S2 / S1, smallest and largest, in [0, 1]
   std::array<double, 2> delay_m{0.5, 3.0};  ///< behind the direct return, in (0, range) [m]
   /// How much they count where codes are designed: what is minimized is E1^(1 - weight) E2^weight,
-  /// with E1 the error of single returns and E2 that behind such second ones, decoded as
+  /// with E1 the error of single returns and E2 that with such a second one, decoded as
   /// single-path; in (0, 1).
   double weight = 0.2;
 
