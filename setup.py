@@ -25,6 +25,28 @@ def version() -> str:
     return found.group(1)
 
 
+def run_telling_progress(command: list) -> None:
+    """Runs a build of some minutes. pip hides what it prints, so that its steps, "[12/60] ..", are
+    also written to the terminal, if there is one.
+    """
+    try:
+        terminal = open("/dev/tty", "w") if not sys.stdout.isatty() else None
+    except OSError:
+        terminal = None
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as build:
+        for line in build.stdout or ():
+            print(line, end="", flush=True)
+            step = re.match(r"\[(\d+)/(\d+)\]", line)
+            if terminal and step:
+                terminal.write(f"\rtofsmith: compiling, step {step[1]} of {step[2]}  ")
+                terminal.flush()
+    if terminal:
+        terminal.write("\n")
+        terminal.close()
+    if build.returncode:
+        raise subprocess.CalledProcessError(build.returncode, command)
+
+
 class CMakeBuild(build_ext):
     """Builds the target _tofsmith and puts it where setuptools wants it."""
 
@@ -43,7 +65,7 @@ class CMakeBuild(build_ext):
         defines = [f"-D{name}={value}" for name, value in options.items()]
         jobs = ["--parallel"] + ([str(self.parallel)] if self.parallel else [])
         subprocess.run(["cmake", "-S", root, "-B", build, "-G", "Ninja", *defines], check=True)
-        subprocess.run(["cmake", "--build", build, "--target", "_tofsmith", *jobs], check=True)
+        run_telling_progress(["cmake", "--build", build, "--target", "_tofsmith", *jobs])
         built = next((build / "python" / "tofsmith").glob("_tofsmith*.so"))
         target.parent.mkdir(parents=True, exist_ok=True)
         self.copy_file(str(built), str(target))

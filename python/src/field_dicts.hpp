@@ -23,7 +23,8 @@ void for_each_entry(Struct& its, Visit&& visit) {
     using Value = std::remove_cvref_t<decltype(field.value)>;
     if constexpr (std::is_same_v<Value, Estimate>) {
       visit(std::string(field.name), field.value.value);
-      if (!field.is(Mark::without_error)) visit(error_name(field.name), field.value.standard_error);
+      if (!field.is(FieldMark::without_error))
+        visit(error_name(field.name), field.value.standard_error);
     } else if constexpr (HasFields<Value>) {
       for_each_entry(field.value, visit);
     } else {
@@ -67,7 +68,7 @@ py::dict fields_dict(const Struct& its) {
   for_each_field(its, [&](const auto& field) {
     using Value = std::remove_cvref_t<decltype(field.value)>;
     if constexpr (std::is_same_v<Value, Estimate>) {
-      if (field.is(Mark::as_object)) {
+      if (field.is(FieldMark::as_object)) {
         dict[field.name] = pair_of(field.value);
       } else {
         dict[field.name] = field.value.value;

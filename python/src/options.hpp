@@ -88,7 +88,7 @@ class OptionReader {
   template <typename Options>
   OptionReader& fields(Options& options, std::initializer_list<std::string_view> but = {}) {
     for_each_field(options, [&](const auto& field) {
-      if (std::ranges::find(but, field.name) == but.end() && !field.is(Mark::from_above))
+      if (std::ranges::find(but, field.name) == but.end() && !field.is(FieldMark::from_above))
         read(field.name, field.value);
     });
     return *this;

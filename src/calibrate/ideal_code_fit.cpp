@@ -30,7 +30,7 @@ Eigen::MatrixXcd harmonics_of(const Eigen::MatrixXd& table, int harmonics) {
 }
 
 /// The camera without anything that limits a waveform.
-Camera ideal_camera(Camera camera) {
+Camera unlimited_camera(Camera camera) {
   camera.light.impulse_response = camera.sensor.impulse_response = {};
   camera.light.edge_jitter_s = camera.sensor.edge_jitter_s = 0.0;
   camera.light.generator.reset();
@@ -174,7 +174,7 @@ void add_harmonics(const Eigen::MatrixXcd& y, const Eigen::MatrixXcd& ideal, dou
 }  // namespace
 
 std::vector<CodeSet> ideal_codes(const Camera& camera, int measurements) {
-  const Camera ideal = ideal_camera(camera);
+  const Camera ideal = unlimited_camera(camera);
   const int taps = ideal.sensor.taps;
   const int per_exposure = ideal.sensor.readout == Readout::difference ? taps / 2 : taps;
   if (per_exposure < 1 || measurements % per_exposure != 0) return {};
@@ -196,7 +196,7 @@ std::vector<IdealCodeFit> fit_ideal_codes(const Eigen::MatrixXd& table,
   const int harmonics = std::min(static_cast<int>(table.rows() - 1) / 2, most);
   const Eigen::MatrixXcd y = harmonics_of(table, harmonics);
   require(y.squaredNorm() > 0.0, "table", "constant", "must change with delay");
-  const Camera ideal = ideal_camera(camera);
+  const Camera ideal = unlimited_camera(camera);
   const double noise = std::sqrt(error.cwiseAbs2().mean() / static_cast<double>(table.rows()) / 2);
   std::vector<IdealCodeFit> fits;
   for (const CodeSet& code : codes) {

@@ -83,7 +83,7 @@ void keep_best_of_each_name(const std::vector<double>& ranking_m, DesignResult& 
   for (std::size_t i = 0; i < result.candidates.size(); ++i) {
     Candidate& candidate = result.candidates[i];
     const auto same = std::find_if(kept.begin(), kept.end(), [&](const auto& item) {
-      return key(item) == candidate.code.name();
+      return item.code.name() == candidate.code.name();
     });
     const auto at = static_cast<std::size_t>(same - kept.begin());
     if (same == kept.end()) {

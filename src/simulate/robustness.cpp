@@ -12,10 +12,9 @@
 namespace tofsmith {
 namespace {
 
-std::vector<double> correlation_changes(const ForwardModel& nominal,
-                                        const ForwardModel& actual_code, int points) {
-  const Eigen::MatrixXd a = nominal.correlation_table(points),
-                        b = actual_code.correlation_table(points);
+std::vector<double> correlation_changes(const ForwardModel& nominal, const ForwardModel& actual,
+                                        int points) {
+  const Eigen::MatrixXd a = nominal.correlation_table(points), b = actual.correlation_table(points);
   std::vector<double> changes;
   for (Eigen::Index k = 0; k < a.cols(); ++k) {
     const double variation = (a.col(k).array() - a.col(k).mean()).matrix().norm();
@@ -51,7 +50,7 @@ class Judge {
 }  // namespace
 
 double GeneratorLoss::ratio(DepthErrorKind kind) const {
-  return actual_code.of(kind).geometric_mean_m.value / nominal_m(kind).value;
+  return actual.of(kind).geometric_mean_m.value / nominal_m(kind).value;
 }
 
 double GeneratorLoss::uncalibrated_ratio(DepthErrorKind kind) const {
@@ -64,9 +63,9 @@ GeneratorLoss generator_loss(const CodeSet& code, const Camera& camera,
   Camera ideal = camera;
   ideal.light.generator.reset();
   ideal.sensor.generator.reset();
-  const ForwardModel nominal(code, ideal), actual_code(code, camera);
+  const ForwardModel nominal(code, ideal), actual(code, camera);
   const DecodingTable nominal_table = make_decoding_table(nominal, ideal),
-                      actual_table = make_decoding_table(actual_code, camera);
+                      actual_table = make_decoding_table(actual, camera);
   const ProgressParts parts(progress, 3);
   const auto error = [&](const ForwardModel& model, const DecodingTable& believed,
                          std::size_t part) {
@@ -74,9 +73,9 @@ GeneratorLoss generator_loss(const CodeSet& code, const Camera& camera,
     return trial_errors(trials, code, camera, options, parts[part]);
   };
   return {.nominal = error(nominal, nominal_table, 0),
-          .actual_code = error(actual_code, actual_table, 1),
-          .uncalibrated = error(actual_code, nominal_table, 2),
-          .correlation_change = correlation_changes(nominal, actual_code, 8 * camera.samples)};
+          .actual = error(actual, actual_table, 1),
+          .uncalibrated = error(actual, nominal_table, 2),
+          .correlation_change = correlation_changes(nominal, actual, 8 * camera.samples)};
 }
 
 void RobustnessOptions::validate() const { check_fields(*this); }

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "tofsmith/io/depth_file.hpp"
+#include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/scene/bounced_light.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 #include "tofsmith/simulate/bounds.hpp"
@@ -50,7 +51,7 @@ TEST(PublishedScenes, TheGrooveIsTwoWallsWhoseBouncedLightBendsItAsTheLawSays) {
     return Plane{.point = its.point, .normal = its.normal, .texture = {.albedo = 0.5}};
   };
   const StagedScene groove{.shapes = {wall(left), wall(right)}, .view = view};
-  const SceneImage image = RayCaster(groove.shapes).see(view).image;
+  const SceneImage image = RayCaster(groove.shapes, embree_search()).see(view).image;
   float farthest_m = 0.0f;
   for (std::size_t i = 0; i < depth_m.size(); ++i)
     farthest_m = std::max(farthest_m, std::abs(image.depth_m.pixels[i] - depth_m.pixels[i]));
@@ -59,7 +60,8 @@ TEST(PublishedScenes, TheGrooveIsTwoWallsWhoseBouncedLightBendsItAsTheLawSays) {
   // Later light comes some centimetres late: too close for any decoder to tell apart.
   Camera camera = built_in_camera("paper-10f0");
   camera.sensor.taps = 2;
-  const MultipathReturns returns = bounced_light(groove, {.rays = 32, .range_m = camera.range_m()});
+  const MultipathReturns returns =
+      bounced_light(groove, {.rays = 32, .range_m = camera.range_m()}, {}, embree_search());
   const MultipathScene scene = multipath_scene(
       "v-groove", image, view, returns, build_family("hamiltonian-k5", camera), camera,
       {.signal_e_per_s = 1e7, .ambient_e_per_s = 0.0, .reference_distance_m = 0.6});

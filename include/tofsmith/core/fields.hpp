@@ -24,7 +24,7 @@
 namespace tofsmith {
 
 /// What uses of a field must know besides its type.
-enum class Mark : unsigned {
+enum class FieldMark : unsigned {
   from_above = 1,     ///< the struct that holds this one sets it; not the user's to give
   apart = 2,          ///< not in the struct's own JSON object, but elsewhere in the document
   in_place = 4,       ///< its fields stand among those of the struct that holds it
@@ -33,7 +33,7 @@ enum class Mark : unsigned {
   may_be_null = 32,   ///< in JSON
   bound = 64          ///< a bound of errors, which not every table of them shows
 };
-constexpr unsigned as_bits(Mark mark) { return static_cast<unsigned>(mark); }
+constexpr unsigned as_bits(FieldMark mark) { return static_cast<unsigned>(mark); }
 
 /// A count that searching longer or shorter scales, never to below this (scale_by_effort).
 struct ByEffort {
@@ -61,13 +61,13 @@ struct Field {
       : name(its_name), value(its_value) {
     (set(its_marks), ...);
   }
-  bool is(Mark mark) const { return (marks & as_bits(mark)) != 0; }
+  bool is(FieldMark mark) const { return (marks & as_bits(mark)) != 0; }
 
  private:
   void set(const char* its_rule) { rule = its_rule; }
   void set(ByEffort effort) { by_effort = effort; }
   void set(InDocuments its) { document_name = its.name; }
-  void set(Mark mark) { marks |= as_bits(mark); }
+  void set(FieldMark mark) { marks |= as_bits(mark); }
 };
 
 /// A struct to read or to write.

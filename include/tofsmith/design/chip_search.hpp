@@ -100,14 +100,15 @@ struct ChipSearchOptions {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<ChipSearchOptions> auto& o) {
-  return std::tuple(
-      Field("exposures", o.exposures, "in [1, 4]", Mark::from_above),
-      Field("margin_sigma", o.margin_sigma, "finite and >= 0"),
-      Field("separation_periods", o.separation_periods, "in (0, 1/2)"),
-      Field("equal_duty", o.equal_duty), Field("max_exhaustive", o.max_exhaustive, ">= 0"),
-      Field("finalists", o.finalists, "in [1, 100]"),
-      Field("annealing_starts", o.annealing_starts, "in [0, 10000]", ByEffort{2}),
-      Field("annealing_steps", o.annealing_steps, ">= 1"), Field("seed", o.seed, Mark::from_above));
+  return std::tuple(Field("exposures", o.exposures, "in [1, 4]", FieldMark::from_above),
+                    Field("margin_sigma", o.margin_sigma, "finite and >= 0"),
+                    Field("separation_periods", o.separation_periods, "in (0, 1/2)"),
+                    Field("equal_duty", o.equal_duty),
+                    Field("max_exhaustive", o.max_exhaustive, ">= 0"),
+                    Field("finalists", o.finalists, "in [1, 100]"),
+                    Field("annealing_starts", o.annealing_starts, "in [0, 10000]", ByEffort{2}),
+                    Field("annealing_steps", o.annealing_steps, ">= 1"),
+                    Field("seed", o.seed, FieldMark::from_above));
 }
 
 /// What became of all codes. Each was dropped by the first test named that it failed.

@@ -65,7 +65,7 @@ struct DesignOptions {
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<DesignOptions> auto& o) {
   return std::tuple(Field("method", o.method), Field("exposures", o.exposures, "in [1, 8]"),
-                    Field("target", o.target, Mark::apart), Field("factorize", o.factorize),
+                    Field("target", o.target, FieldMark::apart), Field("factorize", o.factorize),
                     Field("optimize", o.optimize), Field("search", o.search),
                     Field("robust", o.robust), Field("baselines", o.baselines),
                     Field("best_rotation", o.best_rotation),

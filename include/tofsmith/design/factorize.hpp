@@ -97,7 +97,7 @@ auto fields_of(ConstOrNot<FactorizeOptions> auto& o) {
                     Field("structured_starts", o.structured_starts),
                     Field("keep_naive", o.keep_naive), Field("refine_edges", o.refine_edges),
                     Field("refined", o.refined, ">= 1"), Field("kept", o.kept, ">= 1"),
-                    Field("seed", o.seed, Mark::from_above));
+                    Field("seed", o.seed, FieldMark::from_above));
 }
 
 /// One pair of convex steps.

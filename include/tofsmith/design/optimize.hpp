@@ -53,7 +53,7 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
       Field("refinement_steps", o.refinement_steps, ">= 0", ByEffort{50}),
       Field("trials_per_step", o.trials_per_step, ">= 8"),
       Field("pool_trials", o.pool_trials, ">= 1000"), Field("polish", o.polish),
-      Field("polish_steps", o.polish_steps, ">= 0"), Field("seed", o.seed, Mark::from_above),
+      Field("polish_steps", o.polish_steps, ">= 0"), Field("seed", o.seed, FieldMark::from_above),
       Field("two_return_weight", o.two_return_weight, "finite and >= 0"),
       Field("max_two_return_loss", o.max_two_return_loss, ">= 1"));
 }

@@ -70,13 +70,14 @@ struct PointDepthError {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<PointDepthError> auto& p) {
-  return std::tuple(Field("point", p.point, Mark::in_place), Field("trials", p.trials, Mark::apart),
-                    Field("linear_mde_m", p.linear_mde_m, "finite and >= 0"),
-                    Field("circular_mde_m", p.circular_mde_m, "finite and >= 0"),
-                    Field("outlier_rate", p.outlier_rate, "in [0, 1]", Mark::without_error),
-                    Field("cramer_rao_mae_m", p.cramer_rao_mae_m, ">= 0", Mark::bound),
-                    Field("receiver_bound_mae_m", p.receiver_bound_mae_m, ">= 0", Mark::bound),
-                    Field("direct_tof_bound_mae_m", p.direct_tof_bound_mae_m, ">= 0", Mark::bound));
+  return std::tuple(
+      Field("point", p.point, FieldMark::in_place), Field("trials", p.trials, FieldMark::apart),
+      Field("linear_mde_m", p.linear_mde_m, "finite and >= 0"),
+      Field("circular_mde_m", p.circular_mde_m, "finite and >= 0"),
+      Field("outlier_rate", p.outlier_rate, "in [0, 1]", FieldMark::without_error),
+      Field("cramer_rao_mae_m", p.cramer_rao_mae_m, ">= 0", FieldMark::bound),
+      Field("receiver_bound_mae_m", p.receiver_bound_mae_m, ">= 0", FieldMark::bound),
+      Field("direct_tof_bound_mae_m", p.direct_tof_bound_mae_m, ">= 0", FieldMark::bound));
 }
 
 /// One figure for all operating points.
@@ -113,11 +114,11 @@ auto fields_of(ConstOrNot<DepthErrorReport> auto& r) {
   return std::tuple(
       Field("code", r.code, InDocuments{"name"}), Field("exposures", r.exposures, ">= 1"),
       Field("taps", r.taps, ">= 1"), Field("measurements", r.measurements, ">= 1"),
-      Field("samples", r.samples, ">= 1"), Field("trials", r.trials, Mark::apart),
-      Field("points_short_of_target", r.points_short_of_target, Mark::apart),
-      Field("seed", r.seed, Mark::apart),
-      Field("outlier_threshold_m", r.outlier_threshold_m, Mark::apart), Field("linear", r.linear),
-      Field("circular", r.circular), Field("points", r.points));
+      Field("samples", r.samples, ">= 1"), Field("trials", r.trials, FieldMark::apart),
+      Field("points_short_of_target", r.points_short_of_target, FieldMark::apart),
+      Field("seed", r.seed, FieldMark::apart),
+      Field("outlier_threshold_m", r.outlier_threshold_m, FieldMark::apart),
+      Field("linear", r.linear), Field("circular", r.circular), Field("points", r.points));
 }
 
 /// Monte Carlo depth error at every operating point of the camera, with bounds beside it.

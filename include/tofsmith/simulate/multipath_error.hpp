@@ -97,12 +97,12 @@ struct MultipathCell {
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<MultipathCell> auto& c) {
   return std::tuple(Field("ratio", c.ratio), Field("delay_m", c.delay_m), Field("law_m", c.law_m),
-                    Field("single_bias_m", c.single_bias_m, Mark::without_error,
+                    Field("single_bias_m", c.single_bias_m, FieldMark::without_error,
                           InDocuments{"single_path_bias_m"}),
                     Field("single_error_m", c.single_error_m, InDocuments{"single_path_error_m"}),
-                    Field("bias_m", c.bias_m, Mark::without_error), Field("error_m", c.error_m),
-                    Field("cramer_rao_mae_m", c.cramer_rao_mae_m), Field("two_share", c.two_share),
-                    Field("unresolved_share", c.unresolved_share));
+                    Field("bias_m", c.bias_m, FieldMark::without_error),
+                    Field("error_m", c.error_m), Field("cramer_rao_mae_m", c.cramer_rao_mae_m),
+                    Field("two_share", c.two_share), Field("unresolved_share", c.unresolved_share));
 }
 
 /// Maps at one signal.

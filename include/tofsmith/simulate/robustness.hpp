@@ -90,10 +90,10 @@ struct PerturbedError {
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<PerturbedError> auto& e) {
   return std::tuple(Field("name", e.name),
-                    Field("calibrated_m", e.calibrated_m, "finite and >= 0", Mark::as_object,
+                    Field("calibrated_m", e.calibrated_m, "finite and >= 0", FieldMark::as_object,
                           InDocuments{"calibrated"}),
-                    Field("uncalibrated_m", e.uncalibrated_m, "finite and >= 0", Mark::as_object,
-                          InDocuments{"uncalibrated"}));
+                    Field("uncalibrated_m", e.uncalibrated_m, "finite and >= 0",
+                          FieldMark::as_object, InDocuments{"uncalibrated"}));
 }
 
 /// Depth error of a code when its camera is not quite what it was said to be.
@@ -110,10 +110,11 @@ struct RobustnessReport {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<RobustnessReport> auto& r) {
-  return std::tuple(
-      Field("kind", r.kind, InDocuments{"error"}), Field("trials", r.trials), Field("seed", r.seed),
-      Field("nominal_m", r.nominal_m, "finite and >= 0", Mark::as_object, InDocuments{"nominal"}),
-      Field("perturbed", r.perturbed, InDocuments{"perturbations"}));
+  return std::tuple(Field("kind", r.kind, InDocuments{"error"}), Field("trials", r.trials),
+                    Field("seed", r.seed),
+                    Field("nominal_m", r.nominal_m, "finite and >= 0", FieldMark::as_object,
+                          InDocuments{"nominal"}),
+                    Field("perturbed", r.perturbed, InDocuments{"perturbations"}));
 }
 
 /// Judges a code on the perturbations of its camera.

@@ -89,14 +89,14 @@ std::vector<Candidate> playable_candidates(const DesignProblem& problem, Optimiz
     if (polished && !options.polish) continue;
     const std::string& start = entries[k / 2].start;
     pool.record(pool.judge().score(sampled_on(space, codes[k])).log_error_bin);
-    candidates.push_back(
-        {.code = signed_by(code_set(name, space, codes[k], camera.samples), "optimize", camera,
-                           options.seed),
-         .method = "optimize",
-         .message =
-             fmt::format("a descent from {}{}{}", start, polished ? ", with polished edges" : "",
-                         pool.ended_early() ? "; hops ended early, without gain" : "")});
-    candidates.back().per_measurement = reports_of(candidates.back().code, start);
+    Candidate candidate{.code = signed_by(code_set(name, space, codes[k], camera.samples),
+                                          "optimize", camera, options.seed),
+                        .method = "optimize"};
+    candidate.message =
+        fmt::format("a descent from {}{}{}", start, polished ? ", with polished edges" : "",
+                    pool.ended_early() ? "; hops ended early, without gain" : "");
+    candidate.per_measurement = reports_of(candidate.code, start);
+    candidates.push_back(std::move(candidate));
   }
   return candidates;
 }

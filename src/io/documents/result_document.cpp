@@ -29,7 +29,7 @@ Json zncc_json(const DepthErrorReport& report, const DepthErrorReport& zncc) {
       {"points", Json::array()}};
   for (std::size_t i = 0; i < zncc.points.size(); ++i) {
     const PointDepthError &p = report.points[i], &other = zncc.points[i];
-    Json point = fields_json(other, as_bits(Mark::apart) | as_bits(Mark::bound));
+    Json point = fields_json(other, as_bits(FieldMark::apart) | as_bits(FieldMark::bound));
     point["linear_ratio"] = over(p.linear_mde_m, other.linear_mde_m);
     point["circular_ratio"] = over(p.circular_mde_m, other.circular_mde_m);
     entry["points"].push_back(std::move(point));
@@ -48,7 +48,7 @@ DepthErrorKind parse_word(const JsonReader& json, DepthErrorKind) {
 Json depth_error_json(const DepthErrorReport& report, int rotation_bin) {
   Json entry;
   for_each_field(report, [&](const auto& field) {
-    if (field.is(Mark::apart)) return;
+    if (field.is(FieldMark::apart)) return;
     write_field(entry, field);
     if (field.name == std::string_view("samples")) entry["rotation_bin"] = rotation_bin;
   });

@@ -12,22 +12,22 @@ namespace tofsmith {
 namespace {
 
 template <typename Enum>
-using EnumWords = std::pair<std::string_view, Enum>;
+using WordPairs = std::pair<std::string_view, Enum>;
 
-constexpr std::array number_words = {EnumWords<RawNumbers>{"integer", RawNumbers::integers},
-                                     EnumWords<RawNumbers>{"float", RawNumbers::floats}};
-constexpr std::array packings = {EnumWords<RawPacking>{"plain", RawPacking::plain},
-                                 EnumWords<RawPacking>{"mipi", RawPacking::mipi},
-                                 EnumWords<RawPacking>{"lsb_first", RawPacking::lsb_first},
-                                 EnumWords<RawPacking>{"msb_first", RawPacking::msb_first}};
-constexpr std::array layouts = {EnumWords<RawOrder>{"planar", RawOrder::planar},
-                                EnumWords<RawOrder>{"interleaved", RawOrder::interleaved},
-                                EnumWords<RawOrder>{"by_rows", RawOrder::by_rows}};
-constexpr std::array alignments = {EnumWords<RawAlignment>{"low", RawAlignment::low},
-                                   EnumWords<RawAlignment>{"high", RawAlignment::high}};
-constexpr std::array byte_orders = {EnumWords<bool>{"little", false}, EnumWords<bool>{"big", true}};
-constexpr std::array tap_words = {EnumWords<bool>{"keep", false},
-                                  EnumWords<bool>{"subtract", true}};
+constexpr std::array number_words = {WordPairs<RawNumbers>{"integer", RawNumbers::integers},
+                                     WordPairs<RawNumbers>{"float", RawNumbers::floats}};
+constexpr std::array packings = {WordPairs<RawPacking>{"plain", RawPacking::plain},
+                                 WordPairs<RawPacking>{"mipi", RawPacking::mipi},
+                                 WordPairs<RawPacking>{"lsb_first", RawPacking::lsb_first},
+                                 WordPairs<RawPacking>{"msb_first", RawPacking::msb_first}};
+constexpr std::array layouts = {WordPairs<RawOrder>{"planar", RawOrder::planar},
+                                WordPairs<RawOrder>{"interleaved", RawOrder::interleaved},
+                                WordPairs<RawOrder>{"by_rows", RawOrder::by_rows}};
+constexpr std::array alignments = {WordPairs<RawAlignment>{"low", RawAlignment::low},
+                                   WordPairs<RawAlignment>{"high", RawAlignment::high}};
+constexpr std::array byte_orders = {WordPairs<bool>{"little", false}, WordPairs<bool>{"big", true}};
+constexpr std::array tap_words = {WordPairs<bool>{"keep", false},
+                                  WordPairs<bool>{"subtract", true}};
 
 void read_order(TableReader& table, std::vector<int>& order) {
   std::vector<double> numbers;

@@ -14,15 +14,15 @@
 namespace tofsmith {
 namespace {
 
-struct Field {
+struct TextField {
   std::string_view text;
   std::size_t column;  // counted from 1
 };
 
 /// The fields of one line; what stands between two separators may be empty.
-std::vector<Field> split(std::string_view line) {
+std::vector<TextField> split(std::string_view line) {
   constexpr std::string_view blanks = " \t\r";
-  std::vector<Field> fields;
+  std::vector<TextField> fields;
   std::size_t at = line.find_first_not_of(blanks);
   while (at < line.size()) {
     const std::size_t end = std::min(line.find_first_of(" \t\r,;", at), line.size());
@@ -43,8 +43,8 @@ std::optional<double> number_in(std::string_view text) {
   return number;
 }
 
-bool names_columns(const std::vector<Field>& fields) {
-  for (const Field& field : fields)
+bool names_columns(const std::vector<TextField>& fields) {
+  for (const TextField& field : fields)
     if (field.text.empty() || number_in(field.text)) return false;
   return true;
 }
@@ -60,7 +60,7 @@ CsvTable parse_csv(std::string_view text, std::string_view file) {
     const std::string_view line = text.substr(begin, end - begin);
     begin = end + 1;
     ++line_number;
-    const std::vector<Field> fields = split(line);
+    const std::vector<TextField> fields = split(line);
     if (fields.empty() || fields[0].text.starts_with('#')) continue;
     const auto place = [&](std::size_t column) {
       return fmt::format("{}:{}:{}", file, line_number, column);
@@ -71,10 +71,10 @@ CsvTable parse_csv(std::string_view text, std::string_view file) {
       throw IoError(place(1), fmt::format("found {} columns; expected {} as in the first row",
                                           fields.size(), columns));
     if (first && names_columns(fields)) {
-      for (const Field& field : fields) table.names.emplace_back(field.text);
+      for (const TextField& field : fields) table.names.emplace_back(field.text);
       continue;
     }
-    for (const Field& field : fields) {
+    for (const TextField& field : fields) {
       const std::optional<double> number = number_in(field.text);
       if (!number || !std::isfinite(*number))
         throw IoError(place(field.column),

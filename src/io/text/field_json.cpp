@@ -39,10 +39,10 @@ int read_integer(const JsonReader& json, std::string_view rule) {
 void read_estimate(const JsonReader& object, const Field<Estimate>& field) {
   const auto read = [&](const JsonReader& json, std::string_view name) {
     field.value.value = read_number(json.member(name), field.rule);
-    if (!field.is(Mark::without_error))
+    if (!field.is(FieldMark::without_error))
       field.value.standard_error = read_number(json.member(error_name(name)), field.rule);
   };
-  if (field.is(Mark::as_object))
+  if (field.is(FieldMark::as_object))
     read(object.member(field.document_name), value_name);
   else
     read(object, field.document_name);

@@ -23,7 +23,7 @@ void write_field(nlohmann::ordered_json& object, const Field<Value>& field);
 
 /// All fields but those with one of the marks.
 template <typename Struct>
-nlohmann::ordered_json fields_json(const Struct& its, unsigned but = as_bits(Mark::apart)) {
+nlohmann::ordered_json fields_json(const Struct& its, unsigned but = as_bits(FieldMark::apart)) {
   nlohmann::ordered_json object = nlohmann::ordered_json::object();
   for_each_field(its, [&](const auto& field) {
     if ((field.marks & but) == 0) write_field(object, field);
@@ -39,7 +39,7 @@ nlohmann::ordered_json row_json(const Struct& its) {
   return row;
 }
 
-/// The same fields back, but those that are Mark::apart.
+/// The same fields back, but those that are FieldMark::apart.
 /// @throws IoError naming file and member that is missing or breaks the field's rule
 template <typename Struct>
 Struct fields_from_json(const JsonReader& json);
@@ -77,15 +77,15 @@ void read_fields(const JsonReader& json, Struct& its);
 
 template <typename Value>
 void read_field(const JsonReader& object, const Field<Value>& field) {
-  if (field.is(Mark::apart)) return;
+  if (field.is(FieldMark::apart)) return;
   if constexpr (std::is_same_v<Value, Estimate>) {
     read_estimate(object, field);
   } else if constexpr (HasFields<Value>) {
-    read_fields(field.is(Mark::in_place) ? object : object.member(field.document_name),
+    read_fields(field.is(FieldMark::in_place) ? object : object.member(field.document_name),
                 field.value);
   } else {
     const JsonReader json = object.member(field.document_name);
-    if (field.is(Mark::may_be_null) && json.is_null()) return;
+    if (field.is(FieldMark::may_be_null) && json.is_null()) return;
     if constexpr (is_optional<Value>) {
       if (!json.is_null()) read_fields(json, field.value.emplace());
     } else if constexpr (is_list<Value>) {
@@ -137,15 +137,15 @@ void write_field(nlohmann::ordered_json& object, const Field<Value>& field) {
   using Type = std::remove_const_t<Value>;
   const std::string name(field.document_name);
   if constexpr (std::is_same_v<Type, Estimate>) {
-    if (field.is(Mark::as_object)) {
+    if (field.is(FieldMark::as_object)) {
       object[name] = estimate_json(field.value);
     } else {
       object[name] = field.value.value;
-      if (!field.is(Mark::without_error))
+      if (!field.is(FieldMark::without_error))
         object[error_name(field.document_name)] = field.value.standard_error;
     }
   } else if constexpr (HasFields<Value>) {
-    if (field.is(Mark::in_place))
+    if (field.is(FieldMark::in_place))
       object.update(fields_json(field.value));
     else
       object[name] = fields_json(field.value);
