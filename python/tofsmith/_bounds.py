@@ -28,7 +28,7 @@ class CramerRaoBound:
     code : CodeSet, name of a family or file
     camera : Camera or its name
     of_variance_too : bool
-        Also count what the size of the noise tells (under 0.1 % more).
+        Also count the information in the size of the noise (under 0.1 % more).
     """
 
     def __init__(

@@ -221,7 +221,7 @@ class Camera:
         return self._handle.bin_m()
 
     def transfer(self, highest: int) -> npt.NDArray[np.complex128]:
-        """What both arms leave of harmonics n = 0 .. highest: H_d(n f0) conj(H_m(n f0)).
+        """Transfer function of both arms, n = 0 .. highest: H_d(n f0) conj(H_m(n f0)).
 
         Returns
         -------

@@ -135,7 +135,7 @@ class Lens:
 
 @dataclass(frozen=True)
 class OperatingMultipath:
-    """Second returns as a camera meets them, uniform between limits; see docs/multipath.md.
+    """Multipath that a camera meets: second returns, uniform between limits; docs/multipath.md.
 
     Attributes
     ----------
@@ -143,7 +143,7 @@ class OperatingMultipath:
         S2 / S1, in [0, 1], and the delay behind the direct return [m].
     weight : float
         Designs minimize E1^(1 - weight) E2^weight, with E1 the error of single returns and E2
-        that behind such second ones; in (0, 1).
+        that with such a second one; in (0, 1).
     """
 
     ratio: tuple[float, float]
@@ -164,7 +164,7 @@ class Operating:
     albedo : float or str
         Scales the signal; "uniform": a fresh draw in (0, 1) for every trial.
     multipath : OperatingMultipath, optional
-        What designs reckon with; None: light comes back once.
+        What designs take into account; None: light comes back once.
     """
 
     signal_e_per_s: tuple[float, ...]

@@ -54,7 +54,7 @@ class DeadPixels:
 
 @dataclass(frozen=True)
 class CalibratedCorrelation:
-    """What a sweep tells of a camera.
+    """What is known of a camera by a sweep.
 
     Attributes
     ----------

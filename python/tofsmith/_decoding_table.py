@@ -83,7 +83,7 @@ class DecodingTable:
         Raises
         ------
         OSError
-            If the file cannot be read, or its table tells no depths apart.
+            If the file cannot be read, or its table distinguishes no depths.
         ValueError
             If a code is given what only measured tables need.
         """

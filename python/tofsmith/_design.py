@@ -59,7 +59,7 @@ class Candidate:
     method : str
         family, naive, reference, factorize, optimize or search.
     ranking_error_m : float
-        What it is chosen by [m].
+        What candidates are ranked by [m]: depth error, robustness and multipath weighed in.
     error : DepthErrorReport
     rotation_bin : int
         How far the origin of depth was moved.
@@ -104,7 +104,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class DesignResult:
-    """All candidates of a camera, and which one is best by its chosen depth error.
+    """All candidates of a camera, and which one has the least `ranking_error_m`.
 
     Attributes
     ----------

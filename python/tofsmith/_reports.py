@@ -138,7 +138,7 @@ class OperatingMultipathReport:
     single_path_linear_m, single_path_circular_m : tuple of float
         Decoded as if light came back once.
     two_return_linear_m, two_return_circular_m : tuple of float, optional
-        Decoded as two returns; None: the code cannot tell them.
+        Decoded as two returns; None: the code cannot separate them.
     """
 
     single_path_linear_m: tuple[float, float]

@@ -66,7 +66,7 @@ class ParametricResponse:
 
 @dataclass(frozen=True)
 class CalibratedResponse:
-    """What a record tells of an arm.
+    """What is known of an arm by a record.
 
     Attributes
     ----------

@@ -17,12 +17,12 @@ std::uint64_t search_seed(const DesignOptions& options);
 /// Whether candidates are moved to their best origin. The circular error does not depend on it.
 bool rotates(const Camera& camera, const DesignOptions& options);
 
-/// Why no depth can be told with a code: the camera cannot play it, or what it measures does not
-/// tell depths apart. None: depth can be decoded.
+/// Why no depth can be decoded with a code: the camera cannot play it, or what it measures does not
+/// distinguish depths. None: depth can be decoded.
 std::optional<std::string> why_no_depth(const CodeSet& code, const Camera& camera);
 
 /// @throws std::invalid_argument for bad options or camera, or if together they ask for codes that
-///         are robust and reckon with second returns
+///         are robust and take multipath into account
 void require_judgeable(const Camera& camera, const DesignOptions& options);
 
 /// What judge() does, for checked options: leaves out candidates that tell no depth, judges the

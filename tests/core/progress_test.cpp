@@ -17,7 +17,7 @@
 namespace tofsmith {
 namespace {
 
-/// Keeps what it is told.
+/// Keeps what is reported to it.
 struct Listener {
   std::vector<double> seen;
   Progress progress = [this](double fraction, std::string_view step) {

@@ -106,7 +106,7 @@ TEST(Optimize, CountsMultipathWhereTheCameraHasIt) {
   const Candidate& found = *result.find("optimized-k5");
   ASSERT_TRUE(given.multipath && given.multipath->two_return);
   ASSERT_TRUE(found.multipath && found.multipath->two_return);
-  // Less error by what was minimized, and two returns can still be told.
+  // Less error by what was minimized, and two returns can still be separated.
   EXPECT_LT(ranking_error_m(found, camera, {}), ranking_error_m(given, camera, {}));
   EXPECT_LT(found.multipath->two_return->circular_m.value,
             1.4 * given.multipath->two_return->circular_m.value);

@@ -37,7 +37,7 @@ enum class Fault {
 inline constexpr int fault_kinds = static_cast<int>(Fault::splits_answer) + 1;
 
 /// A generator in a few hundred lines: takes bytes, answers bytes, keeps points and settings. It
-/// understands what three families are told for an upload, from their manuals and not from the code
+/// understands what an upload sends to three families, from their manuals and not from the code
 /// under test.
 class SimulatedGenerator {
  public:

@@ -81,7 +81,7 @@ struct DeadPixels {
   int total() const { return not_a_number + constant + saturated + low; }
 };
 
-/// What a sweep tells of a camera.
+/// What is known of a camera by a sweep.
 struct CalibratedCorrelation {
   MeasuredTable table;             ///< of the usual pixel, its gain 1 and its offset 0
   Eigen::MatrixXd standard_error;  ///< of each value of the table (N, K)
@@ -101,7 +101,7 @@ struct CalibratedCorrelation {
 
 /// The measured table of a sweep.
 ///   1. Dead pixels are left out.
-///   2. Drift: delays measured more than once tell how light and level changed in time, taken to be
+///   2. Drift: delays measured more than once show how light and level changed in time, taken to be
 ///      straight lines; what is beyond 3 standard errors is taken out.
 ///   3. Every pixel's curve is taken apart into harmonics; its delay and gain against the mean
 ///      curve maximize the sum over harmonics and measurements (the least squares fit), and the

@@ -76,7 +76,7 @@ struct ResponsePeak {
   double height = 0.0;  ///< over that of the highest
 };
 
-/// What a record tells of an arm.
+/// What is known of an arm by a record.
 struct CalibratedResponse {
   Excitation excitation = Excitation::pulse;
   bool falling = false;            ///< the pulse points down, or the step is a switch off

@@ -44,13 +44,13 @@ struct ImpulseResponse {
 /// "none", "hann", "gaussian", "lowpass", "file".
 std::string_view name_of(ImpulseResponse::Kind kind);
 
-/// Multipath that a camera meets, as second returns: ratio and delay are uniform between their
+/// Multipath that a camera meets: one second return, of ratio and delay uniform between their
 /// limits. Field names are the keys of [operating.multipath] in the TOML file.
 struct OperatingMultipath {
-  std::array<double, 2> ratio{0.1, 0.5};    ///< r = S2 / S1, least and largest, in [0, 1]
+  std::array<double, 2> ratio{0.1, 0.5};    ///< r = S2 / S1, smallest and largest, in [0, 1]
   std::array<double, 2> delay_m{0.5, 3.0};  ///< behind the direct return, in (0, range) [m]
   /// How much they count where codes are designed: what is minimized is E1^(1 - weight) E2^weight,
-  /// with E1 the error of single returns and E2 that behind such second ones, decoded as
+  /// with E1 the error of single returns and E2 that with such a second one, decoded as
   /// single-path; in (0, 1).
   double weight = 0.2;
 
@@ -208,7 +208,7 @@ struct OperatingRange {
   DepthErrorKind error = DepthErrorKind::linear;
   double albedo = 1.0;          ///< scales the signal, (0, 1]
   bool uniform_albedo = false;  ///< instead: a fresh uniform draw in (0, 1) for every trial
-  /// Multipath that designs count with; none: light comes back once.
+  /// Multipath that designs take into account; none: light comes back once.
   std::optional<OperatingMultipath> multipath = {};
 
   /// All pairs, signal by signal.
@@ -239,11 +239,11 @@ struct Camera {
   std::optional<Lens> lens;
   OperatingRange operating;
 
-  /// Largest depth the camera can tell from zero [m]: c / (2 f0).
+  /// Depth after which everything repeats [m]: c / (2 f0).
   double range_m() const;
   /// Depth of one bin [m]: range / N.
   double bin_m() const;
-  /// H_d(n f0) conj(H_m(n f0)) for n = 0 .. highest: what both arms leave of harmonic n.
+  /// H_d(n f0) conj(H_m(n f0)) for n = 0 .. highest: transfer function of both arms together.
   Eigen::VectorXcd transfer(int highest) const;
   /// H_m(n f0) of the light alone. The mean of edges that are displaced by normal deviations of
   /// rms s, period by period, is the waveform blurred by that normal density: a factor
@@ -279,7 +279,7 @@ std::optional<std::string> why_no_family(std::string_view name, const Camera& ca
 /// @throws InvalidArgument with the text of why_no_family(), if there is one
 CodeSet build_family(std::string_view name, const Camera& camera);
 
-/// Cameras that need no file: paper-30x, paper-10f0, paper-5f0, prototype (prototype.hpp) and
+/// Cameras that need no file: paper-30x, paper-10f0, paper-5f0, prototype (the paper's bench) and
 /// exclusive-3tap-9chip: three taps and a clock of 9 chips of 10 ns, for design/chip_search.hpp.
 std::vector<std::string> built_in_camera_names();
 /// @throws std::invalid_argument for an unknown name, with the nearest known one

@@ -43,7 +43,7 @@ struct Return {
 
 /// What a camera that plays a code measures: expected electrons and their variance.
 ///   mu_i(z) = T_i (S chi_i(z) + A kappa_i + dark),  variance mu_i + sigma_r^2 (+ step^2 / 12)
-/// chi and kappa are those of the actual waveforms (see actual_code), behind both arms.
+/// chi and kappa are those of the actual waveforms, behind both arms.
 /// @see Gutierrez-Barragan et al., CVPR 2019, Eq. (4); several returns add.
 ///
 /// A *tap value* is what one tap collects (E x taps of them); a *measurement* is what leaves the
@@ -113,9 +113,9 @@ Eigen::MatrixXd readout_matrix(int tap_values, Readout readout);
 /// Variance of one tap value that does not depend on light [e^2]: read noise and quantization.
 double constant_variance_e2_of(const Sensor& sensor);
 
-/// kappa (K) as an estimator on this camera has to reckon with it: 0 for all differences of buckets
+/// kappa (K) for an estimator on this camera: 0 for all differences of buckets
 /// if the brightest operating ambient leaks into none of them by more than 5 % of its noise, as
-/// where a generator rounds duties of 1/2. To hold such a leak to be unknown would cost a whole
+/// where a generator rounds duties of 1/2. To estimate such a leak would cost a whole
 /// measurement; to ignore it costs next to nothing. Else ambient_gain().
 Eigen::VectorXd unknown_ambient_gain(const ForwardModel& model, const Camera& camera);
 

@@ -29,7 +29,7 @@ class ProgressParts {
   /// One part for each of `weights`, which say how long each takes: >= 0, of any unit, not all 0.
   ProgressParts(Progress whole, const std::vector<double>& weights);
 
-  /// Part `i`: what it tells reaches the whole in its share of [0, 1]. May outlive this object.
+  /// Part `i`: its progress reaches the whole in its share of [0, 1]. May outlive this object.
   Progress operator[](std::size_t i) const;
 
  private:

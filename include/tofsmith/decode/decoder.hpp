@@ -67,8 +67,8 @@ class Decoder {
   ///     best along which the code's own score falls (1 if nothing is outside). The bin that scores
   ///     best there may be taken from a vector nearby;
   ///   status: as PixelStatus says, low_signal by the noise at the best bin. The residual of a
-  ///   pixel without
-  ///     ambient light counts as 0, and no_return, below 1e-12 of sum_i |y'_i|.
+  ///     pixel, without ambient light, counts as 0, and the pixel as no_return,
+  ///     below 1e-12 of sum_i |y'_i|.
   /// All but bins is computed in single precision: depth errs by about 1e-7 / (angle between
   /// neighbour bins) of a bin, signal and ambient light by about 1e-6 of the brightest measurement.
   /// Pixels that are invalid or have no return are NaN in all planes of floats; the bin is -1 for

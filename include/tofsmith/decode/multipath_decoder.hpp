@@ -142,7 +142,7 @@ class TailDecoder : public MultipathDecoder {
 /// of one return.
 ///
 /// The noise of a measurement is taken from itself: max(y', 0) + dark + constant variance. Curves
-/// between bins are drawn by cubics where that foretells the table better than chords do.
+/// between bins are drawn by cubics where that predicts the table better than chords do.
 ///
 /// @see docs/multipath.md
 class TwoReturnDecoder : public MultipathDecoder {

@@ -19,12 +19,12 @@ namespace tofsmith {
 /// One binary waveform on a chip clock: bit k is set if it is on during chip k.
 using ChipWord = std::uint32_t;
 
-/// Most chips of a period that a word holds here.
+/// Largest number of chips of a period.
 inline constexpr int max_chips = 24;
 
 /// The word, `shift` chips later on a circle of `chips`. Any shift.
 ChipWord delayed_chips(ChipWord word, int shift, int chips);
-/// The word played backwards: chip k becomes chip -k.
+/// The word reversed in time: chip k becomes chip -k.
 ChipWord reversed_chips(ChipWord word, int chips);
 /// Every chip.
 constexpr ChipWord all_chips(int chips) { return (ChipWord{1} << chips) - 1; }
@@ -116,7 +116,7 @@ struct ChipSearchCounts {
   double raw = 0.0;  ///< codes there are: words of light and taps
   double after_symmetry =
       0.0;                    ///< of these, none a delay, a mirror image or a reordering of another
-  std::int64_t examined = 0;  ///< really looked at, a few symmetric ones twice
+  std::int64_t examined = 0;  ///< tried one by one, a few symmetric ones twice
   std::int64_t pruned_by_turning = 0;  ///< three taps: not once around, one way (exact)
   std::int64_t pruned_by_bound = 0;    ///< a bound on their metric is worse than the best
   std::int64_t metric_evaluations = 0;

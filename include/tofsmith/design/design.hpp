@@ -130,7 +130,7 @@ std::vector<std::string> suggested_baselines(const Camera& camera, const DesignO
 /// The judge of designs: moves every candidate to its best origin if options ask (best_rotation()),
 /// judges all by evaluate() with DesignOptions::seed and trials, random numbers that none was made
 /// with, keeps the best of those that share a name, and ranks them by ranking_error_m.
-/// What no depth can be told with is left out, with the reason.
+/// Candidates by which no depth can be decoded are left out, with the reason.
 /// @param candidates  that the camera can play; their code and how it was made
 /// @return the winner is never worse than any candidate given
 /// @throws std::invalid_argument for bad options or camera, a code that does not fit, or if nothing

@@ -122,7 +122,7 @@ struct DecodedRecording {
 /// @note the same bits for any number of threads and any memory
 DecodedRecording decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
                                   const Progress& progress = {});
-/// The same, and tells how far it came when it throws.
+/// The same, with what is finished in `result` also when it throws.
 /// @param result  filled frame by frame
 void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
                       const Progress& progress, DecodedRecording& result);

@@ -42,7 +42,7 @@ struct LoadedDecodingTable {
 
 /// The table of a family, of a code's file, or of measured correlation functions.
 /// @throws IoError as load_camera_code() and read_measured_table(), or naming the file whose table
-///         tells no depths apart
+///         distinguishes no depths
 /// @throws std::invalid_argument if a code is given what only measured tables need
 LoadedDecodingTable load_decoding_table(const std::string& code, const Camera& camera,
                                         const DecodingTableOptions& options = {});

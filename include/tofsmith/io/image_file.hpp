@@ -53,7 +53,7 @@ struct PngImage {
 
 /// Palettes are looked up and values of fewer than 8 bits spread to 8; nothing else is changed.
 /// @param file  what errors call it
-/// @throws IoError if the file is damaged or larger than the limits of image_limits.hpp
+/// @throws IoError if the file is damaged, a side above 65536 or the pixels above 2^28
 PngImage parse_png(std::span<const std::byte> content, std::string_view file);
 PngImage read_png(const std::filesystem::path& path);
 

@@ -149,7 +149,7 @@ class RawDumpReader;
 /// @note reading is safe from many threads at once, each with a buffer of its own
 class RawFramesReader {
  public:
-  /// @throws IoError as read_raw_frames() in raw_frames_file.hpp, or if a file that cannot be read
+  /// @throws IoError as read_raw_frames(), or if a file that cannot be read
   /// in parts would take
   ///         more memory than allowed
   explicit RawFramesReader(const std::filesystem::path& path, const RawReadOptions& options = {});

@@ -26,7 +26,7 @@ std::vector<std::string> built_in_scene_names();
 ///
 /// | name      | shapes, by index                                                               |
 /// |-----------|--------------------------------------------------------------------------------|
-/// | table-top | the demo's, see table_top.hpp: table, wall, three books, ball                  |
+/// | table-top | the demo's: table, wall, three books, ball                                     |
 /// | books     | 0 to 2 upright books, front covers at z = 1.2, 1.4, 1.6 m, the first (leftmost) |
 /// |           | dark; 3 a wall at 3.2 m; 4 the table they stand on                             |
 /// | ball      | 0 a volleyball of radius 20 cm, centre at 1 m; 1 a wall at 2.5 m               |

@@ -68,7 +68,7 @@ class RayCaster {
   std::optional<Hit> nearest(const Ray& ray) const;
 
   /// Through the centre of every pixel, the nearest surface. Rays that meet nothing return nothing
-  /// (NaN). A camera inside a shape sees it from within: see check_view.hpp.
+  /// (NaN). A camera inside a shape sees it from within: see check_view().
   /// @param camera_to_world  where the camera stands and looks; identity: the view's own axes
   /// @throws std::invalid_argument if the view is invalid or the pose is not rigid and finite
   SeenScene see(const PinholeView& view,

@@ -17,7 +17,7 @@ namespace tofsmith {
 class PhotonInformation {
  public:
   /// @param transfer  harmonics 0 .. highest of what blurs the light
-  /// @param may_ring  whether the response may really fall below 0, as a measured one may; else
+  /// @param may_ring  whether the response itself may fall below 0, as a measured one may; else
   ///                  values below 0 come from the harmonics left out
   PhotonInformation(const Eigen::VectorXcd& transfer, bool may_ring);
 
@@ -54,8 +54,8 @@ void sample_with_slope(const Eigen::VectorXcd& harmonics, Eigen::VectorXd& value
 
 /// Which information a Cramer-Rao bound counts.
 enum class NoiseInformation {
-  mean,               ///< what the expected measurements tell, weighted by 1 / variance
-  mean_and_variance,  ///< also what the size of the noise tells (under 0.1 % more)
+  mean,               ///< of the expected measurements, weighted by 1 / variance
+  mean_and_variance,  ///< also of the size of the noise (under 0.1 % more)
 };
 
 /// How well any unbiased estimator can measure depth with one code, signal and ambient unknown.

@@ -19,7 +19,7 @@ namespace tofsmith {
 /// Where the true depths of trials lie.
 enum class DepthSampling {
   uniform,  ///< anywhere in the range
-  bins,     ///< on bins only: flatters codes that cannot tell what lies between
+  bins,     ///< on bins only: flatters codes that are wrong in between
 };
 
 /// How depth error is measured.
