@@ -3,6 +3,7 @@
 #include "tofsmith/core/parallel.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "tofsmith/core/error.hpp"
 
@@ -37,9 +38,8 @@ void parallel_for_blocks(std::int64_t count, std::int64_t block,
                          const std::function<void(IndexRange)>& work) {
   TOFSMITH_ASSERT_LT(std::int64_t{0}, block);
   const std::int64_t blocks = (count + block - 1) / block;
-  parallel_for(blocks, [&](std::int64_t b) {
-    work({b * block, std::min(count, (b + 1) * block)});
-  });
+  const auto work_on = [&](std::int64_t b) { work({b * block, std::min(count, (b + 1) * block)}); };
+  parallel_for(blocks, std::ref(work_on));  // a function object of this size would be allocated
 }
 
 ThreadLimit::ThreadLimit(int threads) {

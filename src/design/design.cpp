@@ -211,7 +211,7 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     std::vector<Candidate> made = run_or_load(tasks[i], store, of_tasks[i]);
     if (made.empty()) serves(tasks[i].method, no_code_found(tasks[i].name), options, result);
-    std::ranges::move(made, std::back_inserter(result.candidates));
+    std::move(made.begin(), made.end(), std::back_inserter(result.candidates));
   }
 
   // 3. Judge all with the same fresh random numbers and pick by the camera's depth error.

@@ -17,8 +17,8 @@ void DesignOptions::validate() const {
   }
   if (baselines)
     for (const std::string& name : *baselines)
-      require(std::ranges::count(*baselines, name) == 1, "DesignOptions::baselines", name,
-              "must be listed once");
+      require(std::count(baselines->begin(), baselines->end(), name) == 1,
+              "DesignOptions::baselines", name, "must be listed once");
   require(!target || !target->measurements.empty(), "DesignOptions::target", "[]",
           "must hold at least one correlation function");
   factorize.validate();

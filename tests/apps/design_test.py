@@ -37,7 +37,7 @@ class Design(CommandLineTest):
         with self.subTest("finished codes are reused"):
             name = f"d/finished/{designed[0]['name']}.json"
             record = json.loads(self.bytes_of(name))
-            record["seconds"] = 12345.5
+            record["candidates"][0]["seconds"] = 12345.5
             self.write(name, json.dumps(record))
             again = self.do_json(*self.ARGUMENTS, "-o", "d", "--force")
             kept = next(c for c in again["codes"] if c["name"] == designed[0]["name"])

@@ -66,7 +66,7 @@ class Interrupts(CommandLineTest):
                                 "-o", "d")
         self.assertEqual(self.bytes_of(kept), before)
         resumed = next(c for c in document["codes"] if c["name"] == "hamiltonian-k3-factorized")
-        self.assertEqual(resumed["seconds"], json.loads(before)["seconds"])
+        self.assertEqual(resumed["seconds"], json.loads(before)["candidates"][0]["seconds"])
 
 
 if __name__ == "__main__":

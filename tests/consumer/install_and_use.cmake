@@ -5,6 +5,8 @@
 #   cmake -D build=DIR -D work=DIR -D compiler=CXX -D flags=FLAGS -D type=TYPE
 #         -D "components=core;design;.." -P install_and_use.cmake
 
+cmake_policy(SET CMP0057 NEW)  # IN_LIST
+
 function(run)
   execute_process(COMMAND ${ARGV} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()

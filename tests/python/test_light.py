@@ -119,7 +119,7 @@ def test_generators_cost_what_the_command_line_says(cli, tmp_path):
     assert written.camera.light.generator is not None
     loss = ts.generator_loss("hamiltonian-k3", written.camera, trials=500)
     assert loss.correlation_change.shape == (3,) and loss.ratio("circular") > 0.5
-    assert loss.digest.of("linear").geometric_mean_m > 0 and loss.uncalibrated_ratio() > 0.5
+    assert loss.nominal.of("linear").geometric_mean_m > 0 and loss.uncalibrated_ratio() > 0.5
     sets = [word for setting in settings[1:] for word in ("--set", setting)]
     run(cli, "export", "hamiltonian-k3", "--camera", "prototype", *sets, "--format", "keysight-arb",
         "--samples", 100, "--no-loss", "-o", tmp_path / "said")

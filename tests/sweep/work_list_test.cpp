@@ -44,7 +44,7 @@ TEST(WorkList, AKeyDependsOnAllThatDeterminesTheResult) {
       axis("light.impulse_response.f_max_hz", "1e8"),
       "outlier_threshold_m = 0.25\n",
       "target_standard_error = 0.01\n",
-      "target_standard_error = 0.01\nmost_trials = 1000\n"};
+      "target_standard_error = 0.01\nmax_trials = 1000\n"};
   std::set<std::string> keys;
   for (const std::string& text : texts) keys.insert(key_of(text));
   EXPECT_EQ(keys.size(), texts.size());

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <compare>
 
 #include "core/shared/shared_progress.hpp"
 #include "tofsmith/core/parallel.hpp"
@@ -81,10 +80,10 @@ class FirstTapLister {
         moved[count++] = motion.of(current_.taps[static_cast<std::size_t>(tap)], rules_.chips);
     std::sort(moved.begin(), moved.end());
     const auto own = current_.taps.begin() + 1;
-    const auto order = std::lexicographical_compare_three_way(moved.begin(), moved.begin() + count,
-                                                              own, own + count);
-    if (std::is_eq(order) && motion.is_mirror) current_.is_achiral = true;
-    return std::is_gteq(order);
+    const auto end = moved.begin() + count;
+    const auto [moved_at, own_at] = std::mismatch(moved.begin(), end, own);
+    if (moved_at == end && motion.is_mirror) current_.is_achiral = true;
+    return moved_at == end || *moved_at > *own_at;
   }
 
   const AssignmentRules& rules_;

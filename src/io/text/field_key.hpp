@@ -19,13 +19,14 @@ inline void append_key(std::string& key, const Waveform& waveform) {
     fmt::format_to(std::back_inserter(key), ";{}", sample);
 }
 
-/// Appends a value, all fields of a struct by name, as text that differs where the value does: what
-/// finished work is found again by.
+/// Appends a value, all fields of a struct by name but those set from above, as text that differs
+/// where the value does: what finished work is found again by.
 template <typename Value>
 void append_key(std::string& key, const Value& value) {
   if constexpr (HasFields<const Value>) {
     key += '{';
     for_each_field(value, [&](const auto& field) {
+      if (field.is(FieldMark::from_above)) return;
       key += field.name;
       key += '=';
       append_key(key, field.value);
