@@ -5,9 +5,10 @@
 # Configures, builds, tests and consumes core, and core with design, each where only its packages are
 # installed: in a fresh Debian root made by debootstrap, which needs to be root.
 #
-#   scripts/test_components.sh [COMPONENT ..]   core and design, unless named
+#   scripts/test_components.sh [--here] [COMPONENT ..]   core and design, unless named
 #
-# Without debootstrap or its rights it builds here, and CMake is kept from finding anything else.
+# With --here, or without debootstrap or its rights, it builds here, where CMake is kept from finding
+# anything else, and leaves the unit tests, which other checks run, out.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -20,21 +21,24 @@ case "${1:-}" in
     exit 0
     ;;
 esac
+here=
+if [[ "${1:-}" == --here ]]; then here=yes && shift; fi
 components=("$@")
 ((${#components[@]})) || components=(core design)
 mirror=${TOFSMITH_DEBIAN_MIRROR:-http://deb.debian.org/debian}
 
-# Built, tested, installed and consumed by a project of its own; $1 is the sources, $2 the build.
+# Built, tested, installed and consumed by a project of its own; $1 is the sources, $2 the build, $3
+# the component, $4 the label of the tests to run, or all.
 # shellcheck disable=SC2016  # $1 belongs to the inner shell
 steps='set -euo pipefail
 cmake --log-level=WARNING -S "$1" -B "$2" -G Ninja -DCMAKE_BUILD_TYPE=Release -DTOFSMITH_UNITY=ON \
   -DTOFSMITH_COMPONENTS="$3" -DTOFSMITH_BUILD_APPS=OFF -DTOFSMITH_BUILD_PYTHON=OFF \
-  -DTOFSMITH_BUILD_TESTS=ON "${@:4}"
+  -DTOFSMITH_BUILD_TESTS=ON "${@:5}"
 start=$SECONDS
 cmake --build "$2" --target "tofsmith_$3"
 echo "$3 alone was built in $((SECONDS - start)) s"
-cmake --build "$2"
-ctest --test-dir "$2" --output-on-failure --no-tests=error --parallel "$(nproc)"'
+if [[ "$4" == all ]]; then cmake --build "$2"; fi
+ctest --test-dir "$2" --output-on-failure --no-tests=error --parallel "$(nproc)" -L "${4/#all/.}"'
 
 # Packages that a component must do without.
 forbidden=(tomlplusplus OpenEXR PNG embree assimp SQLite3 MPI CLI11 pybind11)
@@ -42,7 +46,7 @@ forbidden=(tomlplusplus OpenEXR PNG embree assimp SQLite3 MPI CLI11 pybind11)
 for component in "${components[@]}"; do
   mapfile -t packages < <(packages_of "$component")
   packages+=(libgtest-dev libgmock-dev nlohmann-json3-dev) # of the tests
-  if ((EUID == 0)) && command -v debootstrap >/dev/null; then
+  if [[ -z "$here" ]] && ((EUID == 0)) && command -v debootstrap >/dev/null; then
     place=$(mktemp -d)
     trap 'umount "$place/proc" 2>/dev/null || true; rm -rf --one-file-system "$place"' EXIT
     echo "Making a Debian root for $component in $place"
@@ -52,7 +56,7 @@ for component in "${components[@]}"; do
       apt-get -q -y install --no-install-recommends "${packages[@]}" >/dev/null
     mkdir "$place/tofsmith"
     tar -C "$root" --exclude='./build*' --exclude=./.git -cf - . | tar -C "$place/tofsmith" -xf -
-    chroot "$place" bash -c "$steps" steps /tofsmith /build "$component"
+    chroot "$place" bash -c "$steps" steps /tofsmith /build "$component" all
     umount "$place/proc"
     rm -rf --one-file-system "$place"
     trap - EXIT
@@ -61,6 +65,6 @@ for component in "${components[@]}"; do
     use_debian_tools
     settings=()
     for package in "${forbidden[@]}"; do settings+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON"); done
-    bash -c "$steps" steps "$root" "$root/build-$component" "$component" "${settings[@]}"
+    bash -c "$steps" steps "$root" "$root/build-$component" "$component" install "${settings[@]}"
   fi
 done

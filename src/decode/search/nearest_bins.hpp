@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <vector>
 
 namespace tofsmith {
 
@@ -16,11 +16,13 @@ inline std::int32_t nearest_bin(double depth_bin, int samples) {
 template <typename AnyDecoder>
 void nearest_bins(const AnyDecoder& decoder, const float* measurements, std::int64_t pixels,
                   std::int32_t* bin) {
-  std::vector<double> position(static_cast<std::size_t>(pixels));
-  decoder.decode_depth_bins(measurements, pixels, position.data());
-  for (std::int64_t i = 0; i < pixels; ++i) {
-    const double at = position[static_cast<std::size_t>(i)];
-    bin[i] = std::isnan(at) ? -1 : nearest_bin(at, decoder.samples());
+  constexpr std::int64_t block = 512;
+  double position[block];  // on the stack: nothing is allocated
+  for (std::int64_t done = 0; done < pixels; done += block) {
+    const std::int64_t count = std::min(pixels - done, block);
+    decoder.decode_depth_bins(measurements + done * decoder.measurements(), count, position);
+    for (std::int64_t i = 0; i < count; ++i)
+      bin[done + i] = std::isnan(position[i]) ? -1 : nearest_bin(position[i], decoder.samples());
   }
 }
 
