@@ -286,7 +286,7 @@ PatternWords parse_pattern(std::string_view text, PatternSyntax syntax, std::str
     }
     return parse_c;
   }();
-  const PatternWords result = parse(text, reader);
+  PatternWords result = parse(text, reader);
   const std::uint64_t most = mask_of(result.word_bits == 0 ? 64 : result.word_bits);
   for (const std::uint64_t word : result.words)
     if (word > most)
