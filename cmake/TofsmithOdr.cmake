@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 # Whether every name has one definition (the C++ One Definition Rule). Link-time optimization sees
-# the types of all translation units at once: the target `odr` merges the objects of the library, the
+# the types of all translation units at once: the target `odr` merges the objects of the libraries, the
 # command line and the Python module, generates no code, and fails where two definitions differ.
 
 option(TOFSMITH_ODR "Compile for the target odr, which compares definitions; GCC only" OFF)
@@ -10,7 +10,8 @@ if(NOT TOFSMITH_ODR)
 endif()
 
 set(objects)
-foreach(target tofsmith tofsmith_cli _tofsmith)
+list(TRANSFORM TOFSMITH_BUILT_COMPONENTS PREPEND tofsmith_ OUTPUT_VARIABLE libraries)
+foreach(target IN LISTS libraries ITEMS tofsmith_paper tofsmith_cli _tofsmith)
   if(TARGET ${target})
     target_compile_options(${target} PRIVATE -O0 -flto -fno-fat-lto-objects)
     list(APPEND objects "$<TARGET_OBJECTS:${target}>")
