@@ -14,7 +14,7 @@ list(TRANSFORM TOFSMITH_BUILT_COMPONENTS PREPEND tofsmith_ OUTPUT_VARIABLE libra
 foreach(target IN LISTS libraries ITEMS tofsmith_paper tofsmith_cli _tofsmith)
   if(TARGET ${target})
     target_compile_options(${target} PRIVATE -O0 -flto -fno-fat-lto-objects)
-    list(APPEND objects "$<TARGET_OBJECTS:${target}>")
+    list(APPEND objects "$<FILTER:$<TARGET_OBJECTS:${target}>,EXCLUDE,[.]gch$>")
   endif()
 endforeach()
 set(merged "${CMAKE_CURRENT_BINARY_DIR}/odr.o")

@@ -144,7 +144,8 @@ Candidate finished_from_json(const JsonReader& json, const fs::path& path, const
 std::vector<Candidate> read_finished(const fs::path& path, const std::string& key,
                                      const std::string& name, const Camera& camera) {
   const nlohmann::json document = read_json(path);
-  const JsonReader json(document, path.string());
+  const std::string file = path.string();  // the reader refers to it
+  const JsonReader json(document, file);
   std::vector<Candidate> candidates;
   if (json.member("key").text() != key) return candidates;
   for (const JsonReader& entry : json.member("candidates").elements())
