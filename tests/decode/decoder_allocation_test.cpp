@@ -90,7 +90,7 @@ TEST(LikelihoodDecoder, AllocatesNothingPerPixel) {
       setup.decoder.decode_bins(raw.data(), pixels, bins.data());
     });
   };
-  EXPECT_EQ(of_batch(1), 2);  // work space, once a call ..
+  EXPECT_EQ(of_batch(1), 2);         // work space, once a call ..
   EXPECT_EQ(of_batch(4000), 1 + 8);  // .. or 512 pixels
   const auto of_frame = [&](int pixels) {
     const RawFrames frame = frame_of({raw.begin(), raw.begin() + 5 * pixels}, 5);
