@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibrate/harmonic_basis.hpp"
 
-#include <Eigen/Dense>
 #include <cmath>
+
+#include "core/shared/decompositions.hpp"
 
 namespace tofsmith {
 
@@ -45,7 +46,7 @@ Eigen::MatrixXd weights_of(const Eigen::MatrixXcd& c) {
 
 HarmonicBasis::HarmonicBasis(const std::vector<double>& places, int harmonics)
     : harmonics_(harmonics), basis_(basis_at(places, harmonics)) {
-  inverse_ = (basis_.transpose() * basis_).ldlt().solve(basis_.transpose());
+  inverse_ = solve_symmetric(basis_.transpose() * basis_, basis_.transpose());
 }
 
 Eigen::MatrixXcd HarmonicBasis::coefficients(const Eigen::MatrixXd& values) const {

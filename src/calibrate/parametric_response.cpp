@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibrate/parametric_response.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 #include <optional>
+
+#include "core/shared/decompositions.hpp"
 
 namespace tofsmith {
 namespace {
@@ -71,7 +73,7 @@ class Fit {
     columns << shape, Eigen::VectorXd::Ones(shape.size());
     const Eigen::MatrixXd weighted = problem_.weights.asDiagonal() * columns;
     const Eigen::Vector2d linear =
-        (columns.transpose() * weighted).ldlt().solve(weighted.transpose() * problem_.values);
+        solve_symmetric(columns.transpose() * weighted, weighted.transpose() * problem_.values);
     parameters_ << place_s, std::log(scale_s), linear[0], linear[1];
     cost_ = cost_of(residual_of(parameters_));
   }
@@ -85,7 +87,7 @@ class Fit {
       const Vector4 slope = weighted.transpose() * residual_of(parameters_);
       Matrix4 damped = hessian;
       damped.diagonal() *= 1.0 + damping;
-      const Vector4 step = damped.ldlt().solve(slope);
+      const Vector4 step = solve_symmetric(damped, slope);
       const Vector4 next = parameters_ + step;
       const double cost = step.allFinite() ? cost_of(residual_of(next)) : INFINITY;
       if (!(cost < cost_)) {

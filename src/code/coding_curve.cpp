@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/code/families.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 
+#include "core/shared/decompositions.hpp"
 #include "core/shared/periodic.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -45,20 +45,19 @@ int harmonics_used(const Eigen::MatrixXd& table, double share) {
 
 Eigen::MatrixXd coding_curve_in_space(const Eigen::MatrixXd& table) {
   const Eigen::MatrixXd centred = about_mean(table);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(centred, Eigen::ComputeThinV);
+  const ThinSvd svd = thin_svd(centred);
   const Eigen::Index axes = std::min<Eigen::Index>(3, centred.cols());
   Eigen::MatrixXd points = Eigen::MatrixXd::Zero(table.rows(), 3);
   for (Eigen::Index axis = 0; axis < axes; ++axis) {
     // What is left of a flat curve's missing direction is rounding, not shape.
-    if (svd.singularValues()[axis] < 1e-9 * svd.singularValues()[0]) break;
-    points.col(axis) = centred * svd.matrixV().col(axis);
+    if (svd.values[axis] < 1e-9 * svd.values[0]) break;
+    points.col(axis) = centred * svd.v.col(axis);
   }
   return points;
 }
 
 int coding_curve_rank(const Eigen::MatrixXd& table, double tolerance) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(about_mean(table));
-  const auto& values = svd.singularValues();
+  const Eigen::VectorXd values = thin_svd(about_mean(table)).values;
   return static_cast<int>((values.array() > tolerance * std::max(values[0], 1e-300)).count());
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "decode/ambient_projection.hpp"
 
-#include <Eigen/SVD>
+#include "core/shared/decompositions.hpp"
 
 namespace tofsmith {
 
@@ -24,12 +24,12 @@ AmbientProjection::AmbientProjection(const DecodingTable& table) {
     projected -= (projected * direction) * direction.transpose();
   }
 
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(projected, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const ThinSvd svd = thin_svd(projected);
   const double whole = gated.norm();
   Eigen::Index kept = 0;
-  while (kept < svd.singularValues().size() && svd.singularValues()[kept] > no_dimension * whole)
+  while (kept < svd.values.size() && svd.values[kept] > no_dimension * whole)
     ++kept;
-  basis = svd.matrixV().leftCols(kept);
+  basis = svd.v.leftCols(kept);
 
   curve = projected * basis;
   const double largest = curve.rows() > 0 && kept > 0 ? curve.rowwise().norm().maxCoeff() : 0.0;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/shared/decompositions.hpp"
 #include "core/shared/random.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/statistics.hpp"
@@ -57,7 +58,7 @@ Sphere refined(Sphere sphere, const Points& points) {
       jacobian.row(i) << -arm.transpose() / length, -1.0;
       residual[i] = length - sphere.radius_m;
     }
-    const Eigen::Vector4d change = jacobian.colPivHouseholderQr().solve(-residual);
+    const Eigen::Vector4d change = least_squares(jacobian, -residual);
     if (!change.allFinite() || sphere.radius_m + change[3] <= 0.0) return sphere;
     sphere.centre += change.head<3>();
     sphere.radius_m += change[3];

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/simulate/bounds.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/shared/decompositions.hpp"
 #include "core/shared/exponential_average.hpp"
 #include "simulate/bound_means.hpp"
 
@@ -22,8 +22,7 @@ double length_across(Eigen::MatrixXd columns) {
   if (!(whole > 0.0)) return 0.0;
   for (Eigen::Index i = 1; i < columns.cols(); ++i) columns.col(i).stableNormalize();
   const Eigen::MatrixXd others = columns.rightCols(columns.cols() - 1);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(others);
-  const double left = (columns.col(0) - others * qr.solve(columns.col(0))).norm();
+  const double left = (columns.col(0) - others * least_squares(others, columns.col(0))).norm();
   return left > 1e-10 * whole ? left : 0.0;
 }
 

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "decode/multipath/multipath_engine.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
+#include "core/shared/decompositions.hpp"
 #include "core/shared/exponential_average.hpp"
 #include "decode/multipath/multipath_support.hpp"
 #include "decode/output/pixel_output.hpp"
@@ -38,10 +38,9 @@ struct WhitePixel {
       information += weight * column * column.transpose();
       sum += weight * pixels.electrons[k][lane] * column;
     }
-    const Eigen::LLT<Eigen::MatrixXd> factor(information);
-    target = factor.matrixL().solve(sum).tail(curve.span);
-    const Eigen::MatrixXd plane =
-        Eigen::MatrixXd(factor.matrixL()).block(from, from, curve.span, curve.span);
+    const Eigen::MatrixXd factor = cholesky_factor(information);
+    target = factor.triangularView<Eigen::Lower>().solve(sum).tail(curve.span);
+    const Eigen::MatrixXd plane = factor.block(from, from, curve.span, curve.span);
     const auto white = [&](const std::vector<float>& table) {
       RowMajorMatrix values(rows, curve.span);
       for (int i = 0; i < rows; ++i) {

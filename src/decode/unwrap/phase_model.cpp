@@ -5,12 +5,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <numeric>
 #include <set>
 
+#include "core/shared/decompositions.hpp"
 #include "core/shared/periodic.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -60,10 +59,10 @@ bool sees_two_phases(const std::vector<Harmonic>& harmonics, int frequency) {
   std::vector<std::complex<double>> seen;
   for (const Harmonic& h : harmonics)
     if (h.frequency == frequency) seen.push_back(h.coefficient);
-  Eigen::MatrixX2d parts(static_cast<Eigen::Index>(seen.size()), 2);
+  Eigen::MatrixXd parts(static_cast<Eigen::Index>(seen.size()), 2);
   for (std::size_t i = 0; i < seen.size(); ++i)
     parts.row(static_cast<Eigen::Index>(i)) << seen[i].real(), seen[i].imag();
-  const Eigen::VectorXd values = parts.jacobiSvd().singularValues();
+  const Eigen::VectorXd values = thin_svd(parts).values;
   return values.size() == 2 && values[1] > no_second_phase * values[0];
 }
 
@@ -120,14 +119,11 @@ PhaseModel::PhaseModel(const DecodingTable& table, double largest_other_energy) 
     }
   const Eigen::RowVectorXd lengths = system.colwise().norm();
   system.array().rowwise() /= lengths.array();
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(no_offset);
-  solver.compute(system);
-  require(solver.rank() == system.cols(), "measurements", table.measurements(),
+  const auto [rank, inverse] = pseudo_inverse(system, no_offset);
+  require(rank == system.cols(), "measurements", table.measurements(),
           fmt::format("must tell {} unknowns apart (two per frequency and {} for the offset that "
                       "signal and ambient light add); give one frequency 3 phases",
                       system.cols(), offsets.cols()));
-  const Eigen::MatrixXd inverse = solver.pseudoInverse();
   gain_.resize(count(), table.measurements());
   for (int j = 0; j < count(); ++j) {
     const Eigen::Index row = offsets.cols() + 2 * j;

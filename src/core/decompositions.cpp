@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/shared/decompositions.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+namespace tofsmith {
+
+ThinSvd thin_svd(const Eigen::MatrixXd& matrix) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  return {svd.matrixU(), svd.singularValues(), svd.matrixV()};
+}
+
+PseudoInverse pseudo_inverse(const Eigen::MatrixXd& matrix, double threshold) {
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(threshold);
+  solver.compute(matrix);
+  return {solver.rank(), solver.pseudoInverse()};
+}
+
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& values) {
+  return Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(matrix).solve(values);
+}
+
+Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& matrix) {
+  return Eigen::LLT<Eigen::MatrixXd>(matrix).matrixL();
+}
+
+Eigen::MatrixXd solve_symmetric(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
+  return Eigen::LDLT<Eigen::MatrixXd>(matrix).solve(right);
+}
+
+}  // namespace tofsmith
