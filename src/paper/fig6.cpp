@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera/shared/arm_output.hpp"
+#include "camera/shared/actual_code.hpp"
 #include "paper/code_styles.hpp"
 #include "paper/data_tables.hpp"
 #include "paper/figures.hpp"

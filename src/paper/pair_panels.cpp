@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "camera/shared/arm_output.hpp"
+#include "camera/shared/actual_code.hpp"
 #include "design/chips/shared/pair_model.hpp"
 #include "paper/data_tables.hpp"
 #include "report/shared/waveform_series.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera/shared/arm_output.hpp"
+#include "camera/shared/actual_code.hpp"
 #include "paper/data_tables.hpp"
 #include "paper/pair_panels.hpp"
 #include "paper/text_statements.hpp"

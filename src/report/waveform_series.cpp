@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "report/shared/waveform_series.hpp"
 
-#include "camera/shared/arm_output.hpp"
+#include "camera/shared/actual_code.hpp"
 
 namespace tofsmith {
 

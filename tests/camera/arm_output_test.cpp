@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/shared/arm_output.hpp"
+#include "camera/shared/actual_code.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <utility>
 
-#include "camera/shared/arm_output.hpp"
+#include "camera/shared/actual_code.hpp"
 #include "core/shared/random.hpp"
 
 namespace tofsmith {

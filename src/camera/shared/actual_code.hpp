@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <vector>
 
@@ -36,5 +37,11 @@ double average_power_scale(const Waveform& modulation);
 
 /// Whether the second tap of every exposure is what the first leaves.
 bool taps_share_a_generator(const CodeSet& code, const Camera& camera);
+
+/// Output of an arm that is driven with a waveform: the waveform convolved with the arm's impulse
+/// response, at t = j / points, j = 0 .. points - 1. Without response: averages over the cells [j,
+/// j + 1) / points.
+Eigen::VectorXd arm_output(const Waveform& waveform, const ImpulseResponse& response,
+                           double fundamental_frequency_hz, int points);
 
 }  // namespace tofsmith
