@@ -17,32 +17,16 @@
 namespace tofsmith {
 namespace {
 
-Ray random_ray(std::uint64_t item, double spread_m = 3.0) {
-  RandomStream random(27, item);
-  const Eigen::Vector3d origin(random.normal(), random.normal(), random.normal());
-  const Eigen::Vector3d direction(random.normal(), random.normal(), random.normal());
-  return {spread_m * origin, direction.normalized()};
-}
-
-Mesh mesh_at(TriangleMesh triangles, const Eigen::Vector3d& place, double scale_m) {
-  Mesh mesh;
-  mesh.triangles = std::move(triangles);
-  mesh.scale_m = scale_m;
-  mesh.mesh_to_world.translate(place);
-  mesh.mesh_to_world.rotate(Eigen::AngleAxisd(0.8, Eigen::Vector3d(2, -1, 0.5).normalized()));
-  return mesh;
-}
-
 /// Every kind of shape, among and within each other.
 std::vector<Shape> mixed_scene() {
-  Mesh ball = mesh_at(tessellated_sphere(3), {1.0, -0.5, 0.7}, 0.9);
+  Mesh ball = placed_mesh(tessellated_sphere(3), {1.0, -0.5, 0.7}, 0.9);
   ball.texture = {Texture::Pattern::checker, 0.2, 0.9, 0.15};
   return {Plane{.point = {0, 3, 0}, .normal = {0.1, -1, 0.2}, .texture = {.albedo = 0.15}},
           ball,
           Sphere{.centre = {-1, 0.5, 1}, .radius_m = 0.8, .texture = {.albedo = 0.35}},
           Box{.centre = {0.3, 0.2, -1.5}, .size_m = {1, 2, 0.7}, .texture = {.albedo = 0.45}},
           Capsule{.start = {1, 1, -1}, .end = {-1, -1, 1.5}, .radius_m = 0.3},
-          mesh_at(unit_cube(), {-0.8, -1.2, -0.6}, 1.3)};
+          placed_mesh(unit_cube(), {-0.8, -1.2, -0.6}, 1.3)};
 }
 
 void expect_equal(const std::optional<Hit>& hit, const std::optional<Hit>& expected, double scale_m,
@@ -59,7 +43,7 @@ TEST(EmbreeSearch, MeetsWhatTheReferenceMeetsToDoublePrecision) {
   const RayCaster caster(shapes, embree_search());
   int hits = 0, checkered = 0;
   for (std::uint64_t i = 0; i < 2000; ++i) {
-    const Ray ray = random_ray(i, 1.5);
+    const Ray ray = ray_about_origin(i, 1.5);
     const auto expected = nearest_hit(shapes, ray);
     hits += expected.has_value();
     checkered += expected && (expected->albedo == 0.2 || expected->albedo == 0.9);
@@ -71,11 +55,11 @@ TEST(EmbreeSearch, MeetsWhatTheReferenceMeetsToDoublePrecision) {
 
 TEST(EmbreeSearch, NeitherAFarMeshNorAFarCameraCostsDigits) {
   const Eigen::Vector3d far_m(3e6, -2e6, 5e6);
-  const std::vector<Shape> shapes = {mesh_at(tessellated_sphere(2), far_m, 0.1)};
+  const std::vector<Shape> shapes = {placed_mesh(tessellated_sphere(2), far_m, 0.1)};
   const RayCaster caster(shapes, embree_search());
   int hits = 0;
   for (std::uint64_t i = 0; i < 300; ++i) {
-    Ray ray = random_ray(i, 1.0);
+    Ray ray = ray_about_origin(i, 1.0);
     RandomStream random(28, i);
     const Eigen::Vector3d aim(random.normal(), random.normal(), random.normal());
     // From near by, and from 10 km.
@@ -94,11 +78,11 @@ TEST(EmbreeSearch, NeitherAFarMeshNorAFarCameraCostsDigits) {
 TEST(EmbreeSearch, TinyAndHugeMeshesAreSeenAlike) {
   for (const double scale_m : {1e-9, 1e-3, 1e3, 1e9}) {
     const std::vector<Shape> shapes = {
-        mesh_at(tessellated_sphere(2), scale_m * Eigen::Vector3d(0.1, 0.2, 3), scale_m)};
+        placed_mesh(tessellated_sphere(2), scale_m * Eigen::Vector3d(0.1, 0.2, 3), scale_m)};
     const RayCaster caster(shapes, embree_search());
     int hits = 0;
     for (std::uint64_t i = 0; i < 200; ++i) {
-      Ray ray = random_ray(i, scale_m);
+      Ray ray = ray_about_origin(i, scale_m);
       ray.direction =
           (scale_m * Eigen::Vector3d(0.1, 0.2, 3) + 0.2 * ray.origin - ray.origin).normalized();
       const auto expected = nearest_hit(shapes, ray);
@@ -111,7 +95,7 @@ TEST(EmbreeSearch, TinyAndHugeMeshesAreSeenAlike) {
 
 TEST(EmbreeSearch, NoRaySlipsBetweenNeighbours) {
   // From within a closed mesh, straight at its vertices and at the middles of its edges.
-  const Mesh ball = mesh_at(tessellated_sphere(2), {0.3, 0.1, 0.2}, 1.0);
+  const Mesh ball = placed_mesh(tessellated_sphere(2), {0.3, 0.1, 0.2}, 1.0);
   const RayCaster caster(std::vector<Shape>{ball}, embree_search());
   const Eigen::Vector3d eye(0.35, 0.05, 0.1);
   const auto placed = [&](std::uint32_t index) {
@@ -140,10 +124,10 @@ TEST(EmbreeSearch, FlatSurfacesKeepTheirExactDepthAcrossEdges) {
 }
 
 TEST(EmbreeSearch, RaysThatStartOnAMeshLeaveIt) {
-  const std::vector<Shape> cube = {mesh_at(unit_cube(), {0, 0, 0}, 1.0)};
+  const std::vector<Shape> cube = {placed_mesh(unit_cube(), {0, 0, 0}, 1.0)};
   const RayCaster caster(cube, embree_search());
   for (std::uint64_t i = 0; i < 200; ++i) {
-    const Ray in = random_ray(i, 0.1);
+    const Ray in = ray_about_origin(i, 0.1);
     const auto first = caster.nearest(in);
     ASSERT_TRUE(first);
     const Eigen::Vector3d on_surface = in.origin + first->distance_m * in.direction;

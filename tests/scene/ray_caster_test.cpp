@@ -9,34 +9,17 @@
 #include <memory>
 #include <utility>
 
-#include "core/shared/random.hpp"
 #include "generated_meshes.hpp"
 
 namespace tofsmith {
 namespace {
 
-Ray random_ray(std::uint64_t item, double spread_m = 3.0) {
-  RandomStream random(27, item);
-  const Eigen::Vector3d origin(random.normal(), random.normal(), random.normal());
-  const Eigen::Vector3d direction(random.normal(), random.normal(), random.normal());
-  return {spread_m * origin, direction.normalized()};
-}
-
-Mesh mesh_at(TriangleMesh triangles, const Eigen::Vector3d& place, double scale_m) {
-  Mesh mesh;
-  mesh.triangles = std::move(triangles);
-  mesh.scale_m = scale_m;
-  mesh.mesh_to_world.translate(place);
-  mesh.mesh_to_world.rotate(Eigen::AngleAxisd(0.8, Eigen::Vector3d(2, -1, 0.5).normalized()));
-  return mesh;
-}
-
 TEST(RayCaster, TriesEveryTriangleOfAMeshUnlessToldHowToSearch) {
   const std::vector<Shape> shapes = {Plane{.point = {0, 0, 5}},
-                                     mesh_at(tessellated_sphere(1), {0, 0, 2}, 1.0)};
+                                     placed_mesh(tessellated_sphere(1), {0, 0, 2}, 1.0)};
   const RayCaster caster(shapes);
   for (std::uint64_t i = 0; i < 200; ++i) {
-    const Ray ray = random_ray(i);
+    const Ray ray = ray_about_origin(i);
     const auto hit = caster.nearest(ray), expected = nearest_hit(shapes, ray);
     ASSERT_EQ(hit.has_value(), expected.has_value()) << i;
     if (hit) {
@@ -56,7 +39,7 @@ struct NearSearch final : MeshSearch {
 
 TEST(RayCaster, SearchesMeshesAsItIsTold) {
   const std::vector<Shape> shapes = {Plane{.point = {0, 0, 5}},
-                                     mesh_at(unit_cube(), {0, 0, 900}, 1.0)};
+                                     placed_mesh(unit_cube(), {0, 0, 900}, 1.0)};
   const auto searched = [](const Mesh& mesh) -> std::unique_ptr<const MeshSearch> {
     EXPECT_EQ(mesh.triangles.triangles.size(), unit_cube().triangles.size());
     return std::make_unique<NearSearch>();
@@ -68,7 +51,7 @@ TEST(RayCaster, SearchesMeshesAsItIsTold) {
 
 TEST(RayCaster, NamesTheShapeThatIsSeen) {
   const std::vector<Shape> shapes = {Plane{.point = {0, 0, 5}},
-                                     mesh_at(unit_cube(), {0, 0, 3}, 0.5),
+                                     placed_mesh(unit_cube(), {0, 0, 3}, 0.5),
                                      Sphere{.centre = {0.6, 0, 3}, .radius_m = 0.2}};
   const PinholeView view = PinholeView::centred(61, 41, 1.0);
   const SeenScene seen = RayCaster(shapes).see(view);
@@ -89,11 +72,11 @@ TEST(RayCaster, NamesTheShapeThatIsSeen) {
 }
 
 TEST(RayCaster, RefusesInvalidShapesAndPoses) {
-  Mesh broken = mesh_at(unit_cube(), {0, 0, 2}, 1.0);
+  Mesh broken = placed_mesh(unit_cube(), {0, 0, 2}, 1.0);
   broken.triangles.vertices[0].x() = NAN;
   EXPECT_THROW(RayCaster(std::vector<Shape>{broken}), std::invalid_argument);
   const RayCaster nothing(std::vector<Shape>{});
-  EXPECT_FALSE(nothing.nearest(random_ray(1)));
+  EXPECT_FALSE(nothing.nearest(ray_about_origin(1)));
   const PinholeView view = PinholeView::centred(8, 8, 1.0);
   EXPECT_EQ(nothing.see(view).shape.pixels, std::vector<std::int32_t>(64, -1));
   Eigen::Isometry3d stretched = Eigen::Isometry3d::Identity();

@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <utility>
 
+#include "core/shared/random.hpp"
+#include "tofsmith/scene/ray_caster.hpp"
 #include "tofsmith/scene/shapes.hpp"
 
 namespace tofsmith {
@@ -60,6 +62,24 @@ inline TriangleMesh unit_cube() {
     mesh.vertices.emplace_back((i & 1) - 0.5, ((i >> 1) & 1) - 0.5, ((i >> 2) & 1) - 0.5);
   mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+/// A ray from about the origin, anywhere; the same for the same item.
+inline Ray ray_about_origin(std::uint64_t item, double spread_m = 3.0) {
+  RandomStream random(27, item);
+  const Eigen::Vector3d origin(random.normal(), random.normal(), random.normal());
+  const Eigen::Vector3d direction(random.normal(), random.normal(), random.normal());
+  return {spread_m * origin, direction.normalized()};
+}
+
+/// A mesh moved and turned.
+inline Mesh placed_mesh(TriangleMesh triangles, const Eigen::Vector3d& place, double scale_m) {
+  Mesh mesh;
+  mesh.triangles = std::move(triangles);
+  mesh.scale_m = scale_m;
+  mesh.mesh_to_world.translate(place);
+  mesh.mesh_to_world.rotate(Eigen::AngleAxisd(0.8, Eigen::Vector3d(2, -1, 0.5).normalized()));
   return mesh;
 }
 
