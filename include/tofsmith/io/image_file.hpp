@@ -25,9 +25,10 @@ constexpr double luminance_rec709(double red, double green, double blue) {
 }
 
 /// One number per pixel, as the file holds it, by the file's extension:
-///   .npy, .npz  float32 or float64 of shape (H, W); of an archive the array `name`, or the only
-///   one .exr        the channel `name`, "Z" or "Y", or the only one, or R, G and B if all are
-///   equal .pfm        grey
+///   .npy   float32 or float64 of shape (H, W)
+///   .npz   the same, of the array `name`, or of the only one
+///   .exr   the channel `name`, "Z" or "Y", or the only one, or R, G and B if all are equal
+///   .pfm   grey
 /// @param name  what the image shows, such as "depth" or "offset"
 /// @throws IoError if the extension is another, or the file is not such an image
 Image<float> read_float_image(const std::filesystem::path& path, std::string_view name);
@@ -78,9 +79,8 @@ Image<float> read_albedo(const std::filesystem::path& path, Transfer png_transfe
 /// Albedo in [0, 1] from what a picture holds. Radiance of a render can exceed 1; then the picture
 /// is scaled down as a whole.
 /// @param file  what errors call it
-/// @param depth_m  where nothing returns (NaN) albedo may be unknown (NaN) too, and becomes 0;
-/// empty
-///                 or of the picture's size
+/// @param depth_m  empty, or of the picture's size: where nothing returns (NaN) albedo may be
+///                 unknown (NaN) too, and becomes 0
 /// @throws IoError naming the first pixel that is negative or not finite
 Image<float> albedo_of_picture(Image<float> picture, std::string_view file,
                                const Image<float>& depth_m = {});
