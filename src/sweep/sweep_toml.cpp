@@ -175,20 +175,18 @@ void check_axis_values(const SweepAxis& axis) {
   for (const SettingValue& value : axis.values) check_value(axis, value);
 }
 
-using MethodWord = std::pair<std::string_view, DecodeMethod>;
-using WeightsWord = std::pair<std::string_view, UnwrapWeights>;
-using CombineWord = std::pair<std::string_view, SweepCombination>;
-constexpr std::array weights = {WeightsWord{"variance", UnwrapWeights::variance},
-                                WeightsWord{"frequency", UnwrapWeights::frequency}};
-constexpr std::array combinations = {CombineWord{"product", SweepCombination::product},
-                                     CombineWord{"zip", SweepCombination::zip}};
+constexpr std::array weights = {ChoiceWord<UnwrapWeights>{"variance", UnwrapWeights::variance},
+                                ChoiceWord<UnwrapWeights>{"frequency", UnwrapWeights::frequency}};
+constexpr std::array combinations = {
+    ChoiceWord<SweepCombination>{"product", SweepCombination::product},
+    ChoiceWord<SweepCombination>{"zip", SweepCombination::zip}};
 
 void read_options(TableReader& table, EvaluateOptions& options) {
   auto trials = static_cast<std::uint64_t>(options.trials);
   auto max_trials = static_cast<std::uint64_t>(options.max_trials);
-  std::array<MethodWord, all_decode_methods.size()> methods;
+  std::array<ChoiceWord<DecodeMethod>, all_decode_methods.size()> methods;
   std::ranges::transform(all_decode_methods, methods.begin(), [](DecodeMethod method) {
-    return MethodWord{name_of(method), method};
+    return ChoiceWord<DecodeMethod>{name_of(method), method};
   });
   table.choice("method", options.method, Choices<DecodeMethod>(methods));
   table.choice("unwrap_weights", options.unwrap_weights, Choices<UnwrapWeights>(weights));

@@ -14,22 +14,20 @@
 // written differently: visit_measured_response() is overloaded for both.
 namespace tofsmith::camera_fields {
 
-template <typename Enum>
-using Words = std::pair<std::string_view, Enum>;
-
 inline constexpr std::array kinds = {
-    Words<ImpulseResponse::Kind>{"none", ImpulseResponse::Kind::none},
-    Words<ImpulseResponse::Kind>{"hann", ImpulseResponse::Kind::hann},
-    Words<ImpulseResponse::Kind>{"gaussian", ImpulseResponse::Kind::gaussian},
-    Words<ImpulseResponse::Kind>{"lowpass", ImpulseResponse::Kind::lowpass},
-    Words<ImpulseResponse::Kind>{"file", ImpulseResponse::Kind::file}};
-inline constexpr std::array noise_models = {Words<NoiseModel>{"poisson", NoiseModel::poisson},
-                                            Words<NoiseModel>{"gaussian", NoiseModel::gaussian}};
-inline constexpr std::array readouts = {Words<Readout>{"separate", Readout::separate},
-                                        Words<Readout>{"difference", Readout::difference}};
+    ChoiceWord<ImpulseResponse::Kind>{"none", ImpulseResponse::Kind::none},
+    ChoiceWord<ImpulseResponse::Kind>{"hann", ImpulseResponse::Kind::hann},
+    ChoiceWord<ImpulseResponse::Kind>{"gaussian", ImpulseResponse::Kind::gaussian},
+    ChoiceWord<ImpulseResponse::Kind>{"lowpass", ImpulseResponse::Kind::lowpass},
+    ChoiceWord<ImpulseResponse::Kind>{"file", ImpulseResponse::Kind::file}};
+inline constexpr std::array noise_models = {
+    ChoiceWord<NoiseModel>{"poisson", NoiseModel::poisson},
+    ChoiceWord<NoiseModel>{"gaussian", NoiseModel::gaussian}};
+inline constexpr std::array readouts = {ChoiceWord<Readout>{"separate", Readout::separate},
+                                        ChoiceWord<Readout>{"difference", Readout::difference}};
 inline constexpr std::array depth_errors = {
-    Words<DepthErrorKind>{"linear", DepthErrorKind::linear},
-    Words<DepthErrorKind>{"circular", DepthErrorKind::circular}};
+    ChoiceWord<DepthErrorKind>{name_of(DepthErrorKind::linear), DepthErrorKind::linear},
+    ChoiceWord<DepthErrorKind>{name_of(DepthErrorKind::circular), DepthErrorKind::circular}};
 
 /// The member that a reader may change and a writer only sees.
 template <typename Table, typename Value>

@@ -54,10 +54,9 @@ Eigen::Matrix3d read_rotation(TableReader& table) {
 
 void read_texture_fields(TableReader& table, Texture& texture) {
   using Pattern = Texture::Pattern;
-  constexpr std::array<std::pair<std::string_view, Pattern>, 3> patterns = {
-      {{"uniform", Pattern::uniform},
-       {"checker", Pattern::checker},
-       {"stripes", Pattern::stripes}}};
+  constexpr std::array<ChoiceWord<Pattern>, 3> patterns = {{{"uniform", Pattern::uniform},
+                                                            {"checker", Pattern::checker},
+                                                            {"stripes", Pattern::stripes}}};
   const bool is_image = table.contains("image");
   if (is_image) {
     table.refuse({"pattern", "other_albedo"}, "a pattern, not with image");

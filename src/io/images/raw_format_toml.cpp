@@ -11,23 +11,21 @@ namespace tofsmith {
 
 namespace {
 
-template <typename Enum>
-using WordPairs = std::pair<std::string_view, Enum>;
-
-constexpr std::array number_words = {WordPairs<RawNumbers>{"integer", RawNumbers::integers},
-                                     WordPairs<RawNumbers>{"float", RawNumbers::floats}};
-constexpr std::array packings = {WordPairs<RawPacking>{"plain", RawPacking::plain},
-                                 WordPairs<RawPacking>{"mipi", RawPacking::mipi},
-                                 WordPairs<RawPacking>{"lsb_first", RawPacking::lsb_first},
-                                 WordPairs<RawPacking>{"msb_first", RawPacking::msb_first}};
-constexpr std::array layouts = {WordPairs<RawOrder>{"planar", RawOrder::planar},
-                                WordPairs<RawOrder>{"interleaved", RawOrder::interleaved},
-                                WordPairs<RawOrder>{"by_rows", RawOrder::by_rows}};
-constexpr std::array alignments = {WordPairs<RawAlignment>{"low", RawAlignment::low},
-                                   WordPairs<RawAlignment>{"high", RawAlignment::high}};
-constexpr std::array byte_orders = {WordPairs<bool>{"little", false}, WordPairs<bool>{"big", true}};
-constexpr std::array tap_words = {WordPairs<bool>{"keep", false},
-                                  WordPairs<bool>{"subtract", true}};
+constexpr std::array number_words = {ChoiceWord<RawNumbers>{"integer", RawNumbers::integers},
+                                     ChoiceWord<RawNumbers>{"float", RawNumbers::floats}};
+constexpr std::array packings = {ChoiceWord<RawPacking>{"plain", RawPacking::plain},
+                                 ChoiceWord<RawPacking>{"mipi", RawPacking::mipi},
+                                 ChoiceWord<RawPacking>{"lsb_first", RawPacking::lsb_first},
+                                 ChoiceWord<RawPacking>{"msb_first", RawPacking::msb_first}};
+constexpr std::array layouts = {ChoiceWord<RawOrder>{"planar", RawOrder::planar},
+                                ChoiceWord<RawOrder>{"interleaved", RawOrder::interleaved},
+                                ChoiceWord<RawOrder>{"by_rows", RawOrder::by_rows}};
+constexpr std::array alignments = {ChoiceWord<RawAlignment>{"low", RawAlignment::low},
+                                   ChoiceWord<RawAlignment>{"high", RawAlignment::high}};
+constexpr std::array byte_orders = {ChoiceWord<bool>{"little", false},
+                                    ChoiceWord<bool>{"big", true}};
+constexpr std::array tap_words = {ChoiceWord<bool>{"keep", false},
+                                  ChoiceWord<bool>{"subtract", true}};
 
 void read_order(TableReader& table, std::vector<int>& order) {
   std::vector<double> numbers;

@@ -24,7 +24,7 @@ namespace tofsmith {
 
 namespace {
 
-bool finds_later_returns(const AnyDecoder& decoder) {
+bool finds_multipath(const AnyDecoder& decoder) {
   return std::holds_alternative<TwoReturnDecoder>(decoder) ||
          std::holds_alternative<TailDecoder>(decoder);
 }
@@ -33,13 +33,13 @@ bool finds_later_returns(const AnyDecoder& decoder) {
 void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
   const std::filesystem::path& output = request.output;
   if (!(request.memory_mb > 0.0))
-    throw std::invalid_argument(fmt::format("memory_mb = {}; must be > 0", request.memory_mb));
+    reject("memory_mb", fmt::format("{}", request.memory_mb), "must be > 0");
   if (request.frame && *request.frame < 0)
     throw std::invalid_argument(fmt::format("frame {}: must be >= 0", *request.frame));
   if (request.stack && output.extension() != ".npy")
     throw std::invalid_argument(
         fmt::format("stack: found the output {}; expected a .npy file", output.string()));
-  if (!finds_later_returns(decoder))
+  if (!finds_multipath(decoder))
     for (const DecodedPlane plane : request.outputs)
       if (is_multipath_plane(plane))
         throw std::invalid_argument(fmt::format(
@@ -57,7 +57,7 @@ void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
 std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const AnyDecoder& decoder) {
   if (request.outputs.empty())
     return holds_depth_only(request.output) ? std::vector{DecodedPlane::depth}
-                                            : usual_planes(finds_later_returns(decoder));
+                                            : usual_planes(finds_multipath(decoder));
   std::vector<DecodedPlane> planes;
   for (const DecodedPlane plane : request.outputs)
     if (std::ranges::find(planes, plane) == planes.end()) planes.push_back(plane);

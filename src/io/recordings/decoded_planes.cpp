@@ -5,38 +5,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
 
+#include "core/shared/enum_words.hpp"
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
 
-std::string_view name_of(DecodedPlane plane) {
-  switch (plane) {
-    case DecodedPlane::depth:
-      return "depth";
-    case DecodedPlane::signal:
-      return "signal";
-    case DecodedPlane::ambient:
-      return "ambient";
-    case DecodedPlane::confidence:
-      return "confidence";
-    case DecodedPlane::deviation:
-      return "deviation";
-    case DecodedPlane::status:
-      return "status";
-    case DecodedPlane::delay:
-      return "delay";
-    case DecodedPlane::ratio:
-      return "ratio";
-    case DecodedPlane::returns:
-      return "returns";
-    case DecodedPlane::bin:
-      break;
-  }
-  return "bin";
-}
+namespace {
+
+constexpr EnumWords<DecodedPlane, 10> plane_words("DecodedPlane", "plane", "depth", "signal",
+                                                  "ambient", "confidence", "deviation", "status",
+                                                  "delay", "ratio", "returns", "bin");
+constexpr EnumWords<DepthKind, 2> kind_words("DepthKind", "kind", "radial", "z");
+
+}  // namespace
+
+std::string_view name_of(DecodedPlane plane) { return plane_words.of(plane); }
 
 DecodedPlane parse_decoded_plane(std::string_view name) {
   std::string known;
@@ -44,16 +30,12 @@ DecodedPlane parse_decoded_plane(std::string_view name) {
     if (name_of(plane) == name) return plane;
     known += fmt::format("{}{}", known.empty() ? "" : ", ", name_of(plane));
   }
-  throw std::invalid_argument(fmt::format("plane = {}; must be one of {}", name, known));
+  reject("plane", name, "must be one of " + known);
 }
 
-std::string_view name_of(DepthKind kind) { return kind == DepthKind::z ? "z" : "radial"; }
+std::string_view name_of(DepthKind kind) { return kind_words.of(kind); }
 
-DepthKind parse_depth_kind(std::string_view name) {
-  for (const DepthKind kind : {DepthKind::radial, DepthKind::z})
-    if (name == name_of(kind)) return kind;
-  throw std::invalid_argument(fmt::format("kind = {}; must be radial or z", name));
-}
+DepthKind parse_depth_kind(std::string_view name) { return kind_words.parse(name); }
 
 bool is_multipath_plane(DecodedPlane plane) {
   return plane == DecodedPlane::delay || plane == DecodedPlane::ratio ||

@@ -8,8 +8,12 @@
 
 namespace tofsmith {
 
-/// The words that stand for the values of an enumeration in files.
+/// A word that stands for a value of an enumeration in files.
 template <typename Enum>
-using Choices = std::span<const std::pair<std::string_view, Enum>>;
+using ChoiceWord = std::pair<std::string_view, Enum>;
+
+/// The words for all of its values.
+template <typename Enum>
+using Choices = std::span<const ChoiceWord<Enum>>;
 
 }  // namespace tofsmith
