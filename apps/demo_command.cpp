@@ -107,8 +107,8 @@ void print_summary(const Session& session, const fs::path& directory, const Came
   session.say(fmt::format("winner on {}: {} ({} exposures)", camera.name, winner.code.name(),
                           winner.code.exposures()));
   session.say(fmt::format("  {} depth error {}, geometric mean over {} light levels (N = {})",
-                          kind == DepthErrorKind::linear ? "linear" : "circular",
-                          length_text(best_m), winner.error.points.size(), camera.samples));
+                          name_of(kind), length_text(best_m), winner.error.points.size(),
+                          camera.samples));
   std::string gains;
   for (const char* name :
        {"sinusoid-k3", "sinusoid-k4", "square-k4", "multifrequency-k5", "pulsed-multifrequency-k5"})

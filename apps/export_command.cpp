@@ -73,7 +73,7 @@ nlohmann::ordered_json estimate_json(const Estimate& estimate) {
 
 nlohmann::ordered_json loss_json(const GeneratorLoss& loss, DepthErrorKind kind) {
   nlohmann::ordered_json json = {
-      {"error", kind == DepthErrorKind::linear ? "linear" : "circular"},
+      {"error", name_of(kind)},
       {"trials", loss.nominal.trials},
       {"seed", loss.nominal.seed},
       {"nominal", estimate_json(loss.nominal.of(kind).geometric_mean_m)},

@@ -19,6 +19,8 @@
 namespace tofsmith {
 namespace {
 
+constexpr EnumWords<DesignMethod, 4> method_words("DesignMethod", "method", "factorize", "optimize",
+                                                  "search", "best");
 constexpr EnumWords<Termination, 4> termination_words("Termination", "termination", "not_run",
                                                       "converged", "stalled", "iteration_limit");
 
@@ -140,19 +142,7 @@ std::vector<Candidate> run_or_load(const Task& task, const DesignStore& store,
 
 std::string_view name_of(Termination termination) { return termination_words.of(termination); }
 
-std::string_view name_of(DesignMethod method) {
-  switch (method) {
-    case DesignMethod::factorize:
-      return "factorize";
-    case DesignMethod::optimize:
-      return "optimize";
-    case DesignMethod::search:
-      return "search";
-    case DesignMethod::best:
-      return "best";
-  }
-  return "";
-}
+std::string_view name_of(DesignMethod method) { return method_words.of(method); }
 
 const Candidate* DesignResult::find(std::string_view name) const {
   for (const Candidate& c : candidates)

@@ -16,10 +16,6 @@ namespace {
 
 std::string length_mm(const Estimate& e) { return estimate_mm_text(e) + " mm"; }
 
-std::string_view kind_name(DepthErrorKind kind) {
-  return kind == DepthErrorKind::linear ? "linear" : "circular";
-}
-
 /// The baseline of the least error that is not the winner; null if there is none.
 const Candidate* best_baseline(const DesignResult& result, DepthErrorKind kind) {
   for (const Candidate* c : by_geometric_mean_error(result, kind))
@@ -29,10 +25,9 @@ const Candidate* best_baseline(const DesignResult& result, DepthErrorKind kind) 
 
 std::string what_it_beats(const Camera& camera, const DesignResult& result, DepthErrorKind kind) {
   const Candidate& winner = result.winner();
-  std::string text =
-      fmt::format("{} measures depth best{}: {} of {} error", winner.code.name(),
-                  camera.operating.multipath ? " where multipath counts too" : "",
-                  length_mm(winner.error.of(kind).geometric_mean_m), kind_name(kind));
+  std::string text = fmt::format("{} measures depth best{}: {} of {} error", winner.code.name(),
+                                 camera.operating.multipath ? " where multipath counts too" : "",
+                                 length_mm(winner.error.of(kind).geometric_mean_m), name_of(kind));
   const Candidate* baseline = best_baseline(result, kind);
   if (!baseline) return text + ".";
   const Estimate gain = gain_over(result, *baseline, kind);
@@ -106,7 +101,7 @@ std::string behind_multipath(const OperatingMultipath& returns, const DesignResu
   const Estimate its = winner.multipath->single_path.of(kind);
   std::string text = fmt::format(
       "Where a second return of ratio {} to {} comes {} to {} m behind, its {} error is {}",
-      returns.ratio[0], returns.ratio[1], returns.delay_m[0], returns.delay_m[1], kind_name(kind),
+      returns.ratio[0], returns.ratio[1], returns.delay_m[0], returns.delay_m[1], name_of(kind),
       length_mm(its));
   if (const Candidate* baseline = best_baseline(result, kind)) {
     const Estimate other = baseline->multipath->single_path.of(kind);

@@ -145,8 +145,8 @@ KeyValueList camera_description(const Camera& camera) {
                            camera.sensor.read_noise_e));
   add("judged by",
       fmt::format("{} depth error over {} signal x {} ambient levels",
-                  camera.operating.error == DepthErrorKind::linear ? "linear" : "circular",
-                  camera.operating.signal_e_per_s.size(), camera.operating.ambient_e_per_s.size()));
+                  name_of(camera.operating.error), camera.operating.signal_e_per_s.size(),
+                  camera.operating.ambient_e_per_s.size()));
   return list;
 }
 

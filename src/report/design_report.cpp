@@ -104,8 +104,7 @@ Section operating_multipath_section(const OperatingMultipath& returns, const Des
                                     DepthErrorKind kind) {
   const std::vector<Judged> codes = by_weighed_error(returns, result, kind);
   return {"Second returns",
-          {operating_multipath_table(returns, codes, result.winner(),
-                                     kind == DepthErrorKind::linear ? "linear" : "circular"),
+          {operating_multipath_table(returns, codes, result.winner(), name_of(kind)),
            operating_multipath_bars(codes)}};
 }
 
@@ -165,7 +164,7 @@ Section gain_section(const Camera& camera, const DesignResult& result) {
               .caption = fmt::format(
                   "How many times as large as that of the best the {} depth error of every other "
                   "candidate is; ± is one standard error, the two taken for independent.",
-                  kind == DepthErrorKind::linear ? "linear" : "circular"),
+                  name_of(kind)),
               .columns = {{"code"}, {"made by"}, {"exposures", true}, {"times the best", true}}};
   for (const Candidate* c : by_geometric_mean_error(result, kind)) {
     if (c == &result.winner()) continue;
@@ -346,9 +345,8 @@ Page design_report(const Camera& camera, const DesignResult& result,
                    const std::optional<SceneResult>& scene, const std::string& command_line) {
   const Candidate& winner = result.winner();
   Page page{.title = fmt::format("Codes for {}", camera.name),
-            .subtitle = fmt::format(
-                "{} candidates, judged by {} depth error", result.candidates.size(),
-                camera.operating.error == DepthErrorKind::linear ? "linear" : "circular"),
+            .subtitle = fmt::format("{} candidates, judged by {} depth error",
+                                    result.candidates.size(), name_of(camera.operating.error)),
             .footer = fmt::format("tofsmith {}, seed {}", TOFSMITH_VERSION, winner.error.seed)};
   Section first{"Result", {headline(result, camera.operating.error)}};
   first.blocks.push_back(explanation(result, camera.operating.error));

@@ -217,8 +217,7 @@ Figure heat_maps(const Camera& camera, std::span<const DepthErrorRow> codes,
     }));
   return operating_maps(
       {.id = "error-maps",
-       .title =
-           fmt::format("Mean {} depth error by operating point", is_linear ? "linear" : "circular"),
+       .title = fmt::format("Mean {} depth error by operating point", name_of(kind)),
        .caption = "In mm, all codes on one logarithmic colour scale, best first."},
       camera.operating, maps, {.label = "depth error", .unit = "mm", .logarithmic = true});
 }
