@@ -27,8 +27,7 @@ AmbientProjection::AmbientProjection(const DecodingTable& table) {
   const ThinSvd svd = thin_svd(projected);
   const double whole = gated.norm();
   Eigen::Index kept = 0;
-  while (kept < svd.values.size() && svd.values[kept] > no_dimension * whole)
-    ++kept;
+  while (kept < svd.values.size() && svd.values[kept] > no_dimension * whole) ++kept;
   basis = svd.v.leftCols(kept);
 
   curve = projected * basis;

@@ -55,7 +55,7 @@ struct Decoder::Plan {
   BinMatcher matcher;
   OutputKernel outputs;
 
-  void write(PixelTile& tile, const DecodedView& planes) const;
+  void write(PixelTile& tile, const float* averaged, const DecodedView& planes) const;
 };
 
 Decoder::Decoder(DecodingTable table, const DecodeOptions& options) {
@@ -111,7 +111,7 @@ void Decoder::decode(const RawView& raw, const DecodedView& decoded,
                     if (is_bin_enough)
                       std::copy_n(tile.bin, tile.pixels, planes.bin);
                     else
-                      plan_->write(tile, planes);
+                      plan_->write(tile, raw.averaged ? raw.averaged + first : nullptr, planes);
                   });
   });
 }
@@ -123,7 +123,7 @@ DepthImage Decoder::decode(const RawFrames& raw, int frame, const Progress& prog
 }
 
 /// All wanted planes of a matched tile, whose raw numbers become electrons.
-void Decoder::Plan::write(PixelTile& tile, const DecodedView& planes) const {
+void Decoder::Plan::write(PixelTile& tile, const float* averaged, const DecodedView& planes) const {
   std::array<std::uint8_t, pixels_per_tile> saturated{};
   if (table.saturation_level && outputs.needs_saturation(planes))
     for (int k = 0; k < model.measurements(); ++k)
@@ -142,7 +142,8 @@ void Decoder::Plan::write(PixelTile& tile, const DecodedView& planes) const {
                  .electrons = tile.raw,
                  .bin = tile.bin,
                  .second_peak = tile.second_peak,
-                 .saturated = saturated.data()},
+                 .saturated = saturated.data(),
+                 .averaged = averaged},
                 planes);
 }
 

@@ -8,7 +8,7 @@
 
 namespace tofsmith {
 
-/// From raw numbers to electrons without dark ones.
+/// From raw numbers to electrons without dark ones, and back.
 class RawScale {
  public:
   explicit RawScale(const DecodingTable& table) {
@@ -22,6 +22,10 @@ class RawScale {
   double electrons(double raw, int measurement) const {
     const Line& line = lines_[static_cast<std::size_t>(measurement)];
     return (raw - line.dark_raw) * line.gain_e_per_raw;
+  }
+  double raw(double electrons, int measurement) const {
+    const Line& line = lines_[static_cast<std::size_t>(measurement)];
+    return electrons / line.gain_e_per_raw + line.dark_raw;
   }
 
  private:

@@ -65,6 +65,9 @@ struct RawView {
   std::ptrdiff_t row_stride = 0;          ///< [elements]
   std::ptrdiff_t column_stride = 0;       ///< [elements]
   std::ptrdiff_t measurement_stride = 0;  ///< [elements]
+  /// How many equal measurements the numbers of a pixel are the mean of, each > 0, row by row (H,
+  /// W): their variance is so many times smaller. Null: 1, as they leave a sensor.
+  const float* averaged = nullptr;
 
   std::int64_t pixels() const { return std::int64_t{height} * width; }
 

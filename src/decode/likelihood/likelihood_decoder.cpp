@@ -34,8 +34,8 @@ struct LikelihoodDecoder::Plan {
     return std::vector<double>(static_cast<std::size_t>(table.samples()));
   }
   double decode_depth_bin(const float* raw, std::vector<double>& fall) const;
-  void decode_pixel(const float* raw, std::size_t at, const DecodedView& decoded,
-                    std::vector<double>& fall) const;
+  void decode_pixel(const float* raw, double variance_share, std::size_t at,
+                    const DecodedView& decoded, std::vector<double>& fall) const;
 };
 
 LikelihoodDecoder::LikelihoodDecoder(DecodingTable table, const DecodeOptions& options) {
@@ -68,11 +68,11 @@ void LikelihoodDecoder::decode(const RawView& raw, const DecodedView& decoded,
   constexpr std::int64_t block_pixels = usual_block_pixels / 16;
   decode_frame(
       raw, decoded, measurements(), progress,
-      [&](const float* values, std::int64_t pixels, const DecodedView& block) {
+      [&](const RawBlock& block, const DecodedView& planes) {
         std::vector<double> fall = plan_->work_space();
-        for (std::int64_t i = 0; i < pixels; ++i)
-          plan_->decode_pixel(values + i * measurements(), static_cast<std::size_t>(i), block,
-                              fall);
+        for (std::int64_t i = 0; i < block.pixels; ++i)
+          plan_->decode_pixel(block.values + i * measurements(), block.variance_share(i),
+                              static_cast<std::size_t>(i), planes, fall);
       },
       block_pixels);
 }
@@ -103,12 +103,12 @@ double LikelihoodDecoder::Plan::decode_depth_bin(const float* raw,
   return search.depth_bin(found.best);
 }
 
-void LikelihoodDecoder::Plan::decode_pixel(const float* raw, std::size_t at,
+void LikelihoodDecoder::Plan::decode_pixel(const float* raw, double variance_share, std::size_t at,
                                            const DecodedView& decoded,
                                            std::vector<double>& fall) const {
   PerMeasurement electrons;
   if (!read(raw, electrons)) return store_invalid(at, decoded);
-  const LikelihoodPixel pixel = search.model().pixel(electrons.data());
+  const LikelihoodPixel pixel = search.model().pixel(electrons.data(), variance_share);
   const MostLikely found = search.most_likely(pixel, fall);
   PixelDecoding decoding{search.depth_bin(found.best), search.model().estimate(pixel, found.best)};
   if (decoding.estimate.signal_e_per_s > 0.0)

@@ -26,10 +26,10 @@ LikelihoodModel::LikelihoodModel(const DecodingTable& table, const AmbientProjec
       gated_(projection.gated),
       noise_(table) {}
 
-LikelihoodPixel LikelihoodModel::pixel(const double* electrons) const {
+LikelihoodPixel LikelihoodModel::pixel(const double* electrons, double variance_share) const {
   double size = 0.0;
   for (int k = 0; k < measurements_; ++k) size += std::abs(electrons[k]);
-  return {electrons, std::max(min_variance_e2, min_share * size / measurements_)};
+  return {electrons, std::max(min_variance_e2, min_share * size / measurements_), variance_share};
 }
 
 double LikelihoodModel::cost(const LikelihoodPixel& pixel, std::int32_t bin,
@@ -45,7 +45,7 @@ double LikelihoodModel::cost(const LikelihoodPixel& pixel, std::int32_t bin,
                                                                 light[2] * noise_.shot_ambient[k] +
                                                                 noise_.floor_variance_e2[k]);
     const double residual = pixel.electrons[k] - mean;
-    squares += residual * residual / variance;
+    squares += residual * residual / (pixel.variance_share * variance);
     product *= variance;
     if (k % factors == factors - 1) {
       logs += std::log(product);
@@ -90,6 +90,8 @@ Quadratic LikelihoodModel::scoring(const LikelihoodPixel& pixel, std::int32_t bi
       variance = pixel.min_variance_e2;
       shot = {};
     }
+    for (double& by : shot) by *= pixel.variance_share;
+    variance *= pixel.variance_share;
     const double by_mean = residual / variance;
     const double by_variance = 0.5 * (by_mean * by_mean - 1.0 / variance);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -174,7 +176,8 @@ PixelEstimate LikelihoodModel::estimate(const LikelihoodPixel& pixel, const Chor
                                     : x1[k] - x0[k];
     const std::array by{signal * slope, (1 - t) * x0[k] + t * x1[k], ambient_[k]};
     for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 3; ++j) information.h[i][j] += by[i] * by[j] / variance;
+      for (std::size_t j = 0; j < 3; ++j)
+        information.h[i][j] += by[i] * by[j] / (pixel.variance_share * variance);
   }
   PixelEstimate result;
   result.signal_e_per_s = signal;

@@ -12,6 +12,7 @@ namespace tofsmith {
 struct LikelihoodPixel {
   const double* electrons = nullptr;  ///< without dark (K)
   double min_variance_e2 = 0.0;       ///< smaller expected variances count as this
+  double variance_share = 1.0;        ///< of the noise of a single measurement
 };
 
 /// The most likely light on the chord from bin `bin` to the next: mean and variance of every
@@ -37,7 +38,7 @@ class LikelihoodModel {
 
   /// The least variance taken for a pixel: electrons are whole, so that little light seen where
   /// much is seen elsewhere does not mean none.
-  LikelihoodPixel pixel(const double* electrons) const;
+  LikelihoodPixel pixel(const double* electrons, double variance_share = 1.0) const;
 
   /// Twice the negative log-likelihood of some light on a chord, up to a constant.
   double cost(const LikelihoodPixel& pixel, std::int32_t bin, const Quadratic::Vector& light) const;

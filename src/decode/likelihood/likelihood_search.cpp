@@ -116,12 +116,13 @@ LikelihoodSearch::LikelihoodSearch(const DecodingTable& table, const AmbientProj
 /// Inverse variances of the measurements at the estimate of zero-mean normalized cross-correlation.
 /// Any depth that explains the pixel has nearly the same ones. False if ambient light alone
 /// explains the pixel, which is then all there is.
-bool LikelihoodSearch::estimate_weights(const double* electrons, MostLikely& result) const {
+bool LikelihoodSearch::estimate_weights(const LikelihoodPixel& pixel, MostLikely& result) const {
   std::array<double, max_measurements> plane, variance_e2;
-  correlation_.project(electrons, plane.data());
+  correlation_.project(pixel.electrons, plane.data());
   const std::int32_t bin = scores_.best_correlation(plane.data());
-  const PixelEstimate estimate = correlation_.estimate(
-      electrons, plane.data(), correlation_.refine(plane.data(), bin), variance_e2.data());
+  const PixelEstimate estimate =
+      correlation_.estimate(pixel.electrons, plane.data(), correlation_.refine(plane.data(), bin),
+                            variance_e2.data(), pixel.variance_share);
   for (int k = 0; k < correlation_.measurements(); ++k)
     result.weight[static_cast<std::size_t>(k)] = 1.0 / variance_e2[static_cast<std::size_t>(k)];
   result.best.light[2] = std::max(0.0, estimate.ambient_e_per_s);
@@ -156,7 +157,7 @@ LikelihoodSearch::Peaks LikelihoodSearch::peaks(const LikelihoodPixel& pixel, co
 MostLikely LikelihoodSearch::most_likely(const LikelihoodPixel& pixel,
                                          std::vector<double>& fall) const {
   MostLikely result;
-  if (!estimate_weights(pixel.electrons, result)) return result;
+  if (!estimate_weights(pixel, result)) return result;
   scores_.weighted_fall(pixel.electrons, result.weight.data(), fall.data());
 
   const Peaks found = peaks(pixel, result.weight.data(), fall);

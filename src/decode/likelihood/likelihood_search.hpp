@@ -66,7 +66,7 @@ class LikelihoodSearch {
  private:
   struct Peak;
   class Peaks;
-  bool estimate_weights(const double* electrons, MostLikely& result) const;
+  bool estimate_weights(const LikelihoodPixel& pixel, MostLikely& result) const;
   double squares_beside(const LikelihoodPixel& pixel, std::int32_t bin, const double* weight) const;
   Peaks peaks(const LikelihoodPixel& pixel, const double* weight,
               const std::vector<double>& fall) const;

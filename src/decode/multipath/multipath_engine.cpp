@@ -11,7 +11,6 @@
 #include "core/shared/decompositions.hpp"
 #include "core/shared/exponential_average.hpp"
 #include "decode/multipath/multipath_support.hpp"
-#include "decode/output/pixel_output.hpp"
 #include "decode/search/nearest_bins.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -177,10 +176,9 @@ MultipathEngine::MultipathEngine(DecodingTable table, const MultipathOptions& op
 
 void MultipathEngine::decode(const RawView& raw, const DecodedView& decoded,
                              const Progress& progress) const {
-  decode_frame(raw, decoded, table().measurements(), progress,
-               [&](const float* values, std::int64_t pixels, const DecodedView& block) {
-                 decode_block(values, pixels, block);
-               });
+  decode_frame(
+      raw, decoded, table().measurements(), progress,
+      [&](const RawBlock& block, const DecodedView& planes) { decode_block(block, planes); });
 }
 
 void MultipathEngine::decode_depth_bins(const float* measurements, std::int64_t pixels,
@@ -190,7 +188,7 @@ void MultipathEngine::decode_depth_bins(const float* measurements, std::int64_t 
   for (std::int64_t first = 0; first < pixels; first += most) {
     const std::int64_t count = std::min(most, pixels - first);
     const float* raw = measurements + first * table().measurements();
-    decode_block(raw, count, {.depth_m = depth_m.data()});
+    decode_block({raw, count}, {.depth_m = depth_m.data()});
     std::transform(depth_m.begin(), depth_m.begin() + count, depth_bin + first,
                    [&](float depth) { return depth / table().bin_m(); });
   }
@@ -198,16 +196,19 @@ void MultipathEngine::decode_depth_bins(const float* measurements, std::int64_t 
 
 /// One pixel into a lane. Light that was seen tells how noisy it is; where buckets are subtracted,
 /// what the single return says of it does.
-void MultipathEngine::load(const float* raw, float depth_m, int lane, PixelGroup& group) const {
+void MultipathEngine::load(const RawBlock& raw, std::int64_t pixel, float depth_m, int lane,
+                           PixelGroup& group) const {
   const int k_count = table().measurements();
   const bool is_valid = std::isfinite(depth_m);
   const double bin = is_valid ? depth_m / table().bin_m() : 0.0;
+  const float* const values = raw.values + pixel * k_count;
+  const double share = raw.variance_share(pixel);
   double along = 0.0, own = 0.0;
   for (int k = 0; k < k_count; ++k) {
-    const double electrons = is_valid ? scale_.electrons(raw[k], k) : 0.0;
+    const double electrons = is_valid ? scale_.electrons(values[k], k) : 0.0;
     group.electrons[k][lane] = static_cast<float>(electrons);
     group.variance_e2[k][lane] = static_cast<float>(
-        std::max(min_variance_e2, std::max(electrons, 0.0) + noise_.floor_variance_e2[k]));
+        share * std::max(min_variance_e2, std::max(electrons, 0.0) + noise_.floor_variance_e2[k]));
     if (!has_own_shot_noise_) continue;
     const double x = on_chord(gated_, bin, k);
     along += x * electrons;
@@ -217,21 +218,23 @@ void MultipathEngine::load(const float* raw, float depth_m, int lane, PixelGroup
   if (!has_own_shot_noise_) return;
   const double signal = own > 0.0 ? std::max(along / own, 0.0) : 0.0;
   for (int k = 0; k < k_count; ++k)
-    group.variance_e2[k][lane] =
-        static_cast<float>(std::max(min_variance_e2, signal * on_chord(noise_.shot_gated, bin, k) +
-                                                         noise_.floor_variance_e2[k]));
+    group.variance_e2[k][lane] = static_cast<float>(
+        share * std::max(min_variance_e2, signal * on_chord(noise_.shot_gated, bin, k) +
+                                              noise_.floor_variance_e2[k]));
 }
 
-void MultipathEngine::decode_block(const float* raw, std::int64_t pixels,
-                                   const DecodedView& decoded) const {
-  const int k_count = table().measurements();
+void MultipathEngine::decode_block(const RawBlock& raw, const DecodedView& decoded) const {
+  const std::int64_t pixels = raw.pixels;
   DecodedView planes = decoded;
   std::vector<float> own_depth;
   if (!planes.depth_m) {
     own_depth.resize(static_cast<std::size_t>(pixels));
     planes.depth_m = own_depth.data();
   }
-  single_.decode(RawView::interleaved(raw, 1, static_cast<int>(pixels), k_count), planes);
+  RawView view =
+      RawView::interleaved(raw.values, 1, static_cast<int>(pixels), table().measurements());
+  view.averaged = raw.averaged;
+  single_.decode(view, planes);
 
   PixelGroup group;
   SingleFits fits;
@@ -239,7 +242,7 @@ void MultipathEngine::decode_block(const float* raw, std::int64_t pixels,
   for (std::int64_t first = 0; first < pixels; first += pixels_per_group) {
     for (int lane = 0; lane < pixels_per_group; ++lane) {
       const std::int64_t pixel = std::min(first + lane, pixels - 1);
-      load(raw + pixel * k_count, planes.depth_m[pixel], lane, group);
+      load(raw, pixel, planes.depth_m[pixel], lane, group);
     }
     fit_single(curve_, group, fits);
     for (int lane = 0; lane < pixels_per_group && first + lane < pixels; ++lane) {
@@ -259,12 +262,12 @@ void MultipathEngine::decode_block(const float* raw, std::int64_t pixels,
   if (queue.count > 0) search(queue, raw, planes);
 }
 
-void MultipathEngine::search(Queue& queue, const float* raw, const DecodedView& decoded) const {
+void MultipathEngine::search(Queue& queue, const RawBlock& raw, const DecodedView& decoded) const {
   PixelGroup group;
   PairFits fits;
   for (int lane = 0; lane < pixels_per_group; ++lane) {
     const auto i = static_cast<std::size_t>(std::min(lane, queue.count - 1));
-    load(raw + queue.pixel[i] * table().measurements(), queue.depth_m[i], lane, group);
+    load(raw, queue.pixel[i], queue.depth_m[i], lane, group);
   }
   fit_pair(curve_, delays_, group, fits);
   for (int lane = 0; lane < queue.count; ++lane)

@@ -6,6 +6,7 @@
 
 #include "decode/expected_noise.hpp"
 #include "decode/multipath/multipath_search.hpp"
+#include "decode/output/pixel_output.hpp"
 #include "decode/raw_scale.hpp"
 #include "tofsmith/decode/multipath_decoder.hpp"
 
@@ -55,9 +56,10 @@ class MultipathEngine {
 
  private:
   struct Queue;
-  void decode_block(const float* raw, std::int64_t pixels, const DecodedView& decoded) const;
-  void load(const float* raw, float depth_m, int lane, PixelGroup& group) const;
-  void search(Queue& queue, const float* raw, const DecodedView& decoded) const;
+  void decode_block(const RawBlock& raw, const DecodedView& decoded) const;
+  void load(const RawBlock& raw, std::int64_t pixel, float depth_m, int lane,
+            PixelGroup& group) const;
+  void search(Queue& queue, const RawBlock& raw, const DecodedView& decoded) const;
   void store(std::int64_t pixel, const PixelGroup& group, const PairFits& fits, int lane,
              const DecodedView& decoded) const;
   double ambient_e_per_s(const PixelGroup& group, const PairFits& fits, int lane) const;

@@ -54,6 +54,7 @@ struct OutputChunk {
   alignas(64) float signal[pixels_per_chunk];                     // > 0 where there is a depth
   alignas(64) float offset[pixels_per_chunk];  // of depth from the bin, in bins: in [-1, 1]
   alignas(64) float ambient[pixels_per_chunk];
+  alignas(64) float variance_share[pixels_per_chunk];  // of a single measurement: 1 / averaged
   alignas(64) float signal_variance[pixels_per_chunk];
   alignas(64) float confidence[pixels_per_chunk];
   alignas(64) float chord[ChordLayout::fields * pixels_per_chunk];

@@ -70,6 +70,10 @@ HWY_INLINE void write_tile(const BinRecords& records, const OutputConstants& c,
     if (steps.confidence) copy_rows(tile.second_peak + first, chunk.pixels, chunk.second_peak);
     chunk.plane = tile.plane + first;
     chunk.electrons = tile.electrons ? tile.electrons + first : nullptr;
+    std::fill_n(chunk.variance_share, pixels_per_chunk, 1.0f);
+    if (tile.averaged)
+      for (int i = 0; i < chunk.pixels; ++i)
+        chunk.variance_share[i] = 1.0f / tile.averaged[first + i];
     write_chunk<Rank>(records, c, steps, tile.saturated ? tile.saturated + first : nullptr, chunk,
                       planes.from(static_cast<std::size_t>(first)));
   }

@@ -24,6 +24,7 @@ struct MatchedTile {
   const std::int32_t* second_peak =
       nullptr;                              ///< best bin outside the main lobe; -1 if there is none
   const std::uint8_t* saturated = nullptr;  ///< 1 where a measurement is clipped, else 0
+  const float* averaged = nullptr;          ///< as in RawView, of the first pixel on
 };
 
 /// From best bins to planes, a tile at a time: what PixelModel and store_pixel define, in single

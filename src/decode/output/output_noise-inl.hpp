@@ -32,10 +32,11 @@ HWY_INLINE void find_signal_noise(const RecordLayout& layout, OutputChunk& chunk
   const Floats d;
   const float* noise = chunk.field(layout.signal_noise());
   for (int i = 0; i < chunk.pixels; i += lanes_of(d))
-    hn::StoreU(
-        variance_of(load(chunk.signal, i), noisy_ambient(chunk, i), load(noise, i),
-                    load(noise + pixels_per_chunk, i), load(noise + 2 * pixels_per_chunk, i)),
-        d, chunk.signal_variance + i);
+    hn::StoreU(hn::Mul(variance_of(load(chunk.signal, i), noisy_ambient(chunk, i), load(noise, i),
+                                   load(noise + pixels_per_chunk, i),
+                                   load(noise + 2 * pixels_per_chunk, i)),
+                       load(chunk.variance_share, i)),
+               d, chunk.signal_variance + i);
 }
 
 HWY_INLINE void write_depth_noise(const OutputChunk& chunk, float* standard_deviation_m) {
@@ -46,7 +47,8 @@ HWY_INLINE void write_depth_noise(const OutputChunk& chunk, float* standard_devi
     const Vector variance =
         variance_of(signal, noisy_ambient(chunk, i), load(noise, i),
                     load(noise + pixels_per_chunk, i), load(noise + 2 * pixels_per_chunk, i));
-    const Vector deviation = hn::Div(hn::Sqrt(variance), signal);
+    const Vector deviation =
+        hn::Div(hn::Sqrt(hn::Mul(variance, load(chunk.variance_share, i))), signal);
     store_some(d, unless(hn::Gt(signal, hn::Zero(d)), deviation), standard_deviation_m + i,
                chunk.pixels - i);
   }
@@ -118,8 +120,9 @@ HWY_INLINE void find_confidence(const OutputConstants& c, const BinRecords& reco
     const Vector max_noise = product_plus(
         load(chunk.signal, i), all(c.max_shot),
         product_plus(noisy_ambient(chunk, i), all(c.max_shot_ambient), all(c.max_floor_e2)));
-    const Mask is_sure =
-        hn::Ge(hn::Mul(lead, lead), hn::Mul(hn::Mul(square, all(sure_sigma2)), max_noise));
+    const Vector share = load(chunk.variance_share, i);
+    const Mask is_sure = hn::Ge(
+        hn::Mul(lead, lead), hn::Mul(hn::Mul(square, all(sure_sigma2)), hn::Mul(max_noise, share)));
     const auto has_second_peak =
         hn::Gt(hn::LoadU(Indices(), chunk.second_peak + i), hn::Set(Indices(), -1));
     const Mask is_open = hn::And(hn::And(hn::RebindMask(d, has_second_peak), hn::Not(is_sure)),
@@ -128,7 +131,7 @@ HWY_INLINE void find_confidence(const OutputConstants& c, const BinRecords& reco
     if (!hn::AllFalse(d, is_open)) {
       gather(records.records.data(), chunk.start + i, layout.shot(), layout.end(),
              chunk.record + i);
-      const Vector deviation = hn::Sqrt(lead_variance(c, layout, rank, chunk, i));
+      const Vector deviation = hn::Sqrt(hn::Mul(lead_variance(c, layout, rank, chunk, i), share));
       confidence =
           hn::IfThenElse(is_open, normal_probability(hn::Div(lead, deviation)), confidence);
     }

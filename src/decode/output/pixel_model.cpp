@@ -66,7 +66,8 @@ Position PixelModel::refine(const double* plane, std::int32_t bin) const {
 }
 
 PixelEstimate PixelModel::estimate(const double* electrons, const double* plane,
-                                   const Position& position, double* variance_e2) const {
+                                   const Position& position, double* variance_e2,
+                                   double variance_share) const {
   const int k_count = measurements(), r = rank();
   const std::int32_t from = position.bin, to = next(from);
   const double t = position.fraction;
@@ -102,9 +103,10 @@ PixelEstimate PixelModel::estimate(const double* electrons, const double* plane,
   const double* s0 = noise_.shot_gated.row(from).data();
   const double* s1 = noise_.shot_gated.row(to).data();
   for (int k = 0; k < k_count; ++k)
-    variance_e2[k] = std::max(min_variance_e2, signal * ((1 - t) * s0[k] + t * s1[k]) +
-                                                   ambient * noise_.shot_ambient[k] +
-                                                   noise_.floor_variance_e2[k]);
+    variance_e2[k] =
+        variance_share * std::max(min_variance_e2, signal * ((1 - t) * s0[k] + t * s1[k]) +
+                                                       ambient * noise_.shot_ambient[k] +
+                                                       noise_.floor_variance_e2[k]);
 
   // dS = <p, noise> / |p|^2, and dz = <d, noise> / (S |d|^2) with d the slope across p.
   result.signal_standard_deviation_e_per_s = deviation_along(point.data(), variance_e2) / length2;

@@ -55,8 +55,9 @@ class PixelModel {
   /// Least squares of electrons - dark (K) on x at the position and on ambient light, without
   /// weights; its deviations from the noise expected there. Also fills the noise, `variance_e2`
   /// (K), of every measurement.
+  /// @param variance_share  of the noise of a single measurement
   PixelEstimate estimate(const double* electrons, const double* plane, const Position& position,
-                         double* variance_e2) const;
+                         double* variance_e2, double variance_share = 1.0) const;
 
   /// Standard deviation of <difference, q> for a vector in the plane (rank).
   double deviation_along(const double* difference, const double* variance_e2) const;

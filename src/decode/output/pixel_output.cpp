@@ -83,18 +83,18 @@ void for_each_block(const RawView& raw, int measurements, const Progress& progre
   report(progress, 1.0, "decoding");
 }
 
-void decode_frame(const RawView& raw, const DecodedView& decoded, int measurements,
-                  const Progress& progress,
-                  const std::function<void(const float* raw, std::int64_t pixels,
-                                           const DecodedView& decoded)>& decode_block,
-                  std::int64_t block_pixels) {
+void decode_frame(
+    const RawView& raw, const DecodedView& decoded, int measurements, const Progress& progress,
+    const std::function<void(const RawBlock& raw, const DecodedView& decoded)>& decode_block,
+    std::int64_t block_pixels) {
   for_each_block(
       raw, measurements, progress,
       [&](IndexRange block) {
         const std::int64_t pixels = block.end - block.begin;
         std::vector<float> values(static_cast<std::size_t>(pixels * measurements));
         copy_pixels(raw, block.begin, pixels, values.data());
-        decode_block(values.data(), pixels, decoded.from(static_cast<std::size_t>(block.begin)));
+        decode_block({values.data(), pixels, raw.averaged ? raw.averaged + block.begin : nullptr},
+                     decoded.from(static_cast<std::size_t>(block.begin)));
       },
       block_pixels);
 }

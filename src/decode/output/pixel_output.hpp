@@ -40,12 +40,21 @@ void for_each_block(const RawView& raw, int measurements, const Progress& progre
                     const std::function<void(IndexRange pixels)>& work,
                     std::int64_t block_pixels = usual_block_pixels);
 
-/// The same with the raw numbers of a block, (pixels, K), their number, and where to store them.
-void decode_frame(const RawView& raw, const DecodedView& decoded, int measurements,
-                  const Progress& progress,
-                  const std::function<void(const float* raw, std::int64_t pixels,
-                                           const DecodedView& decoded)>& decode_block,
-                  std::int64_t block_pixels = usual_block_pixels);
+/// Raw numbers of a block, (pixels, K).
+struct RawBlock {
+  const float* values = nullptr;
+  std::int64_t pixels = 0;
+  const float* averaged = nullptr;  ///< as in RawView, of the block's first pixel on
+
+  /// The variance of pixel i over that of a single measurement.
+  double variance_share(std::int64_t i) const { return averaged ? 1.0 / averaged[i] : 1.0; }
+};
+
+/// The same with the raw numbers of a block and where to store what they say.
+void decode_frame(
+    const RawView& raw, const DecodedView& decoded, int measurements, const Progress& progress,
+    const std::function<void(const RawBlock& raw, const DecodedView& decoded)>& decode_block,
+    std::int64_t block_pixels = usual_block_pixels);
 
 /// A new image, filled by `decode(view, planes)` from one frame of several.
 template <typename Decode>

@@ -78,7 +78,8 @@ struct UnwrapDecoder::Plan {
   bool read(const float* raw, PerMeasurement& electrons) const;
   PerFrequency phases_of(const PerMeasurement& electrons) const;
   double bin_of(const Wraps& wraps) const;
-  void decode_pixel(const float* raw, std::size_t at, const DecodedView& decoded) const;
+  void decode_pixel(const float* raw, double variance_share, std::size_t at,
+                    const DecodedView& decoded) const;
   double deviation(const PerFrequency& factor, const PixelDecoding& pixel,
                    const PerMeasurement& variance_e2) const;
   double confidence(const PerFrequency& phase, const Wraps& best, const PixelDecoding& pixel,
@@ -118,10 +119,10 @@ void UnwrapDecoder::decode_bins(const float* measurements, std::int64_t pixels,
 void UnwrapDecoder::decode(const RawView& raw, const DecodedView& decoded,
                            const Progress& progress) const {
   decode_frame(raw, decoded, measurements(), progress,
-               [&](const float* values, std::int64_t pixels, const DecodedView& block) {
-                 for (std::int64_t i = 0; i < pixels; ++i)
-                   plan_->decode_pixel(values + i * measurements(), static_cast<std::size_t>(i),
-                                       block);
+               [&](const RawBlock& block, const DecodedView& planes) {
+                 for (std::int64_t i = 0; i < block.pixels; ++i)
+                   plan_->decode_pixel(block.values + i * measurements(), block.variance_share(i),
+                                       static_cast<std::size_t>(i), planes);
                });
 }
 
@@ -154,7 +155,7 @@ double UnwrapDecoder::Plan::bin_of(const Wraps& wraps) const {
   return wrap(wraps.depth * table.samples(), table.samples());
 }
 
-void UnwrapDecoder::Plan::decode_pixel(const float* raw, std::size_t at,
+void UnwrapDecoder::Plan::decode_pixel(const float* raw, double variance_share, std::size_t at,
                                        const DecodedView& decoded) const {
   PerMeasurement electrons, variance_e2, plane;
   if (!read(raw, electrons)) return store_invalid(at, decoded);
@@ -164,7 +165,7 @@ void UnwrapDecoder::Plan::decode_pixel(const float* raw, std::size_t at,
   model.project(electrons.data(), plane.data());
   PixelDecoding pixel{.depth_bin = bin_of(wraps)};
   pixel.estimate = model.estimate(electrons.data(), plane.data(), Position::at(pixel.depth_bin),
-                                  variance_e2.data());
+                                  variance_e2.data(), variance_share);
   if (pixel.estimate.signal_e_per_s > 0.0) {
     PerFrequency share;
     for (std::size_t j = 0; j < weights.size(); ++j) share[j] = weights[j] * table.samples();

@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string_view>
+
+#include "tofsmith/core/fields.hpp"
+#include "tofsmith/core/image.hpp"
+#include "tofsmith/core/progress.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
+
+namespace tofsmith {
+
+/// How much a Filter does.
+enum class FilterStrength {
+  light,   ///< 5 x 5 pixels, once: several times as fast as normal
+  normal,  ///< 25 x 25 pixels, and once more along the slopes found
+  strong,  ///< as normal, with a second round along the slopes
+};
+inline constexpr std::array all_filter_strengths = {FilterStrength::light, FilterStrength::normal,
+                                                    FilterStrength::strong};
+/// "light", "normal", "strong".
+std::string_view name_of(FilterStrength strength);
+/// @throws std::invalid_argument for any other word
+FilterStrength parse_filter_strength(std::string_view name);
+
+struct FilterOptions {
+  /// Windows of 5 x 5, each over the results of the one before, so that no pixel is counted twice:
+  /// 5, 25 or 125 pixels wide in all.
+  int windows = 2;
+  /// Times that all windows are gone through again, now along the slopes of the depth found before.
+  int slope_rounds = 1;
+  /// Neighbours that differ by more standard deviations than this weigh nothing.
+  double max_difference_sigma = 3.5;
+  /// Pixels added before, at most, that the next window counts on when it asks what differs: more
+  /// tell smaller steps from noise, fewer let slopes be averaged.
+  double trusted_pixels = 12.0;
+  /// Along slopes, depths within this many standard deviations are the same surface.
+  double same_depth_sigma = 4.0;
+  /// A pixel is left as it was measured where neither it nor most of the 5 x 5 pixels around it show
+  /// any light, but what the filter would give it stands out by this many standard deviations of
+  /// their mean: beside an edge of light, dark pixels are given none of it.
+  double own_light_sigma = 8.0;
+
+  static FilterOptions of(FilterStrength strength);
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<FilterOptions> auto& o) {
+  return std::tuple(Field("windows", o.windows, "in [1, 3]"),
+                    Field("slope_rounds", o.slope_rounds, "in [0, 4]"),
+                    Field("max_difference_sigma", o.max_difference_sigma, "finite and > 0"),
+                    Field("trusted_pixels", o.trusted_pixels, "finite and >= 1"),
+                    Field("same_depth_sigma", o.same_depth_sigma, "finite and > 0"),
+                    Field("own_light_sigma", o.own_light_sigma, "finite and >= 0"));
+}
+
+struct FilterPlanes;
+
+/// A filtered frame, with the memory that filtering the next one of its size uses again.
+class FilteredFrame {
+ public:
+  FilteredFrame();
+  ~FilteredFrame();
+  FilteredFrame(FilteredFrame&&) noexcept;
+  FilteredFrame& operator=(FilteredFrame&&) noexcept;
+
+  int height() const;
+  int width() const;
+  /// Raw numbers as any decoder takes them, and of how many measurements each is the mean. Valid
+  /// while the frame lives and nothing else is filtered into it.
+  RawView view() const;
+  /// The same numbers, (1, H, W, K).
+  RawFrames values() const;
+  /// (H, W): of how many measurements of a pixel's light each of its numbers is the mean, in
+  /// variance; 1 where nothing was added.
+  const Image<float>& averaged() const;
+
+ private:
+  friend class Filter;
+  std::unique_ptr<FilterPlanes> planes_;
+};
+
+/// Adds the raw measurements of pixels that see the same depth, before anything is decoded.
+///
+/// Without ambient light, the vectors of pixels at one depth are parallel, whatever their albedo: u =
+/// V^T y = S p(z), so that they may be added without bias. Whether two may be is a test of
+/// parallelism that knows the noise v of each,
+///   lambda = (a + b - sqrt((a - b)^2 + 4 c^2)) / 2,  a = |u|^2 / v, b = |u'|^2 / v',
+///   c = max(0, u . u') / sqrt(v v'),
+/// the least chi^2 of one direction for both, with rank - 1 degrees of freedom. Its mean over a
+/// patch of 5 x 5 weighs the neighbour. Later windows take every fifth pixel of the results of the
+/// one before, which share no measurement, so that the variance of the sum is exact.
+/// Rounds along slopes decode what they have, fit a plane to the depths around every pixel, and
+/// move each neighbour's light along the curve by what the planes say before it is added: a surface
+/// that slants keeps its depth, and all of the window counts.
+///
+/// What a pixel has of ambient light and of other returns is added along. Pixels that are invalid or
+/// saturated are left as they are and weigh nothing. With three measurements the test has one degree
+/// of freedom and tells little. Maps of pixels (PixelMaps) are applied to what is decoded: offsets
+/// that differ from pixel to pixel by more than noise keep neighbours apart.
+///
+/// Immutable and safe to use from many threads at once, each with a frame of its own.
+class Filter {
+ public:
+  /// @throws std::invalid_argument if the table or the options are invalid
+  explicit Filter(DecodingTable table, const FilterOptions& options = {});
+  ~Filter();
+  Filter(Filter&&) noexcept;
+  Filter& operator=(Filter&&) noexcept;
+
+  const DecodingTable& table() const;
+  const FilterOptions& options() const;
+  int measurements() const { return table().measurements(); }
+
+  /// Filters one frame on all threads. Allocates nothing if the frame held one of the same size.
+  /// @param raw  electrons or counts, with as many measurements as the table
+  /// @throws std::invalid_argument if the measurements differ; Interrupted if progress says so
+  /// @note the same bits for any number of threads and any layout of the raw numbers
+  void apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress = {}) const;
+  /// The same for frame `frame` of several (F, H, W, K).
+  FilteredFrame apply(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
+
+  struct Plan;  ///< of the implementation
+
+ private:
+  std::unique_ptr<const Plan> plan_;
+};
+
+}  // namespace tofsmith

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/decode/filter.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "core/shared/enum_words.hpp"
+#include "decode/filter/filter_plan.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+namespace {
+constexpr EnumWords<FilterStrength, 3> strength_words("FilterStrength", "filter strength", "light",
+                                                      "normal", "strong");
+}  // namespace
+
+std::string_view name_of(FilterStrength strength) { return strength_words.of(strength); }
+
+FilterStrength parse_filter_strength(std::string_view name) { return strength_words.parse(name); }
+
+FilterOptions FilterOptions::of(FilterStrength strength) {
+  FilterOptions options;
+  if (strength == FilterStrength::light) options.windows = 1, options.slope_rounds = 0;
+  if (strength == FilterStrength::strong) options.slope_rounds = 2;
+  return options;
+}
+
+void FilterOptions::validate() const { check_fields(*this, "FilterOptions::"); }
+
+Filter::Filter(DecodingTable table, const FilterOptions& options) {
+  options.validate();
+  table.validate();
+  const AmbientProjection projection(table);
+  plan_ = std::make_unique<const Plan>(std::move(table), options, projection);
+}
+Filter::~Filter() = default;
+Filter::Filter(Filter&&) noexcept = default;
+Filter& Filter::operator=(Filter&&) noexcept = default;
+
+const DecodingTable& Filter::table() const { return plan_->decoder.table(); }
+const FilterOptions& Filter::options() const { return plan_->options; }
+
+void Filter::apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress) const {
+  const Plan& plan = *plan_;
+  require(raw.measurements == plan.measurements, "raw measurements", raw.measurements,
+          "must equal the code's " + std::to_string(plan.measurements));
+  require(raw.height > 0 && raw.width > 0, "raw height and width", std::min(raw.height, raw.width),
+          "must be > 0");
+  FilterPlanes& frame = *filtered.planes_;
+  const int windows = plan.options.windows;
+  frame.resize(raw.height, raw.width, plan.measurements, window_step(windows - 1));
+  const double steps = windows * (1 + plan.options.slope_rounds);
+  int done = 0;
+  const auto step_done = [&] { report(progress, ++done / steps, "filtering"); };
+
+  plan.read(raw, frame);
+  int from = 0, to = 1;
+  for (int window = 0; window < windows; ++window) {
+    plan.add_similar(frame, from, to, window);
+    from = to, to = 3 - to;
+    step_done();
+  }
+  for (int round = 0; round < plan.options.slope_rounds; ++round) {
+    plan.find_depth(frame, from, to);
+    for (int window = 0; window < windows; ++window) {
+      plan.add_along_slopes(frame, window == 0 ? 0 : from, to, from, window);
+      step_done();
+    }
+  }
+  frame.result = to;
+  plan.finish(raw, frame, from, to);
+}
+
+FilteredFrame Filter::apply(const RawFrames& raw, int frame, const Progress& progress) const {
+  FilteredFrame filtered;
+  apply(view_of_frame(raw, frame), filtered, progress);
+  return filtered;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "core/shared/whole_vectors.hpp"
+#include "decode/ambient_projection.hpp"
+
+namespace tofsmith {
+
+/// Planes of a frame, one float a pixel, with a margin all round where `usable` is 0. A plane's
+/// pointer is that of its first pixel.
+struct FilterGrid {
+  int height = 0;
+  int width = 0;
+  std::ptrdiff_t stride = 0;  ///< from row to row [floats]
+  int margin = 0;             ///< columns of the margin at either side
+};
+/// Rows that windows of a frame reach beyond it, and columns, with room for a whole vector.
+constexpr int margin_rows(int largest_step) { return 2 * largest_step + 2; }
+constexpr int margin_columns(int largest_step) {
+  return whole_vectors(2 * largest_step + 2) + widest_vector;
+}
+
+/// Half of a window of 5 x 5 without its centre; the other half is opposite.
+struct WindowStep {
+  int rows = 0;
+  int columns = 0;
+};
+inline constexpr std::array<WindowStep, 12> half_window = {{{0, 1},
+                                                            {0, 2},
+                                                            {1, -2},
+                                                            {1, -1},
+                                                            {1, 0},
+                                                            {1, 1},
+                                                            {1, 2},
+                                                            {2, -2},
+                                                            {2, -1},
+                                                            {2, 0},
+                                                            {2, 1},
+                                                            {2, 2}}};
+inline constexpr int window_reach = 2;
+inline constexpr int patch_reach = 2;
+
+/// Rows of a frame that are weighed and added together.
+struct FilterStrip {
+  int first_row = 0;
+  int rows = 0;
+  int step = 1;  ///< of the window [pixels]
+  /// Rows above it whose pixels have weights, too.
+  int rows_above() const { return window_reach * step; }
+};
+
+/// Weights of the pairs of a strip, w(pixel, pixel + step of half_window): [12][rows above and
+/// rows][width], and what the neighbour's depth is beyond the slope, times its weight.
+struct PairWeights {
+  float* weight = nullptr;
+  float* shifted = nullptr;  ///< null without slopes
+  float* scratch = nullptr;  ///< rows of the test, see scratch_floats()
+  std::ptrdiff_t stride = 0;
+};
+std::size_t weight_floats(const FilterGrid& grid, const FilterStrip& strip);
+std::size_t scratch_floats(const FilterGrid& grid, const FilterStrip& strip);
+
+/// The test of parallelism.
+struct SimilarityTest {
+  std::array<const float*, max_measurements> u{};  ///< (rank) planes
+  int rank = 0;
+  const float* energy = nullptr;         ///< |u|^2 / v
+  const float* inverse_sigma = nullptr;  ///< 1 / sqrt(v)
+  const float* usable = nullptr;         ///< 1 or 0
+  int patch_reach = 0;
+  float max_difference_sigma = 0.0f;
+};
+void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const FilterStrip& strip,
+                   const PairWeights& weights);
+
+/// The test of depths along slopes, all in bins.
+struct SlopeTest {
+  const float* depth = nullptr;
+  const float* variance = nullptr;  ///< of depth
+  const float* slope_x = nullptr;   ///< per column
+  const float* slope_y = nullptr;   ///< per row
+  const float* usable = nullptr;
+  float samples = 0.0f;
+  float same_depth_sigma2 = 0.0f;
+  float max_difference_sigma = 0.0f;
+};
+void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const FilterStrip& strip,
+                        const PairWeights& weights);
+
+/// Slopes of the plane through the depths of pixels 2 and 4 away that are of the same surface; 0
+/// where there are too few.
+void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, int rows,
+                 float* slope_x, float* slope_y);
+
+/// What is added with the weights: planes in, their weighted means out.
+struct WeightedSums {
+  std::array<const float*, max_measurements + 1> in{};
+  std::array<float*, max_measurements + 1> out{};
+  int planes = 0;
+  const float* variance = nullptr;
+  float* variance_out = nullptr;
+  const float* shifted_in = nullptr;  ///< the plane whose shifted mean is wanted; may be null
+  float* shifted_out = nullptr;
+};
+void add_weighted(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,
+                  const PairWeights& weights);
+
+/// energy and inverse_sigma of a SimilarityTest: variances below `floor` count as that.
+void find_energy(const std::array<const float*, max_measurements>& u, int rank,
+                 const float* variance, const float* floor, float floor_share,
+                 const FilterGrid& grid, int first_row, int rows, float* energy,
+                 float* inverse_sigma);
+
+}  // namespace tofsmith

@@ -1,0 +1,286 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "decode/filter/filter_plan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/shared/decompositions.hpp"
+#include "core/shared/pixel_runs.hpp"
+#include "decode/expected_noise.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Light of a single pixel of so many standard deviations needs no other proof.
+constexpr float evident_sigma = 3.0f;
+constexpr int own_light_reach = 2;
+/// Beside a straight edge fewer pixels are of its far side. Of normal noise, so many standard
+/// deviations below the mean, with so many times its error.
+constexpr float own_light_share = 0.4f, own_light_below_mean = 0.25f, own_light_noise = 1.28f;
+
+constexpr int pixels_per_block = 256;
+
+/// Measurements of some pixels of a row, [K][pixels_per_block].
+struct RowBlock {
+  alignas(64) std::array<float, max_measurements * pixels_per_block> values;
+
+  float* operator[](int k) { return values.data() + k * pixels_per_block; }
+};
+
+/// Calls work(first column, columns) for the blocks of a row.
+template <typename Work>
+void for_each_block_of_row(int width, const Work& work) {
+  for (int first = 0; first < width; first += pixels_per_block)
+    work(first, std::min(pixels_per_block, width - first));
+}
+
+/// out[i] = sum_k matrix[k] in_k[i].
+template <typename In>
+void mix(const float* matrix, int count, const In& in, int pixels, float* out) {
+  std::fill_n(out, pixels, 0.0f);
+  for (int k = 0; k < count; ++k) {
+    const float by = matrix[k];
+    const float* const values = in(k);
+    for (int i = 0; i < pixels; ++i) out[i] += by * values[i];
+  }
+}
+
+/// Coordinates of measurements: those of the decoding plane, then what is left (K, K).
+Eigen::MatrixXd whole_basis(const Eigen::MatrixXd& plane) {
+  const Eigen::Index k = plane.rows(), rank = plane.cols();
+  Eigen::MatrixXd basis(k, k);
+  basis.leftCols(rank) = plane;
+  if (rank < k)
+    basis.rightCols(k - rank) =
+        thin_svd(Eigen::MatrixXd::Identity(k, k) - plane * plane.transpose()).u.leftCols(k - rank);
+  return basis;
+}
+
+std::vector<float> row_by_row(const RowMajorMatrix& matrix) {
+  return {matrix.data(), matrix.data() + matrix.size()};
+}
+
+/// Mean variance of a coordinate, from what was measured.
+void find_variance(const Filter::Plan& plan, RowBlock& electrons, int pixels, float* variance) {
+  std::fill_n(variance, pixels, plan.floor_variance_e2);
+  for (int k = 0; k < plan.measurements; ++k) {
+    const float by = plan.shot_share[static_cast<std::size_t>(k)];
+    const float* const values = electrons[k];
+    for (int i = 0; i < pixels; ++i) variance[i] += by * std::max(values[i], 0.0f);
+  }
+}
+
+}  // namespace
+
+int window_step(int window) { return window == 0 ? 1 : window_side * window_step(window - 1); }
+
+WindowVariances::WindowVariances(int window)
+    : in(window == 0       ? FilterPlanes::variance
+         : window % 2 == 1 ? FilterPlanes::variance_next
+                           : FilterPlanes::variance_last),
+      out(window % 2 == 0 ? FilterPlanes::variance_next : FilterPlanes::variance_last) {}
+
+Filter::Plan::Plan(DecodingTable table, const FilterOptions& options_,
+                   const AmbientProjection& projection)
+    : options(options_),
+      decoder(std::move(table)),
+      scale(decoder.table()),
+      measurements(decoder.measurements()),
+      rank(projection.rank()),
+      has_own_shot_noise(decoder.table().shot_correlation.size() > 0) {
+  const Eigen::MatrixXd basis = whole_basis(projection.basis);
+  to_measurements = row_by_row(basis);
+  to_coordinates = row_by_row(basis.transpose());
+  RowMajorMatrix points = projection.gated * basis;
+  points.leftCols(rank) = projection.curve;
+  curve = row_by_row(points);
+  const Eigen::VectorXd square = projection.curve.rowwise().squaredNorm();
+  curve_square.assign(square.begin(), square.end());
+  const Eigen::VectorXd share = projection.basis.rowwise().squaredNorm() / rank;
+  shot_share.assign(share.begin(), share.end());
+  const ExpectedNoise noise(decoder.table());
+  floor_variance_e2 =
+      static_cast<float>(std::max(min_variance_e2, share.dot(noise.floor_variance_e2)));
+  shot_per_signal = static_cast<float>((noise.shot_gated * share).mean());
+  mean_curve_square = static_cast<float>(square.mean());
+}
+
+void Filter::Plan::read(const RawView& raw, FilterPlanes& frame) const {
+  for_each_row(frame, [&](int row) { read_row(raw, frame, row); });
+  if (has_own_shot_noise) for_each_row(frame, [&](int row) { find_hidden_noise(frame, row); });
+}
+
+void Filter::Plan::read_row(const RawView& raw, FilterPlanes& frame, int row) const {
+  const float clipped =
+      decoder.table().saturation_level.value_or(std::numeric_limits<float>::infinity());
+  for_each_block_of_row(raw.width, [&](int first, int pixels) {
+    const std::ptrdiff_t at = row * frame.grid.stride + first;
+    float* const usable = frame.scalar(FilterPlanes::usable) + at;
+    std::fill_n(usable, pixels, 1.0f);
+    RowBlock electrons;
+    for_each_run(raw, std::int64_t{row} * raw.width + first, pixels,
+                 [&](const auto* pixel, std::int64_t length, std::int64_t) {
+                   for (int k = 0; k < measurements; ++k) {
+                     const auto* number = pixel + k * raw.measurement_stride;
+                     for (std::int64_t i = 0; i < length; ++i, number += raw.column_stride) {
+                       const auto value = static_cast<float>(*number);
+                       if (!(std::isfinite(value) && value < clipped)) usable[i] = 0.0f;
+                       electrons[k][i] = static_cast<float>(scale.electrons(value, k));
+                     }
+                   }
+                 });
+    for (int i = 0; i < pixels; ++i)
+      if (!(usable[i] > 0.0f))
+        for (int k = 0; k < measurements; ++k) electrons[k][i] = 0.0f;
+    find_variance(*this, electrons, pixels, frame.scalar(FilterPlanes::variance) + at);
+    for (int j = 0; j < measurements; ++j)
+      mix(
+          to_coordinates.data() + j * measurements, measurements,
+          [&](int k) { return electrons[k]; }, pixels, frame.light(0, j) + at);
+  });
+}
+
+/// Where light cancels in the measurements, its noise is that of the signal seen around a pixel:
+/// signal S with variance f + S m of each coordinate makes <|u|^2> = S^2 <p^2> + rank (f + S m).
+void Filter::Plan::find_hidden_noise(FilterPlanes& frame, int row) const {
+  const FilterGrid& grid = frame.grid;
+  const auto r = static_cast<float>(rank);
+  for (int x = 0; x < grid.width; ++x) {
+    float squares = 0.0f, count = 0.0f;
+    for (int dy = -patch_reach; dy <= patch_reach; ++dy)
+      for (int dx = -patch_reach; dx <= patch_reach; ++dx) {
+        const std::ptrdiff_t at = (row + dy) * grid.stride + x + dx;
+        count += frame.scalar(FilterPlanes::usable)[at];
+        for (int j = 0; j < rank; ++j) squares += frame.light(0, j)[at] * frame.light(0, j)[at];
+      }
+    if (!(count > 0.0f)) continue;
+    const float m = r * shot_per_signal;
+    const float beyond = std::max(0.0f, squares / count - r * floor_variance_e2);
+    const float signal =
+        (std::sqrt(m * m + 4 * mean_curve_square * beyond) - m) / (2 * mean_curve_square);
+    frame.scalar(FilterPlanes::variance)[row * grid.stride + x] =
+        floor_variance_e2 + signal * shot_per_signal;
+  }
+}
+
+WeightedSums Filter::Plan::sums_of(FilterPlanes& frame, int from, int to, int window) const {
+  WeightedSums sums;
+  sums.planes = measurements;
+  for (int k = 0; k < measurements; ++k) {
+    sums.in[static_cast<std::size_t>(k)] = frame.light(from, k);
+    sums.out[static_cast<std::size_t>(k)] = frame.light(to, k);
+  }
+  const WindowVariances variances(window);
+  sums.variance = frame.scalar(variances.in);
+  sums.variance_out = frame.scalar(variances.out);
+  return sums;
+}
+
+void Filter::Plan::add_similar(FilterPlanes& frame, int from, int to, int window) const {
+  SimilarityTest test{.rank = rank,
+                      .energy = frame.scalar(FilterPlanes::energy),
+                      .inverse_sigma = frame.scalar(FilterPlanes::inverse_sigma),
+                      .usable = frame.scalar(FilterPlanes::usable),
+                      .patch_reach = window == 0 ? patch_reach : patch_reach - 1,
+                      .max_difference_sigma = static_cast<float>(options.max_difference_sigma)};
+  for (int j = 0; j < rank; ++j) test.u[static_cast<std::size_t>(j)] = frame.light(from, j);
+  const auto floor_share = static_cast<float>(1.0 / options.trusted_pixels);
+  for_each_row(frame, [&](int row) {
+    find_energy(test.u, rank, frame.scalar(WindowVariances(window).in),
+                frame.scalar(FilterPlanes::variance), window == 0 ? 0.0f : floor_share, frame.grid,
+                row, 1, frame.scalar(FilterPlanes::energy),
+                frame.scalar(FilterPlanes::inverse_sigma));
+  });
+  for_each_strip(frame, window_step(window), false,
+                 [&](const FilterStrip& strip, const PairWeights& weights) {
+                   weigh_similar(test, frame.grid, strip, weights);
+                   add_weighted(sums_of(frame, from, to, window), frame.grid, strip, weights);
+                 });
+}
+
+/// @param averaged  of the row's pixels: of how many measurements the raw numbers are the mean
+void Filter::Plan::write_raw_row(FilterPlanes& frame, int from, int to, int row,
+                                 float* averaged) const {
+  const std::ptrdiff_t start = row * frame.grid.stride;
+  const float* const usable = frame.scalar(FilterPlanes::usable) + start;
+  const float* const single = frame.scalar(FilterPlanes::variance) + start;
+  const float* const left = frame.scalar(last_variance()) + start;
+  for_each_block_of_row(frame.grid.width, [&](int first, int pixels) {
+    const std::ptrdiff_t at = start + first;
+    RowBlock electrons;
+    for (int k = 0; k < measurements; ++k) {
+      mix(
+          to_measurements.data() + k * measurements, measurements,
+          [&](int j) { return frame.light(from, j) + at; }, pixels, electrons[k]);
+      const auto dark = static_cast<float>(scale.raw(0.0, k));
+      const auto per_electron = static_cast<float>(scale.raw(1.0, k) - scale.raw(0.0, k));
+      float* const raw = frame.light(to, k) + at;
+      for (int i = 0; i < pixels; ++i) raw[i] = electrons[k][i] * per_electron + dark;
+    }
+    float* const n = averaged + first;
+    if (has_own_shot_noise)
+      std::copy_n(single + first, pixels, n);
+    else
+      find_variance(*this, electrons, pixels, n);
+    for (int i = 0; i < pixels; ++i)
+      n[i] = usable[first + i] > 0.0f ? std::max(n[i] / left[first + i], 1e-3f) : 1.0f;
+  });
+}
+
+/// Whether what was added to a pixel can be its own light. It cannot where the pixels around it
+/// show none, and less than was added: beside an edge of light, dark pixels are given none of it.
+bool Filter::Plan::has_own_light(FilterPlanes& frame, int set, std::ptrdiff_t at) const {
+  float square = 0.0f;
+  for (int j = 0; j < rank; ++j) square += frame.light(set, j)[at] * frame.light(set, j)[at];
+  if (!(square > 0.0f)) return false;
+  const float added = std::sqrt(square);
+  const float sigma = std::sqrt(frame.scalar(FilterPlanes::variance)[at]);
+  constexpr float most_around = (2 * own_light_reach + 1) * (2 * own_light_reach + 1);
+  const auto limit = static_cast<float>(options.own_light_sigma) * own_light_noise * sigma;
+  if (added <= limit / std::sqrt(most_around)) return true;
+  const auto along = [&](std::ptrdiff_t pixel) {
+    float sum = 0.0f;
+    for (int j = 0; j < rank; ++j) sum += frame.light(set, j)[at] * frame.light(0, j)[pixel];
+    return sum / added;
+  };
+  if (along(at) >= evident_sigma * sigma) return true;
+  std::array<float, static_cast<std::size_t>(most_around)> around;
+  auto end = around.begin();
+  for (int dy = -own_light_reach; dy <= own_light_reach; ++dy)
+    for (int dx = -own_light_reach; dx <= own_light_reach; ++dx) {
+      const std::ptrdiff_t pixel = at + dy * frame.grid.stride + dx;
+      if (frame.scalar(FilterPlanes::usable)[pixel] > 0.0f) *end++ = along(pixel);
+    }
+  const auto count = static_cast<float>(end - around.begin());
+  const auto place = around.begin() + static_cast<std::ptrdiff_t>(own_light_share * (count - 1));
+  std::nth_element(around.begin(), place, end);
+  const float own = *place + own_light_below_mean * sigma;
+  return own >= own_light_noise * sigma / std::sqrt(count) ||
+         added - own <= limit / std::sqrt(count);
+}
+
+void Filter::Plan::finish(const RawView& raw, FilterPlanes& frame, int from, int to) const {
+  for_each_row(frame, [&](int row) {
+    float* const averaged = &frame.averaged(row, 0);
+    write_raw_row(frame, from, to, row, averaged);
+    const std::ptrdiff_t start = row * frame.grid.stride;
+    for_each_run(raw, std::int64_t{row} * raw.width, raw.width,
+                 [&](const auto* pixel, std::int64_t length, std::int64_t) {
+                   for (std::int64_t x = 0; x < length; ++x, pixel += raw.column_stride) {
+                     if (frame.scalar(FilterPlanes::usable)[start + x] > 0.0f &&
+                         has_own_light(frame, from, start + x))
+                       continue;
+                     averaged[x] = 1.0f;
+                     for (int k = 0; k < measurements; ++k)
+                       frame.light(to, k)[start + x] =
+                           static_cast<float>(pixel[k * raw.measurement_stride]);
+                   }
+                 });
+  });
+}
+
+}  // namespace tofsmith

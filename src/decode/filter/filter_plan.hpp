@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "decode/filter/filter_planes.hpp"
+#include "decode/raw_scale.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/decode/decoder.hpp"
+
+namespace tofsmith {
+
+/// Rows of a frame that one thread works on at a time.
+inline constexpr int filter_rows = 32;
+inline constexpr int window_side = 2 * window_reach + 1;
+
+/// Pixels that the windows of a round are apart.
+int window_step(int window);
+
+/// The variances that go into a window and come out of it.
+struct WindowVariances {
+  FilterPlanes::Scalar in, out;
+
+  explicit WindowVariances(int window);
+};
+
+/// What a Filter knows, and its steps over a frame.
+struct Filter::Plan {
+  Plan(DecodingTable table, const FilterOptions& options_, const AmbientProjection& projection);
+
+  FilterOptions options;
+  Decoder decoder;
+  RawScale scale;
+  int measurements = 0, rank = 0;
+  std::vector<float> to_coordinates;   // (K, K): coordinate j of measurement k at j * K + k
+  std::vector<float> to_measurements;  // and back, k * K + j
+  std::vector<float> curve;            // x = T o chi in coordinates (N, K)
+  std::vector<float> curve_square;     // its length^2 in the decoding plane (N)
+  std::vector<float> shot_share;    // of a measurement in a coordinate's variance, on average (K)
+  float floor_variance_e2 = 0.0f;   // of a coordinate, without light
+  bool has_own_shot_noise = false;  // light that cancels in the measurements still makes noise
+  float shot_per_signal = 0.0f, mean_curve_square = 0.0f;  // over all depths
+
+  int samples() const { return decoder.samples(); }
+  /// The variance that the last window leaves.
+  FilterPlanes::Scalar last_variance() const { return WindowVariances(options.windows - 1).out; }
+
+  /// Raw numbers into the first set of light, with their variances and where they are usable.
+  void read(const RawView& raw, FilterPlanes& frame) const;
+  /// One window of the round that adds neighbours whose vectors are parallel.
+  void add_similar(FilterPlanes& frame, int from, int to, int window) const;
+  /// Depth of a set of light, by way of raw numbers in another set.
+  void find_depth(FilterPlanes& frame, int from, int into) const;
+  /// One window of a round that adds neighbours of the same surface: `light` is split into signal
+  /// along the depth and the rest, in `rest`; the sum goes to `to`.
+  void add_along_slopes(FilterPlanes& frame, int light, int rest, int to, int window) const;
+  /// Raw numbers of a set of light in another set, as measured where nothing was to be added.
+  void finish(const RawView& raw, FilterPlanes& frame, int from, int to) const;
+
+ private:
+  WeightedSums sums_of(FilterPlanes& frame, int from, int to, int window) const;
+  void read_row(const RawView& raw, FilterPlanes& frame, int row) const;
+  void find_hidden_noise(FilterPlanes& frame, int row) const;
+  void write_raw_row(FilterPlanes& frame, int from, int to, int row, float* averaged) const;
+  void split_row(FilterPlanes& frame, int from, int to, int row) const;
+  void join_row(FilterPlanes& frame, int set, int row) const;
+  bool has_own_light(FilterPlanes& frame, int set, std::ptrdiff_t at) const;
+};
+
+/// Calls work(row) for all rows of a frame, on all threads.
+template <typename Work>
+void for_each_row(const FilterPlanes& frame, const Work& work) {
+  parallel_for_blocks(frame.grid.height, filter_rows, [&](IndexRange rows) {
+    for (std::int64_t row = rows.begin; row < rows.end; ++row) work(static_cast<int>(row));
+  });
+}
+
+/// Calls work(strip, room for its weights) for all strips of a frame, on all threads.
+template <typename Work>
+void for_each_strip(FilterPlanes& frame, int step, bool with_shifts, const Work& work) {
+  parallel_for_blocks(frame.grid.height, filter_rows, [&](IndexRange rows) {
+    const FilterStrip strip{.first_row = static_cast<int>(rows.begin),
+                            .rows = static_cast<int>(rows.end - rows.begin),
+                            .step = step};
+    std::unique_ptr<StripBuffers> buffers = frame.buffers.take();
+    work(strip, buffers->weights(frame.grid, strip, with_shifts));
+    frame.buffers.give_back(std::move(buffers));
+  });
+}
+
+}  // namespace tofsmith

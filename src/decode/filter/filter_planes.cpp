@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "decode/filter/filter_planes.hpp"
+
+#include <algorithm>
+
+namespace tofsmith {
+
+namespace {
+float* room_for(std::size_t floats, std::vector<float>& buffer) {
+  if (buffer.size() < floats) buffer.resize(floats);
+  return buffer.data();
+}
+}  // namespace
+
+PairWeights StripBuffers::weights(const FilterGrid& grid, const FilterStrip& strip,
+                                  bool with_shifts) {
+  return {.weight = room_for(weight_floats(grid, strip), weight),
+          .shifted = with_shifts ? room_for(weight_floats(grid, strip), shifted) : nullptr,
+          .scratch = room_for(scratch_floats(grid, strip), scratch),
+          .stride = grid.stride};
+}
+
+std::unique_ptr<StripBuffers> StripBufferPool::take() {
+  const std::lock_guard lock(mutex_);
+  if (free_.empty()) return std::make_unique<StripBuffers>();
+  std::unique_ptr<StripBuffers> buffers = std::move(free_.back());
+  free_.pop_back();
+  return buffers;
+}
+
+void StripBufferPool::give_back(std::unique_ptr<StripBuffers> buffers) {
+  const std::lock_guard lock(mutex_);
+  free_.push_back(std::move(buffers));
+}
+
+void FilterPlanes::resize(int height, int width, int measurements_, int largest_step) {
+  FilterGrid wanted{.height = height, .width = width};
+  wanted.margin = margin_columns(largest_step);
+  wanted.stride = whole_vectors(width + 2 * wanted.margin);
+  const int rows = height + 2 * margin_rows(largest_step);
+  const std::ptrdiff_t floats = rows * wanted.stride;
+  const bool fits = grid.height == height && grid.width == width && grid.margin == wanted.margin &&
+                    measurements == measurements_;
+  if (fits) return;
+  grid = wanted;
+  measurements = measurements_;
+  rows_above = margin_rows(largest_step);
+  plane_floats = floats;
+  // Margins stay 0.
+  storage.assign(static_cast<std::size_t>((scalars + 3 * measurements) * floats), 0.0f);
+  averaged = Image<float>(height, width, 1.0f);
+}
+
+FilteredFrame::FilteredFrame() : planes_(std::make_unique<FilterPlanes>()) {}
+FilteredFrame::~FilteredFrame() = default;
+FilteredFrame::FilteredFrame(FilteredFrame&&) noexcept = default;
+FilteredFrame& FilteredFrame::operator=(FilteredFrame&&) noexcept = default;
+
+int FilteredFrame::height() const { return planes_->grid.height; }
+int FilteredFrame::width() const { return planes_->grid.width; }
+const Image<float>& FilteredFrame::averaged() const { return planes_->averaged; }
+
+RawView FilteredFrame::view() const {
+  const FilterPlanes& p = *planes_;
+  return {.data = p.measurements > 0 ? p.light(p.result, 0) : nullptr,
+          .height = p.grid.height,
+          .width = p.grid.width,
+          .measurements = p.measurements,
+          .row_stride = p.grid.stride,
+          .column_stride = 1,
+          .measurement_stride = p.plane_floats,
+          .averaged = p.averaged.pixels.data()};
+}
+
+RawFrames FilteredFrame::values() const {
+  const RawView raw = view();
+  RawFrames frames{.frames = 1,
+                   .height = raw.height,
+                   .width = raw.width,
+                   .measurements = raw.measurements,
+                   .values = {}};
+  frames.values.resize(frames.pixels_per_frame() * static_cast<std::size_t>(raw.measurements));
+  copy_pixels(raw, 0, raw.pixels(), frames.values.data());
+  return frames;
+}
+
+}  // namespace tofsmith

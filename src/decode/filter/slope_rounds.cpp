@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// The rounds of a Filter along slopes. A neighbour q's light y_q is split into signal along its
+// depth and the rest, y_q = S_q x(z_q) + e_q. The rests are added as they are, the signals where
+// the pixel's own depth is and as far beyond it as the neighbour lies beyond the slope:
+//   sum_q w_q e_q + (sum_q w_q S_q) x(z + sum_q w_q S_q d_q / sum_q w_q S_q).
+#include <algorithm>
+#include <cmath>
+
+#include "decode/filter/filter_plan.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// A place between two bins.
+struct CurvePlace {
+  std::ptrdiff_t from = 0, to = 0;
+  float share = 0.0f;  // of `to`
+
+  /// @param bin  in [-N, 2 N)
+  CurvePlace(float bin, int samples) {
+    const auto period = static_cast<float>(samples);
+    if (bin < 0.0f) bin += period;
+    if (bin >= period) bin -= period;
+    from = std::clamp(static_cast<std::ptrdiff_t>(bin), std::ptrdiff_t{0},
+                      static_cast<std::ptrdiff_t>(samples - 1));
+    share = bin - static_cast<float>(from);
+    to = from + 1 < samples ? from + 1 : 0;
+  }
+};
+
+}  // namespace
+
+void Filter::Plan::find_depth(FilterPlanes& frame, int from, int into) const {
+  const FilterGrid& grid = frame.grid;
+  float* const averaged = frame.scalar(FilterPlanes::shift);
+  for_each_row(frame, [&](int row) {
+    float* const here = averaged + row * grid.stride;
+    std::fill_n(here - grid.margin, grid.stride, 1.0f);
+    write_raw_row(frame, from, into, row, here);
+  });
+  // Whole rows with their margins, so that planes are what decoders write.
+  float* const depth = frame.scalar(FilterPlanes::depth);
+  float* const variance = frame.scalar(FilterPlanes::depth_variance);
+  const RawView raw{.data = static_cast<const float*>(frame.light(into, 0) - grid.margin),
+                    .height = grid.height,
+                    .width = static_cast<int>(grid.stride),
+                    .measurements = measurements,
+                    .row_stride = grid.stride,
+                    .column_stride = 1,
+                    .measurement_stride = frame.plane_floats,
+                    .averaged = averaged - grid.margin};
+  decoder.decode(raw, {.depth_m = depth - grid.margin,
+                       .predicted_standard_deviation_m = variance - grid.margin});
+  const auto per_bin = static_cast<float>(1.0 / decoder.table().bin_m());
+  for_each_row(frame, [&](int row) {
+    const std::ptrdiff_t first = row * grid.stride - grid.margin;
+    for (std::ptrdiff_t at = first; at < first + grid.stride; ++at) {
+      const float deviation = variance[at] * per_bin;
+      const bool is_known = frame.scalar(FilterPlanes::usable)[at] > 0.0f &&
+                            std::isfinite(depth[at]) && std::isfinite(deviation);
+      frame.scalar(FilterPlanes::guided)[at] = is_known ? 1.0f : 0.0f;
+      depth[at] = is_known ? depth[at] * per_bin : 0.0f;
+      variance[at] = is_known ? deviation * deviation : 1.0f;
+    }
+  });
+}
+
+/// Light of one set into signal along the depth found and the rest, in another set. Pixels without
+/// a depth stay as they are.
+void Filter::Plan::split_row(FilterPlanes& frame, int from, int to, int row) const {
+  std::array<float, max_measurements> point;
+  for (int x = 0; x < frame.grid.width; ++x) {
+    const std::ptrdiff_t at = row * frame.grid.stride + x;
+    float signal = 0.0f;
+    if (frame.scalar(FilterPlanes::guided)[at] > 0.0f) {
+      const CurvePlace place(frame.scalar(FilterPlanes::depth)[at], samples());
+      const float* const a = curve.data() + place.from * measurements;
+      const float* const b = curve.data() + place.to * measurements;
+      float along = 0.0f, own = 0.0f;
+      for (int k = 0; k < measurements; ++k) point[k] = a[k] + place.share * (b[k] - a[k]);
+      for (int j = 0; j < rank; ++j) {
+        along += point[j] * frame.light(from, j)[at];
+        own += point[j] * point[j];
+      }
+      if (own > 0.0f) signal = along / own;
+    }
+    frame.scalar(FilterPlanes::signal)[at] = signal;
+    for (int k = 0; k < measurements; ++k) {
+      const float light = frame.light(from, k)[at];
+      frame.light(to, k)[at] = signal != 0.0f ? light - signal * point[k] : light;
+    }
+  }
+}
+
+void Filter::Plan::join_row(FilterPlanes& frame, int set, int row) const {
+  for (int x = 0; x < frame.grid.width; ++x) {
+    const std::ptrdiff_t at = row * frame.grid.stride + x;
+    if (!(frame.scalar(FilterPlanes::guided)[at] > 0.0f)) continue;
+    const float signal = frame.scalar(FilterPlanes::signal_next)[at];
+    const float shift = frame.scalar(FilterPlanes::shift)[at];
+    // Where noise leaves next to no signal, there is nothing to be moved.
+    const float beyond = signal > std::abs(shift) / 4 ? shift / signal : 0.0f;
+    const CurvePlace place(frame.scalar(FilterPlanes::depth)[at] + beyond, samples());
+    const float* const a = curve.data() + place.from * measurements;
+    const float* const b = curve.data() + place.to * measurements;
+    for (int k = 0; k < measurements; ++k)
+      frame.light(set, k)[at] += signal * (a[k] + place.share * (b[k] - a[k]));
+  }
+}
+
+void Filter::Plan::add_along_slopes(FilterPlanes& frame, int light, int rest, int to,
+                                    int window) const {
+  const SlopeTest test{
+      .depth = frame.scalar(FilterPlanes::depth),
+      .variance = frame.scalar(FilterPlanes::depth_variance),
+      .slope_x = frame.scalar(FilterPlanes::energy),
+      .slope_y = frame.scalar(FilterPlanes::inverse_sigma),
+      .usable = frame.scalar(FilterPlanes::guided),
+      .samples = static_cast<float>(samples()),
+      .same_depth_sigma2 = static_cast<float>(options.same_depth_sigma * options.same_depth_sigma),
+      .max_difference_sigma = static_cast<float>(options.max_difference_sigma)};
+  for_each_row(frame, [&](int row) {
+    if (window == 0)
+      find_slopes(test, frame.grid, row, 1, frame.scalar(FilterPlanes::energy),
+                  frame.scalar(FilterPlanes::inverse_sigma));
+    split_row(frame, light, rest, row);
+  });
+  WeightedSums sums = sums_of(frame, rest, to, window);
+  sums.in[static_cast<std::size_t>(sums.planes)] = frame.scalar(FilterPlanes::signal);
+  sums.out[static_cast<std::size_t>(sums.planes++)] = frame.scalar(FilterPlanes::signal_next);
+  sums.shifted_in = frame.scalar(FilterPlanes::signal);
+  sums.shifted_out = frame.scalar(FilterPlanes::shift);
+  for_each_strip(frame, window_step(window), true,
+                 [&](const FilterStrip& strip, const PairWeights& weights) {
+                   weigh_along_slopes(test, frame.grid, strip, weights);
+                   add_weighted(sums, frame.grid, strip, weights);
+                   for (int r = 0; r < strip.rows; ++r) join_row(frame, to, strip.first_row + r);
+                 });
+}
+
+}  // namespace tofsmith
