@@ -44,29 +44,33 @@ inline Camera camera_with(const std::string& name, int taps = 1,
   return camera;
 }
 
-/// Noisy raw numbers (pixels, K) at random depths, from the chords of the decoder's table.
-inline std::vector<float> noisy_pixels(const DecodingTable& table, double signal, double ambient,
-                                       int pixels, std::uint64_t seed) {
-  const int k_count = table.measurements();
+/// Noisy raw numbers of a pixel (K), from the chords of the decoder's table, appended.
+inline void append_noisy_pixel(const DecodingTable& table, double signal, double ambient,
+                               double depth_bin, RandomStream& random, std::vector<float>& raw) {
   const auto& shot = table.shot();
   const auto &kappa = table.shot_ambient(), &shot_dark = table.shot_dark();
+  const int from = static_cast<int>(depth_bin), to = (from + 1) % table.samples();
+  const double t = depth_bin - from;
+  for (int k = 0; k < table.measurements(); ++k) {
+    const double chi = (1 - t) * table.correlation(from, k) + t * table.correlation(to, k);
+    const double shot_chi = (1 - t) * shot(from, k) + t * shot(to, k);
+    const double mean = table.exposure_s[k] * (signal * chi + ambient * table.ambient_gain[k]);
+    const double variance = table.exposure_s[k] * (signal * shot_chi + ambient * kappa[k]) +
+                            shot_dark[k] + table.constant_variance_e2[k];
+    const double electrons = mean + table.dark_electrons[k] + std::sqrt(variance) * random.normal();
+    raw.push_back(static_cast<float>(electrons / table.gain_e_per_raw[k] + table.black_level[k]));
+  }
+}
+
+/// Noisy raw numbers (pixels, K) at random depths.
+inline std::vector<float> noisy_pixels(const DecodingTable& table, double signal, double ambient,
+                                       int pixels, std::uint64_t seed) {
   std::vector<float> raw;
-  raw.reserve(static_cast<std::size_t>(pixels * k_count));
+  raw.reserve(static_cast<std::size_t>(pixels * table.measurements()));
   RandomStream random(seed, 0);
   for (int i = 0; i < pixels; ++i) {
     const double depth_bin = table.samples() * random.uniform();
-    const int from = static_cast<int>(depth_bin), to = (from + 1) % table.samples();
-    const double t = depth_bin - from;
-    for (int k = 0; k < k_count; ++k) {
-      const double chi = (1 - t) * table.correlation(from, k) + t * table.correlation(to, k);
-      const double shot_chi = (1 - t) * shot(from, k) + t * shot(to, k);
-      const double mean = table.exposure_s[k] * (signal * chi + ambient * table.ambient_gain[k]);
-      const double variance = table.exposure_s[k] * (signal * shot_chi + ambient * kappa[k]) +
-                              shot_dark[k] + table.constant_variance_e2[k];
-      const double electrons =
-          mean + table.dark_electrons[k] + std::sqrt(variance) * random.normal();
-      raw.push_back(static_cast<float>(electrons / table.gain_e_per_raw[k] + table.black_level[k]));
-    }
+    append_noisy_pixel(table, signal, ambient, depth_bin, random, raw);
   }
   return raw;
 }

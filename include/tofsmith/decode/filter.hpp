@@ -39,7 +39,7 @@ struct FilterOptions {
   double trusted_pixels = 12.0;
   /// Along slopes, depths within this many standard deviations are the same surface.
   double same_depth_sigma = 4.0;
-  /// A pixel is left as it was measured where neither it nor most of the 5 x 5 pixels around it show
+  /// A pixel is left as it was measured where neither it nor most of the 7 x 7 pixels around it show
   /// any light, but what the filter would give it stands out by this many standard deviations of
   /// their mean: beside an edge of light, dark pixels are given none of it.
   double own_light_sigma = 8.0;

@@ -11,24 +11,12 @@
 // Highway asks for its own header after foreach_target.
 #include <hwy/highway.h>
 
-#include "core/shared/vectors-inl.hpp"
+#include "decode/filter/pair_weight-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
-
-HWY_INLINE Vector load(const float* from) { return hn::LoadU(Floats(), from); }
-HWY_INLINE void store(Vector value, float* to) { hn::StoreU(value, Floats(), to); }
-
-/// 1 without a difference, 0 from the largest on, smooth between.
-HWY_INLINE Vector weight_of(Vector difference, Vector inverse_max) {
-  const Vector zero = hn::Zero(Floats());
-  const Vector left =
-      hn::Max(hn::NegMulAdd(hn::Max(difference, zero), inverse_max, all(1.0f)), zero);
-  const Vector square = hn::Mul(left, left);
-  return hn::Mul(square, square);
-}
 
 /// lambda of the pixels of a row and of those `away` from them, from column -reach on; rank - 1
 /// where one of both is not usable.
@@ -97,126 +85,6 @@ void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const Fil
       }
     }
   }
-}
-
-/// A difference of depths, of a period's bins, as the nearest way round.
-HWY_INLINE Vector nearest(Vector difference, Vector samples, Vector per_sample) {
-  return hn::NegMulAdd(hn::Round(hn::Mul(difference, per_sample)), samples, difference);
-}
-
-constexpr float min_depth_variance = 1e-8f;  // [bin^2], of scenes without noise
-
-void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const FilterStrip& strip,
-                        const PairWeights& weights) {
-  const Vector samples = all(test.samples), per_sample = all(1.0f / test.samples);
-  const Vector inverse_max = all(1.0f / test.max_difference_sigma);
-  const int rows = strip.rows + strip.rows_above();
-  for (std::size_t i = 0; i < half_window.size(); ++i) {
-    const int down = half_window[i].rows * strip.step, right = half_window[i].columns * strip.step;
-    const std::ptrdiff_t away = down * grid.stride + right;
-    const Vector half_down = all(0.5f * static_cast<float>(down));
-    const Vector half_right = all(0.5f * static_cast<float>(right));
-    for (int r = strip.rows_above() - down; r < rows; ++r) {
-      const std::ptrdiff_t row = (static_cast<std::ptrdiff_t>(i) * rows + r) * weights.stride;
-      std::fill_n(weights.weight + row, weights.stride, 0.0f);
-      std::fill_n(weights.shifted + row, weights.stride, 0.0f);
-      const std::ptrdiff_t first = (strip.first_row - strip.rows_above() + r) * grid.stride;
-      for (int x = 0; x < grid.width; x += lanes_of()) {
-        const std::ptrdiff_t p = first + x, q = p + away;
-        const Vector across = hn::Add(load(test.slope_x + p), load(test.slope_x + q));
-        const Vector along = hn::Add(load(test.slope_y + p), load(test.slope_y + q));
-        const Vector expected = hn::MulAdd(across, half_right, hn::Mul(along, half_down));
-        const Vector difference =
-            hn::Sub(hn::Sub(load(test.depth + q), load(test.depth + p)), expected);
-        const Vector beyond = nearest(difference, samples, per_sample);
-        const Vector variance = hn::Max(hn::Add(load(test.variance + p), load(test.variance + q)),
-                                        all(min_depth_variance));
-        const Vector squares =
-            hn::Div(hn::Mul(beyond, beyond), hn::Mul(all(test.same_depth_sigma2), variance));
-        const Vector both = hn::Mul(load(test.usable + p), load(test.usable + q));
-        const Vector w = hn::Mul(weight_of(hn::Sub(squares, all(1.0f)), inverse_max), both);
-        store(w, weights.weight + row + grid.margin + x);
-        store(hn::Mul(w, beyond), weights.shifted + row + grid.margin + x);
-      }
-    }
-  }
-}
-
-/// Sums of a plane's slopes, weighted: of x^2, x y, y^2, x d, y d.
-struct SlopeSums {
-  Vector xx, xy, yy, xd, yd;
-  HWY_INLINE SlopeSums() : xx(hn::Zero(Floats())), xy(xx), yy(xx), xd(xx), yd(xx) {}
-  HWY_INLINE void add(Vector weight, float x, float y, Vector difference) {
-    const Vector d = hn::Mul(weight, difference);
-    xx = hn::MulAdd(weight, all(x * x), xx);
-    xy = hn::MulAdd(weight, all(x * y), xy);
-    yy = hn::MulAdd(weight, all(y * y), yy);
-    xd = hn::MulAdd(d, all(x), xd);
-    yd = hn::MulAdd(d, all(y), yd);
-  }
-  /// One direction alone tells nothing of the other.
-  HWY_INLINE void solve(Vector& slope_x, Vector& slope_y) const {
-    const Vector little = hn::MulAdd(hn::Add(xx, yy), all(1e-4f), all(1e-20f));
-    const Vector a = hn::Add(xx, little), b = hn::Add(yy, little);
-    const Vector inverse = hn::Div(all(1.0f), hn::NegMulAdd(xy, xy, hn::Mul(a, b)));
-    slope_x = hn::Mul(hn::NegMulAdd(xy, yd, hn::Mul(b, xd)), inverse);
-    slope_y = hn::Mul(hn::NegMulAdd(xy, xd, hn::Mul(a, yd)), inverse);
-  }
-};
-
-/// Neighbours that tell the slope: few, because near ones of filtered pixels share their noise.
-constexpr WindowStep half_rings[] = {{0, 2}, {2, -2}, {2, 0}, {2, 2},
-                                     {0, 4}, {4, -4}, {4, 0}, {4, 4}};
-
-void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, int rows,
-                 float* slope_x, float* slope_y) {
-  const Vector samples = all(test.samples), per_sample = all(1.0f / test.samples);
-  const Vector tiny = all(min_depth_variance), zero = hn::Zero(Floats());
-  const Vector inverse_max = all(1.0f / (4 * test.same_depth_sigma2));
-  for (int y = first_row; y < first_row + rows; ++y)
-    for (int x = 0; x < grid.width; x += lanes_of()) {
-      const std::ptrdiff_t p = y * grid.stride + x;
-      const Vector depth = load(test.depth + p), variance = load(test.variance + p);
-      const auto neighbour = [&](std::ptrdiff_t away, Vector& difference, Vector& noise) {
-        difference = nearest(hn::Sub(load(test.depth + p + away), depth), samples, per_sample);
-        noise = hn::Max(load(test.variance + p + away), tiny);
-        return load(test.usable + p + away);
-      };
-      // Opposite neighbours that differ from the pixel by as much in opposite ways, ..
-      SlopeSums pairs;
-      for (const WindowStep& s : half_rings) {
-        const std::ptrdiff_t away = s.rows * grid.stride + s.columns;
-        Vector ahead, behind, noise_ahead, noise_behind;
-        const Vector both =
-            hn::Mul(neighbour(away, ahead, noise_ahead), neighbour(-away, behind, noise_behind));
-        const Vector bend = hn::Add(ahead, behind), noise = hn::Add(noise_ahead, noise_behind);
-        const Vector all_noise = hn::MulAdd(variance, all(4.0f), noise);
-        const Vector w = hn::Div(
-            hn::Mul(weight_of(hn::Div(hn::Mul(bend, bend), all_noise), inverse_max), both), noise);
-        pairs.add(w, static_cast<float>(s.columns), static_cast<float>(s.rows),
-                  hn::Mul(hn::Sub(ahead, behind), all(0.5f)));
-      }
-      Vector across, along;
-      pairs.solve(across, along);
-      // .. then every neighbour that the plane so found explains.
-      SlopeSums singles;
-      for (const WindowStep& s : half_rings)
-        for (const int sign : {1, -1}) {
-          const int right = sign * s.columns, down = sign * s.rows;
-          Vector difference, noise;
-          const Vector usable = neighbour(down * grid.stride + right, difference, noise);
-          const Vector expected = hn::MulAdd(across, all(static_cast<float>(right)),
-                                             hn::Mul(along, all(static_cast<float>(down))));
-          const Vector beyond = hn::Sub(difference, expected);
-          const Vector squares = hn::Div(hn::Mul(beyond, beyond), hn::Add(noise, variance));
-          const Vector w = hn::Div(hn::Mul(weight_of(squares, inverse_max), usable), noise);
-          singles.add(w, static_cast<float>(right), static_cast<float>(down), difference);
-        }
-      singles.solve(across, along);
-      const Mask usable = hn::Gt(load(test.usable + p), zero);
-      store(hn::IfThenElseZero(usable, across), slope_x + p);
-      store(hn::IfThenElseZero(usable, along), slope_y + p);
-    }
 }
 
 /// Where a row's pairs and their weights are.
@@ -348,8 +216,6 @@ HWY_AFTER_NAMESPACE();
 namespace tofsmith {
 
 HWY_EXPORT(weigh_similar);
-HWY_EXPORT(weigh_along_slopes);
-HWY_EXPORT(find_slopes);
 HWY_EXPORT(add_weighted);
 HWY_EXPORT(find_energy);
 
@@ -370,16 +236,6 @@ std::size_t scratch_floats(const FilterGrid& grid, const FilterStrip& strip) {
 void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const FilterStrip& strip,
                    const PairWeights& weights) {
   HWY_DYNAMIC_DISPATCH(weigh_similar)(test, grid, strip, weights);
-}
-
-void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const FilterStrip& strip,
-                        const PairWeights& weights) {
-  HWY_DYNAMIC_DISPATCH(weigh_along_slopes)(test, grid, strip, weights);
-}
-
-void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, int rows,
-                 float* slope_x, float* slope_y) {
-  HWY_DYNAMIC_DISPATCH(find_slopes)(test, grid, first_row, rows, slope_x, slope_y);
 }
 
 void add_weighted(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,

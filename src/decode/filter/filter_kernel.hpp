@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -18,10 +19,11 @@ struct FilterGrid {
   std::ptrdiff_t stride = 0;  ///< from row to row [floats]
   int margin = 0;             ///< columns of the margin at either side
 };
+inline constexpr int slope_reach = 12;  ///< of the pixels that tell a slope
 /// Rows that windows of a frame reach beyond it, and columns, with room for a whole vector.
-constexpr int margin_rows(int largest_step) { return 2 * largest_step + 2; }
+constexpr int margin_rows(int largest_step) { return std::max(2 * largest_step + 2, slope_reach); }
 constexpr int margin_columns(int largest_step) {
-  return whole_vectors(2 * largest_step + 2) + widest_vector;
+  return whole_vectors(margin_rows(largest_step)) + widest_vector;
 }
 
 /// Half of a window of 5 x 5 without its centre; the other half is opposite.
@@ -76,25 +78,6 @@ struct SimilarityTest {
 };
 void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const FilterStrip& strip,
                    const PairWeights& weights);
-
-/// The test of depths along slopes, all in bins.
-struct SlopeTest {
-  const float* depth = nullptr;
-  const float* variance = nullptr;  ///< of depth
-  const float* slope_x = nullptr;   ///< per column
-  const float* slope_y = nullptr;   ///< per row
-  const float* usable = nullptr;
-  float samples = 0.0f;
-  float same_depth_sigma2 = 0.0f;
-  float max_difference_sigma = 0.0f;
-};
-void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const FilterStrip& strip,
-                        const PairWeights& weights);
-
-/// Slopes of the plane through the depths of pixels 2 and 4 away that are of the same surface; 0
-/// where there are too few.
-void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, int rows,
-                 float* slope_x, float* slope_y);
 
 /// What is added with the weights: planes in, their weighted means out.
 struct WeightedSums {

@@ -17,9 +17,12 @@ namespace {
 
 /// Light of a single pixel of so many standard deviations needs no other proof.
 constexpr float evident_sigma = 3.0f;
-constexpr int own_light_reach = 2;
+constexpr int own_light_reach = 3;
 /// Beside a straight edge fewer pixels are of its far side. Of normal noise, so many standard
 /// deviations below the mean, with so many times its error.
+/// Light around a pixel is its own from so many deviations of its error, and from this share of
+/// what was added, on.
+constexpr float own_light_least_sigma = 1.0f, own_light_least_share = 0.05f;
 constexpr float own_light_share = 0.4f, own_light_below_mean = 0.25f, own_light_noise = 1.28f;
 
 constexpr int pixels_per_block = 256;
@@ -99,7 +102,6 @@ Filter::Plan::Plan(DecodingTable table, const FilterOptions& options_,
   points.leftCols(rank) = projection.curve;
   curve = row_by_row(points);
   const Eigen::VectorXd square = projection.curve.rowwise().squaredNorm();
-  curve_square.assign(square.begin(), square.end());
   const Eigen::VectorXd share = projection.basis.rowwise().squaredNorm() / rank;
   shot_share.assign(share.begin(), share.end());
   const ExpectedNoise noise(decoder.table());
@@ -248,19 +250,20 @@ bool Filter::Plan::has_own_light(FilterPlanes& frame, int set, std::ptrdiff_t at
     return sum / added;
   };
   if (along(at) >= evident_sigma * sigma) return true;
-  std::array<float, static_cast<std::size_t>(most_around)> around;
-  auto end = around.begin();
+  // Whether the light of most pixels around is at least `least`.
+  const float root = std::sqrt(most_around);
+  const float own = std::max(own_light_least_sigma * own_light_noise * sigma / root,
+                             own_light_least_share * added);
+  const float least = std::min(own, added - limit / root) - own_light_below_mean * sigma;
+  float count = 0.0f, below = 0.0f;
   for (int dy = -own_light_reach; dy <= own_light_reach; ++dy)
     for (int dx = -own_light_reach; dx <= own_light_reach; ++dx) {
       const std::ptrdiff_t pixel = at + dy * frame.grid.stride + dx;
-      if (frame.scalar(FilterPlanes::usable)[pixel] > 0.0f) *end++ = along(pixel);
+      const float usable = frame.scalar(FilterPlanes::usable)[pixel];
+      count += usable;
+      if (along(pixel) < least) below += usable;
     }
-  const auto count = static_cast<float>(end - around.begin());
-  const auto place = around.begin() + static_cast<std::ptrdiff_t>(own_light_share * (count - 1));
-  std::nth_element(around.begin(), place, end);
-  const float own = *place + own_light_below_mean * sigma;
-  return own >= own_light_noise * sigma / std::sqrt(count) ||
-         added - own <= limit / std::sqrt(count);
+  return below <= own_light_share * count;
 }
 
 void Filter::Plan::finish(const RawView& raw, FilterPlanes& frame, int from, int to) const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "decode/filter/filter_planes.hpp"
+#include "decode/filter/slope_kernel.hpp"
 #include "decode/raw_scale.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/decode/decoder.hpp"
@@ -36,7 +37,6 @@ struct Filter::Plan {
   std::vector<float> to_coordinates;   // (K, K): coordinate j of measurement k at j * K + k
   std::vector<float> to_measurements;  // and back, k * K + j
   std::vector<float> curve;            // x = T o chi in coordinates (N, K)
-  std::vector<float> curve_square;     // its length^2 in the decoding plane (N)
   std::vector<float> shot_share;    // of a measurement in a coordinate's variance, on average (K)
   float floor_variance_e2 = 0.0f;   // of a coordinate, without light
   bool has_own_shot_noise = false;  // light that cancels in the measurements still makes noise
@@ -63,8 +63,9 @@ struct Filter::Plan {
   void read_row(const RawView& raw, FilterPlanes& frame, int row) const;
   void find_hidden_noise(FilterPlanes& frame, int row) const;
   void write_raw_row(FilterPlanes& frame, int from, int to, int row, float* averaged) const;
-  void split_row(FilterPlanes& frame, int from, int to, int row) const;
-  void join_row(FilterPlanes& frame, int set, int row) const;
+  CurvePoints points() const { return {curve.data(), samples(), measurements, rank}; }
+  void split(FilterPlanes& frame, int from, int to, int row) const;
+  void join(FilterPlanes& frame, int set, int row) const;
   bool has_own_light(FilterPlanes& frame, int set, std::ptrdiff_t at) const;
 };
 

@@ -43,7 +43,8 @@ struct FilterPlanes {
     inverse_sigma,  ///< of SimilarityTest; then slope_y
     depth,          ///< found before [bin]
     depth_variance,
-    signal,  ///< along the depth found before [e/s]
+    guide_variance,  ///< of a coordinate, in what depth was found from [e^2]
+    signal,          ///< along the depth found before [e/s]
     signal_next,
     shift,  ///< of signal_next beyond the slope [e/s bin]
     scalars

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "decode/filter/filter_kernel.hpp"
+
+namespace tofsmith {
+
+/// The test of depths along slopes, all in bins.
+struct SlopeTest {
+  const float* depth = nullptr;
+  const float* variance = nullptr;  ///< of depth
+  const float* slope_x = nullptr;   ///< per column
+  const float* slope_y = nullptr;   ///< per row
+  const float* usable = nullptr;
+  float samples = 0.0f;
+  float same_depth_sigma2 = 0.0f;
+  float max_difference_sigma = 0.0f;
+};
+void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const FilterStrip& strip,
+                        const PairWeights& weights);
+
+/// Slopes of the plane through the depths of pixels 2 and 4 away that are of the same surface; 0
+/// where there are too few.
+void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, int rows,
+                 float* slope_x, float* slope_y);
+
+/// x = T o chi in coordinates of which the first `rank` are those of the decoding plane.
+struct CurvePoints {
+  const float* points = nullptr;  ///< (samples, coordinates)
+  int samples = 0;
+  int coordinates = 0;
+  int rank = 0;
+};
+
+/// A row's light into signal along its depth and the rest; without a depth all is rest.
+struct SplitRow {
+  const float* depth = nullptr;   ///< [bin], in [0, N)
+  const float* guided = nullptr;  ///< > 0 where there is a depth
+  std::array<const float*, max_measurements> in{};
+  std::array<float*, max_measurements> out{};
+  float* signal = nullptr;
+};
+void split_row(const CurvePoints& curve, const SplitRow& row, int width);
+
+/// Adds a row's signal to the rest of its light, where its depth is and shift / signal beyond.
+struct JoinRow {
+  const float* depth = nullptr;
+  const float* guided = nullptr;
+  const float* signal = nullptr;
+  const float* shift = nullptr;  ///< [signal bin]
+  std::array<float*, max_measurements> light{};
+};
+void join_row(const CurvePoints& curve, const JoinRow& row, int width);
+
+}  // namespace tofsmith

@@ -1,0 +1,388 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/decode/filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "decode/ambient_projection.hpp"
+#include "decode_setup.hpp"
+#include "each_target.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+
+namespace tofsmith {
+namespace {
+
+/// What a pixel of a made scene sees.
+struct Seen {
+  double depth_bin = 0.0;
+  double signal_e_per_s = 0.0;
+};
+using SceneOfPixels = std::function<Seen(int row, int column)>;
+
+RawFrames frame_seen(const DecodingTable& table, int height, int width, const SceneOfPixels& scene,
+                     double ambient_e_per_s = 1e4, std::uint64_t seed = 1) {
+  RawFrames frame{.frames = 1,
+                  .height = height,
+                  .width = width,
+                  .measurements = table.measurements(),
+                  .values = {}};
+  RandomStream random(seed, 0);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const Seen seen = scene(y, x);
+      append_noisy_pixel(table, seen.signal_e_per_s, ambient_e_per_s, seen.depth_bin, random,
+                         frame.values);
+    }
+  return frame;
+}
+
+DepthImage decoded(const Decoder& decoder, const FilteredFrame& filtered) {
+  DepthImage image(filtered.height(), filtered.width());
+  decoder.decode(filtered.view(), DecodedView::of(image));
+  return image;
+}
+
+double bin_error(const DecodingTable& table, float depth_m, double depth_bin) {
+  return std::remainder(depth_m / table.bin_m() - depth_bin, table.samples());
+}
+
+FilterOptions options_of(FilterStrength strength) { return FilterOptions::of(strength); }
+
+/// The first window of 5 x 5, pair by pair in double.
+std::vector<double> reference_window(const DecodingTable& table, const RawFrames& raw,
+                                     double max_difference_sigma) {
+  const AmbientProjection projection(table);
+  const int rank = projection.rank(), k_count = table.measurements();
+  const Eigen::VectorXd share = projection.basis.rowwise().squaredNorm() / rank;
+  const auto pixels = static_cast<Eigen::Index>(raw.pixels_per_frame());
+  Eigen::MatrixXd y(pixels, k_count);
+  for (Eigen::Index i = 0; i < pixels; ++i)
+    for (int k = 0; k < k_count; ++k)
+      y(i, k) = (raw.values[static_cast<std::size_t>(i * k_count + k)] - table.black_level[k]) *
+                    table.gain_e_per_raw[k] -
+                table.dark_electrons[k];
+  const Eigen::MatrixXd u = y * projection.basis;
+  const Eigen::VectorXd variance =
+      (y.cwiseMax(0.0) * share).array() + share.dot(table.shot_dark() + table.constant_variance_e2);
+  const auto inside = [&](int row, int column) {
+    return row >= 0 && row < raw.height && column >= 0 && column < raw.width;
+  };
+  const auto at = [&](int row, int column) { return Eigen::Index{row} * raw.width + column; };
+  const auto lambda = [&](int row, int column, int dy, int dx) {
+    if (!inside(row, column) || !inside(row + dy, column + dx)) return rank - 1.0;
+    const Eigen::Index p = at(row, column), q = at(row + dy, column + dx);
+    const double a = u.row(p).squaredNorm() / variance[p], b = u.row(q).squaredNorm() / variance[q];
+    const double c = std::max(0.0, u.row(p).dot(u.row(q)) / std::sqrt(variance[p] * variance[q]));
+    return 0.5 * (a + b - std::sqrt((a - b) * (a - b) + 4 * c * c));
+  };
+  std::vector<double> means;
+  for (int row = 0; row < raw.height; ++row)
+    for (int column = 0; column < raw.width; ++column) {
+      Eigen::RowVectorXd sum = y.row(at(row, column));
+      double weights = 1.0;
+      for (int dy = -2; dy <= 2; ++dy)
+        for (int dx = -2; dx <= 2; ++dx) {
+          if ((dy == 0 && dx == 0) || !inside(row + dy, column + dx)) continue;
+          double mean = 0.0;
+          for (int py = -2; py <= 2; ++py)
+            for (int px = -2; px <= 2; ++px) mean += lambda(row + py, column + px, dy, dx) / 25;
+          const double difference = (mean - (rank - 1)) * std::sqrt(25.0 / (2 * (rank - 1)));
+          const double w =
+              std::pow(std::max(0.0, 1 - std::max(0.0, difference) / max_difference_sigma), 4);
+          sum += w * y.row(at(row + dy, column + dx));
+          weights += w;
+        }
+      for (int k = 0; k < k_count; ++k) means.push_back(sum[k] / weights);
+    }
+  return means;
+}
+
+TEST(Filter, FirstWindowIsTheReference) {
+  const DecodeSetup setup("hamiltonian-k5", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  const RawFrames raw = frame_seen(table, 21, 37, [&](int row, int column) {
+    return Seen{row < 10 ? 40.0 + column : 150.0, 2e4 + 1e3 * column};
+  });
+  const FilterOptions options = options_of(FilterStrength::light);
+  const std::vector<double> expected = reference_window(table, raw, options.max_difference_sigma);
+  for_each_target([&] {
+    const RawFrames filtered = Filter(table, options).apply(raw).values();
+    ASSERT_EQ(filtered.values.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      ASSERT_NEAR(filtered.values[i], expected[i], 2e-4 * (100 + std::abs(expected[i]))) << i;
+  });
+}
+
+TEST(Filter, SumsAreUnbiasedForAnyAlbedo) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  RandomStream albedo(7, 0);
+  const RawFrames raw = frame_seen(table, 96, 96, [&](int, int) {
+    return Seen{70.3, 1e4 + 9e4 * albedo.uniform()};
+  });
+  for (const FilterStrength strength : all_filter_strengths) {
+    const DepthImage image = decoded(setup.decoder, Filter(table, options_of(strength)).apply(raw));
+    double sum = 0.0, squares = 0.0;
+    for (const float depth : image.depth_m.pixels) {
+      const double error = bin_error(table, depth, 70.3);
+      sum += error, squares += error * error;
+    }
+    const double count = 96.0 * 96.0;
+    // As many independent means as windows fit beside one another, at least.
+    const double windows = strength == FilterStrength::light ? count / 25 : count / 625;
+    EXPECT_LT(std::abs(sum / count), 4 * std::sqrt(squares / count / windows)) << name_of(strength);
+    EXPECT_LT(std::sqrt(squares / count), 0.1) << name_of(strength);
+  }
+}
+
+TEST(Filter, FindsTheSameWhicheverWayAFrameIsTurned) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  const RawFrames raw = frame_seen(table, 40, 52, [&](int row, int column) {
+    return Seen{column < 20 ? 60.0 : 100.0 + 0.2 * row, 5e4};
+  });
+  RawFrames turned = raw;
+  const auto k = static_cast<std::ptrdiff_t>(raw.measurements);
+  for (std::size_t i = 0; i < raw.pixels_per_frame(); ++i)
+    std::copy_n(raw.values.begin() + static_cast<std::ptrdiff_t>(i) * k, k,
+                turned.values.end() - static_cast<std::ptrdiff_t>(i + 1) * k);
+  const Filter filter(table);
+  const FilteredFrame one = filter.apply(raw), other = filter.apply(turned);
+  const std::size_t last = raw.pixels_per_frame() - 1;
+  for (std::size_t i = 0; i <= last; ++i)
+    ASSERT_NEAR(one.averaged().pixels[i], other.averaged().pixels[last - i],
+                1e-2 * one.averaged().pixels[i])
+        << i;
+}
+
+TEST(Filter, ConstantPlaneConvergesWithTheMeasurementsAdded) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  const RawFrames raw = frame_seen(table, 128, 128, [&](int, int) { return Seen{120.4, 3e4}; });
+  const auto deviation = [&](const DepthImage& image) {
+    double squares = 0.0;
+    int count = 0;
+    for (int y = 16; y < 112; ++y)
+      for (int x = 16; x < 112; ++x, ++count)
+        squares += std::pow(bin_error(table, image.depth_m(y, x), 120.4), 2);
+    return std::sqrt(squares / count);
+  };
+  const double alone = deviation(setup.decoder.decode(raw));
+  const FilteredFrame light = Filter(table, options_of(FilterStrength::light)).apply(raw);
+  double added = 0.0;
+  for (const float n : light.averaged().pixels) added += n / (128 * 128);
+  EXPECT_GT(added, 19.0);
+  EXPECT_NEAR(deviation(decoded(setup.decoder, light)), alone / std::sqrt(added),
+              0.15 * alone / std::sqrt(added));
+  const FilteredFrame normal = Filter(table).apply(raw);
+  EXPECT_GT(normal.averaged()(64, 64), 500.0f);
+  // Few windows are independent in so small a picture.
+  EXPECT_LT(deviation(decoded(setup.decoder, normal)), 1.6 * alone / 25);
+}
+
+TEST(Filter, PlanesThatSlantKeepTheirDepth) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  const auto depth = [](int row, int column) { return 60.0 + 0.31 * column + 0.12 * row; };
+  const RawFrames raw = frame_seen(table, 96, 160, [&](int row, int column) {
+    return Seen{depth(row, column), 1e5};
+  });
+  const DepthImage image = decoded(setup.decoder, Filter(table).apply(raw));
+  double at_left = 0.0, all = 0.0;
+  for (int y = 0; y < 96; ++y)
+    for (int x = 0; x < 160; ++x) {
+      const double error = bin_error(table, image.depth_m(y, x), depth(y, x));
+      all += error / (96 * 160);
+      if (x < 4) at_left += error / (96 * 4);
+    }
+  EXPECT_NEAR(all, 0.0, 0.005);
+  EXPECT_NEAR(at_left, 0.0, 0.1);  // where all neighbours are farther
+}
+
+TEST(Filter, KeepsAnEdgeOfFiveDeviations) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  const auto flat = frame_seen(table, 32, 32, [&](int, int) { return Seen{80.0, 3e4}; });
+  const DepthImage alone = setup.decoder.decode(flat);
+  double sigma = 0.0;
+  for (const float s : alone.predicted_standard_deviation_m.pixels) sigma += s / 1024;
+  const double step = 5 * sigma / table.bin_m();
+  const auto depth = [&](int column) { return column < 40 ? 80.0 : 80.0 + step; };
+  const RawFrames raw = frame_seen(table, 64, 80, [&](int, int column) {
+    return Seen{depth(column), 3e4};
+  });
+  const DepthImage image = decoded(setup.decoder, Filter(table).apply(raw));
+  int on_wrong_side = 0;
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 80; ++x) {
+      const double error = bin_error(table, image.depth_m(y, x), depth(x));
+      on_wrong_side += std::abs(error) > step / 2;
+    }
+  EXPECT_LE(on_wrong_side, 64);  // a pixel a row, half of it on either side
+}
+
+TEST(Filter, GivesNoDepthWhereThereIsNoLight) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  const auto is_dark = [](int column) { return column >= 40; };
+  const RawFrames raw = frame_seen(table, 64, 96, [&](int, int column) {
+    return Seen{80.0, is_dark(column) ? 0.0 : 5e4};
+  });
+  const DepthImage alone = setup.decoder.decode(raw);
+  for (const FilterStrength strength : all_filter_strengths) {
+    const DepthImage image = decoded(setup.decoder, Filter(table, options_of(strength)).apply(raw));
+    int lit = 0, found = 0, by_chance = 0;
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 96; ++x) {
+        const bool ok = image.status(y, x) == PixelStatus::ok;
+        (is_dark(x) ? found : lit) += ok;
+        by_chance += is_dark(x) && alone.status(y, x) == PixelStatus::ok;
+      }
+    EXPECT_EQ(lit, 64 * 40) << name_of(strength);
+    // Noise that was added up looks like signal a little more often than that of single pixels.
+    EXPECT_LE(found, by_chance + 3 * 64 + 64 * 56 / 20) << name_of(strength);
+  }
+}
+
+TEST(Filter, LeavesInvalidAndSaturatedPixelsAndTakesNothingFromThem) {
+  Camera camera = camera_with("paper-10f0");
+  camera.sensor.full_well_e = 1e4;
+  const DecodeSetup setup("hamiltonian-k4", camera);
+  const DecodingTable& table = setup.decoder.table();
+  RawFrames raw = frame_seen(table, 48, 48, [](int, int) { return Seen{55.0, 5e4}; });
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  for (int y = 20; y < 26; ++y)
+    for (int x = 20; x < 26; ++x) raw.values[static_cast<std::size_t>((y * 48 + x) * 4 + 1)] = nan;
+  for (int y = 30; y < 33; ++y)
+    for (int x = 5; x < 9; ++x) raw.values[static_cast<std::size_t>((y * 48 + x) * 4)] = 1e4f;
+  for (const FilterStrength strength : all_filter_strengths) {
+    const FilteredFrame filtered = Filter(table, options_of(strength)).apply(raw);
+    const DepthImage image = decoded(setup.decoder, filtered);
+    for (int y = 0; y < 48; ++y)
+      for (int x = 0; x < 48; ++x) {
+        const bool is_invalid = y >= 20 && y < 26 && x >= 20 && x < 26;
+        const bool is_saturated = y >= 30 && y < 33 && x >= 5 && x < 9;
+        const PixelStatus expected = is_invalid     ? PixelStatus::invalid
+                                     : is_saturated ? PixelStatus::saturated
+                                                    : PixelStatus::ok;
+        ASSERT_EQ(image.status(y, x), expected) << y << ' ' << x;
+        if (expected != PixelStatus::ok) {
+          ASSERT_EQ(filtered.averaged()(y, x), 1.0f);
+          continue;
+        }
+        ASSERT_LT(std::abs(bin_error(table, image.depth_m(y, x), 55.0)), 0.5) << y << ' ' << x;
+      }
+  }
+}
+
+TEST(Filter, HasTheSameBitsOnAnyNumberOfThreadsAndInAnyLayout) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  const RawFrames raw = frame_seen(table, 150, 70, [](int row, int column) {
+    return Seen{20.0 + 0.3 * row + (column > 33 ? 40.0 : 0.0), 3e4};
+  });
+  const Filter filter(table, options_of(FilterStrength::strong));
+  const FilteredFrame expected = filter.apply(raw);
+  const std::vector<float> values = expected.values().values;
+  for (const int threads : {1, 2, 3, 8}) {
+    const ThreadLimit limit(threads);
+    const FilteredFrame filtered = filter.apply(raw);
+    EXPECT_EQ(filtered.values().values, values) << threads;
+    EXPECT_EQ(filtered.averaged().pixels, expected.averaged().pixels) << threads;
+  }
+  std::vector<double> planar(raw.values.size());
+  const std::size_t pixels = raw.pixels_per_frame();
+  for (std::size_t i = 0; i < pixels; ++i)
+    for (std::size_t k = 0; k < 4; ++k) planar[k * pixels + i] = raw.values[i * 4 + k];
+  FilteredFrame filtered;
+  filter.apply(RawView::planar(planar.data(), 150, 70, 4), filtered);
+  EXPECT_EQ(filtered.values().values, values);
+}
+
+TEST(Filter, ReusesAFrameForAnyFrame) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  const Filter filter(table);
+  FilteredFrame reused;
+  for (const int side : {40, 40, 7, 1, 33}) {
+    const RawFrames raw = frame_seen(
+        table, side, side + 3,
+        [](int row, int) {
+          return Seen{20.0 + row, 3e4};
+        },
+        1e4, static_cast<std::uint64_t>(side));
+    filter.apply(view_of_frame(raw, 0), reused);
+    EXPECT_EQ(reused.values().values, filter.apply(raw).values().values) << side;
+  }
+}
+
+TEST(Filter, TakesAnyCodeAndCamera) {
+  struct Case {
+    const char* code;
+    Camera camera;
+  };
+  Camera counts = camera_with("paper-10f0");
+  counts.sensor.adc_bits = 12;
+  counts.sensor.gain_e_per_dn = 20.0;
+  counts.sensor.black_level_dn = 40.0;
+  for (const Case& c :
+       {Case{"hamiltonian-k3", camera_with("paper-10f0")},
+        Case{"sinusoid-k4", camera_with("paper-10f0")},
+        Case{"multifrequency-k5", camera_with("paper-10f0")}, Case{"hamiltonian-k4", counts},
+        Case{"square-k4", camera_with("paper-10f0", 2, Readout::difference)}}) {
+    SCOPED_TRACE(c.code);
+    const DecodeSetup setup(c.code, c.camera);
+    const DecodingTable& table = setup.decoder.table();
+    const RawFrames raw = frame_seen(
+        table, 64, 64,
+        [](int, int) {
+          return Seen{66.0, 1e5};
+        },
+        1e3);
+    const auto error = [&](const DepthImage& image) {
+      double sum = 0.0;
+      for (const float depth : image.depth_m.pixels)
+        sum += std::abs(bin_error(table, depth, 66.0)) / 4096;
+      return sum;
+    };
+    const double alone = error(setup.decoder.decode(raw));
+    EXPECT_LT(error(decoded(setup.decoder, Filter(table).apply(raw))), 0.12 * alone);
+  }
+}
+
+TEST(Filter, RefusesWhatCannotBe) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  EXPECT_THROW(Filter(table, {.windows = 0}), InvalidArgument);
+  EXPECT_THROW(Filter(table, {.slope_rounds = -1}), InvalidArgument);
+  EXPECT_THROW(Filter(table, {.trusted_pixels = 0.5}), InvalidArgument);
+  EXPECT_THROW(parse_filter_strength("heavy"), std::invalid_argument);
+  const Filter filter(table);
+  RawFrames raw{.frames = 1, .height = 2, .width = 2, .measurements = 5, .values = {}};
+  raw.values.resize(20);
+  EXPECT_THROW(filter.apply(raw), InvalidArgument);
+  EXPECT_THROW(filter.apply(raw, 1), InvalidArgument);
+  raw = {.frames = 1, .height = 0, .width = 2, .measurements = 4, .values = {}};
+  EXPECT_THROW(filter.apply(raw), InvalidArgument);
+  for (const FilterStrength strength : all_filter_strengths)
+    EXPECT_EQ(parse_filter_strength(name_of(strength)), strength);
+}
+
+TEST(Filter, LeavesFramesWithoutAnyUsablePixel) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  RawFrames raw{.frames = 1, .height = 9, .width = 5, .measurements = 4, .values = {}};
+  raw.values.assign(180, std::numeric_limits<float>::infinity());
+  const FilteredFrame filtered = Filter(setup.decoder.table()).apply(raw);
+  EXPECT_EQ(filtered.values().values, raw.values);
+  for (const PixelStatus status : decoded(setup.decoder, filtered).status.pixels)
+    EXPECT_EQ(status, PixelStatus::invalid);
+}
+
+}  // namespace
+}  // namespace tofsmith
