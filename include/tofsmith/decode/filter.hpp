@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <string_view>
 
@@ -115,6 +116,8 @@ class Filter {
   const DecodingTable& table() const;
   const FilterOptions& options() const;
   int measurements() const { return table().measurements(); }
+  /// Memory of a FilteredFrame of this size [bytes], apart from what each thread needs for 32 rows.
+  std::size_t frame_bytes(int height, int width) const;
 
   /// Filters one frame on all threads. Allocates nothing if the frame held one of the same size.
   /// @param raw  electrons or counts, with as many measurements as the table

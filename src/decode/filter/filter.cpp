@@ -42,6 +42,13 @@ Filter& Filter::operator=(Filter&&) noexcept = default;
 const DecodingTable& Filter::table() const { return plan_->decoder.table(); }
 const FilterOptions& Filter::options() const { return plan_->options; }
 
+std::size_t Filter::frame_bytes(int height, int width) const {
+  const int step = window_step(plan_->options.windows - 1);
+  const FilterGrid grid = FilterPlanes::grid_of(height, width, step);
+  return sizeof(float) * (FilterPlanes::floats(grid, measurements(), step) +
+                          static_cast<std::size_t>(height) * static_cast<std::size_t>(width));
+}
+
 void Filter::apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress) const {
   const Plan& plan = *plan_;
   require(raw.measurements == plan.measurements, "raw measurements", raw.measurements,

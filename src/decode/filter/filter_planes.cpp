@@ -34,21 +34,30 @@ void StripBufferPool::give_back(std::unique_ptr<StripBuffers> buffers) {
   free_.push_back(std::move(buffers));
 }
 
+FilterGrid FilterPlanes::grid_of(int height, int width, int largest_step) {
+  FilterGrid grid{.height = height, .width = width};
+  grid.margin = margin_columns(largest_step);
+  grid.stride = whole_vectors(width + 2 * grid.margin);
+  return grid;
+}
+
+std::size_t FilterPlanes::floats(const FilterGrid& grid, int measurements, int largest_step) {
+  return static_cast<std::size_t>(scalars + 3 * measurements) *
+         static_cast<std::size_t>(grid.height + 2 * margin_rows(largest_step)) *
+         static_cast<std::size_t>(grid.stride);
+}
+
 void FilterPlanes::resize(int height, int width, int measurements_, int largest_step) {
-  FilterGrid wanted{.height = height, .width = width};
-  wanted.margin = margin_columns(largest_step);
-  wanted.stride = whole_vectors(width + 2 * wanted.margin);
-  const int rows = height + 2 * margin_rows(largest_step);
-  const std::ptrdiff_t floats = rows * wanted.stride;
+  const FilterGrid wanted = grid_of(height, width, largest_step);
   const bool fits = grid.height == height && grid.width == width && grid.margin == wanted.margin &&
                     measurements == measurements_;
   if (fits) return;
   grid = wanted;
   measurements = measurements_;
   rows_above = margin_rows(largest_step);
-  plane_floats = floats;
+  plane_floats = (height + 2 * rows_above) * grid.stride;
   // Margins stay 0.
-  storage.assign(static_cast<std::size_t>((scalars + 3 * measurements) * floats), 0.0f);
+  storage.assign(floats(grid, measurements, largest_step), 0.0f);
   averaged = Image<float>(height, width, 1.0f);
 }
 

@@ -59,6 +59,8 @@ struct FilterPlanes {
   int result = 0;  ///< the set of `light` that holds raw numbers at the end
   StripBufferPool buffers;
 
+  static FilterGrid grid_of(int height, int width, int largest_step);
+  static std::size_t floats(const FilterGrid& grid, int measurements, int largest_step);
   /// Makes room for a frame; keeps what there is if it fits.
   void resize(int height, int width, int measurements_, int largest_step);
   float* plane(int index) {
