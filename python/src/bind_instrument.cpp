@@ -75,7 +75,7 @@ py::list channel_list(const UploadRequest& request) {
     const QuantizedWaveform& actual = channel.selected_waveform();
     py::dict dict;
     dict["channel"] = channel.channel;
-    dict["arm"] = actual.arm == Arm::light ? "light" : "sensor";
+    dict["arm"] = name_of(actual.arm);
     dict["plays"] = actual.name;
     py::list stored;
     for (const QuantizedWaveform& waveform : channel.stored) stored.append(waveform.name);

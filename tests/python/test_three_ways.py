@@ -199,8 +199,14 @@ def test_design(ways):
 
 
 def test_export(ways, camera):
-    ways.command("export", "square-k4", "--format", "csv", "--samples", "60", *SMALL, "--no-loss",
-                 "-o", "export")
-    ts.export_waveforms("square-k4", camera, "export", "csv", samples=60)
+    for output in ("export", "one.csv"):
+        ways.command("export", "square-k4", "--format", "csv", "--samples", "60", *SMALL,
+                     "--no-loss", "-o", output)
+        written = ts.export_waveforms("square-k4", camera, output, "csv", samples=60)
+    assert [str(file) for file in written.files] == ["one.csv"] and written.notes == []
+    with pytest.raises(ValueError, match="output = one.mif; expected .csv of csv, or a directory"):
+        ts.export_waveforms("square-k4", camera, "one.mif", "csv")
+    (note,) = ts.export_waveforms("square-k4", "paper-10f0", "../fast", "csv").notes
+    assert "3600 MHz" in note
     ways.cpp("export")
-    assert len(ways.same("export/report.html")) >= 2
+    assert len(ways.same("export/report.html")) >= 3
