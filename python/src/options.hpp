@@ -16,6 +16,7 @@
 #include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/decode/unwrap_decoder.hpp"
 #include "tofsmith/design/design.hpp"
+#include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith::python {
@@ -26,6 +27,7 @@ void parse(const std::string& word, DepthSampling& depth);
 inline void parse(const std::string& word, DecodeMethod& method) {
   method = parse_decode_method(word);
 }
+inline void parse(const std::string& word, DepthKind& kind) { kind = parse_depth_kind(word); }
 inline void parse(const std::string& word, UnwrapWeights& weights) {
   weights = parse_unwrap_weights(word);
 }
