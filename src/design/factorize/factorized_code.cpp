@@ -9,7 +9,7 @@
 #include "code/shared/family_rules.hpp"
 #include "code/shared/hamiltonian.hpp"
 #include "design/chips/pair_choice.hpp"
-#include "design/chips/shared/pair_model.hpp"
+#include "design/factorize/shared/pair_model.hpp"
 #include "design/designed_code.hpp"
 #include "design/factorize/shared/start_pool.hpp"
 #include "design/judge.hpp"
