@@ -149,9 +149,9 @@ def test_decode_refuses_alike(ways, camera):
     ways.give("raw.npy", capture(camera))
     decoder = ts.Decoder("hamiltonian-k4", camera)
     for error, word, arguments, options in (
-            (ValueError, "frame 3", ["--frame", "3"], {"frame": 3}),
+            (ValueError, "frame = 3", ["--frame", "3"], {"frame": 3}),
             (ValueError, "stack", ["--stack"], {"stack": True}),
-            (ValueError, "outputs delay", ["--outputs", "delay"], {"outputs": ["delay"]}),
+            (ValueError, "outputs = delay", ["--outputs", "delay"], {"outputs": ["delay"]}),
             (OSError, "0.001 MB", ["--memory-mb", "0.001"], {"memory_mb": 0.001})):
         done = subprocess.run(
             [ways.cli, "decode", "raw.npy", "--code", "hamiltonian-k4", *SMALL, "-o", "d.npz",
