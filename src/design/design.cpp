@@ -161,11 +161,8 @@ std::vector<const Candidate*> by_geometric_mean_error(const DesignResult& result
 }
 
 Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErrorKind kind) {
-  const Estimate best = result.winner().error.of(kind).geometric_mean_m;
-  const Estimate its = other.error.of(kind).geometric_mean_m;
-  const double ratio = its.value / best.value;
-  return {ratio,
-          ratio * std::hypot(its.standard_error / its.value, best.standard_error / best.value)};
+  return ratio_of(other.error.of(kind).geometric_mean_m,
+                  result.winner().error.of(kind).geometric_mean_m);
 }
 
 std::vector<std::string> suggested_baselines(const Camera& camera, const DesignOptions& options) {

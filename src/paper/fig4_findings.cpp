@@ -218,14 +218,9 @@ CheckedStatement equal_ideal(const ErrorSurfaceGroup& panel) {
   for (const char* k : {"k3", "k4", "k5"}) {
     const ErrorSurface& ours = panel.of(fmt::format("hamiltonian-{}-redesigned", k));
     const ErrorSurface& ideal = panel.of(fmt::format("hamiltonian-{}-ideal", k));
-    const auto ratio = [](const Estimate& a, const Estimate& b) {
-      return Estimate{
-          a.value / b.value,
-          a.value / b.value * std::hypot(a.standard_error / a.value, b.standard_error / b.value)};
-    };
-    const Estimate linear = ratio(ours.linear_geometric_mean_m, ideal.linear_geometric_mean_m);
+    const Estimate linear = ratio_of(ours.linear_geometric_mean_m, ideal.linear_geometric_mean_m);
     const Estimate circular =
-        ratio(ours.circular_geometric_mean_m, ideal.circular_geometric_mean_m);
+        ratio_of(ours.circular_geometric_mean_m, ideal.circular_geometric_mean_m);
     finding.measured += fmt::format(" {} {:.3f} ± {:.3f} | {:.3f} ± {:.3f};", k, linear.value,
                                     linear.standard_error, circular.value, circular.standard_error);
     // Three per cent are left for the choice of the origin, which is made from noisy trials; the
