@@ -22,8 +22,10 @@
 namespace tofsmith::python {
 
 /// Words of enumerations. @throws std::invalid_argument for others, with those there are
-void parse(const std::string& word, DesignMethod& method);
 void parse(const std::string& word, DepthSampling& depth);
+inline void parse(const std::string& word, DesignMethod& method) {
+  method = parse_design_method(word);
+}
 inline void parse(const std::string& word, DecodeMethod& method) {
   method = parse_decode_method(word);
 }

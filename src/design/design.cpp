@@ -144,6 +144,8 @@ std::string_view name_of(Termination termination) { return termination_words.of(
 
 std::string_view name_of(DesignMethod method) { return method_words.of(method); }
 
+DesignMethod parse_design_method(std::string_view name) { return method_words.parse(name); }
+
 const Candidate* DesignResult::find(std::string_view name) const {
   for (const Candidate& c : candidates)
     if (c.code.name() == name) return &c;

@@ -91,7 +91,7 @@ refusals = [
     (lambda: ts.capture("bookz", "square-k4", "paper-10f0"), OSError, "did you mean books?"),
     (lambda: ts.load_scene("books", scale_m=2), ValueError, "scale_m = 2; only a mesh has units"),
     (lambda: ts.load_scene("books", width=0), ValueError, "width = 0; must be in [1, 16384]"),
-    (lambda: ts.design("paper-10f0", method="guess"), ValueError, "method: got 'guess'; needs factorize"),
+    (lambda: ts.design("paper-10f0", method="guess"), ValueError, "method = guess; must be factorize"),
     (lambda: ts.design("paper-10f0", effort=0), ValueError, "effort = 0; must be in [0.01, 100]"),
     (lambda: ts.design("paper-10f0", optimize={"seed": 3}), ValueError, "optimize: got the unknown name 'seed'"),
     (lambda: ts.design("paper-10f0", optimize={"start": 3}), ValueError, "optimize: got the unknown name 'start'"),
