@@ -12,10 +12,12 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "tofsmith/calibrate/instrument_table.hpp"
 #include "tofsmith/core/fields.hpp"
 #include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/decode/unwrap_decoder.hpp"
 #include "tofsmith/design/design.hpp"
+#include "tofsmith/instrument/upload.hpp"
 #include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
@@ -26,6 +28,8 @@ void parse(const std::string& word, DepthSampling& depth);
 inline void parse(const std::string& word, DesignMethod& method) {
   method = parse_design_method(word);
 }
+inline void parse(const std::string& word, DecimalMark& mark) { mark = parse_decimal_mark(word); }
+inline void parse(const std::string& word, WaveHeader& header) { header = parse_wave_header(word); }
 inline void parse(const std::string& word, DecodeMethod& method) {
   method = parse_decode_method(word);
 }

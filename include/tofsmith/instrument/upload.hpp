@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/instrument/scpi_session.hpp"
 #include "tofsmith/waveforms/waveform_export.hpp"
@@ -55,6 +56,15 @@ struct UploadRequest {
   double patience_s = 20.0;     ///< more than usual for a reset and for files, 0 .. 600
   std::string filter = "STEP";  ///< Keysight: STEP, NORM or OFF
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<UploadRequest> auto& r) {
+  return std::tuple(Field("channels", r.channels, FieldMark::from_above),
+                    Field("load_ohm", r.load_ohm), Field("output_on", r.output_on),
+                    Field("read_back", r.read_back), Field("reset", r.reset),
+                    Field("true_arb", r.true_arb), Field("wave_header", r.wave_header),
+                    Field("settle_s", r.settle_s, "in [0, 60]"),
+                    Field("patience_s", r.patience_s, "in [0, 600]"), Field("filter", r.filter));
+}
 
 /// What an answer must say.
 struct AnswerCheck {
@@ -118,6 +128,13 @@ struct UploadSelection {
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<UploadSelection> auto& s) {
+  return std::tuple(Field("light_channel", s.light_channel, ">= 0"),
+                    Field("sensor_channel", s.sensor_channel, ">= 0"),
+                    Field("exposure", s.exposure, ">= 1"), Field("tap", s.tap, ">= 1"),
+                    Field("all", s.all));
+}
 
 /// A code as tables for a model: of its format and, unless the options say another, its highest
 /// rate (with `true_arb`: that at which every point is played).
