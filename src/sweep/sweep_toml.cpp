@@ -106,8 +106,8 @@ std::vector<SettingValue> file_values(const TableReader& table, const std::strin
 
 void check_value(const SweepAxis& axis, const SettingValue& value) {
   const bool is_text = value.toml.starts_with('"');
-  const auto is_integer_from = [&](double least) {
-    return value.number && *value.number >= least && *value.number < 0x1p53 &&
+  const auto is_integer_from = [&](double min) {
+    return value.number && *value.number >= min && *value.number < 0x1p53 &&
            *value.number == std::floor(*value.number);
   };
   if (axis.key == "camera" || axis.key == "code") {

@@ -26,13 +26,14 @@ GeneratorModel siglent(std::string name, double rate_hz, double max_hz, double t
           .max_vpp = 10.0};
 }
 
-GeneratorModel keysight(std::string name, int channels, double rate_hz, int least, int points) {
+GeneratorModel keysight(std::string name, int channels, double rate_hz, int min_points,
+                        int points) {
   return {.name = std::move(name),
           .vendor = "Keysight Technologies",
           .family = GeneratorFamily::keysight_trueform,
           .channels = channels,
           .sample_rate_hz = rate_hz,
-          .min_points = least,
+          .min_points = min_points,
           .max_points = points,
           .min_vpp = 0.001,
           .max_vpp = 10.0};
