@@ -111,7 +111,8 @@ def load_scene(
     }
     name = _check.path(scene, "scene")
     seen = _tofsmith.load_scene(name, None if lens is None else _lens(lens), options)
-    return Scene(**seen | {"lens": Lens(*seen["lens"])})
+    view = Lens(*seen.pop("lens"))
+    return Scene(**seen, lens=view)
 
 
 def _lens(lens: Lens) -> list[float]:
