@@ -5,13 +5,13 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "generator_json.hpp"
 #include "tap_arguments.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/camera/generator_report.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
+#include "tofsmith/io/result_document.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/export_report.hpp"
 #include "tofsmith/waveforms/waveform_export.hpp"
@@ -82,7 +82,8 @@ void show(const Session& session, const CodeSet& code, const Camera& camera) {
     strips += fmt::format("  m{:<2} |{}|\n  d{:<2} |{}|\n", i + 1, strip(m), i + 1, strip(d));
   }
   const std::vector<GeneratorReport> generators = generator_report(code, camera);
-  if (!generators.empty()) document["generators"] = generators_json(generators);
+  if (!generators.empty())
+    document["generators"] = nlohmann::ordered_json::parse(generators_document(generators));
   session.print_json(document);
   session.say(fmt::format(
       "{} on {}: {} measurements, {} exposures, N = {}, peak {:.3g}\n"

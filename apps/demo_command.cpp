@@ -139,7 +139,7 @@ void run(const DemoArguments& arguments, const Session& session) {
   const auto begin = std::chrono::steady_clock::now();
   // 1. The camera, the scene, and somewhere to put the results.
   const Camera camera = arguments.camera.load();
-  LoadedScene loaded = load_scene(arguments.scene, camera);
+  LoadedScene loaded = scene_of(arguments.scene, camera);
   const DesignOptions options = design_options(arguments);
   const FreshDirectory cleanup(arguments.output);
   const DesignDirectory directory(arguments.output);
@@ -184,7 +184,7 @@ void add_demo_command(CLI::App& app, Session& session) {
   command->add_option("-o,--output", arguments->output, "directory for everything")
       ->capture_default_str();
   command->add_option("--depth", arguments->scene.scene, scene_help)->capture_default_str();
-  arguments->scene.add_to(*command);
+  add_scene_options(*command, arguments->scene);
   command->add_option("--seed", arguments->seed, "seed of every random choice")
       ->capture_default_str();
   command->add_option("--trials", arguments->trials, "trials per operating point")

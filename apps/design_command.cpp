@@ -120,18 +120,11 @@ struct DesignArguments {
   std::string output;
 };
 
-DesignMethod method_named(const std::string& name) {
-  for (const DesignMethod method :
-       {DesignMethod::factorize, DesignMethod::optimize, DesignMethod::search})
-    if (name == name_of(method)) return method;
-  return DesignMethod::best;
-}
-
 DesignOptions options_for(const DesignArguments& arguments, const Camera& camera) {
   DesignOptions options;
   if (!arguments.target.empty() && !arguments.exposures.empty())
     throw UsageError("--exposures goes with Hamiltonian targets; a --target says how many it has");
-  options.method = method_named(arguments.method);
+  options.method = parse_design_method(arguments.method);
   options.robust = arguments.robust;
   if (arguments.robust && options.method != DesignMethod::optimize &&
       options.method != DesignMethod::best)

@@ -111,14 +111,14 @@ struct EvaluateArguments {
 };
 
 std::string trials_text(const std::vector<EvaluatedCode>& codes, const EvaluateOptions& options) {
-  std::int64_t least = codes.front().error.trials, most = 0;
+  std::int64_t min_trials = codes.front().error.trials, max_trials = 0;
   for (const EvaluatedCode& code : codes)
     for (const PointDepthError& point : code.error.points) {
-      least = std::min(least, point.trials);
-      most = std::max(most, point.trials);
+      min_trials = std::min(min_trials, point.trials);
+      max_trials = std::max(max_trials, point.trials);
     }
-  if (options.target_standard_error == 0.0) return fmt::format("{} trials", most);
-  return fmt::format("{} to {} trials", least, most);
+  if (options.target_standard_error == 0.0) return fmt::format("{} trials", max_trials);
+  return fmt::format("{} to {} trials", min_trials, max_trials);
 }
 
 /// What a reader must know of points that reached the most trials before the target.

@@ -59,7 +59,7 @@ std::optional<MultipathScene> MultipathEvaluation::scene(
     const std::vector<CodeSet>& codes, const Camera& camera,
     const MultipathErrorOptions& options) const {
   if (scene_.scene.empty()) return std::nullopt;
-  const LoadedScene loaded = load_scene(scene_, camera);
+  const LoadedScene loaded = scene_of(scene_, camera);
   const MultipathReturns returns =
       bounced_light_of(loaded, camera, bounce_, terminal_progress("gathering light"));
   const CaptureOptions light{.signal_e_per_s = std::ranges::max(options.signal_e_per_s),

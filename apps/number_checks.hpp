@@ -39,9 +39,9 @@ inline CLI::Validator positive_number() {
   return number_that("> 0 and finite",
                      [](double value) { return value > 0.0 && std::isfinite(value); });
 }
-inline CLI::Validator positive_number(double most) {
-  return number_that(fmt::format("> 0 and at most {}", most),
-                     [most](double value) { return value > 0.0 && value <= most; });
+inline CLI::Validator positive_number(double max) {
+  return number_that(fmt::format("> 0 and at most {}", max),
+                     [max](double value) { return value > 0.0 && value <= max; });
 }
 inline CLI::Validator number_from_0_on() {
   return number_that(">= 0 and finite",
@@ -49,8 +49,8 @@ inline CLI::Validator number_from_0_on() {
 }
 
 /// A share in [least, most), which may be written as a percentage: "1%" becomes "0.01".
-inline CLI::Validator share_or_percentage(double least, double most) {
-  const std::string rule = fmt::format("a share in [{}, {}), such as 0.01 or 1%", least, most);
+inline CLI::Validator share_or_percentage(double min, double max) {
+  const std::string rule = fmt::format("a share in [{}, {}), such as 0.01 or 1%", min, max);
   return {[=](std::string& text) {
             const bool is_percentage = text.ends_with('%');
             double value = 0.0;
@@ -59,7 +59,7 @@ inline CLI::Validator share_or_percentage(double least, double most) {
                 !std::isfinite(value))
               return fmt::format("found {}; must be {}", text, rule);
             if (is_percentage) value /= 100.0;
-            if (!(value >= least && value < most))
+            if (!(value >= min && value < max))
               return fmt::format("found {}; must be {}", text, rule);
             text = fmt::format("{}", value);
             return std::string();

@@ -124,7 +124,7 @@ void run(const SceneArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
   const bool is_file = fs::path(output).has_extension() && !fs::is_directory(output);
   if (is_file) session.check_output(output);
-  const LoadedScene scene = load_scene(arguments.scene, camera);
+  const LoadedScene scene = scene_of(arguments.scene, camera);
   if (is_file)
     write_depth(output, scene.image.depth_m, session.output_policy());
   else if (!output.empty())
@@ -138,7 +138,7 @@ void add_scene_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<SceneArguments>();
   CLI::App* command = app.add_subcommand("scene", "look at a scene, or list those built in");
   command->add_option("SCENE", arguments->scene.scene, scene_help);
-  arguments->scene.add_to(*command);
+  add_scene_options(*command, arguments->scene);
   arguments->camera.add_to(*command);
   command->add_option("-o,--output", arguments->output,
                       "directory for depth, z-depth, albedo, cosine, what is beyond the range, and "

@@ -1,127 +1,34 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include "scene_source.hpp"
-#include "tap_arguments.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "number_checks.hpp"
+#include "tap_arguments.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/io/depth_file.hpp"
-#include "tofsmith/io/image_file.hpp"
 #include "tofsmith/io/mesh_file.hpp"
-#include "tofsmith/io/scene_toml.hpp"
-#include "tofsmith/scene/built_in_scenes.hpp"
-#include "tofsmith/scene/ray_caster.hpp"
 
 namespace tofsmith::apps {
 
-namespace {
-
-namespace fs = std::filesystem;
-
-constexpr int default_width = 320, default_height = 240;
-
-enum class SceneKind { built_in, scene_file, mesh, depth_image };
-
-SceneKind kind_of(const std::string& scene) {
-  const std::vector<std::string> names = built_in_scene_names();
-  if (std::ranges::find(names, scene) != names.end()) return SceneKind::built_in;
-  std::error_code ignored;
-  if (!fs::exists(scene, ignored) && !fs::path(scene).has_extension()) {
-    const std::string near = nearest_word(scene, names);
-    throw IoError(scene.empty() ? "scene" : scene,
-                  fmt::format("there is no such file and no built-in scene of that name ({}){}",
-                              fmt::join(names, ", "),
-                              near.empty() ? "" : fmt::format("; did you mean {}?", near)));
-  }
-  if (fs::path(scene).extension() == ".toml") return SceneKind::scene_file;
-  return is_mesh_file(scene) ? SceneKind::mesh : SceneKind::depth_image;
-}
-
-void refuse(bool given, std::string_view option, std::string_view why) {
-  if (given) throw UsageError(fmt::format("{}: {}", option, why));
-}
-
-void check_options(const SceneSource& source, SceneKind kind) {
-  if (kind != SceneKind::depth_image)
-    refuse(!source.image.empty(), "--image " + source.image,
-           fmt::format("{} has its own albedo; --albedo goes with a depth image", source.scene));
-  if (kind != SceneKind::mesh)
-    refuse(source.scale_m.has_value(), "--scale-m",
-           "only a mesh has units of its own; in a scene file every [[mesh]] has its scale_m");
-  if (kind == SceneKind::scene_file || kind == SceneKind::depth_image)
-    for (const auto& [option, value] :
-         {std::pair("--width", source.width), std::pair("--height", source.height)})
-      refuse(value.has_value(), option,
-             kind == SceneKind::depth_image ? "a depth image has its own size"
-                                            : "a scene file says its size in [view]");
-}
-
-StagedScene staged_scene(const SceneSource& source, SceneKind kind) {
-  if (kind == SceneKind::scene_file) return read_scene_toml(source.scene);
-  const int width = source.width.value_or(default_width);
-  const int height = source.height.value_or(default_height);
-  if (kind == SceneKind::built_in) return built_in_scene(source.scene, width, height);
-  return framed_mesh(read_mesh(source.scene), source.scale_m.value_or(1.0), width, height);
-}
-
-/// A picture that goes with a scene must have its size.
-void require_size(const Image<float>& picture, const std::string& file, const SceneImage& scene,
-                  const std::string& scene_file) {
-  if (picture.height == scene.height() && picture.width == scene.width()) return;
-  throw IoError(file,
-                fmt::format("is {} x {} pixels; expected {} x {}, the size of {}", picture.height,
-                            picture.width, scene.height(), scene.width(), scene_file));
-}
-
-Transfer transfer_of(const SceneSource& source) {
-  return source.linear_image ? Transfer::linear : Transfer::srgb;
-}
-
-LoadedScene depth_image(const SceneSource& source, const Camera& camera) {
-  const Image<float> depth_m = read_depth(source.scene);
-  LoadedScene scene{fs::path(source.scene).stem().string(),
-                    SceneImage(depth_m.height, depth_m.width),
-                    view_of(camera.lens, depth_m.width, depth_m.height),
-                    {}};
-  scene.image.depth_m = source.kind == "z" ? radial_from_z(depth_m, scene.view) : depth_m;
-  if (!source.image.empty()) {
-    Image<float> picture = read_albedo(source.image, transfer_of(source));
-    require_size(picture, source.image, scene.image, source.scene);
-    scene.image.albedo = albedo_of_picture(std::move(picture), source.image, scene.image.depth_m);
-  }
-  return scene;
-}
-
-LoadedScene load(const SceneSource& source, SceneKind kind, const Camera& camera) {
-  if (kind == SceneKind::depth_image) return depth_image(source, camera);
-  StagedScene staged = staged_scene(source, kind);
-  SceneImage image = ray_cast(staged.shapes, staged.view, staged.camera_to_world, embree_search());
-  check_view(staged, image);
-  return {kind == SceneKind::built_in ? source.scene : fs::path(source.scene).stem().string(),
-          std::move(image), staged.view, std::move(staged)};
-}
-
-}  // namespace
-
-void SceneSource::add_to(CLI::App& command) {
-  command.add_option("--image", image, "albedo of a depth image (.png .npy .exr .pfm)");
-  command.add_option("--ambient-image", ambient_image,
+void add_scene_options(CLI::App& command, SceneSource& source) {
+  command.add_option("--image", source.image, "albedo of a depth image (.png .npy .exr .pfm)");
+  command.add_option("--ambient-image", source.ambient_image,
                      "ambient light of each pixel, relative to --ambient (.png .npy .exr .pfm)");
-  command.add_flag("--linear-image", linear_image, "PNG images hold linear light, not sRGB");
+  command.add_flag("--linear-image", source.linear_image, "PNG images hold linear light, not sRGB");
   command
-      .add_option("--kind", kind, "what a depth image holds: z along the axis, or radial distance")
+      .add_option_function<std::string>(
+          "--kind", [&source](const std::string& word) { source.kind = parse_depth_kind(word); },
+          "what a depth image holds: z along the axis, or radial distance")
       ->check(one_of({"z", "radial"}))
-      ->capture_default_str();
-  command.add_option("--width", width, "columns of a built-in scene or a mesh (320)")
+      ->default_str("z");
+  command.add_option("--width", source.width, "columns of a built-in scene or a mesh (320)")
       ->check(CLI::Range(1, 16384));
-  command.add_option("--height", height, "rows of a built-in scene or a mesh (240)")
+  command.add_option("--height", source.height, "rows of a built-in scene or a mesh (240)")
       ->check(CLI::Range(1, 16384));
-  command.add_option("--scale-m", scale_m, "metres per unit of a mesh (1)")
+  command.add_option("--scale-m", source.scale_m, "metres per unit of a mesh (1)")
       ->check(positive_number());
 }
 
@@ -130,19 +37,13 @@ std::string lens_setting(const PinholeView& view) {
                      view.fx_px, view.fy_px, view.cx_px, view.cy_px);
 }
 
-LoadedScene load_scene(const SceneSource& source, const Camera& camera) {
-  const SceneKind kind = kind_of(source.scene);
-  check_options(source, kind);
+LoadedScene scene_of(const SceneSource& source, const Camera& camera) {
   try {
-    LoadedScene scene = load(source, kind, camera);
-    if (!source.ambient_image.empty()) {
-      scene.image.ambient_scale = read_ambient_scale(source.ambient_image, transfer_of(source));
-      require_size(scene.image.ambient_scale, source.ambient_image, scene.image, source.scene);
-    }
-    scene.image.validate();
-    return scene;
-  } catch (const std::invalid_argument& error) {  // what files hold, not what was typed
-    throw IoError(source.scene, error.what());
+    return load_scene(source, camera.lens);
+  } catch (const InvalidArgument& error) {
+    std::string option = error.field();
+    std::ranges::replace(option, '_', '-');
+    throw UsageError(fmt::format("--{} {}: {}", option, error.value(), error.rule()));
   }
 }
 

@@ -208,7 +208,7 @@ void make_training_set(const TrainingSetRequest& request, const CodeSet& code, c
   const auto load = [&](const TrainingScene& scene) {
     SceneSource source = request.source;
     source.scene = scene.file.string();
-    LoadedScene loaded = load_scene(source, camera);
+    LoadedScene loaded = scene_of(source, camera);
     return LoadedTrainingScene{std::move(loaded.image), loaded.view};
   };
   const FreshDirectory fresh(request.directory);
@@ -299,7 +299,7 @@ void run(SimulateArguments& arguments, Session& session) {
   const Camera camera = arguments.camera.load();
   const CodeSet code = load_camera_code(arguments.code, camera, arguments.taps.file_options());
   check_outputs(arguments, session);
-  const LoadedScene scene = load_scene(arguments.scene, camera);
+  const LoadedScene scene = scene_of(arguments.scene, camera);
   const SceneLight light = arguments.returns.load(scene, camera);
   const OperatingPoint middle = camera.operating.middle();
   arguments.options.signal_e_per_s = arguments.signal_e_per_s.value_or(middle.signal_e_per_s);
@@ -355,7 +355,7 @@ void add_simulate_command(CLI::App& app, Session& session) {
       ->add_option("SCENE", arguments->scenes,
                    std::string(scene_help) + "; many: a folder, a list (.txt) or several")
       ->required();
-  arguments->scene.add_to(*command);
+  add_scene_options(*command, arguments->scene);
   command->add_option("--code", arguments->code, "a family or a code file")->required();
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);

@@ -93,7 +93,7 @@ nlohmann::ordered_json channels_json(const UploadRequest& request, const UploadR
         numbers[number.quantity] = {{"requested", number.requested},
                                     {"read_back", number.read_back}};
     json.push_back({{"channel", channel.channel},
-                    {"arm", w.arm == Arm::light ? "light" : "sensor"},
+                    {"arm", name_of(w.arm)},
                     {"plays", w.name},
                     {"stored", std::move(stored)},
                     {"points", w.points()},

@@ -14,3 +14,4 @@
 #include "tofsmith/instrument/upload.hpp"
 #include "tofsmith/io.hpp"
 #include "tofsmith/waveforms/waveform_export.hpp"
+#include "tofsmith/waveforms/write_export.hpp"

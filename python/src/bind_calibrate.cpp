@@ -27,12 +27,7 @@ py::dict record_dict(ResponseRecord record) {
 
 py::dict read_record(const std::string& path, const py::dict& values) {
   ResponseRecordOptions options;
-  OptionReader(values, "")
-      .value("time_step_s", options.time_step_s)
-      .value("time_unit_s", options.time_unit_s)
-      .value("column", options.column)
-      .word("decimal", options.decimal, parse_decimal_mark)
-      .finish();
+  read_options(values, "", options);
   return record_dict(read_response_record(path, options));
 }
 
@@ -132,10 +127,7 @@ PhotonTransfer measure_noise(const py::list& levels, const py::object& dark, con
     frames.push_back(to_raw_frames(py::reinterpret_borrow<py::object>(level), "levels"));
   const RawFrames dark_frames = to_raw_frames(dark, "dark");
   PhotonTransferOptions options = noise_options(camera, !dark.is_none());
-  OptionReader(values, "")
-      .value("black_level_dn", options.black_level_dn)
-      .value("adc_bits", options.adc_bits)
-      .finish();
+  read_options(values, "", options);
   const py::gil_scoped_release release;
   return photon_transfer(frames, dark_frames, options);
 }

@@ -13,16 +13,6 @@
 
 namespace tofsmith::python {
 
-void parse(const std::string& word, DesignMethod& method) {
-  for (const DesignMethod known :
-       {DesignMethod::factorize, DesignMethod::optimize, DesignMethod::search, DesignMethod::best})
-    if (word == name_of(known)) {
-      method = known;
-      return;
-    }
-  refuse("method", "'" + word + "'", "factorize, optimize, search or best");
-}
-
 namespace {
 
 DesignOptions design_options(const py::dict& values, const std::optional<TargetSet>& target) {
@@ -114,9 +104,7 @@ void bind_design(py::module_& module) {
                return targets_from_table(name, to_matrix(table, "target"), samples, normalize);
              });
   module.def("suggested_exposures", [](const Camera& camera, const std::string& word) {
-    DesignMethod method{};
-    parse(word, method);
-    return suggested_exposures(camera, method);
+    return suggested_exposures(camera, parse_design_method(word));
   });
   module.def("design", &design_dict);
 }

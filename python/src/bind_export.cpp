@@ -8,8 +8,7 @@
 #include "export_options.hpp"
 #include "options.hpp"
 #include "output_policy.hpp"
-#include "tofsmith/core/error.hpp"
-#include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/waveforms/write_export.hpp"
 
 namespace tofsmith::python {
 
@@ -37,35 +36,15 @@ py::dict format_dict(const WaveformFormat& format) {
   return dict;
 }
 
-/// The tables, and the manifest last.
-std::vector<ExportedFile> all_files(const WaveformExport& exported) {
-  std::vector<ExportedFile> files = export_files(exported);
-  const std::string manifest = export_manifest(exported, files);
-  const auto* const bytes = reinterpret_cast<const std::byte*>(manifest.data());
-  files.push_back({"manifest.json", {bytes, bytes + manifest.size()}, {}});
-  return files;
-}
-
-py::tuple write_export(const CodeSet& code, const Camera& camera, const std::string& directory,
-                       const std::string& format, const py::dict& values, bool overwrite) {
-  const ExportOptions options = export_options(format, values);
-  const CodeSet resampled = code.resampled(camera.samples);
-  const Camera actual = exporting_camera(resampled, camera, options);
-  const std::vector<ExportedFile> files = all_files(export_waveforms(resampled, actual, options));
-  const std::filesystem::path folder = directory;
-  make_output_directory(folder);
-  std::vector<std::string> names;
-  for (const ExportedFile& file : files) {
-    if (!overwrite && std::filesystem::exists(folder / file.name))
-      throw IoError((folder / file.name).string(),
-                    "the file exists already; choose another directory or pass overwrite=True");
-    names.push_back(file.name);
-  }
-  for (const ExportedFile& file : files)
-    write_file_atomically(folder / file.name, file.bytes, policy_of(overwrite));
-  const std::vector<std::byte>& manifest = files.back().bytes;
-  return py::make_tuple(actual, names,
-                        py::str(reinterpret_cast<const char*>(manifest.data()), manifest.size()));
+py::tuple write(const CodeSet& code, const Camera& camera, const std::string& output,
+                const std::string& format, const py::dict& values, bool overwrite) {
+  const ExportedCode exported = write_export(code, camera,
+                                             {.options = export_options(format, values),
+                                              .output = output,
+                                              .policy = policy_of(overwrite)});
+  std::vector<std::string> files;
+  for (const std::filesystem::path& file : exported.files) files.push_back(file.string());
+  return py::make_tuple(exported.actual, files, exported.manifest, exported.notes);
 }
 
 }  // namespace
@@ -76,7 +55,7 @@ void bind_export(py::module_& module) {
     for (const WaveformFormat& format : waveform_formats()) formats.append(format_dict(format));
     return formats;
   });
-  module.def("export_waveforms", &write_export);
+  module.def("export_waveforms", &write);
 }
 
 }  // namespace tofsmith::python

@@ -21,26 +21,13 @@ struct UploadOptions {
 
 UploadOptions upload_options(const py::dict& values) {
   UploadOptions options;
-  UploadSelection& selection = options.selection;
-  UploadRequest& request = options.request;
   OptionReader reader(values, "");
-  reader.value("light_channel", selection.light_channel)
-      .value("sensor_channel", selection.sensor_channel)
-      .value("exposure", selection.exposure)
-      .value("tap", selection.tap)
-      .value("all", selection.all)
-      .value("load_ohm", request.load_ohm)
-      .value("output_on", request.output_on)
-      .value("read_back", request.read_back)
-      .value("reset", request.reset)
-      .value("true_arb", request.true_arb)
-      .word("wave_header", request.wave_header, parse_wave_header)
-      .value("settle_s", request.settle_s)
-      .value("patience_s", request.patience_s)
-      .word("filter", request.filter, parse_output_filter);
+  reader.fields(options.selection)
+      .fields(options.request, {"filter"})
+      .word("filter", options.request.filter, parse_output_filter);
   options.tables = export_options("", reader.table("tables"));
   reader.finish();
-  selection.validate();
+  options.selection.validate();
   return options;
 }
 
@@ -75,7 +62,7 @@ py::list channel_list(const UploadRequest& request) {
     const QuantizedWaveform& actual = channel.selected_waveform();
     py::dict dict;
     dict["channel"] = channel.channel;
-    dict["arm"] = actual.arm == Arm::light ? "light" : "sensor";
+    dict["arm"] = name_of(actual.arm);
     dict["plays"] = actual.name;
     py::list stored;
     for (const QuantizedWaveform& waveform : channel.stored) stored.append(waveform.name);

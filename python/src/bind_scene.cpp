@@ -4,30 +4,40 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "options.hpp"
 #include "tofsmith/camera/camera.hpp"
-#include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/io/scene_toml.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
-#include "tofsmith/scene/ray_caster.hpp"
 
 namespace tofsmith::python {
 
 namespace {
 
+std::vector<double> lens_list(const PinholeView& view) {
+  return {view.fx_px, view.fy_px, view.cx_px, view.cy_px};
+}
+
 /// The planes of a scene and its lens, by name.
-py::dict seen(const StagedScene& staged) {
-  SceneImage image;
+py::dict load(const std::string& name, const std::optional<std::vector<double>>& lens,
+              const py::dict& values) {
+  SceneSource source{.scene = name};
+  OptionReader(values, "").fields(source, {"scene"}).finish();
+  LoadedScene loaded;
   {
     const py::gil_scoped_release release;
-    image = ray_cast(staged.shapes, staged.view, staged.camera_to_world, embree_search());
-    check_view(staged, image);
+    loaded = load_scene(
+        source, lens ? std::optional(Lens{lens->at(0), lens->at(1), lens->at(2), lens->at(3)})
+                     : std::nullopt);
   }
   py::dict scene;
-  scene["depth_m"] = adopt(std::move(image.depth_m));
-  scene["albedo"] = adopt(std::move(image.albedo));
-  scene["cosine"] = adopt(std::move(image.cosine));
-  scene["lens"] = std::vector<double>{staged.view.fx_px, staged.view.fy_px, staged.view.cx_px,
-                                      staged.view.cy_px};
+  const auto add = [&](const char* plane, Image<float>& values) {
+    if (!values.empty()) scene[plane] = adopt(std::move(values));
+  };
+  add("depth_m", loaded.image.depth_m);
+  add("albedo", loaded.image.albedo);
+  add("cosine", loaded.image.cosine);
+  add("ambient_scale", loaded.image.ambient_scale);
+  scene["lens"] = lens_list(loaded.view);
   return scene;
 }
 
@@ -47,10 +57,7 @@ py::array_t<float> convert(const py::object& depth_m, const std::vector<double>&
 
 void bind_scene(py::module_& module) {
   module.def("built_in_scene_names", &built_in_scene_names);
-  module.def("built_in_scene", [](const std::string& name, int width, int height) {
-    return seen(built_in_scene(name, width, height));
-  });
-  module.def("read_scene", [](const std::string& path) { return seen(read_scene_toml(path)); });
+  module.def("load_scene", &load);
   module.def("radial_from_z", [](const py::object& z_m, const std::vector<double>& lens) {
     return convert(z_m, lens, &radial_from_z);
   });
@@ -58,8 +65,7 @@ void bind_scene(py::module_& module) {
     return convert(radial_m, lens, &z_from_radial);
   });
   module.def("centred_lens", [](int width, int height, double horizontal_angle_rad) {
-    const PinholeView view = PinholeView::centred(width, height, horizontal_angle_rad);
-    return std::vector<double>{view.fx_px, view.fy_px, view.cx_px, view.cy_px};
+    return lens_list(PinholeView::centred(width, height, horizontal_angle_rad));
   });
 }
 

@@ -12,20 +12,28 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "tofsmith/calibrate/instrument_table.hpp"
 #include "tofsmith/core/fields.hpp"
 #include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/decode/unwrap_decoder.hpp"
 #include "tofsmith/design/design.hpp"
+#include "tofsmith/instrument/upload.hpp"
+#include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith::python {
 
 /// Words of enumerations. @throws std::invalid_argument for others, with those there are
-void parse(const std::string& word, DesignMethod& method);
 void parse(const std::string& word, DepthSampling& depth);
+inline void parse(const std::string& word, DesignMethod& method) {
+  method = parse_design_method(word);
+}
+inline void parse(const std::string& word, DecimalMark& mark) { mark = parse_decimal_mark(word); }
+inline void parse(const std::string& word, WaveHeader& header) { header = parse_wave_header(word); }
 inline void parse(const std::string& word, DecodeMethod& method) {
   method = parse_decode_method(word);
 }
+inline void parse(const std::string& word, DepthKind& kind) { kind = parse_depth_kind(word); }
 inline void parse(const std::string& word, UnwrapWeights& weights) {
   weights = parse_unwrap_weights(word);
 }

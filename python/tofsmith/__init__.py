@@ -125,9 +125,9 @@ from ._scene import (
     built_in_scene_names,
     capture,
     centred_lens,
+    load_scene,
     points_m,
     radial_from_z,
-    read_scene,
     z_from_radial,
 )
 from ._sweep import SweepResults, read_sweep, read_sweep_export, run_sweep
@@ -244,6 +244,7 @@ __all__ = [
     "harmonics_used",
     "list_families",
     "load_code",
+    "load_scene",
     "multipath_error",
     "paper_items",
     "photon_transfer",
@@ -257,7 +258,6 @@ __all__ = [
     "read_measured_table",
     "read_raw",
     "read_response_record",
-    "read_scene",
     "read_sweep",
     "read_sweep_export",
     "reproduce",

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import json
-import os
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import Any, Optional
@@ -48,16 +47,19 @@ class ExportedCode:
     Attributes
     ----------
     files : list of pathlib.Path
-        Tables, and manifest.json last.
+        Tables, and in a directory manifest.json last.
     manifest : dict
         Format, clock, limits, and what each file holds, as in manifest.json.
     camera : Camera
         With the generators that play the tables: generator_loss(code, camera) says what they cost.
+    notes : list of str
+        What a user should know.
     """
 
     files: list[FilePath]
     manifest: dict[str, Any]
     camera: Camera
+    notes: list[str]
 
 
 def waveform_formats() -> list[WaveformFormat]:
@@ -68,7 +70,7 @@ def waveform_formats() -> list[WaveformFormat]:
 def export_waveforms(
     code: CodeLike,
     camera: CameraLike,
-    directory: Path,
+    output: Path,
     format: str,
     *,
     variant: Optional[str] = None,
@@ -87,8 +89,9 @@ def export_waveforms(
     ----------
     code : CodeSet, name of a family or file
     camera : Camera or its name
-    directory : str or path
-        For the files, made if it is missing.
+    output : str or path
+        A directory for the files, made if it is missing; or one file, of a format that holds all
+        waveforms in one.
     format : str
         One of waveform_formats().
     variant : str, optional
@@ -125,10 +128,10 @@ def export_waveforms(
         "low_v": low_v,
         "high_v": high_v,
     }
-    folder = _check.path(directory, "directory")
     handle = code_of(code, camera)._handle
-    camera_handle, names, manifest = _tofsmith.export_waveforms(
-        handle, camera._handle, folder, _check.text(format, "format"), options, bool(overwrite)
+    camera_handle, files, manifest, notes = _tofsmith.export_waveforms(
+        handle, camera._handle, _check.path(output), _check.text(format, "format"), options,
+        bool(overwrite)
     )
-    files = [FilePath(os.path.join(folder, name)) for name in names]
-    return ExportedCode(files, json.loads(manifest), Camera._of(camera_handle))
+    made = Camera._of(camera_handle)
+    return ExportedCode([FilePath(file) for file in files], json.loads(manifest), made, notes)

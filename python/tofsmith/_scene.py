@@ -55,30 +55,64 @@ def built_in_scene_names() -> list[str]:
 
 
 def built_in_scene(name: str, width: int = 320, height: int = 240) -> Scene:
-    """A scene that needs no files, ray cast.
+    """load_scene() of a scene that needs no files."""
+    return load_scene(_check.text(name, "name"), width=width, height=height)
+
+
+def load_scene(
+    scene: Path,
+    lens: Optional[Lens] = None,
+    *,
+    image: Optional[Path] = None,
+    ambient_image: Optional[Path] = None,
+    kind: Optional[str] = None,
+    linear_image: Optional[bool] = None,
+    width: Optional[int] = None,
+    height: Optional[int] = None,
+    scale_m: Optional[float] = None,
+) -> Scene:
+    """A scene by its name or file, as `tofsmith simulate` takes it, ray cast.
+
+    Parameters
+    ----------
+    scene : str or path
+        A built-in scene, a file of shapes and a pinhole (.toml), a mesh (.obj .ply .stl), or a depth
+        image (.npy .npz .exr .pfm, .png in mm).
+    lens : Lens, optional
+        Of a depth image; 60 degrees wide unless given.
+    image : str or path, optional
+        Albedo of a depth image (.png .npy .exr .pfm).
+    ambient_image : str or path, optional
+        Ambient light of each pixel.
+    kind : str, optional
+        What a depth image holds: "z" along the axis (the default), or "radial" distance.
+    linear_image : bool, optional
+        PNG images hold linear light, not sRGB.
+    width, height : int, optional
+        Of built-in scenes and meshes (320 x 240).
+    scale_m : float, optional
+        Metres per unit of a mesh (1).
 
     Raises
     ------
     ValueError
-        For an unknown name, with the nearest known one.
+        Naming what does not go with the scene.
+    OSError
+        For what is no scene, with the nearest name, and for files that cannot be read.
     """
-    return _scene(
-        _tofsmith.built_in_scene(
-            _check.text(name, "name"),
-            _check.whole(width, "width", 1, 16384),
-            _check.whole(height, "height", 1, 16384),
-        )
-    )
-
-
-def read_scene(path: Path) -> Scene:
-    """A scene from a TOML file of shapes and a pinhole, ray cast; OSError names the place."""
-    return _scene(_tofsmith.read_scene(_check.path(path)))
-
-
-def _scene(seen: dict[str, Any]) -> Scene:
-    lens = Lens(*seen.pop("lens"))
-    return Scene(**seen, lens=lens)
+    options = {
+        "image": None if image is None else _check.path(image, "image"),
+        "ambient_image": None if ambient_image is None else _check.path(ambient_image),
+        "kind": kind,
+        "linear_image": linear_image,
+        "width": width,
+        "height": height,
+        "scale_m": scale_m,
+    }
+    name = _check.path(scene, "scene")
+    seen = _tofsmith.load_scene(name, None if lens is None else _lens(lens), options)
+    view = Lens(*seen.pop("lens"))
+    return Scene(**seen, lens=view)
 
 
 def _lens(lens: Lens) -> list[float]:
@@ -176,7 +210,7 @@ def capture(
         Electrons, or counts if the sensor has an ADC.
     """
     camera = camera_of(camera)
-    seen = scene_named(scene)
+    seen = scene_named(scene, camera.lens)
     planes = scene_planes(seen)
     options = {
         "signal_e_per_s": signal_e_per_s,
@@ -208,11 +242,10 @@ def scene_planes(scene: Scene) -> dict[str, Optional[npt.NDArray[Any]]]:
     }
 
 
-def scene_named(scene: Any) -> Scene:
-    """A Scene, or that of a name, a file or depths."""
+def scene_named(scene: Any, lens: Optional[Lens]) -> Scene:
+    """A Scene, or that of depths, or by name or file as seen through a lens."""
     if isinstance(scene, np.ndarray):
         return Scene(scene)
     if isinstance(scene, (str, os.PathLike)):
-        name = os.fspath(scene)
-        return read_scene(name) if str(name).endswith(".toml") else built_in_scene(str(name))
+        return load_scene(scene, lens)
     return _check.instance(scene, Scene, "scene")

@@ -108,7 +108,7 @@ def write_training_set(
 
     def load(name: str) -> dict[str, Any]:
         given = scenes[name]
-        scene = scene_named(given() if callable(given) else given)
+        scene = scene_named(given() if callable(given) else given, known.lens)
         planes: dict[str, Any] = dict(scene_planes(scene))
         height, width = planes["depth_m"].shape
         lens = scene.lens or known.lens or centred_lens(width, height)

@@ -129,8 +129,8 @@ Eigen::MatrixXd noise_variance(const Workbench& bench, const PixelAlignment& ali
   const Eigen::Index columns = bench.raw.measurements;
   if (bench.live.size() >= enough_pixels) {
     result.noise_source = "pixels";
-    constexpr std::size_t most = 4096;
-    const std::size_t stride = (bench.live.size() + most - 1) / most;
+    constexpr std::size_t max_pixels = 4096;
+    const std::size_t stride = (bench.live.size() + max_pixels - 1) / max_pixels;
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(frames, columns);
     double used = 0.0;
     for (std::size_t i = 0; i < bench.live.size(); i += stride) {
@@ -153,8 +153,8 @@ Eigen::MatrixXd noise_variance(const Workbench& bench, const PixelAlignment& ali
   for (int f = 0; f < frames; ++f)
     rest.row(f) -= means.row(bench.groups.group_of_frame[static_cast<std::size_t>(f)]);
   const double pixels = static_cast<double>(bench.live.size());
-  constexpr int fewest = 4;
-  if (frames - groups >= fewest) {
+  constexpr int min_freedom = 4;
+  if (frames - groups >= min_freedom) {
     result.noise_source = "repeats";
     return Eigen::MatrixXd::Constant(
         groups, columns,

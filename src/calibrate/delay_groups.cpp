@@ -66,9 +66,9 @@ DelayGroups delay_groups(const std::vector<double>& delay_periods) {
 }
 
 void require_whole_period(const DelayGroups& groups) {
-  constexpr int fewest = 8;
-  require(groups.count() >= fewest, "delays", groups.count(),
-          fmt::format("must be at least {} different ones within the period", fewest));
+  constexpr int min_groups = 8;
+  require(groups.count() >= min_groups, "delays", groups.count(),
+          fmt::format("must be at least {} different ones within the period", min_groups));
   std::vector<double> gaps;
   for (int g = 0; g < groups.count(); ++g) {
     const auto i = static_cast<std::size_t>(g);

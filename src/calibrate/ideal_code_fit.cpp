@@ -86,7 +86,7 @@ void orient(const Eigen::MatrixXcd& y, Eigen::MatrixXcd& x, int taps, IdealCodeF
   std::vector<int> order(static_cast<std::size_t>(x.cols() / taps));
   std::iota(order.begin(), order.end(), 0);
   const bool permute = order.size() <= 5;
-  double least = INFINITY;
+  double min_left = INFINITY;
   do {
     for (const bool reversed : {false, true})
       for (const bool inverted : {false, true}) {
@@ -94,8 +94,8 @@ void orient(const Eigen::MatrixXcd& y, Eigen::MatrixXcd& x, int taps, IdealCodeF
         if (inverted) turned = -turned;
         const Match found = match(y, turned);
         // The plain reading wins a tie, which symmetric codes have.
-        if (found.left >= least - 1e-6 * y.squaredNorm()) continue;
-        least = found.left;
+        if (found.left >= min_left - 1e-6 * y.squaredNorm()) continue;
+        min_left = found.left;
         x = std::move(turned);
         fit.reversed = reversed;
         fit.inverted = inverted;
@@ -192,8 +192,8 @@ std::vector<CodeSet> ideal_codes(const Camera& camera, int measurements) {
 std::vector<IdealCodeFit> fit_ideal_codes(const Eigen::MatrixXd& table,
                                           const Eigen::MatrixXd& error, const Camera& camera,
                                           const std::vector<CodeSet>& codes) {
-  constexpr int most = 64;
-  const int harmonics = std::min(static_cast<int>(table.rows() - 1) / 2, most);
+  constexpr int max_harmonics = 64;
+  const int harmonics = std::min(static_cast<int>(table.rows() - 1) / 2, max_harmonics);
   const Eigen::MatrixXcd y = harmonics_of(table, harmonics);
   require(y.squaredNorm() > 0.0, "table", "constant", "must change with delay");
   const Camera ideal = unlimited_camera(camera);

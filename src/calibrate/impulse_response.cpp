@@ -131,16 +131,16 @@ Place place_of_step(const Eigen::VectorXd& values) {
 /// The quiet values ahead of the response, or, if there are too few, behind a pulse.
 Eigen::VectorXd quiet_values(const Eigen::VectorXd& values, Excitation excitation,
                              const Place& place) {
-  constexpr Index fewest = 8;
+  constexpr Index min_samples = 8;
   const auto reach = static_cast<Index>(std::ceil(3 * place.width));
   const Index ahead = place.centre - reach;
-  if (ahead >= fewest) return values.head(ahead);
+  if (ahead >= min_samples) return values.head(ahead);
   const Index behind = values.size() - (place.centre + 3 * reach);
-  if (excitation == Excitation::pulse && behind >= fewest) return values.tail(behind);
+  if (excitation == Excitation::pulse && behind >= min_samples) return values.tail(behind);
   require(false, "record", fmt::format("{} quiet values ahead", std::max<Index>(0, ahead)),
           fmt::format("must show the level ahead of the response: at least {} values, 3 widths "
                       "before it",
-                      fewest));
+                      min_samples));
   return {};
 }
 
@@ -196,8 +196,8 @@ double output_step_s(const ResponseCalibrationOptions& options, double width_s, 
   constexpr double steps_per_width = 16.0, max_samples = 16384.0;
   const double grid_s = 1.0 / (options.fundamental_frequency_hz * options.samples);
   const double wanted = std::ceil(grid_s * steps_per_width / width_s);
-  const double most = std::floor(max_samples * grid_s / span_s);
-  return grid_s / std::max(1.0, std::min(wanted, most));
+  const double max_factor = std::floor(max_samples * grid_s / span_s);
+  return grid_s / std::max(1.0, std::min(wanted, max_factor));
 }
 
 void fit_kinds(CalibratedResponse& result, const Eigen::VectorXd& values,

@@ -190,14 +190,6 @@ void set_gain_and_read_noise(const FittedLine& line, PhotonTransfer& result) {
 
 }  // namespace
 
-void PhotonTransferOptions::validate() const {
-  if (black_level_dn)
-    require(std::isfinite(*black_level_dn) && *black_level_dn >= 0.0, "black_level_dn",
-            *black_level_dn, "must be finite and >= 0");
-  if (adc_bits)
-    require(*adc_bits >= 1 && *adc_bits <= 24, "adc_bits", *adc_bits, "must be in [1, 24]");
-}
-
 PhotonTransfer photon_transfer(const std::vector<RawFrames>& levels, const RawFrames& dark,
                                const PhotonTransferOptions& options) {
   options.validate();

@@ -68,8 +68,8 @@ SweepDrift sweep_drift(const Eigen::MatrixXd& curve, const DelayGroups& groups,
   }
   const auto repeated = static_cast<double>((frames - groups.count()) * columns);
   if (noise_variance == 0.0) {
-    constexpr double fewest = 3.0;  // values beyond what the two changes use
-    if (repeated < 2 + fewest) return drift;
+    constexpr double min_values = 3.0;  // values beyond what the two changes use
+    if (repeated < 2 + min_values) return drift;
     noise_variance = left / (repeated - 2);
   }
   drift.known = true;

@@ -48,7 +48,7 @@ bool keeps(double value, std::string_view rule) {
 }
 
 int scaled_count(int count, double effort, ByEffort by_effort) {
-  return std::max(by_effort.least, static_cast<int>(std::lround(effort * count)));
+  return std::max(by_effort.min, static_cast<int>(std::lround(effort * count)));
 }
 
 }  // namespace tofsmith

@@ -7,6 +7,11 @@
 
 namespace tofsmith {
 
+Estimate ratio_of(const Estimate& a, const Estimate& b) {
+  const double ratio = a.value / b.value;
+  return {ratio, ratio * std::hypot(a.standard_error / a.value, b.standard_error / b.value)};
+}
+
 void RunningStatistics::add(double value) {
   ++count_;
   const double difference = value - mean_;

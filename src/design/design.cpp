@@ -144,6 +144,8 @@ std::string_view name_of(Termination termination) { return termination_words.of(
 
 std::string_view name_of(DesignMethod method) { return method_words.of(method); }
 
+DesignMethod parse_design_method(std::string_view name) { return method_words.parse(name); }
+
 const Candidate* DesignResult::find(std::string_view name) const {
   for (const Candidate& c : candidates)
     if (c.code.name() == name) return &c;
@@ -161,11 +163,8 @@ std::vector<const Candidate*> by_geometric_mean_error(const DesignResult& result
 }
 
 Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErrorKind kind) {
-  const Estimate best = result.winner().error.of(kind).geometric_mean_m;
-  const Estimate its = other.error.of(kind).geometric_mean_m;
-  const double ratio = its.value / best.value;
-  return {ratio,
-          ratio * std::hypot(its.standard_error / its.value, best.standard_error / best.value)};
+  return ratio_of(other.error.of(kind).geometric_mean_m,
+                  result.winner().error.of(kind).geometric_mean_m);
 }
 
 std::vector<std::string> suggested_baselines(const Camera& camera, const DesignOptions& options) {

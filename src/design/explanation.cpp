@@ -75,7 +75,7 @@ std::string what_limits_it(const DesignResult& result) {
   const auto by_error = [](const PointDepthError& a, const PointDepthError& b) {
     return a.circular_mde_m.value < b.circular_mde_m.value;
   };
-  const auto [least, most] = std::minmax_element(points.begin(), points.end(), by_error);
+  const auto [min, max] = std::minmax_element(points.begin(), points.end(), by_error);
   const auto describe = [](const PointDepthError& p) {
     std::string text = plain_number(1e3 * p.circular_mde_m.value, 3) + " mm";
     if (p.cramer_rao_mae_m > 0.0)
@@ -86,13 +86,13 @@ std::string what_limits_it(const DesignResult& result) {
                           p.circular_mde_m.value / p.receiver_bound_mae_m);
     return text;
   };
-  if (points.size() == 1) return fmt::format("Its circular error is {}.", describe(*least));
+  if (points.size() == 1) return fmt::format("Its circular error is {}.", describe(*min));
   return fmt::format(
       "In the best light (S = {:.3g}, A = {:.3g} e/s) its circular error is {}; in the worst "
       "(S = {:.3g}, A = {:.3g} e/s), where {:.0f} % of depths are outliers, {}.",
-      least->point.signal_e_per_s, least->point.ambient_e_per_s, describe(*least),
-      most->point.signal_e_per_s, most->point.ambient_e_per_s, 100 * most->outlier_rate.value,
-      describe(*most));
+      min->point.signal_e_per_s, min->point.ambient_e_per_s, describe(*min),
+      max->point.signal_e_per_s, max->point.ambient_e_per_s, 100 * max->outlier_rate.value,
+      describe(*max));
 }
 
 std::string behind_multipath(const OperatingMultipath& returns, const DesignResult& result,

@@ -26,15 +26,15 @@ double seconds_since(SteadyClock::time_point start) {
 
 }  // namespace
 
-std::string printable(std::string_view bytes, std::size_t most) {
+std::string printable(std::string_view bytes, std::size_t max_bytes) {
   std::string text;
-  for (const char c : bytes.substr(0, most)) {
+  for (const char c : bytes.substr(0, max_bytes)) {
     if (c >= ' ' && c <= '~')
       text += c;
     else
       fmt::format_to(std::back_inserter(text), "\\x{:02x}", static_cast<unsigned char>(c));
   }
-  return bytes.size() > most ? text + fmt::format(".. ({} bytes)", bytes.size()) : text;
+  return bytes.size() > max_bytes ? text + fmt::format(".. ({} bytes)", bytes.size()) : text;
 }
 
 ScpiSession::ScpiSession(std::unique_ptr<InstrumentConnection> connection, double answer_s,

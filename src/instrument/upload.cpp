@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <thread>
 
@@ -143,6 +145,42 @@ class Uploader {
 };
 
 }  // namespace
+
+InstrumentIdentity parse_identity(std::string_view answer, std::string_view place) {
+  if (answer.starts_with("*IDN ")) answer.remove_prefix(5);
+  std::vector<std::string> fields(1);
+  for (const char c : answer) {
+    if (c == ',')
+      fields.emplace_back();
+    else if (c != ' ' || !fields.back().empty())
+      fields.back() += c;
+  }
+  const bool text = std::ranges::all_of(answer, [](char c) { return c >= ' ' && c <= '~'; });
+  if (fields.size() < 4 || fields[0].empty() || fields[1].empty() || !text)
+    throw IoError(place, fmt::format("answered *IDN? with '{}'; expected vendor, model, serial "
+                                     "number and firmware: is this an instrument?",
+                                     printable(answer)));
+  return {fields[0], fields[1], fields[2], fields[3]};
+}
+
+const GeneratorModel& identified_model(const InstrumentIdentity& identity, std::string_view place) {
+  const GeneratorModel* const model = find_generator_model(identity.model);
+  const auto made_by = [&](std::string_view vendor) {
+    const std::string_view found = std::string_view(identity.vendor).substr(0, 7);
+    return std::ranges::equal(found, vendor.substr(0, 7), [](unsigned char a, unsigned char b) {
+      return std::toupper(a) == std::toupper(b);
+    });
+  };
+  const bool known_vendor =
+      model != nullptr &&
+      (made_by(model->vendor) ||
+       (model->family == GeneratorFamily::keysight_trueform && made_by("Agilent")));
+  if (!known_vendor)
+    throw IoError(place, fmt::format("found the instrument {} of {}; expected one of {} (--model "
+                                     "NAME treats a relative as one of them)",
+                                     identity.model, identity.vendor, known_generators));
+  return *model;
+}
 
 InstrumentIdentity identify(ScpiSession& session) {
   session.send("*IDN?\n");

@@ -98,10 +98,7 @@ void check_upload(const GeneratorModel& model, const UploadRequest& request) {
           "load_ohm", request.load_ohm, "must be in [1, 1e6] or infinite");
   require(request.filter == "STEP" || request.filter == "NORM" || request.filter == "OFF", "filter",
           request.filter, "must be STEP, NORM or OFF");
-  require(request.settle_s >= 0.0 && request.settle_s <= 60.0, "settle_s", request.settle_s,
-          "must be in [0, 60]");
-  require(request.patience_s >= 0.0 && request.patience_s <= 600.0, "patience_s",
-          request.patience_s, "must be in [0, 600]");
+  check_fields(request);
   if (request.true_arb)
     require(model.true_arb_rate_hz > 0.0, "true_arb", "on",
             fmt::format("must be off: {} does not choose between skipping points and playing all",

@@ -30,12 +30,9 @@ constexpr EnumWords<WaveHeader, 3> header_words("WaveHeader", "wave_header", "le
 }  // namespace
 
 void UploadSelection::validate() const {
-  require(light_channel >= 0, "light_channel", light_channel, "must be >= 0");
-  require(sensor_channel >= 0, "sensor_channel", sensor_channel, "must be >= 0");
+  check_fields(*this);
   require(light_channel > 0 || sensor_channel > 0, "sensor_channel", sensor_channel,
           "must be > 0 where light_channel is 0, so that something is played");
-  require(exposure >= 1, "exposure", exposure, "must be >= 1");
-  require(tap >= 1, "tap", tap, "must be >= 1");
 }
 
 WaveformExport export_for_model(const CodeSet& code, const Camera& camera,

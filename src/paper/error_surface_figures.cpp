@@ -117,15 +117,15 @@ Table geometric_mean_table(const std::string& id, const std::string& caption,
               .columns = {{"code"}, {"linear (mm)", true}, {"circular (mm)", true}}};
   for (const NamedLevel& level : named_levels())
     table.columns.push_back({fmt::format("{} (mm)", level.name), true});
-  double least = 1e300;
+  double min_error_m = 1e300;
   for (const ErrorSurface& surface : group.surfaces) {
     std::vector<std::string> cells = {surface.name, estimate_mm(surface.linear_geometric_mean_m),
                                       estimate_mm(surface.circular_geometric_mean_m)};
     for (const NamedLevel& level : named_levels())
       cells.push_back(estimate_mm(surface.linear_at(level.point)));
     const bool competes = !surface.name.ends_with("-ideal");
-    if (competes && surface.linear_geometric_mean_m.value < least) {
-      least = surface.linear_geometric_mean_m.value;
+    if (competes && surface.linear_geometric_mean_m.value < min_error_m) {
+      min_error_m = surface.linear_geometric_mean_m.value;
       table.highlighted_row = static_cast<int>(table.rows.size());
     }
     table.rows.push_back(std::move(cells));

@@ -68,10 +68,10 @@ CheckedStatement better_on_all_objects(const std::vector<ObjectComparison>& all,
     gains += fmt::format("{} {:.1f} and {:.1f} times behind O.D. {:g}", gains.empty() ? "" : ",",
                          std::exp(log_gain[0] / objects), std::exp(log_gain[1] / objects), density);
   }
-  const int most = static_cast<int>(all.size());
-  return {.verdict = better[0] == most && better[1] == most ? Verdict::holds
-                     : better[0] + better[1] > most         ? Verdict::in_part
-                                                            : Verdict::fails,
+  const int count = static_cast<int>(all.size());
+  return {.verdict = better[0] == count && better[1] == count ? Verdict::holds
+                     : better[0] + better[1] > count          ? Verdict::in_part
+                                                              : Verdict::fails,
           .statement =
               "Redesigned codes scan real scenes with lower errors than the sinusoid and "
               "the multi-frequency code, from high signal to low.",
@@ -79,7 +79,7 @@ CheckedStatement better_on_all_objects(const std::vector<ObjectComparison>& all,
               "K = 4 is better than both by 5 % or more for {} and K = 5 for {} of {} pairs of "
               "object and filter. The better baseline's mean error over that of K = 4 and K = 5, "
               "geometric mean over the objects:{}.",
-              better[0], better[1], most, gains),
+              better[0], better[1], count, gains),
           .why = error_over_the_range(bench)};
 }
 

@@ -93,7 +93,7 @@ CheckedStatement at_high_signal(const Decoded& free, const Decoded& limited) {
 
 CheckedStatement at_low_signal(std::span<const Decoded> all) {
   int beaten = 0, beaten_variance = 0, levels = 0;
-  double most = 0.0;
+  double max_factor = 0.0;
   for (const Decoded& one : all)
     for (std::size_t p = 0; p < one.zncc.points.size(); ++p) {
       const PointDepthError& zncc = one.zncc.points[p];
@@ -101,7 +101,7 @@ CheckedStatement at_low_signal(std::span<const Decoded> all) {
       ++levels;
       const double factor =
           one.classical.points[p].circular_mde_m.value / zncc.circular_mde_m.value;
-      most = std::max(most, factor);
+      max_factor = std::max(max_factor, factor);
       beaten += factor > 1.0 ? 1 : 0;
       beaten_variance +=
           one.variance.points[p].circular_mde_m.value > zncc.circular_mde_m.value ? 1 : 0;
@@ -114,7 +114,7 @@ CheckedStatement at_low_signal(std::span<const Decoded> all) {
       fmt::format("With S up to 10k e/s it has the larger error at {} of {} light levels of the "
                   "three cameras, by up to {:.2f} times; with weights from the phases' variances "
                   "at {}.",
-                  beaten, levels, most, beaten_variance),
+                  beaten, levels, max_factor, beaten_variance),
       "A wrong wrap costs a seventh of the range either way: most of the loss at low light is the "
       "code's ambiguity, which no decoder removes. Correlation uses the amplitudes, too, which "
       "unwrapping throws away."};

@@ -31,8 +31,8 @@ Comparison sum(const Comparison& a, const Comparison& b) {
   return {.better = a.better + b.better,
           .even = a.even + b.even,
           .worse = a.worse + b.worse,
-          .least = std::min(a.least, b.least),
-          .most = std::max(a.most, b.most),
+          .min = std::min(a.min, b.min),
+          .max = std::max(a.max, b.max),
           .mean = std::exp((a.levels() * std::log(a.mean) + b.levels() * std::log(b.mean)) /
                            (a.levels() + b.levels()))};
 }
@@ -81,7 +81,7 @@ CheckedStatement beats_both(const std::vector<ErrorSurfaceGroup>& panels) {
   finding.measured += fmt::format(
       "The best of them on each camera: {} of {}, tied at {}, worse at {}; the better baseline's "
       "error is {:.2f} to {:.2f} times its ({:.2f} on average).",
-      of_best.better, of_best.levels(), of_best.even, of_best.worse, of_best.least, of_best.most,
+      of_best.better, of_best.levels(), of_best.even, of_best.worse, of_best.min, of_best.max,
       of_best.mean);
   finding.verdict = verdict_of(all);
   if (finding.verdict != Verdict::holds)
@@ -116,11 +116,11 @@ CheckedStatement factor_at_5_f0(const ErrorSurfaceGroup& panel) {
           "{} at {}: {:.2f} to {:.2f} times better than sinusoid-k4, {:.2f} on average, within 2-5 "
           "at {} of {} light levels{} (circular: {:.2f} to {:.2f}); against multifrequency-k5 "
           "{:.2f} to {:.2f}, {:.2f} on average.",
-          ours.name, panel.title, linear.least, linear.most, linear.mean, inside, ratio.size(),
+          ours.name, panel.title, linear.min, linear.max, linear.mean, inside, ratio.size(),
           inside == ratio.size()
               ? ""
               : fmt::format(", outside at S = {} e/s and below", level_text(max_signal_outside)),
-          circular.minCoeff(), circular.maxCoeff(), multi.least, multi.most, multi.mean)};
+          circular.minCoeff(), circular.maxCoeff(), multi.min, multi.max, multi.mean)};
   if (finding.verdict != Verdict::holds)
     finding.why =
         "Where light is weakest every code comes near guessing. Factors near the upper end are "
@@ -161,13 +161,13 @@ CheckedStatement well_at_high(const std::vector<ErrorSurfaceGroup>& panels) {
 
 /// Largest n of error ~ S^-n between neighbouring signal levels, averaged over ambient light.
 double steepest(const ErrorSurface& s) {
-  double most = 0.0;
+  double max = 0.0;
   for (Eigen::Index i = 1; i < s.linear_m.cols(); ++i) {
     const auto place = static_cast<std::size_t>(i);
-    most = std::max(most, std::log(at_signal(s, i - 1) / at_signal(s, i)) /
-                              std::log(s.signal_e_per_s[place] / s.signal_e_per_s[place - 1]));
+    max = std::max(max, std::log(at_signal(s, i - 1) / at_signal(s, i)) /
+                            std::log(s.signal_e_per_s[place] / s.signal_e_per_s[place - 1]));
   }
-  return most;
+  return max;
 }
 
 CheckedStatement degrades_at_low(const std::vector<ErrorSurfaceGroup>& panels) {
@@ -218,14 +218,9 @@ CheckedStatement equal_ideal(const ErrorSurfaceGroup& panel) {
   for (const char* k : {"k3", "k4", "k5"}) {
     const ErrorSurface& ours = panel.of(fmt::format("hamiltonian-{}-redesigned", k));
     const ErrorSurface& ideal = panel.of(fmt::format("hamiltonian-{}-ideal", k));
-    const auto ratio = [](const Estimate& a, const Estimate& b) {
-      return Estimate{
-          a.value / b.value,
-          a.value / b.value * std::hypot(a.standard_error / a.value, b.standard_error / b.value)};
-    };
-    const Estimate linear = ratio(ours.linear_geometric_mean_m, ideal.linear_geometric_mean_m);
+    const Estimate linear = ratio_of(ours.linear_geometric_mean_m, ideal.linear_geometric_mean_m);
     const Estimate circular =
-        ratio(ours.circular_geometric_mean_m, ideal.circular_geometric_mean_m);
+        ratio_of(ours.circular_geometric_mean_m, ideal.circular_geometric_mean_m);
     finding.measured += fmt::format(" {} {:.3f} ± {:.3f} | {:.3f} ± {:.3f};", k, linear.value,
                                     linear.standard_error, circular.value, circular.standard_error);
     // Three per cent are left for the choice of the origin, which is made from noisy trials; the
@@ -279,7 +274,7 @@ const ErrorSurface& best_redesigned(const ErrorSurfaceGroup& group) {
 Comparison compare(const ErrorSurface& ours, const ErrorSurface& theirs) {
   const Eigen::MatrixXd ratio = theirs.linear_m.cwiseQuotient(ours.linear_m);
   Comparison result{
-      .least = ratio.minCoeff(), .most = ratio.maxCoeff(), .mean = geometric_mean(ratio)};
+      .min = ratio.minCoeff(), .max = ratio.maxCoeff(), .mean = geometric_mean(ratio)};
   for (Eigen::Index i = 0; i < ratio.size(); ++i) {
     const double gain = theirs.linear_m(i) - ours.linear_m(i);
     const double threshold = 2.0 * std::hypot(theirs.linear_se_m(i), ours.linear_se_m(i));

@@ -19,8 +19,8 @@ const ErrorSurface& best_redesigned(const ErrorSurfaceGroup& group);
 
 /// How often one code is better than another, and by what factor.
 struct Comparison {
-  int better = 0, even = 0, worse = 0;   ///< light levels; even: within two standard errors
-  double least = 0, most = 0, mean = 0;  ///< theirs / ours; the mean is geometric
+  int better = 0, even = 0, worse = 0;  ///< light levels; even: within two standard errors
+  double min = 0, max = 0, mean = 0;    ///< theirs / ours; the mean is geometric
 
   int levels() const { return better + even + worse; }
 };

@@ -69,7 +69,7 @@ CheckedStatement beats(const std::vector<ErrorSurfaceGroup>& panels, const std::
         "{}{}: better at {} of {} light levels, tied at {}, worse at {}; {} has {:.2f} to {:.2f} "
         "times its error, {:.2f} on average",
         finding.measured.empty() ? "" : ". ", panel.title, one.better, one.levels(), one.even,
-        one.worse, baseline, one.least, one.most, one.mean);
+        one.worse, baseline, one.min, one.max, one.mean);
     all.better += one.better;
     all.even += one.even;
     all.worse += one.worse;
@@ -93,9 +93,8 @@ CheckedStatement second_bucket(const std::vector<ErrorSurfaceGroup>& panels) {
   std::string factors;
   for (const ErrorSurfaceGroup& panel : panels) {
     const Comparison gain = compare(panel.of(paper_code), panel.of(one_tap));
-    factors +=
-        fmt::format("{}{:.2f} to {:.2f}, {:.2f} on average ({})", factors.empty() ? "" : "; ",
-                    gain.least, gain.most, gain.mean, panel.title);
+    factors += fmt::format("{}{:.2f} to {:.2f}, {:.2f} on average ({})",
+                           factors.empty() ? "" : "; ", gain.min, gain.max, gain.mean, panel.title);
     if (gain.worse > 0) finding.verdict = Verdict::in_part;
     if (gain.mean < 1.0) finding.verdict = Verdict::fails;
   }

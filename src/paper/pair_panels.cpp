@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "camera/shared/actual_code.hpp"
-#include "design/chips/shared/pair_model.hpp"
+#include "design/factorize/shared/pair_model.hpp"
 #include "paper/data_tables.hpp"
 #include "report/shared/waveform_series.hpp"
 #include "tofsmith/camera/forward_model.hpp"

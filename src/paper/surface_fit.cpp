@@ -112,7 +112,7 @@ template <typename Surface, typename Through>
 std::optional<Surface> first_guess(const Points& points, std::size_t minimal, Through&& through,
                                    const SurfaceFitOptions& options) {
   std::optional<Surface> best;
-  double least = std::numeric_limits<double>::infinity();
+  double min_median = std::numeric_limits<double>::infinity();
   for (int i = 0; i < options.samplings; ++i) {
     RandomStream random(options.seed, static_cast<std::uint64_t>(i));
     Points sample;
@@ -122,8 +122,8 @@ std::optional<Surface> first_guess(const Points& points, std::size_t minimal, Th
     const std::optional<Surface> surface = through(sample);
     if (!surface) continue;
     const double median = median_of(distances_to(*surface, points));
-    if (median < least) {
-      least = median;
+    if (median < min_median) {
+      min_median = median;
       best = surface;
     }
   }

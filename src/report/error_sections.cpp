@@ -164,9 +164,9 @@ Figure bars(std::span<const DepthErrorRow> codes, const std::vector<std::size_t>
 Figure curves(const Camera& camera, std::span<const DepthErrorRow> codes,
               const std::vector<std::size_t>& order, std::size_t best, ColourAssignment& colours) {
   const double ambient = camera.operating.middle().ambient_e_per_s;
-  constexpr std::size_t most = 6;  // more lines hide each other
+  constexpr std::size_t max_curves = 6;  // more lines hide each other
   std::vector<Series> series;
-  for (std::size_t rank = 0; rank < std::min(most, order.size()); ++rank) {
+  for (std::size_t rank = 0; rank < std::min(max_curves, order.size()); ++rank) {
     const DepthErrorReport& e = *codes[order[rank]].error;
     Series line{.name = e.code, .mark = Mark::line_and_markers, .style = colours.style(e.code)};
     for (const PointDepthError& p : e.points) {
@@ -198,11 +198,12 @@ Figure curves(const Camera& camera, std::span<const DepthErrorRow> codes,
   return line_figure(
       {.id = "error-by-signal",
        .title = "Circular depth error by signal",
-       .caption = fmt::format("At ambient light of {} e/s{}. The bounds hold "
-                              "for estimators without bias and know no wrap, so a code may come "
-                              "below them where it is little better than guessing.",
-                              level_text(ambient),
-                              order.size() > most ? fmt::format("; the {} best codes", most) : "")},
+       .caption = fmt::format(
+           "At ambient light of {} e/s{}. The bounds hold "
+           "for estimators without bias and know no wrap, so a code may come "
+           "below them where it is little better than guessing.",
+           level_text(ambient),
+           order.size() > max_curves ? fmt::format("; the {} best codes", max_curves) : "")},
       series, {.label = "signal", .unit = "e/s", .logarithmic = true},
       {.label = "mean circular depth error", .unit = "mm", .logarithmic = true});
 }

@@ -125,17 +125,19 @@ std::vector<Row> generator_loss_rows(const GeneratorLoss& loss, DepthErrorKind k
   return rows;
 }
 
-Page export_page(const CodeSet& code, const Camera& actual, const WaveformExport& exported,
-                 const std::optional<GeneratorLoss>& loss, const std::string& command_line) {
+Page export_page(const ExportedCode& exported, const std::string& command_line) {
+  const CodeSet& code = exported.code;
+  const Camera& actual = exported.actual;
+  const std::optional<GeneratorLoss>& loss = exported.loss;
   const DepthErrorKind kind = actual.operating.error;
-  Page page{.title = fmt::format("{} as {}", code.name(), exported.format.name),
+  Page page{.title = fmt::format("{} as {}", code.name(), exported.waveforms.format.name),
             .subtitle = fmt::format("what the hardware's limits change, on {}", actual.name),
             .footer = "tofsmith " TOFSMITH_VERSION};
-  page.sections.push_back({"Export", {description(exported)}});
+  page.sections.push_back({"Export", {description(exported.waveforms)}});
   page.sections.push_back(
       {"Waveforms",
        {table_of("generators", "Each nominal and actual waveform, ahead of the arms' responses.",
-                 generator_report_rows(generator_report(code, actual))),
+                 generator_report_rows(exported.generators)),
         waveform_figure({.id = "waveforms",
                          .title = "Waveforms and correlation functions",
                          .caption = "One row per measurement, over one period. Dotted: nominal, "

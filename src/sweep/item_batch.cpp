@@ -19,9 +19,9 @@ ItemBatch::~ItemBatch() {
   thread_.join();
 }
 
-std::vector<ItemOutcome> ItemBatch::wait(std::chrono::milliseconds most) {
+std::vector<ItemOutcome> ItemBatch::wait(std::chrono::milliseconds max_wait) {
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, most, [this] { return !outcomes_.empty() || done_; });
+  changed_.wait_for(lock, max_wait, [this] { return !outcomes_.empty() || done_; });
   return std::exchange(outcomes_, {});
 }
 

@@ -29,7 +29,7 @@ class ItemBatch {
   ItemBatch& operator=(const ItemBatch&) = delete;
 
   /// Waits at most so long for something to come out, and takes what did.
-  std::vector<ItemOutcome> wait(std::chrono::milliseconds most);
+  std::vector<ItemOutcome> wait(std::chrono::milliseconds max_wait);
   /// Waits for the end, and takes nothing.
   void wait_until_done();
   /// Whether all is computed. What came out last may still be waiting.

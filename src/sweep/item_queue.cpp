@@ -14,13 +14,13 @@ void ItemQueue::give(std::vector<ClaimedItem> items) {
   if (!batch_) start_next();
 }
 
-std::vector<ItemOutcome> ItemQueue::wait(std::chrono::milliseconds most) {
+std::vector<ItemOutcome> ItemQueue::wait(std::chrono::milliseconds max_wait) {
   if (!batch_) {
-    std::this_thread::sleep_for(most);
+    std::this_thread::sleep_for(max_wait);
     return {};
   }
   const bool is_done = batch_->is_done();  // asked first: what comes out later is not missed
-  std::vector<ItemOutcome> outcomes = batch_->wait(most);
+  std::vector<ItemOutcome> outcomes = batch_->wait(max_wait);
   if (is_done) {
     batch_.reset();
     start_next();

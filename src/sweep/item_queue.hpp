@@ -18,7 +18,7 @@ class ItemQueue {
   /// Items that come when the batch in work is done.
   void give(std::vector<ClaimedItem> items);
   /// Waits at most so long for something to come out, and takes what did.
-  std::vector<ItemOutcome> wait(std::chrono::milliseconds most);
+  std::vector<ItemOutcome> wait(std::chrono::milliseconds max_wait);
   /// Drops what is unfinished. @return what was finished nevertheless
   std::vector<ItemOutcome> stop();
   /// Whether nothing is left to compute or to take.

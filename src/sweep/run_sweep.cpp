@@ -56,7 +56,7 @@ class OpenItems {
   /// Adds all of them to a store that lacks them.
   void add_to(SweepStore& store, const WorkList& list, const Progress& progress);
   /// Claims up to `most`. May come back empty-handed though some are open.
-  std::vector<ClaimedItem> claim(SweepStore& store, std::size_t most);
+  std::vector<ClaimedItem> claim(SweepStore& store, std::size_t max_items);
 
   std::size_t count() const { return count_; }
   /// Items that nobody needs to compute any more, or that are ours.
@@ -93,7 +93,7 @@ void OpenItems::add_to(SweepStore& store, const WorkList& list, const Progress& 
   std::ranges::sort(items_);
 }
 
-std::vector<ClaimedItem> OpenItems::claim(SweepStore& store, std::size_t most) {
+std::vector<ClaimedItem> OpenItems::claim(SweepStore& store, std::size_t max_items) {
   if (were_all_asked()) {  // go on with those that others had
     items_ = std::exchange(taken_, {});
     next_ = 0;
@@ -101,7 +101,7 @@ std::vector<ClaimedItem> OpenItems::claim(SweepStore& store, std::size_t most) {
   const std::size_t some = std::min(max_asked_at_once, items_.size() - next_);
   const std::vector<std::string> keys = keys_of(std::span(items_).subspan(next_, some));
   std::vector<ClaimedItem> ours;
-  for (const ClaimAnswer answer : store.claim(keys, most)) {
+  for (const ClaimAnswer answer : store.claim(keys, max_items)) {
     const std::int64_t item = items_[next_++];
     if (answer == ClaimAnswer::taken)
       taken_.push_back(item);
@@ -203,9 +203,9 @@ class MemberLoad {
  public:
   /// Items for about `batch_s` of work; fewer near the end, so that all end together.
   std::size_t batch(double batch_s, std::size_t left, std::size_t members) const {
-    const double most = std::clamp(batch_s / std::max(each_s_, 1e-6), 1.0, 256.0);
+    const double max_items = std::clamp(batch_s / std::max(each_s_, 1e-6), 1.0, 256.0);
     const std::size_t share = left / (2 * members);
-    return std::max<std::size_t>(1, std::min(static_cast<std::size_t>(most), share));
+    return std::max<std::size_t>(1, std::min(static_cast<std::size_t>(max_items), share));
   }
   /// It is to have the next batch before it is done with this one.
   bool is_short_of(std::size_t batch) const { return in_work_ <= batch / 2; }
@@ -341,12 +341,12 @@ class Runner {
 }  // namespace
 
 std::int64_t SweepSpec::items() const {
-  constexpr std::int64_t most = std::int64_t{1} << 62;
+  constexpr std::int64_t max_count = std::int64_t{1} << 62;
   std::int64_t count = 1;
   for (const Digit& digit : digits_of(*this)) {
     const auto base = static_cast<std::int64_t>(digit.base);
     if (base == 0) return 0;
-    count = count > most / base ? most : count * base;
+    count = count > max_count / base ? max_count : count * base;
   }
   return count;
 }

@@ -107,7 +107,8 @@ void SweepStore::add(std::span<const std::string> keys,
   }
 }
 
-std::vector<ClaimAnswer> SweepStore::claim(std::span<const std::string> keys, std::size_t most) {
+std::vector<ClaimAnswer> SweepStore::claim(std::span<const std::string> keys,
+                                           std::size_t max_items) {
   SqliteDatabase& database = state_->database();
   SqliteTransaction transaction(database);
   SqliteStatement find = database.prepare("SELECT status, worker FROM items WHERE key = ?");
@@ -119,7 +120,7 @@ std::vector<ClaimAnswer> SweepStore::claim(std::span<const std::string> keys, st
   std::set<std::string> living, gone;  // asked once per transaction
   std::size_t ours = 0;
   for (const std::string& key : keys.first(std::min(keys.size(), max_at_once))) {
-    if (ours == most) break;
+    if (ours == max_items) break;
     if (!find.bind(1, key).step())
       throw IoError(state_->path.string(), fmt::format("holds no item {} any more", key));
     const std::string status = find.text(0), worker = find.text(1);

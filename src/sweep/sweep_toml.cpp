@@ -106,8 +106,8 @@ std::vector<SettingValue> file_values(const TableReader& table, const std::strin
 
 void check_value(const SweepAxis& axis, const SettingValue& value) {
   const bool is_text = value.toml.starts_with('"');
-  const auto is_integer_from = [&](double least) {
-    return value.number && *value.number >= least && *value.number < 0x1p53 &&
+  const auto is_integer_from = [&](double min) {
+    return value.number && *value.number >= min && *value.number < 0x1p53 &&
            *value.number == std::floor(*value.number);
   };
   if (axis.key == "camera" || axis.key == "code") {
@@ -175,21 +175,16 @@ void check_axis_values(const SweepAxis& axis) {
   for (const SettingValue& value : axis.values) check_value(axis, value);
 }
 
-constexpr std::array weights = {ChoiceWord<UnwrapWeights>{"variance", UnwrapWeights::variance},
-                                ChoiceWord<UnwrapWeights>{"frequency", UnwrapWeights::frequency}};
-constexpr std::array combinations = {
-    ChoiceWord<SweepCombination>{"product", SweepCombination::product},
-    ChoiceWord<SweepCombination>{"zip", SweepCombination::zip}};
+constexpr EnumWords<SweepCombination, 2> combinations("SweepCombination", "combine", "product",
+                                                      "zip");
 
 void read_options(TableReader& table, EvaluateOptions& options) {
   auto trials = static_cast<std::uint64_t>(options.trials);
   auto max_trials = static_cast<std::uint64_t>(options.max_trials);
-  std::array<ChoiceWord<DecodeMethod>, all_decode_methods.size()> methods;
-  std::ranges::transform(all_decode_methods, methods.begin(), [](DecodeMethod method) {
-    return ChoiceWord<DecodeMethod>{name_of(method), method};
-  });
-  table.choice("method", options.method, Choices<DecodeMethod>(methods));
-  table.choice("unwrap_weights", options.unwrap_weights, Choices<UnwrapWeights>(weights));
+  table.choice("method", options.method,
+               words_by_name<DecodeMethod, all_decode_methods.size()>("DecodeMethod", "method"));
+  table.choice("unwrap_weights", options.unwrap_weights,
+               words_by_name<UnwrapWeights, 2>("UnwrapWeights", "unwrap_weights"));
   table.value("trials", trials);
   table.value("target_standard_error", options.target_standard_error);
   table.value("max_trials", max_trials);
@@ -267,7 +262,7 @@ SweepSpec parse_sweep_toml(std::string_view text, std::string_view source_name) 
   TableReader table(document, places);
   table.value("camera", spec.camera);
   table.value("set", spec.settings);
-  table.choice("combine", spec.combine, Choices<SweepCombination>(combinations));
+  table.choice("combine", spec.combine, combinations);
   read_options(table, spec.options);
   read_codes(table, spec);
   table.tables("axis", [&](TableReader& inner) { spec.axes.push_back(read_sweep_axis(inner)); });

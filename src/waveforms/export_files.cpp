@@ -78,7 +78,7 @@ Json generator_json(const Generator& generator, double frequency_hz) {
 }
 
 Json waveform_json(const QuantizedWaveform& waveform, const WaveformExport& exported) {
-  Json json = {{"name", waveform.name}, {"arm", waveform.arm == Arm::light ? "light" : "sensor"}};
+  Json json = {{"name", waveform.name}, {"arm", name_of(waveform.arm)}};
   const int taps = exported.taps;
   if (waveform.arm == Arm::light) {
     json["exposure"] = waveform.index + 1;

@@ -287,9 +287,9 @@ PatternWords parse_pattern(std::string_view text, PatternSyntax syntax, std::str
     return parse_c;
   }();
   PatternWords result = parse(text, reader);
-  const std::uint64_t most = mask_of(result.word_bits == 0 ? 64 : result.word_bits);
+  const std::uint64_t max_word = mask_of(result.word_bits == 0 ? 64 : result.word_bits);
   for (const std::uint64_t word : result.words)
-    if (word > most)
+    if (word > max_word)
       reader.fail(
           fmt::format("found the word 0x{:x}; expected at most {} bits", word, result.word_bits));
   return result;

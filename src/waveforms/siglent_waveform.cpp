@@ -127,10 +127,10 @@ void check_command(const WvdtCommand& command, int bits) {
   require(command.points.size() >= 2, "WVDT points", command.points.size(), "must be >= 2");
   require(bits == 16 || command.points.size() % 512 == 0, "WVDT points", command.points.size(),
           "must be whole kilobytes, a multiple of 512, in the 14-bit form");
-  const int most = 1 << (bits - 1);
+  const int limit = 1 << (bits - 1);
   for (const std::int16_t point : command.points)
-    require(point >= -most && point < most, "WVDT point", point,
-            fmt::format("must be in [{}, {}]", -most, most - 1));
+    require(point >= -limit && point < limit, "WVDT point", point,
+            fmt::format("must be in [{}, {}]", -limit, limit - 1));
 }
 
 /// Where "WAVEDATA," ends, at most some hundred bytes from the beginning.

@@ -41,9 +41,9 @@ void draw(const std::vector<std::int32_t>& codes, std::span<std::byte> picture) 
   for (std::size_t c = 0; c < columns; ++c) {
     const auto begin = codes.begin() + static_cast<std::ptrdiff_t>(codes.size() * c / columns);
     const auto end = codes.begin() + static_cast<std::ptrdiff_t>(codes.size() * (c + 1) / columns);
-    const auto [least, most] = std::minmax_element(begin, end);
-    picture[2 * c] = static_cast<std::byte>(*least >> 6);
-    picture[2 * c + 1] = static_cast<std::byte>(*most >> 6);
+    const auto [min, max] = std::minmax_element(begin, end);
+    picture[2 * c] = static_cast<std::byte>(*min >> 6);
+    picture[2 * c + 1] = static_cast<std::byte>(*max >> 6);
   }
 }
 

@@ -163,8 +163,8 @@ void QuantizedWaveform::validate() const {
           "must be in [2, 2^26]");
   require(periods >= 1 && points() % periods == 0, name + " periods", periods,
           "must be >= 1 and divide the points");
-  const auto [least, most] = std::ranges::minmax(codes);
-  require(least >= 0 && most < levels, name + " code", least < 0 ? least : most,
+  const auto [min, max] = std::ranges::minmax(codes);
+  require(min >= 0 && max < levels, name + " code", min < 0 ? min : max,
           "must be in [0, levels - 1]");
   require(std::isfinite(sample_rate_hz) && sample_rate_hz > 0.0, name + " sample_rate_hz",
           sample_rate_hz, "must be finite and > 0");

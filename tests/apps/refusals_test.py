@@ -210,7 +210,7 @@ class Refusals(CommandLineTest):
         refuse("expected 4", name="good.npy", code="sinusoid-k4")
         refuse("no such file", name="absent.npy")
         self.refuse(["decode", "good.npy", "--code", "hamiltonian-k3", "--frame", "1", "-o",
-                     "d.npy"], "--frame 1", "1 frame", code=2)
+                     "d.npy"], "--frame = 1", "1 frame", code=2)
 
     def test_reproduce(self):
         self.refuse(["reproduce", "fig7", "--mesh", "none.obj", "-o", "r"], "none.obj")

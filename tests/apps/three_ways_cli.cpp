@@ -20,7 +20,7 @@
 #include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 #include "tofsmith/simulate/capture.hpp"
-#include "tofsmith/waveforms/waveform_export.hpp"
+#include "tofsmith/waveforms/write_export.hpp"
 
 using namespace tofsmith;
 
@@ -107,15 +107,14 @@ void design_codes() {
 
 void export_code() {
   const Camera camera = small_camera();
-  const ExportOptions options{.format = "csv", .samples = 60};
-  const CodeSet code = load_code("square-k4", camera);
-  const Camera actual = exporting_camera(code, camera, options);
-  const WaveformExport exported = export_waveforms(code, actual, options);
-  const std::vector<ExportedFile> files = export_files(exported);
-  make_output_directory("export");
-  for (const ExportedFile& file : files)
-    write_file_atomically("export/" + file.name, file.bytes, policy);
-  write_file_atomically("export/manifest.json", export_manifest(exported, files), policy);
+  ExportRequest request;
+  request.policy = policy;
+  request.options.format = "csv";
+  request.options.samples = 60;
+  for (const char* output : {"export", "one.csv"}) {
+    request.output = output;
+    write_export(load_code("square-k4", camera), camera, request);
+  }
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/shared/random.hpp"
-#include "design/chips/edge_refinement.hpp"
+#include "design/factorize/edge_refinement.hpp"
 #include "design/factorize/shared/alternation.hpp"
 #include "design/factorize/shared/start_pool.hpp"
 #include "design/run_lengths.hpp"

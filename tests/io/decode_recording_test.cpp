@@ -76,13 +76,13 @@ TEST_F(DecodeRecording, RefusesWhatCannotBeBeforeAnythingIsWritten) {
   };
   DecodeRequest wrong = request("d.npz");
   wrong.frame = 3;
-  refused(wrong, "frame 3");
+  refused(wrong, "frame = 3");
   wrong = request("d.npz");
   wrong.stack = true;
-  refused(wrong, "stack: ");
+  refused(wrong, "stack = true");
   wrong = request("d.npz");
   wrong.outputs = {DecodedPlane::ratio};
-  refused(wrong, "outputs ratio");
+  refused(wrong, "outputs = ratio");
   wrong = request("d.pfm");
   wrong.outputs = {DecodedPlane::signal};
   refused(wrong, "a .pfm file holds depth only");

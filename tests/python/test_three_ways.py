@@ -149,9 +149,9 @@ def test_decode_refuses_alike(ways, camera):
     ways.give("raw.npy", capture(camera))
     decoder = ts.Decoder("hamiltonian-k4", camera)
     for error, word, arguments, options in (
-            (ValueError, "frame 3", ["--frame", "3"], {"frame": 3}),
+            (ValueError, "frame = 3", ["--frame", "3"], {"frame": 3}),
             (ValueError, "stack", ["--stack"], {"stack": True}),
-            (ValueError, "outputs delay", ["--outputs", "delay"], {"outputs": ["delay"]}),
+            (ValueError, "outputs = delay", ["--outputs", "delay"], {"outputs": ["delay"]}),
             (OSError, "0.001 MB", ["--memory-mb", "0.001"], {"memory_mb": 0.001})):
         done = subprocess.run(
             [ways.cli, "decode", "raw.npy", "--code", "hamiltonian-k4", *SMALL, "-o", "d.npz",
@@ -199,8 +199,14 @@ def test_design(ways):
 
 
 def test_export(ways, camera):
-    ways.command("export", "square-k4", "--format", "csv", "--samples", "60", *SMALL, "--no-loss",
-                 "-o", "export")
-    ts.export_waveforms("square-k4", camera, "export", "csv", samples=60)
+    for output in ("export", "one.csv"):
+        ways.command("export", "square-k4", "--format", "csv", "--samples", "60", *SMALL,
+                     "--no-loss", "-o", output)
+        written = ts.export_waveforms("square-k4", camera, output, "csv", samples=60)
+    assert [str(file) for file in written.files] == ["one.csv"] and written.notes == []
+    with pytest.raises(ValueError, match="output = one.mif; expected .csv of csv, or a directory"):
+        ts.export_waveforms("square-k4", camera, "one.mif", "csv")
+    (note,) = ts.export_waveforms("square-k4", "paper-10f0", "../fast", "csv").notes
+    assert "3600 MHz" in note
     ways.cpp("export")
-    assert len(ways.same("export/report.html")) >= 2
+    assert len(ways.same("export/report.html")) >= 3

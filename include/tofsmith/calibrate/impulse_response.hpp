@@ -11,6 +11,7 @@
 
 #include "tofsmith/calibrate/instrument_table.hpp"
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/statistics.hpp"
 
 namespace tofsmith {
@@ -32,6 +33,11 @@ struct ResponseRecordOptions {
   std::string column;  ///< name or number (from 1) of the values; "": the only one
   DecimalMark decimal = DecimalMark::automatic;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<ResponseRecordOptions> auto& o) {
+  return std::tuple(Field("time_step_s", o.time_step_s), Field("time_unit_s", o.time_unit_s),
+                    Field("column", o.column), Field("decimal", o.decimal));
+}
 
 /// Reads text (see instrument_table.hpp) with times and values, or values alone, or a NumPy array
 /// of one axis. Times that are not equally spaced are resampled onto their median step along

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/statistics.hpp"
 
@@ -17,8 +18,13 @@ struct PhotonTransferOptions {
   std::optional<int> adc_bits;           ///< of the raw numbers; none: the fewest usual ones
 
   /// @throws std::invalid_argument naming field, value and rule
-  void validate() const;
+  void validate() const { check_fields(*this); }
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<PhotonTransferOptions> auto& o) {
+  return std::tuple(Field("black_level_dn", o.black_level_dn, "finite and >= 0"),
+                    Field("adc_bits", o.adc_bits, "in [1, 24]"));
+}
 
 /// Mean and variance of one pair of frames of one measurement.
 struct PhotonTransferPoint {

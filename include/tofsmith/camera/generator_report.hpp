@@ -3,14 +3,18 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/fields.hpp"
 
 namespace tofsmith {
 
 /// The arm that plays a waveform.
 enum class Arm { light, sensor };
+/// "light", "sensor".
+constexpr std::string_view name_of(Arm arm) { return arm == Arm::light ? "light" : "sensor"; }
 
 /// Nominal and actual figures of one waveform on its generator.
 struct GeneratorReport {
@@ -22,10 +26,21 @@ struct GeneratorReport {
   double mean_nominal = 0.0, mean_actual = 0.0;  ///< power over average power, or gain
   double peak_nominal = 0.0, peak_actual = 0.0;
   int edges_nominal = 0, edges_actual = 0;
+  double rms_difference = 0.0;  ///< of actual and nominal over the period, in units of the waveform
   /// Farthest that a switching time has moved [s]; none for a waveform that is not binary.
   std::optional<double> largest_edge_move_s;
-  double rms_difference = 0.0;  ///< of actual and nominal over the period, in units of the waveform
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<GeneratorReport> auto& r) {
+  return std::tuple(Field("arm", r.arm), Field("index", r.index),
+                    Field("points_per_period", r.points_per_period), Field("clock_hz", r.clock_hz),
+                    Field("duty_nominal", r.duty_nominal), Field("duty_actual", r.duty_actual),
+                    Field("mean_nominal", r.mean_nominal), Field("mean_actual", r.mean_actual),
+                    Field("peak_nominal", r.peak_nominal), Field("peak_actual", r.peak_actual),
+                    Field("edges_nominal", r.edges_nominal), Field("edges_actual", r.edges_actual),
+                    Field("rms_difference", r.rms_difference),
+                    Field("largest_edge_move_s", r.largest_edge_move_s));
+}
 
 /// One entry for every waveform that a generator of the camera plays, light first; empty without
 /// generators. Impulse responses come after and are not in it.

@@ -37,7 +37,7 @@ constexpr unsigned as_bits(FieldMark mark) { return static_cast<unsigned>(mark);
 
 /// A count that searching longer or shorter scales, never to below this (scale_by_effort).
 struct ByEffort {
-  int least = 0;
+  int min = 0;
 };
 
 /// What JSON documents call a field, where that is not its name.

@@ -13,6 +13,8 @@ struct Estimate {
   double value = 0.0;
   double standard_error = 0.0;
 };
+/// a / b; the standard error takes the two for independent.
+Estimate ratio_of(const Estimate& a, const Estimate& b);
 
 /// Mean and variance of a stream of values in one pass (Welford), mergeable (Chan et al.).
 class RunningStatistics {

@@ -35,6 +35,8 @@ enum class DesignMethod {
 };
 /// The enumerator's name.
 std::string_view name_of(DesignMethod method);
+/// @throws std::invalid_argument for any other word
+DesignMethod parse_design_method(std::string_view name);
 
 /// How the codes of a camera are designed and judged.
 struct DesignOptions {

@@ -9,48 +9,12 @@
 #include <string_view>
 #include <vector>
 
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/instrument/scpi_session.hpp"
 #include "tofsmith/waveforms/waveform_export.hpp"
 
 namespace tofsmith {
-
-/// Families of generators that take the same commands.
-enum class GeneratorFamily {
-  siglent_x,          ///< SDG1000X, SDG2000X, SDG6000X
-  keysight_trueform,  ///< 33500 and 33600
-  tektronix_afg3000,  ///< AFG3000, with B and C
-};
-
-/// What a generator can do; docs/instruments.md has the sources. Limits are those of the smallest
-/// version; what the instrument answers decides.
-struct GeneratorModel {
-  std::string name;    ///< "SDG2042X"
-  std::string vendor;  ///< as in its answer to *IDN?
-  GeneratorFamily family = GeneratorFamily::siglent_x;
-  int channels = 2;
-  double sample_rate_hz = 0.0;          ///< most points played per second
-  double max_repetition_hz = 0.0;       ///< of a whole table; 0: as the sample rate allows
-  double true_arb_rate_hz = 0.0;        ///< most points per second that are all played, where a
-                                        ///< generator otherwise skips (Siglent); 0: it cannot
-  int min_points = 2, max_points = 0;   ///< of a table
-  int memories = 0;                     ///< tables at a time; 0: as many as fit
-  double min_vpp = 0.0, max_vpp = 0.0;  ///< into 50 ohm
-
-  /// Name of the WaveformFormat whose points it takes.
-  std::string format() const;
-  /// Whether the list of errors can be asked for.
-  bool has_error_queue() const { return family != GeneratorFamily::siglent_x; }
-};
-
-/// All models.
-const std::vector<GeneratorModel>& generator_models();
-/// @throws std::invalid_argument that names the nearest, or the families
-const GeneratorModel& generator_model(std::string_view name);
-
-/// The most points per second that any model plays which takes this WaveformFormat, or any model at
-/// all where none of them does.
-double fastest_sample_rate_hz(std::string_view format);
 
 /// What an instrument says of itself.
 struct InstrumentIdentity {
@@ -92,6 +56,15 @@ struct UploadRequest {
   double patience_s = 20.0;     ///< more than usual for a reset and for files, 0 .. 600
   std::string filter = "STEP";  ///< Keysight: STEP, NORM or OFF
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<UploadRequest> auto& r) {
+  return std::tuple(Field("channels", r.channels, FieldMark::from_above),
+                    Field("load_ohm", r.load_ohm), Field("output_on", r.output_on),
+                    Field("read_back", r.read_back), Field("reset", r.reset),
+                    Field("true_arb", r.true_arb), Field("wave_header", r.wave_header),
+                    Field("settle_s", r.settle_s, "in [0, 60]"),
+                    Field("patience_s", r.patience_s, "in [0, 600]"), Field("filter", r.filter));
+}
 
 /// What an answer must say.
 struct AnswerCheck {
@@ -155,6 +128,13 @@ struct UploadSelection {
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<UploadSelection> auto& s) {
+  return std::tuple(Field("light_channel", s.light_channel, ">= 0"),
+                    Field("sensor_channel", s.sensor_channel, ">= 0"),
+                    Field("exposure", s.exposure, ">= 1"), Field("tap", s.tap, ">= 1"),
+                    Field("all", s.all));
+}
 
 /// A code as tables for a model: of its format and, unless the options say another, its highest
 /// rate (with `true_arb`: that at which every point is played).

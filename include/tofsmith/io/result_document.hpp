@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tofsmith/camera/generator_report.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/simulate/multipath_error.hpp"
@@ -23,6 +24,9 @@ struct EvaluatedCode {
   /// On perturbed cameras, if that was asked for.
   std::optional<RobustnessReport> robustness;
 };
+
+/// What generators make of each waveform, as JSON: a list of objects.
+std::string generators_document(const std::vector<GeneratorReport>& reports);
 
 /// What `tofsmith evaluate --json` prints: version, seed, trials, the camera with its defaults
 /// filled in, the decoder, and one entry per code with its depth errors and bounds. Beside what it

@@ -8,7 +8,9 @@
 #include <string>
 #include <string_view>
 
+#include "tofsmith/core/fields.hpp"
 #include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/io/design_directory.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
@@ -45,6 +47,39 @@ StagedScene parse_scene_toml(std::string_view text, std::string_view source_name
 /// @throws IoError as parse_scene_toml(), or if the file cannot be read
 StagedScene read_scene_toml(const std::filesystem::path& path,
                             std::span<const std::string> settings = {});
+
+/// Which scene is seen, by name or file.
+struct SceneSource {
+  std::string scene;          ///< a built-in scene, a scene file (.toml), a mesh, or a depth image
+  std::string image;          ///< file of a depth image's albedo; empty: 1
+  std::string ambient_image;  ///< file of each pixel's ambient light; empty: 1
+  DepthKind kind = DepthKind::z;  ///< of a depth image
+  bool linear_image = false;      ///< PNG images hold linear light, not sRGB
+  std::optional<int> width;       ///< of a built-in scene or a mesh, 1 .. 16384; 320
+  std::optional<int> height;      ///< as width; 240
+  std::optional<double> scale_m;  ///< metres per unit of a mesh, > 0; 1
+};
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<SceneSource> auto& s) {
+  return std::tuple(Field("scene", s.scene), Field("image", s.image),
+                    Field("ambient_image", s.ambient_image), Field("kind", s.kind),
+                    Field("linear_image", s.linear_image), Field("width", s.width, "in [1, 16384]"),
+                    Field("height", s.height, "in [1, 16384]"), Field("scale_m", s.scale_m, "> 0"));
+}
+
+/// A scene and the pinhole it is seen through.
+struct LoadedScene {
+  std::string name;
+  SceneImage image;
+  PinholeView view;
+  std::optional<StagedScene> staged;  ///< its surfaces; none: a depth image has none
+};
+
+/// Reads a depth image with its albedo, or casts the rays of a scene. z-depth becomes radial
+/// distance through the lens (without one: a view 60 degrees wide).
+/// @throws InvalidArgument for fields that do not go with the scene; IoError for what is no scene
+///         and for files that do not hold what they should
+LoadedScene load_scene(const SceneSource& source, const std::optional<Lens>& lens);
 
 /// Writes a scene and its decodings into a directory:
 ///   scene.json                what is there, with the errors

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "tofsmith/report/page.hpp"
 #include "tofsmith/simulate/robustness.hpp"
-#include "tofsmith/waveforms/waveform_export.hpp"
+#include "tofsmith/waveforms/write_export.hpp"
 
 namespace tofsmith {
 
@@ -22,9 +21,6 @@ std::vector<std::vector<std::string>> generator_loss_rows(const GeneratorLoss& l
 
 /// A page of an export: nominal and actual waveforms, correlation functions, and the depth
 /// error that the limits cost.
-/// @param actual  the camera that exporting_camera() made
-/// @param loss    none if it was not measured
-Page export_page(const CodeSet& code, const Camera& actual, const WaveformExport& exported,
-                 const std::optional<GeneratorLoss>& loss, const std::string& command_line);
+Page export_page(const ExportedCode& exported, const std::string& command_line);
 
 }  // namespace tofsmith

@@ -101,6 +101,49 @@ const WaveformFormat& waveform_format(std::string_view name);
 /// Index of a variant of the format; 0 for "". @throws std::invalid_argument that lists them
 int variant_index(const WaveformFormat& format, std::string_view variant);
 
+/// Families of generators that take the same commands.
+enum class GeneratorFamily {
+  siglent_x,          ///< SDG1000X, SDG2000X, SDG6000X
+  keysight_trueform,  ///< 33500 and 33600
+  tektronix_afg3000,  ///< AFG3000, with B and C
+};
+
+/// What a generator can do; docs/instruments.md has the sources. Limits are those of the smallest
+/// version; what the instrument answers decides.
+struct GeneratorModel {
+  std::string name;    ///< "SDG2042X"
+  std::string vendor;  ///< as in its answer to *IDN?
+  GeneratorFamily family = GeneratorFamily::siglent_x;
+  int channels = 2;
+  double sample_rate_hz = 0.0;          ///< most points played per second
+  double max_repetition_hz = 0.0;       ///< of a whole table; 0: as the sample rate allows
+  double true_arb_rate_hz = 0.0;        ///< most points per second that are all played, where a
+                                        ///< generator otherwise skips (Siglent); 0: it cannot
+  int min_points = 2, max_points = 0;   ///< of a table
+  int memories = 0;                     ///< tables at a time; 0: as many as fit
+  double min_vpp = 0.0, max_vpp = 0.0;  ///< into 50 ohm
+
+  /// Name of the WaveformFormat whose points it takes.
+  std::string format() const;
+  /// Whether the list of errors can be asked for.
+  bool has_error_queue() const { return family != GeneratorFamily::siglent_x; }
+};
+
+/// All models.
+const std::vector<GeneratorModel>& generator_models();
+/// The model of that name, in any case and with or without the letter of its generation; null:
+/// none.
+const GeneratorModel* find_generator_model(std::string_view name);
+/// @throws std::invalid_argument that names the nearest, or the families
+const GeneratorModel& generator_model(std::string_view name);
+/// The families, to tell users of them.
+inline constexpr std::string_view known_generators =
+    "Siglent SDG1000X, SDG2000X, SDG6000X; Keysight 33500, 33600; Tektronix AFG3000";
+
+/// The most points per second that any model plays which takes this WaveformFormat, or any model at
+/// all where none of them does.
+double fastest_sample_rate_hz(std::string_view format);
+
 /// The waveforms of a code as a table for a waveform generator, one row per time sample:
 ///   time_s, modulation_1 .. modulation_E (power over average), demodulation_1 .. demodulation_K
 /// A sample is the mean over its cell, so that duties are exact.

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "tofsmith/core/error.hpp"
 
@@ -25,6 +27,9 @@ class EnumWords {
       : type_(type), field_(field), words_{words...} {
     static_assert(sizeof...(words) == Count, "one word for each value");
   }
+
+  /// In the order of the values.
+  std::span<const std::string_view, Count> all() const { return words_; }
 
   /// @throws std::invalid_argument if the enumeration has no such value
   std::string_view of(Enum value) const {
@@ -50,5 +55,14 @@ class EnumWords {
   std::string_view type_, field_;
   std::array<std::string_view, Count> words_;
 };
+
+/// The words that name_of() gives.
+template <typename Enum, std::size_t Count>
+EnumWords<Enum, Count> words_by_name(std::string_view type, std::string_view field) {
+  return [&]<std::size_t... At>(std::index_sequence<At...>) {
+    return EnumWords<Enum, Count>(type, field, name_of(static_cast<Enum>(At))...);
+  }
+  (std::make_index_sequence<Count>());
+}
 
 }  // namespace tofsmith

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "core/shared/shared_progress.hpp"
-#include "design/chips/edge_refinement.hpp"
+#include "design/factorize/edge_refinement.hpp"
 #include "design/factorize/shared/alternation.hpp"
 #include "design/factorize/shared/start_pool.hpp"
 #include "design/shortest_run.hpp"

@@ -55,17 +55,17 @@ SwitchedLabels gates_of(const WaveformSpace& space, const SampledCode& code, int
 }
 
 /// How many of the brightest cells, lit evenly, come closest to the waveform.
-int nearest_count(const Eigen::VectorXd& cells, const std::vector<int>& order, int fewest) {
+int nearest_count(const Eigen::VectorXd& cells, const std::vector<int>& order, int min_on) {
   const auto total = static_cast<double>(order.size());
-  int best = fewest;
-  double least = 1e300, lit = 0.0;
+  int best = min_on;
+  double smallest = 1e300, lit = 0.0;
   for (int on = 1; on < static_cast<int>(order.size()); ++on) {
     lit += cells[order[static_cast<std::size_t>(on - 1)]];
-    if (on < fewest) continue;
+    if (on < min_on) continue;
     // Squared distance to level total / on, without what does not depend on `on`.
     const double distance = total * total / on - 2.0 * total / on * lit;
-    if (distance < least) {
-      least = distance;
+    if (distance < smallest) {
+      smallest = distance;
       best = on;
     }
   }
@@ -83,26 +83,26 @@ SwitchedCode binarized(const DesignProblem& problem, const SampledCode& code,
     for (int e = 0; e < space.exposures; ++e) result.gates.push_back(gates_of(space, code, e));
   if (!problem.binary_modulation) return result;
 
-  const int fewest =
+  const int min_on =
       std::max(1, static_cast<int>(std::ceil(space.cells / space.peak_factor - 1e-9)));
   std::vector<std::vector<int>> order;
   std::vector<int> count;
   for (int e = 0; e < space.exposures; ++e) {
     const Eigen::VectorXd cells = cell_values(space, code.modulation.col(e));
     order.push_back(ranked(cells));
-    count.push_back(nearest_count(cells, order.back(), fewest));
+    count.push_back(nearest_count(cells, order.back(), min_on));
     result.light.push_back(first_of(order.back(), count.back()));
   }
   for (std::size_t e = 0; e < order.size(); ++e) {
-    double least = judge.score(sampled_on(space, result)).log_error_bin;
+    double smallest = judge.score(sampled_on(space, result)).log_error_bin;
     SwitchedLabels best = result.light[e];
     for (const int change : {-2, -1, 1, 2}) {
       const int on = count[e] + change;
-      if (on < fewest || on >= space.cells) continue;
+      if (on < min_on || on >= space.cells) continue;
       result.light[e] = first_of(order[e], on);
       const double error = judge.score(sampled_on(space, result)).log_error_bin;
-      if (error >= least) continue;
-      least = error;
+      if (error >= smallest) continue;
+      smallest = error;
       best = result.light[e];
     }
     result.light[e] = best;

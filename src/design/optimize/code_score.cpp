@@ -37,13 +37,13 @@ SampledCode rotated(const SampledCode& code, int rotation_bin) {
 
 std::vector<TrialBatch> draw_batches(const DesignProblem& problem, int trials, bool ends_matter,
                                      std::uint64_t seed, std::uint64_t work_item) {
-  const CameraVariant* most = &problem.variants.front();
+  const CameraVariant* widest = &problem.variants.front();
   for (const CameraVariant& variant : problem.variants)
-    if (variant.levels.size() > most->levels.size()) most = &variant;
+    if (variant.levels.size() > widest->levels.size()) widest = &variant;
   std::vector<TrialBatch> batches;
-  for (std::size_t p = 0; p < most->levels.size(); ++p) {
+  for (std::size_t p = 0; p < widest->levels.size(); ++p) {
     RandomStream random(seed, work_item, static_cast<std::uint32_t>(2 * p + ends_matter));
-    const LightLevel& level = most->levels[p];
+    const LightLevel& level = widest->levels[p];
     batches.push_back(draw_trials(DesignProblem::trials_of(level, trials), problem.measurements(),
                                   problem.operating, ends_matter, random, nullptr,
                                   problem.multipath_of(level)));

@@ -57,8 +57,8 @@ struct DesignProblem {
   int measurements() const { return variants.front().camera.measurements(); }
   /// How many trials a level takes where one of single returns takes so many: pairs are expensive.
   static int trials_of(const LightLevel& level, int trials) {
-    constexpr int fewest = 8;
-    return std::max(fewest, level.returns == TrialReturns::two ? trials / 4 : trials);
+    constexpr int min_trials = 8;
+    return std::max(min_trials, level.returns == TrialReturns::two ? trials / 4 : trials);
   }
   bool linear() const { return operating.error == DepthErrorKind::linear; }
 };

@@ -37,12 +37,12 @@ bool tells_two_returns(const CodeSet& code, const Camera& camera) {
 std::vector<PoolEntry> playable_entries(const DesignProblem& problem, const OptimizePool& pool,
                                         const Camera& camera, const OptimizeOptions& options,
                                         const Sharpness& sharpness) {
-  constexpr std::size_t most_others = 3;
+  constexpr std::size_t max_others = 3;
   const std::vector<PoolEntry>& all = pool.entries();
   const std::size_t best = std::min(static_cast<std::size_t>(options.refined), all.size());
   std::vector<PoolEntry> chosen(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(best));
   if (!camera.operating.multipath) return chosen;
-  for (std::size_t k = best; k < all.size() && chosen.size() < best + most_others; ++k) {
+  for (std::size_t k = best; k < all.size() && chosen.size() < best + max_others; ++k) {
     const SwitchedCode code =
         binarized(problem, render(problem.space, all[k].parameters, sharpness), pool.judge());
     if (tells_two_returns(code_set("optimized", problem.space, code, camera.samples), camera))

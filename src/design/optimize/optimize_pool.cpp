@@ -45,9 +45,9 @@ std::uint64_t work_item(std::uint64_t phase, std::size_t item) {
 }
 
 int trials_per_level(const DesignProblem& problem, const OptimizeOptions& options) {
-  constexpr int fewest = 100;
+  constexpr int min_trials = 100;
   const std::size_t levels = problem.variants.front().levels.size();
-  return std::max(fewest, options.pool_trials / static_cast<int>(levels));
+  return std::max(min_trials, options.pool_trials / static_cast<int>(levels));
 }
 
 }  // namespace

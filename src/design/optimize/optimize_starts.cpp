@@ -39,9 +39,9 @@ SampledCode empty_code(const WaveformSpace& space) {
 /// Highest harmonic that the camera lets through well enough to be of use.
 int highest_useful_frequency(const DesignProblem& problem) {
   constexpr double useful = 0.02;  // of the amplitude, behind both arms
-  constexpr int most = 14;
+  constexpr int max_frequency = 14;
   int highest = 1;
-  for (int n = 1; n <= std::min(most, problem.space.cells / 4); ++n)
+  for (int n = 1; n <= std::min(max_frequency, problem.space.cells / 4); ++n)
     if (std::abs(problem.variants.front().camera.transfer(n)) > useful) highest = n;
   return highest;
 }

@@ -41,13 +41,13 @@ HWY_INLINE float score_chords(const DecodingCurve& curve, SoftDecoder::Scratch& 
   const Floats d;
   const int lanes = lanes_of(d);
   const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
-  const auto least = hn::Set(d, smallest_square);
+  const auto min_square = hn::Set(d, smallest_square);
   auto largest = hn::Set(d, -1.0f);
   for (int j = 0; j < curve.samples; j += lanes) {
     const auto b0 = hn::Load(d, scratch.match.data() + j);
     const auto b1 = hn::LoadU(d, scratch.match.data() + j + 1);
-    const auto q00 = hn::Add(hn::Load(d, curve.squares.data() + j), least);
-    const auto q11 = hn::Add(hn::LoadU(d, curve.squares.data() + j + 1), least);
+    const auto q00 = hn::Add(hn::Load(d, curve.squares.data() + j), min_square);
+    const auto q11 = hn::Add(hn::LoadU(d, curve.squares.data() + j + 1), min_square);
     const auto q01 = hn::Load(d, curve.products.data() + j);
     const auto u = hn::NegMulAdd(q01, b1, hn::Mul(q11, b0));
     const auto v = hn::NegMulAdd(q01, b0, hn::Mul(q00, b1));
@@ -61,7 +61,7 @@ HWY_INLINE float score_chords(const DecodingCurve& curve, SoftDecoder::Scratch& 
     const auto match = hn::Max(zero, hn::MulAdd(s, b0, hn::Mul(t, b1)));
     const auto cross = hn::Mul(hn::Mul(hn::Add(q01, q01), s), t);
     const auto square =
-        hn::Max(least, hn::MulAdd(hn::Mul(q00, s), s, hn::MulAdd(hn::Mul(q11, t), t, cross)));
+        hn::Max(min_square, hn::MulAdd(hn::Mul(q00, s), s, hn::MulAdd(hn::Mul(q11, t), t, cross)));
     const auto ratio = hn::Div(match, square);
     const auto in_range =
         hn::Lt(hn::Iota(d, static_cast<float>(j)), hn::Set(d, static_cast<float>(curve.samples)));
@@ -152,15 +152,15 @@ HWY_INLINE void differentiate_chords(const DecodingCurve& curve, const SoftQuest
   const Floats d;
   const int lanes = lanes_of(d);
   const auto one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), zero = hn::Zero(d);
-  const auto least = hn::Set(d, smallest_square);
+  const auto min_square = hn::Set(d, smallest_square);
   const auto samples = hn::Set(d, static_cast<float>(curve.samples));
   const auto truth = hn::Set(d, static_cast<float>(question.true_bin));
   const auto scale = hn::Set(d, weight);
   for (int j = 0; j < curve.samples; j += lanes) {
     const auto b0 = hn::Load(d, scratch.match.data() + j);
     const auto b1 = hn::LoadU(d, scratch.match.data() + j + 1);
-    const auto q00 = hn::Add(hn::Load(d, curve.squares.data() + j), least);
-    const auto q11 = hn::Add(hn::LoadU(d, curve.squares.data() + j + 1), least);
+    const auto q00 = hn::Add(hn::Load(d, curve.squares.data() + j), min_square);
+    const auto q11 = hn::Add(hn::LoadU(d, curve.squares.data() + j + 1), min_square);
     const auto q01 = hn::Load(d, curve.products.data() + j);
     const auto t = hn::Load(d, scratch.place.data() + j);
     const auto s = hn::Sub(one, t);

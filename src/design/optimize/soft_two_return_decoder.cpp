@@ -22,7 +22,7 @@ using Pairs = SoftTwoReturnDecoder::Pairs;
 
 /// Strengths and scores of all pairs; scores are -1 in the padding. @return the largest
 float score_all_pairs(Pairs& pairs) {
-  constexpr float least_square = 1e-10f;    // of a pair whose points cancel
+  constexpr float min_square = 1e-10f;      // of a pair whose points cancel
   constexpr float min_determinant = 1e-6f;  // relative: nearer pairs are one return
   const Floats d;
   const int lanes = lanes_of(d);
@@ -39,17 +39,16 @@ float score_all_pairs(Pairs& pairs) {
       const auto q22 = hn::LoadU(d, pairs.squares.data() + j + delay);
       const auto q12 = hn::Load(d, pairs.products.data() + pair);
       const auto square = hn::Mul(q11, q22);
-      const auto inverse =
-          hn::Div(one, hn::Max(hn::NegMulAdd(q12, q12, square),
-                               hn::MulAdd(hn::Set(d, min_determinant), square,
-                                          hn::Set(d, least_square * least_square))));
+      const auto inverse = hn::Div(one, hn::Max(hn::NegMulAdd(q12, q12, square),
+                                                hn::MulAdd(hn::Set(d, min_determinant), square,
+                                                           hn::Set(d, min_square * min_square))));
       const auto free1 = hn::Mul(inverse, hn::NegMulAdd(q12, b2, hn::Mul(q22, b1)));
       const auto free2 = hn::Mul(inverse, hn::NegMulAdd(q12, b1, hn::Mul(q11, b2)));
       // Where the free strengths are not in order, the best ones lie on an edge: alone, or equal.
       const auto match = hn::Max(hn::Add(b1, b2), zero), match1 = hn::Max(b1, zero);
       const auto alone = hn::Div(match1, q11);
       const auto equal = hn::Div(
-          match, hn::Max(hn::Add(hn::Add(q11, q22), hn::Add(q12, q12)), hn::Set(d, least_square)));
+          match, hn::Max(hn::Add(hn::Add(q11, q22), hn::Add(q12, q12)), hn::Set(d, min_square)));
       const auto in_order = hn::And(hn::Ge(free2, zero), hn::Ge(free1, free2));
       const auto are_equal = hn::Gt(hn::Mul(equal, match), hn::Mul(alone, match1));
       const auto s1 = hn::IfThenElse(in_order, free1, hn::IfThenElse(are_equal, equal, alone));
@@ -168,8 +167,8 @@ SoftTwoReturnDecoder::SoftTwoReturnDecoder(const DecodingCurve& curve, int step,
       points_(points_on_grid(curve, step)),
       pairs_(curve.samples / step, delays),
       by_points_(Eigen::MatrixXf::Zero(points_.rows(), points_.cols())) {
-  constexpr float least_square = 1e-10f;  // of a point without contrast
-  repeat((points_.rowwise().squaredNorm().array() + least_square).matrix(), pairs_.squares);
+  constexpr float min_square = 1e-10f;  // of a point without contrast
+  repeat((points_.rowwise().squaredNorm().array() + min_square).matrix(), pairs_.squares);
   const Eigen::MatrixXf gram = points_ * points_.transpose();
   for (int delay = delays.shortest; delay <= delays.longest; ++delay)
     for (int j = 0; j < pairs_.bins; ++j)

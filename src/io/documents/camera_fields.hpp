@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "io/text/choices.hpp"
+#include "core/shared/enum_words.hpp"
 #include "tofsmith/camera/camera.hpp"
 
 // The tables and keys of a camera file, described once for reading and for writing: `Table` is a
@@ -14,20 +14,9 @@
 // written differently: visit_measured_response() is overloaded for both.
 namespace tofsmith::camera_fields {
 
-inline constexpr std::array kinds = {
-    ChoiceWord<ImpulseResponse::Kind>{"none", ImpulseResponse::Kind::none},
-    ChoiceWord<ImpulseResponse::Kind>{"hann", ImpulseResponse::Kind::hann},
-    ChoiceWord<ImpulseResponse::Kind>{"gaussian", ImpulseResponse::Kind::gaussian},
-    ChoiceWord<ImpulseResponse::Kind>{"lowpass", ImpulseResponse::Kind::lowpass},
-    ChoiceWord<ImpulseResponse::Kind>{"file", ImpulseResponse::Kind::file}};
-inline constexpr std::array noise_models = {
-    ChoiceWord<NoiseModel>{"poisson", NoiseModel::poisson},
-    ChoiceWord<NoiseModel>{"gaussian", NoiseModel::gaussian}};
-inline constexpr std::array readouts = {ChoiceWord<Readout>{"separate", Readout::separate},
-                                        ChoiceWord<Readout>{"difference", Readout::difference}};
-inline constexpr std::array depth_errors = {
-    ChoiceWord<DepthErrorKind>{name_of(DepthErrorKind::linear), DepthErrorKind::linear},
-    ChoiceWord<DepthErrorKind>{name_of(DepthErrorKind::circular), DepthErrorKind::circular}};
+inline constexpr EnumWords<NoiseModel, 2> noise_models("NoiseModel", "noise", "poisson",
+                                                       "gaussian");
+inline constexpr EnumWords<Readout, 2> readouts("Readout", "readout", "separate", "difference");
 
 /// The member that a reader may change and a writer only sees.
 template <typename Table, typename Value>
@@ -37,7 +26,7 @@ template <typename Table>
 void visit_impulse_response(Table& table, Field<Table, ImpulseResponse>& response) {
   using Kind = ImpulseResponse::Kind;
   table.required("kind", "\"hann\"");
-  table.choice("kind", response.kind, Choices<Kind>(kinds));
+  table.choice("kind", response.kind, words_by_name<Kind, 5>("ImpulseResponse::Kind", "kind"));
   const Kind kind = response.kind;
   if (kind == Kind::hann)
     table.required("f_max_hz", "150e6").value("f_max_hz", response.f_max_hz);
@@ -78,7 +67,7 @@ void visit_sensor(Table& table, Field<Table, Sensor>& sensor) {
   table.value("edge_jitter_s", sensor.edge_jitter_s);
   table.table("generator", sensor.generator, visit_generator<Table>);
   table.value("read_noise_e", sensor.read_noise_e);
-  table.choice("noise", sensor.noise, Choices<NoiseModel>(noise_models));
+  table.choice("noise", sensor.noise, noise_models);
   table.value("dark_current_e_per_s", sensor.dark_current_e_per_s);
   table.value("modulation_contrast", sensor.modulation_contrast);
   table.value("tap_mismatch", sensor.tap_mismatch);
@@ -88,7 +77,7 @@ void visit_sensor(Table& table, Field<Table, Sensor>& sensor) {
   table.value("black_level_dn", sensor.black_level_dn);
   table.value("shortest_pulse_s", sensor.shortest_pulse_s);
   table.value("drain", sensor.drain);
-  table.choice("readout", sensor.readout, Choices<Readout>(readouts));
+  table.choice("readout", sensor.readout, readouts);
 }
 
 template <typename Table>
@@ -110,7 +99,7 @@ template <typename Table>
 void visit_operating(Table& table, Field<Table, OperatingRange>& range) {
   table.value("signal_e_per_s", range.signal_e_per_s);
   table.value("ambient_e_per_s", range.ambient_e_per_s);
-  table.choice("error", range.error, Choices<DepthErrorKind>(depth_errors));
+  table.choice("error", range.error, words_by_name<DepthErrorKind, 2>("DepthErrorKind", "error"));
   table.number_or_word("albedo", range.albedo, "uniform", range.uniform_albedo);
   table.table("multipath", range.multipath, visit_operating_multipath<Table>);
 }

@@ -20,8 +20,8 @@ class KeyCollector {
   void value(std::string_view key, Value& /*target*/) {
     add(key);
   }
-  template <typename Enum>
-  void choice(std::string_view key, Enum& /*target*/, Choices<Enum> /*choices*/) {
+  template <typename Enum, typename Words>
+  void choice(std::string_view key, Enum& /*target*/, const Words& /*words*/) {
     add(key);
   }
   void number_or_list(std::string_view key, double& /*number*/, std::vector<double>& /*list*/) {

@@ -82,6 +82,37 @@ Json robustness_json(const RobustnessReport& report) {
   return entry;
 }
 
+Json generators_json(const std::vector<GeneratorReport>& reports) {
+  Json list = Json::array();
+  for (const GeneratorReport& report : reports) list.push_back(fields_json(report));
+  return list;
+}
+
+Json generator_loss_json(const GeneratorLoss& loss, DepthErrorKind kind) {
+  const auto total = [&](const DepthErrorReport& report) -> Json {
+    const Estimate& error_m = report.of(kind).geometric_mean_m;
+    return {{"value_m", error_m.value}, {"se_m", error_m.standard_error}};
+  };
+  Json json = {{"error", name_of(kind)},
+               {"trials", loss.nominal.trials},
+               {"seed", loss.nominal.seed},
+               {"nominal", total(loss.nominal)},
+               {"actual", total(loss.actual)},
+               {"uncalibrated", total(loss.uncalibrated)},
+               {"actual_over_nominal", loss.ratio(kind)},
+               {"uncalibrated_over_nominal", loss.uncalibrated_ratio(kind)},
+               {"correlation_change", loss.correlation_change}};
+  const auto error = kind == DepthErrorKind::linear ? &PointDepthError::linear_mde_m
+                                                    : &PointDepthError::circular_mde_m;
+  for (std::size_t i = 0; i < loss.nominal.points.size(); ++i)
+    json["points"].push_back({{"signal_e_per_s", loss.nominal.points[i].point.signal_e_per_s},
+                              {"ambient_e_per_s", loss.nominal.points[i].point.ambient_e_per_s},
+                              {"nominal_m", (loss.nominal.points[i].*error).value},
+                              {"actual_m", (loss.actual.points[i].*error).value},
+                              {"uncalibrated_m", (loss.uncalibrated.points[i].*error).value}});
+  return json;
+}
+
 Json measurements_json(const Candidate& candidate) {
   Json list = Json::array();
   for (const MeasurementReport& m : candidate.per_measurement) {
@@ -135,6 +166,10 @@ Json design_json(const Camera& camera, const DesignResult& result, const DesignO
   document["left_out"] = result.left_out;
   document["explanation"] = result.explanation;
   return document;
+}
+
+std::string generators_document(const std::vector<GeneratorReport>& reports) {
+  return generators_json(reports).dump();
 }
 
 std::string evaluation_document(const Camera& camera, std::span<const EvaluatedCode> codes,

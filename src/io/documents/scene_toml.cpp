@@ -54,9 +54,8 @@ Eigen::Matrix3d read_rotation(TableReader& table) {
 
 void read_texture_fields(TableReader& table, Texture& texture) {
   using Pattern = Texture::Pattern;
-  constexpr std::array<ChoiceWord<Pattern>, 3> patterns = {{{"uniform", Pattern::uniform},
-                                                            {"checker", Pattern::checker},
-                                                            {"stripes", Pattern::stripes}}};
+  constexpr EnumWords<Pattern, 3> patterns("Texture::Pattern", "pattern", "uniform", "checker",
+                                           "stripes");
   const bool is_image = table.contains("image");
   if (is_image) {
     table.refuse({"pattern", "other_albedo"}, "a pattern, not with image");
@@ -70,8 +69,7 @@ void read_texture_fields(TableReader& table, Texture& texture) {
     });
   } else {
     table.refuse({"linear"}, "image");
-    table.required("pattern", "\"checker\"")
-        .choice("pattern", texture.pattern, Choices<Pattern>(patterns));
+    table.required("pattern", "\"checker\"").choice("pattern", texture.pattern, patterns);
   }
   read_share(table, "albedo", texture.albedo);
   if (texture.pattern == Pattern::uniform) {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-
 #include "io/shared/read_file.hpp"
 #include "io/text/shared/table_reader.hpp"
 #include "tofsmith/core/error.hpp"
@@ -11,21 +9,13 @@ namespace tofsmith {
 
 namespace {
 
-constexpr std::array number_words = {ChoiceWord<RawNumbers>{"integer", RawNumbers::integers},
-                                     ChoiceWord<RawNumbers>{"float", RawNumbers::floats}};
-constexpr std::array packings = {ChoiceWord<RawPacking>{"plain", RawPacking::plain},
-                                 ChoiceWord<RawPacking>{"mipi", RawPacking::mipi},
-                                 ChoiceWord<RawPacking>{"lsb_first", RawPacking::lsb_first},
-                                 ChoiceWord<RawPacking>{"msb_first", RawPacking::msb_first}};
-constexpr std::array layouts = {ChoiceWord<RawOrder>{"planar", RawOrder::planar},
-                                ChoiceWord<RawOrder>{"interleaved", RawOrder::interleaved},
-                                ChoiceWord<RawOrder>{"by_rows", RawOrder::by_rows}};
-constexpr std::array alignments = {ChoiceWord<RawAlignment>{"low", RawAlignment::low},
-                                   ChoiceWord<RawAlignment>{"high", RawAlignment::high}};
-constexpr std::array byte_orders = {ChoiceWord<bool>{"little", false},
-                                    ChoiceWord<bool>{"big", true}};
-constexpr std::array tap_words = {ChoiceWord<bool>{"keep", false},
-                                  ChoiceWord<bool>{"subtract", true}};
+constexpr EnumWords<RawNumbers, 2> numbers("RawNumbers", "numbers", "integer", "float");
+constexpr EnumWords<RawPacking, 4> packings("RawPacking", "packing", "plain", "mipi", "lsb_first",
+                                            "msb_first");
+constexpr EnumWords<RawOrder, 3> layouts("RawOrder", "layout", "planar", "interleaved", "by_rows");
+constexpr EnumWords<RawAlignment, 2> alignments("RawAlignment", "align", "low", "high");
+constexpr EnumWords<bool, 2> byte_orders("big_endian", "byte_order", "little", "big");
+constexpr EnumWords<bool, 2> taps("subtract_taps", "taps", "keep", "subtract");
 
 void read_order(TableReader& table, std::vector<int>& order) {
   std::vector<double> numbers;
@@ -46,20 +36,20 @@ void read_fields(TableReader& table, RawFormat& format) {
   table.value("frame_header_bytes", format.frame_header_bytes);
   table.value("image_header_bytes", format.image_header_bytes);
   table.value("row_bytes", format.row_bytes);
-  table.choice("numbers", format.numbers, Choices<RawNumbers>(number_words));
+  table.choice("numbers", format.numbers, numbers);
   table.required("bits", "12").value("bits", format.bits);
   table.value("container_bits", format.container_bits);
-  table.choice("packing", format.packing, Choices<RawPacking>(packings));
-  table.choice("align", format.align, Choices<RawAlignment>(alignments));
-  table.choice("byte_order", format.big_endian, Choices<bool>(byte_orders));
+  table.choice("packing", format.packing, packings);
+  table.choice("align", format.align, alignments);
+  table.choice("byte_order", format.big_endian, byte_orders);
   table.value("signed", format.is_signed);
   table.value("rows_start_bytes", format.rows_start_bytes);
-  table.choice("layout", format.layout, Choices<RawOrder>(layouts));
+  table.choice("layout", format.layout, layouts);
   read_order(table, format.order);
   table.value("flip_rows", format.flip_rows);
   table.value("flip_columns", format.flip_columns);
   table.value("black_level", format.black_level);
-  table.choice("taps", format.subtract_taps, Choices<bool>(tap_words));
+  table.choice("taps", format.subtract_taps, taps);
 }
 
 }  // namespace

@@ -63,11 +63,12 @@ RawFrames checked_raw_sizes(NpyType type, const NpyShape& shape, const RawReadOp
     throw IoError(file, fmt::format("found an array of shape {}; expected {}",
                                     describe_shape(shape), shapes_of(options.layout)));
   const Axes axes = axes_of(shape, options.layout);
-  constexpr std::size_t most = std::numeric_limits<int>::max();
-  if (axes.frames < 1 || axes.frames > most || axes.measurements < 1 || axes.measurements > most)
+  constexpr std::size_t max_axis = std::numeric_limits<int>::max();
+  if (axes.frames < 1 || axes.frames > max_axis || axes.measurements < 1 ||
+      axes.measurements > max_axis)
     throw IoError(file, fmt::format("found an array of shape {}; expected at least one frame and "
                                     "one measurement, and at most {}",
-                                    describe_shape(shape), most));
+                                    describe_shape(shape), max_axis));
   check_measurements(shape, options, file);
   check_image_size(file, axes.height, axes.width);
   RawFrames sizes;

@@ -115,12 +115,13 @@ class RowSorter {
 
 void check_size(const PlyHeader& header, const ByteCursor& cursor) {
   // A number and what parts it from the next take two characters.
-  const std::size_t least = header.ascii ? 2 * header.properties.size() : header.row_bytes();
+  const std::size_t min_vertex_bytes =
+      header.ascii ? 2 * header.properties.size() : header.row_bytes();
   const std::size_t there = cursor.rest().size();
-  const bool fits = least > 0 && header.vertices <= there / least;
-  if (!fits || (!header.ascii && header.vertices * least != there))
+  const bool fits = min_vertex_bytes > 0 && header.vertices <= there / min_vertex_bytes;
+  if (!fits || (!header.ascii && header.vertices * min_vertex_bytes != there))
     cursor.fail(fmt::format("found {} bytes of data; expected {} vertices of {}{} bytes", there,
-                            header.vertices, header.ascii ? "at least " : "", least));
+                            header.vertices, header.ascii ? "at least " : "", min_vertex_bytes));
 }
 
 bool is_word(const std::string& name) {

@@ -32,25 +32,20 @@ bool finds_multipath(const AnyDecoder& decoder) {
 /// Everything of a request that needs no file. @throws std::invalid_argument
 void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
   const std::filesystem::path& output = request.output;
-  if (!(request.memory_mb > 0.0))
-    reject("memory_mb", fmt::format("{}", request.memory_mb), "must be > 0");
-  if (request.frame && *request.frame < 0)
-    throw std::invalid_argument(fmt::format("frame {}: must be >= 0", *request.frame));
-  if (request.stack && output.extension() != ".npy")
-    throw std::invalid_argument(
-        fmt::format("stack: found the output {}; expected a .npy file", output.string()));
-  if (!finds_multipath(decoder))
-    for (const DecodedPlane plane : request.outputs)
-      if (is_multipath_plane(plane))
-        throw std::invalid_argument(fmt::format(
-            "outputs {}: found the method {}; expected two-return or tail, which alone fill it",
-            name_of(plane), name_of(all_decode_methods[decoder.index()])));
-  const auto is_depth = [](DecodedPlane plane) { return plane == DecodedPlane::depth; };
-  if (holds_depth_only(output) && !request.stack && !std::ranges::all_of(request.outputs, is_depth))
-    throw std::invalid_argument(
-        fmt::format("outputs: a {} file holds depth only; .npz, .exr and .ply hold other planes, "
-                    "and .npy does with --stack",
-                    output.extension().string()));
+  require(request.memory_mb > 0.0, "memory_mb", request.memory_mb, "must be > 0");
+  require(request.frame.value_or(0) >= 0, "frame", request.frame.value_or(0), "must be >= 0");
+  require(!request.stack || output.extension() == ".npy", "stack", "true",
+          fmt::format("goes with a .npy file; the output is {}", output.string()));
+  for (const DecodedPlane plane : request.outputs) {
+    require(!is_multipath_plane(plane) || finds_multipath(decoder), "outputs", name_of(plane),
+            fmt::format("goes with two-return or tail, which alone fill it; the method is {}",
+                        name_of(all_decode_methods[decoder.index()])));
+    require(plane == DecodedPlane::depth || !holds_depth_only(output) || request.stack, "outputs",
+            name_of(plane),
+            fmt::format("a {} file holds depth only; .npz, .exr and .ply hold other planes, and "
+                        ".npy does with --stack",
+                        output.extension().string()));
+  }
 }
 
 /// The planes to write; every plane once.
@@ -75,10 +70,9 @@ RawFramesReader open_recording(const DecodeRequest& request, const DecodingTable
 
 DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
                        const RawFramesReader& reader) {
-  if (request.frame && *request.frame >= reader.frames())
-    throw std::invalid_argument(fmt::format("frame {}: {} holds {} frame{}, counted from 0",
-                                            *request.frame, request.raw.string(), reader.frames(),
-                                            reader.frames() == 1 ? "" : "s"));
+  require(!request.frame || *request.frame < reader.frames(), "frame", request.frame.value_or(0),
+          fmt::format("{} holds {} frame{}, counted from 0", request.raw.string(), reader.frames(),
+                      reader.frames() == 1 ? "" : "s"));
   const PinholeView view = view_of(request.lens, reader.width(), reader.height());
   if (request.lens) view.validate();
   return {.path = request.output,

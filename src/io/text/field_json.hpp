@@ -17,7 +17,8 @@ namespace tofsmith {
 /// An estimate as an object of its own.
 nlohmann::ordered_json estimate_json(const Estimate& estimate);
 
-/// Adds a field to an object: an estimate "x_m" as that and "x_se_m", its standard error.
+/// Adds a field to an object: an estimate "x_m" as that and "x_se_m", its standard error; a plain
+/// value that is optional only if it is there.
 template <typename Value>
 void write_field(nlohmann::ordered_json& object, const Field<Value>& field);
 
@@ -150,7 +151,10 @@ void write_field(nlohmann::ordered_json& object, const Field<Value>& field) {
     else
       object[name] = fields_json(field.value);
   } else if constexpr (is_optional<Type>) {
-    object[name] = field.value ? fields_json(*field.value) : nlohmann::ordered_json();
+    if constexpr (HasFields<typename Type::value_type>)
+      object[name] = field.value ? fields_json(*field.value) : nlohmann::ordered_json();
+    else if (field.value)
+      object[name] = *field.value;
   } else if constexpr (is_list<Type>) {
     object[name] = nlohmann::ordered_json::array();
     for (const auto& item : field.value)

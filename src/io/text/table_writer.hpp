@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/text/choices.hpp"
+#include "core/shared/enum_words.hpp"
 
 namespace tofsmith {
 
@@ -27,10 +27,9 @@ class TableWriter {
   void value(std::string_view key, const std::optional<Value>& optional) {
     if (optional) value(key, *optional);
   }
-  template <typename Enum>
-  void choice(std::string_view key, Enum chosen, Choices<Enum> choices) {
-    for (const auto& [word, meaning] : choices)
-      if (meaning == chosen) value(key, std::string(word));
+  template <typename Enum, std::size_t Count>
+  void choice(std::string_view key, Enum chosen, const EnumWords<Enum, Count>& words) {
+    value(key, std::string(words.of(chosen)));
   }
   void number_or_list(std::string_view key, double number, const std::vector<double>& list) {
     list.empty() ? value(key, number) : value(key, list);

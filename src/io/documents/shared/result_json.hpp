@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "io/text/json_reader.hpp"
+#include "tofsmith/camera/generator_report.hpp"
 #include "tofsmith/design/design.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
@@ -24,6 +25,11 @@ nlohmann::ordered_json robustness_json(const RobustnessReport& report);
 
 /// @throws IoError where the text is no kind's name
 DepthErrorKind parse_word(const JsonReader& json, DepthErrorKind);
+
+/// What generators make of each waveform.
+nlohmann::ordered_json generators_json(const std::vector<GeneratorReport>& reports);
+/// What that costs in depth error of a kind.
+nlohmann::ordered_json generator_loss_json(const GeneratorLoss& loss, DepthErrorKind kind);
 
 /// The measurements of a designed code and, where it has targets, how they compare with them.
 nlohmann::ordered_json measurements_json(const Candidate& candidate);

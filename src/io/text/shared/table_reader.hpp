@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/text/choices.hpp"
+#include "core/shared/enum_words.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 
 namespace tofsmith {
@@ -93,11 +93,9 @@ class TableReader {
   }
 
   /// One word of a fixed set.
-  template <typename Enum>
-  void choice(std::string_view key, Enum& target, Choices<Enum> choices) {
-    std::vector<std::string_view> words;
-    for (const auto& entry : choices) words.push_back(entry.first);
-    if (const auto index = index_of_word(key, words)) target = choices[*index].second;
+  template <typename Enum, std::size_t Count>
+  void choice(std::string_view key, Enum& target, const EnumWords<Enum, Count>& words) {
+    if (const auto index = index_of_word(key, words.all())) target = static_cast<Enum>(*index);
   }
 
   /// A number, or a list of them.

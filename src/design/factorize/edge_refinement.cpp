@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "design/chips/edge_refinement.hpp"
+#include "design/factorize/edge_refinement.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,21 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/instrument/upload.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/instrument/scpi_session.hpp"
+#include "tofsmith/waveforms/waveform_export.hpp"
 
 namespace tofsmith {
 
 namespace {
-
-constexpr std::string_view known_families =
-    "Siglent SDG1000X, SDG2000X, SDG6000X; Keysight 33500, 33600; Tektronix AFG3000";
 
 GeneratorModel siglent(std::string name, double rate_hz, double max_hz, double true_arb_hz,
                        int points) {
@@ -31,13 +26,14 @@ GeneratorModel siglent(std::string name, double rate_hz, double max_hz, double t
           .max_vpp = 10.0};
 }
 
-GeneratorModel keysight(std::string name, int channels, double rate_hz, int least, int points) {
+GeneratorModel keysight(std::string name, int channels, double rate_hz, int min_points,
+                        int points) {
   return {.name = std::move(name),
           .vendor = "Keysight Technologies",
           .family = GeneratorFamily::keysight_trueform,
           .channels = channels,
           .sample_rate_hz = rate_hz,
-          .min_points = least,
+          .min_points = min_points,
           .max_points = points,
           .min_vpp = 0.001,
           .max_vpp = 10.0};
@@ -95,19 +91,6 @@ std::string upper(std::string_view text) {
   return result;
 }
 
-/// The letter behind the number is a generation: 33522A and 33522B, AFG3022, AFG3022B, AFG3022C.
-const GeneratorModel* found_model(std::string_view name) {
-  const std::string wanted = upper(name);
-  for (const GeneratorModel& model : generator_models()) {
-    const bool same = wanted == model.name;
-    const bool generation =
-        model.family != GeneratorFamily::siglent_x && wanted.size() == model.name.size() + 1 &&
-        wanted.starts_with(model.name) && wanted.back() >= 'A' && wanted.back() <= 'C';
-    if (same || generation) return &model;
-  }
-  return nullptr;
-}
-
 }  // namespace
 
 std::string GeneratorModel::format() const {
@@ -127,13 +110,26 @@ const std::vector<GeneratorModel>& generator_models() {
   return models;
 }
 
+const GeneratorModel* find_generator_model(std::string_view name) {
+  const std::string wanted = upper(name);
+  for (const GeneratorModel& model : generator_models()) {
+    const bool same = wanted == model.name;
+    // The letter behind the number: 33522A and 33522B, AFG3022, AFG3022B, AFG3022C.
+    const bool generation =
+        model.family != GeneratorFamily::siglent_x && wanted.size() == model.name.size() + 1 &&
+        wanted.starts_with(model.name) && wanted.back() >= 'A' && wanted.back() <= 'C';
+    if (same || generation) return &model;
+  }
+  return nullptr;
+}
+
 const GeneratorModel& generator_model(std::string_view name) {
-  if (const GeneratorModel* model = found_model(name)) return *model;
+  if (const GeneratorModel* model = find_generator_model(name)) return *model;
   std::vector<std::string> names;
   for (const GeneratorModel& model : generator_models()) names.push_back(model.name);
   const std::string near = nearest_word(upper(name), names);
   reject("model", fmt::format("'{}'", name),
-         fmt::format("must be one of {}{}", known_families,
+         fmt::format("must be one of {}{}", known_generators,
                      near.empty() ? "" : fmt::format("; did you mean {}?", near)));
 }
 
@@ -144,37 +140,6 @@ double fastest_sample_rate_hz(std::string_view format) {
     if (model.format() == format) of_format_hz = std::max(of_format_hz, model.sample_rate_hz);
   }
   return of_format_hz > 0.0 ? of_format_hz : of_all_hz;
-}
-
-InstrumentIdentity parse_identity(std::string_view answer, std::string_view place) {
-  if (answer.starts_with("*IDN ")) answer.remove_prefix(5);
-  std::vector<std::string> fields(1);
-  for (const char c : answer) {
-    if (c == ',')
-      fields.emplace_back();
-    else if (c != ' ' || !fields.back().empty())
-      fields.back() += c;
-  }
-  const bool text = std::ranges::all_of(answer, [](char c) { return c >= ' ' && c <= '~'; });
-  if (fields.size() < 4 || fields[0].empty() || fields[1].empty() || !text)
-    throw IoError(place, fmt::format("answered *IDN? with '{}'; expected vendor, model, serial "
-                                     "number and firmware: is this an instrument?",
-                                     printable(answer)));
-  return {fields[0], fields[1], fields[2], fields[3]};
-}
-
-const GeneratorModel& identified_model(const InstrumentIdentity& identity, std::string_view place) {
-  const GeneratorModel* const model = found_model(identity.model);
-  const std::string vendor = upper(identity.vendor);
-  const bool known_vendor =
-      model != nullptr &&
-      (vendor.starts_with(upper(model->vendor).substr(0, 7)) ||
-       (model->family == GeneratorFamily::keysight_trueform && vendor.starts_with("AGILENT")));
-  if (!known_vendor)
-    throw IoError(place, fmt::format("found the instrument {} of {}; expected one of {} (--model "
-                                     "NAME treats a relative as one of them)",
-                                     identity.model, identity.vendor, known_families));
-  return *model;
 }
 
 }  // namespace tofsmith

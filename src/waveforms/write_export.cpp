@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/waveforms/write_export.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "io/documents/shared/result_json.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Where nobody said how fast the hardware is: files that no generator known here could play.
+std::vector<std::string> rate_notes(const WaveformExport& exported, const Camera& camera,
+                                    const ExportOptions& options) {
+  const double max_hz = fastest_sample_rate_hz(exported.format.name);
+  const double rate_hz = std::max(camera.light.generator ? 0.0 : exported.light.sample_rate_hz,
+                                  camera.sensor.generator ? 0.0 : exported.sensor.sample_rate_hz);
+  if (options.sample_rate_hz || rate_hz <= max_hz) return {};
+  return {fmt::format(
+      "the sample rate is {} MHz, and the fastest generator known here that could play these files "
+      "has {} MHz; say how fast yours is with --rate, such as --rate {:g}",
+      plain_number(1e-6 * rate_hz, 4), plain_number(1e-6 * max_hz, 4), max_hz)};
+}
+
+/// A file, and what goes into it.
+using Product = std::pair<std::filesystem::path, std::span<const std::byte>>;
+
+std::span<const std::byte> bytes_of(std::string_view text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
+}
+
+void write_all(const std::vector<Product>& products, OutputPolicy policy) {
+  for (const auto& [path, content] : products) const AtomicFile probe(path, policy);
+  for (const auto& [path, content] : products) write_file_atomically(path, content, policy);
+}
+
+}  // namespace
+
+bool ExportRequest::is_one_file() const {
+  const WaveformFormat& format = waveform_format(options.format);
+  if (std::filesystem::is_directory(output) || !output.has_extension()) return false;
+  require(output.extension() == format.extension, "output", output.string(),
+          fmt::format("expected {} of {}, or a directory", format.extension, format.name));
+  require(format.content != FormatContent::one_waveform, "output", output.string(),
+          fmt::format("{} has one waveform per file; expected a directory", format.name));
+  return true;
+}
+
+ExportedCode write_export(const CodeSet& code, const Camera& camera, const ExportRequest& request,
+                          const Progress& progress) {
+  const bool one_file = request.is_one_file();
+  const CodeSet resampled = code.resampled(camera.samples);
+  const Camera actual = exporting_camera(resampled, camera, request.options);
+  ExportedCode exported{.code = resampled,
+                        .actual = actual,
+                        .waveforms = export_waveforms(resampled, actual, request.options),
+                        .output = request.output};
+  const std::vector<ExportedFile> files = export_files(exported.waveforms);
+  exported.manifest = export_manifest(exported.waveforms, files);
+  if (request.loss) exported.loss = generator_loss(resampled, actual, *request.loss, progress);
+  exported.generators = generator_report(resampled, actual);
+  exported.notes = rate_notes(exported.waveforms, camera, request.options);
+
+  std::string page;
+  std::vector<Product> products;
+  if (one_file) {
+    products = {{request.output, files.front().bytes}};
+  } else {
+    if (request.page) page = request.page(exported);
+    make_output_directory(request.output);
+    for (const ExportedFile& file : files)
+      products.emplace_back(request.output / file.name, file.bytes);
+    products.emplace_back(request.output / "manifest.json", bytes_of(exported.manifest));
+    if (request.page) products.emplace_back(request.output / "report.html", bytes_of(page));
+  }
+  write_all(products, request.policy);
+  for (const auto& [path, content] : products) exported.files.push_back(path);
+  return exported;
+}
+
+std::string export_document(const ExportedCode& exported) {
+  using Json = nlohmann::ordered_json;
+  Json document = {{"output", exported.output.string()},
+                   {"manifest", Json::parse(exported.manifest)},
+                   {"generators", generators_json(exported.generators)}};
+  if (exported.loss)
+    document["depth_error"] = generator_loss_json(*exported.loss, exported.actual.operating.error);
+  document["notes"] = exported.notes;
+  return document.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace tofsmith
