@@ -17,8 +17,9 @@
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
+#include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
-#include "tofsmith/simulate/capture.hpp"
+#include "tofsmith/simulate/staged_capture.hpp"
 #include "tofsmith/sweep/training_set.hpp"
 
 namespace tofsmith::apps {
@@ -243,11 +244,71 @@ struct SimulateArguments {
   std::string signal_range, ambient_range, shard;
   CaptureOptions options;
   MultipathLightArguments returns;
-  std::string output, truth;
+  std::string output, truth, truth_near, truth_far;
 };
 
+/// What one scene gave.
+struct CapturedScene {
+  StagedCapture capture;
+  SceneLight light;  ///< of the longer ways
+};
+
+/// An image as it is, shapes through the camera's lens.
+CapturedScene capture_one(const SimulateArguments& arguments, const LoadedScene& scene,
+                          const CodeSet& code, const Camera& camera) {
+  CapturedScene captured;
+  const Progress progress = terminal_progress("capturing");
+  if (!scene.staged) {
+    captured.light = arguments.returns.load(scene, camera);
+    captured.capture.raw =
+        capture(scene.image, captured.light, code, camera, arguments.options, progress);
+    captured.capture.truth = {scene.image};
+    return captured;
+  }
+  StagedSetup setup{
+      .search_of = embree_search(), .light = {}, .ambient_scale = scene.image.ambient_scale};
+  if (arguments.returns.is_used())
+    setup.light = [&](const StagedScene& staged, const SceneImage& rays) {
+      captured.light = arguments.returns.load({scene.name, rays, staged.view, staged}, camera);
+      return captured.light;
+    };
+  captured.capture = capture(*scene.staged, code, camera, arguments.options, setup, progress);
+  return captured;
+}
+
+/// Depths that are true, where they were asked for.
+void write_truth(const SimulateArguments& arguments, const CapturedScene& captured,
+                 const Session& session) {
+  const StagedCapture& made = captured.capture;
+  const auto write = [&](const std::string& path, const Image<float>& depth_m) {
+    if (!path.empty()) write_depth(path, depth_m, session.output_policy());
+  };
+  write(arguments.truth, made.truth.front().depth_m);
+  if (!arguments.truth_near.empty()) write(arguments.truth_near, made.near_m.front());
+  if (!arguments.truth_far.empty()) write(arguments.truth_far, made.far_m.front());
+  if (!arguments.returns.truth().empty())
+    write_multipath_truth(arguments.returns.truth(),
+                          multipath_truth(made.truth.front(), captured.light, arguments.options),
+                          captured.light, session.output_policy());
+}
+
+/// What a scene or a lens cannot give.
+void check_truth(const SimulateArguments& arguments, const LoadedScene& scene,
+                 const Camera& camera) {
+  if (!scene.staged && !(arguments.truth_near.empty() && arguments.truth_far.empty()))
+    throw UsageError(
+        fmt::format("--truth-near, --truth-far: found {}, a depth image; expected shapes: a "
+                    "built-in scene, a scene file (.toml) or a mesh",
+                    scene.name));
+  if (!arguments.returns.truth().empty() && camera.blur && camera.blur->pixel_samples > 1)
+    throw UsageError(
+        fmt::format("--truth-multipath: found lens.pixel_samples = {}; expected 1, as it lists the "
+                    "returns of one ray a pixel",
+                    camera.blur->pixel_samples));
+}
+
 void simulate_set(const SimulateArguments& arguments, Session& session) {
-  if (!arguments.truth.empty())
+  if (!(arguments.truth.empty() && arguments.truth_near.empty() && arguments.truth_far.empty()))
     throw UsageError("--truth: the truth of many scenes is always written");
   if (arguments.returns.is_used())
     throw UsageError(
@@ -285,11 +346,14 @@ void check_outputs(const SimulateArguments& arguments, const Session& session) {
   inputs.insert(inputs.end(),
                 {arguments.scene.scene, arguments.scene.image, arguments.scene.ambient_image,
                  arguments.code, arguments.camera.name});
-  for (const std::string& output : {arguments.output, arguments.truth, arguments.returns.truth()})
-    check_not_input(output, inputs);
+  const std::vector<std::string> truths = {arguments.truth, arguments.truth_near,
+                                           arguments.truth_far, arguments.returns.truth()};
+  check_not_input(arguments.output, inputs);
   session.check_output(arguments.output);
-  for (const std::string& truth : {arguments.truth, arguments.returns.truth()})
+  for (const std::string& truth : truths) {
+    check_not_input(truth, inputs);
     if (!truth.empty()) session.check_output(truth);
+  }
 }
 
 void run(SimulateArguments& arguments, Session& session) {
@@ -300,19 +364,14 @@ void run(SimulateArguments& arguments, Session& session) {
   const CodeSet code = load_camera_code(arguments.code, camera, arguments.taps.file_options());
   check_outputs(arguments, session);
   const LoadedScene scene = load_scene(arguments.scene, camera);
-  const SceneLight light = arguments.returns.load(scene, camera);
+  check_truth(arguments, scene, camera);
   const OperatingPoint middle = camera.operating.middle();
   arguments.options.signal_e_per_s = arguments.signal_e_per_s.value_or(middle.signal_e_per_s);
   arguments.options.ambient_e_per_s = arguments.ambient_e_per_s.value_or(middle.ambient_e_per_s);
-  const RawFrames raw =
-      capture(scene.image, light, code, camera, arguments.options, terminal_progress("capturing"));
+  const CapturedScene captured = capture_one(arguments, scene, code, camera);
+  const RawFrames& raw = captured.capture.raw;
   write_raw_frames(arguments.output, raw, session.output_policy());
-  if (!arguments.truth.empty())
-    write_depth(arguments.truth, scene.image.depth_m, session.output_policy());
-  if (!arguments.returns.truth().empty())
-    write_multipath_truth(arguments.returns.truth(),
-                          multipath_truth(scene.image, light, arguments.options), light,
-                          session.output_policy());
+  write_truth(arguments, captured, session);
   const SceneExtent extent = scene_extent(scene.image, camera);
   session.print_json({{"scene", scene.name},
                       {"code", code.name()},
@@ -387,6 +446,10 @@ void add_simulate_command(CLI::App& app, Session& session) {
                    "raw frames (.npy .npz); of many scenes a directory")
       ->required();
   command->add_option("--truth", arguments->truth, "also write the true radial distance");
+  command->add_option("--truth-near", arguments->truth_near,
+                      "also write the nearest distance of which a pixel gets light, of shapes");
+  command->add_option("--truth-far", arguments->truth_far,
+                      "also write the farthest; a lens mixes both: see docs/scenes.md");
   arguments->returns.add_to(*command);
   command->callback([arguments, &session] { run(*arguments, session); });
 }

@@ -180,6 +180,7 @@ void Camera::validate() const {
     require(std::isfinite(lens->cx_px), "lens.cx_px", lens->cx_px, "must be finite");
     require(std::isfinite(lens->cy_px), "lens.cy_px", lens->cy_px, "must be finite");
   }
+  if (blur) blur->validate();
   validate_operating(operating, range_m());
 }
 

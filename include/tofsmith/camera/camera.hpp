@@ -188,6 +188,38 @@ struct Lens {
   friend bool operator==(const Lens&, const Lens&) = default;
 };
 
+/// How the image is blurred before it falls on pixels, and how simulations sample it there. Light
+/// is what is blurred: a pixel's expected electrons are a weighted sum of those of many rays. Field
+/// names are keys of [lens] in the TOML file; the kind's key is `blur`.
+struct LensBlur {
+  enum class Kind {
+    none,      ///< each ray falls where it points
+    gaussian,  ///< on a Gaussian about it
+    disc,      ///< on a disc of confusion, by its distance: a thin lens out of focus
+  };
+  Kind kind = Kind::none;
+  double blur_sigma_px = 0.0;     ///< gaussian: standard deviation in each direction [px], (0, 32]
+  double focal_length_m = 0.0;    ///< disc: f [m], > 0
+  double f_number = 0.0;          ///< disc: focal length over aperture, > 0
+  double focus_distance_m = 0.0;  ///< disc: what is this far is sharp [m], > focal length
+  double pixel_pitch_m = 0.0;     ///< disc: between centres of pixels [m], > 0
+  /// n: scenes of shapes send n x n rays, evenly over a pixel's square, 1 .. 16; 1: one ray
+  /// through its centre. Depth images have one value a pixel, whatever n.
+  int pixel_samples = 1;
+
+  /// Whether nothing changes: every pixel sees the ray through its centre.
+  bool is_sharp() const { return kind == Kind::none && pixel_samples == 1; }
+
+  /// Radius of the disc of confusion of what is `distance_m` away; NaN: infinitely far [px].
+  ///   r = f^2 / (2 k (z_f - f)) |1 - z_f / z| / pitch,  k the f-number, z_f the focus distance
+  double disc_radius_px(double distance_m) const;
+
+  /// @throws std::invalid_argument naming the field as lens.*, value and rule
+  void validate() const;
+
+  friend bool operator==(const LensBlur&, const LensBlur&) = default;
+};
+
 /// Light levels, as photo-electron rates were the sensor fully open.
 struct OperatingPoint {
   double signal_e_per_s = 0.0;   ///< S, of the modulated light
@@ -236,7 +268,8 @@ struct Camera {
   int samples = 240;  ///< N, samples per period, 8 .. 65536
   LightSource light;
   Sensor sensor;
-  std::optional<Lens> lens;
+  std::optional<Lens> lens;      ///< the pinhole: four keys of [lens]
+  std::optional<LensBlur> blur;  ///< the other keys of [lens]; none: sharp
   OperatingRange operating;
 
   /// Depth after which everything repeats [m]: c / (2 f0).
