@@ -21,6 +21,7 @@ struct SceneSource {
   bool linear_image = false;  ///< PNG images hold linear light, not sRGB
   std::optional<int> width, height;  ///< of built-in scenes and meshes; 320 x 240
   std::optional<double> scale_m;     ///< metres per unit of a mesh; 1
+  double time_s = 0.0;               ///< when a scene that moves is looked at
 
   /// Adds all options but the scene itself to a subcommand.
   void add_to(CLI::App& command);

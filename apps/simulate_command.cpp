@@ -12,161 +12,20 @@
 #include "number_checks.hpp"
 #include "scene_source.hpp"
 #include "session.hpp"
+#include "simulate_light.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/mesh_file.hpp"
+#include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 #include "tofsmith/simulate/staged_capture.hpp"
 #include "tofsmith/sweep/training_set.hpp"
 
 namespace tofsmith::apps {
 namespace {
-
-/// Light that comes back by longer ways: `--multipath`, `--tail`, `--multipath-file`,
-/// `--transient`,
-/// `--bounces`, and `--truth-multipath` for what was simulated.
-class MultipathLightArguments {
- public:
-  void add_to(CLI::App& command);
-  /// @throws UsageError for words that do not fit each other; IoError as the files' readers;
-  ///         std::invalid_argument as SceneLight::validate
-  SceneLight load(const LoadedScene& scene, const Camera& camera) const;
-  /// Whether anything was asked for.
-  bool is_used() const {
-    return !multipath_.empty() || tail_m_ || !returns_.empty() || !transient_.empty() ||
-           bounces_ > 0 || !truth_.empty();
-  }
-  /// Files that are read.
-  std::vector<std::string> inputs() const { return {returns_, transient_}; }
-  const std::string& truth() const { return truth_; }
-
- private:
-  MultipathReturns bounced(const LoadedScene& scene, const Camera& camera) const;
-
-  std::vector<std::string> multipath_;
-  std::optional<double> tail_m_;
-  double tail_ratio_ = 0.3;
-  std::string returns_, transient_, truth_;
-  std::optional<double> transient_bin_s_;
-  int bounces_ = 0;
-  BounceOptions bounce_;
-  std::string transient_origin_ = "first", transient_background_ = "none";
-};
-
-/// Of "delta=1.0,ratio=.3", in any order.
-MultipathReturn parse_multipath_return(const std::string& text) {
-  std::optional<float> delay_m, ratio;
-  for (const std::string& part : CLI::detail::split(text, ',')) {
-    const std::size_t equals = part.find('=');
-    const std::string key = part.substr(0, equals);
-    float value = 0.0f;
-    const bool is_number =
-        equals != std::string::npos && CLI::detail::lexical_cast(part.substr(equals + 1), value);
-    if (!is_number || (key != "delta" && key != "ratio"))
-      throw UsageError(fmt::format("--multipath {}: found '{}'; expected delta=METRES,ratio=NUMBER",
-                                   text, part));
-    (key == "delta" ? delay_m : ratio) = value;
-  }
-  if (!delay_m || !ratio)
-    throw UsageError(fmt::format("--multipath {}: found no {}; expected delta=METRES,ratio=NUMBER",
-                                 text, delay_m ? "ratio" : "delta"));
-  return {*delay_m, *ratio};
-}
-
-void MultipathLightArguments::add_to(CLI::App& command) {
-  command.add_option("--multipath", multipath_,
-                     "a return behind every direct one: delta=METRES,ratio=NUMBER; several in "
-                     "order of their delays");
-  CLI::Option* tail =
-      command
-          .add_option("--tail", tail_m_,
-                      "light that trails off behind every direct return: its mean delay [m]")
-          ->check(positive_number());
-  command.add_option("--tail-ratio", tail_ratio_, "all light of the tail over the direct return's")
-      ->check(number_from_0_on())
-      ->capture_default_str()
-      ->needs(tail);
-  command.add_option("--multipath-file", returns_,
-                     "multipath returns of every pixel (.npz: first, distance_m, ratio)");
-  CLI::Option* transient = command.add_option(
-      "--transient", transient_,
-      "light by time, over which each pixel's signal is spread: a histogram (T,) for all pixels "
-      "or (H,W,T) (.npy)");
-  command.add_option("--transient-bin-s", transient_bin_s_, "time that one of its bins takes [s]")
-      ->check(positive_number())
-      ->needs(transient);
-  command
-      .add_option("--transient-origin", transient_origin_,
-                  "what is at the pixel's depth: the histogram's first bin, or its peak")
-      ->check(one_of({"first", "peak"}))
-      ->capture_default_str()
-      ->needs(transient);
-  command
-      .add_option("--transient-background", transient_background_,
-                  "constant counts to take off each histogram first")
-      ->check(one_of({"none", "median"}))
-      ->capture_default_str()
-      ->needs(transient);
-  CLI::Option* bounces =
-      command
-          .add_option("--bounces", bounces_,
-                      "1: also light that one other surface of the scene sends on, gathered by "
-                      "rays; 0: none")
-          ->check(CLI::Range(0, 1))
-          ->capture_default_str();
-  command
-      .add_option("--bounce-rays", bounce_.rays,
-                  "rays by which each pixel gathers it; noise falls a little faster than their "
-                  "square root")
-      ->check(CLI::Range(16, 65536))
-      ->capture_default_str()
-      ->needs(bounces);
-  command.add_option("--truth-multipath", truth_,
-                     "also write the true distance and signal of every return (.npz)");
-}
-
-MultipathReturns MultipathLightArguments::bounced(const LoadedScene& scene,
-                                                  const Camera& camera) const {
-  if (!multipath_.empty() || !returns_.empty() || !transient_.empty())
-    throw UsageError(
-        "--bounces: found beside --multipath, --multipath-file or --transient; expected one of "
-        "them");
-  return bounced_light_of(scene, camera, bounce_, terminal_progress("gathering light"));
-}
-
-SceneLight MultipathLightArguments::load(const LoadedScene& loaded, const Camera& camera) const {
-  const SceneImage& scene = loaded.image;
-  if (!transient_.empty() && (!multipath_.empty() || tail_m_ || !returns_.empty()))
-    throw UsageError(
-        "--transient: found beside --multipath, --tail or --multipath-file; expected alone, as it "
-        "holds all light of a pixel");
-  if (!returns_.empty() && !multipath_.empty())
-    throw UsageError("--multipath-file: found beside --multipath; expected one of them");
-  if (!transient_.empty() && !transient_bin_s_)
-    throw UsageError(
-        "--transient: found no --transient-bin-s; expected the time of one bin in seconds");
-  SceneLight light;
-  if (!multipath_.empty()) {
-    std::vector<MultipathReturn> behind;
-    for (const std::string& text : multipath_) behind.push_back(parse_multipath_return(text));
-    light.returns = behind_every_pixel(scene, behind);
-  }
-  if (!returns_.empty())
-    light.returns = read_multipath_returns(returns_, scene.height(), scene.width());
-  if (bounces_ > 0) light.returns = bounced(loaded, camera);
-  if (tail_m_) light.tail = ExponentialTail{*tail_m_, tail_ratio_};
-  if (!transient_.empty())
-    light.transients = read_transients(
-        transient_, scene.height(), scene.width(),
-        {.bin_s = *transient_bin_s_,
-         .origin = transient_origin_ == "peak" ? TransientOrigin::peak : TransientOrigin::first,
-         .subtract_median = transient_background_ == "median"});
-  light.validate(scene, camera);
-  return light;
-}
 
 /// What `simulate` makes of many scenes.
 struct TrainingSetRequest {
@@ -251,6 +110,7 @@ struct SimulateArguments {
 struct CapturedScene {
   StagedCapture capture;
   SceneLight light;  ///< of the longer ways
+  bool is_still = true;
 };
 
 /// An image as it is, shapes through the camera's lens.
@@ -272,6 +132,7 @@ CapturedScene capture_one(const SimulateArguments& arguments, const LoadedScene&
       captured.light = arguments.returns.load({scene.name, rays, staged.view, staged}, camera);
       return captured.light;
     };
+  captured.is_still = scene.staged->is_still();
   captured.capture = capture(*scene.staged, code, camera, arguments.options, setup, progress);
   return captured;
 }
@@ -280,12 +141,25 @@ CapturedScene capture_one(const SimulateArguments& arguments, const LoadedScene&
 void write_truth(const SimulateArguments& arguments, const CapturedScene& captured,
                  const Session& session) {
   const StagedCapture& made = captured.capture;
-  const auto write = [&](const std::string& path, const Image<float>& depth_m) {
-    if (!path.empty()) write_depth(path, depth_m, session.output_policy());
+  const auto write = [&](const std::string& path, const auto& frames, const auto& depth_of) {
+    if (path.empty()) return;
+    if (frames.size() == 1 && captured.is_still)
+      return write_depth(path, depth_of(frames.front()), session.output_policy());
+    const Image<float>& first = depth_of(frames.front());
+    std::vector<float> all;
+    for (const auto& frame : frames)
+      all.insert(all.end(), depth_of(frame).pixels.begin(), depth_of(frame).pixels.end());
+    write_npy(path,
+              NpyArray::of<float>({frames.size(), static_cast<std::size_t>(first.height),
+                                   static_cast<std::size_t>(first.width)},
+                                  all),
+              session.output_policy());
   };
-  write(arguments.truth, made.truth.front().depth_m);
-  if (!arguments.truth_near.empty()) write(arguments.truth_near, made.near_m.front());
-  if (!arguments.truth_far.empty()) write(arguments.truth_far, made.far_m.front());
+  const auto own = [](const Image<float>& depth_m) -> const Image<float>& { return depth_m; };
+  write(arguments.truth, made.truth,
+        [](const SceneImage& seen) -> const Image<float>& { return seen.depth_m; });
+  write(arguments.truth_near, made.near_m, own);
+  write(arguments.truth_far, made.far_m, own);
   if (!arguments.returns.truth().empty())
     write_multipath_truth(arguments.returns.truth(),
                           multipath_truth(made.truth.front(), captured.light, arguments.options),
@@ -300,6 +174,18 @@ void check_truth(const SimulateArguments& arguments, const LoadedScene& scene,
         fmt::format("--truth-near, --truth-far: found {}, a depth image; expected shapes: a "
                     "built-in scene, a scene file (.toml) or a mesh",
                     scene.name));
+  if (scene.staged && !scene.staged->is_still()) {
+    for (const auto& [option, file] :
+         {std::pair("--truth", arguments.truth), std::pair("--truth-near", arguments.truth_near),
+          std::pair("--truth-far", arguments.truth_far)})
+      if (!file.empty() && std::filesystem::path(file).extension() != ".npy")
+        throw UsageError(fmt::format(
+            "{} {}: {} moves; expected a file .npy, for a depth of every frame (F, H, W)", option,
+            file, scene.name));
+    if (!arguments.returns.truth().empty())
+      throw UsageError(fmt::format(
+          "--truth-multipath: {} moves; expected a scene that stands still", scene.name));
+  }
   if (!arguments.returns.truth().empty() && camera.blur && camera.blur->pixel_samples > 1)
     throw UsageError(
         fmt::format("--truth-multipath: found lens.pixel_samples = {}; expected 1, as it lists the "
@@ -436,7 +322,9 @@ void add_simulate_command(CLI::App& app, Session& session) {
       ->capture_default_str();
   command->add_flag("!--no-falloff", arguments->options.falloff,
                     "signal depends on albedo only, not on distance and angle");
-  command->add_option("--frames", arguments->options.frames, "independent frames")
+  command
+      ->add_option("--frames", arguments->options.frames,
+                   "frames one after another, each with noise of its own")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   command->add_option("--seed", arguments->options.seed, "seed of all noise")

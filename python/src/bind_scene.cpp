@@ -15,7 +15,8 @@ namespace tofsmith::python {
 namespace {
 
 /// The planes of a scene and its lens, by name.
-py::dict seen(const StagedScene& staged) {
+py::dict seen(const StagedScene& scene, double time_s) {
+  const StagedScene staged = scene.at(time_s);
   SceneImage image;
   {
     const py::gil_scoped_release release;
@@ -47,10 +48,12 @@ py::array_t<float> convert(const py::object& depth_m, const std::vector<double>&
 
 void bind_scene(py::module_& module) {
   module.def("built_in_scene_names", &built_in_scene_names);
-  module.def("built_in_scene", [](const std::string& name, int width, int height) {
-    return seen(built_in_scene(name, width, height));
+  module.def("built_in_scene", [](const std::string& name, int width, int height, double time_s) {
+    return seen(built_in_scene(name, width, height), time_s);
   });
-  module.def("read_scene", [](const std::string& path) { return seen(read_scene_toml(path)); });
+  module.def("read_scene", [](const std::string& path, double time_s) {
+    return seen(read_scene_toml(path), time_s);
+  });
   module.def("radial_from_z", [](const py::object& z_m, const std::vector<double>& lens) {
     return convert(z_m, lens, &radial_from_z);
   });

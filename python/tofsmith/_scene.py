@@ -54,8 +54,10 @@ def built_in_scene_names() -> list[str]:
     return _tofsmith.built_in_scene_names()
 
 
-def built_in_scene(name: str, width: int = 320, height: int = 240) -> Scene:
-    """A scene that needs no files, ray cast.
+def built_in_scene(
+    name: str, width: int = 320, height: int = 240, *, time_s: float = 0.0
+) -> Scene:
+    """A scene that needs no files, ray cast; of one that moves, as it is then.
 
     Raises
     ------
@@ -67,13 +69,15 @@ def built_in_scene(name: str, width: int = 320, height: int = 240) -> Scene:
             _check.text(name, "name"),
             _check.whole(width, "width", 1, 16384),
             _check.whole(height, "height", 1, 16384),
+            _check.number(time_s, "time_s"),
         )
     )
 
 
-def read_scene(path: Path) -> Scene:
-    """A scene from a TOML file of shapes and a pinhole, ray cast; OSError names the place."""
-    return _scene(_tofsmith.read_scene(_check.path(path)))
+def read_scene(path: Path, *, time_s: float = 0.0) -> Scene:
+    """A scene from a TOML file of shapes and a pinhole, ray cast; of one that moves, as it is then.
+    OSError names the place."""
+    return _scene(_tofsmith.read_scene(_check.path(path), _check.number(time_s, "time_s")))
 
 
 def _scene(seen: dict[str, Any]) -> Scene:
@@ -145,7 +149,8 @@ def capture(
     Parameters
     ----------
     scene : Scene, name of a built-in scene, .toml file, or radial distance [m] (H, W)
-        Depth beyond the unambiguous range wraps.
+        Depth beyond the unambiguous range wraps. Names and files go through the camera's lens and
+        may move, as capture_staged() says; planes have one ray a pixel, and stand still.
     code : CodeSet, name of a family or file
     camera : Camera or its name
     signal_e_per_s : float, optional
@@ -175,9 +180,6 @@ def capture(
     ndarray of float32, shape (H, W, K), or (F, H, W, K) if `frames` is given
         Electrons, or counts if the sensor has an ADC.
     """
-    camera = camera_of(camera)
-    seen = scene_named(scene)
-    planes = scene_planes(seen)
     options = {
         "signal_e_per_s": signal_e_per_s,
         "ambient_e_per_s": ambient_e_per_s,
@@ -186,16 +188,107 @@ def capture(
         "seed": seed,
         "frames": frames,
     }
-    handle = code_of(code, camera)._handle
-    callback = _check.progress(progress)
-    light = light_dict(returns, tail, transients, seen.depth_m)
-    raw: npt.NDArray[np.float32] = _tofsmith.capture(
-        planes, light, handle, camera._handle, options, callback
-    )
+    raw: npt.NDArray[np.float32]
+    if isinstance(scene, (str, os.PathLike)):
+        raw = capture_staged(
+            scene, code, camera, returns=returns, tail=tail, transients=transients,
+            progress=progress, **options
+        ).raw
+    else:
+        camera = camera_of(camera)
+        seen = scene_named(scene)
+        raw = _tofsmith.capture(
+            scene_planes(seen),
+            light_dict(returns, tail, transients, seen.depth_m),
+            code_of(code, camera)._handle,
+            camera._handle,
+            options,
+            _check.progress(progress),
+        )
     if frames is not None:
         return raw
     only: npt.NDArray[np.float32] = raw[0]
     return only
+
+
+@dataclass(frozen=True)
+class StagedCapture:
+    """Raw measurements of a scene of shapes, with what is true of them.
+
+    Attributes
+    ----------
+    raw : ndarray of float32, shape (F, H, W, K)
+        Electrons, or counts if the sensor has an ADC.
+    depth_m : ndarray of float32, shape (F, H, W), or (1, H, W) of a scene that stands still
+        Radial distance along the ray through a pixel's centre, in the middle of each frame [m];
+        NaN = no return.
+    near_m, far_m : ndarray of float32, as depth_m
+        Of the rays that a pixel sees through the lens, in all exposures: where they differ by much,
+        its light is mixed.
+    """
+
+    raw: npt.NDArray[np.float32]
+    depth_m: npt.NDArray[np.float32]
+    near_m: npt.NDArray[np.float32]
+    far_m: npt.NDArray[np.float32]
+
+
+def capture_staged(
+    scene: Path,
+    code: CodeLike,
+    camera: CameraLike,
+    *,
+    width: int = 320,
+    height: int = 240,
+    returns: Union[MultipathReturns, Sequence[tuple[float, float]], None] = None,
+    tail: Optional[ExponentialTail] = None,
+    transients: Optional[Transients] = None,
+    progress: Progress = None,
+    **options: Any,
+) -> StagedCapture:
+    """Raw measurements of shapes through the camera's lens, while they move, if they do.
+
+    Each exposure sees the scene as it is in its middle: exposures follow one another with
+    `sensor.readout_gap_s` after each, frames every `sensor.frame_period_s`.
+
+    Parameters
+    ----------
+    scene : name of a built-in scene, or .toml file
+    code : CodeSet, name of a family or file
+    camera : Camera or its name
+    width, height : int
+        Of a built-in scene [px].
+    returns, tail, transients, progress
+        As in capture(); lists are of rays: `lens.pixel_samples` squared for each pixel.
+    **options
+        signal_e_per_s, ambient_e_per_s, reference_distance_m, falloff, seed, frames as in
+        capture().
+
+    Examples
+    --------
+    >>> from tofsmith import Camera
+    >>> lens = {"blur": "gaussian", "blur_sigma_px": 0.5, "pixel_samples": 3}
+    >>> made = capture_staged("ball", "sinusoid-k4", Camera("paper-10f0", lens=lens), width=32,
+    ...                       height=24)
+    >>> made.raw.shape, made.depth_m.shape
+    ((1, 24, 32, 4), (1, 24, 32))
+    """
+    camera = camera_of(camera)
+    source = os.fspath(_check.path(scene, "scene"))
+    light: dict[str, Any] = {}
+    if returns is not None or tail is not None or transients is not None:
+        light = light_dict(returns, tail, transients, scene_named(source).depth_m)
+    made = _tofsmith.capture_staged(
+        source,
+        _check.whole(width, "width", 1, 16384),
+        _check.whole(height, "height", 1, 16384),
+        light,
+        code_of(code, camera)._handle,
+        camera._handle,
+        options,
+        _check.progress(progress),
+    )
+    return StagedCapture(**made)
 
 
 def scene_planes(scene: Scene) -> dict[str, Optional[npt.NDArray[Any]]]:

@@ -17,6 +17,16 @@ RowCapture::RowCapture(const SceneImage& scene, const ForwardModel& model, const
 RowCapture::RowCapture(const SceneImage& scene, const SceneLight& light, const ForwardModel& model,
                        const Camera& camera, const CaptureOptions& options)
     : RowCapture(scene, model, camera, options) {
+  see(scene, light, model, camera);
+}
+
+void RowCapture::see(const SceneImage& scene, const SceneLight& light, const ForwardModel& model,
+                     const Camera& camera) {
+  scene.validate();
+  scene_ = &scene;
+  light_ = nullptr;
+  tail_.reset();
+  transient_.reset();
   if (light.is_direct_only()) return;
   light_ = &light;
   constexpr int points_per_bin = 16;

@@ -174,6 +174,8 @@ struct Sensor {
   std::optional<double> shortest_pulse_s;  ///< shortest pulse or gap a design may use [s], > 0
   bool drain = true;                       ///< charge may be thrown away; else taps add to 1
   Readout readout = Readout::separate;     ///< how taps leave the sensor
+  std::optional<double> readout_gap_s;     ///< dark time after each exposure [s], >= 0; none: 0
+  std::optional<double> frame_period_s;    ///< from frame to frame [s], > 0; none: no pause
 
   friend bool operator==(const Sensor&, const Sensor&) = default;
 };
@@ -271,6 +273,16 @@ struct Camera {
   std::optional<Lens> lens;      ///< the pinhole: four keys of [lens]
   std::optional<LensBlur> blur;  ///< the other keys of [lens]; none: sharp
   OperatingRange operating;
+
+  /// Time from the beginning of a frame to that of the next [s]: sensor.frame_period_s, or as long
+  /// as the exposures take, each with its gap.
+  /// @throws std::invalid_argument if frame_period_s is shorter than those
+  double frame_period_s(int exposures) const;
+  /// Middle of an exposure [s], from the beginning of frame 0: exposures follow one another, with a
+  /// gap after each.
+  double exposure_middle_s(int frame, int exposure, int exposures) const;
+  /// Middle between the beginning of a frame's first exposure and the end of its last [s].
+  double frame_middle_s(int frame, int exposures) const;
 
   /// Depth after which everything repeats [m]: c / (2 f0).
   double range_m() const;

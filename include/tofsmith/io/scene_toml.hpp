@@ -34,6 +34,10 @@ namespace tofsmith {
 ///   { image = "cover.png", linear = false, albedo = 1, period_m = 0.1 }   see read_albedo();
 ///         scaled as a whole if brighter than 1; albedo multiplies it, period_m is its width
 ///
+/// Shapes and the camera may move steadily, as Motion says: velocity_m_per_s = [x, y, z];
+/// turn_deg_per_s = [x, y, z], the axis times the rate, about turn_centre_m, which moves along
+/// (a shape's middle: point_m, centre_m, position_m or the middle of a capsule; the camera itself).
+///
 /// Files are named from where the scene stands.
 /// @param source_name  path of the file, or what errors shall call it
 /// @param settings  keys that replace those of the file, such as "view.width_px=640"

@@ -93,6 +93,8 @@ void visit_sensor(Table& table, Field<Table, Sensor>& sensor) {
   table.value("shortest_pulse_s", sensor.shortest_pulse_s);
   table.value("drain", sensor.drain);
   table.choice("readout", sensor.readout, Choices<Readout>(readouts));
+  table.value("readout_gap_s", sensor.readout_gap_s);
+  table.value("frame_period_s", sensor.frame_period_s);
 }
 
 template <typename Table>

@@ -18,6 +18,10 @@ class RowCapture {
   RowCapture(const SceneImage& scene, const SceneLight& light, const ForwardModel& model,
              const Camera& camera, const CaptureOptions& options);
 
+  /// From now on, another scene of the same camera. @param light  validated; both must outlive it
+  void see(const SceneImage& scene, const SceneLight& light, const ForwardModel& model,
+           const Camera& camera);
+
   int measurements() const { return pixel_.measurements(); }
   int tap_values() const { return pixel_.tap_values(); }
   const SceneImage& scene() const { return *scene_; }
