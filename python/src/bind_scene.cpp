@@ -15,8 +15,8 @@ namespace tofsmith::python {
 namespace {
 
 /// The planes of a scene and its lens, by name.
-py::dict seen(const StagedScene& scene, double time_s) {
-  const StagedScene staged = scene.at(time_s);
+py::dict seen(const StagedScene& at_start, double time_s) {
+  const StagedScene staged = at_start.at(time_s);
   SceneImage image;
   {
     const py::gil_scoped_release release;

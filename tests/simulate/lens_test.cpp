@@ -232,7 +232,8 @@ TEST(Lens, SaysWhichDepthsAPixelMixes) {
 
 TEST(Lens, DepthImagesWithNothingToBlurAreAsWithoutALens) {
   Camera camera = built_in_camera("paper-10f0");
-  const SceneImage scene = image_of(9, 7, [](int row, int) { return 1.0f + 0.1f * row; });
+  const SceneImage scene =
+      image_of(9, 7, [](int row, int) { return 1.0f + 0.1f * static_cast<float>(row); });
   const RawFrames without = capture(scene, code_of(camera), camera, {.frames = 2});
   camera.blur = LensBlur{.pixel_samples = 4};
   EXPECT_EQ(capture(scene, code_of(camera), camera, {.frames = 2}).values, without.values);
