@@ -180,7 +180,7 @@ def capture(
     ndarray of float32, shape (H, W, K), or (F, H, W, K) if `frames` is given
         Electrons, or counts if the sensor has an ADC.
     """
-    options = {
+    options: dict[str, Any] = {
         "signal_e_per_s": signal_e_per_s,
         "ambient_e_per_s": ambient_e_per_s,
         "reference_distance_m": reference_distance_m,
