@@ -140,6 +140,10 @@ void add_scene_command(CLI::App& app, Session& session) {
   command->add_option("SCENE", arguments->scene.scene, scene_help);
   add_scene_options(*command, arguments->scene);
   arguments->camera.add_to(*command);
+  command
+      ->add_option("--time-s", arguments->scene.time_s,
+                   "when to look at a scene that moves [s]: frame 0 begins at 0")
+      ->capture_default_str();
   command->add_option("-o,--output", arguments->output,
                       "directory for depth, z-depth, albedo, cosine, what is beyond the range, and "
                       "a preview; or one file for the radial distance (.npy .npz .exr .pfm .png)");

@@ -12,160 +12,20 @@
 #include "number_checks.hpp"
 #include "scene_source.hpp"
 #include "session.hpp"
+#include "simulate_light.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
+#include "tofsmith/io/mesh_file.hpp"
+#include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/raw_frames.hpp"
-#include "tofsmith/simulate/capture.hpp"
+#include "tofsmith/simulate/staged_capture.hpp"
 #include "tofsmith/sweep/training_set.hpp"
 
 namespace tofsmith::apps {
 namespace {
-
-/// Light that comes back by longer ways: `--multipath`, `--tail`, `--multipath-file`,
-/// `--transient`,
-/// `--bounces`, and `--truth-multipath` for what was simulated.
-class MultipathLightArguments {
- public:
-  void add_to(CLI::App& command);
-  /// @throws UsageError for words that do not fit each other; IoError as the files' readers;
-  ///         std::invalid_argument as SceneLight::validate
-  SceneLight load(const LoadedScene& scene, const Camera& camera) const;
-  /// Whether anything was asked for.
-  bool is_used() const {
-    return !multipath_.empty() || tail_m_ || !returns_.empty() || !transient_.empty() ||
-           bounces_ > 0 || !truth_.empty();
-  }
-  /// Files that are read.
-  std::vector<std::string> inputs() const { return {returns_, transient_}; }
-  const std::string& truth() const { return truth_; }
-
- private:
-  MultipathReturns bounced(const LoadedScene& scene, const Camera& camera) const;
-
-  std::vector<std::string> multipath_;
-  std::optional<double> tail_m_;
-  double tail_ratio_ = 0.3;
-  std::string returns_, transient_, truth_;
-  std::optional<double> transient_bin_s_;
-  int bounces_ = 0;
-  BounceOptions bounce_;
-  std::string transient_origin_ = "first", transient_background_ = "none";
-};
-
-/// Of "delta=1.0,ratio=.3", in any order.
-MultipathReturn parse_multipath_return(const std::string& text) {
-  std::optional<float> delay_m, ratio;
-  for (const std::string& part : CLI::detail::split(text, ',')) {
-    const std::size_t equals = part.find('=');
-    const std::string key = part.substr(0, equals);
-    float value = 0.0f;
-    const bool is_number =
-        equals != std::string::npos && CLI::detail::lexical_cast(part.substr(equals + 1), value);
-    if (!is_number || (key != "delta" && key != "ratio"))
-      throw UsageError(fmt::format("--multipath {}: found '{}'; expected delta=METRES,ratio=NUMBER",
-                                   text, part));
-    (key == "delta" ? delay_m : ratio) = value;
-  }
-  if (!delay_m || !ratio)
-    throw UsageError(fmt::format("--multipath {}: found no {}; expected delta=METRES,ratio=NUMBER",
-                                 text, delay_m ? "ratio" : "delta"));
-  return {*delay_m, *ratio};
-}
-
-void MultipathLightArguments::add_to(CLI::App& command) {
-  command.add_option("--multipath", multipath_,
-                     "a return behind every direct one: delta=METRES,ratio=NUMBER; several in "
-                     "order of their delays");
-  CLI::Option* tail =
-      command
-          .add_option("--tail", tail_m_,
-                      "light that trails off behind every direct return: its mean delay [m]")
-          ->check(positive_number());
-  command.add_option("--tail-ratio", tail_ratio_, "all light of the tail over the direct return's")
-      ->check(number_from_0_on())
-      ->capture_default_str()
-      ->needs(tail);
-  command.add_option("--multipath-file", returns_,
-                     "multipath returns of every pixel (.npz: first, distance_m, ratio)");
-  CLI::Option* transient = command.add_option(
-      "--transient", transient_,
-      "light by time, over which each pixel's signal is spread: a histogram (T,) for all pixels "
-      "or (H,W,T) (.npy)");
-  command.add_option("--transient-bin-s", transient_bin_s_, "time that one of its bins takes [s]")
-      ->check(positive_number())
-      ->needs(transient);
-  command
-      .add_option("--transient-origin", transient_origin_,
-                  "what is at the pixel's depth: the histogram's first bin, or its peak")
-      ->check(one_of({"first", "peak"}))
-      ->capture_default_str()
-      ->needs(transient);
-  command
-      .add_option("--transient-background", transient_background_,
-                  "constant counts to take off each histogram first")
-      ->check(one_of({"none", "median"}))
-      ->capture_default_str()
-      ->needs(transient);
-  CLI::Option* bounces =
-      command
-          .add_option("--bounces", bounces_,
-                      "1: also light that one other surface of the scene sends on, gathered by "
-                      "rays; 0: none")
-          ->check(CLI::Range(0, 1))
-          ->capture_default_str();
-  command
-      .add_option("--bounce-rays", bounce_.rays,
-                  "rays by which each pixel gathers it; noise falls a little faster than their "
-                  "square root")
-      ->check(CLI::Range(16, 65536))
-      ->capture_default_str()
-      ->needs(bounces);
-  command.add_option("--truth-multipath", truth_,
-                     "also write the true distance and signal of every return (.npz)");
-}
-
-MultipathReturns MultipathLightArguments::bounced(const LoadedScene& scene,
-                                                  const Camera& camera) const {
-  if (!multipath_.empty() || !returns_.empty() || !transient_.empty())
-    throw UsageError(
-        "--bounces: found beside --multipath, --multipath-file or --transient; expected one of "
-        "them");
-  return bounced_light_of(scene, camera, bounce_, terminal_progress("gathering light"));
-}
-
-SceneLight MultipathLightArguments::load(const LoadedScene& loaded, const Camera& camera) const {
-  const SceneImage& scene = loaded.image;
-  if (!transient_.empty() && (!multipath_.empty() || tail_m_ || !returns_.empty()))
-    throw UsageError(
-        "--transient: found beside --multipath, --tail or --multipath-file; expected alone, as it "
-        "holds all light of a pixel");
-  if (!returns_.empty() && !multipath_.empty())
-    throw UsageError("--multipath-file: found beside --multipath; expected one of them");
-  if (!transient_.empty() && !transient_bin_s_)
-    throw UsageError(
-        "--transient: found no --transient-bin-s; expected the time of one bin in seconds");
-  SceneLight light;
-  if (!multipath_.empty()) {
-    std::vector<MultipathReturn> behind;
-    for (const std::string& text : multipath_) behind.push_back(parse_multipath_return(text));
-    light.returns = behind_every_pixel(scene, behind);
-  }
-  if (!returns_.empty())
-    light.returns = read_multipath_returns(returns_, scene.height(), scene.width());
-  if (bounces_ > 0) light.returns = bounced(loaded, camera);
-  if (tail_m_) light.tail = ExponentialTail{*tail_m_, tail_ratio_};
-  if (!transient_.empty())
-    light.transients = read_transients(
-        transient_, scene.height(), scene.width(),
-        {.bin_s = *transient_bin_s_,
-         .origin = transient_origin_ == "peak" ? TransientOrigin::peak : TransientOrigin::first,
-         .subtract_median = transient_background_ == "median"});
-  light.validate(scene, camera);
-  return light;
-}
 
 /// What `simulate` makes of many scenes.
 struct TrainingSetRequest {
@@ -243,11 +103,98 @@ struct SimulateArguments {
   std::string signal_range, ambient_range, shard;
   CaptureOptions options;
   MultipathLightArguments returns;
-  std::string output, truth;
+  std::string output, truth, truth_near, truth_far;
 };
 
+/// What one scene gave.
+struct CapturedScene {
+  StagedCapture capture;
+  SceneLight light;  ///< of the longer ways
+  bool is_still = true;
+};
+
+/// An image as it is, shapes through the camera's lens.
+CapturedScene capture_one(const SimulateArguments& arguments, const LoadedScene& scene,
+                          const CodeSet& code, const Camera& camera) {
+  CapturedScene captured;
+  const Progress progress = terminal_progress("capturing");
+  if (!scene.staged) {
+    captured.light = arguments.returns.load(scene, camera);
+    captured.capture.raw =
+        capture(scene.image, captured.light, code, camera, arguments.options, progress);
+    captured.capture.truth = {scene.image};
+    return captured;
+  }
+  StagedSetup setup{
+      .search_of = embree_search(), .light = {}, .ambient_scale = scene.image.ambient_scale};
+  if (arguments.returns.is_used())
+    setup.light = [&](const StagedScene& staged, const SceneImage& rays) {
+      captured.light = arguments.returns.load({scene.name, rays, staged.view, staged}, camera);
+      return captured.light;
+    };
+  captured.is_still = scene.staged->is_still();
+  captured.capture = capture(*scene.staged, code, camera, arguments.options, setup, progress);
+  return captured;
+}
+
+/// Depths that are true, where they were asked for.
+void write_truth(const SimulateArguments& arguments, const CapturedScene& captured,
+                 const Session& session) {
+  const StagedCapture& made = captured.capture;
+  const auto write = [&](const std::string& path, const auto& frames, const auto& depth_of) {
+    if (path.empty()) return;
+    if (frames.size() == 1 && captured.is_still)
+      return write_depth(path, depth_of(frames.front()), session.output_policy());
+    const Image<float>& first = depth_of(frames.front());
+    std::vector<float> all;
+    for (const auto& frame : frames)
+      all.insert(all.end(), depth_of(frame).pixels.begin(), depth_of(frame).pixels.end());
+    write_npy(path,
+              NpyArray::of<float>({frames.size(), static_cast<std::size_t>(first.height),
+                                   static_cast<std::size_t>(first.width)},
+                                  all),
+              session.output_policy());
+  };
+  const auto own = [](const Image<float>& depth_m) -> const Image<float>& { return depth_m; };
+  write(arguments.truth, made.truth,
+        [](const SceneImage& seen) -> const Image<float>& { return seen.depth_m; });
+  write(arguments.truth_near, made.near_m, own);
+  write(arguments.truth_far, made.far_m, own);
+  if (!arguments.returns.truth().empty())
+    write_multipath_truth(arguments.returns.truth(),
+                          multipath_truth(made.truth.front(), captured.light, arguments.options),
+                          captured.light, session.output_policy());
+}
+
+/// What a scene or a lens cannot give.
+void check_truth(const SimulateArguments& arguments, const LoadedScene& scene,
+                 const Camera& camera) {
+  if (!scene.staged && !(arguments.truth_near.empty() && arguments.truth_far.empty()))
+    throw UsageError(
+        fmt::format("--truth-near, --truth-far: found {}, a depth image; expected shapes: a "
+                    "built-in scene, a scene file (.toml) or a mesh",
+                    scene.name));
+  if (scene.staged && !scene.staged->is_still()) {
+    for (const auto& [option, file] :
+         {std::pair("--truth", arguments.truth), std::pair("--truth-near", arguments.truth_near),
+          std::pair("--truth-far", arguments.truth_far)})
+      if (!file.empty() && std::filesystem::path(file).extension() != ".npy")
+        throw UsageError(fmt::format(
+            "{} {}: {} moves; expected a file .npy, for a depth of every frame (F, H, W)", option,
+            file, scene.name));
+    if (!arguments.returns.truth().empty())
+      throw UsageError(fmt::format(
+          "--truth-multipath: {} moves; expected a scene that stands still", scene.name));
+  }
+  if (!arguments.returns.truth().empty() && camera.blur && camera.blur->pixel_samples > 1)
+    throw UsageError(
+        fmt::format("--truth-multipath: found lens.pixel_samples = {}; expected 1, as it lists the "
+                    "returns of one ray a pixel",
+                    camera.blur->pixel_samples));
+}
+
 void simulate_set(const SimulateArguments& arguments, Session& session) {
-  if (!arguments.truth.empty())
+  if (!(arguments.truth.empty() && arguments.truth_near.empty() && arguments.truth_far.empty()))
     throw UsageError("--truth: the truth of many scenes is always written");
   if (arguments.returns.is_used())
     throw UsageError(
@@ -285,11 +232,14 @@ void check_outputs(const SimulateArguments& arguments, const Session& session) {
   inputs.insert(inputs.end(),
                 {arguments.scene.scene, arguments.scene.image, arguments.scene.ambient_image,
                  arguments.code, arguments.camera.name});
-  for (const std::string& output : {arguments.output, arguments.truth, arguments.returns.truth()})
-    check_not_input(output, inputs);
+  const std::vector<std::string> truths = {arguments.truth, arguments.truth_near,
+                                           arguments.truth_far, arguments.returns.truth()};
+  check_not_input(arguments.output, inputs);
   session.check_output(arguments.output);
-  for (const std::string& truth : {arguments.truth, arguments.returns.truth()})
+  for (const std::string& truth : truths) {
+    check_not_input(truth, inputs);
     if (!truth.empty()) session.check_output(truth);
+  }
 }
 
 void run(SimulateArguments& arguments, Session& session) {
@@ -300,19 +250,14 @@ void run(SimulateArguments& arguments, Session& session) {
   const CodeSet code = load_camera_code(arguments.code, camera, arguments.taps.file_options());
   check_outputs(arguments, session);
   const LoadedScene scene = scene_of(arguments.scene, camera);
-  const SceneLight light = arguments.returns.load(scene, camera);
+  check_truth(arguments, scene, camera);
   const OperatingPoint middle = camera.operating.middle();
   arguments.options.signal_e_per_s = arguments.signal_e_per_s.value_or(middle.signal_e_per_s);
   arguments.options.ambient_e_per_s = arguments.ambient_e_per_s.value_or(middle.ambient_e_per_s);
-  const RawFrames raw =
-      capture(scene.image, light, code, camera, arguments.options, terminal_progress("capturing"));
+  const CapturedScene captured = capture_one(arguments, scene, code, camera);
+  const RawFrames& raw = captured.capture.raw;
   write_raw_frames(arguments.output, raw, session.output_policy());
-  if (!arguments.truth.empty())
-    write_depth(arguments.truth, scene.image.depth_m, session.output_policy());
-  if (!arguments.returns.truth().empty())
-    write_multipath_truth(arguments.returns.truth(),
-                          multipath_truth(scene.image, light, arguments.options), light,
-                          session.output_policy());
+  write_truth(arguments, captured, session);
   const SceneExtent extent = scene_extent(scene.image, camera);
   session.print_json({{"scene", scene.name},
                       {"code", code.name()},
@@ -377,7 +322,9 @@ void add_simulate_command(CLI::App& app, Session& session) {
       ->capture_default_str();
   command->add_flag("!--no-falloff", arguments->options.falloff,
                     "signal depends on albedo only, not on distance and angle");
-  command->add_option("--frames", arguments->options.frames, "independent frames")
+  command
+      ->add_option("--frames", arguments->options.frames,
+                   "frames one after another, each with noise of its own")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   command->add_option("--seed", arguments->options.seed, "seed of all noise")
@@ -387,6 +334,10 @@ void add_simulate_command(CLI::App& app, Session& session) {
                    "raw frames (.npy .npz); of many scenes a directory")
       ->required();
   command->add_option("--truth", arguments->truth, "also write the true radial distance");
+  command->add_option("--truth-near", arguments->truth_near,
+                      "also write the nearest distance of which a pixel gets light, of shapes");
+  command->add_option("--truth-far", arguments->truth_far,
+                      "also write the farthest; a lens mixes both: see docs/scenes.md");
   arguments->returns.add_to(*command);
   command->callback([arguments, &session] { run(*arguments, session); });
 }

@@ -37,4 +37,5 @@
 #include "tofsmith/simulate/multipath_error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
+#include "tofsmith/simulate/staged_capture.hpp"
 #include "tofsmith/version.hpp"

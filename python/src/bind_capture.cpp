@@ -5,7 +5,9 @@
 #include "bindings.hpp"
 #include "capture_arguments.hpp"
 #include "progress.hpp"
-#include "tofsmith/simulate/capture.hpp"
+#include "tofsmith/io/mesh_file.hpp"
+#include "tofsmith/io/scene_toml.hpp"
+#include "tofsmith/simulate/staged_capture.hpp"
 
 namespace tofsmith::python {
 
@@ -87,14 +89,19 @@ SceneLight light_of(const py::dict& values, const SceneImage& scene) {
   return light;
 }
 
-py::array_t<float> capture_array(const py::dict& planes, const py::dict& returns,
-                                 const CodeSet& code, const Camera& camera, const py::dict& values,
-                                 const py::object& callback) {
+CaptureOptions capture_options(const Camera& camera, const py::dict& values) {
   CaptureOptions options;
   const OperatingPoint middle = camera.operating.middle();
   options.signal_e_per_s = middle.signal_e_per_s;
   options.ambient_e_per_s = middle.ambient_e_per_s;
   read_options(values, "", options);
+  return options;
+}
+
+py::array_t<float> capture_array(const py::dict& planes, const py::dict& returns,
+                                 const CodeSet& code, const Camera& camera, const py::dict& values,
+                                 const py::object& callback) {
+  const CaptureOptions options = capture_options(camera, values);
   const SceneImage scene = scene_of(planes);
   const SceneLight light = light_of(returns, scene);
   return adopt(without_gil(callback, [&](const Progress& progress) {
@@ -102,8 +109,59 @@ py::array_t<float> capture_array(const py::dict& planes, const py::dict& returns
   }));
 }
 
+/// (images, H, W).
+template <typename Images, typename ImageOf>
+py::array_t<float> stacked(const Images& images, const ImageOf& image_of) {
+  const Image<float>& first = image_of(images.front());
+  std::vector<float> all;
+  for (const auto& each : images)
+    all.insert(all.end(), image_of(each).pixels.begin(), image_of(each).pixels.end());
+  return adopt(std::move(all),
+               {static_cast<py::ssize_t>(images.size()), first.height, first.width});
+}
+
+/// An image as it is, shapes through the camera's lens.
+py::dict capture_staged(const std::string& name, const py::dict& size, const py::dict& returns,
+                        const CodeSet& code, const Camera& camera, const py::dict& values,
+                        const py::object& callback) {
+  const CaptureOptions options = capture_options(camera, values);
+  SceneSource source{.scene = name};
+  read_options(size, "", source);
+  LoadedScene scene;
+  {
+    const py::gil_scoped_release release;
+    scene = load_scene(source, camera.lens);
+  }
+  StagedSetup setup{.search_of = embree_search(), .light = {}, .ambient_scale = {}};
+  if (!returns.empty())
+    setup.light = [&](const StagedScene&, const SceneImage& rays) {
+      const py::gil_scoped_acquire acquire;
+      return light_of(returns, rays);
+    };
+  const SceneLight light =
+      scene.staged || returns.empty() ? SceneLight{} : light_of(returns, scene.image);
+  StagedCapture made = without_gil(callback, [&](const Progress& progress) {
+    if (scene.staged) return capture(*scene.staged, code, camera, options, setup, progress);
+    return StagedCapture{.raw = capture(scene.image, light, code, camera, options, progress),
+                         .truth = {scene.image},
+                         .near_m = {scene.image.depth_m},
+                         .far_m = {scene.image.depth_m}};
+  });
+  const auto own = [](const Image<float>& depth_m) -> const Image<float>& { return depth_m; };
+  py::dict result;
+  result["depth_m"] = stacked(
+      made.truth, [](const SceneImage& seen) -> const Image<float>& { return seen.depth_m; });
+  result["near_m"] = stacked(made.near_m, own);
+  result["far_m"] = stacked(made.far_m, own);
+  result["raw"] = adopt(std::move(made.raw));
+  return result;
+}
+
 }  // namespace
 
-void bind_capture(py::module_& module) { module.def("capture", &capture_array); }
+void bind_capture(py::module_& module) {
+  module.def("capture", &capture_array);
+  module.def("capture_staged", &capture_staged);
+}
 
 }  // namespace tofsmith::python

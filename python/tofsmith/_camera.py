@@ -18,6 +18,7 @@ from ._camera_fields import (
     Generator,
     ImpulseResponse,
     Lens,
+    LensBlur,
     Light,
     Operating,
     OperatingMultipath,
@@ -200,8 +201,18 @@ class Camera:
     @cached_property
     def lens(self) -> Optional[Lens]:
         """The pinhole, if the camera has one."""
-        lens = self._fields.get("lens")
-        return None if lens is None else Lens(**lens)
+        lens = self._lens_fields(Lens)
+        return Lens(**lens) if lens else None
+
+    @cached_property
+    def blur(self) -> Optional[LensBlur]:
+        """How the lens blurs, if it does: the other keys of `lens`."""
+        blur = self._lens_fields(LensBlur)
+        return LensBlur(**blur) if blur else None
+
+    def _lens_fields(self, part: Any) -> dict[str, Any]:
+        lens = self._fields.get("lens", {})
+        return {key: lens[key] for key in part.__dataclass_fields__ if key in lens}
 
     @cached_property
     def operating(self) -> Operating:

@@ -102,6 +102,8 @@ class Sensor:
     full_well_e, adc_bits, gain_e_per_dn, black_level_dn, shortest_pulse_s : optional
         Clip [e]; quantize to so many bits; electrons per count [e/DN]; count without light [DN];
         shortest pulse or gap that a design may use [s].
+    readout_gap_s, frame_period_s : float, optional
+        Dark time after each exposure; time from frame to frame [s]. None: 0; no pause.
     """
 
     taps: int
@@ -121,6 +123,8 @@ class Sensor:
     gain_e_per_dn: Optional[float] = None
     black_level_dn: Optional[float] = None
     shortest_pulse_s: Optional[float] = None
+    readout_gap_s: Optional[float] = None
+    frame_period_s: Optional[float] = None
 
 
 @dataclass(frozen=True)
@@ -131,6 +135,31 @@ class Lens:
     fy_px: float
     cx_px: float
     cy_px: float
+
+
+@dataclass(frozen=True)
+class LensBlur:
+    """How simulations blur light before it falls on pixels; keys of `lens`, see docs/scenes.md.
+
+    Attributes
+    ----------
+    blur : str
+        none, gaussian, or disc of confusion.
+    pixel_samples : int
+        n of n x n rays over a pixel's square, of scenes of shapes.
+    blur_sigma_px : float, optional
+        Of gaussian: standard deviation [px].
+    focal_length_m, f_number, focus_distance_m, pixel_pitch_m : float, optional
+        Of disc: a thin lens.
+    """
+
+    blur: str
+    pixel_samples: int
+    blur_sigma_px: Optional[float] = None
+    focal_length_m: Optional[float] = None
+    f_number: Optional[float] = None
+    focus_distance_m: Optional[float] = None
+    pixel_pitch_m: Optional[float] = None
 
 
 @dataclass(frozen=True)

@@ -54,9 +54,11 @@ def built_in_scene_names() -> list[str]:
     return _tofsmith.built_in_scene_names()
 
 
-def built_in_scene(name: str, width: int = 320, height: int = 240) -> Scene:
+def built_in_scene(
+    name: str, width: int = 320, height: int = 240, *, time_s: Optional[float] = None
+) -> Scene:
     """load_scene() of a scene that needs no files."""
-    return load_scene(_check.text(name, "name"), width=width, height=height)
+    return load_scene(_check.text(name, "name"), width=width, height=height, time_s=time_s)
 
 
 def load_scene(
@@ -70,6 +72,7 @@ def load_scene(
     width: Optional[int] = None,
     height: Optional[int] = None,
     scale_m: Optional[float] = None,
+    time_s: Optional[float] = None,
 ) -> Scene:
     """A scene by its name or file, as `tofsmith simulate` takes it, ray cast.
 
@@ -92,6 +95,8 @@ def load_scene(
         Of built-in scenes and meshes (320 x 240).
     scale_m : float, optional
         Metres per unit of a mesh (1).
+    time_s : float, optional
+        When a scene that moves is looked at [s] (0).
 
     Raises
     ------
@@ -108,6 +113,7 @@ def load_scene(
         "width": width,
         "height": height,
         "scale_m": scale_m,
+        "time_s": time_s,
     }
     name = _check.path(scene, "scene")
     seen = _tofsmith.load_scene(name, None if lens is None else _lens(lens), options)
@@ -179,7 +185,8 @@ def capture(
     Parameters
     ----------
     scene : Scene, name of a built-in scene, .toml file, or radial distance [m] (H, W)
-        Depth beyond the unambiguous range wraps.
+        Depth beyond the unambiguous range wraps. Names and files go through the camera's lens and
+        may move, as capture_staged() says; planes have one ray a pixel, and stand still.
     code : CodeSet, name of a family or file
     camera : Camera or its name
     signal_e_per_s : float, optional
@@ -209,10 +216,7 @@ def capture(
     ndarray of float32, shape (H, W, K), or (F, H, W, K) if `frames` is given
         Electrons, or counts if the sensor has an ADC.
     """
-    camera = camera_of(camera)
-    seen = scene_named(scene, camera.lens)
-    planes = scene_planes(seen)
-    options = {
+    options: dict[str, Any] = {
         "signal_e_per_s": signal_e_per_s,
         "ambient_e_per_s": ambient_e_per_s,
         "reference_distance_m": reference_distance_m,
@@ -220,16 +224,107 @@ def capture(
         "seed": seed,
         "frames": frames,
     }
-    handle = code_of(code, camera)._handle
-    callback = _check.progress(progress)
-    light = light_dict(returns, tail, transients, seen.depth_m)
-    raw: npt.NDArray[np.float32] = _tofsmith.capture(
-        planes, light, handle, camera._handle, options, callback
-    )
+    raw: npt.NDArray[np.float32]
+    if isinstance(scene, (str, os.PathLike)):
+        raw = capture_staged(
+            scene, code, camera, returns=returns, tail=tail, transients=transients,
+            progress=progress, **options
+        ).raw
+    else:
+        camera = camera_of(camera)
+        seen = scene_named(scene, camera.lens)
+        raw = _tofsmith.capture(
+            scene_planes(seen),
+            light_dict(returns, tail, transients, seen.depth_m),
+            code_of(code, camera)._handle,
+            camera._handle,
+            options,
+            _check.progress(progress),
+        )
     if frames is not None:
         return raw
     only: npt.NDArray[np.float32] = raw[0]
     return only
+
+
+@dataclass(frozen=True)
+class StagedCapture:
+    """Raw measurements of a scene of shapes, with what is true of them.
+
+    Attributes
+    ----------
+    raw : ndarray of float32, shape (F, H, W, K)
+        Electrons, or counts if the sensor has an ADC.
+    depth_m : ndarray of float32, shape (F, H, W), or (1, H, W) of a scene that stands still
+        Radial distance along the ray through a pixel's centre, in the middle of each frame [m];
+        NaN = no return.
+    near_m, far_m : ndarray of float32, as depth_m
+        Of the rays that a pixel sees through the lens, in all exposures: where they differ by much,
+        its light is mixed.
+    """
+
+    raw: npt.NDArray[np.float32]
+    depth_m: npt.NDArray[np.float32]
+    near_m: npt.NDArray[np.float32]
+    far_m: npt.NDArray[np.float32]
+
+
+def capture_staged(
+    scene: Path,
+    code: CodeLike,
+    camera: CameraLike,
+    *,
+    width: Optional[int] = None,
+    height: Optional[int] = None,
+    returns: Union[MultipathReturns, Sequence[tuple[float, float]], None] = None,
+    tail: Optional[ExponentialTail] = None,
+    transients: Optional[Transients] = None,
+    progress: Progress = None,
+    **options: Any,
+) -> StagedCapture:
+    """Raw measurements of shapes through the camera's lens, while they move, if they do.
+
+    Each exposure sees the scene as it is in its middle: exposures follow one another with
+    `sensor.readout_gap_s` after each, frames every `sensor.frame_period_s`.
+
+    Parameters
+    ----------
+    scene : name of a built-in scene, .toml file, mesh, or depth image
+        A depth image has one ray a pixel, and stands still.
+    code : CodeSet, name of a family or file
+    camera : Camera or its name
+    width, height : int, optional
+        Of a built-in scene or a mesh [px] (320 x 240).
+    returns, tail, transients, progress
+        As in capture(); lists are of rays: `lens.pixel_samples` squared for each pixel.
+    **options
+        signal_e_per_s, ambient_e_per_s, reference_distance_m, falloff, seed, frames as in
+        capture().
+
+    Examples
+    --------
+    >>> from tofsmith import Camera
+    >>> lens = {"blur": "gaussian", "blur_sigma_px": 0.5, "pixel_samples": 3}
+    >>> made = capture_staged("ball", "sinusoid-k4", Camera("paper-10f0", lens=lens), width=32,
+    ...                       height=24)
+    >>> made.raw.shape, made.depth_m.shape
+    ((1, 24, 32, 4), (1, 24, 32))
+    """
+    camera = camera_of(camera)
+    source = _check.path(scene, "scene")
+    light: dict[str, Any] = {}
+    if returns is not None or tail is not None or transients is not None:
+        light = light_dict(returns, tail, transients, scene_named(source, camera.lens).depth_m)
+    made = _tofsmith.capture_staged(
+        source,
+        {"width": width, "height": height},
+        light,
+        code_of(code, camera)._handle,
+        camera._handle,
+        options,
+        _check.progress(progress),
+    )
+    return StagedCapture(**made)
 
 
 def scene_planes(scene: Scene) -> dict[str, Optional[npt.NDArray[Any]]]:

@@ -165,6 +165,10 @@ def capture(
     planes: Mapping[str, Optional[_Any]], returns: Mapping[str, Any], code: CodeSet, camera: Camera,
     options: _Options, progress: _Progress, /
 ) -> _Floats: ...
+def capture_staged(
+    scene: str, size: _Options, returns: Mapping[str, Any], code: CodeSet,
+    camera: Camera, options: _Options, progress: _Progress, /
+) -> dict[str, _Floats]: ...
 def evaluate(code: CodeSet, camera: Camera, options: _Options, progress: _Progress, /) -> _Dict: ...
 def best_rotation(
     code: CodeSet, camera: Camera, options: _Options, progress: _Progress, /

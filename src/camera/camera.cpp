@@ -68,6 +68,8 @@ void validate_sensor(const Sensor& sensor) {
   validate_adc(sensor);
   if (sensor.shortest_pulse_s)
     require_positive(*sensor.shortest_pulse_s, "sensor.shortest_pulse_s");
+  if (sensor.readout_gap_s) require_not_negative(*sensor.readout_gap_s, "sensor.readout_gap_s");
+  if (sensor.frame_period_s) require_positive(*sensor.frame_period_s, "sensor.frame_period_s");
   require(sensor.drain || sensor.taps >= 2, "sensor.drain", "false",
           "needs sensor.taps >= 2: one tap that is always open measures nothing");
   require(sensor.readout == Readout::separate || sensor.taps == 2, "sensor.readout", "difference",
@@ -180,6 +182,7 @@ void Camera::validate() const {
     require(std::isfinite(lens->cx_px), "lens.cx_px", lens->cx_px, "must be finite");
     require(std::isfinite(lens->cy_px), "lens.cy_px", lens->cy_px, "must be finite");
   }
+  if (blur) blur->validate();
   validate_operating(operating, range_m());
 }
 

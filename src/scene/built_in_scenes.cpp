@@ -218,17 +218,30 @@ StagedScene hand(int width, int height) {
           .view = PinholeView::centred(width, height, 36 * degrees)};
 }
 
+/// For frames of some milliseconds: it stays in view for 0.1 s and more.
+StagedScene moving_hand(int width, int height) {
+  StagedScene scene = hand(width, height);
+  for (Shape& shape : scene.shapes)
+    shape = moved(shape, Eigen::Isometry3d(Eigen::Translation3d(-0.08, 0.0, 0.0)));
+  const Motion motion{.velocity_m_per_s = {1.0, 0.0, 0.0}};
+  scene.shape_motions.assign(scene.shapes.size(), motion);
+  scene.shapes.emplace_back(wall_at(1.0, uniform(0.75)));
+  scene.shape_motions.emplace_back();
+  return scene;
+}
+
 struct Entry {
   std::string_view name;
   StagedScene (*stage)(int width, int height);
 };
-constexpr std::array<Entry, 7> entries = {{{"table-top", table_top_scene},
+constexpr std::array<Entry, 8> entries = {{{"table-top", table_top_scene},
                                            {"books", books},
                                            {"ball", ball},
                                            {"wall", wall},
                                            {"corner", corner},
                                            {"room", room},
-                                           {"hand", hand}}};
+                                           {"hand", hand},
+                                           {"moving-hand", moving_hand}}};
 
 }  // namespace
 

@@ -47,6 +47,12 @@ PinholeView PinholeView::centred(int width, int height, double horizontal_angle_
   return view;
 }
 
+PinholeView PinholeView::divided(int n) const {
+  // Part i of pixel u has its centre at u + (i + 1/2) / n - 1/2, and is pixel n u + i.
+  const auto place = [n](double pixel) { return n * pixel + 0.5 * (n - 1); };
+  return {n * fx_px, n * fy_px, place(cx_px), place(cy_px), n * width, n * height};
+}
+
 Eigen::Vector3d PinholeView::ray(int row, int column) const {
   return at_unit_z(*this, row, column).normalized();
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/shared/shared_progress.hpp"
+#include "simulate/lens_light.hpp"
 #include "simulate/shared/row_capture.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
@@ -28,8 +29,13 @@ void SceneLight::validate(const SceneImage& scene, const Camera& camera) const {
 RawFrames capture(const SceneImage& scene, const SceneLight& light, const CodeSet& code,
                   const Camera& camera, const CaptureOptions& options, const Progress& progress) {
   light.validate(scene, camera);
-  return captured_rows(RowCapture(scene, light, ForwardModel(code, camera), camera, options),
-                       scene.height(), scene.width(), options.frames, progress);
+  const RowCapture source(scene, light, ForwardModel(code, camera), camera, options);
+  if (!camera.blur || camera.blur->kind == LensBlur::Kind::none)
+    return captured_rows(source, scene.height(), scene.width(), options.frames, progress);
+  // An image has one ray a pixel, whatever the lens would like.
+  PixelLight blurred(scene.height(), scene.width(), source.tap_values());
+  add_light(source, *camera.blur, 1, {0, source.tap_values()}, blurred);
+  return captured_frames(source, blurred, options.frames, progress);
 }
 
 MultipathTruth multipath_truth(const SceneImage& scene, const SceneLight& light,
@@ -65,15 +71,9 @@ double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,
 
 RawFrames captured_rows(const RowCapture& source, int height, int width, int frames,
                         const Progress& progress) {
-  RawFrames raw;
-  raw.frames = frames;
-  raw.height = height;
-  raw.width = width;
-  raw.measurements = source.measurements();
+  RawFrames raw = empty_frames(frames, height, width, source.measurements());
   const auto row_values =
       static_cast<std::size_t>(raw.width) * static_cast<std::size_t>(raw.measurements);
-  raw.values.resize(row_values * static_cast<std::size_t>(raw.height) *
-                    static_cast<std::size_t>(raw.frames));
 
   const auto capture_row = [&](int frame, int row) {
     source.row(frame, row, raw.frame(frame) + static_cast<std::size_t>(row) * row_values);
@@ -91,8 +91,7 @@ RawFrames captured_rows(const RowCapture& source, int height, int width, int fra
 
 RawFrames capture(const SceneImage& scene, const CodeSet& code, const Camera& camera,
                   const CaptureOptions& options, const Progress& progress) {
-  return captured_rows(RowCapture(scene, ForwardModel(code, camera), camera, options),
-                       scene.height(), scene.width(), options.frames, progress);
+  return capture(scene, SceneLight(), code, camera, options, progress);
 }
 
 }  // namespace tofsmith

@@ -34,10 +34,10 @@ TEST(Readme, IsReadInOneSitting) {
   EXPECT_LE(std::count(readme.begin(), readme.end(), '\n'), 150);
 }
 
-/// The first TOML example of a page.
-std::string toml_of(const std::string& path) {
+/// The first TOML example of a page, or of what follows a heading.
+std::string toml_of(const std::string& path, const std::string& heading = "") {
   const std::string page = read(path);
-  const std::size_t fence = page.find("```toml\n");
+  const std::size_t fence = page.find("```toml\n", page.find(heading));
   if (fence == std::string::npos) return "no TOML example";
   const std::size_t begin = page.find('\n', fence) + 1;
   return page.substr(begin, page.find("```", begin) - begin);
@@ -51,6 +51,16 @@ TEST(Pages, ShowACameraThatCanBeRead) {
 TEST(Pages, ShowASceneThatCanBeRead) {
   const std::string path = "docs/scenes.md";
   EXPECT_EQ(tofsmith::parse_scene_toml(toml_of(path), path).shapes.size(), 4u);
+}
+
+TEST(Pages, ShowASceneThatMovesAsItSays) {
+  const std::string path = "docs/scenes.md";
+  const auto scene = tofsmith::parse_scene_toml(toml_of(path, "## In motion"), path);
+  ASSERT_EQ(scene.shape_motions.size(), 3u);
+  const auto later = scene.at(0.1);
+  const auto ball_m = std::get<tofsmith::Sphere>(later.shapes.back()).centre;
+  EXPECT_TRUE(ball_m.isApprox(Eigen::Vector3d(0.1, 0.0, 1.5))) << ball_m.transpose();
+  EXPECT_TRUE(later.camera_to_world.translation().isApprox(Eigen::Vector3d(0.0, 0.0, 0.02)));
 }
 
 }  // namespace

@@ -83,7 +83,15 @@ Camera every_field_set() {
   camera.sensor.shortest_pulse_s = 1e-9;
   camera.sensor.drain = false;
   camera.sensor.readout = Readout::difference;
+  camera.sensor.readout_gap_s = 1e-4;
+  camera.sensor.frame_period_s = 0.5;
   camera.lens = Lens{500, 501, -1.5, 0};
+  camera.blur = LensBlur{.kind = LensBlur::Kind::disc,
+                         .focal_length_m = 8e-3,
+                         .f_number = 1.4,
+                         .focus_distance_m = 1.5,
+                         .pixel_pitch_m = 1e-5,
+                         .pixel_samples = 3};
   camera.operating = {{1e3}, {0.0, 1e2}, DepthErrorKind::circular, 1.0, true};
   camera.operating.multipath = OperatingMultipath{{0.0, 1.0}, {0.25, 1.0 / 3}, 0.125};
   return camera;
@@ -162,7 +170,13 @@ INSTANTIATE_TEST_SUITE_P(
                 "c.toml:3:1: unknown key light.peak_facter; did you mean light.peak_factor?"},
         BadLine{"[lihgt]", "c.toml:2:2: unknown key lihgt; did you mean light?"},
         BadLine{"[lens]\nzzzzzz = 1\nfx_px=1\nfy_px=1\ncx_px=1\ncy_px=1",
-                "c.toml:3:1: unknown key lens.zzzzzz; expected fx_px, fy_px, cx_px, cy_px"},
+                "c.toml:3:1: unknown key lens.zzzzzz; expected fx_px, fy_px, cx_px, cy_px, blur, "
+                "blur_sigma_px, focal_length_m, f_number, focus_distance_m, pixel_pitch_m, "
+                "pixel_samples"},
+        BadLine{"sensor.readout_gap_s = -1e-3",
+                "c.toml:2:24: sensor.readout_gap_s = -0.001; must be finite and >= 0"},
+        BadLine{"sensor.frame_period_s = 0",
+                "c.toml:2:25: sensor.frame_period_s = 0; must be finite and > 0"},
         BadLine{"samples = 240.0", "c.toml:2:11: samples: found 240.0; expected an integer"},
         BadLine{"samples = 99999999999",
                 "c.toml:2:11: samples: found 99999999999; expected an integer of at most 32 bits"},

@@ -125,6 +125,34 @@ TEST(SceneToml, FilesAreFoundBesideTheScene) {
   EXPECT_EQ(mesh.texture.albedo, 1.0);
 }
 
+TEST(SceneToml, ShapesAndTheCameraMoveAboutTheirMiddles) {
+  const StagedScene scene = parse_scene_toml(
+      "[camera]\nposition_m = [0, -1, 0]\nturn_deg_per_s = [0, 90, 0]\n"
+      "[[plane]]\npoint_m = [0, 0, 4]\nnormal = [0, 0, -1]\n"
+      "[[box]]\ncentre_m = [1, 0, 3]\nsize_m = [1, 1, 1]\nturn_deg_per_s = [0, 0, 180]\n"
+      "[[capsule]]\nstart_m = [0, 0, 2]\nend_m = [0, 1, 2]\nradius_m = 0.1\n"
+      "velocity_m_per_s = [1, 0, 0]\nturn_deg_per_s = [0, 0, 9]\nturn_centre_m = [0, 0, 2]\n");
+  constexpr double pi = std::numbers::pi;
+  ASSERT_EQ(scene.shape_motions.size(), 3u);
+  EXPECT_TRUE(scene.shape_motions[0].is_still());
+  EXPECT_TRUE(scene.shape_motions[1].turn_centre_m.isApprox(Eigen::Vector3d(1, 0, 3)));
+  EXPECT_TRUE(scene.shape_motions[1].turn_rad_per_s.isApprox(Eigen::Vector3d(0, 0, pi)));
+  EXPECT_TRUE(scene.shape_motions[2].turn_centre_m.isApprox(Eigen::Vector3d(0, 0, 2)));
+  EXPECT_TRUE(scene.shape_motions[2].velocity_m_per_s.isApprox(Eigen::Vector3d(1, 0, 0)));
+  const StagedScene later = scene.at(1.0);
+  EXPECT_TRUE(later.camera_to_world.translation().isApprox(Eigen::Vector3d(0, -1, 0)));
+  EXPECT_TRUE((later.camera_to_world.linear() * Eigen::Vector3d::UnitZ())
+                  .isApprox(Eigen::Vector3d::UnitX()));
+  EXPECT_TRUE(first<Box>(later).centre.isApprox(Eigen::Vector3d(1, 0, 3)));
+  EXPECT_TRUE(first<Capsule>(later).start.isApprox(Eigen::Vector3d(1, 0, 2)));
+}
+
+TEST(SceneToml, ShapesThatStandStillHaveNoMotions) {
+  const StagedScene scene = parse_scene_toml(every_shape);
+  EXPECT_TRUE(scene.is_still());
+  EXPECT_TRUE(scene.shape_motions.empty());
+}
+
 struct BadScene {
   const char* text;
   const char* message;
@@ -184,6 +212,13 @@ TEST_P(SceneTomlRefusesBesideABall, WithPlaceAndWhatWasExpected) {
 INSTANTIATE_TEST_SUITE_P(
     Textures, SceneTomlRefusesBesideABall,
     testing::Values(
+        BadScene{"turn_centre_m = [0, 0, 1]",
+                 "s.toml:4:17: sphere[0].turn_centre_m: has a meaning only with turn_deg_per_s"},
+        BadScene{"velocity_m_per_s = [1, 2]",
+                 "s.toml:4:20: sphere[0].velocity_m_per_s: found 2 numbers; expected a list of"},
+        BadScene{
+            "velocity = [1, 2, 3]",
+            "s.toml:4:1: unknown key sphere[0].velocity; expected centre_m, radius_m, texture"},
         BadScene{"albedo = -0.1",
                  "s.toml:4:10: sphere[0].albedo: found -0.1; expected a number in [0, 1]"},
         BadScene{"albedo = 1.5", "s.toml:4:10: sphere[0].albedo: found 1.5"},

@@ -49,10 +49,10 @@ TEST(BuiltInScenes, UnknownNamesMeetTheNearestKnownOne) {
     built_in_scene("bokos", 8, 8);
     FAIL() << "accepted";
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "scene = bokos; must be one of table-top books ball wall corner room hand; did you mean "
-        "books?");
+    EXPECT_STREQ(error.what(),
+                 "scene = bokos; must be one of table-top books ball wall corner room hand "
+                 "moving-hand; did you mean "
+                 "books?");
   }
   EXPECT_THROW(built_in_scene("wall", 0, 8), std::invalid_argument);
 }

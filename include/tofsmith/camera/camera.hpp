@@ -174,6 +174,8 @@ struct Sensor {
   std::optional<double> shortest_pulse_s;  ///< shortest pulse or gap a design may use [s], > 0
   bool drain = true;                       ///< charge may be thrown away; else taps add to 1
   Readout readout = Readout::separate;     ///< how taps leave the sensor
+  std::optional<double> readout_gap_s;     ///< dark time after each exposure [s], >= 0; none: 0
+  std::optional<double> frame_period_s;    ///< from frame to frame [s], > 0; none: no pause
 
   friend bool operator==(const Sensor&, const Sensor&) = default;
 };
@@ -186,6 +188,38 @@ struct Lens {
   double cy_px = 0.0;  ///< row of the optical axis [px]
 
   friend bool operator==(const Lens&, const Lens&) = default;
+};
+
+/// How the image is blurred before it falls on pixels, and how simulations sample it there. Light
+/// is what is blurred: a pixel's expected electrons are a weighted sum of those of many rays. Field
+/// names are keys of [lens] in the TOML file; the kind's key is `blur`.
+struct LensBlur {
+  enum class Kind {
+    none,      ///< each ray falls where it points
+    gaussian,  ///< on a Gaussian about it
+    disc,      ///< on a disc of confusion, by its distance: a thin lens out of focus
+  };
+  Kind kind = Kind::none;
+  double blur_sigma_px = 0.0;     ///< gaussian: standard deviation in each direction [px], (0, 32]
+  double focal_length_m = 0.0;    ///< disc: f [m], > 0
+  double f_number = 0.0;          ///< disc: focal length over aperture, > 0
+  double focus_distance_m = 0.0;  ///< disc: what is this far is sharp [m], > focal length
+  double pixel_pitch_m = 0.0;     ///< disc: between centres of pixels [m], > 0
+  /// n: scenes of shapes send n x n rays, evenly over a pixel's square, 1 .. 16; 1: one ray
+  /// through its centre. Depth images have one value a pixel, whatever n.
+  int pixel_samples = 1;
+
+  /// Whether nothing changes: every pixel sees the ray through its centre.
+  bool is_sharp() const { return kind == Kind::none && pixel_samples == 1; }
+
+  /// Radius of the disc of confusion of what is `distance_m` away; NaN: infinitely far [px].
+  ///   r = f^2 / (2 k (z_f - f)) |1 - z_f / z| / pitch,  k the f-number, z_f the focus distance
+  double disc_radius_px(double distance_m) const;
+
+  /// @throws std::invalid_argument naming the field as lens.*, value and rule
+  void validate() const;
+
+  friend bool operator==(const LensBlur&, const LensBlur&) = default;
 };
 
 /// Light levels, as photo-electron rates were the sensor fully open.
@@ -236,8 +270,19 @@ struct Camera {
   int samples = 240;  ///< N, samples per period, 8 .. 65536
   LightSource light;
   Sensor sensor;
-  std::optional<Lens> lens;
+  std::optional<Lens> lens;      ///< the pinhole: four keys of [lens]
+  std::optional<LensBlur> blur;  ///< the other keys of [lens]; none: sharp
   OperatingRange operating;
+
+  /// Time from the beginning of a frame to that of the next [s]: sensor.frame_period_s, or as long
+  /// as the exposures take, each with its gap.
+  /// @throws std::invalid_argument if frame_period_s is shorter than those
+  double frame_period_s(int exposures) const;
+  /// Middle of an exposure [s], from the beginning of frame 0: exposures follow one another, with a
+  /// gap after each.
+  double exposure_middle_s(int frame, int exposure, int exposures) const;
+  /// Middle between the beginning of a frame's first exposure and the end of its last [s].
+  double frame_middle_s(int frame, int exposures) const;
 
   /// Depth after which everything repeats [m]: c / (2 f0).
   double range_m() const;

@@ -36,6 +36,10 @@ namespace tofsmith {
 ///   { image = "cover.png", linear = false, albedo = 1, period_m = 0.1 }   see read_albedo();
 ///         scaled as a whole if brighter than 1; albedo multiplies it, period_m is its width
 ///
+/// Shapes and the camera may move steadily, as Motion says: velocity_m_per_s = [x, y, z];
+/// turn_deg_per_s = [x, y, z], the axis times the rate, about turn_centre_m, which moves along
+/// (a shape's middle: point_m, centre_m, position_m or the middle of a capsule; the camera itself).
+///
 /// Files are named from where the scene stands.
 /// @param source_name  path of the file, or what errors shall call it
 /// @param settings  keys that replace those of the file, such as "view.width_px=640"
@@ -58,13 +62,15 @@ struct SceneSource {
   std::optional<int> width;       ///< of a built-in scene or a mesh, 1 .. 16384; 320
   std::optional<int> height;      ///< as width; 240
   std::optional<double> scale_m;  ///< metres per unit of a mesh, > 0; 1
+  double time_s = 0.0;            ///< when a scene that moves is looked at [s]
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<SceneSource> auto& s) {
   return std::tuple(Field("scene", s.scene), Field("image", s.image),
                     Field("ambient_image", s.ambient_image), Field("kind", s.kind),
                     Field("linear_image", s.linear_image), Field("width", s.width, "in [1, 16384]"),
-                    Field("height", s.height, "in [1, 16384]"), Field("scale_m", s.scale_m, "> 0"));
+                    Field("height", s.height, "in [1, 16384]"), Field("scale_m", s.scale_m, "> 0"),
+                    Field("time_s", s.time_s, "finite"));
 }
 
 /// A scene and the pinhole it is seen through.
@@ -72,7 +78,7 @@ struct LoadedScene {
   std::string name;
   SceneImage image;
   PinholeView view;
-  std::optional<StagedScene> staged;  ///< its surfaces; none: a depth image has none
+  std::optional<StagedScene> staged;  ///< its surfaces at time 0; none: a depth image has none
 };
 
 /// Reads a depth image with its albedo, or casts the rays of a scene. z-depth becomes radial

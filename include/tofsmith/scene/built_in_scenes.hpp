@@ -12,11 +12,39 @@
 
 namespace tofsmith {
 
-/// A scene, and the place from which it is seen.
+/// A steady motion: a rigid body turns about a centre that moves straight on. Axes are the world's.
+struct Motion {
+  Eigen::Vector3d velocity_m_per_s = Eigen::Vector3d::Zero();  ///< of the centre [m/s]
+  /// Along the axis it turns about, by the right-hand rule; its length is the rate [rad/s].
+  Eigen::Vector3d turn_rad_per_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d turn_centre_m = Eigen::Vector3d::Zero();  ///< the centre at time 0 [m]
+
+  bool is_still() const { return velocity_m_per_s.isZero(0.0) && turn_rad_per_s.isZero(0.0); }
+  /// From where a point of the body is at time 0 to where it is then: c + v t + R(t) (x - c).
+  Eigen::Isometry3d at(double time_s) const;
+
+  /// @throws std::invalid_argument naming `field`.member, value and rule
+  void validate(std::string_view field) const;
+};
+
+/// A shape, moved as a rigid body. Textures of planes, spheres and capsules do not turn with them:
+/// they keep to axes that these shapes do not say.
+Shape moved(const Shape& shape, const Eigen::Isometry3d& motion);
+
+/// A scene, and the place from which it is seen, at time 0.
 struct StagedScene {
   std::vector<Shape> shapes;
   PinholeView view;
   Eigen::Isometry3d camera_to_world = Eigen::Isometry3d::Identity();
+  Motion camera_motion = {};
+  std::vector<Motion> shape_motions = {};  ///< one for each shape; empty: they stand still
+
+  /// Whether anything moves.
+  bool is_still() const;
+  bool shapes_are_still() const;
+  /// The scene as it is then, without motions.
+  /// @throws std::invalid_argument if motions are not finite, or not one for each shape
+  StagedScene at(double time_s) const;
 };
 
 /// Names that built_in_scene knows.
@@ -35,6 +63,8 @@ std::vector<std::string> built_in_scene_names();
 /// | room      | the same, and 2 a floor 1 m below the camera, of albedo 0.4                    |
 /// | hand      | capsules only: an open right hand, palm to the camera, 19 cm from the wrist to |
 /// |           | the tip of the middle finger, about 0.5 m away, with its forearm; no background |
+/// | moving-   | the hand, 8 cm left of there and moving right at 1 m/s, before a wall at 1 m:   |
+/// |  hand     | the last shape                                                                 |
 ///
 /// @param width, height  resolution of the pinhole camera, > 0
 /// @throws std::invalid_argument for an unknown name, with the nearest known one

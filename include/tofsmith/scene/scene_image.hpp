@@ -41,6 +41,9 @@ struct PinholeView {
   /// @param horizontal_angle_rad  between the first and the last column's outer edges, in (0, pi)
   static PinholeView centred(int width, int height, double horizontal_angle_rad);
 
+  /// The same view in n x n parts of each pixel, each a pixel of its own.
+  PinholeView divided(int n) const;
+
   /// Unit vector from the origin through a pixel's centre.
   Eigen::Vector3d ray(int row, int column) const;
   /// Radial distance over z-depth in a pixel, >= 1.

@@ -43,7 +43,7 @@ double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,
 
 /// Raw measurements of a scene, (F, H, W, K): electrons, or counts if the sensor has an ADC.
 /// Depth beyond the unambiguous range wraps, as in a camera. A pixel without return sees ambient
-/// light only.
+/// light only. A lens (Camera::blur) blurs over the image's pixels; staged_capture.hpp casts rays.
 /// @throws std::invalid_argument if scene, camera or options are invalid, or the code does not fit
 ///         the camera; Interrupted if progress says so
 /// @note the noise of a pixel depends on (seed, pixel, frame) alone: same bits for any number of

@@ -17,6 +17,8 @@ namespace tofsmith::camera_fields {
 inline constexpr EnumWords<NoiseModel, 2> noise_models("NoiseModel", "noise", "poisson",
                                                        "gaussian");
 inline constexpr EnumWords<Readout, 2> readouts("Readout", "readout", "separate", "difference");
+inline constexpr EnumWords<LensBlur::Kind, 3> blurs("LensBlur::Kind", "blur", "none", "gaussian",
+                                                    "disc");
 
 /// The member that a reader may change and a writer only sees.
 template <typename Table, typename Value>
@@ -78,14 +80,46 @@ void visit_sensor(Table& table, Field<Table, Sensor>& sensor) {
   table.value("shortest_pulse_s", sensor.shortest_pulse_s);
   table.value("drain", sensor.drain);
   table.choice("readout", sensor.readout, readouts);
+  table.value("readout_gap_s", sensor.readout_gap_s);
+  table.value("frame_period_s", sensor.frame_period_s);
 }
 
 template <typename Table>
-void visit_lens(Table& table, Field<Table, Lens>& lens) {
+void visit_pinhole(Table& table, Field<Table, Lens>& lens) {
   table.required("fx_px", "525.0").value("fx_px", lens.fx_px);
   table.required("fy_px", "525.0").value("fy_px", lens.fy_px);
   table.required("cx_px", "319.5").value("cx_px", lens.cx_px);
   table.required("cy_px", "239.5").value("cy_px", lens.cy_px);
+}
+
+template <typename Table>
+void visit_blur(Table& table, Field<Table, LensBlur>& blur) {
+  using Kind = LensBlur::Kind;
+  table.choice("blur", blur.kind, blurs);
+  if (blur.kind == Kind::gaussian)
+    table.required("blur_sigma_px", "0.5").value("blur_sigma_px", blur.blur_sigma_px);
+  else
+    table.refuse({"blur_sigma_px"}, "blur = \"gaussian\"");
+  if (blur.kind == Kind::disc) {
+    table.required("focal_length_m", "4e-3").value("focal_length_m", blur.focal_length_m);
+    table.required("f_number", "1.4").value("f_number", blur.f_number);
+    table.required("focus_distance_m", "1.0").value("focus_distance_m", blur.focus_distance_m);
+    table.required("pixel_pitch_m", "10e-6").value("pixel_pitch_m", blur.pixel_pitch_m);
+  } else {
+    table.refuse({"focal_length_m", "f_number", "focus_distance_m", "pixel_pitch_m"},
+                 "blur = \"disc\"");
+  }
+  table.value("pixel_samples", blur.pixel_samples);
+}
+
+/// The pinhole and the blur, each there if one of its keys is.
+template <typename Table>
+void visit_lens(Table& table, Field<Table, Camera>& camera) {
+  table.part(camera.lens, {"fx_px", "fy_px", "cx_px", "cy_px"}, visit_pinhole<Table>);
+  table.part(camera.blur,
+             {"blur", "blur_sigma_px", "focal_length_m", "f_number", "focus_distance_m",
+              "pixel_pitch_m", "pixel_samples"},
+             visit_blur<Table>);
 }
 
 template <typename Table>
@@ -113,7 +147,7 @@ void visit_camera(Table& table, Field<Table, Camera>& camera) {
   table.value("samples", camera.samples);
   table.table("light", camera.light, visit_light<Table>);
   table.table("sensor", camera.sensor, visit_sensor<Table>);
-  table.table("lens", camera.lens, visit_lens<Table>);
+  table.table("lens", camera, visit_lens<Table>);
   table.table("operating", camera.operating, visit_operating<Table>);
 }
 

@@ -42,6 +42,11 @@ class KeyCollector {
   void table(std::string_view key, std::optional<Value>& target, Fields&& fields) {
     table(key, target.emplace(), fields);
   }
+  template <typename Value, typename Fields>
+  void part(std::optional<Value>& target, std::initializer_list<std::string_view> /*keys*/,
+            Fields&& fields) {
+    fields(*this, target.emplace());
+  }
   KeyCollector& required(std::string_view /*key*/, std::string_view /*example*/) { return *this; }
   void refuse(std::initializer_list<std::string_view> keys, std::string_view /*condition*/) {
     for (const std::string_view key : keys) add(key);

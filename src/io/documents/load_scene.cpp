@@ -94,8 +94,9 @@ LoadedScene depth_image(const SceneSource& source, const std::optional<Lens>& le
 LoadedScene load(const SceneSource& source, SceneKind kind, const std::optional<Lens>& lens) {
   if (kind == SceneKind::depth_image) return depth_image(source, lens);
   StagedScene staged = staged_scene(source, kind);
-  SceneImage image = ray_cast(staged.shapes, staged.view, staged.camera_to_world, embree_search());
-  check_view(staged, image);
+  const StagedScene now = staged.at(source.time_s);
+  SceneImage image = ray_cast(now.shapes, now.view, now.camera_to_world, embree_search());
+  check_view(now, image);
   return {kind == SceneKind::built_in ? source.scene : fs::path(source.scene).stem().string(),
           std::move(image), staged.view, std::move(staged)};
 }

@@ -178,25 +178,44 @@ Eigen::Matrix3d looking_along(const TableReader& table, const Eigen::Vector3d& d
   return axes;
 }
 
-void read_camera(TableReader& table, Eigen::Isometry3d& camera_to_world) {
+/// Where a shape turns about unless the file says another place: its middle.
+Eigen::Vector3d middle_of(const Plane& plane) { return plane.point; }
+Eigen::Vector3d middle_of(const Box& box) { return box.centre; }
+Eigen::Vector3d middle_of(const Sphere& sphere) { return sphere.centre; }
+Eigen::Vector3d middle_of(const Capsule& capsule) { return 0.5 * (capsule.start + capsule.end); }
+Eigen::Vector3d middle_of(const Mesh& mesh) { return mesh.mesh_to_world.translation(); }
+
+Motion read_motion(TableReader& table, const Eigen::Vector3d& middle) {
+  Motion motion{.turn_centre_m = middle};
+  table.value("velocity_m_per_s", motion.velocity_m_per_s);
+  Eigen::Vector3d turn_deg_per_s = Eigen::Vector3d::Zero();
+  table.value("turn_deg_per_s", turn_deg_per_s);
+  motion.turn_rad_per_s = rad_per_deg * turn_deg_per_s;
+  if (!table.contains("turn_deg_per_s")) table.refuse({"turn_centre_m"}, "turn_deg_per_s");
+  table.value("turn_centre_m", motion.turn_centre_m);
+  return motion;
+}
+
+void read_camera(TableReader& table, StagedScene& scene) {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
   std::optional<Eigen::Vector3d> look_at_m;
   table.value("position_m", position_m);
   table.value("look_at_m", look_at_m);
   if (look_at_m) table.refuse({"rotation_deg"}, "no look_at_m beside it");
-  camera_to_world.translation() = position_m;
-  camera_to_world.linear() =
+  scene.camera_to_world.translation() = position_m;
+  scene.camera_to_world.linear() =
       look_at_m ? looking_along(table, *look_at_m - position_m) : read_rotation(table);
+  scene.camera_motion = read_motion(table, position_m);
 }
 
 /// All shapes of one kind.
 template <typename Read>
-void read_shapes(TableReader& table, std::string_view key, std::vector<Shape>& shapes,
-                 Read&& read) {
+void read_shapes(TableReader& table, std::string_view key, StagedScene& scene, Read&& read) {
   table.tables(key, [&](TableReader& inner) {
     auto shape = read(inner);
     read_surface(inner, shape.texture);
-    shapes.push_back(std::move(shape));
+    scene.shape_motions.push_back(read_motion(inner, middle_of(shape)));
+    scene.shapes.push_back(std::move(shape));
   });
 }
 
@@ -212,17 +231,18 @@ StagedScene parse_scene_toml(std::string_view text, std::string_view source_name
   TableReader::Places places;
   TableReader table(document, places);
   table.table("view", scene.view, read_view);
-  table.table("camera", scene.camera_to_world, read_camera);
-  read_shapes(table, "plane", scene.shapes, read_plane);
-  read_shapes(table, "box", scene.shapes, read_box);
-  read_shapes(table, "sphere", scene.shapes, read_sphere);
-  read_shapes(table, "capsule", scene.shapes, read_capsule);
-  read_shapes(table, "mesh", scene.shapes, read_placed_mesh);
+  table.table("camera", scene, read_camera);
+  read_shapes(table, "plane", scene, read_plane);
+  read_shapes(table, "box", scene, read_box);
+  read_shapes(table, "sphere", scene, read_sphere);
+  read_shapes(table, "capsule", scene, read_capsule);
+  read_shapes(table, "mesh", scene, read_placed_mesh);
   table.finish();
   if (scene.shapes.empty())
     throw IoError(source_name,
                   "found no shapes; expected [[plane]], [[box]], [[sphere]], [[capsule]] or "
                   "[[mesh]]");
+  if (scene.shapes_are_still()) scene.shape_motions.clear();
   return scene;
 }
 

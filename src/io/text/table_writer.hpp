@@ -41,7 +41,12 @@ class TableWriter {
   void table(std::string_view key, const Value& source, Fields&& fields) {
     TableWriter inner;
     fields(inner, source);
-    value(key, inner.document_);
+    if (!inner.document_.empty()) value(key, inner.document_);
+  }
+  template <typename Value, typename Fields>
+  void part(const std::optional<Value>& source, std::initializer_list<std::string_view> /*keys*/,
+            Fields&& fields) {
+    if (source) fields(*this, *source);
   }
   template <typename Value, typename Fields>
   void table(std::string_view key, const std::optional<Value>& source, Fields&& fields) {

@@ -18,15 +18,33 @@ class RowCapture {
   RowCapture(const SceneImage& scene, const SceneLight& light, const ForwardModel& model,
              const Camera& camera, const CaptureOptions& options);
 
+  /// From now on, another scene of the same camera. @param light  validated; both must outlive it
+  void see(const SceneImage& scene, const SceneLight& light, const ForwardModel& model,
+           const Camera& camera);
+
   int measurements() const { return pixel_.measurements(); }
+  int tap_values() const { return pixel_.tap_values(); }
+  const SceneImage& scene() const { return *scene_; }
   /// Raw measurements of one row of one frame, (W, K).
   void row(int frame, int row, float* raw) const;
+
+  // The same in two steps, for what falls on pixels in other ways than one ray on each.
+
+  /// S chi of every tap value, of all ways by which light comes back to a place of the scene.
+  /// @param work, light  (tap values), overwritten
+  void light_at(int row, int column, std::vector<double>& work, std::vector<double>& light) const;
+  double ambient_e_per_s(int row, int column) const;
+  /// Where ambient light is the same everywhere.
+  double ambient_e_per_s() const { return options_.ambient_e_per_s; }
+  /// Raw measurements of a pixel, the i-th of its frame. @param light  overwritten
+  void expose(int frame, std::uint64_t pixel, double ambient_e_per_s, std::vector<double>& light,
+              float* raw) const;
 
  private:
   void add_all_light(int row, int column, std::vector<double>& work,
                      std::vector<double>& light) const;
 
-  const SceneImage& scene_;
+  const SceneImage* scene_;
   const SceneLight* light_ = nullptr;  // none: direct light alone
   double bin_m_;
   CaptureOptions options_;

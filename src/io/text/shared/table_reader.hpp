@@ -116,6 +116,15 @@ class TableReader {
     if (contains(key)) table(key, target.emplace(), fields);
   }
 
+  /// Reads fields that stand in this table, when one of their keys is there.
+  template <typename Value, typename Fields>
+  void part(std::optional<Value>& target, std::initializer_list<std::string_view> keys,
+            Fields&& fields) {
+    bool is_there = false;
+    for (const std::string_view key : keys) is_there = contains(key) || is_there;
+    if (is_there) fields(*this, target.emplace());
+  }
+
   /// Reads every table of a list of them, [[key]]: `fields(TableReader&)`. They are called key[0],
   /// key[1] ..
   template <typename Fields>

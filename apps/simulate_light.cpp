@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "simulate_light.hpp"
+
+#include <fmt/format.h>
+
+#include "number_checks.hpp"
+#include "tap_arguments.hpp"
+#include "terminal_progress.hpp"
+#include "tofsmith/io/depth_file.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+/// Of "delta=1.0,ratio=.3", in any order.
+MultipathReturn parse_multipath_return(const std::string& text) {
+  std::optional<float> delay_m, ratio;
+  for (const std::string& part : CLI::detail::split(text, ',')) {
+    const std::size_t equals = part.find('=');
+    const std::string key = part.substr(0, equals);
+    float value = 0.0f;
+    const bool is_number =
+        equals != std::string::npos && CLI::detail::lexical_cast(part.substr(equals + 1), value);
+    if (!is_number || (key != "delta" && key != "ratio"))
+      throw UsageError(fmt::format("--multipath {}: found '{}'; expected delta=METRES,ratio=NUMBER",
+                                   text, part));
+    (key == "delta" ? delay_m : ratio) = value;
+  }
+  if (!delay_m || !ratio)
+    throw UsageError(fmt::format("--multipath {}: found no {}; expected delta=METRES,ratio=NUMBER",
+                                 text, delay_m ? "ratio" : "delta"));
+  return {*delay_m, *ratio};
+}
+
+}  // namespace
+
+void MultipathLightArguments::add_to(CLI::App& command) {
+  command.add_option("--multipath", multipath_,
+                     "a return behind every direct one: delta=METRES,ratio=NUMBER; several in "
+                     "order of their delays");
+  CLI::Option* tail =
+      command
+          .add_option("--tail", tail_m_,
+                      "light that trails off behind every direct return: its mean delay [m]")
+          ->check(positive_number());
+  command.add_option("--tail-ratio", tail_ratio_, "all light of the tail over the direct return's")
+      ->check(number_from_0_on())
+      ->capture_default_str()
+      ->needs(tail);
+  command.add_option("--multipath-file", returns_,
+                     "multipath returns of every pixel (.npz: first, distance_m, ratio)");
+  CLI::Option* transient = command.add_option(
+      "--transient", transient_,
+      "light by time, over which each pixel's signal is spread: a histogram (T,) for all pixels "
+      "or (H,W,T) (.npy)");
+  command.add_option("--transient-bin-s", transient_bin_s_, "time that one of its bins takes [s]")
+      ->check(positive_number())
+      ->needs(transient);
+  command
+      .add_option("--transient-origin", transient_origin_,
+                  "what is at the pixel's depth: the histogram's first bin, or its peak")
+      ->check(one_of({"first", "peak"}))
+      ->capture_default_str()
+      ->needs(transient);
+  command
+      .add_option("--transient-background", transient_background_,
+                  "constant counts to take off each histogram first")
+      ->check(one_of({"none", "median"}))
+      ->capture_default_str()
+      ->needs(transient);
+  CLI::Option* bounces =
+      command
+          .add_option("--bounces", bounces_,
+                      "1: also light that one other surface of the scene sends on, gathered by "
+                      "rays; 0: none")
+          ->check(CLI::Range(0, 1))
+          ->capture_default_str();
+  command
+      .add_option("--bounce-rays", bounce_.rays,
+                  "rays by which each pixel gathers it; noise falls a little faster than their "
+                  "square root")
+      ->check(CLI::Range(16, 65536))
+      ->capture_default_str()
+      ->needs(bounces);
+  command.add_option("--truth-multipath", truth_,
+                     "also write the true distance and signal of every return (.npz)");
+}
+
+MultipathReturns MultipathLightArguments::bounced(const LoadedScene& scene,
+                                                  const Camera& camera) const {
+  if (!multipath_.empty() || !returns_.empty() || !transient_.empty())
+    throw UsageError(
+        "--bounces: found beside --multipath, --multipath-file or --transient; expected one of "
+        "them");
+  return bounced_light_of(scene, camera, bounce_, terminal_progress("gathering light"));
+}
+
+SceneLight MultipathLightArguments::load(const LoadedScene& loaded, const Camera& camera) const {
+  const SceneImage& scene = loaded.image;
+  if (!transient_.empty() && (!multipath_.empty() || tail_m_ || !returns_.empty()))
+    throw UsageError(
+        "--transient: found beside --multipath, --tail or --multipath-file; expected alone, as it "
+        "holds all light of a pixel");
+  if (!returns_.empty() && !multipath_.empty())
+    throw UsageError("--multipath-file: found beside --multipath; expected one of them");
+  if (!transient_.empty() && !transient_bin_s_)
+    throw UsageError(
+        "--transient: found no --transient-bin-s; expected the time of one bin in seconds");
+  SceneLight light;
+  if (!multipath_.empty()) {
+    std::vector<MultipathReturn> behind;
+    for (const std::string& text : multipath_) behind.push_back(parse_multipath_return(text));
+    light.returns = behind_every_pixel(scene, behind);
+  }
+  if (!returns_.empty())
+    light.returns = read_multipath_returns(returns_, scene.height(), scene.width());
+  if (bounces_ > 0) light.returns = bounced(loaded, camera);
+  if (tail_m_) light.tail = ExponentialTail{*tail_m_, tail_ratio_};
+  if (!transient_.empty())
+    light.transients = read_transients(
+        transient_, scene.height(), scene.width(),
+        {.bin_s = *transient_bin_s_,
+         .origin = transient_origin_ == "peak" ? TransientOrigin::peak : TransientOrigin::first,
+         .subtract_median = transient_background_ == "median"});
+  light.validate(scene, camera);
+  return light;
+}
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tofsmith/camera/camera.hpp"
+
+namespace tofsmith {
+
+/// Share of its light that a ray brings to a pixel, along one axis. Rays stand evenly, `samples` to
+/// a pixel, and each stands for the light of its part of the pixel, spread by a Gaussian:
+///   w_j = integral over part j of [Phi((1/2 - s) / sigma) - Phi((-1/2 - s) / sigma)] ds,
+/// s from the pixel's centre [px]. So a scene that is constant over each part is blurred exactly.
+struct AxisKernel {
+  int reach = 0;                ///< rays beyond either side of the pixel that matter
+  std::vector<double> weights;  ///< of rays -reach .. samples - 1 + reach; sum 1
+
+  /// @param sigma_px  0: the rays of the pixel alone
+  AxisKernel(double sigma_px, int samples);
+};
+
+/// Where the light of a disc falls: share of each pixel about the one its ray is in.
+struct DiscKernel {
+  int reach = 0;                ///< pixels to either side
+  std::vector<double> weights;  ///< (2 reach + 1)^2, row by row; sum 1
+  double largest = 0.0;         ///< of the weights
+
+  double at(int row, int column) const {
+    return weights[static_cast<std::size_t>((row + reach) * (2 * reach + 1) + column + reach)];
+  }
+};
+
+/// Area of the disc about the origin within [x0, x1] x [y0, y1].
+double disc_area(double radius, double x0, double x1, double y0, double y1);
+
+/// Discs of confusion of all distances of a scene, with radii rounded to steps of 2 %.
+class DiscKernels {
+ public:
+  /// @throws std::invalid_argument if a disc is larger than is simulated
+  DiscKernels(const LensBlur& blur, int samples, std::span<const float> distances_m);
+
+  /// Of a ray, by its distance [m] (NaN: infinite) and its place among the rays of its pixel.
+  const DiscKernel& of(float distance_m, int row, int column) const;
+  int reach() const { return reach_; }  ///< the largest [px]
+
+ private:
+  static constexpr int sharp = -1;
+  int step_of(float distance_m) const;
+
+  LensBlur blur_;
+  int samples_;
+  int reach_ = 0;
+  DiscKernel point_;
+  int first_step_ = 0;
+  std::vector<std::vector<DiscKernel>> steps_;  // (steps, samples^2); empty: no such distance
+};
+
+}  // namespace tofsmith

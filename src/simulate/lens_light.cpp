@@ -1,0 +1,258 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "simulate/lens_light.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "simulate/lens_kernels.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// A ray counts as one that a pixel sees if it weighs at least this share of the heaviest.
+constexpr double seen_share = 0.02;
+
+/// Where index i of a line goes on as its mirror image.
+int mirrored(int i, int size) {
+  const int period = 2 * size;
+  const int place = ((i % period) + period) % period;
+  return place < size ? place : period - 1 - place;
+}
+
+int floor_division(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+
+/// Rows of pixels that are summed up together, and what rows of rays add to them. Channels are tap
+/// values of the range, and ambient light if it varies.
+class Band {
+ public:
+  Band(const RowCapture& rays, int samples, TapRange range, int first_row, int rows)
+      : rays_(rays),
+        samples_(samples),
+        range_(range),
+        has_ambient_(range.first == 0 && !rays.scene().ambient_scale.empty()),
+        first_row_(first_row),
+        rows_(rows),
+        width_(rays.scene().width() / samples),
+        channels_(range.count + (has_ambient_ ? 1 : 0)),
+        sums_(values(rows * width_), 0.0),
+        near_m_(rows, width_, std::numeric_limits<float>::infinity()),
+        far_m_(rows, width_, 0.0f),
+        line_(values(rays.scene().width())),
+        work_(static_cast<std::size_t>(rays.tap_values())),
+        light_(work_.size()) {}
+
+  /// What each ray of a row brings, on rays.
+  void read_rays(int row) {
+    if (row == row_read_) return;
+    row_read_ = row;
+    double* out = line_.data();
+    for (int column = 0; column < rays_.scene().width(); ++column, out += channels_) {
+      rays_.light_at(row, column, work_, light_);
+      std::copy_n(light_.begin() + range_.first, range_.count, out);
+      if (has_ambient_) out[range_.count] = rays_.ambient_e_per_s(row, column);
+    }
+  }
+
+  /// Adds a row of rays by the same kernel for both axes; `row` may lie beyond the border.
+  void add_row(int row, const AxisKernel& kernel) {
+    const int ray_row = mirrored(row, rays_.scene().height());
+    read_rays(ray_row);
+    gather_row(ray_row, kernel);
+    const int rays_of_kernel = static_cast<int>(kernel.weights.size());
+    for (int r = 0; r < rows_; ++r) {
+      const int place = row - (first_row_ + r) * samples_ + kernel.reach;
+      if (place < 0 || place >= rays_of_kernel) continue;
+      const double weight = kernel.weights[static_cast<std::size_t>(place)];
+      double* out = sums_.data() + values(r * width_);
+      for (std::size_t i = 0; i < gathered_.size(); ++i) out[i] += weight * gathered_[i];
+      if (is_seen(kernel, place))
+        for (int column = 0; column < width_; ++column)
+          see(r, column, gathered_near_m_[static_cast<std::size_t>(column)],
+              gathered_far_m_[static_cast<std::size_t>(column)]);
+    }
+  }
+
+  /// Adds a row of rays by the disc of each.
+  void add_row(int row, const DiscKernels& kernels) {
+    const int ray_row = mirrored(row, rays_.scene().height());
+    read_rays(ray_row);
+    const double share = 1.0 / (samples_ * samples_);
+    const int pixel_row = floor_division(row, samples_);
+    const int beyond = (kernels.reach() + 1) * samples_;
+    for (int column = -beyond; column < rays_.scene().width() + beyond; ++column) {
+      const int ray_column = mirrored(column, rays_.scene().width());
+      const float depth_m = rays_.scene().depth_m(ray_row, ray_column);
+      const int pixel_column = floor_division(column, samples_);
+      const DiscKernel& kernel =
+          kernels.of(depth_m, row - pixel_row * samples_, column - pixel_column * samples_);
+      const double* light = line_.data() + values(ray_column);
+      const double least = seen_share * kernel.largest;
+      const int top = std::max(pixel_row - kernel.reach, first_row_);
+      const int bottom = std::min(pixel_row + kernel.reach, first_row_ + rows_ - 1);
+      const int left = std::max(pixel_column - kernel.reach, 0);
+      const int right = std::min(pixel_column + kernel.reach, width_ - 1);
+      for (int r = top; r <= bottom; ++r)
+        for (int c = left; c <= right; ++c) {
+          const double part = kernel.at(r - pixel_row, c - pixel_column);
+          double* out = sums_.data() + values((r - first_row_) * width_ + c);
+          for (int i = 0; i < channels_; ++i) out[i] += share * part * light[i];
+          if (part >= least) see(r - first_row_, c, depth_m, depth_m);
+        }
+    }
+  }
+
+  void write_to(PixelLight& light) const {
+    for (int r = 0; r < rows_; ++r)
+      for (int c = 0; c < width_; ++c) {
+        const auto pixel =
+            static_cast<std::size_t>(first_row_ + r) * static_cast<std::size_t>(width_) +
+            static_cast<std::size_t>(c);
+        const double* sum = sums_.data() + values(r * width_ + c);
+        std::copy_n(
+            sum, range_.count,
+            light.taps.data() + pixel * static_cast<std::size_t>(light.tap_values) + range_.first);
+        if (has_ambient_) light.ambient[pixel] = sum[range_.count];
+        if (std::isinf(near_m_(r, c))) continue;
+        light.near_m.pixels[pixel] = std::fmin(light.near_m.pixels[pixel], near_m_(r, c));
+        light.far_m.pixels[pixel] = std::fmax(light.far_m.pixels[pixel], far_m_(r, c));
+      }
+  }
+
+ private:
+  std::size_t values(int places) const {
+    return static_cast<std::size_t>(places) * static_cast<std::size_t>(channels_);
+  }
+
+  bool is_seen(const AxisKernel& kernel, int place) const {
+    const double heaviest = kernel.weights[kernel.weights.size() / 2];
+    return kernel.weights[static_cast<std::size_t>(place)] >= seen_share * heaviest;
+  }
+
+  void see(int row, int column, float near_m, float far_m) {
+    if (near_m < near_m_(row, column)) near_m_(row, column) = near_m;  // false for NaN
+    if (far_m > far_m_(row, column)) far_m_(row, column) = far_m;
+  }
+
+  /// The row that was read, summed along itself on pixels.
+  void gather_row(int ray_row, const AxisKernel& kernel) {
+    gathered_.assign(values(width_), 0.0);
+    gathered_near_m_.assign(static_cast<std::size_t>(width_),
+                            std::numeric_limits<float>::infinity());
+    gathered_far_m_.assign(static_cast<std::size_t>(width_), 0.0f);
+    const int rays_of_kernel = static_cast<int>(kernel.weights.size());
+    for (int column = 0; column < width_; ++column) {
+      double* out = gathered_.data() + values(column);
+      for (int place = 0; place < rays_of_kernel; ++place) {
+        const int ray = mirrored(column * samples_ - kernel.reach + place, rays_.scene().width());
+        const double weight = kernel.weights[static_cast<std::size_t>(place)];
+        const double* light = line_.data() + values(ray);
+        for (int i = 0; i < channels_; ++i) out[i] += weight * light[i];
+        if (!is_seen(kernel, place)) continue;
+        const float depth_m = rays_.scene().depth_m(ray_row, ray);
+        auto& near_m = gathered_near_m_[static_cast<std::size_t>(column)];
+        auto& far_m = gathered_far_m_[static_cast<std::size_t>(column)];
+        if (depth_m < near_m) near_m = depth_m;
+        if (depth_m > far_m) far_m = depth_m;
+      }
+    }
+  }
+
+  const RowCapture& rays_;
+  int samples_;
+  TapRange range_;
+  bool has_ambient_;
+  int first_row_, rows_, width_, channels_;
+  std::vector<double> sums_;  // (rows, W, channels)
+  Image<float> near_m_, far_m_;
+  std::vector<double> line_;  // (rays of a row, channels)
+  int row_read_ = -1;
+  std::vector<double> gathered_;  // (W, channels)
+  std::vector<float> gathered_near_m_, gathered_far_m_;
+  std::vector<double> work_, light_;
+};
+
+/// All bands; rows of rays go from `reach_rays` above a band to as many below.
+template <typename Kernel>
+void add_by(const Kernel& kernel, int reach_rays, const RowCapture& rays, int samples,
+            TapRange range, PixelLight& light) {
+  // Rows that bands share are read once for each: taller bands where kernels reach far.
+  const int rows_of_band = std::max(8, 2 * reach_rays / samples);
+  parallel_for_blocks(light.height, rows_of_band, [&](IndexRange rows) {
+    const int first = static_cast<int>(rows.begin), end = static_cast<int>(rows.end);
+    Band band(rays, samples, range, first, end - first);
+    for (int row = first * samples - reach_rays; row < end * samples + reach_rays; ++row)
+      band.add_row(row, kernel);
+    band.write_to(light);
+  });
+}
+
+}  // namespace
+
+RawFrames empty_frames(int frames, int height, int width, int measurements) {
+  RawFrames raw{frames, height, width, measurements, {}};
+  raw.values.resize(raw.pixels_per_frame() * static_cast<std::size_t>(measurements) *
+                    static_cast<std::size_t>(frames));
+  return raw;
+}
+
+RawFrames captured_frames(const RowCapture& source, const PixelLight& light, int frames,
+                          const Progress& progress) {
+  RawFrames raw = empty_frames(frames, light.height, light.width, source.measurements());
+  for (int frame = 0; frame < frames; ++frame) {
+    report(progress, static_cast<double>(frame) / frames, "capture");
+    expose_pixels(source, light, frame, raw.frame(frame));
+  }
+  report(progress, 1.0, "capture");
+  return raw;
+}
+
+PixelLight::PixelLight(int height_, int width_, int tap_values_)
+    : height(height_),
+      width(width_),
+      tap_values(tap_values_),
+      taps(static_cast<std::size_t>(height_) * static_cast<std::size_t>(width_) *
+           static_cast<std::size_t>(tap_values_)),
+      near_m(height_, width_, std::numeric_limits<float>::quiet_NaN()),
+      far_m(near_m) {}
+
+void add_light(const RowCapture& rays, const LensBlur& blur, int samples, TapRange range,
+               PixelLight& light) {
+  const SceneImage& scene = rays.scene();
+  require(scene.height() == light.height * samples && scene.width() == light.width * samples,
+          "size of the image of rays", fmt::format("{} x {}", scene.height(), scene.width()),
+          fmt::format("must be {0} x {1}, {2} x {2} for each pixel", light.height * samples,
+                      light.width * samples, samples));
+  if (range.first == 0 && !scene.ambient_scale.empty())
+    light.ambient.assign(light.near_m.size(), 0.0);
+  if (blur.kind == LensBlur::Kind::disc) {
+    const DiscKernels kernels(blur, samples, scene.depth_m.pixels);
+    return add_by(kernels, (kernels.reach() + 1) * samples, rays, samples, range, light);
+  }
+  const AxisKernel kernel(blur.kind == LensBlur::Kind::gaussian ? blur.blur_sigma_px : 0.0,
+                          samples);
+  add_by(kernel, kernel.reach, rays, samples, range, light);
+}
+
+void expose_pixels(const RowCapture& source, const PixelLight& light, int frame, float* raw) {
+  const auto taps = static_cast<std::ptrdiff_t>(light.tap_values);
+  parallel_for(light.height, [&](std::int64_t row) {
+    std::vector<double> values(static_cast<std::size_t>(taps));
+    for (std::int64_t pixel = row * light.width; pixel < (row + 1) * light.width; ++pixel) {
+      std::copy_n(light.taps.begin() + pixel * taps, taps, values.begin());
+      const double ambient_e_per_s = light.ambient.empty()
+                                         ? source.ambient_e_per_s()
+                                         : light.ambient[static_cast<std::size_t>(pixel)];
+      source.expose(frame, static_cast<std::uint64_t>(pixel), ambient_e_per_s, values,
+                    raw + pixel * source.measurements());
+    }
+  });
+}
+
+}  // namespace tofsmith

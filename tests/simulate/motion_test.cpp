@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/simulate/staged_capture.hpp"
+
+namespace tofsmith {
+namespace {
+
+/// Four exposures of 10 ms with gaps of 2 ms; a frame every 60 ms.
+Camera timed_camera() {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.exposure_s.total_s = 40e-3;
+  camera.sensor.readout_gap_s = 2e-3;
+  camera.sensor.frame_period_s = 60e-3;
+  return camera;
+}
+
+CodeSet code_of(const Camera& camera) { return build_family("hamiltonian-k4", camera); }
+
+/// A wall that comes nearer, seen along its normal.
+StagedScene approaching_wall(double velocity_m_per_s) {
+  StagedScene scene{.shapes = {Plane{.point = {0, 0, 3.0}, .texture = {.image = {}}}},
+                    .view = PinholeView::centred(6, 4, 0.5)};
+  scene.shape_motions = {Motion{.velocity_m_per_s = {0, 0, -velocity_m_per_s}}};
+  return scene;
+}
+
+TEST(Motion, ExposuresFollowOneAnotherWithTheirGaps) {
+  Camera camera = timed_camera();
+  EXPECT_DOUBLE_EQ(camera.exposure_middle_s(0, 0, 4), 5e-3);
+  EXPECT_DOUBLE_EQ(camera.exposure_middle_s(0, 3, 4), 41e-3);
+  EXPECT_DOUBLE_EQ(camera.exposure_middle_s(2, 1, 4), 137e-3);
+  EXPECT_DOUBLE_EQ(camera.frame_middle_s(0, 4), 23e-3);
+  camera.sensor.frame_period_s.reset();
+  EXPECT_DOUBLE_EQ(camera.frame_period_s(4), 48e-3);
+  camera.sensor.readout_gap_s.reset();
+  EXPECT_DOUBLE_EQ(camera.frame_period_s(4), 40e-3);
+  camera.exposure_s.each_s = {1e-3, 2e-3, 3e-3, 4e-3};
+  EXPECT_DOUBLE_EQ(camera.exposure_middle_s(1, 2, 4), 14.5e-3);
+  camera.sensor.frame_period_s = 9e-3;
+  EXPECT_THROW(camera.frame_period_s(4), InvalidArgument);
+}
+
+TEST(Motion, AShapeIsDisplacedByItsVelocityInTheMiddleOfEachFrame) {
+  const Camera camera = timed_camera();
+  const StagedCapture made = capture(approaching_wall(2.0), code_of(camera), camera, {.frames = 3});
+  ASSERT_EQ(made.truth.size(), 3u);
+  for (int frame = 0; frame < 3; ++frame) {
+    const double z_m = 3.0 - 2.0 * (23e-3 + frame * 60e-3);
+    const PinholeView view = approaching_wall(0.0).view;
+    const auto at = static_cast<std::size_t>(frame);
+    EXPECT_NEAR(made.truth[at].depth_m(1, 2), z_m * view.radial_per_z(1, 2), 1e-5);
+    // From the first exposure to the last.
+    EXPECT_NEAR(made.far_m[at](1, 2) - made.near_m[at](1, 2), 2.0 * 36e-3 * view.radial_per_z(1, 2),
+                1e-5);
+  }
+}
+
+TEST(Motion, EveryExposureSeesTheSceneOfItsOwnTime) {
+  Camera camera = timed_camera();
+  camera.sensor.taps = 2;
+  const CodeSet code = code_of(camera);
+  const StagedScene scene = approaching_wall(3.0);
+  const CaptureOptions options{.seed = 5};
+  const StagedCapture made = capture(scene, code, camera, options);
+  ASSERT_EQ(made.raw.measurements, 8);
+  for (int exposure = 0; exposure < 4; ++exposure) {
+    // As if all of the frame were captured then: the same light in this exposure's taps. Its noise
+    // draws on the same stream, at the same place in it for normal noise.
+    const StagedScene then = scene.at(camera.exposure_middle_s(0, exposure, 4));
+    const StagedCapture still = capture(then, code, camera, options);
+    for (std::size_t pixel = 0; pixel < 24; ++pixel)
+      for (int tap = 2 * exposure; tap < 2 * exposure + 2; ++tap) {
+        const std::size_t i = 8 * pixel + static_cast<std::size_t>(tap);
+        EXPECT_EQ(made.raw.values[i], still.raw.values[i]);
+      }
+    EXPECT_NE(made.raw.values, still.raw.values);
+  }
+}
+
+TEST(Motion, TurnsAboutItsCentreWhichMovesAlong) {
+  const double quarter = 2.0 * std::atan(1.0);
+  const Motion motion{.velocity_m_per_s = {0, 0, 1.0},
+                      .turn_rad_per_s = {0, 0, quarter},
+                      .turn_centre_m = {1.0, 0, 0}};
+  const Eigen::Vector3d moved_point = motion.at(1.0) * Eigen::Vector3d(2.0, 0.0, 0.0);
+  EXPECT_NEAR((moved_point - Eigen::Vector3d(1.0, 1.0, 1.0)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((motion.at(2.0) * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(1, 0, 2)).norm(), 0.0,
+              1e-12);
+  EXPECT_TRUE(motion.at(0.0).isApprox(Eigen::Isometry3d::Identity()));
+}
+
+TEST(Motion, EveryKindOfShapeMovesAsABody) {
+  // The picture of a body moved is that of the body from a camera moved the other way.
+  const Motion motion{.velocity_m_per_s = {0.3, -0.2, 0.5},
+                      .turn_rad_per_s = {0.4, 0.9, -0.3},
+                      .turn_centre_m = {0.1, 0.2, 2.0}};
+  TriangleMesh pyramid{.vertices = {{0, 0, -1}, {1, 0, 0}, {0, 1, 0}, {-1, -1, 0}},
+                       .triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}},
+                       .texture_coordinates = {}};
+  Mesh mesh{.triangles = pyramid, .scale_m = 0.5, .texture = {.image = {}}};
+  mesh.mesh_to_world.translation() = Eigen::Vector3d(0, 0, 2);
+  const PinholeView view = PinholeView::centred(24, 18, 1.2);
+  for (const Shape& shape :
+       {Shape(Plane{.point = {0, 0, 2}, .normal = {0.2, 0.1, -1}, .texture = {.image = {}}}),
+        Shape(Box{.centre = {0, 0, 2}, .size_m = {0.8, 0.5, 0.3}, .texture = {.image = {}}}),
+        Shape(Sphere{.centre = {0.2, 0, 2}, .radius_m = 0.4, .texture = {.image = {}}}),
+        Shape(Capsule{.start = {0, 0, 2}, .end = {0.3, 0.4, 2.2}, .texture = {.image = {}}}),
+        Shape(mesh)}) {
+    StagedScene shape_moves{.shapes = {shape}, .view = view};
+    shape_moves.shape_motions = {motion};
+    const StagedScene now = shape_moves.at(0.4);
+    const SceneImage seen = ray_cast(now.shapes, view, now.camera_to_world);
+    const std::vector<Shape> unmoved{shape};
+    const SceneImage other = ray_cast(unmoved, view, motion.at(0.4).inverse());
+    int differ = 0, hits = 0;
+    for (std::size_t i = 0; i < seen.depth_m.size(); ++i) {
+      const float a = seen.depth_m.pixels[i], b = other.depth_m.pixels[i];
+      hits += !std::isnan(a);
+      differ += std::isnan(a) != std::isnan(b) || std::abs(a - b) > 1e-4f;
+    }
+    EXPECT_GT(hits, 5) << shape.index();
+    EXPECT_LE(differ, 1) << shape.index();  // an edge may fall on either side
+  }
+}
+
+TEST(Motion, ACameraThatMovesAwaySeesWhatAnApproachingWallShows) {
+  const Camera camera = timed_camera();
+  StagedScene rides = approaching_wall(0.0);
+  rides.camera_motion.velocity_m_per_s = {0, 0, 2.0};
+  const CaptureOptions options{.frames = 2};
+  const StagedCapture a = capture(rides, code_of(camera), camera, options);
+  const StagedCapture b = capture(approaching_wall(2.0), code_of(camera), camera, options);
+  for (std::size_t i = 0; i < a.raw.values.size(); ++i)
+    EXPECT_NEAR(a.raw.values[i] / b.raw.values[i], 1.0, 1e-5);
+}
+
+TEST(Motion, ScenesThatStandStillAreCapturedAsBefore) {
+  const Camera plain = built_in_camera("paper-10f0");
+  Camera timed = plain;
+  timed.sensor.readout_gap_s = 1e-3;
+  timed.sensor.frame_period_s = 1.0;
+  StagedScene scene = built_in_scene("table-top", 24, 18);
+  const CaptureOptions options{.frames = 2};
+  const RawFrames image = capture(ray_cast(scene.shapes, scene.view, scene.camera_to_world),
+                                  code_of(plain), plain, options);
+  scene.shape_motions.assign(scene.shapes.size(), Motion{.turn_centre_m = {1, 2, 3}});
+  const StagedCapture made = capture(scene, code_of(plain), timed, options);
+  EXPECT_EQ(made.raw.values, image.values);
+  EXPECT_EQ(made.truth.size(), 1u);
+  // And a motion too slow to see goes through the moving capture to the same numbers.
+  scene.camera_motion.velocity_m_per_s = {1e-30, 0, 0};
+  EXPECT_EQ(capture(scene, code_of(plain), timed, options).raw.values, image.values);
+}
+
+TEST(Motion, SameBitsForAnyNumberOfThreads) {
+  Camera camera = timed_camera();
+  camera.blur =
+      LensBlur{.kind = LensBlur::Kind::gaussian, .blur_sigma_px = 0.6, .pixel_samples = 2};
+  const StagedScene scene = built_in_scene("moving-hand", 32, 24);
+  const auto run = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return capture(scene, code_of(camera), camera, {.frames = 2}).raw.values;
+  };
+  const auto one = run(1);
+  EXPECT_EQ(one, run(3));
+}
+
+TEST(Motion, LightByLongerWaysIsThatOfEachTime) {
+  const Camera camera = timed_camera();
+  int asked = 0;
+  const StagedSetup setup{.search_of = {},
+                          .light =
+                              [&](const StagedScene& scene, const SceneImage& rays) {
+                                ++asked;
+                                EXPECT_EQ(scene.view.width, rays.width());
+                                const std::vector<MultipathReturn> behind{{0.5f, 0.2f}};
+                                SceneLight light;
+                                light.returns = behind_every_pixel(rays, behind);
+                                return light;
+                              },
+                          .ambient_scale = {}};
+  const StagedCapture with = capture(approaching_wall(1.0), code_of(camera), camera, {}, setup);
+  EXPECT_EQ(asked, 4);
+  EXPECT_NE(with.raw.values,
+            capture(approaching_wall(1.0), code_of(camera), camera, {}).raw.values);
+}
+
+TEST(Motion, RefusesMotionsThatDoNotFit) {
+  const Camera camera = timed_camera();
+  StagedScene scene = approaching_wall(1.0);
+  scene.shape_motions.emplace_back();
+  EXPECT_THROW(capture(scene, code_of(camera), camera, {}), InvalidArgument);
+  scene.shape_motions = {Motion{.velocity_m_per_s = {std::nan(""), 0, 0}}};
+  EXPECT_THROW(capture(scene, code_of(camera), camera, {}), InvalidArgument);
+  Camera hasty = camera;
+  hasty.sensor.frame_period_s = 10e-3;
+  EXPECT_THROW(capture(approaching_wall(1.0), code_of(hasty), hasty, {}), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace tofsmith
