@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path as FilePath
@@ -191,7 +190,8 @@ class Decoder:
             None if m is None else np.asarray(_check.real_array(m, name, "(H, W)"), np.float32)
             for m, name in ((delay_offset_m, "delay_offset_m"), (gain, "gain"))
         ]
-        means = None if averaged is None else _check.real_array(averaged, "averaged", "(H, W)")
+        axes = "(H, W)" if array.ndim == 3 else "(F, H, W)"
+        means = None if averaged is None else _check.real_array(averaged, "averaged", axes)
         self._handle.decode(array, is_planar, image.planes(), means, maps[0], maps[1], callback)
         return image
 
