@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "decode_report.hpp"
+#include "filter_arguments.hpp"
 #include "method_arguments.hpp"
 #include "multipath_arguments.hpp"
 #include "number_checks.hpp"
@@ -27,6 +28,7 @@ struct DecodeArguments {
   TableArguments table;
   MethodArguments method;
   MultipathArguments multipath;
+  FilterArguments filter;
   std::vector<std::string> planes;
   DecodeOptions options;
   std::string kind = "radial";
@@ -44,6 +46,7 @@ DecodeRequest request_of(const DecodeArguments& arguments, const Camera& camera,
     request.outputs.push_back(parse_decoded_plane(plane));
   request.kind = parse_depth_kind(arguments.kind);
   request.lens = camera.lens;
+  request.filter = arguments.filter.options();
   request.offset_map = arguments.offset_map;
   request.gain_map = arguments.gain_map;
   request.policy = session.output_policy();
@@ -89,6 +92,8 @@ void run(const DecodeArguments& arguments, Session& session) {
                                      {"range_m", source.table.range_m},
                                      {"range_source", source.range_source},
                                      {"method", name_of(arguments.method.method())},
+                                     {"average", request.average},
+                                     {"filter", arguments.filter.name()},
                                      {"height", result.height},
                                      {"width", result.width},
                                      {"measurements", result.measurements}};
@@ -151,7 +156,8 @@ void add_decode_command(CLI::App& app, Session& session) {
       ->add_option(
           "--outputs", arguments->planes,
           "planes to write: depth,signal,ambient,confidence,deviation,status (by default as "
-          "many as OUTPUT holds), bin; of two-return and tail also delay, ratio and returns (0 "
+          "many as OUTPUT holds), bin, averaged (measurements added); of two-return and tail also "
+          "delay, ratio and returns (0 "
           "none, 1 single, 2 two, 3 unresolved); others are not computed")
       ->delimiter(',')
       ->check(one_of(all_plane_names()));
@@ -162,7 +168,15 @@ void add_decode_command(CLI::App& app, Session& session) {
           "(what simulate and demo take a depth image for); .ply holds points either way")
       ->check(one_of({"radial", "z"}))
       ->capture_default_str();
-  command->add_option("--frame", arguments->request.frame, "decode this frame only, counted from 0")
+  arguments->filter.add_to(*command);
+  command
+      ->add_option("--average", arguments->request.average,
+                   "decode the means of so many consecutive frames; the last one is of those left")
+      ->check(number_that(">= 1", [](double value) { return value >= 1.0; }))
+      ->capture_default_str();
+  command
+      ->add_option("--frame", arguments->request.frame,
+                   "decode this frame only, counted from 0; with --average this mean")
       ->check(number_from_0_on());
   command
       ->add_option("--low-signal-sigma", arguments->options.low_signal_sigma,

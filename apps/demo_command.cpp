@@ -67,7 +67,8 @@ SceneResult capture_scene(LoadedScene loaded, std::uint64_t seed, const Camera& 
                           const DesignResult& result, const Progress& progress) {
   SceneResult scene{.name = loaded.name, .truth = std::move(loaded.image), .view = loaded.view};
   scene.reference_distance_m = median_depth_m(scene.truth);
-  capture_and_decode(scene, codes_for_scene(result), camera, lights, seed, progress);
+  capture_and_decode(scene, codes_for_scene(result), camera, lights, seed, FilterOptions{},
+                     progress);
   return scene;
 }
 
@@ -122,6 +123,8 @@ void print_summary(const Session& session, const fs::path& directory, const Came
     for (std::size_t i = 1; i < capture.decodings.size(); ++i)
       line += fmt::format(", {} with {} ({:.2f}x)", length_text(capture.decodings[i].error.mean_m),
                           capture.decodings[i].code, scene_gain(capture, i));
+    if (const auto& filtered = capture.decodings[0].filtered)
+      line += fmt::format("; filtered {}", length_text(filtered->error.mean_m));
     session.say(line);
   }
   if (const std::string remark = beyond_range_remark(scene_extent(scene.truth, camera));

@@ -72,9 +72,8 @@ int main() {
   using namespace tofsmith::benchmarks;
   AskedFigures asked;
   for (const LightLevel& light : light_levels) measure(light, asked);
-  const Filter filter(decoding_table(decode_code("k4"), 240));
   asked.at_most("memory of a normal filter, frames of K floats a pixel",
-                static_cast<double>(filter.frame_bytes(frame_height, frame_width)) /
+                static_cast<double>(Filter::memory_bytes({}, frame_height, frame_width, 4, 1)) /
                     (sizeof(float) * 4.0 * frame_pixels),
                 6);
   asked.print();

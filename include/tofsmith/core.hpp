@@ -22,6 +22,7 @@
 #include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/decode/depth_image.hpp"
+#include "tofsmith/decode/filter.hpp"
 #include "tofsmith/decode/likelihood_decoder.hpp"
 #include "tofsmith/decode/multipath_decoder.hpp"
 #include "tofsmith/decode/pixel_maps.hpp"

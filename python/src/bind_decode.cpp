@@ -6,6 +6,7 @@
 #include <map>
 
 #include "bindings.hpp"
+#include "filter_options.hpp"
 #include "multipath_options.hpp"
 #include "options.hpp"
 #include "output_policy.hpp"
@@ -94,9 +95,11 @@ PixelMaps maps_of(const py::object& delay_offset_m, const py::object& gain, cons
 }
 
 void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_planar,
-            const py::dict& arrays, const py::object& delay_offset_m, const py::object& gain,
-            const py::object& callback) {
-  const RawArray raw = view_raw(raw_numbers, is_planar, table_of(decoder).measurements());
+            const py::dict& arrays, const py::object& averaged, const py::object& delay_offset_m,
+            const py::object& gain, const py::object& callback) {
+  RawArray raw = view_raw(raw_numbers, is_planar, table_of(decoder).measurements());
+  const Floats means = averaged.is_none() ? Floats() : Floats::ensure(averaged);
+  if (!averaged.is_none()) raw.set_averaged(means);
   const Planes planes(arrays, raw);
   const PixelMaps maps = maps_of(delay_offset_m, gain, raw);
   without_gil(callback, [&](const Progress& progress) {
@@ -123,11 +126,14 @@ DecodeRequest request_of(const std::string& raw, const std::string& output, cons
       .value("outputs", outputs)
       .value("frame", request.frame)
       .value("stack", request.stack)
+      .value("average", request.average)
       .value("offset_map", offset_map)
       .value("gain_map", gain_map)
       .value("memory_mb", request.memory_mb)
       .value("other_inputs", request.other_inputs)
       .value("overwrite", overwrite);
+  if (const py::dict filter = reader.table("filter"); !filter.empty())
+    request.filter = filter_options(filter);
   reader.finish();
   request.raw = raw;
   request.output = output;

@@ -13,6 +13,7 @@ void bind_camera(py::module_& module);
 void bind_code(py::module_& module);
 void bind_forward_model(py::module_& module);
 void bind_decode(py::module_& module);
+void bind_filter(py::module_& module);
 void bind_scene(py::module_& module);
 void bind_capture(py::module_& module);
 void bind_simulate(py::module_& module);

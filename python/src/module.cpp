@@ -80,6 +80,7 @@ PYBIND11_MODULE(_tofsmith, module) {
   bind_code(module);
   bind_forward_model(module);
   bind_decode(module);
+  bind_filter(module);
   bind_scene(module);
   bind_capture(module);
   bind_simulate(module);

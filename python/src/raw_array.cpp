@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "raw_array.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace tofsmith::python {
@@ -61,6 +63,20 @@ std::string measurements_needed(const py::array& array, bool is_planar, int foun
 std::vector<py::ssize_t> RawArray::plane_shape() const {
   if (!is_stack) return {height, width};
   return {static_cast<py::ssize_t>(frames.size()), height, width};
+}
+
+void RawArray::set_averaged(const Floats& averaged) {
+  const std::vector<py::ssize_t> shape = plane_shape();
+  if (std::vector<py::ssize_t>(averaged.shape(), averaged.shape() + averaged.ndim()) != shape)
+    refuse("averaged", "shape " + shape_of(averaged),
+           "shape " + std::string(py::str(py::tuple(py::cast(shape)))));
+  const float* const first = averaged.data();
+  const auto is_count = [](float n) { return n > 0.0f && std::isfinite(n); };
+  if (const float* const bad = std::find_if_not(first, first + averaged.size(), is_count);
+      bad != first + averaged.size())
+    refuse("averaged", std::to_string(*bad), "finite numbers > 0");
+  for (std::size_t f = 0; f < frames.size(); ++f)
+    frames[f].averaged = first + static_cast<std::ptrdiff_t>(f) * frames[f].pixels();
 }
 
 RawArray view_raw(const py::array& array, bool is_planar, int needed) {

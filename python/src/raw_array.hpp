@@ -18,6 +18,10 @@ struct RawArray {
 
   /// (H, W) or (F, H, W).
   std::vector<py::ssize_t> plane_shape() const;
+  /// Of how many measurements each number is the mean.
+  /// @param averaged  of plane_shape(), each > 0; outlives the frames
+  /// @throws std::invalid_argument for another shape or numbers that are not > 0
+  void set_averaged(const Floats& averaged);
 };
 
 /// @param array   float32, float64, uint16 or uint8; shape (H, W, K) or (F, H, W, K), or planar

@@ -69,6 +69,7 @@ from ._files import (
     write_points,
     write_raw,
 )
+from ._filter import Filter
 from ._forward_model import (
     ForwardModel,
     coding_curve_in_space,
@@ -182,6 +183,7 @@ __all__ = [
     "Estimate",
     "ExponentialTail",
     "ExportedCode",
+    "Filter",
     "ForwardModel",
     "Generator",
     "GeneratorLoss",

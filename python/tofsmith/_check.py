@@ -107,3 +107,10 @@ def progress(value: Progress) -> Progress:
     raise TypeError(
         f"progress: got {shown(value)}; needs a function of (fraction, step), or None"
     )
+
+
+def raw_array(raw: Any) -> npt.NDArray[Any]:
+    """Raw numbers where they are; int16 as floats."""
+    if not isinstance(raw, np.ndarray):
+        raise TypeError(f"raw: got {shown(raw)}; needs a numpy.ndarray")
+    return raw.astype(np.float32) if raw.dtype == np.int16 else raw

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path as FilePath
@@ -17,7 +16,7 @@ from . import _check, _tofsmith
 from ._camera import CameraLike, camera_of
 from ._check import FloatArray, Path, Progress
 from ._code import CodeLike
-from ._decoding_table import DecodingTable
+from ._decoding_table import DecodingTable, table_of
 from ._depth_image import (
     DepthImage,
     multipath_planes,
@@ -26,6 +25,7 @@ from ._depth_image import (
     planes_of,
     usual_planes,
 )
+from ._filter import Filter, FilterLike, filter_options
 
 
 @dataclass(frozen=True)
@@ -108,14 +108,7 @@ class Decoder:
         unwrap_weights: Optional[str] = None,
         multipath: Optional[Mapping[str, Any]] = None,
     ) -> None:
-        if isinstance(code, DecodingTable):
-            table = code
-        elif camera is None:
-            raise TypeError("camera: got None; needs a tofsmith.Camera or its name")
-        elif isinstance(code, (str, os.PathLike)):
-            table = DecodingTable.load(code, camera)
-        else:
-            table = DecodingTable.of_code(code, camera)
+        table = table_of(code, camera)
         lens = None if camera is None else camera_of(camera).lens
         self._lens = None if lens is None else (lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px)
         self._inputs = table._inputs
@@ -144,6 +137,7 @@ class Decoder:
         layout: str = "interleaved",
         planes: Optional[Iterable[str]] = None,
         out: Optional[DepthImage] = None,
+        averaged: Optional[npt.ArrayLike] = None,
         delay_offset_m: Optional[npt.ArrayLike] = None,
         gain: Optional[npt.ArrayLike] = None,
         progress: Progress = None,
@@ -162,6 +156,9 @@ class Decoder:
             Names of planes of DepthImage; others are not computed. None: all but bin.
         out : DepthImage, optional
             Planes to write into: C order, of the frame's shape; instead of `planes`.
+        averaged : array_like, shape (H, W) or (F, H, W), optional
+            Of how many equal measurements the numbers of each pixel are the mean, > 0, so that
+            their noise is so much smaller: of Filter.apply(), or of frames averaged by hand.
         delay_offset_m, gain : array_like, shape (H, W), optional
             By how much each pixel decodes too far [m], and its response over a usual one's; NaN
             marks a dead pixel.
@@ -184,7 +181,7 @@ class Decoder:
         -----
         The same bits for any number of threads and any layout.
         """
-        array = _raw_array(raw)
+        array = _check.raw_array(raw)
         is_planar = _check.one_of(layout, "layout", ("interleaved", "planar")) == "planar"
         image = self._new_planes(array, is_planar, planes) if out is None else planes_of(
             out, planes)
@@ -193,7 +190,9 @@ class Decoder:
             None if m is None else np.asarray(_check.real_array(m, name, "(H, W)"), np.float32)
             for m, name in ((delay_offset_m, "delay_offset_m"), (gain, "gain"))
         ]
-        self._handle.decode(array, is_planar, image.planes(), maps[0], maps[1], callback)
+        axes = "(H, W)" if array.ndim == 3 else "(F, H, W)"
+        means = None if averaged is None else _check.real_array(averaged, "averaged", axes)
+        self._handle.decode(array, is_planar, image.planes(), means, maps[0], maps[1], callback)
         return image
 
     def decode_recording(
@@ -207,6 +206,8 @@ class Decoder:
         kind: str = "radial",
         frame: Optional[int] = None,
         stack: bool = False,
+        average: int = 1,
+        filter: Optional[FilterLike] = None,
         offset_map: Optional[Path] = None,
         gain_map: Optional[Path] = None,
         memory_mb: float = 256.0,
@@ -230,8 +231,8 @@ class Decoder:
             A .raw.toml file; see docs/raw_formats.md.
         outputs : iterable of str, optional
             Planes to write, others are not computed: depth, signal, ambient, confidence, deviation,
-            status, bin; of two-return and tail also delay, ratio, returns. None: as many of the
-            usual ones as `output` holds.
+            status, bin, averaged (of how many measurements numbers are the mean); of two-return
+            and tail also delay, ratio, returns. None: as many of the usual ones as `output` holds.
         kind : {"radial", "z"}
             Distance along the ray, or along the optical axis of the camera's lens (without one: of
             a view 60 degrees wide); .ply holds points either way.
@@ -240,6 +241,12 @@ class Decoder:
         stack : bool
             All frames in one .npy, (F, H, W); planes but depth in files of their own,
             name-PLANE.npy.
+        average : int
+            Decodes the means of so many consecutive frames; the last is of those that are left.
+            `frame` counts means.
+        filter : {"light", "normal", "strong"} or dict, optional
+            Adds measurements of the same depth before decoding, as Filter does: a strength, or a
+            dict of options with "strength" among them ("normal").
         offset_map, gain_map : str or path, optional
             Files of what Decoder.decode() takes as `delay_offset_m` and `gain`.
         memory_mb : float
@@ -278,6 +285,8 @@ class Decoder:
             "kind": kind,
             "frame": None if frame is None else _check.whole(frame, "frame", 0),
             "stack": bool(stack),
+            "average": _check.whole(average, "average", 1),
+            "filter": None if filter is None else filter_options(filter),
             "offset_map": name(offset_map, "offset_map"),
             "gain_map": name(gain_map, "gain_map"),
             "memory_mb": _check.number(memory_mb, "memory_mb"),
@@ -316,12 +325,6 @@ class Decoder:
         return DepthImage(**made)
 
 
-def _raw_array(raw: Any) -> npt.NDArray[Any]:
-    if not isinstance(raw, np.ndarray):
-        raise TypeError(f"raw: got {_check.shown(raw)}; needs a numpy.ndarray")
-    return raw.astype(np.float32) if raw.dtype == np.int16 else raw
-
-
 def decode(
     raw: npt.NDArray[Any],
     code: CodeLike | DecodingTable,
@@ -330,10 +333,15 @@ def decode(
     method: str = "zncc",
     layout: str = "interleaved",
     planes: Optional[Iterable[str]] = None,
+    filter: Optional[FilterLike] = None,
     progress: Progress = None,
 ) -> DepthImage:
-    """Decoder(code, camera, method=method).decode(raw, ..): keep a Decoder for many frames."""
+    """Decoder(code, camera, method=method).decode(raw, ..): keep a Decoder for many frames. With
+    `filter`, a strength or a dict of options with "strength" among them, Filter is applied first."""
     decoder = Decoder(code, camera, method=method)
-    return decoder.decode(raw, layout=layout, planes=planes, progress=progress)
-
-
+    if filter is None:
+        return decoder.decode(raw, layout=layout, planes=planes, progress=progress)
+    options = filter_options(filter)
+    applied = Filter(decoder.table, strength=options.pop("strength"), options=options)
+    numbers, averaged = applied.apply(raw, layout=layout, progress=progress)
+    return decoder.decode(numbers, planes=planes, averaged=averaged, progress=progress)

@@ -188,3 +188,14 @@ class DecodingTable:
     def ambiguous_depths(self) -> FloatArray:
         """Pairs of depths that look the same [m], (pairs, 2); decoders answer with the first."""
         return self._handle.ambiguous_depths()
+
+
+def table_of(code: CodeLike | DecodingTable, camera: Optional[CameraLike]) -> DecodingTable:
+    """What a decoder is made of: a table as it is, a code or a file on a camera."""
+    if isinstance(code, DecodingTable):
+        return code
+    if camera is None:
+        raise TypeError("camera: got None; needs a tofsmith.Camera or its name")
+    if isinstance(code, (str, os.PathLike)):
+        return DecodingTable.load(code, camera)
+    return DecodingTable.of_code(code, camera)

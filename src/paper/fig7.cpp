@@ -284,7 +284,7 @@ Reproduction reproduce_fig7(const ReproduceContext& context, const Progress& pro
     cameras.push_back(paper_camera(fig7_limits[i].peak_factor, fig7_limits[i].f_max_in_f0));
     codes[i].push_back(context.shelf.redesigned(4, cameras[i], design_options, of_limits[0]));
     for (const std::string& name : baselines) codes[i].push_back(build_family(name, cameras[i]));
-    capture_and_decode(results[i], codes[i], cameras[i], lights, context.options.seed,
+    capture_and_decode(results[i], codes[i], cameras[i], lights, context.options.seed, {},
                        of_limits[1]);
     for (SceneCapture& capture : results[i].captures)
       for (SceneDecoding& d : capture.decodings)

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "report/shared/depth_error_scale.hpp"
 #include "report/shared/level_text.hpp"
@@ -55,27 +57,54 @@ Figure albedo_figure(const SceneResult& scene) {
                       {{.title = "albedo", .pixels = scene.truth.albedo}}, colours);
 }
 
-Figure decoded_figure(const SceneResult& scene, const SceneCapture& capture, const Camera& camera) {
-  std::vector<ValueImage> images;
+/// What is drawn of a capture: the best code, the same filtered, then the others.
+struct ShownDepth {
+  std::string title;
+  const Image<float>& depth_m;
+  const SceneError& error;
+};
+
+std::vector<ShownDepth> shown_depths(const SceneCapture& capture, const std::string& best_code) {
+  std::vector<ShownDepth> shown;
+  const auto show = [&](const SceneDecoding& d) {
+    shown.push_back({d.code, d.depth_m, d.error});
+    if (d.filtered && d.code == best_code)
+      shown.push_back({d.code + ", filtered", d.filtered->depth_m, d.filtered->error});
+  };
   for (const SceneDecoding& d : capture.decodings)
-    images.push_back({.title = d.code, .pixels = d.depth_m});
+    if (d.code == best_code) show(d);
+  for (const SceneDecoding& d : capture.decodings)
+    if (d.code != best_code) show(d);
+  return shown;
+}
+
+/// Four pictures stand two by two.
+ImageFigureOptions side_by_side(std::size_t pictures) { return {.columns = pictures == 4 ? 2 : 3}; }
+
+Figure decoded_figure(const SceneResult& scene, const SceneCapture& capture, const Camera& camera,
+                      const std::string& best_code) {
+  std::vector<ValueImage> images;
+  for (const ShownDepth& shown : shown_depths(capture, best_code))
+    images.push_back({.title = shown.title, .pixels = shown.depth_m});
   return image_figure({.id = figure_id("decoded", capture.light),
                        .title = fmt::format("Decoded depth, {}", light_text(capture)),
                        .caption = "All codes on one colour scale, the scene's; errors beyond it "
                                   "take the colours of its ends.",
                        .alt_text = "Maps of decoded depth"},
-                      images, {.label = "depth", .unit = "m", .range = depth_range(scene, camera)});
+                      images, {.label = "depth", .unit = "m", .range = depth_range(scene, camera)},
+                      side_by_side(images.size()));
 }
 
-Figure error_figure(const SceneResult& scene, const SceneCapture& capture, const Camera& camera) {
+Figure error_figure(const SceneResult& scene, const SceneCapture& capture, const Camera& camera,
+                    const std::string& best_code) {
   std::vector<ValueImage> images;
   double scale_m = 0.0;
-  for (const SceneDecoding& d : capture.decodings) {
-    images.push_back(
-        {.title = fmt::format("{}: {:.1f} mm", d.code, 1e3 * d.error.mean_m),
-         .pixels = scaled(
-             depth_difference_m(d.depth_m, scene.truth, camera, DepthErrorKind::circular), 1e3)});
-    scale_m = std::max(scale_m, d.error.median_m);
+  for (const ShownDepth& shown : shown_depths(capture, best_code)) {
+    images.push_back({.title = fmt::format("{}: {:.1f} mm", shown.title, 1e3 * shown.error.mean_m),
+                      .pixels = scaled(depth_difference_m(shown.depth_m, scene.truth, camera,
+                                                          DepthErrorKind::circular),
+                                       1e3)});
+    scale_m = std::max(scale_m, shown.error.median_m);
   }
   const double limit_mm = std::max(1.0, 4e3 * scale_m);
   return image_figure(
@@ -84,7 +113,40 @@ Figure error_figure(const SceneResult& scene, const SceneCapture& capture, const
        .caption = "Decoded minus true depth, the shorter way round the range; its mean size beside "
                   "each code's name.",
        .alt_text = "Maps of depth error"},
-      images, depth_error_scale(limit_mm));
+      images, depth_error_scale(limit_mm), side_by_side(images.size()));
+}
+
+const SceneDecoding* decoding_of(const SceneCapture& capture, const std::string& code) {
+  const auto found = std::ranges::find(capture.decodings, code, &SceneDecoding::code);
+  return found == capture.decodings.end() ? nullptr : &*found;
+}
+
+/// How many measurements were added, at every light; none where nothing was filtered.
+std::optional<Figure> averaged_figure(const SceneResult& scene, const std::string& best_code) {
+  std::vector<ValueImage> images;
+  for (const SceneCapture& capture : scene.captures)
+    if (const SceneDecoding* const d = decoding_of(capture, best_code); d && d->filtered)
+      images.push_back({.title = capture.light + " light", .pixels = d->filtered->averaged});
+  if (images.empty()) return std::nullopt;
+  return image_figure({.id = "averaged",
+                       .title = "Measurements added",
+                       .caption = "Of how many measurements the filter made each pixel's own, in "
+                                  "variance: fewest at edges and where nothing returns.",
+                       .alt_text = "Maps of how many measurements were added"},
+                      images,
+                      {.label = "measurements", .map = ColourMap::cividis, .logarithmic = true},
+                      {.max_side = 160});  // they change slowly
+}
+
+/// The row of an error.
+std::vector<std::string> error_row(const std::string& light, const std::string& code,
+                                   const SceneError& error) {
+  return {light,
+          code,
+          fmt::format("{:.2f}", 1e3 * error.mean_m),
+          fmt::format("{:.2f}", 1e3 * error.median_m),
+          fmt::format("{:.2f}", 100 * error.outlier_rate),
+          fmt::format("{:.2f}", 100 * error.decoded_share)};
 }
 
 Table error_table(const SceneResult& scene) {
@@ -102,11 +164,11 @@ Table error_table(const SceneResult& scene) {
                           {"outliers (%)", true},
                           {"pixels with depth (%)", true}}};
   for (const SceneCapture& capture : scene.captures)
-    for (const SceneDecoding& d : capture.decodings)
-      table.rows.push_back({capture.light, d.code, fmt::format("{:.2f}", 1e3 * d.error.mean_m),
-                            fmt::format("{:.2f}", 1e3 * d.error.median_m),
-                            fmt::format("{:.2f}", 100 * d.error.outlier_rate),
-                            fmt::format("{:.2f}", 100 * d.error.decoded_share)});
+    for (const SceneDecoding& d : capture.decodings) {
+      table.rows.push_back(error_row(capture.light, d.code, d.error));
+      if (d.filtered)
+        table.rows.push_back(error_row(capture.light, d.code + ", filtered", d.filtered->error));
+    }
   return table;
 }
 
@@ -141,18 +203,28 @@ Section scene_section(const SceneResult& scene, const Camera& camera,
                   "code. The signal S is that of albedo 1 facing the camera at {:.2f} m and falls "
                   "with the square of distance.",
                   scene.reference_distance_m)});
+  const auto is_filtered = [](const SceneCapture& capture) {
+    return std::ranges::any_of(capture.decodings,
+                               [](const SceneDecoding& d) { return d.filtered.has_value(); });
+  };
+  if (std::ranges::any_of(scene.captures, is_filtered))
+    section.blocks.push_back(Paragraph{
+        "Filtered: before the same raw numbers are decoded, measurements of neighbours that see "
+        "the same depth are added, as far as their noise can tell."});
   section.blocks.push_back(true_scene_figure(scene, camera));
   section.blocks.push_back(albedo_figure(scene));
   for (const SceneCapture& capture : scene.captures) {
     if (capture.decodings.empty()) continue;
-    section.blocks.push_back(decoded_figure(scene, capture, camera));
-    section.blocks.push_back(error_figure(scene, capture, camera));
+    section.blocks.push_back(decoded_figure(scene, capture, camera, best_code));
+    section.blocks.push_back(error_figure(scene, capture, camera, best_code));
   }
+  if (auto averaged = averaged_figure(scene, best_code))
+    section.blocks.push_back(std::move(*averaged));
   if (scene.captures.empty()) return section;
   section.blocks.push_back(error_table(scene));
   const SceneCapture& brightest = scene.captures.back();
-  for (const SceneDecoding& d : brightest.decodings)
-    if (d.code == best_code) section.blocks.push_back(cloud_figure(scene, brightest, d, camera));
+  if (const SceneDecoding* const d = decoding_of(brightest, best_code))
+    section.blocks.push_back(cloud_figure(scene, brightest, *d, camera));
   return section;
 }
 

@@ -57,11 +57,15 @@ Image<std::uint8_t> beyond_range(const SceneImage& scene, const Camera& camera) 
 
 void capture_and_decode(SceneResult& scene, std::span<const CodeSet> codes, const Camera& camera,
                         std::span<const NamedLight> lights, std::uint64_t seed,
-                        const Progress& progress) {
+                        const std::optional<FilterOptions>& filter, const Progress& progress) {
   scene.captures.clear();
   std::vector<Decoder> decoders;
-  for (const CodeSet& code : codes)
+  std::vector<Filter> filters;
+  for (const CodeSet& code : codes) {
     decoders.emplace_back(make_decoding_table(ForwardModel(code, camera), camera));
+    if (filter) filters.emplace_back(decoders.back().table(), *filter);
+  }
+  FilteredFrame filtered;
   const ProgressParts parts(progress, codes.size() * lights.size());
   for (const NamedLight& light : lights) {
     SceneCapture capture_result{light.name, light.point, {}};
@@ -74,7 +78,18 @@ void capture_and_decode(SceneResult& scene, std::span<const CodeSet> codes, cons
                                    .seed = seed};
       const RawFrames raw = capture(scene.truth, codes[i], camera, options);
       SceneDecoding decoding{codes[i].name(), decoders[i].decode(raw).depth_m, {}};
-      decoding.error = scene_error(decoding.depth_m, scene.truth, camera, DepthErrorKind::circular);
+      const auto error_of = [&](const Image<float>& depth_m) {
+        return scene_error(depth_m, scene.truth, camera, DepthErrorKind::circular);
+      };
+      decoding.error = error_of(decoding.depth_m);
+      if (filter) {
+        filters[i].apply(view_of_frame(raw, 0), filtered);
+        FilteredSceneDecoding& result = decoding.filtered.emplace();
+        result.depth_m = Image<float>(raw.height, raw.width);
+        result.averaged = filtered.averaged();
+        decoders[i].decode(filtered.view(), {.depth_m = result.depth_m.pixels.data()});
+        result.error = error_of(result.depth_m);
+      }
       capture_result.decodings.push_back(std::move(decoding));
     }
     scene.captures.push_back(std::move(capture_result));

@@ -93,6 +93,53 @@ class Streaming(CommandLineTest):
                 self.assertEqual(self.bytes_of(f"whole-{frame}.{extension}"),
                                  self.bytes_of(f"bands-{frame}.{extension}"), extension)
 
+    def test_filters(self):
+        self.record()
+        self.decode("--outputs", "depth,deviation,averaged", output="alone.npz")
+        document = self.decode("--filter", "normal", "--filter-set", "windows=1", "--outputs",
+                               "depth,deviation,averaged", output="filtered.npz")
+        self.assertEqual((document["filter"], document["average"]), ("normal", 1))
+        for frame in range(3):
+            alone = np.load(self.path(f"alone-{frame}.npz"))
+            filtered = np.load(self.path(f"filtered-{frame}.npz"))
+            np.testing.assert_array_equal(alone["averaged"], 1)
+            added = filtered["averaged"]
+            self.assertGreater(np.median(added), 4)
+            self.assertLess(np.max(added), 80)
+            ratio = alone["deviation"] / filtered["deviation"]
+            self.assertLess(abs(np.median(ratio / np.sqrt(added)) - 1), 0.1)
+        for setting, words in (("windows=4", ["windows", "found 4", "[1, 3]"]),
+                               ("window=1", ["did you mean windows?"]),
+                               ("windows", ["KEY=VALUE"]), ("windows=x", ["found x"])):
+            self.refuse(self.arguments("--filter", "light", "--filter-set", setting,
+                                       output="x.npy"), *words, code=2)
+
+    def test_filtering_keeps_to_the_memory_that_it_asks_for(self):
+        self.sparse("raw.npy", (1, 480, 640, 3), "u2")
+        self.refuse(self.arguments("--filter", "strong", "--memory-mb", "20"), "to be filtered",
+                    "--memory-mb allows more")
+        plain = self.peak_mb(*self.arguments(output="plain.npy"))
+        peak = self.peak_mb(*self.arguments("--filter", "strong", "--memory-mb", "60"))
+        self.assertLess(peak, plain + 60)
+
+    def test_averages(self):
+        raw = self.record(frames=5)
+        self.decode("--average", "2", "--stack", "--outputs", "depth,averaged")
+        averaged = np.load(self.path("d-averaged.npy"))
+        self.assertEqual(averaged.shape, (3, 30, 40))
+        self.assertEqual([float(a.min()) for a in averaged], [2, 2, 1])
+        np.save(self.path("mean.npy"), raw[2:4].mean(axis=0))
+        self.decode("--outputs", "depth", raw="mean.npy", output="mean-depth.npy")
+        np.testing.assert_array_equal(np.load(self.path("d.npy"))[1],
+                                      np.load(self.path("mean-depth.npy")))
+        self.decode("--average", "2", "--frame", "1", output="one.npy")
+        np.testing.assert_array_equal(np.load(self.path("one.npy")),
+                                      np.load(self.path("d.npy"))[1])
+        self.refuse(self.arguments("--average", "6", output="x.npy"), "--average 6", "holds 5 frames",
+                    code=2)
+        self.refuse(self.arguments("--average", "2", "--frame", "3", output="x.npy"), "3 means",
+                    code=2)
+
     def test_bins_are_the_nearest_of_the_depths(self):
         self.record()
         self.decode("--frame", "1", "--outputs", "bin,depth", output="d.npz")

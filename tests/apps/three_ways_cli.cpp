@@ -83,6 +83,15 @@ void decode() {
   decode_recording(
       {.raw = "dump.bin", .raw_format = "dump.raw.toml", .output = "dump.npz", .policy = policy},
       decoder);
+  FilterOptions options = FilterOptions::of(FilterStrength::strong);
+  options.trusted_pixels = 8.0;
+  decode_recording({.raw = "raw.npy",
+                    .output = "filtered.npz",
+                    .outputs = {DecodedPlane::depth, DecodedPlane::averaged},
+                    .average = 2,
+                    .filter = options,
+                    .policy = policy},
+                   decoder);
 }
 
 void evaluate_codes() {

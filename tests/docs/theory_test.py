@@ -16,7 +16,7 @@ from pathlib import Path
 
 TOOL = os.path.abspath(sys.argv.pop(1))
 DOCS = Path(sys.argv.pop(1)).resolve()
-PAGES = ("bounds", "calibration", "decoding", "exhaustive_search", "measured_tables", "model", "montecarlo",
+PAGES = ("bounds", "calibration", "decoding", "exhaustive_search", "filtering", "measured_tables", "model", "montecarlo",
          "multipath", "optimize", "paper", "robustness")
 NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 

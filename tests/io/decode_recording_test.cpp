@@ -5,12 +5,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 
 #include "temporary_directory.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
+#include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 
 namespace tofsmith {
@@ -34,6 +38,12 @@ class DecodeRecording : public testing::Test {
   std::filesystem::path path(const char* name) const { return directory_.path() / name; }
   DecodeRequest request(const char* output) const {
     return {.raw = path("raw.npy"), .output = path(output)};
+  }
+  /// Of frame number `frame` of a stack.
+  std::vector<float> plane(const char* name, std::size_t frame) const {
+    const NpyArray array = read_npy(path(name));
+    const auto* const first = reinterpret_cast<const float*>(array.bytes().data()) + frame * 6 * 5;
+    return {first, first + 6 * 5};
   }
 
   TemporaryDirectory directory_;
@@ -69,6 +79,97 @@ TEST_F(DecodeRecording, TellsHowFarItCameWhenItIsStopped) {
   EXPECT_TRUE(std::filesystem::exists(result.files.front()));
 }
 
+TEST_F(DecodeRecording, FiltersAsTheFilterDoes) {
+  const FilterOptions options = FilterOptions::of(FilterStrength::light);
+  DecodeRequest filtered = request("f.npy");
+  filtered.filter = options;
+  filtered.frame = 1;
+  filtered.stack = true;
+  filtered.outputs = {DecodedPlane::depth, DecodedPlane::averaged};
+  decode_recording(filtered, decoder_);
+  const Decoder& decoder = std::get<Decoder>(decoder_);
+  const FilteredFrame frame = Filter(decoder.table(), options).apply(raw_, 1);
+  Image<float> depth_m(6, 5);
+  decoder.decode(frame.view(), {.depth_m = depth_m.pixels.data()});
+  EXPECT_EQ(plane("f.npy", 0), depth_m.pixels);
+  EXPECT_EQ(plane("f-averaged.npy", 0), frame.averaged().pixels);
+}
+
+TEST_F(DecodeRecording, MeansOfEqualFramesAreTheFrameWithLessNoise) {
+  RawFrames equal = raw_;
+  const auto frame_size = static_cast<std::ptrdiff_t>(equal.values.size() / 3);
+  equal.frames = 5;
+  equal.values.assign(raw_.values.begin(), raw_.values.begin() + frame_size);
+  for (int f = 1; f < 5; ++f)
+    equal.values.insert(equal.values.end(), raw_.values.begin(), raw_.values.begin() + frame_size);
+  write_raw_frames(path("equal.npy"), equal, OutputPolicy::refuse_existing);
+  DecodeRequest alone = request("alone.npy"), mean = request("mean.npy");
+  alone.raw = mean.raw = path("equal.npy");
+  alone.stack = mean.stack = true;
+  alone.outputs =
+      mean.outputs = {DecodedPlane::depth, DecodedPlane::deviation, DecodedPlane::averaged};
+  alone.frame = 0;
+  mean.average = 3;
+  decode_recording(alone, decoder_);
+  const DecodedRecording result = decode_recording(mean, decoder_);
+  EXPECT_EQ(result.frames.size(), 2u);
+  for (std::size_t f = 0; f < 2; ++f) {
+    const float frames = f == 0 ? 3.0F : 2.0F;  // the last mean is of those that are left
+    EXPECT_EQ(plane("mean.npy", f), plane("alone.npy", 0));
+    EXPECT_EQ(plane("mean-averaged.npy", f), std::vector<float>(6 * 5, frames));
+    const std::vector<float> single = plane("alone-deviation.npy", 0);
+    const std::vector<float> less = plane("mean-deviation.npy", f);
+    for (std::size_t i = 0; i < less.size(); ++i)
+      EXPECT_NEAR(less[i] * std::sqrt(frames), single[i], 2e-3F * single[i]);
+  }
+  EXPECT_EQ(plane("alone-averaged.npy", 0), std::vector<float>(6 * 5, 1.0F));
+}
+
+TEST_F(DecodeRecording, MeansAreTheSameInBandsAndFiltersKnowTheirNoise) {
+  DecodeRequest mean = request("whole.npy");
+  mean.average = 2;
+  mean.stack = true;
+  mean.outputs = {DecodedPlane::depth, DecodedPlane::deviation};
+  decode_recording(mean, decoder_);
+  mean.output = path("bands.npy");
+  mean.memory_mb = 0.001;
+  decode_recording(mean, decoder_);
+  for (const char* plane : {".npy", "-deviation.npy"})
+    EXPECT_TRUE(std::ranges::equal(read_npy(path("whole").string() + plane).bytes(),
+                                   read_npy(path("bands").string() + plane).bytes()));
+  // The last mean is of one frame.
+  mean.memory_mb = 64;
+  mean.output = path("filtered.npy");
+  mean.outputs = {DecodedPlane::depth, DecodedPlane::averaged};
+  mean.filter = FilterOptions::of(FilterStrength::light);
+  decode_recording(mean, decoder_);
+  for (std::size_t f = 0; f < 2; ++f)
+    for (const float n : plane("filtered-averaged.npy", f)) {
+      const float frames = f == 0 ? 2.0F : 1.0F;
+      EXPECT_GE(n, 0.95F * frames);
+      EXPECT_LE(n, 25.1F * frames);
+    }
+}
+
+TEST_F(DecodeRecording, WhatIsClippedOrInvalidInOneFrameIsSoInTheMean) {
+  camera_.sensor.full_well_e = 5000.0;
+  const AnyDecoder decoder =
+      make_decoder(DecodeMethod::zncc, load_decoding_table("hamiltonian-k4", camera_).table);
+  const auto number = [&](int frame, int pixel) -> float& {
+    return raw_.values[static_cast<std::size_t>((frame * 6 * 5 + pixel) * 4)];
+  };
+  number(1, 0) = 5000.0F;
+  number(2, 1) = std::numeric_limits<float>::quiet_NaN();
+  number(0, 2) = std::numeric_limits<float>::infinity();
+  write_raw_frames(path("some.npy"), raw_, OutputPolicy::refuse_existing);
+  DecodeRequest mean = request("d.npz");
+  mean.raw = path("some.npy");
+  mean.average = 3;
+  const DecodedRecording result = decode_recording(mean, decoder);
+  EXPECT_EQ(result.total().of(PixelStatus::saturated), 1);
+  EXPECT_EQ(result.total().of(PixelStatus::invalid), 2);
+}
+
 TEST_F(DecodeRecording, RefusesWhatCannotBeBeforeAnythingIsWritten) {
   const auto refused = [&](const DecodeRequest& wrong, const char* words) {
     EXPECT_THAT([&] { decode_recording(wrong, decoder_); },
@@ -89,6 +190,22 @@ TEST_F(DecodeRecording, RefusesWhatCannotBeBeforeAnythingIsWritten) {
   wrong = request("d.npz");
   wrong.memory_mb = 0.0;
   refused(wrong, "memory_mb = 0; must be > 0");
+  wrong = request("d.npz");
+  wrong.average = 0;
+  refused(wrong, "average = 0; must be >= 1");
+  wrong.average = 4;
+  refused(wrong, "average 4: ");
+  wrong.average = 2;
+  wrong.frame = 2;
+  refused(wrong, "holds 3 frames, 2 means, counted from 0");
+  wrong = request("d.npz");
+  wrong.filter = FilterOptions{.windows = 4};
+  refused(wrong, "windows = 4; must be in [1, 3]");
+  wrong.filter = FilterOptions{};
+  wrong.memory_mb = 0.1;
+  EXPECT_THAT([&] { decode_recording(wrong, decoder_); },
+              ThrowsMessage<IoError>(HasSubstr("to be filtered and written so; expected at most "
+                                               "0.1 MB (without a filter")));
   wrong = request("raw.npy");
   wrong.frame = 0;
   wrong.policy = OutputPolicy::overwrite;

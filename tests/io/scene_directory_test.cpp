@@ -37,6 +37,7 @@ SceneResult scene() {
     SceneCapture capture{light, {1e3, 1e4}, {}};
     for (const char* code : {"hamiltonian-k4", "../a/b \xc3\xbc"})
       capture.decodings.push_back({code, scene.truth.depth_m, error});
+    capture.decodings.back().filtered = {scene.truth.depth_m, scene.truth.albedo, error};
     scene.captures.push_back(capture);
   }
   return scene;
@@ -77,6 +78,11 @@ TEST(SceneDirectory, ReadingUndoesWriting) {
       EXPECT_EQ(a.error.median_m, b.error.median_m);
       EXPECT_EQ(a.error.outlier_rate, b.error.outlier_rate);
       EXPECT_EQ(a.error.decoded_share, b.error.decoded_share);
+      ASSERT_EQ(a.filtered.has_value(), b.filtered.has_value());
+      if (!a.filtered) continue;
+      expect_same_image(a.filtered->depth_m, b.filtered->depth_m);
+      expect_same_image(a.filtered->averaged, b.filtered->averaged);
+      EXPECT_EQ(a.filtered->error.mean_m, b.filtered->error.mean_m);
       EXPECT_EQ(a.error.pixels, b.error.pixels);
       EXPECT_EQ(a.error.outlier_threshold_m, b.error.outlier_threshold_m);
     }

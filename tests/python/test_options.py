@@ -28,6 +28,8 @@ structs = [
      lambda o: ts.design("paper-10f0", **quick, search=o), {"seed", "exposures"}),
     ("MultipathOptions", "decode/multipath_decoder.hpp",
      lambda o: ts.Decoder("hamiltonian-k4", "paper-10f0", multipath=o), {"status_thresholds"}),
+    ("FilterOptions", "decode/filter.hpp",
+     lambda o: ts.Filter("hamiltonian-k4", "paper-10f0", options=o), set()),
     ("ReturnPrior", "decode/multipath_decoder.hpp",
      lambda o: ts.Decoder("hamiltonian-k4", "paper-10f0", multipath={"prior": o}), set()),
 ]

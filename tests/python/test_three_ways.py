@@ -141,8 +141,15 @@ def test_decode(ways, camera):
     result = decoder.decode_recording("dump.bin", "dump.npz", raw_format="dump.raw.toml")
     assert "taken as electrons" in result.notes[0]
 
+    command("raw.npy", "filtered.npz", "--filter", "strong", "--filter-set", "trusted_pixels=8",
+            "--average", "2", "--outputs", "depth,averaged")
+    result = decoder.decode_recording(
+        "raw.npy", "filtered.npz", filter={"strength": "strong", "trusted_pixels": 8}, average=2,
+        outputs=["depth", "averaged"])
+    assert len(result.files) == 2
+
     ways.cpp("decode")
-    assert len(ways.same()) == len(given) + 6 * 3 + 1 + 2 + 3 + 3
+    assert len(ways.same()) == len(given) + 6 * 3 + 1 + 2 + 3 + 3 + 2
 
 
 def test_decode_refuses_alike(ways, camera):
@@ -152,7 +159,10 @@ def test_decode_refuses_alike(ways, camera):
             (ValueError, "frame = 3", ["--frame", "3"], {"frame": 3}),
             (ValueError, "stack", ["--stack"], {"stack": True}),
             (ValueError, "outputs = delay", ["--outputs", "delay"], {"outputs": ["delay"]}),
-            (OSError, "0.001 MB", ["--memory-mb", "0.001"], {"memory_mb": 0.001})):
+            (ValueError, "average = 4", ["--average", "4"], {"average": 4}),
+            (OSError, "0.001 MB", ["--memory-mb", "0.001"], {"memory_mb": 0.001}),
+            (OSError, "to be filtered", ["--filter", "light", "--memory-mb", "0.1"],
+             {"filter": "light", "memory_mb": 0.1})):
         done = subprocess.run(
             [ways.cli, "decode", "raw.npy", "--code", "hamiltonian-k4", *SMALL, "-o", "d.npz",
              *arguments], cwd=ways.folders["command"], capture_output=True, text=True)
@@ -164,6 +174,10 @@ def test_decode_refuses_alike(ways, camera):
         decoder.decode_recording("raw.npy", "raw.npy", frame=0, overwrite=True)
     with pytest.raises(ValueError, match="outputs: got str 'depth_m'; needs one of depth, "):
         decoder.decode_recording("raw.npy", "d.npz", outputs=["depth_m"])
+    with pytest.raises(ValueError, match="filter strength = weak; must be light, normal or strong"):
+        decoder.decode_recording("raw.npy", "d.npz", filter="weak")
+    with pytest.raises(ValueError, match="average: got 0"):
+        decoder.decode_recording("raw.npy", "d.npz", average=0)
     with pytest.raises(ts.Interrupted):
         decoder.decode_recording("raw.npy", "d.npz", progress=lambda share, step: False)
     assert list(ways.files("python")) == ["raw.npy"]

@@ -48,7 +48,8 @@ SceneResult small_scene(const Camera& camera, const std::vector<CodeSet>& codes)
     scene.truth.depth_m.pixels[i] = 1.0f + 0.1f * static_cast<float>(i);
   scene.truth.depth_m.pixels[3] = std::numeric_limits<float>::quiet_NaN();
   scene.view = PinholeView::centred(5, 4, 1.0);
-  capture_and_decode(scene, codes, camera, std::vector<NamedLight>{{odd_name, {1e5, 1e4}}}, 1);
+  capture_and_decode(scene, codes, camera, std::vector<NamedLight>{{odd_name, {1e5, 1e4}}}, 1,
+                     FilterOptions{});
   return scene;
 }
 
@@ -73,6 +74,8 @@ TEST(DesignReport, ShowsADesignWithItsSceneWhateverTheNames) {
   for (const Candidate& c : result.candidates) EXPECT_THAT(html, HasSubstr(c.method));
   EXPECT_THAT(html, HasSubstr("tofsmith &lt;design&gt;"));
   EXPECT_THAT(html, HasSubstr("A scene: a/b"));
+  EXPECT_THAT(html, HasSubstr(", filtered"));
+  EXPECT_THAT(html, HasSubstr("Measurements added"));
 }
 
 TEST(DesignReport, ShowsCamerasOfManyKinds) {

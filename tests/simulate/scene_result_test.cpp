@@ -55,11 +55,28 @@ TEST(CaptureAndDecode, FillsOneDecodingPerLightAndCodeTheSameForAnyThreads) {
     EXPECT_LT(d.error.mean_m, 0.01) << "plenty of light";
 }
 
+TEST(CaptureAndDecode, FiltersTheSameRawNumbersBesides) {
+  const Camera camera = built_in_camera("paper-30x");
+  const std::vector<CodeSet> codes{build_family("hamiltonian-k4", camera)};
+  const std::vector<NamedLight> lights{{"dim", {1e5, 1e3}}};
+  SceneResult plain{.name = "wall", .truth = SceneImage(30, 40)};
+  plain.truth.depth_m = Image<float>(30, 40, 2.0f);
+  SceneResult both = plain;
+  capture_and_decode(plain, codes, camera, lights, 7);
+  capture_and_decode(both, codes, camera, lights, 7, FilterOptions{});
+  const SceneDecoding &alone = plain.captures[0].decodings[0], &d = both.captures[0].decodings[0];
+  EXPECT_FALSE(alone.filtered);
+  EXPECT_EQ(alone.depth_m.pixels, d.depth_m.pixels);
+  ASSERT_TRUE(d.filtered);
+  EXPECT_EQ(d.filtered->averaged.size(), 1200u);
+  EXPECT_LT(d.filtered->error.mean_m, 0.5 * d.error.mean_m);
+}
+
 TEST(CaptureAndDecode, StopsWhenAsked) {
   const Camera camera = built_in_camera("paper-30x");
   SceneResult scene = small_scene();
   EXPECT_THROW(capture_and_decode(scene, std::vector{build_family("sinusoid-k4", camera)}, camera,
-                                  std::vector<NamedLight>{{"low", {1e4, 1e3}}}, 1,
+                                  std::vector<NamedLight>{{"low", {1e4, 1e3}}}, 1, {},
                                   [](double, std::string_view) { return false; }),
                Interrupted);
 }

@@ -116,8 +116,10 @@ class Filter {
   const DecodingTable& table() const;
   const FilterOptions& options() const;
   int measurements() const { return table().measurements(); }
-  /// Memory of a FilteredFrame of this size [bytes], apart from what each thread needs for 32 rows.
-  std::size_t frame_bytes(int height, int width) const;
+  /// Memory that frames of this size are filtered in [bytes]: a FilteredFrame's, and what each thread
+  /// works in.
+  static std::size_t memory_bytes(const FilterOptions& options, int height, int width,
+                                  int measurements, int threads);
 
   /// Filters one frame on all threads. Allocates nothing if the frame held one of the same size.
   /// @param raw  electrons or counts, with as many measurements as the table

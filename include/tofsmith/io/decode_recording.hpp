@@ -14,6 +14,7 @@
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/decode_method.hpp"
+#include "tofsmith/decode/filter.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 #include "tofsmith/scene/scene_image.hpp"
@@ -32,19 +33,20 @@ enum class DecodedPlane {
   ratio,       ///< of a second return, float
   returns,     ///< ReturnStatus, uint8
   bin,         ///< of zncc the one that scores best, of others the nearest; int32
+  averaged,    ///< of how many measurements a pixel's numbers are the mean, in variance; float
 };
 
 inline constexpr std::array all_decoded_planes = {
     DecodedPlane::depth,     DecodedPlane::signal, DecodedPlane::ambient, DecodedPlane::confidence,
     DecodedPlane::deviation, DecodedPlane::status, DecodedPlane::delay,   DecodedPlane::ratio,
-    DecodedPlane::returns,   DecodedPlane::bin};
+    DecodedPlane::returns,   DecodedPlane::bin,    DecodedPlane::averaged};
 
 /// "depth", "signal", ..: the word of the enumerator, which arrays of .npz files have too.
 std::string_view name_of(DecodedPlane plane);
 /// @throws std::invalid_argument for any other word
 DecodedPlane parse_decoded_plane(std::string_view name);
 /// The planes that are written unless others are asked for: depth to status; of decoders of several
-/// returns also delay, ratio and returns.
+/// returns also delay, ratio and returns. Not bin and averaged.
 std::vector<DecodedPlane> usual_planes(bool multipath = false);
 
 /// Which distance is written as depth.
@@ -72,9 +74,14 @@ struct DecodeRequest {
   std::optional<Lens> lens;            ///< of points and z; none: a view 60 degrees wide
   std::optional<int> frame;            ///< this one alone, counted from 0; none: all
   bool stack = false;                  ///< all frames in one .npy a plane, name-PLANE.npy
-  std::filesystem::path offset_map;    ///< [m], as PixelMaps::delay_offset_m; empty: none
-  std::filesystem::path gain_map;      ///< as PixelMaps::gain; empty: none
-  double memory_mb = 256.0;            ///< for frames under way [MB], > 0
+  /// Means of so many consecutive frames are decoded, as frames of their own with a noise so much
+  /// smaller; the last one is of those that are left. What is invalid or saturated in one is so in
+  /// the mean. `frame` counts means. From 1 to the number of frames.
+  int average = 1;
+  std::optional<FilterOptions> filter;  ///< of each frame, or mean of frames; none: not filtered
+  std::filesystem::path offset_map;     ///< [m], as PixelMaps::delay_offset_m; empty: none
+  std::filesystem::path gain_map;       ///< as PixelMaps::gain; empty: none
+  double memory_mb = 256.0;             ///< for frames under way [MB], > 0
   OutputPolicy policy = OutputPolicy::refuse_existing;
   std::vector<std::string> other_inputs;  ///< files that were read too: no output replaces them
 };
@@ -96,7 +103,7 @@ struct DecodedRecording {
   int height = 0;
   int width = 0;
   int measurements = 0;
-  int first_frame = 0;                       ///< that was asked for
+  int first_frame = 0;                       ///< that was asked for; means count as frames
   int frame_count = 0;                       ///< that were asked for; 0 before the work begins
   std::vector<DecodedPlane> outputs;         ///< the planes written
   std::vector<std::filesystem::path> files;  ///< of every finished frame; of a stack: of outputs
@@ -112,7 +119,8 @@ struct DecodedRecording {
 };
 
 /// Decodes a recording of any length in memory that does not grow with it, in bands of rows, the
-/// next of which is read meanwhile. Each file appears whole or not at all.
+/// next of which is read meanwhile; with a filter, frame by frame. Each file appears whole or not
+/// at all.
 /// @param decoder  of make_decoder(); its table says what raw numbers are
 /// @throws std::invalid_argument "field = value; rule" for a request that cannot be, before any
 ///         file is written

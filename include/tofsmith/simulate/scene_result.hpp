@@ -11,6 +11,7 @@
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
+#include "tofsmith/decode/filter.hpp"
 #include "tofsmith/scene/scene_image.hpp"
 
 namespace tofsmith {
@@ -60,11 +61,19 @@ SceneExtent scene_extent(const SceneImage& scene, const Camera& camera);
 /// and looks like a nearer surface. 0 elsewhere and where nothing returns.
 Image<std::uint8_t> beyond_range(const SceneImage& scene, const Camera& camera);
 
+/// The same raw numbers once more, filtered before they are decoded.
+struct FilteredSceneDecoding {
+  Image<float> depth_m;
+  Image<float> averaged;  ///< of how many measurements numbers are the mean, as FilteredFrame
+  SceneError error;
+};
+
 /// One code's depth of one capture.
 struct SceneDecoding {
   std::string code;
   Image<float> depth_m;
   SceneError error;
+  std::optional<FilteredSceneDecoding> filtered = {};
 };
 
 /// A scene captured at one light level and decoded with several codes.
@@ -91,9 +100,11 @@ struct NamedLight {
 
 /// Captures and decodes `scene` with every code at every light level and fills its captures.
 /// Codes see the same noise, drawn from `seed`.
+/// @param filter  with which measurements are also filtered; none: they are not
 /// @throws std::invalid_argument if scene or camera are invalid or a code does not fit; Interrupted
 void capture_and_decode(SceneResult& scene, std::span<const CodeSet> codes, const Camera& camera,
                         std::span<const NamedLight> lights, std::uint64_t seed,
+                        const std::optional<FilterOptions>& filter = {},
                         const Progress& progress = {});
 
 /// Median of the true depths [m]; 1 for a scene without any.

@@ -42,11 +42,18 @@ Filter& Filter::operator=(Filter&&) noexcept = default;
 const DecodingTable& Filter::table() const { return plan_->decoder.table(); }
 const FilterOptions& Filter::options() const { return plan_->options; }
 
-std::size_t Filter::frame_bytes(int height, int width) const {
-  const int step = window_step(plan_->options.windows - 1);
+std::size_t Filter::memory_bytes(const FilterOptions& options, int height, int width,
+                                 int measurements, int threads) {
+  const int step = window_step(options.windows - 1);
   const FilterGrid grid = FilterPlanes::grid_of(height, width, step);
-  return sizeof(float) * (FilterPlanes::floats(grid, measurements(), step) +
-                          static_cast<std::size_t>(height) * static_cast<std::size_t>(width));
+  const FilterStrip strip{.first_row = 0, .rows = filter_rows, .step = step};
+  const auto strips = static_cast<std::size_t>(
+      std::min(threads, (height + filter_rows - 1) / filter_rows));
+  const std::size_t weights = options.slope_rounds > 0 ? 2 : 1;
+  return sizeof(float) *
+         (FilterPlanes::floats(grid, measurements, step) +
+          static_cast<std::size_t>(height) * static_cast<std::size_t>(width) +
+          strips * (weights * weight_floats(grid, strip) + scratch_floats(grid, strip)));
 }
 
 void Filter::apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress) const {

@@ -22,8 +22,10 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-std::string depth_file_name(const std::string& light, const std::string& code) {
-  return fmt::format("{}-{}.npy", file_name_of(light), file_name_of(code));
+/// @param plane  what follows the code's name: "", "-filtered", ..
+std::string plane_file_name(const std::string& light, const std::string& code,
+                            std::string_view plane = "") {
+  return fmt::format("{}-{}{}.npy", file_name_of(light), file_name_of(code), plane);
 }
 
 Json error_json(const SceneError& e) {
@@ -75,14 +77,42 @@ SceneImage read_truth(const fs::path& directory) {
   return truth;
 }
 
+/// The plane whose file a member names.
+Image<float> read_plane(const JsonReader& json, std::string_view member, std::string_view what,
+                        const fs::path& directory, const SceneImage& truth) {
+  const std::string file = json.member(member).text();
+  if (fs::path(file).has_parent_path())
+    json.member(member).mistyped("a file of the same directory");
+  return read_image_plane(directory / file, what, truth);
+}
+
 SceneDecoding read_decoding(const JsonReader& json, const fs::path& directory,
                             const SceneImage& truth) {
-  const std::string file = json.member("file").text();
-  if (fs::path(file).has_parent_path())
-    json.member("file").mistyped("a file of the same directory");
-  return {.code = json.member("code").text(),
-          .depth_m = read_image_plane(directory / file, "depth", truth),
-          .error = error_from_json(json.member("error"))};
+  SceneDecoding decoding{.code = json.member("code").text(),
+                         .depth_m = read_plane(json, "file", "depth", directory, truth),
+                         .error = error_from_json(json.member("error"))};
+  if (const auto filtered = json.optional_member("filtered"))
+    decoding.filtered = {
+        .depth_m = read_plane(*filtered, "file", "depth", directory, truth),
+        .averaged = read_plane(*filtered, "averaged_file", "averaged", directory, truth),
+        .error = error_from_json(filtered->member("error"))};
+  return decoding;
+}
+
+Json write_decoding(const SceneDecoding& decoding, const std::string& light,
+                    const fs::path& directory, OutputPolicy policy) {
+  const std::string file = plane_file_name(light, decoding.code);
+  write_float_image(directory / file, decoding.depth_m, "depth", policy);
+  Json json = {{"code", decoding.code}, {"file", file}, {"error", error_json(decoding.error)}};
+  if (!decoding.filtered) return json;
+  const std::string filtered = plane_file_name(light, decoding.code, "-filtered");
+  const std::string averaged = plane_file_name(light, decoding.code, "-averaged");
+  write_float_image(directory / filtered, decoding.filtered->depth_m, "depth", policy);
+  write_float_image(directory / averaged, decoding.filtered->averaged, "averaged", policy);
+  json["filtered"] = {{"file", filtered},
+                      {"averaged_file", averaged},
+                      {"error", error_json(decoding.filtered->error)}};
+  return json;
 }
 
 }  // namespace
@@ -104,11 +134,8 @@ void write_scene_result(const fs::path& directory, const SceneResult& scene, Out
                    {"captures", Json::array()}};
   for (const SceneCapture& capture : scene.captures) {
     Json decodings = Json::array();
-    for (const SceneDecoding& d : capture.decodings) {
-      const std::string file = depth_file_name(capture.light, d.code);
-      write_float_image(directory / file, d.depth_m, "depth", policy);
-      decodings.push_back({{"code", d.code}, {"file", file}, {"error", error_json(d.error)}});
-    }
+    for (const SceneDecoding& d : capture.decodings)
+      decodings.push_back(write_decoding(d, capture.light, directory, policy));
     document["captures"].push_back({{"light", capture.light},
                                     {"signal_e_per_s", capture.point.signal_e_per_s},
                                     {"ambient_e_per_s", capture.point.ambient_e_per_s},

@@ -5,14 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
 
 #include "io/recordings/decoded_output.hpp"
-#include "io/recordings/read_ahead.hpp"
+#include "io/recordings/prepared_frames.hpp"
+#include "io/recordings/recording_notes.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/decode/pixel_maps.hpp"
@@ -33,6 +33,8 @@ bool finds_multipath(const AnyDecoder& decoder) {
 void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
   const std::filesystem::path& output = request.output;
   require(request.memory_mb > 0.0, "memory_mb", request.memory_mb, "must be > 0");
+  require(request.average >= 1, "average", request.average, "must be >= 1");
+  if (request.filter) request.filter->validate();
   require(request.frame.value_or(0) >= 0, "frame", request.frame.value_or(0), "must be >= 0");
   require(!request.stack || output.extension() == ".npy", "stack", "true",
           fmt::format("goes with a .npy file; the output is {}", output.string()));
@@ -70,9 +72,13 @@ RawFramesReader open_recording(const DecodeRequest& request, const DecodingTable
 
 DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
                        const RawFramesReader& reader) {
-  require(!request.frame || *request.frame < reader.frames(), "frame", request.frame.value_or(0),
-          fmt::format("{} holds {} frame{}, counted from 0", request.raw.string(), reader.frames(),
-                      reader.frames() == 1 ? "" : "s"));
+  const std::string held = fmt::format("{} holds {} frame{}", request.raw.string(), reader.frames(),
+                                       reader.frames() == 1 ? "" : "s");
+  require(request.average <= reader.frames(), "average", request.average, held);
+  const int frames = Preparation{request.average, {}}.frames_of(reader.frames());
+  require(!request.frame || *request.frame < frames, "frame", request.frame.value_or(0),
+          fmt::format("{}{}, counted from 0", held,
+                      request.average > 1 ? fmt::format(", {} means", frames) : ""));
   const PinholeView view = view_of(request.lens, reader.width(), reader.height());
   if (request.lens) view.validate();
   return {.path = request.output,
@@ -83,7 +89,7 @@ DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
                             std::ranges::count(request.outputs, DecodedPlane::status) > 0,
           .as_z = request.kind == DepthKind::z && request.output.extension() != ".ply",
           .first_frame = request.frame.value_or(0),
-          .frames = request.frame ? 1 : reader.frames(),
+          .frames = request.frame ? 1 : frames,
           .view = view};
 }
 
@@ -128,74 +134,33 @@ void check_range_fits(const std::filesystem::path& path, double range_m) {
                               range_m, largest_m));
 }
 
-/// Whole numbers that nothing was said about.
-std::optional<std::string> electrons_note(const RawFramesReader& reader,
-                                          const DecodingTable& table) {
-  if (!reader.holds_integers() || table.saturation_level ||
-      (table.gain_e_per_raw.array() != 1.0).any() || (table.black_level.array() != 0.0).any())
-    return std::nullopt;
-  return "raw numbers are taken as electrons: no gain, black level or saturation is set (--set "
-         "sensor.adc_bits=.. --set sensor.gain_e_per_dn=.. --set sensor.black_level_dn=..)";
-}
-
-/// What pixels without depth are most likely due to.
-std::string_view likely_cause(PixelStatus status) {
-  switch (status) {
-    case PixelStatus::invalid:
-      return "the raw numbers are NaN or infinite, or the maps mark every pixel as dead: were they "
-             "written, and read with the right --raw-format?";
-    case PixelStatus::saturated:
-      return "every pixel has a raw number at the saturation level: expose less, or correct "
-             "sensor.full_well_e, sensor.adc_bits and sensor.gain_e_per_dn";
-    default:
-      return "no signal is in the raw numbers: is the light on, --code the code that the camera "
-             "used, "
-             "--layout how they run, and sensor.black_level_dn what is in the dark?";
-  }
-}
-
-/// Where no pixel of any frame has a depth: how many have which status, and what to look at.
-std::optional<std::string> no_depth_note(const StatusCounts& statuses) {
-  constexpr std::array without_depth = {PixelStatus::invalid, PixelStatus::no_return,
-                                        PixelStatus::saturated};
-  std::int64_t without = 0;
-  std::string counts;
-  for (const PixelStatus status : without_depth) {
-    without += statuses.of(status);
-    if (statuses.of(status) > 0)
-      counts +=
-          fmt::format("{}{} {}", counts.empty() ? "" : ", ", statuses.of(status), name_of(status));
-  }
-  if (without == 0 || without < statuses.pixels()) return std::nullopt;
-  const auto by_count = [&](PixelStatus status) { return statuses.of(status); };
-  return fmt::format("no pixel has a depth ({}); {}", counts,
-                     likely_cause(std::ranges::max(without_depth, {}, by_count)));
-}
-
 /// How many rows are read and decoded at a time so that all buffers together fit.
-/// @throws IoError if a frame of this format, or a single row, takes more
-int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target, double memory_bytes) {
-  const double row_planes =
-      static_cast<double>(bytes_per_pixel(target.needed_planes())) * target.view.width;
-  const bool in_rows = target.in_rows();
-  const double whole = static_cast<double>(reader.bytes_in_memory() + target.writing_bytes()) +
-                       (in_rows ? 0.0 : row_planes * target.view.height);
-  const double row =
+/// @throws IoError if a frame of this format, a frame to be filtered, or a single row, takes more
+int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target,
+                   const Preparation& preparation, double memory_bytes) {
+  const int height = target.view.height, width = target.view.width;
+  const double row_planes = static_cast<double>(bytes_per_pixel(target.needed_planes())) * width;
+  const bool in_rows = target.in_rows(), is_filtered = preparation.filter.has_value();
+  double whole = static_cast<double>(reader.bytes_in_memory() + target.writing_bytes()) +
+                 preparation.frame_bytes(height, width, reader.measurements()) +
+                 (in_rows ? 0.0 : row_planes * height);
+  double row =
       (reader.bytes_in_memory() > 0 ? 0.0 : 2.0 * static_cast<double>(reader.row_bytes())) +
-      (in_rows ? row_planes : 0.0);
+      preparation.row_bytes(width, reader.measurements()) + (in_rows ? row_planes : 0.0);
+  if (is_filtered) whole += row * height, row = 0.0;
   if (whole + row > memory_bytes)
     throw IoError(
         target.path.string(),
-        fmt::format("frames of {} x {} pixels take {:.3g} MB to be written so; expected at most "
-                    "{:.3g} MB (fewer --outputs take less{}; --memory-mb allows more)",
-                    target.view.height, target.view.width, 1e-6 * (whole + row),
+        fmt::format("frames of {} x {} pixels take {:.3g} MB to be {}written so; expected at most "
+                    "{:.3g} MB ({}fewer --outputs take less{}; --memory-mb allows more)",
+                    height, width, 1e-6 * (whole + row), is_filtered ? "filtered and " : "",
                     1e-6 * memory_bytes,
+                    is_filtered ? "without a filter they go in bands of rows; " : "",
                     in_rows ? "" : "; .npy is written row by row, with --stack every plane"));
   // Larger bands are no faster: new memory costs more than another call.
   constexpr double comfortable_bytes = 32e6;
-  const double rows =
-      row > 0.0 ? std::min(memory_bytes - whole, comfortable_bytes) / row : target.view.height;
-  return std::clamp(static_cast<int>(rows), 1, target.view.height);
+  const double rows = row > 0.0 ? std::min(memory_bytes - whole, comfortable_bytes) / row : height;
+  return std::clamp(static_cast<int>(rows), 1, height);
 }
 
 /// Progress over all frames, which says how fast they come.
@@ -255,23 +220,27 @@ struct MappedDecoder {
 };
 
 /// Decodes the target's frames in bands of at most `rows` rows.
-void decode_frames(const RawFramesReader& reader, int rows, const MappedDecoder& decoder,
-                   DecodeOutput& output, const Progress& progress, DecodedRecording& result) {
+void decode_frames(const RawFramesReader& reader, const Preparation& preparation, int rows,
+                   const MappedDecoder& decoder, DecodeOutput& output, const Progress& progress,
+                   DecodedRecording& result) {
   const DecodeTarget& target = output.target();
   const int height = target.view.height, width = target.view.width;
   const bool in_rows = target.in_rows();
   DecodedPlanes planes(target.needed_planes(), in_rows ? rows : height, width);
-  ReadAhead input(reader,
-                  bands_of(target.first_frame, target.first_frame + target.frames, height, rows));
+  PreparedFrames input(
+      reader, decoder.table, preparation,
+      bands_of(target.first_frame, target.first_frame + target.frames, height, rows));
   const Pace pace(progress, target);
   StatusCounts statuses;
   for (const Band& band : input.bands()) {
     const Progress here = pace.of_band(band, result.pixels);
     report(here, 0.0, "reading");
-    const RawView raw = input.next();
+    const ProgressParts parts(here, {input.effort(), 1.0});
+    const RawView raw = input.next(parts[0]);
     const std::size_t first =
-        static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(width);
-    decoder.decode(raw, band, target, planes.view().from(in_rows ? 0 : first), here, statuses);
+        in_rows ? 0 : static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(width);
+    planes.keep_averaged(raw, first);
+    decoder.decode(raw, band, target, planes.view().from(first), parts[1], statuses);
     output.take(band.frame, band.first_row, band.rows, planes);
     result.pixels += raw.pixels();
     result.seconds = pace.seconds();
@@ -317,7 +286,8 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
   check_inputs_are_kept(request, target);
   check_range_fits(target.path, table.range_m);
   DecodeOutput output(target);
-  const int rows = rows_at_a_time(reader, target, 1e6 * request.memory_mb);
+  const Preparation preparation{request.average, request.filter};
+  const int rows = rows_at_a_time(reader, target, preparation, 1e6 * request.memory_mb);
 
   result.height = reader.height();
   result.width = reader.width();
@@ -326,7 +296,7 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
   result.frame_count = target.frames;
   result.outputs = target.planes;
   if (const auto note = electrons_note(reader, table)) result.notes.push_back(*note);
-  decode_frames(reader, rows, mapped, output, progress, result);
+  decode_frames(reader, preparation, rows, mapped, output, progress, result);
   if (const auto note = no_depth_note(result.total())) result.notes.push_back(*note);
 }
 

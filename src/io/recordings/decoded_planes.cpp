@@ -15,9 +15,9 @@ namespace tofsmith {
 
 namespace {
 
-constexpr EnumWords<DecodedPlane, 10> plane_words("DecodedPlane", "plane", "depth", "signal",
-                                                  "ambient", "confidence", "deviation", "status",
-                                                  "delay", "ratio", "returns", "bin");
+constexpr EnumWords<DecodedPlane, all_decoded_planes.size()> plane_words(
+    "DecodedPlane", "plane", "depth", "signal", "ambient", "confidence", "deviation", "status",
+    "delay", "ratio", "returns", "bin", "averaged");
 constexpr EnumWords<DepthKind, 2> kind_words("DepthKind", "kind", "radial", "z");
 
 }  // namespace
@@ -45,7 +45,8 @@ bool is_multipath_plane(DecodedPlane plane) {
 std::vector<DecodedPlane> usual_planes(bool multipath) {
   std::vector<DecodedPlane> planes;
   for (const DecodedPlane plane : all_decoded_planes)
-    if (plane != DecodedPlane::bin && (multipath || !is_multipath_plane(plane)))
+    if (plane != DecodedPlane::bin && plane != DecodedPlane::averaged &&
+        (multipath || !is_multipath_plane(plane)))
       planes.push_back(plane);
   return planes;
 }
@@ -82,6 +83,8 @@ auto DecodedPlanes::with(Planes& planes, DecodedPlane plane, const Use& use) {
       return use(planes.ratio_);
     case DecodedPlane::returns:
       return use(planes.returns_);
+    case DecodedPlane::averaged:
+      return use(planes.averaged_);
     case DecodedPlane::bin:
       break;
   }
@@ -104,6 +107,15 @@ DecodedView DecodedPlanes::view() {
   view.ratio = ratio_.pixels.data();
   view.returns = returns_.pixels.data();
   return view;
+}
+
+void DecodedPlanes::keep_averaged(const RawView& raw, std::size_t first) {
+  if (averaged_.empty()) return;
+  float* const to = averaged_.pixels.data() + first;
+  if (raw.averaged)
+    std::copy_n(raw.averaged, raw.pixels(), to);
+  else
+    std::fill_n(to, raw.pixels(), 1.0f);
 }
 
 bool DecodedPlanes::has(DecodedPlane plane) const {

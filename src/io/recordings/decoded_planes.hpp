@@ -33,6 +33,9 @@ class DecodedPlanes {
   int width() const { return width_; }
   /// Where a decoder writes; null for the planes that are empty.
   DecodedView view();
+  /// Of how many measurements raw numbers are the mean, if that plane was asked for.
+  /// @param first  pixel of the planes where they belong
+  void keep_averaged(const RawView& raw, std::size_t first);
 
   const Image<float>& depth_m() const { return image_.depth_m; }
   bool has(DecodedPlane plane) const;
@@ -49,7 +52,7 @@ class DecodedPlanes {
   int height_, width_;
   DepthImage image_;
   Image<std::int32_t> bin_;
-  Image<float> delay_m_, ratio_;
+  Image<float> delay_m_, ratio_, averaged_;
   Image<ReturnStatus> returns_;
 };
 

@@ -1,0 +1,129 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Measurements of the same depth added before they are decoded."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _check, _tofsmith
+from ._camera import CameraLike
+from ._check import Progress
+from ._code import CodeLike
+from ._decoding_table import DecodingTable, table_of
+
+#: A strength, or a dict of "strength" and fields of FilterOptions.
+FilterLike = Union[str, Mapping[str, Any]]
+
+
+def filter_options(filter: FilterLike) -> dict[str, Any]:
+    """The dict of a FilterLike."""
+    if isinstance(filter, str):
+        return {"strength": filter}
+    if not isinstance(filter, Mapping):
+        raise TypeError(f"filter: got {_check.shown(filter)}; needs one of "
+                        f"{', '.join(_tofsmith.filter_strengths())}, or a dict of options")
+    return {"strength": "normal", **filter}
+
+
+class Filter:
+    """Adds the raw measurements of pixels that see the same depth, before anything is decoded.
+    Immutable, safe to use from many threads at once.
+
+    Without ambient light, measurements of one depth are parallel whatever the albedo, so that they
+    may be added without bias; whether two pixels may be is a test that knows the noise of each. See
+    docs/filtering.md.
+
+    Parameters
+    ----------
+    code : CodeSet, DecodingTable, name of a family or file
+        As Decoder takes it.
+    camera : Camera or its name
+        Needed unless `code` is a DecodingTable.
+    strength : {"normal", "light", "strong"}
+        normal adds over 25 x 25 pixels, and once more along the slopes found; light over 5 x 5
+        pixels, several times as fast; strong goes along the slopes twice.
+    options : dict, optional
+        For experts, instead of what the strength says: windows, slope_rounds, max_difference_sigma,
+        trusted_pixels, same_depth_sigma, own_light_sigma.
+
+    Raises
+    ------
+    ValueError
+        For another strength, or an option that breaks a rule.
+
+    Examples
+    --------
+    >>> filter = Filter("hamiltonian-k4", "paper-10f0", strength="light")
+    >>> raw, averaged = filter.apply(np.full((20, 30, 4), 1000, np.uint16))
+    >>> raw.shape, averaged.shape
+    ((20, 30, 4), (20, 30))
+    >>> Decoder(filter.table).decode(raw, averaged=averaged).depth_m.shape
+    (20, 30)
+    """
+
+    def __init__(
+        self,
+        code: CodeLike | DecodingTable,
+        camera: Optional[CameraLike] = None,
+        *,
+        strength: str = "normal",
+        options: Optional[Mapping[str, Any]] = None,
+    ) -> None:
+        _check.one_of(strength, "strength", tuple(_tofsmith.filter_strengths()))
+        values = {} if options is None else dict(options)
+        self._handle = _tofsmith.Filter(
+            table_of(code, camera)._handle, {**values, "strength": strength})
+
+    @property
+    def table(self) -> DecodingTable:
+        return DecodingTable._of(self._handle.table())
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """The fields of FilterOptions by name."""
+        return self._handle.options()
+
+    def apply(
+        self,
+        raw: npt.NDArray[Any],
+        *,
+        layout: str = "interleaved",
+        progress: Progress = None,
+    ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
+        """Filters one frame, or each of a stack, on all threads.
+
+        Parameters
+        ----------
+        raw : ndarray
+            As Decoder.decode() takes it, as it leaves the sensor. Pixels that are invalid or
+            saturated stay as they are and are added to none.
+        layout : {"interleaved", "planar"}
+            Never guessed.
+        progress : callable, optional
+            Called with (fraction, step); False stops.
+
+        Returns
+        -------
+        raw : ndarray of float32, shape (H, W, K) or (F, H, W, K)
+            Raw numbers as any decoder takes them.
+        averaged : ndarray of float32, shape (H, W) or (F, H, W)
+            Of how many measurements each is the mean, in variance: Decoder.decode()'s `averaged`.
+
+        Raises
+        ------
+        ValueError
+            For another dtype or shape.
+        Interrupted
+            If `progress` says so.
+
+        Notes
+        -----
+        The same bits for any number of threads and any layout.
+        """
+        is_planar = _check.one_of(layout, "layout", ("interleaved", "planar")) == "planar"
+        return self._handle.apply(_check.raw_array(raw), is_planar, _check.progress(progress))

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "io/recordings/read_ahead.hpp"
+#include "tofsmith/core/image.hpp"
+#include "tofsmith/core/progress.hpp"
+#include "tofsmith/decode/filter.hpp"
+
+namespace tofsmith {
+
+/// What is done to raw numbers before they are decoded.
+struct Preparation {
+  int average = 1;  ///< mean of so many consecutive frames, the last of those there are
+  std::optional<FilterOptions> filter;
+
+  /// Frames that come out of so many.
+  int frames_of(int recorded) const { return (recorded + average - 1) / average; }
+  /// What it takes beside the rows that are read [bytes], in all and for each row under way.
+  double frame_bytes(int height, int width, int measurements) const;
+  double row_bytes(int width, int measurements) const;
+};
+
+/// Sums of the same rows of frames after another.
+class RowSums {
+ public:
+  /// @param saturation_level  what is clipped in one frame is clipped in the mean; what is NaN or
+  ///                          infinite in one is NaN
+  void start(const RawView& first, std::optional<float> saturation_level);
+  void add(const RawView& raw);
+  /// The means, with how many frames they are of, until the next start().
+  RawView means();
+
+ private:
+  int height_ = 0, width_ = 0, measurements_ = 0, frames_ = 0;
+  std::optional<float> saturation_level_;
+  std::vector<double> sums_;  // interleaved; infinite where clipped
+  std::vector<float> averaged_;
+};
+
+/// Gives bands of a recording as they are decoded: as they are read, as means of several frames,
+/// filtered.
+class PreparedFrames {
+ public:
+  /// @param reader  outlives this, as does the table
+  /// @param bands   of frames that come out; whole frames if there is a filter
+  PreparedFrames(const RawFramesReader& reader, const DecodingTable& table,
+                 const Preparation& preparation, std::vector<Band> bands);
+
+  const std::vector<Band>& bands() const { return bands_; }
+  /// How long next() takes, where decoding takes 1: about.
+  double effort() const { return preparation_.filter ? 8.0 : preparation_.average > 1 ? 1.0 : 0.0; }
+  /// The raw numbers of the next band, until the call after.
+  /// @throws IoError as RawFramesReader::read_rows(); Interrupted if progress says so
+  RawView next(const Progress& progress);
+
+ private:
+  RawView next_mean(const Progress& progress);
+  RawView filtered(const RawView& mean, int frames, const Progress& progress);
+
+  const DecodingTable& table_;
+  Preparation preparation_;
+  int recorded_;
+  std::vector<Band> bands_;
+  std::size_t next_ = 0;
+  ReadAhead input_;
+  RowSums sums_;
+  std::map<int, Filter> filters_;  // of means of so many frames
+  FilteredFrame filtered_;
+  Image<float> averaged_;
+};
+
+}  // namespace tofsmith

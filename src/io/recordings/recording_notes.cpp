@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/recordings/recording_notes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace tofsmith {
+
+namespace {
+
+/// What pixels without depth are most likely due to.
+std::string_view likely_cause(PixelStatus status) {
+  switch (status) {
+    case PixelStatus::invalid:
+      return "the raw numbers are NaN or infinite, or the maps mark every pixel as dead: were they "
+             "written, and read with the right --raw-format?";
+    case PixelStatus::saturated:
+      return "every pixel has a raw number at the saturation level: expose less, or correct "
+             "sensor.full_well_e, sensor.adc_bits and sensor.gain_e_per_dn";
+    default:
+      return "no signal is in the raw numbers: is the light on, --code the code that the camera "
+             "used, "
+             "--layout how they run, and sensor.black_level_dn what is in the dark?";
+  }
+}
+
+}  // namespace
+
+std::optional<std::string> electrons_note(const RawFramesReader& reader,
+                                          const DecodingTable& table) {
+  if (!reader.holds_integers() || table.saturation_level ||
+      (table.gain_e_per_raw.array() != 1.0).any() || (table.black_level.array() != 0.0).any())
+    return std::nullopt;
+  return "raw numbers are taken as electrons: no gain, black level or saturation is set (--set "
+         "sensor.adc_bits=.. --set sensor.gain_e_per_dn=.. --set sensor.black_level_dn=..)";
+}
+
+std::optional<std::string> no_depth_note(const StatusCounts& statuses) {
+  constexpr std::array without_depth = {PixelStatus::invalid, PixelStatus::no_return,
+                                        PixelStatus::saturated};
+  std::int64_t without = 0;
+  std::string counts;
+  for (const PixelStatus status : without_depth) {
+    without += statuses.of(status);
+    if (statuses.of(status) > 0)
+      counts +=
+          fmt::format("{}{} {}", counts.empty() ? "" : ", ", statuses.of(status), name_of(status));
+  }
+  if (without == 0 || without < statuses.pixels()) return std::nullopt;
+  const auto by_count = [&](PixelStatus status) { return statuses.of(status); };
+  return fmt::format("no pixel has a depth ({}); {}", counts,
+                     likely_cause(std::ranges::max(without_depth, {}, by_count)));
+}
+
+}  // namespace tofsmith

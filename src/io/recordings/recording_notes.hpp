@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "tofsmith/io/decode_recording.hpp"
+
+namespace tofsmith {
+
+/// Whole numbers that nothing was said about.
+std::optional<std::string> electrons_note(const RawFramesReader& reader,
+                                          const DecodingTable& table);
+/// Where no pixel of any frame has a depth: how many have which status, and what to look at.
+std::optional<std::string> no_depth_note(const StatusCounts& statuses);
+
+}  // namespace tofsmith
