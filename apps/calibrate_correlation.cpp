@@ -17,7 +17,7 @@
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/image_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
-#include "tofsmith/report/calibration_report.hpp"
+#include "tofsmith/report/instrument_reports.hpp"
 
 namespace tofsmith::apps {
 

@@ -7,7 +7,7 @@
 #include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/raw_frames.hpp"
-#include "tofsmith/report/calibration_report.hpp"
+#include "tofsmith/report/instrument_reports.hpp"
 
 namespace tofsmith::apps {
 

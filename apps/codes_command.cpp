@@ -13,7 +13,7 @@
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/report/code_figures.hpp"
-#include "tofsmith/report/export_report.hpp"
+#include "tofsmith/report/instrument_reports.hpp"
 #include "tofsmith/waveforms/waveform_export.hpp"
 
 namespace tofsmith::apps {

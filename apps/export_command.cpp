@@ -10,7 +10,7 @@
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
-#include "tofsmith/report/export_report.hpp"
+#include "tofsmith/report/instrument_reports.hpp"
 #include "tofsmith/waveforms/write_export.hpp"
 
 namespace tofsmith::apps {

@@ -25,7 +25,6 @@
 #include "tofsmith/decode/filter.hpp"
 #include "tofsmith/decode/likelihood_decoder.hpp"
 #include "tofsmith/decode/multipath_decoder.hpp"
-#include "tofsmith/decode/pixel_maps.hpp"
 #include "tofsmith/decode/unwrap_decoder.hpp"
 #include "tofsmith/scene/bounced_light.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"

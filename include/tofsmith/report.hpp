@@ -6,9 +6,8 @@
 /// All of tofsmith::report: figures and pages. Includes tofsmith/lab.hpp.
 
 #include "tofsmith/lab.hpp"
-#include "tofsmith/report/calibration_report.hpp"
 #include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/design_report.hpp"
-#include "tofsmith/report/export_report.hpp"
 #include "tofsmith/report/figure.hpp"
+#include "tofsmith/report/instrument_reports.hpp"
 #include "tofsmith/report/page.hpp"

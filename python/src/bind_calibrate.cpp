@@ -9,7 +9,7 @@
 #include "reports.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/io/camera_toml.hpp"
-#include "tofsmith/report/calibration_report.hpp"
+#include "tofsmith/report/instrument_reports.hpp"
 
 namespace tofsmith::python {
 

@@ -14,7 +14,7 @@
 #include "raw_array.hpp"
 #include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
-#include "tofsmith/decode/pixel_maps.hpp"
+#include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 

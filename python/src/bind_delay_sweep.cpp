@@ -11,7 +11,7 @@
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/image_file.hpp"
-#include "tofsmith/report/calibration_report.hpp"
+#include "tofsmith/report/instrument_reports.hpp"
 
 namespace tofsmith::python {
 

@@ -4,8 +4,8 @@
 
 #include "report/calibration_page.hpp"
 #include "tofsmith/core/units.hpp"
-#include "tofsmith/report/calibration_report.hpp"
 #include "tofsmith/report/figure.hpp"
+#include "tofsmith/report/instrument_reports.hpp"
 
 namespace tofsmith {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/report/export_report.hpp"
+#include "tofsmith/report/instrument_reports.hpp"
 
 #include <fmt/format.h>
 

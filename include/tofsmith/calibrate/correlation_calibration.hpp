@@ -14,7 +14,7 @@
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
-#include "tofsmith/decode/pixel_maps.hpp"
+#include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/measured_table_file.hpp"
 

@@ -15,7 +15,7 @@
 #include "io/recordings/recording_notes.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
-#include "tofsmith/decode/pixel_maps.hpp"
+#include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/io/image_file.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
