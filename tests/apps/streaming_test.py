@@ -135,7 +135,7 @@ class Streaming(CommandLineTest):
         self.decode("--average", "2", "--frame", "1", output="one.npy")
         np.testing.assert_array_equal(np.load(self.path("one.npy")),
                                       np.load(self.path("d.npy"))[1])
-        self.refuse(self.arguments("--average", "6", output="x.npy"), "--average 6", "holds 5 frames",
+        self.refuse(self.arguments("--average", "6", output="x.npy"), "--average = 6", "holds 5 frames",
                     code=2)
         self.refuse(self.arguments("--average", "2", "--frame", "3", output="x.npy"), "3 means",
                     code=2)

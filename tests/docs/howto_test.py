@@ -25,7 +25,8 @@ from sweep_text import sweep_text  # noqa: E402
 
 SHORTER = {" design ": " design --effort 0.01 --trials 1000 ",
            " reproduce all ": " reproduce fig2 --fast ",
-           " --bounces 1 ": " --bounces 1 --bounce-rays 16 "}
+           " --bounces 1 ": " --bounces 1 --bounce-rays 16 ",
+           " --average 30 ": " --average 2 "}
 SMALL = "--width 32 --height 24"
 DUMP = """width = 32
 height = 24

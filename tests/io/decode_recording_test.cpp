@@ -194,7 +194,7 @@ TEST_F(DecodeRecording, RefusesWhatCannotBeBeforeAnythingIsWritten) {
   wrong.average = 0;
   refused(wrong, "average = 0; must be >= 1");
   wrong.average = 4;
-  refused(wrong, "average 4: ");
+  refused(wrong, "average = 4; ");
   wrong.average = 2;
   wrong.frame = 2;
   refused(wrong, "holds 3 frames, 2 means, counted from 0");
