@@ -104,7 +104,7 @@ DiscKernels::DiscKernels(const LensBlur& blur, int samples, std::span<const floa
   used.erase(sharp);
   if (used.empty()) return;
   first_step_ = *used.begin();
-  steps_.resize(static_cast<std::size_t>(*used.rbegin() - first_step_ + 1));
+  steps_.resize(static_cast<std::size_t>(std::ptrdiff_t{*used.rbegin()} - first_step_ + 1));
   const std::vector<int> all(used.begin(), used.end());
   parallel_for(static_cast<std::int64_t>(all.size()), [&](std::int64_t i) {
     const int its = all[static_cast<std::size_t>(i)];
@@ -129,7 +129,7 @@ const DiscKernel& DiscKernels::of(float distance_m, int row, int column) const {
   const int its = step_of(distance_m);
   if (its == sharp) return point_;
   return steps_[static_cast<std::size_t>(its - first_step_)]
-               [static_cast<std::size_t>(row * samples_ + column)];
+               [static_cast<std::size_t>(std::ptrdiff_t{row} * samples_ + column)];
 }
 
 }  // namespace tofsmith

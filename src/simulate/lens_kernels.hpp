@@ -28,7 +28,8 @@ struct DiscKernel {
   double largest = 0.0;         ///< of the weights
 
   double at(int row, int column) const {
-    return weights[static_cast<std::size_t>((row + reach) * (2 * reach + 1) + column + reach)];
+    const std::ptrdiff_t side = 2 * std::ptrdiff_t{reach} + 1;
+    return weights[static_cast<std::size_t>((row + reach) * side + column + reach)];
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "core/shared/enum_words.hpp"
 #include "decode/filter/filter_plan.hpp"
@@ -47,8 +48,8 @@ std::size_t Filter::memory_bytes(const FilterOptions& options, int height, int w
   const int step = window_step(options.windows - 1);
   const FilterGrid grid = FilterPlanes::grid_of(height, width, step);
   const FilterStrip strip{.first_row = 0, .rows = filter_rows, .step = step};
-  const auto strips = static_cast<std::size_t>(
-      std::min(threads, (height + filter_rows - 1) / filter_rows));
+  const auto strips =
+      static_cast<std::size_t>(std::min(threads, (height + filter_rows - 1) / filter_rows));
   const std::size_t weights = options.slope_rounds > 0 ? 2 : 1;
   return sizeof(float) *
          (FilterPlanes::floats(grid, measurements, step) +
@@ -73,17 +74,19 @@ void Filter::apply(const RawView& raw, FilteredFrame& filtered, const Progress& 
   int from = 0, to = 1;
   for (int window = 0; window < windows; ++window) {
     plan.add_similar(frame, from, to, window);
-    from = to, to = 3 - to;
+    std::swap(from, to);
     step_done();
   }
   for (int round = 0; round < plan.options.slope_rounds; ++round) {
-    plan.find_depth(frame, from, to);
+    if (round > 0) plan.read_again(raw, frame, to, FilterPlanes::usable);
+    plan.find_depth(raw, frame, from, to);
+    plan.read_again(raw, frame, to, FilterPlanes::signal);
     for (int window = 0; window < windows; ++window) {
-      plan.add_along_slopes(frame, window == 0 ? 0 : from, to, from, window);
+      plan.add_along_slopes(frame, window == 0 ? to : from, to, from, window);
       step_done();
     }
   }
-  frame.result = to;
+  frame.result = from;
   plan.finish(raw, frame, from, to);
 }
 

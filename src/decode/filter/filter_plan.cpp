@@ -67,6 +67,11 @@ std::vector<float> row_by_row(const RowMajorMatrix& matrix) {
   return {matrix.data(), matrix.data() + matrix.size()};
 }
 
+/// Of how many measurements the numbers of a row from a column on are the mean; null: of one.
+const float* averaged_of(const RawView& raw, int row, int column) {
+  return raw.averaged ? raw.averaged + std::ptrdiff_t{row} * raw.width + column : nullptr;
+}
+
 /// Mean variance of a coordinate, from what was measured.
 void find_variance(const Filter::Plan& plan, RowBlock& electrons, int pixels, float* variance) {
   std::fill_n(variance, pixels, plan.floor_variance_e2);
@@ -112,17 +117,31 @@ Filter::Plan::Plan(DecodingTable table, const FilterOptions& options_,
 }
 
 void Filter::Plan::read(const RawView& raw, FilterPlanes& frame) const {
-  for_each_row(frame, [&](int row) { read_row(raw, frame, row); });
-  if (has_own_shot_noise) for_each_row(frame, [&](int row) { find_hidden_noise(frame, row); });
+  for_each_row(frame, [&](int row) {
+    const std::ptrdiff_t at = row * frame.grid.stride;
+    read_row(raw, frame, row, 0, frame.scalar(FilterPlanes::usable) + at,
+             frame.scalar(FilterPlanes::variance) + at);
+  });
+  if (has_own_shot_noise) for_each_row(frame, [&](int row) { find_hidden_noise(raw, frame, row); });
 }
 
-void Filter::Plan::read_row(const RawView& raw, FilterPlanes& frame, int row) const {
+void Filter::Plan::read_again(const RawView& raw, FilterPlanes& frame, int set,
+                              FilterPlanes::Scalar usable) const {
+  for_each_row(frame, [&](int row) {
+    read_row(raw, frame, row, set, frame.scalar(usable) + row * frame.grid.stride, nullptr);
+  });
+}
+
+/// @param row_usable, row_variance  of the row; no variance where null
+void Filter::Plan::read_row(const RawView& raw, FilterPlanes& frame, int row, int set,
+                            float* row_usable, float* row_variance) const {
   const float clipped =
       decoder.table().saturation_level.value_or(std::numeric_limits<float>::infinity());
   for_each_block_of_row(raw.width, [&](int first, int pixels) {
     const std::ptrdiff_t at = row * frame.grid.stride + first;
-    float* const usable = frame.scalar(FilterPlanes::usable) + at;
-    std::fill_n(usable, pixels, 1.0f);
+    float* const usable = row_usable + first;
+    const float* const averaged = averaged_of(raw, row, first);
+    for (int i = 0; i < pixels; ++i) usable[i] = !averaged || averaged[i] > 0.0f ? 1.0f : 0.0f;
     RowBlock electrons;
     for_each_run(raw, std::int64_t{row} * raw.width + first, pixels,
                  [&](const auto* pixel, std::int64_t length, std::int64_t) {
@@ -138,19 +157,26 @@ void Filter::Plan::read_row(const RawView& raw, FilterPlanes& frame, int row) co
     for (int i = 0; i < pixels; ++i)
       if (!(usable[i] > 0.0f))
         for (int k = 0; k < measurements; ++k) electrons[k][i] = 0.0f;
-    find_variance(*this, electrons, pixels, frame.scalar(FilterPlanes::variance) + at);
+    if (row_variance) {
+      float* const variance = row_variance + first;
+      find_variance(*this, electrons, pixels, variance);
+      if (averaged)
+        for (int i = 0; i < pixels; ++i)
+          if (usable[i] > 0.0f) variance[i] /= averaged[i];
+    }
     for (int j = 0; j < measurements; ++j)
       mix(
           to_coordinates.data() + j * measurements, measurements,
-          [&](int k) { return electrons[k]; }, pixels, frame.light(0, j) + at);
+          [&](int k) { return electrons[k]; }, pixels, frame.light(set, j) + at);
   });
 }
 
 /// Where light cancels in the measurements, its noise is that of the signal seen around a pixel:
-/// signal S with variance f + S m of each coordinate makes <|u|^2> = S^2 <p^2> + rank (f + S m).
-void Filter::Plan::find_hidden_noise(FilterPlanes& frame, int row) const {
+/// signal S with variance f + S m of each coordinate makes <|u|^2> = S^2 <p^2> + rank (f + S m); of
+/// a mean of n measurements f and m are n times smaller.
+void Filter::Plan::find_hidden_noise(const RawView& raw, FilterPlanes& frame, int row) const {
   const FilterGrid& grid = frame.grid;
-  const auto r = static_cast<float>(rank);
+  const float* const averaged = averaged_of(raw, row, 0);
   for (int x = 0; x < grid.width; ++x) {
     float squares = 0.0f, count = 0.0f;
     for (int dy = -patch_reach; dy <= patch_reach; ++dy)
@@ -160,12 +186,14 @@ void Filter::Plan::find_hidden_noise(FilterPlanes& frame, int row) const {
         for (int j = 0; j < rank; ++j) squares += frame.light(0, j)[at] * frame.light(0, j)[at];
       }
     if (!(count > 0.0f)) continue;
-    const float m = r * shot_per_signal;
-    const float beyond = std::max(0.0f, squares / count - r * floor_variance_e2);
+    const float n = averaged && averaged[x] > 0.0f ? averaged[x] : 1.0f;
+    const float per_mean = static_cast<float>(rank) / n;
+    const float m = per_mean * shot_per_signal;
+    const float beyond = std::max(0.0f, squares / count - per_mean * floor_variance_e2);
     const float signal =
         (std::sqrt(m * m + 4 * mean_curve_square * beyond) - m) / (2 * mean_curve_square);
     frame.scalar(FilterPlanes::variance)[row * grid.stride + x] =
-        floor_variance_e2 + signal * shot_per_signal;
+        (floor_variance_e2 + signal * shot_per_signal) / n;
   }
 }
 
@@ -205,7 +233,7 @@ void Filter::Plan::add_similar(FilterPlanes& frame, int from, int to, int window
 }
 
 /// @param averaged  of the row's pixels: of how many measurements the raw numbers are the mean
-void Filter::Plan::write_raw_row(FilterPlanes& frame, int from, int to, int row,
+void Filter::Plan::write_raw_row(const RawView& raw, FilterPlanes& frame, int from, int to, int row,
                                  float* averaged) const {
   const std::ptrdiff_t start = row * frame.grid.stride;
   const float* const usable = frame.scalar(FilterPlanes::usable) + start;
@@ -214,20 +242,23 @@ void Filter::Plan::write_raw_row(FilterPlanes& frame, int from, int to, int row,
   for_each_block_of_row(frame.grid.width, [&](int first, int pixels) {
     const std::ptrdiff_t at = start + first;
     RowBlock electrons;
-    for (int k = 0; k < measurements; ++k) {
+    for (int k = 0; k < measurements; ++k)
       mix(
           to_measurements.data() + k * measurements, measurements,
           [&](int j) { return frame.light(from, j) + at; }, pixels, electrons[k]);
+    for (int k = 0; k < measurements; ++k) {
       const auto dark = static_cast<float>(scale.raw(0.0, k));
       const auto per_electron = static_cast<float>(scale.raw(1.0, k) - scale.raw(0.0, k));
-      float* const raw = frame.light(to, k) + at;
-      for (int i = 0; i < pixels; ++i) raw[i] = electrons[k][i] * per_electron + dark;
+      float* const numbers = frame.light(to, k) + at;
+      for (int i = 0; i < pixels; ++i) numbers[i] = electrons[k][i] * per_electron + dark;
     }
     float* const n = averaged + first;
-    if (has_own_shot_noise)
-      std::copy_n(single + first, pixels, n);
-    else
+    if (has_own_shot_noise) {
+      const float* const measured = averaged_of(raw, row, first);
+      for (int i = 0; i < pixels; ++i) n[i] = single[first + i] * (measured ? measured[i] : 1.0f);
+    } else {
       find_variance(*this, electrons, pixels, n);
+    }
     for (int i = 0; i < pixels; ++i)
       n[i] = usable[first + i] > 0.0f ? std::max(n[i] / left[first + i], 1e-3f) : 1.0f;
   });
@@ -235,7 +266,8 @@ void Filter::Plan::write_raw_row(FilterPlanes& frame, int from, int to, int row,
 
 /// Whether what was added to a pixel can be its own light. It cannot where the pixels around it
 /// show none, and less than was added: beside an edge of light, dark pixels are given none of it.
-bool Filter::Plan::has_own_light(FilterPlanes& frame, int set, std::ptrdiff_t at) const {
+bool Filter::Plan::has_own_light(FilterPlanes& frame, int set, int measured,
+                                 std::ptrdiff_t at) const {
   float square = 0.0f;
   for (int j = 0; j < rank; ++j) square += frame.light(set, j)[at] * frame.light(set, j)[at];
   if (!(square > 0.0f)) return false;
@@ -246,7 +278,7 @@ bool Filter::Plan::has_own_light(FilterPlanes& frame, int set, std::ptrdiff_t at
   if (added <= limit / std::sqrt(most_around)) return true;
   const auto along = [&](std::ptrdiff_t pixel) {
     float sum = 0.0f;
-    for (int j = 0; j < rank; ++j) sum += frame.light(set, j)[at] * frame.light(0, j)[pixel];
+    for (int j = 0; j < rank; ++j) sum += frame.light(set, j)[at] * frame.light(measured, j)[pixel];
     return sum / added;
   };
   if (along(at) >= evident_sigma * sigma) return true;
@@ -266,20 +298,25 @@ bool Filter::Plan::has_own_light(FilterPlanes& frame, int set, std::ptrdiff_t at
   return below <= own_light_share * count;
 }
 
-void Filter::Plan::finish(const RawView& raw, FilterPlanes& frame, int from, int to) const {
+void Filter::Plan::finish(const RawView& raw, FilterPlanes& frame, int set, int other) const {
+  read_again(raw, frame, other, FilterPlanes::usable);
   for_each_row(frame, [&](int row) {
-    float* const averaged = &frame.averaged(row, 0);
-    write_raw_row(frame, from, to, row, averaged);
     const std::ptrdiff_t start = row * frame.grid.stride;
+    const float* const usable = frame.scalar(FilterPlanes::usable) + start;
+    float* const is_filtered = frame.scalar(FilterPlanes::signal) + start;
+    for (int x = 0; x < raw.width; ++x)
+      is_filtered[x] =
+          usable[x] > 0.0f && has_own_light(frame, set, other, start + x) ? 1.0f : 0.0f;
+    float* const averaged = &frame.averaged(row, 0);
+    write_raw_row(raw, frame, set, set, row, averaged);
+    const float* const measured = averaged_of(raw, row, 0);
     for_each_run(raw, std::int64_t{row} * raw.width, raw.width,
                  [&](const auto* pixel, std::int64_t length, std::int64_t) {
                    for (std::int64_t x = 0; x < length; ++x, pixel += raw.column_stride) {
-                     if (frame.scalar(FilterPlanes::usable)[start + x] > 0.0f &&
-                         has_own_light(frame, from, start + x))
-                       continue;
-                     averaged[x] = 1.0f;
+                     if (is_filtered[x] > 0.0f) continue;
+                     averaged[x] = measured ? measured[x] : 1.0f;
                      for (int k = 0; k < measurements; ++k)
-                       frame.light(to, k)[start + x] =
+                       frame.light(set, k)[start + x] =
                            static_cast<float>(pixel[k * raw.measurement_stride]);
                    }
                  });

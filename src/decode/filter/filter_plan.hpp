@@ -48,25 +48,31 @@ struct Filter::Plan {
 
   /// Raw numbers into the first set of light, with their variances and where they are usable.
   void read(const RawView& raw, FilterPlanes& frame) const;
+  /// Raw numbers into a set of light again, and where they are usable into a plane.
+  void read_again(const RawView& raw, FilterPlanes& frame, int set,
+                  FilterPlanes::Scalar usable) const;
   /// One window of the round that adds neighbours whose vectors are parallel.
   void add_similar(FilterPlanes& frame, int from, int to, int window) const;
   /// Depth of a set of light, by way of raw numbers in another set.
-  void find_depth(FilterPlanes& frame, int from, int into) const;
+  void find_depth(const RawView& raw, FilterPlanes& frame, int from, int into) const;
   /// One window of a round that adds neighbours of the same surface: `light` is split into signal
   /// along the depth and the rest, in `rest`; the sum goes to `to`.
   void add_along_slopes(FilterPlanes& frame, int light, int rest, int to, int window) const;
-  /// Raw numbers of a set of light in another set, as measured where nothing was to be added.
-  void finish(const RawView& raw, FilterPlanes& frame, int from, int to) const;
+  /// Turns a set of light into raw numbers, as measured where nothing was to be added; the other
+  /// set is needed for that.
+  void finish(const RawView& raw, FilterPlanes& frame, int set, int other) const;
 
  private:
   WeightedSums sums_of(FilterPlanes& frame, int from, int to, int window) const;
-  void read_row(const RawView& raw, FilterPlanes& frame, int row) const;
-  void find_hidden_noise(FilterPlanes& frame, int row) const;
-  void write_raw_row(FilterPlanes& frame, int from, int to, int row, float* averaged) const;
+  void read_row(const RawView& raw, FilterPlanes& frame, int row, int set, float* usable,
+                float* variance) const;
+  void find_hidden_noise(const RawView& raw, FilterPlanes& frame, int row) const;
+  void write_raw_row(const RawView& raw, FilterPlanes& frame, int from, int to, int row,
+                     float* averaged) const;
   CurvePoints points() const { return {curve.data(), samples(), measurements, rank}; }
   void split(FilterPlanes& frame, int from, int to, int row) const;
   void join(FilterPlanes& frame, int set, int row) const;
-  bool has_own_light(FilterPlanes& frame, int set, std::ptrdiff_t at) const;
+  bool has_own_light(FilterPlanes& frame, int set, int measured, std::ptrdiff_t at) const;
 };
 
 /// Calls work(row) for all rows of a frame, on all threads.

@@ -42,7 +42,7 @@ FilterGrid FilterPlanes::grid_of(int height, int width, int largest_step) {
 }
 
 std::size_t FilterPlanes::floats(const FilterGrid& grid, int measurements, int largest_step) {
-  return static_cast<std::size_t>(scalars + 3 * measurements) *
+  return static_cast<std::size_t>(scalars + light_sets * measurements) *
          static_cast<std::size_t>(grid.height + 2 * margin_rows(largest_step)) *
          static_cast<std::size_t>(grid.stride);
 }

@@ -29,13 +29,12 @@ class StripBufferPool {
   std::vector<std::unique_ptr<StripBuffers>> free_;
 };
 
-/// All that is known of the pixels of a frame while it is filtered. `light` has three sets of K
+/// All that is known of the pixels of a frame while it is filtered. `light` has two sets of K
 /// planes: coordinates of the measurements without dark electrons [e], of which the first `rank`
-/// are those of the decoding plane.
+/// are those of the decoding plane. Light as it was measured is read anew where it is asked for.
 struct FilterPlanes {
   enum Scalar {
-    usable,    ///< 1 where neighbours may take a pixel's light, else 0
-    guided,    ///< of them, those with a depth
+    usable,    ///< 1 where neighbours may take a pixel's light, along slopes if it has a depth
     variance,  ///< of a coordinate, as measured [e^2]; then of two steps of filtering
     variance_next,
     variance_last,
@@ -43,19 +42,21 @@ struct FilterPlanes {
     inverse_sigma,  ///< of SimilarityTest; then slope_y
     depth,          ///< found before [bin]
     depth_variance,
-    guide_variance,  ///< of a coordinate, in what depth was found from [e^2]
-    signal,          ///< along the depth found before [e/s]
+    signal,  ///< along the depth found before [e/s]
     signal_next,
     shift,  ///< of signal_next beyond the slope [e/s bin]
     scalars
   };
+
+  static constexpr int light_sets = 2;
 
   FilterGrid grid;
   int measurements = 0;
   int rows_above = 0;  ///< of the margin
   std::ptrdiff_t plane_floats = 0;
   std::vector<float> storage;
-  Image<float> averaged;
+  Image<float>
+      averaged;    ///< along slopes: variance of a coordinate that depth was found from [e^2]
   int result = 0;  ///< the set of `light` that holds raw numbers at the end
   StripBufferPool buffers;
 

@@ -18,29 +18,29 @@ namespace {
 constexpr float slope_noise_share = 0.16f;
 }  // namespace
 
-void Filter::Plan::find_depth(FilterPlanes& frame, int from, int into) const {
+void Filter::Plan::find_depth(const RawView& raw, FilterPlanes& frame, int from, int into) const {
   const FilterGrid& grid = frame.grid;
   float* const averaged = frame.scalar(FilterPlanes::shift);
   for_each_row(frame, [&](int row) {
     float* const here = averaged + row * grid.stride;
     std::fill_n(here - grid.margin, grid.stride, 1.0f);
-    write_raw_row(frame, from, into, row, here);
+    write_raw_row(raw, frame, from, into, row, here);
     std::copy_n(frame.scalar(last_variance()) + row * grid.stride, grid.width,
-                frame.scalar(FilterPlanes::guide_variance) + row * grid.stride);
+                &frame.averaged(row, 0));
   });
   // Whole rows with their margins, so that planes are what decoders write.
   float* const depth = frame.scalar(FilterPlanes::depth);
   float* const variance = frame.scalar(FilterPlanes::depth_variance);
-  const RawView raw{.data = static_cast<const float*>(frame.light(into, 0) - grid.margin),
-                    .height = grid.height,
-                    .width = static_cast<int>(grid.stride),
-                    .measurements = measurements,
-                    .row_stride = grid.stride,
-                    .column_stride = 1,
-                    .measurement_stride = frame.plane_floats,
-                    .averaged = averaged - grid.margin};
-  decoder.decode(raw, {.depth_m = depth - grid.margin,
-                       .predicted_standard_deviation_m = variance - grid.margin});
+  const RawView filtered{.data = static_cast<const float*>(frame.light(into, 0) - grid.margin),
+                         .height = grid.height,
+                         .width = static_cast<int>(grid.stride),
+                         .measurements = measurements,
+                         .row_stride = grid.stride,
+                         .column_stride = 1,
+                         .measurement_stride = frame.plane_floats,
+                         .averaged = averaged - grid.margin};
+  decoder.decode(filtered, {.depth_m = depth - grid.margin,
+                            .predicted_standard_deviation_m = variance - grid.margin});
   const auto per_bin = static_cast<float>(1.0 / decoder.table().bin_m());
   for_each_row(frame, [&](int row) {
     const std::ptrdiff_t first = row * grid.stride - grid.margin;
@@ -48,7 +48,7 @@ void Filter::Plan::find_depth(FilterPlanes& frame, int from, int into) const {
       const float deviation = variance[at] * per_bin;
       const bool is_known = frame.scalar(FilterPlanes::usable)[at] > 0.0f &&
                             std::isfinite(depth[at]) && std::isfinite(deviation);
-      frame.scalar(FilterPlanes::guided)[at] = is_known ? 1.0f : 0.0f;
+      frame.scalar(FilterPlanes::usable)[at] = is_known ? 1.0f : 0.0f;
       depth[at] = is_known ? depth[at] * per_bin : 0.0f;
       variance[at] = is_known ? deviation * deviation : 1.0f;
     }
@@ -58,7 +58,7 @@ void Filter::Plan::find_depth(FilterPlanes& frame, int from, int into) const {
 void Filter::Plan::split(FilterPlanes& frame, int from, int to, int row) const {
   const std::ptrdiff_t at = row * frame.grid.stride;
   SplitRow split{.depth = frame.scalar(FilterPlanes::depth) + at,
-                 .guided = frame.scalar(FilterPlanes::guided) + at,
+                 .guided = frame.scalar(FilterPlanes::usable) + at,
                  .signal = frame.scalar(FilterPlanes::signal) + at};
   for (int k = 0; k < measurements; ++k) {
     split.in[static_cast<std::size_t>(k)] = frame.light(from, k) + at;
@@ -70,7 +70,7 @@ void Filter::Plan::split(FilterPlanes& frame, int from, int to, int row) const {
 void Filter::Plan::join(FilterPlanes& frame, int set, int row) const {
   const std::ptrdiff_t at = row * frame.grid.stride;
   JoinRow join{.depth = frame.scalar(FilterPlanes::depth) + at,
-               .guided = frame.scalar(FilterPlanes::guided) + at,
+               .guided = frame.scalar(FilterPlanes::usable) + at,
                .signal = frame.scalar(FilterPlanes::signal_next) + at,
                .shift = frame.scalar(FilterPlanes::shift) + at};
   for (int k = 0; k < measurements; ++k)
@@ -85,7 +85,7 @@ void Filter::Plan::add_along_slopes(FilterPlanes& frame, int light, int rest, in
       .variance = frame.scalar(FilterPlanes::depth_variance),
       .slope_x = frame.scalar(FilterPlanes::energy),
       .slope_y = frame.scalar(FilterPlanes::inverse_sigma),
-      .usable = frame.scalar(FilterPlanes::guided),
+      .usable = frame.scalar(FilterPlanes::usable),
       .samples = static_cast<float>(samples()),
       .same_depth_sigma2 = static_cast<float>(options.same_depth_sigma * options.same_depth_sigma),
       .max_difference_sigma = static_cast<float>(options.max_difference_sigma)};
@@ -108,11 +108,10 @@ void Filter::Plan::add_along_slopes(FilterPlanes& frame, int light, int rest, in
                  });
   if (window + 1 < options.windows) return;
   for_each_row(frame, [&](int row) {
-    const std::ptrdiff_t first = row * frame.grid.stride;
-    for (std::ptrdiff_t at = first; at < first + frame.grid.width; ++at)
-      if (frame.scalar(FilterPlanes::guided)[at] > 0.0f)
-        frame.scalar(last_variance())[at] +=
-            slope_noise_share * frame.scalar(FilterPlanes::guide_variance)[at];
+    const float* const guided = frame.scalar(FilterPlanes::usable) + row * frame.grid.stride;
+    float* const variance = frame.scalar(last_variance()) + row * frame.grid.stride;
+    for (int x = 0; x < frame.grid.width; ++x)
+      if (guided[x] > 0.0f) variance[x] += slope_noise_share * frame.averaged(row, x);
   });
 }
 

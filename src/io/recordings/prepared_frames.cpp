@@ -30,17 +30,6 @@ std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
   return all;
 }
 
-/// A table whose raw numbers are means of so many frames: their electrons are those of one exposure
-/// that is so many times longer, read so many times.
-DecodingTable table_of_means(DecodingTable table, int frames) {
-  table.exposure_s *= frames;
-  table.dark_electrons *= frames;
-  table.shot_dark_electrons *= frames;
-  table.constant_variance_e2 *= frames;
-  table.gain_e_per_raw *= frames;
-  return table;
-}
-
 double added(double sum, double value, double clipped) {
   if (!std::isfinite(value) || std::isnan(sum)) return std::numeric_limits<double>::quiet_NaN();
   return value >= clipped ? std::numeric_limits<double>::infinity() : sum + value;
@@ -51,9 +40,7 @@ double added(double sum, double value, double clipped) {
 double Preparation::frame_bytes(int height, int width, int measurements) const {
   if (!filter) return 0.0;
   const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  const double means = average > 1 ? sizeof(float) * static_cast<double>(height) * width : 0.0;
-  return means +
-         static_cast<double>(Filter::memory_bytes(*filter, height, width, measurements, threads));
+  return static_cast<double>(Filter::memory_bytes(*filter, height, width, measurements, threads));
 }
 
 double Preparation::row_bytes(int width, int measurements) const {
@@ -103,7 +90,9 @@ PreparedFrames::PreparedFrames(const RawFramesReader& reader, const DecodingTabl
       preparation_(preparation),
       recorded_(reader.frames()),
       bands_(std::move(bands)),
-      input_(reader, bands_to_read(preparation, recorded_, bands_)) {}
+      input_(reader, bands_to_read(preparation, recorded_, bands_)) {
+  if (preparation.filter) filter_.emplace(table, *preparation.filter);
+}
 
 RawView PreparedFrames::next_mean(const Progress& progress) {
   const int frames = frames_of_mean(preparation_, recorded_, bands_[next_].frame);
@@ -116,28 +105,14 @@ RawView PreparedFrames::next_mean(const Progress& progress) {
   return sums_.means();
 }
 
-RawView PreparedFrames::filtered(const RawView& mean, int frames, const Progress& progress) {
-  auto filter = filters_.find(frames);
-  if (filter == filters_.end())
-    filter = filters_.emplace(frames, Filter(table_of_means(table_, frames), *preparation_.filter))
-                 .first;
-  RawView raw = mean;
-  raw.averaged = nullptr;  // the filter's table knows
-  filter->second.apply(raw, filtered_, progress);
-  RawView view = filtered_.view();
-  if (frames == 1) return view;
-  averaged_ = filtered_.averaged();
-  for (float& n : averaged_.pixels) n *= static_cast<float>(frames);
-  view.averaged = averaged_.pixels.data();
-  return view;
-}
-
 RawView PreparedFrames::next(const Progress& progress) {
   const bool is_mean = preparation_.average > 1;
-  const ProgressParts parts(progress, {1.0, preparation_.filter ? 8.0 : 0.0});
-  const int frames = frames_of_mean(preparation_, recorded_, bands_[next_].frame);
+  const ProgressParts parts(progress, {1.0, filter_ ? 8.0 : 0.0});
   RawView raw = is_mean ? next_mean(parts[0]) : input_.next();
-  if (preparation_.filter) raw = filtered(raw, frames, parts[1]);
+  if (filter_) {
+    filter_->apply(raw, filtered_, parts[1]);
+    raw = filtered_.view();
+  }
   ++next_;
   return raw;
 }

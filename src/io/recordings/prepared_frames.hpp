@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
 #include <optional>
 #include <vector>
 
@@ -60,7 +59,6 @@ class PreparedFrames {
 
  private:
   RawView next_mean(const Progress& progress);
-  RawView filtered(const RawView& mean, int frames, const Progress& progress);
 
   const DecodingTable& table_;
   Preparation preparation_;
@@ -69,9 +67,8 @@ class PreparedFrames {
   std::size_t next_ = 0;
   ReadAhead input_;
   RowSums sums_;
-  std::map<int, Filter> filters_;  // of means of so many frames
+  std::optional<Filter> filter_;
   FilteredFrame filtered_;
-  Image<float> averaged_;
 };
 
 }  // namespace tofsmith
