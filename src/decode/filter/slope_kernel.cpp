@@ -36,8 +36,8 @@ void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const Fil
     const Vector half_right = all(0.5f * static_cast<float>(right));
     for (int r = strip.rows_above() - down; r < rows; ++r) {
       const std::ptrdiff_t row = (static_cast<std::ptrdiff_t>(i) * rows + r) * weights.stride;
-      std::fill_n(weights.weight + row, weights.stride, 0.0f);
-      std::fill_n(weights.shifted + row, weights.stride, 0.0f);
+      clear_margins(grid, weights.weight + row);
+      clear_margins(grid, weights.shifted + row);
       const std::ptrdiff_t first = (strip.first_row - strip.rows_above() + r) * grid.stride;
       for (int x = 0; x < grid.width; x += lanes_of()) {
         const std::ptrdiff_t p = first + x, q = p + away;
