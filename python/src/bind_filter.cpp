@@ -26,8 +26,10 @@ FilterOptions filter_options(const py::dict& values) {
 namespace {
 
 py::tuple apply_filter(const Filter& filter, const py::array& raw_numbers, bool is_planar,
-                       const py::object& callback) {
-  const RawArray raw = view_raw(raw_numbers, is_planar, filter.measurements());
+                       const py::object& averaged_before, const py::object& callback) {
+  RawArray raw = view_raw(raw_numbers, is_planar, filter.measurements());
+  const Floats means = averaged_before.is_none() ? Floats() : Floats::ensure(averaged_before);
+  if (!averaged_before.is_none()) raw.set_averaged(means);
   const auto pixels = static_cast<std::size_t>(raw.frames.front().pixels());
   const auto measurements = static_cast<std::size_t>(filter.measurements());
   std::vector<float> numbers(raw.frames.size() * pixels * measurements);

@@ -43,6 +43,18 @@ def test_stacks_and_layouts_are_filtered_frame_by_frame(camera, raw):
     assert decoded.depth_m.shape == (3, 30, 40)
 
 
+def test_means_count_as_what_they_are_the_mean_of(camera, raw):
+    filter = ts.Filter(code, camera, strength="light")
+    mean = raw.mean(axis=0, dtype=np.float64).astype(np.float32)
+    single = filter.apply(raw[0])[1]
+    of_three = filter.apply(mean, averaged=np.full(mean.shape[:2], 3))[1]
+    assert of_three.mean() == pytest.approx(3 * single.mean(), rel=0.3)
+    with pytest.raises(ValueError, match="averaged"):
+        filter.apply(mean, averaged=np.zeros(mean.shape[:2]))
+    with pytest.raises(ValueError, match=r"averaged.*\(H, W\)"):
+        filter.apply(mean, averaged=3.0)
+
+
 def test_options_take_the_place_of_a_strength_s(camera):
     light = ts.Filter(code, camera, strength="light").options
     assert (light["windows"], light["slope_rounds"]) == (1, 0)

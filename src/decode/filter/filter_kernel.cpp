@@ -176,6 +176,8 @@ void add_weighted(const WeightedSums& sums, const FilterGrid& grid, const Filter
     const RowPairs pairs = pairs_of_row(grid, strip, weights.weight, weights.stride, r);
     add_variances(sums, pairs, grid.width, row, inverse_sum);
     int k = 0;
+    for (; k + 5 <= sums.planes; k += 5)
+      add_planes<5>(sums, k, pairs, grid.width, row, inverse_sum);
     for (; k + 4 <= sums.planes; k += 4)
       add_planes<4>(sums, k, pairs, grid.width, row, inverse_sum);
     for (; k + 2 <= sums.planes; k += 2)
