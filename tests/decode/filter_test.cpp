@@ -296,7 +296,8 @@ TEST(Filter, CountsMeansAsWhatTheyAreTheMeanOf) {
       for (std::size_t at = 0; at < mean.values.size(); ++at) mean.values[at] += next.values[at];
     }
     for (float& value : mean.values) value /= count;
-    mean.values[static_cast<std::size_t>((20 * 48 + 20) * mean.measurements)] = std::numeric_limits<float>::quiet_NaN();
+    mean.values[static_cast<std::size_t>((20 * 48 + 20) * mean.measurements)] =
+        std::numeric_limits<float>::quiet_NaN();
     std::vector<float> averaged(48 * 48, count);
     RawView view = view_of_frame(mean, 0);
     view.averaged = averaged.data();

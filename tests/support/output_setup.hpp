@@ -153,8 +153,9 @@ class Matched {
                            model_.estimate(y.data(), q.data(), position, variance_e2.data()), 1.0};
     if (second_peak_[i] >= 0) {
       const Eigen::VectorXd apart = direction(bin_[i]) - direction(second_peak_[i]);
-      decoding.confidence =
-          confidence_of(apart.dot(q), model_.deviation_along(apart.data(), variance_e2.data()));
+      const double expected_lead = 0.5 * direction(bin_[i]).dot(q) * apart.squaredNorm();
+      decoding.confidence = confidence_of(apart.dot(q), expected_lead,
+                                          model_.deviation_along(apart.data(), variance_e2.data()));
     }
     return decoding;
   }

@@ -62,10 +62,11 @@ class Decoder {
   ///   predicted standard deviation: noise of the measurements at the estimate (mu_i + constant
   ///     variance, averaged over a quarter of the chord), carried through the least squares over
   ///     (z, S, A) that z_hat solves;
-  ///   confidence: normal probability that the best score beats, beyond noise at the best bin, the
-  ///     second peak, the best score outside the main lobe, which is the run of bins around the
-  ///     best along which the code's own score falls (1 if nothing is outside). The bin that scores
-  ///     best there may be taken from a vector nearby;
+  ///   confidence: probability of the best bin b against the second peak s, the best bin outside the
+  ///     main lobe, which is the run of bins around the best along which the code's own score falls
+  ///     (1 if nothing is outside): of equal odds before, the log odds are <d, q> <b, q> |d|^2 / v
+  ///     with d = b - s their directions and v the variance of <d, q> at the best bin. The second
+  ///     peak may be that of a vector nearby;
   ///   status: as PixelStatus says, low_signal by the noise at the best bin. The residual of a
   ///     pixel, without ambient light, counts as 0, and the pixel as no_return,
   ///     below 1e-12 of sum_i |y'_i|.

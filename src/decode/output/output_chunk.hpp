@@ -12,8 +12,8 @@ namespace tofsmith {
 
 /// Pixels whose records lie side by side in the work space.
 inline constexpr int pixels_per_chunk = 128;
-/// Of so many deviations, squared, the normal probability is 1 in single precision.
-inline constexpr float sure_sigma2 = 36.0f;
+/// Of such log odds the probability is 1 in single precision.
+inline constexpr float sure_log_odds = 18.0f;
 
 /// What is the same for all bins.
 struct OutputConstants {

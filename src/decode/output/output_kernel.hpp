@@ -35,9 +35,9 @@ struct MatchedTile {
 ///     quarter of the chord: less than 1 % off on average, more where the noise of bright pixels
 ///     vanishes at a bin; negative noise of single measurements, which no light makes, is cut off
 ///     in the sum only;
-///   - confidence takes measurement noise of the best bin, and the normal distribution from a
-///     formula that errs by less than 2e-7; leads of more than six deviations of the most noise
-///     there can be are certain.
+///   - confidence takes measurement noise of the best bin, and the logistic function from a formula
+///     that errs by less than 2e-7; log odds of more than 18 with the most noise there can be are
+///     certain.
 /// A plane's values do not depend on which others are wanted, on the pixels beside it, or on the
 /// processor: products and sums are rounded one by one.
 class OutputKernel {

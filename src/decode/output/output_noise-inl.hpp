@@ -54,33 +54,44 @@ HWY_INLINE void write_depth_noise(const OutputChunk& chunk, float* standard_devi
   }
 }
 
-/// The normal distribution at z >= 0. Abramowitz and Stegun 26.2.19; errs by less than 2e-7.
-HWY_INLINE Vector normal_probability(Vector z) {
-  Vector power = product_plus(z, all(0.0000053830f), all(0.0000488906f));
-  power = product_plus(z, power, all(0.0000380036f));
-  power = product_plus(z, power, all(0.0032776263f));
-  power = product_plus(z, power, all(0.0211410061f));
-  power = product_plus(z, power, all(0.0498673470f));
-  power = product_plus(z, power, all(1.0f));
-  for (int twice = 0; twice < 4; ++twice) power = hn::Mul(power, power);
-  return hn::Sub(all(1.0f), hn::Div(all(0.5f), power));
+/// 1 / (1 + exp(-x)) at x in [0, 80], to 2e-7.
+HWY_INLINE Vector logistic(Vector x) {
+  const Indices di;
+  const Vector power = hn::Mul(x, all(-1.44269504f));
+  const Vector whole = hn::Round(power), rest = hn::Sub(power, whole);
+  Vector series = product_plus(rest, all(1.54035304e-4f), all(1.33335581e-3f));
+  series = product_plus(rest, series, all(9.61812911e-3f));
+  series = product_plus(rest, series, all(5.55041087e-2f));
+  series = product_plus(rest, series, all(0.240226507f));
+  series = product_plus(rest, series, all(0.693147181f));
+  series = product_plus(rest, series, all(1.0f));
+  const auto exponent = hn::Add(hn::ConvertTo(di, whole), hn::Set(di, 127));
+  const Vector two_to_whole = hn::BitCast(Floats(), hn::ShiftLeft<23>(exponent));
+  return hn::Div(all(1.0f), product_plus(series, two_to_whole, all(1.0f)));
 }
 
-/// Difference d of the directions of bins and second peaks, instead of the second peaks'. Returns
-/// <d, q>, and in `square` |d|^2.
-HWY_INLINE Vector lead_of(const RecordLayout& layout, int rank, OutputChunk& chunk, int i,
-                          Vector& square) {
+/// How far the best bin leads its second peak.
+struct Lead {
+  Vector score;   ///< of the best bin, <b, q>
+  Vector lead;    ///< <d, q>, with d the difference of both directions
+  Vector square;  ///< |d|^2
+};
+
+/// Leaves the difference of directions of bins and second peaks instead of the second peaks'.
+HWY_INLINE Lead lead_of(const RecordLayout& layout, int rank, OutputChunk& chunk, int i) {
   const Floats d;
-  Vector lead = square = hn::Zero(d);
+  Vector score = hn::Zero(d), lead = score, square = score;
   for (int j = 0; j < rank; ++j) {
     float* const second_peak = chunk.second_peak_direction + j * pixels_per_chunk + i;
-    const Vector apart =
-        hn::Sub(load(chunk.field(layout.direction() + j), i), load(second_peak, 0));
+    const Vector best = load(chunk.field(layout.direction() + j), i);
+    const Vector q = load(chunk.plane + j * pixels_per_tile, i);
+    const Vector apart = hn::Sub(best, load(second_peak, 0));
     hn::StoreU(apart, d, second_peak);
-    lead = product_plus(apart, load(chunk.plane + j * pixels_per_tile, i), lead);
+    score = product_plus(best, q, score);
+    lead = product_plus(apart, q, lead);
     square = product_plus(apart, apart, square);
   }
-  return lead;
+  return {score, hn::Max(lead, hn::Zero(d)), square};
 }
 
 /// Noise of the lead: sum_k (V d)_k^2 v_k.
@@ -104,9 +115,9 @@ HWY_INLINE Vector lead_variance(const OutputConstants& c, const RecordLayout& la
   return variance;
 }
 
-/// Probability that the bin scores higher than its second peak, for noise on the lead. Most leads
-/// are so many deviations of the most noise there can be that their probability is 1 as a float:
-/// the noise of others alone is computed.
+/// Probability of the bin against its second peak, as confidence_of(): lead score |d|^2 / variance
+/// are the log odds. For most leads they are such that the probability is 1 as a float even with
+/// the most noise there can be: the noise of others alone is computed.
 HWY_INLINE void find_confidence(const OutputConstants& c, const BinRecords& records, int rank,
                                 OutputChunk& chunk) {
   const Floats d;
@@ -115,14 +126,13 @@ HWY_INLINE void find_confidence(const OutputConstants& c, const BinRecords& reco
   for (int i = 0; i < chunk.pixels; i += lanes_of(d)) {
     gather(records.directions.data(), chunk.second_peak_start + i, 0, rank,
            chunk.second_peak_direction + i);
-    Vector square;
-    const Vector lead = hn::Max(lead_of(layout, rank, chunk, i, square), zero);
+    const Lead found = lead_of(layout, rank, chunk, i);
+    const Vector product = hn::Mul(found.lead, found.score);
     const Vector max_noise = product_plus(
         load(chunk.signal, i), all(c.max_shot),
         product_plus(noisy_ambient(chunk, i), all(c.max_shot_ambient), all(c.max_floor_e2)));
     const Vector share = load(chunk.variance_share, i);
-    const Mask is_sure = hn::Ge(
-        hn::Mul(lead, lead), hn::Mul(hn::Mul(square, all(sure_sigma2)), hn::Mul(max_noise, share)));
+    const Mask is_sure = hn::Ge(product, hn::Mul(all(sure_log_odds), hn::Mul(max_noise, share)));
     const auto has_second_peak =
         hn::Gt(hn::LoadU(Indices(), chunk.second_peak + i), hn::Set(Indices(), -1));
     const Mask is_open = hn::And(hn::And(hn::RebindMask(d, has_second_peak), hn::Not(is_sure)),
@@ -131,9 +141,10 @@ HWY_INLINE void find_confidence(const OutputConstants& c, const BinRecords& reco
     if (!hn::AllFalse(d, is_open)) {
       gather(records.records.data(), chunk.start + i, layout.shot(), layout.end(),
              chunk.record + i);
-      const Vector deviation = hn::Sqrt(hn::Mul(lead_variance(c, layout, rank, chunk, i), share));
-      confidence =
-          hn::IfThenElse(is_open, normal_probability(hn::Div(lead, deviation)), confidence);
+      const Vector variance = hn::Mul(lead_variance(c, layout, rank, chunk, i), share);
+      const Vector log_odds =
+          hn::Min(hn::Div(hn::Mul(product, found.square), variance), all(sure_log_odds));
+      confidence = hn::IfThenElse(is_open, logistic(log_odds), confidence);
     }
     hn::StoreU(confidence, d, chunk.confidence + i);
   }

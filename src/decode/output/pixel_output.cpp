@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "core/shared/shared_progress.hpp"
@@ -63,9 +62,10 @@ void store_invalid(std::size_t at, const DecodedView& decoded) {
   if (decoded.status) decoded.status[at] = PixelStatus::invalid;
 }
 
-double confidence_of(double lead, double deviation) {
+double confidence_of(double lead, double expected_lead, double deviation) {
   if (deviation == 0.0) return 1.0;
-  return 0.5 * std::erfc(-std::max(lead, 0.0) / deviation * std::numbers::sqrt2 / 2);
+  return 1.0 /
+         (1.0 + std::exp(-2.0 * std::max(lead, 0.0) * expected_lead / (deviation * deviation)));
 }
 
 void for_each_block(const RawView& raw, int measurements, const Progress& progress,

@@ -27,8 +27,9 @@ void store_pixel(const DecodingTable& table, const DecodeOptions& options, const
 /// Writes a pixel with a measurement that is no number.
 void store_invalid(std::size_t at, const DecodedView& decoded);
 
-/// Normal probability that a lead is not noise of this deviation.
-double confidence_of(double lead, double deviation);
+/// Probability of the best of two depths by how far it leads the other: with normal noise of this
+/// deviation the lead is of mean +-expected_lead, whichever of them is the true one.
+double confidence_of(double lead, double expected_lead, double deviation);
 
 /// As many as fast decoders take at a time; slow ones take fewer, so that progress can stop them.
 inline constexpr std::int64_t usual_block_pixels = 16384;

@@ -198,18 +198,22 @@ double UnwrapDecoder::Plan::deviation(const PerFrequency& factor, const PixelDec
 }
 
 /// Moving the candidates by d_f raises the distance by sum_f w_f (d_f - d) (2 z_f + d_f - d), d the
-/// weighted mean of d_f: linear in the measured z_f, with factors 2 w_f (d_f - d).
+/// weighted mean of d_f: linear in the measured z_f, with factors 2 w_f (d_f - d), and of
+/// sum_f w_f (d_f - d)^2 without noise.
 double UnwrapDecoder::Plan::confidence(const PerFrequency& phase, const Wraps& best,
                                        const PixelDecoding& pixel,
                                        const PerMeasurement& variance_e2) const {
   const std::optional<Wraps> second_best = unwrapper.second_best(phase.data(), best);
   if (!second_best) return 1.0;
   PerFrequency factor;
-  for (std::size_t j = 0; j < weights.size(); ++j)
-    factor[j] =
-        2 * weights[j] *
-        ((second_best->candidate[j] - best.candidate[j]) - (second_best->depth - best.depth));
-  return confidence_of(second_best->distance - best.distance,
+  double expected_lead = 0.0;
+  for (std::size_t j = 0; j < weights.size(); ++j) {
+    const double moved =
+        (second_best->candidate[j] - best.candidate[j]) - (second_best->depth - best.depth);
+    factor[j] = 2 * weights[j] * moved;
+    expected_lead += weights[j] * moved * moved;
+  }
+  return confidence_of(second_best->distance - best.distance, expected_lead,
                        deviation(factor, pixel, variance_e2));
 }
 
