@@ -39,16 +39,17 @@ def spread(image, kept):
     return value[labels]
 
 
-def far_from_edges(truth, pixels):
-    """Pixels that see a plane as far as `pixels` around them: no step and no crease."""
-    z = np.where(np.isfinite(truth), truth, 1e3)
-    rough = np.zeros(z.shape, np.uint8)
-    for axis in (0, 1):
-        for apart in (1, 2):  # creases of small angles show in wider differences
-            bend = np.abs(np.roll(z, apart, axis) - 2 * z + np.roll(z, -apart, axis))
-            rough |= (bend > 0.003 * apart).astype(np.uint8)
-    size = 2 * pixels + 1
-    return cv2.dilate(rough, np.ones((size, size), np.uint8)) == 0
+def planes(z, clearance_px):
+    """Pixels that see one plane, as do all that are up to `clearance_px` away: 1 / z is linear."""
+    inverse = 1 / np.where(np.isfinite(z) & (z > 0), z, 1e3)
+    bent = np.ones(z.shape, np.uint8)  # and what is beyond the border
+    inner = slice(2, -2)
+    bends = [
+        np.abs(np.roll(inverse, apart, axis) - 2 * inverse + np.roll(inverse, -apart, axis))
+        for axis in (0, 1) for apart in (1, 2)]
+    bent[inner, inner] = (np.max(bends, axis=0) > 3e-6 * inverse)[inner, inner]
+    size = 2 * clearance_px + 1
+    return cv2.dilate(bent, np.ones((size, size), np.uint8)) == 0
 
 
 def of_depth(depth):
