@@ -63,6 +63,7 @@ packages_docs=(
 packages_benchmark=(
   "${packages_build[@]}"
   libnanoflann-dev  # a peer of the decoder
+  python3-opencv    # filters of depth beside ours
 )
 # Format and lint, on top of the tests: what .ci/run needs.
 packages_check=(

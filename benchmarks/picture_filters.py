@@ -1,0 +1,316 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""The filter beside filters of depth and of phasors, all on the same raw frames.
+
+    scripts/packages.sh benchmark
+    /usr/bin/python3 benchmarks/picture_filters.py BUILD/apps/tofsmith --quick
+    /usr/bin/python3 benchmarks/picture_filters.py BUILD/apps/tofsmith \\
+        --optimized OUT/codes/optimized-k5.code.json --data DIRECTORY
+
+OUT is what `tofsmith demo -o OUT` has written. With --data DIRECTORY there are RGB-D images and
+meshes as well; what is not there is named and left out.
+
+Every other filter has the parameters of its grid that give the least mean error of each single
+frame, found with the true depth, and knows which pixels see a surface. Ours has what it comes
+with. Errors are circular, of all pixels that have a true depth; pixels that a filter drops get the
+depth of the nearest one it keeps.
+"""
+
+import argparse
+import math
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections import defaultdict
+from pathlib import Path
+
+import numpy as np
+
+import picture_anchors as anchors
+
+LEVELS_E_PER_S = (3.16e3, 1e4, 1e5)
+AMBIENT_E_PER_S = 1e4
+LENS = ("--set", "lens.blur=gaussian", "--set", "lens.blur_sigma_px=0.5",
+        "--set", "lens.pixel_samples=3")
+PLANES = ("table-top", "room", "corner", "wall")
+CLEARANCES_PX = (13, 24)
+OURS = ("light", "normal", "strong")
+BUILT_IN = ("table-top", "hand", "room", "corner")
+# Depth and image of each below --data; images in sRGB are .png, those in linear light .npy.
+RGB_D = {
+    "bottles": ("pcl_tabletop/bottles_floor_depth_m.npy", "pcl_tabletop/bottles_floor_rgb.png"),
+    "carton": ("pcl_tabletop/floor_bottles_carton_depth_m.npy",
+               "pcl_tabletop/floor_bottles_carton_rgb.png"),
+    "cornell-box": ("tofsim_cbox/cbox_depthmap_nr-240_nc-320.npy",
+                    "tofsim_cbox/cbox_rgb_nr-240_nc-320.npy"),
+    "v-groove": ("vgroove_depth_rgb/vgroove_depth.npy", "vgroove_depth_rgb/vgroove_rgb.npy"),
+}
+MESHES = {"mesh-hand": "meshes/hand_lowres.obj", "mesh-spot": "meshes/spot_low_resolution.obj"}
+
+
+class Camera:
+    """The command line, and the default camera as it shows there."""
+
+    def __init__(self, program, directory):
+        self.program, self.directory = program, directory
+        self.medians_m = {}
+
+    def run(self, *arguments):
+        done = subprocess.run([self.program, "--quiet", "--force", *map(str, arguments)],
+                              capture_output=True, text=True, check=False)
+        if done.returncode:
+            sys.exit(f"tofsmith {' '.join(map(str, arguments))}\n{done.stderr}")
+
+    def capture(self, scene, code, signal, ambient, *options):
+        """File of raw measurements; true distance [m] (H, W), NaN without a surface."""
+        raw, truth = self.directory / "raw.npy", self.directory / "truth.npy"
+        self.run("simulate", *scene, "--code", code, "--signal", signal, "--ambient", ambient,
+                 "-o", raw, "--truth", truth, *options)
+        truth = np.load(truth)
+        truth = (truth[0] if truth.ndim == 3 else truth).astype(np.float64)
+        return raw, np.where(truth > 0, truth, np.nan)
+
+    def decode(self, raw, code, *options):
+        depth = self.directory / "depth.npy"
+        self.run("decode", raw, "--code", code, "-o", depth, *options)
+        return np.load(depth).squeeze()
+
+    def table(self, code, samples=1000):
+        """What one electron per second of signal at each depth of the range measures, (N, K)."""
+        depth = np.arange(samples) * anchors.RANGE_M / samples
+        depth[0] = 1e-6
+        np.save(self.directory / "ramp.npy", depth.reshape(1, samples).astype(np.float32))
+        ramp = (self.directory / "ramp.npy", "--kind", "radial", "--no-falloff")
+        raw, _ = self.capture(ramp, code, 1e15, 0, "--set", "sensor.read_noise_e=0")
+        return np.load(raw).reshape(samples, -1).astype(np.float64) / 1e15
+
+    def lit(self, name, scene, code, signal, *options):
+        """A capture with the signal at the scene's median depth."""
+        if name not in self.medians_m:
+            self.medians_m[name] = np.nanmedian(self.capture(scene, code, 1, 1)[1])
+        return self.capture(scene, code, signal, AMBIENT_E_PER_S,
+                            "--reference-distance", self.medians_m[name], *options)
+
+
+def prepared(name, data, directory):
+    """Arguments for an RGB-D scene of at most 320 x 240 pixels, or None where its files are not."""
+    depth_file, image_file = (data / part for part in RGB_D[name])
+    if not depth_file.exists() or not image_file.exists():
+        return None
+    depth, image = np.load(depth_file), anchors.linear_image(image_file)
+    step = -(-depth.shape[1] // 320)
+    rows, columns = (n // step for n in depth.shape)
+    image = image[: rows * step, : columns * step].reshape(rows, step, columns, step).mean((1, 3))
+    albedo = np.clip(image / np.quantile(image, 0.95), 0.02, 1).astype(np.float32)
+    np.save(directory / f"{name}.npy", depth[::step, ::step][:rows, :columns].astype(np.float32))
+    np.save(directory / f"{name}-albedo.npy", albedo)
+    return (directory / f"{name}.npy", "--image", directory / f"{name}-albedo.npy")
+
+
+def scenes(arguments, directory):
+    """Name, arguments of `simulate`, and whether the scene came from outside."""
+    if arguments.quick:
+        return [("table-top", ("table-top", "--width", 160, "--height", 120), False)]
+    size = ("--width", 320, "--height", 240)
+    found = [(name, (name, *size), False) for name in BUILT_IN]
+    if not arguments.data:
+        print("no --data: RGB-D images and meshes left out", file=sys.stderr)
+        return found
+    outside = {name: prepared(name, arguments.data, directory) for name in RGB_D}
+    for name, file in MESHES.items():
+        there = (arguments.data / file).exists()
+        outside[name] = (arguments.data / file, *size) if there else None
+    for name, scene in outside.items():
+        if scene is None:
+            print(f"{name}: not in {arguments.data}, left out", file=sys.stderr)
+        else:
+            found.append((name, scene, True))
+    return found
+
+
+def error_mm(depth, truth):
+    """Mean and median circular error [mm]; without depth a quarter of the range."""
+    seen = np.isfinite(truth)
+    off = np.abs(depth[seen] - truth[seen]) % anchors.RANGE_M
+    off = np.where(np.isfinite(off), np.minimum(off, anchors.RANGE_M - off), anchors.RANGE_M / 4)
+    return 1e3 * off.mean(), 1e3 * np.median(off)
+
+
+def edge_shifts_px(depth, truth, least_step_m=0.2, side=4):
+    """How far steps of depth moved along rows and columns [px].
+
+    Steps have `side` pixels on each side that are level. A step is where the depth crosses the
+    middle of the true one, the nearest place if there are several; `side` off where it does not.
+    """
+    shifts = []
+    for z, t in ((depth, truth), (depth.T, truth.T)):
+        z, t = z.astype(np.float64), np.where(np.isfinite(t), t, 1e9)
+        for x in range(side - 1, t.shape[1] - side):
+            near = slice(x - side + 1, x + side + 1)
+            step = t[:, x + 1] - t[:, x]
+            halves = t[:, near].reshape(-1, 2, side)
+            level = np.ptp(halves, axis=2).max(1)
+            rows = (least_step_m < np.abs(step)) & (np.abs(step) < 100)
+            rows &= level < 0.25 * np.abs(step)
+            share = (z[rows, near] - t[rows, x, None]) / step[rows, None] - 0.5
+            below, above = share[:, :-1], share[:, 1:]
+            crosses = (below < 0) & (above >= 0)
+            at = np.arange(2 * side - 1) - (side - 1) - 0.5
+            at = at + np.where(crosses, -below / np.where(crosses, above - below, 1), np.inf)
+            shifts.append(np.minimum(np.abs(at).min(1), side))
+    return np.concatenate(shifts)
+
+
+def plane_bias(camera, code, name, signal, frames):
+    """Pixels on planes, and the rms bias of their depth in units of its deviation over frames.
+
+    A pair for each of CLEARANCES_PX, how far edges, creases and the image's border are at least.
+    """
+    scene = (name, "--width", 320, "--height", 240)
+    raw, truth = camera.lit(f"{name} of planes", scene, code, signal, "--frames", frames)
+    depth = camera.decode(raw, code, "--filter", "normal", "--stack")
+    camera.run("scene", *scene, "-o", camera.directory / "scene")
+    z = np.load(camera.directory / "scene" / "z.npy").astype(np.float64)
+    error = depth.astype(np.float64) - truth
+    mean, variance = error.mean(0), error.var(0, ddof=1)
+    found = []
+    for clearance in CLEARANCES_PX:
+        part = anchors.planes(z, clearance) & (np.sqrt(variance) < 0.3)
+        if part.sum() < 500:
+            found.append((int(part.sum()), math.nan))
+            continue
+        noise = variance[part].mean()
+        own = (mean[part] ** 2).mean() - noise / frames  # what the mean of the frames has of noise
+        found.append((int(part.sum()), math.sqrt(max(own, 0) / noise)))
+    return found
+
+
+def measured(camera, code, name, scene, signal, lens, shifts):
+    """Error [mm] (mean, median) of every method in one cell."""
+    raw, truth = camera.lit(name, scene, code, signal, *(LENS if lens else ()))
+    measurements = np.load(raw).squeeze().astype(np.float64)
+    alone = camera.decode(raw, code)
+    errors = {"alone": error_mm(alone, truth)}
+    ours = {strength: camera.decode(raw, code, "--filter", strength) for strength in OURS}
+    seen = np.isfinite(truth)
+    candidates = anchors.of_depth(anchors.spread(alone, seen & np.isfinite(alone)))
+    if code in anchors.HARMONICS:
+        phasors = anchors.Phasors(camera.table(code), anchors.HARMONICS[code])
+        candidates = {**candidates, **phasors.filters(measurements, seen)}
+    chosen = {}
+    for anchor, depths in candidates.items():
+        judged = [(error_mm(depth, truth), parameters) for parameters, depth in depths]
+        errors[anchor], chosen[anchor] = min(judged, key=lambda found: found[0][0])
+    for strength, depth in ours.items():
+        errors[strength] = error_mm(depth, truth)
+    for shown, depth in (("normal", ours["normal"]), ("alone", alone)):
+        shifts[code, signal, lens, shown].append(edge_shifts_px(depth, truth))
+    where = f"{label(code)} {name} {signal:g} {'lens' if lens else 'sharp'}"
+    print(f"{where}: {chosen}", file=sys.stderr)
+    return errors
+
+
+def label(code):
+    """A code's name, of a file too."""
+    return Path(code).name.removesuffix(".code.json")
+
+
+def report(code, cells):
+    """The table of one code: a row per cell, mean / median [mm] of each method, and the ratio."""
+    names = sorted({name for errors in cells.values() for name in errors}, key=ORDER.index)
+    print(f"\n## {label(code)}\n")
+    print("| scene | S (e/s) | lens | " + " | ".join(names) + " | best other / normal |")
+    print("|---" * (len(names) + 4) + "|")
+    for (name, signal, lens), errors in cells.items():
+        shown = ["{:.3g} / {:.3g}".format(*errors[m]) if m in errors else "" for m in names]
+        where = f"{name} | {signal:g} | {'yes' if lens else 'no'}"
+        print(f"| {where} | {' | '.join(shown)} | {ratio(errors):.2f} |")
+    sys.stdout.flush()
+
+
+ORDER = ("alone", *anchors.NAMES, *OURS)
+
+
+def ratio(errors, strength="normal"):
+    """Mean error of the best of the others over ours."""
+    return min(e[0] for m, e in errors.items() if m not in OURS) / errors[strength][0]
+
+
+def summary(results, outside):
+    """Where the filter is 1.5 times as good at dim light outside, and where it is worse."""
+    print("\n## Summary\n")
+    for code, cells in results.items():
+        dim = {c: ratio(e) for c, e in cells.items()
+               if c[0] in outside and c[1] < max(LEVELS_E_PER_S)}
+        worse = {c: ratio(e) for c, e in cells.items() if ratio(e) < 1}
+        if dim:
+            good = sum(r >= 1.5 for r in dim.values())
+            print(f"- {label(code)}: RGB-D and meshes at the dimmer levels: "
+                  f">= 1.5x in {good} of {len(dim)} cells, "
+                  f"median {statistics.median(dim.values()):.2f}x, least {min(dim.values()):.2f}x")
+        listed = [f"{n} {s:g}{' lens' if lens else ''} {r:.2f}x"
+                  for (n, s, lens), r in worse.items()]
+        middle = statistics.median(map(ratio, cells.values()))
+        print(f"- {label(code)}: all {len(cells)} cells: median {middle:.2f}x; "
+              f"worse than the best other in {len(worse)}: {', '.join(listed) or 'none'}")
+
+
+def edges_report(shifts):
+    """How far depth edges moved, by code, level and lens."""
+    print("\nShift of depth edges (asked: median < 0.2 pixel)\n")
+    print("| code | S (e/s) | lens | depth | edges | median (px) | beyond half a pixel |")
+    print("|---|---|---|---|---|---|---|")
+    for (code, signal, lens, shown), parts in shifts.items():
+        moved = np.concatenate(parts)
+        if moved.size:
+            where = f"{label(code)} | {signal:g} | {'yes' if lens else 'no'} | {shown}"
+            print(f"| {where} | {moved.size} | "
+                  f"{np.median(moved):.3f} | {100 * (moved > 0.5).mean():.1f} % |")
+
+
+def planes_report(camera, code, levels, frames):
+    """Bias on planes, by scene and level."""
+    print(f"\nrms bias / sigma of `normal` on planes (asked < 0.1), {label(code)}, {frames} frames")
+    print()
+    columns = "".join(f" pixels {n} from any edge | bias |" for n in CLEARANCES_PX)
+    print(f"| scene | S (e/s) |{columns}")
+    print("|---" * (2 + 2 * len(CLEARANCES_PX)) + "|")
+    for name in PLANES:
+        for signal in levels:
+            parts = plane_bias(camera, code, name, signal, frames)
+            shown = " | ".join(f"{pixels} | {bias:.3f}" for pixels, bias in parts)
+            print(f"| {name} | {signal:g} | {shown} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", type=Path, help="the command tofsmith")
+    parser.add_argument("--optimized", type=Path,
+                        help="file of the code optimized-k5 of `tofsmith demo`")
+    parser.add_argument("--data", type=Path, help="directory of RGB-D images and meshes")
+    parser.add_argument("--quick", action="store_true", help="table-top alone at one level, small")
+    arguments = parser.parse_args()
+    codes = [str(arguments.optimized)] if arguments.optimized else []
+    codes += list(anchors.HARMONICS)
+    levels = LEVELS_E_PER_S[1:2] if arguments.quick else LEVELS_E_PER_S
+    start, shifts, results = time.monotonic(), defaultdict(list), {}
+    with tempfile.TemporaryDirectory() as folder:
+        camera = Camera(arguments.program, Path(folder))
+        found = scenes(arguments, camera.directory)
+        print("Mean / median error in mm; S at the median depth of the scene, A = 1e4 e/s")
+        for code in codes:
+            results[code] = {
+                (name, signal, lens): measured(camera, code, name, scene, signal, lens, shifts)
+                for name, scene, _ in found for lens in (False, True) for signal in levels}
+            report(code, results[code])
+        summary(results, {name for name, _, outside in found if outside})
+        edges_report(shifts)
+        planes_report(camera, codes[0], levels, 8 if arguments.quick else 32)
+    print(f"\n{time.monotonic() - start:.0f} s", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()
