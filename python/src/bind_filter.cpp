@@ -35,8 +35,11 @@ namespace {
 /// Raw numbers and of how many each is the mean, of frames that `filtered(frame, progress)` gives.
 template <typename Filtered>
 py::tuple filter_frames(const py::array& raw_numbers, bool is_planar, int measurement_count,
-                        const py::object& callback, const Filtered& filtered) {
-  const RawArray raw = view_raw(raw_numbers, is_planar, measurement_count);
+                        const py::object& averaged_before, const py::object& callback,
+                        const Filtered& filtered) {
+  RawArray raw = view_raw(raw_numbers, is_planar, measurement_count);
+  const Floats means = averaged_before.is_none() ? Floats() : Floats::ensure(averaged_before);
+  if (!averaged_before.is_none()) raw.set_averaged(means);
   const auto pixels = static_cast<std::size_t>(raw.frames.front().pixels());
   const auto measurements = static_cast<std::size_t>(measurement_count);
   std::vector<float> numbers(raw.frames.size() * pixels * measurements);
@@ -56,9 +59,9 @@ py::tuple filter_frames(const py::array& raw_numbers, bool is_planar, int measur
 }
 
 py::tuple apply_filter(const Filter& filter, const py::array& raw_numbers, bool is_planar,
-                       const py::object& callback) {
+                       const py::object& averaged, const py::object& callback) {
   FilteredFrame filtered;
-  return filter_frames(raw_numbers, is_planar, filter.measurements(), callback,
+  return filter_frames(raw_numbers, is_planar, filter.measurements(), averaged, callback,
                        [&](const RawView& raw, const Progress& progress) {
                          filter.apply(raw, filtered, progress);
                          return filtered.view();
@@ -66,8 +69,8 @@ py::tuple apply_filter(const Filter& filter, const py::array& raw_numbers, bool 
 }
 
 py::tuple add_to_filter(TimeFilter& filter, const py::array& raw_numbers, bool is_planar,
-                        const py::object& callback) {
-  return filter_frames(raw_numbers, is_planar, filter.measurements(), callback,
+                        const py::object& averaged, const py::object& callback) {
+  return filter_frames(raw_numbers, is_planar, filter.measurements(), averaged, callback,
                        [&](const RawView& raw, const Progress& progress) {
                          const RawView added = filter.add(raw);
                          report(progress, 1.0, "filtering");

@@ -86,6 +86,12 @@ def real_array(value: Any, name: str, axes: str) -> npt.NDArray[Any]:
     return array
 
 
+def means(averaged: Any, raw: npt.NDArray[Any]) -> Optional[npt.NDArray[Any]]:
+    """Of how many measurements each pixel of `raw` is the mean; None: of one."""
+    axes = "(H, W)" if raw.ndim == 3 else "(F, H, W)"
+    return None if averaged is None else real_array(averaged, "averaged", axes)
+
+
 def finite_array(value: Any, name: str, axes: str) -> FloatArray:
     """As real_array(), of finite numbers, as float64."""
     array = np.asarray(real_array(value, name, axes), dtype=np.float64)

@@ -196,8 +196,7 @@ class Decoder:
             None if m is None else np.asarray(_check.real_array(m, name, "(H, W)"), np.float32)
             for m, name in ((delay_offset_m, "delay_offset_m"), (gain, "gain"))
         ]
-        axes = "(H, W)" if array.ndim == 3 else "(F, H, W)"
-        means = None if averaged is None else _check.real_array(averaged, "averaged", axes)
+        means = _check.means(averaged, array)
         self._handle.decode(array, is_planar, image.planes(), means, maps[0], maps[1], callback)
         return image
 

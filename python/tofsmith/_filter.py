@@ -105,6 +105,7 @@ class Filter:
         self,
         raw: npt.NDArray[Any],
         *,
+        averaged: Optional[npt.ArrayLike] = None,
         layout: str = "interleaved",
         progress: Progress = None,
     ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
@@ -115,6 +116,8 @@ class Filter:
         raw : ndarray
             As Decoder.decode() takes it, as it leaves the sensor. Pixels that are invalid or
             saturated stay as they are and are added to none.
+        averaged : array_like, shape (H, W) or (F, H, W), optional
+            Of how many measurements each pixel's numbers are the mean, where they are.
         layout : {"interleaved", "planar"}
             Never guessed.
         progress : callable, optional
@@ -139,7 +142,9 @@ class Filter:
         The same bits for any number of threads and any layout.
         """
         is_planar = _check.one_of(layout, "layout", ("interleaved", "planar")) == "planar"
-        return self._handle.apply(_check.raw_array(raw), is_planar, _check.progress(progress))
+        array = _check.raw_array(raw)
+        means = _check.means(averaged, array)
+        return self._handle.apply(array, is_planar, means, _check.progress(progress))
 
 
 class TimeFilter:
@@ -202,6 +207,7 @@ class TimeFilter:
         self,
         raw: npt.NDArray[Any],
         *,
+        averaged: Optional[npt.ArrayLike] = None,
         layout: str = "interleaved",
         progress: Progress = None,
     ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
@@ -212,6 +218,8 @@ class TimeFilter:
         raw : ndarray
             As Decoder.decode() takes it, as it leaves the sensor, as large as the frames before.
             Pixels that are invalid or saturated stay as they are and start anew.
+        averaged : array_like, shape (H, W) or (F, H, W), optional
+            Of how many measurements each pixel's numbers are the mean, where they are.
         layout : {"interleaved", "planar"}
             Never guessed.
         progress : callable, optional
@@ -236,7 +244,9 @@ class TimeFilter:
         The same bits for any number of threads and any layout.
         """
         is_planar = _check.one_of(layout, "layout", ("interleaved", "planar")) == "planar"
-        return self._handle.add(_check.raw_array(raw), is_planar, _check.progress(progress))
+        array = _check.raw_array(raw)
+        means = _check.means(averaged, array)
+        return self._handle.add(array, is_planar, means, _check.progress(progress))
 
     def forget(self) -> None:
         """The next frame is the first again, of any size."""

@@ -281,6 +281,38 @@ TEST(Filter, LeavesInvalidAndSaturatedPixelsAndTakesNothingFromThem) {
   }
 }
 
+TEST(Filter, CountsMeansAsWhatTheyAreTheMeanOf) {
+  for (const Readout readout : {Readout::separate, Readout::difference}) {
+    Camera camera = camera_with("paper-10f0");
+    camera.sensor.readout = readout;
+    camera.sensor.taps = 2;
+    const DecodeSetup setup("hamiltonian-k4", camera);
+    const DecodingTable& table = setup.decoder.table();
+    constexpr int count = 4;
+    const auto plane = [](int, int) { return Seen{55.0, 5e4}; };
+    RawFrames mean = frame_seen(table, 48, 48, plane);
+    for (int i = 1; i < count; ++i) {
+      const RawFrames next = frame_seen(table, 48, 48, plane, 1e4, 1 + static_cast<unsigned>(i));
+      for (std::size_t at = 0; at < mean.values.size(); ++at) mean.values[at] += next.values[at];
+    }
+    for (float& value : mean.values) value /= count;
+    mean.values[static_cast<std::size_t>((20 * 48 + 20) * mean.measurements)] = std::numeric_limits<float>::quiet_NaN();
+    std::vector<float> averaged(48 * 48, count);
+    RawView view = view_of_frame(mean, 0);
+    view.averaged = averaged.data();
+    const Filter filter(table);
+    FilteredFrame filtered;
+    filter.apply(view, filtered);
+    const FilteredFrame single = filter.apply(frame_seen(table, 48, 48, plane));
+    double added = 0.0, added_to_single = 0.0;
+    for (int y = 15; y < 33; ++y)
+      for (int x = 24; x < 33; ++x)
+        added += filtered.averaged()(y, x), added_to_single += single.averaged()(y, x);
+    EXPECT_NEAR(added / added_to_single, count, 0.2 * count) << static_cast<int>(readout);
+    EXPECT_EQ(filtered.averaged()(20, 20), count) << static_cast<int>(readout);
+  }
+}
+
 TEST(Filter, HasTheSameBitsOnAnyNumberOfThreadsAndInAnyLayout) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();

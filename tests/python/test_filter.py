@@ -43,6 +43,18 @@ def test_stacks_and_layouts_are_filtered_frame_by_frame(camera, raw):
     assert decoded.depth_m.shape == (3, 30, 40)
 
 
+def test_means_count_as_what_they_are_the_mean_of(camera, raw):
+    filter = ts.Filter(code, camera, strength="light")
+    mean = raw.mean(axis=0, dtype=np.float64).astype(np.float32)
+    single = filter.apply(raw[0])[1]
+    of_three = filter.apply(mean, averaged=np.full(mean.shape[:2], 3))[1]
+    assert of_three.mean() == pytest.approx(3 * single.mean(), rel=0.3)
+    with pytest.raises(ValueError, match="averaged"):
+        filter.apply(mean, averaged=np.zeros(mean.shape[:2]))
+    with pytest.raises(ValueError, match=r"averaged.*\(H, W\)"):
+        filter.apply(mean, averaged=3.0)
+
+
 def test_options_take_the_place_of_a_strength_s(camera):
     light = ts.Filter(code, camera, strength="light").options
     assert (light["windows"], light["slope_rounds"]) == (1, 0)
@@ -96,7 +108,11 @@ def test_static_scenes_add_up_over_frames(camera):
     assert planar[0].tobytes() == numbers[:8].tobytes()
     assert rest[-1][0].tobytes() == numbers[15].tobytes()
     assert rest[-1][1].tobytes() == averaged[15].tobytes()
-    both, added = ts.Filter(code, camera, strength="light").apply(numbers[15])
-    assert both.shape == raw[0].shape and added.shape == raw[0].shape[:2]
+    in_space = ts.Filter(code, camera, strength="light")
+    both = in_space.apply(numbers[15], averaged=averaged[15])[1]
+    assert both.mean() > 8 * in_space.apply(raw[15])[1].mean()
+    filter.forget()
+    assert np.median(filter.add(raw[0], averaged=np.full((30, 40), 3))[1]) == 3
+    assert np.median(filter.add(raw[1])[1]) == pytest.approx(4)
     with pytest.raises(ValueError, match="raw width = 20; must equal that of the frames before, 40"):
         filter.add(raw[0, :, :20])

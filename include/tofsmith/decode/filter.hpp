@@ -122,7 +122,8 @@ class Filter {
                                   int measurements, int threads);
 
   /// Filters one frame on all threads. Allocates nothing if the frame held one of the same size.
-  /// @param raw  electrons or counts, with as many measurements as the table
+  /// @param raw  electrons or counts, with as many measurements as the table, or means of several
+  ///             as its `averaged` says
   /// @throws std::invalid_argument if the measurements differ; Interrupted if progress says so
   /// @note the same bits for any number of threads and any layout of the raw numbers
   void apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress = {}) const;

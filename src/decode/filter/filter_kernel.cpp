@@ -74,7 +74,7 @@ void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const Fil
       float* const row =
           weights.weight +
           (static_cast<std::ptrdiff_t>(i) * rows + r + strip.rows_above() - down) * weights.stride;
-      std::fill_n(row, weights.stride, 0.0f);
+      clear_margins(grid, row);
       const std::ptrdiff_t at = (top + r) * grid.stride;
       for (int x = 0; x < grid.width; x += lanes_of()) {
         Vector s = load(sums + r * weights.stride + x);
@@ -176,6 +176,8 @@ void add_weighted(const WeightedSums& sums, const FilterGrid& grid, const Filter
     const RowPairs pairs = pairs_of_row(grid, strip, weights.weight, weights.stride, r);
     add_variances(sums, pairs, grid.width, row, inverse_sum);
     int k = 0;
+    for (; k + 5 <= sums.planes; k += 5)
+      add_planes<5>(sums, k, pairs, grid.width, row, inverse_sum);
     for (; k + 4 <= sums.planes; k += 4)
       add_planes<4>(sums, k, pairs, grid.width, row, inverse_sum);
     for (; k + 2 <= sums.planes; k += 2)
@@ -184,6 +186,70 @@ void add_weighted(const WeightedSums& sums, const FilterGrid& grid, const Filter
     if (!sums.shifted_in) continue;
     add_shifted(sums, pairs_of_row(grid, strip, weights.shifted, weights.stride, r), grid.width,
                 row, inverse_sum);
+  }
+}
+
+/// Light of a single pixel of so many standard deviations needs no other proof.
+constexpr float evident_sigma = 3.0f;
+constexpr int own_light_reach = 3, own_light_side = 2 * own_light_reach + 1;
+/// Light around a pixel is its own from so many deviations of its error, and from this share of
+/// what was added, on.
+constexpr float own_light_least_sigma = 1.0f, own_light_least_share = 0.05f;
+/// Beside a straight edge fewer pixels are of its far side. Of normal noise, so many standard
+/// deviations below the mean, with so many times its error.
+constexpr float own_light_share = 0.4f, own_light_below_mean = 0.25f, own_light_noise = 1.28f;
+
+/// Measured light of a pixel along what was added to another, times the length of that.
+HWY_INLINE Vector along_added(const OwnLightTest& test, std::ptrdiff_t added,
+                              std::ptrdiff_t measured) {
+  Vector sum = hn::Zero(Floats());
+  for (int j = 0; j < test.rank; ++j)
+    sum = hn::MulAdd(load(test.added.data()[j] + added), load(test.measured.data()[j] + measured),
+                     sum);
+  return sum;
+}
+
+/// Where at least 60 % of the usable pixels around show light of their own, at least `least`.
+HWY_INLINE Mask is_light_around(const OwnLightTest& test, const FilterGrid& grid, std::ptrdiff_t at,
+                                Vector least) {
+  Vector count = hn::Zero(Floats()), below = count;
+  for (int dy = -own_light_reach; dy <= own_light_reach; ++dy)
+    for (int dx = -own_light_reach; dx <= own_light_reach; ++dx) {
+      const std::ptrdiff_t pixel = at + dy * grid.stride + dx;
+      const Vector usable = load(test.usable + pixel);
+      const Mask is_below = hn::Lt(along_added(test, at, pixel), least);
+      count = hn::Add(count, usable);
+      below = hn::Add(below, hn::IfThenElseZero(is_below, usable));
+    }
+  return hn::Le(below, hn::Mul(all(own_light_share), count));
+}
+
+void find_own_light(const OwnLightTest& test, const FilterGrid& grid, int row, float* is_own) {
+  constexpr float mean_noise = own_light_noise / own_light_side;  // in deviations of one pixel
+  const Vector zero = hn::Zero(Floats());
+  for (int x = 0; x < grid.width; x += lanes_of()) {
+    const std::ptrdiff_t at = row * grid.stride + x;
+    Vector square = zero;
+    for (int j = 0; j < test.rank; ++j) {
+      const Vector u = load(test.added.data()[j] + at);
+      square = hn::MulAdd(u, u, square);
+    }
+    const Vector added = hn::Sqrt(square), sigma = hn::Sqrt(load(test.variance + at));
+    const Vector limit = hn::Mul(all(test.limit_sigma * mean_noise), sigma);
+    const Vector evident = hn::Mul(hn::Mul(all(evident_sigma), sigma), added);
+    const Mask is_lit = hn::And(hn::Gt(square, zero), hn::Gt(load(test.usable + at), all(0.5f)));
+    const Mask is_evident =
+        hn::Or(hn::Le(added, limit), hn::Ge(along_added(test, at, at), evident));
+    Mask own = hn::And(is_lit, is_evident);
+    const Mask is_open = hn::AndNot(is_evident, is_lit);
+    if (!hn::AllFalse(Floats(), is_open)) {
+      const Vector share = hn::Max(hn::Mul(all(own_light_least_sigma * mean_noise), sigma),
+                                   hn::Mul(all(own_light_least_share), added));
+      const Vector least =
+          hn::NegMulAdd(all(own_light_below_mean), sigma, hn::Min(share, hn::Sub(added, limit)));
+      own = hn::Or(own, hn::And(is_open, is_light_around(test, grid, at, hn::Mul(least, added))));
+    }
+    store(hn::IfThenElseZero(own, all(1.0f)), is_own + x);
   }
 }
 
@@ -218,6 +284,7 @@ namespace tofsmith {
 HWY_EXPORT(weigh_similar);
 HWY_EXPORT(add_weighted);
 HWY_EXPORT(find_energy);
+HWY_EXPORT(find_own_light);
 
 namespace {
 std::size_t row_floats(const FilterGrid& grid) { return static_cast<std::size_t>(grid.stride); }
@@ -249,6 +316,10 @@ void find_energy(const std::array<const float*, max_measurements>& u, int rank,
                  float* inverse_sigma) {
   HWY_DYNAMIC_DISPATCH(find_energy)
   (u, rank, variance, floor, floor_share, grid, first_row, rows, energy, inverse_sigma);
+}
+
+void find_own_light(const OwnLightTest& test, const FilterGrid& grid, int row, float* is_own) {
+  HWY_DYNAMIC_DISPATCH(find_own_light)(test, grid, row, is_own);
 }
 
 }  // namespace tofsmith

@@ -66,6 +66,14 @@ struct PairWeights {
 std::size_t weight_floats(const FilterGrid& grid, const FilterStrip& strip);
 std::size_t scratch_floats(const FilterGrid& grid, const FilterStrip& strip);
 
+/// Zeroes what a row of weights has beside its pixels. Vectors that reach beyond them write 0 there
+/// again, because no pixel of a margin is usable.
+inline void clear_margins(const FilterGrid& grid, float* row) {
+  std::fill_n(row, grid.margin, 0.0f);
+  const std::ptrdiff_t end = grid.margin + grid.width;
+  std::fill_n(row + end, grid.stride - end, 0.0f);
+}
+
 /// The test of parallelism.
 struct SimilarityTest {
   std::array<const float*, max_measurements> u{};  ///< (rank) planes
@@ -97,5 +105,19 @@ void find_energy(const std::array<const float*, max_measurements>& u, int rank,
                  const float* variance, const float* floor, float floor_share,
                  const FilterGrid& grid, int first_row, int rows, float* energy,
                  float* inverse_sigma);
+
+/// Whether what was added to a pixel can be its own light.
+struct OwnLightTest {
+  std::array<const float*, max_measurements> added{};     ///< (rank) planes
+  std::array<const float*, max_measurements> measured{};  ///< the same of the light as measured
+  int rank = 0;
+  const float* usable = nullptr;    ///< 1 or 0
+  const float* variance = nullptr;  ///< of a coordinate, as measured
+  float limit_sigma = 0.0f;         ///< FilterOptions::own_light_sigma
+};
+/// 1 where it can, 0 where it cannot or a pixel is not usable. It cannot where the pixels around it
+/// show none, and less than was added: beside an edge of light, dark pixels are given none of it.
+/// Writes a row, whole vectors.
+void find_own_light(const OwnLightTest& test, const FilterGrid& grid, int row, float* is_own);
 
 }  // namespace tofsmith

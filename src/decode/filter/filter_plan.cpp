@@ -14,16 +14,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Light of a single pixel of so many standard deviations needs no other proof.
-constexpr float evident_sigma = 3.0f;
-constexpr int own_light_reach = 3;
-/// Beside a straight edge fewer pixels are of its far side. Of normal noise, so many standard
-/// deviations below the mean, with so many times its error.
-/// Light around a pixel is its own from so many deviations of its error, and from this share of
-/// what was added, on.
-constexpr float own_light_least_sigma = 1.0f, own_light_least_share = 0.05f;
-constexpr float own_light_share = 0.4f, own_light_below_mean = 0.25f, own_light_noise = 1.28f;
-
 constexpr int pixels_per_block = 256;
 
 /// Measurements of some pixels of a row, [K][pixels_per_block].
@@ -129,8 +119,8 @@ void Filter::Plan::read_again(const RawView& raw, FilterPlanes& frame, int set,
 /// @param row_usable, row_variance  of the row; no variance where null
 void Filter::Plan::read_row(const RawView& raw, FilterPlanes& frame, int row, int set,
                             float* row_usable, float* row_variance) const {
-  const float clipped =
-      decoder.table().saturation_level.value_or(std::numeric_limits<float>::infinity());
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const float clipped = decoder.table().saturation_level.value_or(infinity);
   for_each_block_of_row(raw.width, [&](int first, int pixels) {
     const std::ptrdiff_t at = row * frame.grid.stride + first;
     float* const usable = row_usable + first;
@@ -141,10 +131,14 @@ void Filter::Plan::read_row(const RawView& raw, FilterPlanes& frame, int row, in
                  [&](const auto* pixel, std::int64_t length, std::int64_t) {
                    for (int k = 0; k < measurements; ++k) {
                      const auto* number = pixel + k * raw.measurement_stride;
+                     float* const e = electrons[k];
+                     const auto dark = static_cast<float>(scale.electrons(0.0, k));
+                     const auto gain =
+                         static_cast<float>(scale.electrons(1.0, k) - scale.electrons(0.0, k));
                      for (std::int64_t i = 0; i < length; ++i, number += raw.column_stride) {
                        const auto value = static_cast<float>(*number);
-                       if (!(std::isfinite(value) && value < clipped)) usable[i] = 0.0f;
-                       electrons[k][i] = static_cast<float>(scale.electrons(value, k));
+                       usable[i] = value < clipped && value > -infinity ? usable[i] : 0.0f;
+                       e[i] = value * gain + dark;
                      }
                    }
                  });
@@ -251,49 +245,20 @@ void Filter::Plan::write_raw_row(const RawView& raw, FilterPlanes& frame, int fr
   });
 }
 
-/// Whether what was added to a pixel can be its own light. It cannot where the pixels around it
-/// show none, and less than was added: beside an edge of light, dark pixels are given none of it.
-bool Filter::Plan::has_own_light(FilterPlanes& frame, int set, int measured,
-                                 std::ptrdiff_t at) const {
-  float square = 0.0f;
-  for (int j = 0; j < rank; ++j) square += frame.light(set, j)[at] * frame.light(set, j)[at];
-  if (!(square > 0.0f)) return false;
-  const float added = std::sqrt(square);
-  const float sigma = std::sqrt(frame.scalar(FilterPlanes::variance)[at]);
-  constexpr float most_around = (2 * own_light_reach + 1) * (2 * own_light_reach + 1);
-  const auto limit = static_cast<float>(options.own_light_sigma) * own_light_noise * sigma;
-  if (added <= limit / std::sqrt(most_around)) return true;
-  const auto along = [&](std::ptrdiff_t pixel) {
-    float sum = 0.0f;
-    for (int j = 0; j < rank; ++j) sum += frame.light(set, j)[at] * frame.light(measured, j)[pixel];
-    return sum / added;
-  };
-  if (along(at) >= evident_sigma * sigma) return true;
-  // Whether the light of most pixels around is at least `least`.
-  const float root = std::sqrt(most_around);
-  const float own = std::max(own_light_least_sigma * own_light_noise * sigma / root,
-                             own_light_least_share * added);
-  const float least = std::min(own, added - limit / root) - own_light_below_mean * sigma;
-  float count = 0.0f, below = 0.0f;
-  for (int dy = -own_light_reach; dy <= own_light_reach; ++dy)
-    for (int dx = -own_light_reach; dx <= own_light_reach; ++dx) {
-      const std::ptrdiff_t pixel = at + dy * frame.grid.stride + dx;
-      const float usable = frame.scalar(FilterPlanes::usable)[pixel];
-      count += usable;
-      if (along(pixel) < least) below += usable;
-    }
-  return below <= own_light_share * count;
-}
-
 void Filter::Plan::finish(const RawView& raw, FilterPlanes& frame, int set, int other) const {
   read_again(raw, frame, other, FilterPlanes::usable);
+  OwnLightTest test{.rank = rank,
+                    .usable = frame.scalar(FilterPlanes::usable),
+                    .variance = frame.scalar(FilterPlanes::variance),
+                    .limit_sigma = static_cast<float>(options.own_light_sigma)};
+  for (int j = 0; j < rank; ++j) {
+    test.added[static_cast<std::size_t>(j)] = frame.light(set, j);
+    test.measured[static_cast<std::size_t>(j)] = frame.light(other, j);
+  }
   for_each_row(frame, [&](int row) {
     const std::ptrdiff_t start = row * frame.grid.stride;
-    const float* const usable = frame.scalar(FilterPlanes::usable) + start;
     float* const is_filtered = frame.scalar(FilterPlanes::signal) + start;
-    for (int x = 0; x < raw.width; ++x)
-      is_filtered[x] =
-          usable[x] > 0.0f && has_own_light(frame, set, other, start + x) ? 1.0f : 0.0f;
+    find_own_light(test, frame.grid, row, is_filtered);
     float* const averaged = &frame.averaged(row, 0);
     write_raw_row(raw, frame, set, set, row, averaged);
     const float* const measured = averaged_of(raw, row, 0);

@@ -72,7 +72,6 @@ struct Filter::Plan {
   CurvePoints points() const { return {curve.data(), samples(), measurements, rank}; }
   void split(FilterPlanes& frame, int from, int to, int row) const;
   void join(FilterPlanes& frame, int set, int row) const;
-  bool has_own_light(FilterPlanes& frame, int set, int measured, std::ptrdiff_t at) const;
 };
 
 /// Calls work(row) for all rows of a frame, on all threads.

@@ -3,6 +3,9 @@
 #include "decode/filter/slope_kernel.hpp"
 
 #include <algorithm>
+#include <array>
+#include <iterator>
+#include <utility>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/filter/slope_kernel.cpp"
@@ -36,8 +39,8 @@ void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const Fil
     const Vector half_right = all(0.5f * static_cast<float>(right));
     for (int r = strip.rows_above() - down; r < rows; ++r) {
       const std::ptrdiff_t row = (static_cast<std::ptrdiff_t>(i) * rows + r) * weights.stride;
-      std::fill_n(weights.weight + row, weights.stride, 0.0f);
-      std::fill_n(weights.shifted + row, weights.stride, 0.0f);
+      clear_margins(grid, weights.weight + row);
+      clear_margins(grid, weights.shifted + row);
       const std::ptrdiff_t first = (strip.first_row - strip.rows_above() + r) * grid.stride;
       for (int x = 0; x < grid.width; x += lanes_of()) {
         const std::ptrdiff_t p = first + x, q = p + away;
@@ -60,17 +63,43 @@ void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const Fil
   }
 }
 
+/// Neighbours that tell the slope: few, because near ones of filtered pixels share their noise.
+constexpr WindowStep half_rings[] = {{0, 3}, {3, -3}, {3, 0},  {3, 3},    {0, 6},  {6, -6},
+                                     {6, 0}, {6, 6},  {0, 12}, {12, -12}, {12, 0}, {12, 12}};
+
+/// Where a neighbour is, in pixels.
+struct RingPlace {
+  std::ptrdiff_t away = 0;
+  float x = 0.0f, y = 0.0f, xx = 0.0f, xy = 0.0f, yy = 0.0f;
+
+  RingPlace(const WindowStep& step, int sign, std::ptrdiff_t stride)
+      : away(sign * (step.rows * stride + step.columns)),
+        x(static_cast<float>(sign * step.columns)),
+        y(static_cast<float>(sign * step.rows)),
+        xx(x * x),
+        xy(x * y),
+        yy(y * y) {}
+};
+
+/// Neighbours ahead, each followed by the one opposite.
+std::array<RingPlace, 2 * std::size(half_rings)> ring_places(std::ptrdiff_t stride) {
+  return [&]<std::size_t... I>(std::index_sequence<I...>) {
+    return std::array{RingPlace(half_rings[I / 2], I % 2 == 0 ? 1 : -1, stride)...};
+  }
+  (std::make_index_sequence<2 * std::size(half_rings)>());
+}
+
 /// Sums of a plane's slopes, weighted: of x^2, x y, y^2, x d, y d.
 struct SlopeSums {
   Vector xx, xy, yy, xd, yd;
   HWY_INLINE SlopeSums() : xx(hn::Zero(Floats())), xy(xx), yy(xx), xd(xx), yd(xx) {}
-  HWY_INLINE void add(Vector weight, float x, float y, Vector difference) {
+  HWY_INLINE void add(Vector weight, const RingPlace& place, Vector difference) {
     const Vector d = hn::Mul(weight, difference);
-    xx = hn::MulAdd(weight, all(x * x), xx);
-    xy = hn::MulAdd(weight, all(x * y), xy);
-    yy = hn::MulAdd(weight, all(y * y), yy);
-    xd = hn::MulAdd(d, all(x), xd);
-    yd = hn::MulAdd(d, all(y), yd);
+    xx = hn::MulAdd(weight, all(place.xx), xx);
+    xy = hn::MulAdd(weight, all(place.xy), xy);
+    yy = hn::MulAdd(weight, all(place.yy), yy);
+    xd = hn::MulAdd(d, all(place.x), xd);
+    yd = hn::MulAdd(d, all(place.y), yd);
   }
   /// One direction alone tells nothing of the other.
   HWY_INLINE void solve(Vector& slope_x, Vector& slope_y) const {
@@ -82,12 +111,9 @@ struct SlopeSums {
   }
 };
 
-/// Neighbours that tell the slope: few, because near ones of filtered pixels share their noise.
-constexpr WindowStep half_rings[] = {{0, 3}, {3, -3}, {3, 0},  {3, 3},    {0, 6},  {6, -6},
-                                     {6, 0}, {6, 6},  {0, 12}, {12, -12}, {12, 0}, {12, 12}};
-
 void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, int rows,
                  float* slope_x, float* slope_y) {
+  const auto places = ring_places(grid.stride);
   const Vector samples = all(test.samples), per_sample = all(1.0f / test.samples);
   const Vector tiny = all(min_depth_variance), zero = hn::Zero(Floats());
   const Vector inverse_max = all(1.0f / (4 * test.same_depth_sigma2));
@@ -102,8 +128,9 @@ void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, i
       };
       // Opposite neighbours that differ from the pixel by as much in opposite ways, ..
       SlopeSums pairs;
-      for (const WindowStep& s : half_rings) {
-        const std::ptrdiff_t away = s.rows * grid.stride + s.columns;
+      for (std::size_t i = 0; i < std::size(half_rings); ++i) {
+        const RingPlace& place = places.data()[2 * i];
+        const std::ptrdiff_t away = place.away;
         Vector ahead, behind, noise_ahead, noise_behind;
         const Vector both =
             hn::Mul(neighbour(away, ahead, noise_ahead), neighbour(-away, behind, noise_behind));
@@ -111,25 +138,21 @@ void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, i
         const Vector all_noise = hn::MulAdd(variance, all(4.0f), noise);
         const Vector w = hn::Div(
             hn::Mul(weight_of(hn::Div(hn::Mul(bend, bend), all_noise), inverse_max), both), noise);
-        pairs.add(w, static_cast<float>(s.columns), static_cast<float>(s.rows),
-                  hn::Mul(hn::Sub(ahead, behind), all(0.5f)));
+        pairs.add(w, place, hn::Mul(hn::Sub(ahead, behind), all(0.5f)));
       }
       Vector across, along;
       pairs.solve(across, along);
       // .. then every neighbour that the plane so found explains.
       SlopeSums singles;
-      for (const WindowStep& s : half_rings)
-        for (const int sign : {1, -1}) {
-          const int right = sign * s.columns, down = sign * s.rows;
-          Vector difference, noise;
-          const Vector usable = neighbour(down * grid.stride + right, difference, noise);
-          const Vector expected = hn::MulAdd(across, all(static_cast<float>(right)),
-                                             hn::Mul(along, all(static_cast<float>(down))));
-          const Vector beyond = hn::Sub(difference, expected);
-          const Vector squares = hn::Div(hn::Mul(beyond, beyond), hn::Add(noise, variance));
-          const Vector w = hn::Div(hn::Mul(weight_of(squares, inverse_max), usable), noise);
-          singles.add(w, static_cast<float>(right), static_cast<float>(down), difference);
-        }
+      for (const RingPlace& place : places) {
+        Vector difference, noise;
+        const Vector usable = neighbour(place.away, difference, noise);
+        const Vector expected = hn::MulAdd(across, all(place.x), hn::Mul(along, all(place.y)));
+        const Vector beyond = hn::Sub(difference, expected);
+        const Vector squares = hn::Div(hn::Mul(beyond, beyond), hn::Add(noise, variance));
+        const Vector w = hn::Div(hn::Mul(weight_of(squares, inverse_max), usable), noise);
+        singles.add(w, place, difference);
+      }
       singles.solve(across, along);
       const Mask usable = hn::Gt(load(test.usable + p), zero);
       store(hn::IfThenElseZero(usable, across), slope_x + p);
