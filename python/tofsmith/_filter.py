@@ -165,6 +165,9 @@ class TimeFilter:
         The newest frame weighs at least 1 / max_frames.
     max_difference_sigma : float
         Pixels that differ by more standard deviations start anew.
+    before_filter : bool
+        A Filter comes next, which leaves so little noise that smaller changes matter: look for
+        those that only 24 x 24 pixels together show, too.
 
     Raises
     ------
@@ -189,10 +192,12 @@ class TimeFilter:
         *,
         max_frames: int = 64,
         max_difference_sigma: float = 5.0,
+        before_filter: bool = False,
     ) -> None:
         self._handle = _tofsmith.TimeFilter(table_of(code, camera)._handle, {
             "max_frames": _check.whole(max_frames, "max_frames", 1),
-            "max_difference_sigma": _check.number(max_difference_sigma, "max_difference_sigma")})
+            "max_difference_sigma": _check.number(max_difference_sigma, "max_difference_sigma"),
+            "before_filter": bool(before_filter)})
 
     @property
     def table(self) -> DecodingTable:

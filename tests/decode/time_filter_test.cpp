@@ -217,6 +217,26 @@ TEST(TimeFilter, SmallChangesThatNeighboursShareAreFound) {
   EXPECT_LT(mean_of(averaged_of(filter.add(view_of_frame(after, 0)))), 2.0);
 }
 
+TEST(TimeFilter, BeforeAFilterSmallerChangesAreFound) {
+  // A fifth of a standard deviation of each number, shared by all pixels; and none.
+  for (const bool changes : {true, false}) {
+    TimeFilter alone(table_of()), before(table_of(), {.before_filter = true});
+    RawFrames raw = frame_of(alone.table(), slanted, 1e5, 1e4, 99);
+    const auto floor = static_cast<float>(alone.table().constant_variance_e2[0]);
+    for (float& value : raw.values)
+      value += changes ? 0.2F * std::sqrt(std::max(value, 0.0F) + floor) : 0.0F;
+    add_static(alone, 20, 1e5, 1e4, 1);
+    add_static(before, 20, 1e5, 1e4, 1);
+    const double n_alone = mean_of(averaged_of(alone.add(view_of_frame(raw, 0))));
+    const double n_before = mean_of(averaged_of(before.add(view_of_frame(raw, 0))));
+    EXPECT_GT(n_alone, 15.0);
+    if (changes)
+      EXPECT_LT(n_before, 3.0);
+    else
+      EXPECT_GT(n_before, 18.0);
+  }
+}
+
 TEST(TimeFilter, PixelsWithoutMeasurementComeOutAsTheyAreAndStartAnew) {
   Camera camera = camera_with("paper-10f0");
   DecodingTable table = table_of("hamiltonian-k4", camera);
@@ -271,7 +291,7 @@ TEST(TimeFilter, HasTheSameBitsOnAnyNumberOfThreadsAndInAnyLayout) {
         1e6, 1e4, seed));
   const auto run = [&](int threads, bool planar) {
     const ThreadLimit limit(threads);
-    TimeFilter filter(table);
+    TimeFilter filter(table, {.before_filter = true});
     std::vector<float> all;
     for (const RawFrames& raw : frames) {
       RawView view = view_of_frame(raw, 0);

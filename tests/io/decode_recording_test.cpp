@@ -104,7 +104,9 @@ TEST_F(DecodeRecording, AddsUpFramesAsTheTimeFilterDoes) {
   added.outputs = {DecodedPlane::depth, DecodedPlane::averaged};
   EXPECT_EQ(decode_recording(added, decoder_).frames.size(), 3u);
   const Decoder& decoder = std::get<Decoder>(decoder_);
-  TimeFilter in_time(decoder.table(), options);
+  TimeFilterOptions before_filter = options;
+  before_filter.before_filter = true;
+  TimeFilter in_time(decoder.table(), before_filter);
   const Filter in_space(decoder.table(), *added.filter);
   FilteredFrame filtered;
   for (int f = 0; f < 3; ++f) {

@@ -143,6 +143,9 @@ struct TimeFilterOptions {
   /// Pixels that differ from what was added up by more standard deviations start anew; from half of
   /// it on the past weighs less.
   double max_difference_sigma = 5.0;
+  /// Pixels are added in space afterwards, which leaves so little noise that smaller changes
+  /// matter: those that only 24 x 24 pixels together show are looked for, too.
+  bool before_filter = false;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
@@ -150,7 +153,8 @@ struct TimeFilterOptions {
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<TimeFilterOptions> auto& o) {
   return std::tuple(Field("max_frames", o.max_frames, ">= 1"),
-                    Field("max_difference_sigma", o.max_difference_sigma, "finite and > 0"));
+                    Field("max_difference_sigma", o.max_difference_sigma, "finite and > 0"),
+                    Field("before_filter", o.before_filter));
 }
 
 /// Adds the raw measurements of each pixel, frame after frame, as long as they stay the same,

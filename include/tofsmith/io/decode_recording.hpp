@@ -79,7 +79,8 @@ struct DecodeRequest {
   /// the mean. `frame` counts means. From 1 to the number of frames.
   int average = 1;
   /// Of the frames, or means of frames, one after another: what stays the same is added up. `frame`
-  /// counts all frames before it in. None: each frame for itself.
+  /// counts all frames before it in. With `filter` it is `before_filter`. None: each frame for
+  /// itself.
   std::optional<TimeFilterOptions> time_filter;
   std::optional<FilterOptions> filter;  ///< of each frame that comes of that; none: not filtered
   std::filesystem::path offset_map;     ///< [m], as PixelMaps::delay_offset_m; empty: none

@@ -287,7 +287,8 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
   check_inputs_are_kept(request, target);
   check_range_fits(target.path, table.range_m);
   DecodeOutput output(target);
-  const Preparation preparation{request.average, request.time_filter, request.filter};
+  Preparation preparation{request.average, request.time_filter, request.filter};
+  if (preparation.time_filter && preparation.filter) preparation.time_filter->before_filter = true;
   const int rows = rows_at_a_time(reader, target, preparation, 1e6 * request.memory_mb);
 
   result.height = reader.height();
