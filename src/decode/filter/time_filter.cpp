@@ -27,6 +27,7 @@ std::size_t TimeFilter::memory_bytes(int height, int width, int measurements, in
       std::min(threads, (height + compared_strip_rows - 1) / compared_strip_rows));
   return sizeof(float) * (static_cast<std::size_t>(height) * static_cast<std::size_t>(width) *
                               static_cast<std::size_t>(measurements + 2) +
+                          State::cell_floats(height, width, measurements) +
                           strips * ComparedRows::floats(compared_strip_rows + 2 * patch_reach,
                                                         width, measurements));
 }

@@ -56,6 +56,11 @@ TimeFilter::State::State(const DecodingTable& table_, const TimeFilterOptions& o
       to_plane.push_back(static_cast<float>(projection.basis(k, j)));
 }
 
+std::size_t TimeFilter::State::cell_floats(int height, int width, int measurements) {
+  return static_cast<std::size_t>(cells_of(height) * cells_of(width)) *
+         static_cast<std::size_t>(measurements + 2);
+}
+
 void TimeFilter::State::resize(const RawView& raw) {
   height = raw.height;
   width = raw.width;
@@ -251,7 +256,7 @@ void TimeFilter::State::find_cell_changes() {
       cell_changes[static_cast<std::size_t>(row * cell_columns + column)] =
           shared_test.beyond(chi2) / static_cast<float>(measurements);
     }
-  std::ranges::fill(cells, 0.0f);
+  std::fill(cells.begin(), cells.end(), 0.0f);
 }
 
 void TimeFilter::State::add_row(const RawView& raw, int row) {

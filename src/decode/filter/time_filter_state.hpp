@@ -47,6 +47,8 @@ struct TimeFilter::State {
   std::vector<float> cell_changes;  // how much a cell changed beyond noise, in chi^2 over K
   StripBufferPool buffers;
 
+  /// Of `cells` and `cell_changes`.
+  static std::size_t cell_floats(int height, int width, int measurements);
   void resize(const RawView& raw);
   /// How much of what was added to the pixels of some rows counts, into `weights`.
   void compare(const RawView& raw, IndexRange rows);
