@@ -46,6 +46,7 @@ DecodeRequest request_of(const DecodeArguments& arguments, const Camera& camera,
     request.outputs.push_back(parse_decoded_plane(plane));
   request.kind = parse_depth_kind(arguments.kind);
   request.lens = camera.lens;
+  request.time_filter = arguments.filter.time_options();
   request.filter = arguments.filter.options();
   request.offset_map = arguments.offset_map;
   request.gain_map = arguments.gain_map;
@@ -87,16 +88,19 @@ void run(const DecodeArguments& arguments, Session& session) {
   std::vector<std::string> notes = source.notes;
   notes.insert(notes.end(), result.notes.begin(), result.notes.end());
 
-  nlohmann::ordered_json document = {{"code", source.name},
-                                     {"camera", camera.name},
-                                     {"range_m", source.table.range_m},
-                                     {"range_source", source.range_source},
-                                     {"method", name_of(arguments.method.method())},
-                                     {"average", request.average},
-                                     {"filter", arguments.filter.name()},
-                                     {"height", result.height},
-                                     {"width", result.width},
-                                     {"measurements", result.measurements}};
+  nlohmann::ordered_json document = {
+      {"code", source.name},
+      {"camera", camera.name},
+      {"range_m", source.table.range_m},
+      {"range_source", source.range_source},
+      {"method", name_of(arguments.method.method())},
+      {"average", request.average},
+      {"time_filter", request.time_filter ? nlohmann::ordered_json(request.time_filter->max_frames)
+                                          : nlohmann::ordered_json("off")},
+      {"filter", arguments.filter.name()},
+      {"height", result.height},
+      {"width", result.width},
+      {"measurements", result.measurements}};
   if (session.json) add_decode_summary(request, result, document);
   document["notes"] = notes;
   session.print_json(document);
@@ -175,8 +179,10 @@ void add_decode_command(CLI::App& app, Session& session) {
       ->check(number_that(">= 1", [](double value) { return value >= 1.0; }))
       ->capture_default_str();
   command
-      ->add_option("--frame", arguments->request.frame,
-                   "decode this frame only, counted from 0; with --average this mean")
+      ->add_option(
+          "--frame", arguments->request.frame,
+          "decode this frame only, counted from 0; with --average this mean; with --time-filter "
+          "frames before it count in")
       ->check(number_from_0_on());
   command
       ->add_option("--low-signal-sigma", arguments->options.low_signal_sigma,

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "number_checks.hpp"
 #include "session.hpp"
 #include "tap_arguments.hpp"
 #include "tofsmith/core/error.hpp"
@@ -13,18 +14,19 @@ namespace tofsmith::apps {
 
 namespace {
 
-std::vector<std::string> keys() {
+template <typename Options>
+std::vector<std::string> keys_of(Options options = {}) {
   std::vector<std::string> names;
-  FilterOptions options;
   for_each_field(options, [&](const auto& field) { names.emplace_back(field.name); });
   return names;
 }
 
-/// Sets the field that "key=value" names. @throws UsageError
-void set_field(const std::string& setting, FilterOptions& options) {
+/// Sets the field that "key=value" of `argument` names. @throws UsageError
+template <typename Options>
+void set_field(const char* argument, const std::string& setting, Options& options) {
   const std::size_t at = setting.find('=');
   if (at == std::string::npos)
-    throw UsageError(fmt::format("--filter-set: found {}; expected KEY=VALUE", setting));
+    throw UsageError(fmt::format("{}: found {}; expected KEY=VALUE", argument, setting));
   const std::string key = setting.substr(0, at), value = setting.substr(at + 1);
   bool is_known = false;
   for_each_field(options, [&](const auto& field) {
@@ -33,13 +35,26 @@ void set_field(const std::string& setting, FilterOptions& options) {
     if (!CLI::detail::lexical_cast(value, field.value) ||
         !keeps(static_cast<double>(field.value), field.rule))
       throw UsageError(
-          fmt::format("--filter-set {}: found {}; must be {}", key, value, field.rule));
+          fmt::format("{} {}: found {}; must be {}", argument, key, value, field.rule));
   });
   if (is_known) return;
-  const std::string near = nearest_word(key, keys());
-  throw UsageError(fmt::format("--filter-set: unknown key {}; expected one of {}{}", key,
-                               fmt::join(keys(), ", "),
+  const std::vector<std::string> keys = keys_of<Options>();
+  const std::string near = nearest_word(key, keys);
+  throw UsageError(fmt::format("{}: unknown key {}; expected one of {}{}", argument, key,
+                               fmt::join(keys, ", "),
                                near.empty() ? "" : "; did you mean " + near + "?"));
+}
+
+/// An option for settings of the fields of Options, which goes with another.
+template <typename Options>
+void add_settings(CLI::App& command, const char* argument, const char* whose, CLI::Option* with,
+                  std::vector<std::string>& settings) {
+  command
+      .add_option(argument, settings,
+                  fmt::format("KEY=VALUE of {}, for experts, as often as needed: {}", whose,
+                              fmt::join(keys_of<Options>(), ", ")))
+      ->allow_extra_args(false)
+      ->needs(with);
 }
 
 }  // namespace
@@ -54,18 +69,30 @@ void FilterArguments::add_to(CLI::App& command) {
                       "add the measurements of neighbours that see the same depth before decoding: "
                       "light, normal or strong (off)")
           ->check(one_of(strengths));
-  command
-      .add_option("--filter-set", settings_,
-                  fmt::format("KEY=VALUE of the filter, for experts, as often as needed: {}",
-                              fmt::join(keys(), ", ")))
-      ->allow_extra_args(false)
-      ->needs(filter);
+  add_settings<FilterOptions>(command, "--filter-set", "the filter", filter, settings_);
+  CLI::Option* const time_filter =
+      command
+          .add_option(
+              "--time-filter", max_frames_,
+              "add to each pixel's measurements those of the frames before, as long as they "
+              "stay the same: as many as this, about (off)")
+          ->check(number_that(">= 1", [](double value) { return value >= 1.0; }));
+  add_settings<TimeFilterOptions>(command, "--time-filter-set", "the filter in time", time_filter,
+                                  time_settings_);
 }
 
 std::optional<FilterOptions> FilterArguments::options() const {
   if (strength_.empty()) return std::nullopt;
   FilterOptions options = FilterOptions::of(parse_filter_strength(strength_));
-  for (const std::string& setting : settings_) set_field(setting, options);
+  for (const std::string& setting : settings_) set_field("--filter-set", setting, options);
+  return options;
+}
+
+std::optional<TimeFilterOptions> FilterArguments::time_options() const {
+  if (max_frames_ == 0) return std::nullopt;
+  TimeFilterOptions options{.max_frames = max_frames_};
+  for (const std::string& setting : time_settings_)
+    set_field("--time-filter-set", setting, options);
   return options;
 }
 

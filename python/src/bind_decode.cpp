@@ -134,6 +134,8 @@ DecodeRequest request_of(const std::string& raw, const std::string& output, cons
       .value("overwrite", overwrite);
   if (const py::dict filter = reader.table("filter"); !filter.empty())
     request.filter = filter_options(filter);
+  if (const py::dict filter = reader.table("time_filter"); !filter.empty())
+    request.time_filter = time_filter_options(filter);
   reader.finish();
   request.raw = raw;
   request.output = output;

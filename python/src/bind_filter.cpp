@@ -23,32 +23,59 @@ FilterOptions filter_options(const py::dict& values) {
   return options;
 }
 
+TimeFilterOptions time_filter_options(const py::dict& values) {
+  TimeFilterOptions options;
+  read_options(values, "time_filter", options);
+  options.validate();
+  return options;
+}
+
 namespace {
 
-py::tuple apply_filter(const Filter& filter, const py::array& raw_numbers, bool is_planar,
-                       const py::object& averaged_before, const py::object& callback) {
-  RawArray raw = view_raw(raw_numbers, is_planar, filter.measurements());
+/// Raw numbers and of how many each is the mean, of frames that `filtered(frame, progress)` gives.
+template <typename Filtered>
+py::tuple filter_frames(const py::array& raw_numbers, bool is_planar, int measurement_count,
+                        const py::object& averaged_before, const py::object& callback,
+                        const Filtered& filtered) {
+  RawArray raw = view_raw(raw_numbers, is_planar, measurement_count);
   const Floats means = averaged_before.is_none() ? Floats() : Floats::ensure(averaged_before);
   if (!averaged_before.is_none()) raw.set_averaged(means);
   const auto pixels = static_cast<std::size_t>(raw.frames.front().pixels());
-  const auto measurements = static_cast<std::size_t>(filter.measurements());
+  const auto measurements = static_cast<std::size_t>(measurement_count);
   std::vector<float> numbers(raw.frames.size() * pixels * measurements);
   std::vector<float> averaged(raw.frames.size() * pixels);
   without_gil(callback, [&](const Progress& progress) {
     const ProgressParts parts(progress, raw.frames.size());
-    FilteredFrame filtered;
     for (std::size_t f = 0; f < raw.frames.size(); ++f) {
-      filter.apply(raw.frames[f], filtered, parts[f]);
-      copy_pixels(filtered.view(), 0, filtered.view().pixels(),
-                  numbers.data() + f * pixels * measurements);
-      std::ranges::copy(filtered.averaged().pixels,
-                        averaged.begin() + static_cast<std::ptrdiff_t>(f * pixels));
+      const RawView view = filtered(raw.frames[f], parts[f]);
+      copy_pixels(view, 0, view.pixels(), numbers.data() + f * pixels * measurements);
+      std::copy_n(view.averaged, pixels, averaged.data() + f * pixels);
     }
   });
   std::vector<py::ssize_t> shape = raw.plane_shape();
   const py::array_t<float> planes = adopt(std::move(averaged), shape);
-  shape.push_back(filter.measurements());
+  shape.push_back(measurement_count);
   return py::make_tuple(adopt(std::move(numbers), std::move(shape)), planes);
+}
+
+py::tuple apply_filter(const Filter& filter, const py::array& raw_numbers, bool is_planar,
+                       const py::object& averaged, const py::object& callback) {
+  FilteredFrame filtered;
+  return filter_frames(raw_numbers, is_planar, filter.measurements(), averaged, callback,
+                       [&](const RawView& raw, const Progress& progress) {
+                         filter.apply(raw, filtered, progress);
+                         return filtered.view();
+                       });
+}
+
+py::tuple add_to_filter(TimeFilter& filter, const py::array& raw_numbers, bool is_planar,
+                        const py::object& averaged, const py::object& callback) {
+  return filter_frames(raw_numbers, is_planar, filter.measurements(), averaged, callback,
+                       [&](const RawView& raw, const Progress& progress) {
+                         const RawView added = filter.add(raw);
+                         report(progress, 1.0, "filtering");
+                         return added;
+                       });
 }
 
 }  // namespace
@@ -63,6 +90,16 @@ void bind_filter(py::module_& module) {
       .def("table", [](const Filter& filter) { return filter.table(); })
       .def("options", [](const Filter& filter) { return fields_dict(filter.options()); })
       .def("apply", &apply_filter);
+  py::class_<TimeFilter>(module, "TimeFilter")
+      .def(py::init([](const DecodingTable& table, const py::dict& values) {
+        const TimeFilterOptions options = time_filter_options(values);
+        const py::gil_scoped_release release;
+        return TimeFilter(table, options);
+      }))
+      .def("table", [](const TimeFilter& filter) { return filter.table(); })
+      .def("options", [](const TimeFilter& filter) { return fields_dict(filter.options()); })
+      .def("add", &add_to_filter)
+      .def("forget", &TimeFilter::forget);
   module.def("filter_strengths", [] {
     std::vector<std::string> names;
     for (const FilterStrength strength : all_filter_strengths)

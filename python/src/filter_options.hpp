@@ -13,5 +13,7 @@ namespace py = pybind11;
 /// The options of a strength, the entry "strength", with the fields that a dict has of its own.
 /// @throws std::invalid_argument for names that no field has, and rules that are broken
 FilterOptions filter_options(const py::dict& values);
+/// The same of a filter in time, without strength.
+TimeFilterOptions time_filter_options(const py::dict& values);
 
 }  // namespace tofsmith::python

@@ -69,7 +69,7 @@ from ._files import (
     write_points,
     write_raw,
 )
-from ._filter import Filter
+from ._filter import Filter, TimeFilter
 from ._forward_model import (
     ForwardModel,
     coding_curve_in_space,
@@ -219,6 +219,7 @@ __all__ = [
     "Sensor",
     "StagedCapture",
     "SweepResults",
+    "TimeFilter",
     "TrainingSetRun",
     "Transients",
     "UploadChannel",

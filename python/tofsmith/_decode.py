@@ -25,7 +25,13 @@ from ._depth_image import (
     planes_of,
     usual_planes,
 )
-from ._filter import Filter, FilterLike, filter_options
+from ._filter import (
+    Filter,
+    FilterLike,
+    TimeFilterLike,
+    filter_options,
+    time_filter_options,
+)
 
 
 @dataclass(frozen=True)
@@ -206,6 +212,7 @@ class Decoder:
         frame: Optional[int] = None,
         stack: bool = False,
         average: int = 1,
+        time_filter: Optional[TimeFilterLike] = None,
         filter: Optional[FilterLike] = None,
         offset_map: Optional[Path] = None,
         gain_map: Optional[Path] = None,
@@ -243,6 +250,9 @@ class Decoder:
         average : int
             Decodes the means of so many consecutive frames; the last is of those that are left.
             `frame` counts means.
+        time_filter : int or dict, optional
+            Adds to each pixel the frames before, or means of frames, as long as they stay the same,
+            as TimeFilter does: max_frames, or a dict of it and other options.
         filter : {"light", "normal", "strong"} or dict, optional
             Adds measurements of the same depth before decoding, as Filter does: a strength, or a
             dict of options with "strength" among them ("normal").
@@ -285,6 +295,7 @@ class Decoder:
             "frame": None if frame is None else _check.whole(frame, "frame", 0),
             "stack": bool(stack),
             "average": _check.whole(average, "average", 1),
+            "time_filter": None if time_filter is None else time_filter_options(time_filter),
             "filter": None if filter is None else filter_options(filter),
             "offset_map": name(offset_map, "offset_map"),
             "gain_map": name(gain_map, "gain_map"),

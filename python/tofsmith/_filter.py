@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Measurements of the same depth added before they are decoded."""
+"""Measurements of the same depth, in space and time, added before they are decoded."""
 
 from __future__ import annotations
 
@@ -28,6 +28,19 @@ def filter_options(filter: FilterLike) -> dict[str, Any]:
         raise TypeError(f"filter: got {_check.shown(filter)}; needs one of "
                         f"{', '.join(_tofsmith.filter_strengths())}, or a dict of options")
     return {"strength": "normal", **filter}
+
+
+#: max_frames, or a dict of it and other fields of TimeFilterOptions.
+TimeFilterLike = Union[int, Mapping[str, Any]]
+
+
+def time_filter_options(time_filter: TimeFilterLike) -> dict[str, Any]:
+    """The dict of a TimeFilterLike."""
+    if not isinstance(time_filter, Mapping):
+        return {"max_frames": _check.whole(time_filter, "time_filter", 1)}
+    if "max_frames" not in time_filter:
+        raise ValueError(f"time_filter: got {_check.shown(time_filter)}; needs max_frames")
+    return dict(time_filter)
 
 
 class Filter:
@@ -132,3 +145,114 @@ class Filter:
         array = _check.raw_array(raw)
         means = _check.means(averaged, array)
         return self._handle.apply(array, is_planar, means, _check.progress(progress))
+
+
+class TimeFilter:
+    """Adds the raw measurements of each pixel, frame after frame, as long as they stay the same,
+    before anything is decoded: no frame waits for a later one. What changes starts anew, so that
+    nothing smears. Keeps the frame so far; not for several threads at once.
+
+    Whether something changed is a test of the pixel, of those around it, and of what they share,
+    that knows the noise of each. See docs/filtering.md.
+
+    Parameters
+    ----------
+    code : CodeSet, DecodingTable, name of a family or file
+        As Decoder takes it.
+    camera : Camera or its name
+        Needed unless `code` is a DecodingTable.
+    max_frames : int
+        The newest frame weighs at least 1 / max_frames.
+    max_difference_sigma : float
+        Pixels that differ by more standard deviations start anew.
+    before_filter : bool
+        A Filter comes next, which leaves so little noise that smaller changes matter: look for
+        those that only 24 x 24 pixels together show, too.
+
+    Raises
+    ------
+    ValueError
+        For an option that breaks a rule.
+
+    Examples
+    --------
+    >>> filter = TimeFilter("hamiltonian-k4", "paper-10f0", max_frames=30)
+    >>> raw, averaged = filter.add(np.full((20, 30, 4), 1000, np.uint16))
+    >>> raw, averaged = filter.add(np.full((20, 30, 4), 1000, np.uint16))
+    >>> float(averaged[0, 0])
+    2.0
+    >>> Decoder(filter.table).decode(raw, averaged=averaged).depth_m.shape
+    (20, 30)
+    """
+
+    def __init__(
+        self,
+        code: CodeLike | DecodingTable,
+        camera: Optional[CameraLike] = None,
+        *,
+        max_frames: int = 64,
+        max_difference_sigma: float = 5.0,
+        before_filter: bool = False,
+    ) -> None:
+        self._handle = _tofsmith.TimeFilter(table_of(code, camera)._handle, {
+            "max_frames": _check.whole(max_frames, "max_frames", 1),
+            "max_difference_sigma": _check.number(max_difference_sigma, "max_difference_sigma"),
+            "before_filter": bool(before_filter)})
+
+    @property
+    def table(self) -> DecodingTable:
+        return DecodingTable._of(self._handle.table())
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """The fields of TimeFilterOptions by name."""
+        return self._handle.options()
+
+    def add(
+        self,
+        raw: npt.NDArray[Any],
+        *,
+        averaged: Optional[npt.ArrayLike] = None,
+        layout: str = "interleaved",
+        progress: Progress = None,
+    ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
+        """Adds the next frame, or those of a stack one after another, on all threads.
+
+        Parameters
+        ----------
+        raw : ndarray
+            As Decoder.decode() takes it, as it leaves the sensor, as large as the frames before.
+            Pixels that are invalid or saturated stay as they are and start anew.
+        averaged : array_like, shape (H, W) or (F, H, W), optional
+            Of how many measurements each pixel's numbers are the mean, where they are.
+        layout : {"interleaved", "planar"}
+            Never guessed.
+        progress : callable, optional
+            Called with (fraction, step); False stops.
+
+        Returns
+        -------
+        raw : ndarray of float32, shape (H, W, K) or (F, H, W, K)
+            Raw numbers as any decoder takes them.
+        averaged : ndarray of float32, shape (H, W) or (F, H, W)
+            Of how many measurements each is the mean, in variance: Decoder.decode()'s `averaged`.
+
+        Raises
+        ------
+        ValueError
+            For another dtype or shape.
+        Interrupted
+            If `progress` says so.
+
+        Notes
+        -----
+        The same bits for any number of threads and any layout.
+        """
+        is_planar = _check.one_of(layout, "layout", ("interleaved", "planar")) == "planar"
+        array = _check.raw_array(raw)
+        means = _check.means(averaged, array)
+        return self._handle.add(array, is_planar, means, _check.progress(progress))
+
+    def forget(self) -> None:
+        """The next frame is the first again, of any size."""
+        self._handle.forget()

@@ -122,6 +122,26 @@ class Streaming(CommandLineTest):
         peak = self.peak_mb(*self.arguments("--filter", "strong", "--memory-mb", "60"))
         self.assertLess(peak, plain + 60)
 
+    def test_filters_in_time(self):
+        self.record(frames=5)
+        planes = ("--stack", "--outputs", "depth,averaged")
+        document = self.decode("--time-filter", "8", *planes)
+        self.assertEqual((document["time_filter"], document["filter"]), (8, "off"))
+        averaged = np.load(self.path("d-averaged.npy"))
+        np.testing.assert_array_equal(averaged[0], 1)
+        self.assertGreater(np.median(averaged[4]), 4.9)
+        self.decode("--time-filter", "8", "--frame", "3", *planes, output="one.npy")
+        np.testing.assert_array_equal(np.load(self.path("one.npy"))[0],
+                                      np.load(self.path("d.npy"))[3])
+        document = self.decode("--time-filter", "1", *planes, output="none.npy")
+        self.decode("--stack", output="alone.npy")
+        self.assertEqual(self.bytes_of("none.npy"), self.bytes_of("alone.npy"))
+        self.refuse(self.arguments("--time-filter", "8", "--memory-mb", "0.03", output="x.npy"),
+                    "to be filtered")
+        self.refuse(self.arguments("--time-filter", "0", output="x.npy"), "found 0", code=2)
+        self.refuse(self.arguments("--time-filter", "8", "--time-filter-set", "max_differnce_sigma=3",
+                                   output="x.npy"), "did you mean max_difference_sigma?", code=2)
+
     def test_averages(self):
         raw = self.record(frames=5)
         self.decode("--average", "2", "--stack", "--outputs", "depth,averaged")

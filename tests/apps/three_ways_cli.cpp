@@ -92,6 +92,12 @@ void decode() {
                     .filter = options,
                     .policy = policy},
                    decoder);
+  decode_recording({.raw = "raw.npy",
+                    .output = "added.npz",
+                    .outputs = {DecodedPlane::depth, DecodedPlane::averaged},
+                    .time_filter = TimeFilterOptions{.max_frames = 2, .max_difference_sigma = 4.0},
+                    .policy = policy},
+                   decoder);
 }
 
 void evaluate_codes() {

@@ -95,6 +95,53 @@ TEST_F(DecodeRecording, FiltersAsTheFilterDoes) {
   EXPECT_EQ(plane("f-averaged.npy", 0), frame.averaged().pixels);
 }
 
+TEST_F(DecodeRecording, AddsUpFramesAsTheTimeFilterDoes) {
+  const TimeFilterOptions options{.max_frames = 5, .max_difference_sigma = 9.0};
+  DecodeRequest added = request("all.npy");
+  added.time_filter = options;
+  added.filter = FilterOptions::of(FilterStrength::light);
+  added.stack = true;
+  added.outputs = {DecodedPlane::depth, DecodedPlane::averaged};
+  EXPECT_EQ(decode_recording(added, decoder_).frames.size(), 3u);
+  const Decoder& decoder = std::get<Decoder>(decoder_);
+  TimeFilterOptions before_filter = options;
+  before_filter.before_filter = true;
+  TimeFilter in_time(decoder.table(), before_filter);
+  const Filter in_space(decoder.table(), *added.filter);
+  FilteredFrame filtered;
+  for (int f = 0; f < 3; ++f) {
+    const RawView sum = in_time.add(view_of_frame(raw_, f));
+    EXPECT_EQ(std::ranges::max(std::span(sum.averaged, 6 * 5)) > 1.5F, f > 0);
+    in_space.apply(sum, filtered);
+    Image<float> depth_m(6, 5);
+    decoder.decode(filtered.view(), {.depth_m = depth_m.pixels.data()});
+    EXPECT_EQ(plane("all.npy", static_cast<std::size_t>(f)), depth_m.pixels);
+    EXPECT_EQ(plane("all-averaged.npy", static_cast<std::size_t>(f)), filtered.averaged().pixels);
+  }
+}
+
+TEST_F(DecodeRecording, AFrameHoldsThoseBeforeItWhenTheyAreAddedUp) {
+  for (const int average : {1, 2}) {
+    SCOPED_TRACE(average);
+    DecodeRequest all = request("all.npy"), one = request("one.npy");
+    for (DecodeRequest* added : {&all, &one}) {
+      added->time_filter = TimeFilterOptions{.max_difference_sigma = 20.0};
+      added->average = average;
+      added->stack = true;
+      added->outputs = {DecodedPlane::depth, DecodedPlane::averaged};
+      added->policy = OutputPolicy::overwrite;
+    }
+    one.frame = 1;
+    decode_recording(all, decoder_);
+    const DecodedRecording result = decode_recording(one, decoder_);
+    EXPECT_EQ(result.first_frame, 1);
+    EXPECT_EQ(plane("one.npy", 0), plane("all.npy", 1));
+    EXPECT_EQ(plane("one-averaged.npy", 0), plane("all-averaged.npy", 1));
+    // Two frames, or a mean of two and the one that is left.
+    EXPECT_EQ(plane("all-averaged.npy", 1), std::vector<float>(6 * 5, average == 1 ? 2.0F : 3.0F));
+  }
+}
+
 TEST_F(DecodeRecording, MeansOfEqualFramesAreTheFrameWithLessNoise) {
   RawFrames equal = raw_;
   const auto frame_size = static_cast<std::ptrdiff_t>(equal.values.size() / 3);
@@ -199,6 +246,9 @@ TEST_F(DecodeRecording, RefusesWhatCannotBeBeforeAnythingIsWritten) {
   wrong.frame = 2;
   refused(wrong, "holds 3 frames, 2 means, counted from 0");
   wrong = request("d.npz");
+  wrong.time_filter = TimeFilterOptions{.max_frames = 0};
+  refused(wrong, "TimeFilterOptions::max_frames = 0; must be >= 1");
+  wrong.time_filter.reset();
   wrong.filter = FilterOptions{.windows = 4};
   refused(wrong, "windows = 4; must be in [1, 3]");
   wrong.filter = FilterOptions{};

@@ -91,3 +91,28 @@ def test_counts_that_cannot_be_are_refused(camera, raw, averaged, words):
 def test_filtering_can_be_stopped(camera, raw):
     with pytest.raises(ts.Interrupted):
         ts.Filter(code, camera).apply(raw, progress=lambda share, step: False)
+
+
+def test_static_scenes_add_up_over_frames(camera):
+    scene = ts.built_in_scene("table-top", 40, 30)
+    raw = ts.capture(scene, code, camera, signal_e_per_s=1e5, ambient_e_per_s=1e4, seed=5, frames=16)
+    filter = ts.TimeFilter(code, camera)
+    numbers, averaged = filter.add(raw)
+    assert (numbers.shape, averaged.shape) == (raw.shape, raw.shape[:3])
+    assert numbers[0].tobytes() == raw[0].astype(np.float32).tobytes()
+    assert [np.median(n) for n in averaged[:3]] == pytest.approx([1, 2, 3], abs=0.01)
+    assert averaged[15].mean() > 15.5
+    filter.forget()
+    planar = filter.add(np.moveaxis(raw[:8], 3, 1), layout="planar")
+    rest = [filter.add(frame) for frame in raw[8:]]
+    assert planar[0].tobytes() == numbers[:8].tobytes()
+    assert rest[-1][0].tobytes() == numbers[15].tobytes()
+    assert rest[-1][1].tobytes() == averaged[15].tobytes()
+    in_space = ts.Filter(code, camera, strength="light")
+    both = in_space.apply(numbers[15], averaged=averaged[15])[1]
+    assert both.mean() > 8 * in_space.apply(raw[15])[1].mean()
+    filter.forget()
+    assert np.median(filter.add(raw[0], averaged=np.full((30, 40), 3))[1]) == 3
+    assert np.median(filter.add(raw[1])[1]) == pytest.approx(4)
+    with pytest.raises(ValueError, match="raw width = 20; must equal that of the frames before, 40"):
+        filter.add(raw[0, :, :20])

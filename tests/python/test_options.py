@@ -40,6 +40,7 @@ keywords = [
     ("DesignOptions", "design/design.hpp", ts.design, set()),
     ("MultipathErrorOptions", "simulate/multipath_error.hpp", ts.multipath_error, set()),
     ("DecodeOptions", "decode/decoder.hpp", ts.Decoder, set()),
+    ("TimeFilterOptions", "decode/filter.hpp", ts.TimeFilter, set()),
     ("ExportOptions", "waveforms/waveform_export.hpp", ts.export_waveforms, set()),
     ("ResponseRecordOptions", "calibrate/impulse_response.hpp", ts.read_response_record, set()),
     ("ResponseCalibrationOptions", "calibrate/impulse_response.hpp",

@@ -148,8 +148,14 @@ def test_decode(ways, camera):
         outputs=["depth", "averaged"])
     assert len(result.files) == 2
 
+    command("raw.npy", "added.npz", "--time-filter", "2", "--time-filter-set",
+            "max_difference_sigma=4", "--outputs", "depth,averaged")
+    decoder.decode_recording(
+        "raw.npy", "added.npz", time_filter={"max_frames": 2, "max_difference_sigma": 4},
+        outputs=["depth", "averaged"])
+
     ways.cpp("decode")
-    assert len(ways.same()) == len(given) + 6 * 3 + 1 + 2 + 3 + 3 + 2
+    assert len(ways.same()) == len(given) + 6 * 3 + 1 + 2 + 3 + 3 + 2 + 3
 
 
 def test_decode_refuses_alike(ways, camera):
@@ -162,7 +168,9 @@ def test_decode_refuses_alike(ways, camera):
             (ValueError, "average = 4", ["--average", "4"], {"average": 4}),
             (OSError, "0.001 MB", ["--memory-mb", "0.001"], {"memory_mb": 0.001}),
             (OSError, "to be filtered", ["--filter", "light", "--memory-mb", "0.1"],
-             {"filter": "light", "memory_mb": 0.1})):
+             {"filter": "light", "memory_mb": 0.1}),
+            (OSError, "to be filtered", ["--time-filter", "9", "--memory-mb", "0.03"],
+             {"time_filter": 9, "memory_mb": 0.03})):
         done = subprocess.run(
             [ways.cli, "decode", "raw.npy", "--code", "hamiltonian-k4", *SMALL, "-o", "d.npz",
              *arguments], cwd=ways.folders["command"], capture_output=True, text=True)

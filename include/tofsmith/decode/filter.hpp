@@ -40,9 +40,9 @@ struct FilterOptions {
   double trusted_pixels = 12.0;
   /// Along slopes, depths within this many standard deviations are the same surface.
   double same_depth_sigma = 4.0;
-  /// A pixel is left as it was measured where neither it nor most of the 7 x 7 pixels around it show
-  /// any light, but what the filter would give it stands out by this many standard deviations of
-  /// their mean: beside an edge of light, dark pixels are given none of it.
+  /// A pixel is left as it was measured where neither it nor most of the 7 x 7 pixels around it
+  /// show any light, but what the filter would give it stands out by this many standard deviations
+  /// of their mean: beside an edge of light, dark pixels are given none of it.
   double own_light_sigma = 8.0;
 
   static FilterOptions of(FilterStrength strength);
@@ -87,8 +87,8 @@ class FilteredFrame {
 
 /// Adds the raw measurements of pixels that see the same depth, before anything is decoded.
 ///
-/// Without ambient light, the vectors of pixels at one depth are parallel, whatever their albedo: u =
-/// V^T y = S p(z), so that they may be added without bias. Whether two may be is a test of
+/// Without ambient light, the vectors of pixels at one depth are parallel, whatever their albedo: u
+/// = V^T y = S p(z), so that they may be added without bias. Whether two may be is a test of
 /// parallelism that knows the noise v of each,
 ///   lambda = (a + b - sqrt((a - b)^2 + 4 c^2)) / 2,  a = |u|^2 / v, b = |u'|^2 / v',
 ///   c = max(0, u . u') / sqrt(v v'),
@@ -99,10 +99,10 @@ class FilteredFrame {
 /// move each neighbour's light along the curve by what the planes say before it is added: a surface
 /// that slants keeps its depth, and all of the window counts.
 ///
-/// What a pixel has of ambient light and of other returns is added along. Pixels that are invalid or
-/// saturated are left as they are and weigh nothing. With three measurements the test has one degree
-/// of freedom and tells little. Maps of pixels (PixelMaps) are applied to what is decoded: offsets
-/// that differ from pixel to pixel by more than noise keep neighbours apart.
+/// What a pixel has of ambient light and of other returns is added along. Pixels that are invalid
+/// or saturated are left as they are and weigh nothing. With three measurements the test has one
+/// degree of freedom and tells little. Maps of pixels (PixelMaps) are applied to what is decoded:
+/// offsets that differ from pixel to pixel by more than noise keep neighbours apart.
 ///
 /// Immutable and safe to use from many threads at once, each with a frame of its own.
 class Filter {
@@ -116,8 +116,8 @@ class Filter {
   const DecodingTable& table() const;
   const FilterOptions& options() const;
   int measurements() const { return table().measurements(); }
-  /// Memory that frames of this size are filtered in [bytes]: a FilteredFrame's, and what each thread
-  /// works in.
+  /// Memory that frames of this size are filtered in [bytes]: a FilteredFrame's, and what each
+  /// thread works in.
   static std::size_t memory_bytes(const FilterOptions& options, int height, int width,
                                   int measurements, int threads);
 
@@ -134,6 +134,74 @@ class Filter {
 
  private:
   std::unique_ptr<const Plan> plan_;
+};
+
+struct TimeFilterOptions {
+  /// The newest frame weighs 1 / max_frames or more: what is older by much more is forgotten. 1: no
+  /// frame is added to another.
+  int max_frames = 64;
+  /// Pixels that differ from what was added up by more standard deviations start anew; from half of
+  /// it on the past weighs less.
+  double max_difference_sigma = 5.0;
+  /// Pixels are added in space afterwards, which leaves so little noise that smaller changes
+  /// matter: those that only 24 x 24 pixels together show are looked for, too.
+  bool before_filter = false;
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<TimeFilterOptions> auto& o) {
+  return std::tuple(Field("max_frames", o.max_frames, ">= 1"),
+                    Field("max_difference_sigma", o.max_difference_sigma, "finite and > 0"),
+                    Field("before_filter", o.before_filter));
+}
+
+/// Adds the raw measurements of each pixel, frame after frame, as long as they stay the same,
+/// before anything is decoded: no frame waits for a later one.
+///
+/// Kept is one frame: the mean s of what was added to a pixel, of n measurements in variance. A new
+/// measurement y differs from it, if nothing changed, by noise of variance v (1 + 1 / n) for each
+/// of its K numbers, where v is that of the mean of both: shot noise of the light collected,
+/// read-out, and what subtracted buckets hide. Three tests must agree that nothing did: chi^2 of
+/// the pixel, of the 5 x 5 pixels around it, and of the mean difference of those, which finds what
+/// all of them share long before one shows it. Where one says by how much it changed at least, that
+/// is added to the variance of s; from max_difference_sigma on the pixel is that of the new frame
+/// alone.
+///
+/// Pixels that are invalid or saturated come out as they are and start anew after that: a mean of
+/// those frames alone in which they are not clipped would be too low. Light whose power changes is
+/// light that changes. Ambient light that subtracted buckets hide makes noise that is not known: in
+/// much of it fewer frames are added.
+class TimeFilter {
+ public:
+  /// @throws std::invalid_argument if the table or the options are invalid
+  explicit TimeFilter(const DecodingTable& table, const TimeFilterOptions& options = {});
+  ~TimeFilter();
+  TimeFilter(TimeFilter&&) noexcept;
+  TimeFilter& operator=(TimeFilter&&) noexcept;
+
+  const DecodingTable& table() const;
+  const TimeFilterOptions& options() const;
+  int measurements() const { return table().measurements(); }
+  /// Memory that frames of this size take [bytes]: K + 2 floats a pixel, and what each thread works
+  /// in.
+  static std::size_t memory_bytes(int height, int width, int measurements, int threads);
+
+  /// Adds the next frame, on all threads. Allocates nothing from the second frame on.
+  /// @param raw  electrons or counts, as large as the frames before, or means of several
+  /// @return raw numbers as any decoder and Filter take them, and of how many measurements each is
+  ///         the mean. Valid until the next frame.
+  /// @throws std::invalid_argument if the size or the measurements differ
+  /// @note the same bits for any number of threads and any layout of the raw numbers
+  RawView add(const RawView& raw);
+  /// The next frame is the first again, of any size.
+  void forget();
+
+  struct State;  ///< of the implementation
+
+ private:
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace tofsmith

@@ -78,7 +78,11 @@ struct DecodeRequest {
   /// smaller; the last one is of those that are left. What is invalid or saturated in one is so in
   /// the mean. `frame` counts means. From 1 to the number of frames.
   int average = 1;
-  std::optional<FilterOptions> filter;  ///< of each frame, or mean of frames; none: not filtered
+  /// Of the frames, or means of frames, one after another: what stays the same is added up. `frame`
+  /// counts all frames before it in. With `filter` it is `before_filter`. None: each frame for
+  /// itself.
+  std::optional<TimeFilterOptions> time_filter;
+  std::optional<FilterOptions> filter;  ///< of each frame that comes of that; none: not filtered
   std::filesystem::path offset_map;     ///< [m], as PixelMaps::delay_offset_m; empty: none
   std::filesystem::path gain_map;       ///< as PixelMaps::gain; empty: none
   double memory_mb = 256.0;             ///< for frames under way [MB], > 0

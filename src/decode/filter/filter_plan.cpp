@@ -9,7 +9,6 @@
 
 #include "core/shared/decompositions.hpp"
 #include "core/shared/pixel_runs.hpp"
-#include "decode/expected_noise.hpp"
 
 namespace tofsmith {
 
@@ -64,7 +63,7 @@ const float* averaged_of(const RawView& raw, int row, int column) {
 
 /// Mean variance of a coordinate, from what was measured.
 void find_variance(const Filter::Plan& plan, RowBlock& electrons, int pixels, float* variance) {
-  std::fill_n(variance, pixels, plan.floor_variance_e2);
+  std::fill_n(variance, pixels, plan.hidden.floor_variance_e2);
   for (int k = 0; k < plan.measurements; ++k) {
     const float by = plan.shot_share[static_cast<std::size_t>(k)];
     const float* const values = electrons[k];
@@ -89,6 +88,7 @@ Filter::Plan::Plan(DecodingTable table, const FilterOptions& options_,
       scale(decoder.table()),
       measurements(decoder.measurements()),
       rank(projection.rank()),
+      hidden(ExpectedNoise(decoder.table()), projection),
       has_own_shot_noise(decoder.table().shot_correlation.size() > 0) {
   const Eigen::MatrixXd basis = whole_basis(projection.basis);
   to_measurements = row_by_row(basis);
@@ -96,14 +96,8 @@ Filter::Plan::Plan(DecodingTable table, const FilterOptions& options_,
   RowMajorMatrix points = projection.gated * basis;
   points.leftCols(rank) = projection.curve;
   curve = row_by_row(points);
-  const Eigen::VectorXd square = projection.curve.rowwise().squaredNorm();
   const Eigen::VectorXd share = projection.basis.rowwise().squaredNorm() / rank;
   shot_share.assign(share.begin(), share.end());
-  const ExpectedNoise noise(decoder.table());
-  floor_variance_e2 =
-      static_cast<float>(std::max(min_variance_e2, share.dot(noise.floor_variance_e2)));
-  shot_per_signal = static_cast<float>((noise.shot_gated * share).mean());
-  mean_curve_square = static_cast<float>(square.mean());
 }
 
 void Filter::Plan::read(const RawView& raw, FilterPlanes& frame) const {
@@ -165,9 +159,7 @@ void Filter::Plan::read_row(const RawView& raw, FilterPlanes& frame, int row, in
   });
 }
 
-/// Where light cancels in the measurements, its noise is that of the signal seen around a pixel:
-/// signal S with variance f + S m of each coordinate makes <|u|^2> = S^2 <p^2> + rank (f + S m); of
-/// a mean of n measurements f and m are n times smaller.
+/// Where light cancels in the measurements, its noise is that of the signal seen around a pixel.
 void Filter::Plan::find_hidden_noise(const RawView& raw, FilterPlanes& frame, int row) const {
   const FilterGrid& grid = frame.grid;
   const float* const averaged = averaged_of(raw, row, 0);
@@ -181,13 +173,8 @@ void Filter::Plan::find_hidden_noise(const RawView& raw, FilterPlanes& frame, in
       }
     if (!(count > 0.0f)) continue;
     const float n = averaged && averaged[x] > 0.0f ? averaged[x] : 1.0f;
-    const float per_mean = static_cast<float>(rank) / n;
-    const float m = per_mean * shot_per_signal;
-    const float beyond = std::max(0.0f, squares / count - per_mean * floor_variance_e2);
-    const float signal =
-        (std::sqrt(m * m + 4 * mean_curve_square * beyond) - m) / (2 * mean_curve_square);
     frame.scalar(FilterPlanes::variance)[row * grid.stride + x] =
-        (floor_variance_e2 + signal * shot_per_signal) / n;
+        (hidden.floor_variance_e2 + hidden.of(squares / count, n) * hidden.shot_per_signal) / n;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "decode/filter/filter_planes.hpp"
+#include "decode/filter/hidden_signal.hpp"
 #include "decode/filter/slope_kernel.hpp"
 #include "decode/raw_scale.hpp"
 #include "tofsmith/core/parallel.hpp"
@@ -37,10 +38,9 @@ struct Filter::Plan {
   std::vector<float> to_coordinates;   // (K, K): coordinate j of measurement k at j * K + k
   std::vector<float> to_measurements;  // and back, k * K + j
   std::vector<float> curve;            // x = T o chi in coordinates (N, K)
-  std::vector<float> shot_share;    // of a measurement in a coordinate's variance, on average (K)
-  float floor_variance_e2 = 0.0f;   // of a coordinate, without light
+  std::vector<float> shot_share;  // of a measurement in a coordinate's variance, on average (K)
+  HiddenSignal hidden;
   bool has_own_shot_noise = false;  // light that cancels in the measurements still makes noise
-  float shot_per_signal = 0.0f, mean_curve_square = 0.0f;  // over all depths
 
   int samples() const { return decoder.samples(); }
   /// The variance that the last window leaves.

@@ -34,6 +34,7 @@ void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
   const std::filesystem::path& output = request.output;
   require(request.memory_mb > 0.0, "memory_mb", request.memory_mb, "must be > 0");
   require(request.average >= 1, "average", request.average, "must be >= 1");
+  if (request.time_filter) request.time_filter->validate();
   if (request.filter) request.filter->validate();
   require(request.frame.value_or(0) >= 0, "frame", request.frame.value_or(0), "must be >= 0");
   require(!request.stack || output.extension() == ".npy", "stack", "true",
@@ -75,7 +76,7 @@ DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
   const std::string held = fmt::format("{} holds {} frame{}", request.raw.string(), reader.frames(),
                                        reader.frames() == 1 ? "" : "s");
   require(request.average <= reader.frames(), "average", request.average, held);
-  const int frames = Preparation{request.average, {}}.frames_of(reader.frames());
+  const int frames = Preparation{request.average, {}, {}}.frames_of(reader.frames());
   require(!request.frame || *request.frame < frames, "frame", request.frame.value_or(0),
           fmt::format("{}{}, counted from 0", held,
                       request.average > 1 ? fmt::format(", {} means", frames) : ""));
@@ -140,7 +141,7 @@ int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target,
                    const Preparation& preparation, double memory_bytes) {
   const int height = target.view.height, width = target.view.width;
   const double row_planes = static_cast<double>(bytes_per_pixel(target.needed_planes())) * width;
-  const bool in_rows = target.in_rows(), is_filtered = preparation.filter.has_value();
+  const bool in_rows = target.in_rows(), is_filtered = preparation.needs_whole_frames();
   double whole = static_cast<double>(reader.bytes_in_memory() + target.writing_bytes()) +
                  preparation.frame_bytes(height, width, reader.measurements()) +
                  (in_rows ? 0.0 : row_planes * height);
@@ -286,7 +287,8 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
   check_inputs_are_kept(request, target);
   check_range_fits(target.path, table.range_m);
   DecodeOutput output(target);
-  const Preparation preparation{request.average, request.filter};
+  Preparation preparation{request.average, request.time_filter, request.filter};
+  if (preparation.time_filter && preparation.filter) preparation.time_filter->before_filter = true;
   const int rows = rows_at_a_time(reader, target, preparation, 1e6 * request.memory_mb);
 
   result.height = reader.height();

@@ -23,8 +23,12 @@ int frames_of_mean(const Preparation& preparation, int recorded, int index) {
 /// Bands to read for those that come out.
 std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
                                 const std::vector<Band>& bands) {
+  std::vector<Band> needed;
+  if (preparation.time_filter && !bands.empty())
+    needed = bands_of(0, bands.front().frame, bands.front().rows, bands.front().rows);
+  needed.insert(needed.end(), bands.begin(), bands.end());
   std::vector<Band> all;
-  for (const Band& band : bands)
+  for (const Band& band : needed)
     for (int i = 0; i < frames_of_mean(preparation, recorded, band.frame); ++i)
       all.push_back({band.frame * preparation.average + i, band.first_row, band.rows});
   return all;
@@ -38,9 +42,11 @@ double added(double sum, double value, double clipped) {
 }  // namespace
 
 double Preparation::frame_bytes(int height, int width, int measurements) const {
-  if (!filter) return 0.0;
   const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  return static_cast<double>(Filter::memory_bytes(*filter, height, width, measurements, threads));
+  std::size_t bytes = 0;
+  if (time_filter) bytes += TimeFilter::memory_bytes(height, width, measurements, threads);
+  if (filter) bytes += Filter::memory_bytes(*filter, height, width, measurements, threads);
+  return static_cast<double>(bytes);
 }
 
 double Preparation::row_bytes(int width, int measurements) const {
@@ -91,11 +97,14 @@ PreparedFrames::PreparedFrames(const RawFramesReader& reader, const DecodingTabl
       recorded_(reader.frames()),
       bands_(std::move(bands)),
       input_(reader, bands_to_read(preparation, recorded_, bands_)) {
+  if (preparation.time_filter) time_filter_.emplace(table, *preparation.time_filter);
   if (preparation.filter) filter_.emplace(table, *preparation.filter);
 }
 
-RawView PreparedFrames::next_mean(const Progress& progress) {
-  const int frames = frames_of_mean(preparation_, recorded_, bands_[next_].frame);
+/// A band of frame `frame` as it is read or, of several, as their mean.
+RawView PreparedFrames::measured(int frame, const Progress& progress) {
+  if (preparation_.average == 1) return input_.next();
+  const int frames = frames_of_mean(preparation_, recorded_, frame);
   for (int i = 0; i < frames; ++i) {
     report(progress, static_cast<double>(i) / frames, "averaging");
     const RawView raw = input_.next();
@@ -105,10 +114,21 @@ RawView PreparedFrames::next_mean(const Progress& progress) {
   return sums_.means();
 }
 
+/// Frame `frame` with what is the same in those before.
+RawView PreparedFrames::added_up(int frame, const Progress& progress) {
+  const ProgressParts parts(progress, static_cast<std::size_t>(frame + 1 - frames_added_));
+  RawView raw;
+  for (std::size_t part = 0; frames_added_ <= frame; ++frames_added_, ++part) {
+    raw = time_filter_->add(measured(frames_added_, parts[part]));
+    report(parts[part], 1.0, "filtering");
+  }
+  return raw;
+}
+
 RawView PreparedFrames::next(const Progress& progress) {
-  const bool is_mean = preparation_.average > 1;
+  const int frame = bands_[next_].frame;
   const ProgressParts parts(progress, {1.0, filter_ ? 8.0 : 0.0});
-  RawView raw = is_mean ? next_mean(parts[0]) : input_.next();
+  RawView raw = time_filter_ ? added_up(frame, parts[0]) : measured(frame, parts[0]);
   if (filter_) {
     filter_->apply(raw, filtered_, parts[1]);
     raw = filtered_.view();

@@ -15,8 +15,10 @@ namespace tofsmith {
 /// What is done to raw numbers before they are decoded.
 struct Preparation {
   int average = 1;  ///< mean of so many consecutive frames, the last of those there are
-  std::optional<FilterOptions> filter;
+  std::optional<TimeFilterOptions> time_filter;  ///< of those means
+  std::optional<FilterOptions> filter;           ///< of what comes of that
 
+  bool needs_whole_frames() const { return time_filter || filter; }
   /// Frames that come out of so many.
   int frames_of(int recorded) const { return (recorded + average - 1) / average; }
   /// What it takes beside the rows that are read [bytes], in all and for each row under way.
@@ -46,19 +48,24 @@ class RowSums {
 class PreparedFrames {
  public:
   /// @param reader  outlives this, as does the table
-  /// @param bands   of frames that come out; whole frames if there is a filter
+  /// @param bands   of frames that come out; whole frames if there is a filter; one in time
+  ///                is given all frames before the first, too
   PreparedFrames(const RawFramesReader& reader, const DecodingTable& table,
                  const Preparation& preparation, std::vector<Band> bands);
 
   const std::vector<Band>& bands() const { return bands_; }
   /// How long next() takes, where decoding takes 1: about.
-  double effort() const { return preparation_.filter ? 8.0 : preparation_.average > 1 ? 1.0 : 0.0; }
+  double effort() const {
+    return (preparation_.average > 1 ? 1.0 : 0.0) + (time_filter_ ? 1.0 : 0.0) +
+           (filter_ ? 8.0 : 0.0);
+  }
   /// The raw numbers of the next band, until the call after.
   /// @throws IoError as RawFramesReader::read_rows(); Interrupted if progress says so
   RawView next(const Progress& progress);
 
  private:
-  RawView next_mean(const Progress& progress);
+  RawView measured(int frame, const Progress& progress);
+  RawView added_up(int frame, const Progress& progress);
 
   const DecodingTable& table_;
   Preparation preparation_;
@@ -67,6 +74,8 @@ class PreparedFrames {
   std::size_t next_ = 0;
   ReadAhead input_;
   RowSums sums_;
+  std::optional<TimeFilter> time_filter_;
+  int frames_added_ = 0;  // to time_filter_
   std::optional<Filter> filter_;
   FilteredFrame filtered_;
 };

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "decode/filter/filter_kernel.hpp"
+
+namespace tofsmith {
+
+inline constexpr int patch_side = 2 * patch_reach + 1;
+inline constexpr int patch_pixels = patch_side * patch_side;
+
+/// Chi^2 of so many degrees of freedom that is exceeded as normal noise exceeds `sigma` (Wilson and
+/// Hilferty).
+inline float chi2_limit(int freedom, double sigma) {
+  const double spread = 2.0 / (9.0 * freedom);
+  return static_cast<float>(freedom * std::pow(1.0 - spread + sigma * std::sqrt(spread), 3));
+}
+
+/// A test by chi^2: below `certain` nothing changed, from `most` on nothing stayed.
+struct ChangeTest {
+  /// Share of max_sigma up to which the past has all of its weight.
+  static constexpr double certain_share = 0.6;
+
+  ChangeTest(int freedom, double max_sigma)
+      : certain(chi2_limit(freedom, certain_share * max_sigma)),
+        most(chi2_limit(freedom, max_sigma)) {}
+
+  /// How much of the past stays, in [0, 1].
+  float share(float chi2) const { return std::clamp((most - chi2) / (most - certain), 0.0f, 1.0f); }
+  float beyond(float chi2) const { return std::max(0.0f, chi2 - certain); }
+
+  float certain, most;
+};
+
+/// The rows of a strip and of the patches around it, with a margin at both ends. Of each pixel:
+/// chi^2, whether it counts, and its K differences in standard deviations.
+class ComparedRows {
+ public:
+  ComparedRows(int rows, int width, int measurements, std::vector<float>& room)
+      : rows_(rows), planes_(planes_of(measurements)), pitch_(width + 2 * patch_reach) {
+    const std::size_t wanted = floats(rows, width, measurements);
+    if (room.size() < wanted) room.resize(wanted);
+    first_ = room.data();
+  }
+  /// With a row of sums over columns.
+  static std::size_t floats(int rows, int width, int measurements) {
+    return static_cast<std::size_t>(rows + 1) * static_cast<std::size_t>(planes_of(measurements)) *
+           static_cast<std::size_t>(width + 2 * patch_reach);
+  }
+
+  /// The first pixel of the image in a row.
+  float* chi2(int row) { return plane(row, 0) + patch_reach; }
+  float* counts(int row) { return plane(row, 1) + patch_reach; }
+  float* difference(int row, int k) { return plane(row, 2 + k) + patch_reach; }
+
+  /// A row that agrees and does not count.
+  void clear(int row, float chi2) {
+    std::fill_n(plane(row, 0), pitch_, chi2);
+    std::fill_n(plane(row, 1), (planes_ - 1) * pitch_, 0.0f);
+  }
+  /// Sums over the rows of a patch, instead of a row that is no longer needed.
+  int add_rows(int first_row) {
+    float* const sums = plane(rows_, 0);
+    std::copy_n(plane(first_row, 0), planes_ * pitch_, sums);
+    for (int row = first_row + 1; row < first_row + patch_side; ++row) {
+      const float* const values = plane(row, 0);
+      for (std::ptrdiff_t i = 0; i < planes_ * pitch_; ++i) sums[i] += values[i];
+    }
+    return rows_;
+  }
+
+ private:
+  static int planes_of(int measurements) { return measurements + 2; }
+  float* plane(int row, int index) {
+    return first_ + (std::ptrdiff_t{row} * planes_ + index) * pitch_;
+  }
+
+  int rows_, planes_;
+  std::ptrdiff_t pitch_;
+  float* first_;
+};
+
+}  // namespace tofsmith
