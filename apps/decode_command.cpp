@@ -33,6 +33,7 @@ struct DecodeArguments {
   DecodeOptions options;
   std::string kind = "radial";
   std::string layout = "interleaved";
+  std::string mixed;
 };
 
 DecodeRequest request_of(const DecodeArguments& arguments, const Camera& camera,
@@ -47,6 +48,7 @@ DecodeRequest request_of(const DecodeArguments& arguments, const Camera& camera,
   request.kind = parse_depth_kind(arguments.kind);
   request.lens = camera.lens;
   request.filter = arguments.filter.options();
+  if (!arguments.mixed.empty()) request.mixed = parse_mixed_pixels(arguments.mixed);
   request.offset_map = arguments.offset_map;
   request.gain_map = arguments.gain_map;
   request.policy = session.output_policy();
@@ -94,6 +96,7 @@ void run(const DecodeArguments& arguments, Session& session) {
                                      {"method", name_of(arguments.method.method())},
                                      {"average", request.average},
                                      {"filter", arguments.filter.name()},
+                                     {"mixed", request.mixed ? name_of(*request.mixed) : "off"},
                                      {"height", result.height},
                                      {"width", result.width},
                                      {"measurements", result.measurements}};
@@ -107,6 +110,12 @@ void run(const DecodeArguments& arguments, Session& session) {
   if (!camera.lens && (request.output.extension() == ".ply" || request.kind == DepthKind::z))
     lines += "\nthe camera has no [lens]: its view was taken to be 60 degrees wide";
   session.say(lines);
+}
+
+std::vector<std::string> mixed_words() {
+  std::vector<std::string> words;
+  for (const MixedPixels mixed : all_mixed_pixels) words.emplace_back(name_of(mixed));
+  return words;
 }
 
 std::vector<std::string> all_plane_names() {
@@ -169,6 +178,12 @@ void add_decode_command(CLI::App& app, Session& session) {
       ->check(one_of({"radial", "z"}))
       ->capture_default_str();
   arguments->filter.add_to(*command);
+  command
+      ->add_option("--mixed", arguments->mixed,
+                   "find pixels at edges of depth that see two surfaces: label (status mixed, the "
+                   "depth stays), snap (to the depth of the one that gives more light) or drop (no "
+                   "depth) (off)")
+      ->check(one_of(mixed_words()));
   command
       ->add_option("--average", arguments->request.average,
                    "decode the means of so many consecutive frames; the last one is of those left")

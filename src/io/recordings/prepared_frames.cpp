@@ -49,10 +49,13 @@ double added(double sum, double value, double clipped) {
 }  // namespace
 
 double Preparation::frame_bytes(int height, int width, int measurements) const {
-  if (!filter) return 0.0;
+  // What is known of the pixels while mixed ones are marked.
+  constexpr double bytes_to_find_mixed = 2 * sizeof(float) + 2;
+  const double for_mixed = find_mixed ? bytes_to_find_mixed * height * width : 0.0;
+  if (!filter) return for_mixed;
   const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const double means = average > 1 ? sizeof(float) * static_cast<double>(height) * width : 0.0;
-  return means +
+  return for_mixed + means +
          static_cast<double>(Filter::memory_bytes(*filter, height, width, measurements, threads));
 }
 

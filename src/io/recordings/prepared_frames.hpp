@@ -17,7 +17,9 @@ namespace tofsmith {
 struct Preparation {
   int average = 1;  ///< mean of so many consecutive frames, the last of those there are
   std::optional<FilterOptions> filter;
+  bool find_mixed = false;  ///< afterwards, in whole frames
 
+  bool needs_frames() const { return filter.has_value() || find_mixed; }
   /// Frames that come out of so many.
   int frames_of(int recorded) const { return (recorded + average - 1) / average; }
   /// What it takes beside the rows that are read [bytes], in all and for each row under way.
