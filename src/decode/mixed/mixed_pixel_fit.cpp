@@ -14,10 +14,10 @@ namespace {
 
 /// By so much in chi^2 two returns must beat either one of them alone, and may be beaten by a
 /// single return at the decoded depth.
-constexpr double far_better = 9.0, little_worse = 25.0;
+constexpr double far_better = 6.0, little_worse = 25.0;
 /// Surfaces are not flat and lenses not the same for all that is added: so much of the chi^2 of one
 /// alone may remain.
-constexpr double may_remain = 0.1;
+constexpr double may_remain = 0.25;
 /// More measurements than this do not make the model of two flat surfaces any truer.
 constexpr double most_averaged = 16.0;
 /// Depths between bins are not known better [bin].

@@ -25,14 +25,14 @@ constexpr EnumWords<MixedPixels, all_mixed_pixels.size()> mixed_words("MixedPixe
 
 constexpr int reach = 3;
 constexpr int window_pixels = (2 * reach + 1) * (2 * reach + 1);
-/// A pixel is of a surface if so many of the 8 around it have its depth: as at a straight
-/// edge, but not in a ribbon of mixed pixels, nor on an object one pixel wide.
-constexpr int least_neighbours = 5;
+/// A pixel is of a surface if so many of the 8 around it have its depth: more than
+/// in a ribbon of mixed pixels, or on an object one pixel wide.
+constexpr int least_neighbours = 6;
 constexpr int least_pixels = 2;
 constexpr int most_surfaces = 4;
 /// Depths are the same within so many standard deviations, and within this share of the range: less
 /// is no edge.
-constexpr double same_sigma = 2.5, same_share = 0.002;
+constexpr double same_sigma = 2.0, same_share = 0.002;
 /// Standard deviation of a surface's slope where its pixels do not tell, as a share of the range
 /// for each pixel.
 constexpr double slope_share = 0.0025;
@@ -276,9 +276,9 @@ std::int64_t mark_mixed_pixels(const DecodingTable& table, const RawView& raw, M
       const std::size_t i = around.at(row, x);
       if (!around.is_decoded(i)) continue;
       around.find_surfaces(row, x, surfaces);
-      if (surfaces.size() < 2 || std::ranges::any_of(surfaces, [&](const Surface& surface) {
-            return around.lies_on(i, surface);
-          }))
+      if (surfaces.size() < 2 ||
+          std::any_of(surfaces.begin(), surfaces.end(),
+                      [&](const Surface& surface) { return around.lies_on(i, surface); }))
         continue;
       if (!read_electrons(raw, scale, row, x, electrons)) continue;
       const double offset_m = maps.delay_offset_m.empty() ? 0.0 : maps.delay_offset_m.pixels[i];
