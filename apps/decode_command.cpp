@@ -33,6 +33,7 @@ struct DecodeArguments {
   DecodeOptions options;
   std::string kind = "radial";
   std::string layout = "interleaved";
+  std::string mixed;
 };
 
 DecodeRequest request_of(const DecodeArguments& arguments, const Camera& camera,
@@ -48,6 +49,7 @@ DecodeRequest request_of(const DecodeArguments& arguments, const Camera& camera,
   request.lens = camera.lens;
   request.time_filter = arguments.filter.time_options();
   request.filter = arguments.filter.options();
+  if (!arguments.mixed.empty()) request.mixed = parse_mixed_pixels(arguments.mixed);
   request.offset_map = arguments.offset_map;
   request.gain_map = arguments.gain_map;
   request.policy = session.output_policy();
@@ -98,6 +100,7 @@ void run(const DecodeArguments& arguments, Session& session) {
       {"time_filter", request.time_filter ? nlohmann::ordered_json(request.time_filter->max_frames)
                                           : nlohmann::ordered_json("off")},
       {"filter", arguments.filter.name()},
+      {"mixed", request.mixed ? name_of(*request.mixed) : "off"},
       {"height", result.height},
       {"width", result.width},
       {"measurements", result.measurements}};
@@ -111,6 +114,12 @@ void run(const DecodeArguments& arguments, Session& session) {
   if (!camera.lens && (request.output.extension() == ".ply" || request.kind == DepthKind::z))
     lines += "\nthe camera has no [lens]: its view was taken to be 60 degrees wide";
   session.say(lines);
+}
+
+std::vector<std::string> mixed_words() {
+  std::vector<std::string> words;
+  for (const MixedPixels mixed : all_mixed_pixels) words.emplace_back(name_of(mixed));
+  return words;
 }
 
 std::vector<std::string> all_plane_names() {
@@ -173,6 +182,12 @@ void add_decode_command(CLI::App& app, Session& session) {
       ->check(one_of({"radial", "z"}))
       ->capture_default_str();
   arguments->filter.add_to(*command);
+  command
+      ->add_option("--mixed", arguments->mixed,
+                   "find pixels at edges of depth that see two surfaces: label (status mixed, the "
+                   "depth stays), snap (to the depth of the one that gives more light) or drop (no "
+                   "depth) (off)")
+      ->check(one_of(mixed_words()));
   command
       ->add_option("--average", arguments->request.average,
                    "decode the means of so many consecutive frames; the last one is of those left")

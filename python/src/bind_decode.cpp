@@ -96,12 +96,14 @@ PixelMaps maps_of(const py::object& delay_offset_m, const py::object& gain, cons
 
 void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_planar,
             const py::dict& arrays, const py::object& averaged, const py::object& delay_offset_m,
-            const py::object& gain, const py::object& callback) {
+            const py::object& gain, const std::string& mixed, const py::object& callback) {
   RawArray raw = view_raw(raw_numbers, is_planar, table_of(decoder).measurements());
   const Floats means = averaged.is_none() ? Floats() : Floats::ensure(averaged);
   if (!averaged.is_none()) raw.set_averaged(means);
   const Planes planes(arrays, raw);
   const PixelMaps maps = maps_of(delay_offset_m, gain, raw);
+  std::optional<MixedPixels> marking;
+  if (!mixed.empty()) marking = parse_mixed_pixels(mixed);
   without_gil(callback, [&](const Progress& progress) {
     const auto pixels = static_cast<std::size_t>(raw.frames.front().pixels());
     const ProgressParts parts(progress, raw.frames.size());
@@ -109,6 +111,7 @@ void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_p
       const DecodedView decoded = planes.view().from(f * pixels);
       std::visit([&](const auto& d) { d.decode(raw.frames[f], decoded, parts[f]); }, decoder.any);
       if (!maps.empty()) apply(maps, table_of(decoder).range_m, decoded, 0, pixels);
+      if (marking) mark_mixed_pixels(table_of(decoder), raw.frames[f], *marking, decoded, maps);
     }
   });
 }
@@ -116,7 +119,7 @@ void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_p
 DecodeRequest request_of(const std::string& raw, const std::string& output, const py::object& lens,
                          const py::dict& values) {
   DecodeRequest request;
-  std::string raw_format, offset_map, gain_map;
+  std::string raw_format, mixed, offset_map, gain_map;
   std::vector<std::string> outputs;
   bool overwrite = false;
   OptionReader reader(values, "");
@@ -127,11 +130,13 @@ DecodeRequest request_of(const std::string& raw, const std::string& output, cons
       .value("frame", request.frame)
       .value("stack", request.stack)
       .value("average", request.average)
+      .value("mixed", mixed)
       .value("offset_map", offset_map)
       .value("gain_map", gain_map)
       .value("memory_mb", request.memory_mb)
       .value("other_inputs", request.other_inputs)
       .value("overwrite", overwrite);
+  if (!mixed.empty()) request.mixed = parse_mixed_pixels(mixed);
   if (const py::dict filter = reader.table("filter"); !filter.empty())
     request.filter = filter_options(filter);
   if (const py::dict filter = reader.table("time_filter"); !filter.empty())
@@ -281,6 +286,11 @@ void bind_decode(py::module_& module) {
   module.def("decode_methods", [] {
     std::vector<std::string> names;
     for (const DecodeMethod method : all_decode_methods) names.emplace_back(name_of(method));
+    return names;
+  });
+  module.def("mixed_pixels", [] {
+    std::vector<std::string> names;
+    for (const MixedPixels mixed : all_mixed_pixels) names.emplace_back(name_of(mixed));
     return names;
   });
   module.def("decoded_planes", [] {

@@ -146,6 +146,7 @@ class Decoder:
         averaged: Optional[npt.ArrayLike] = None,
         delay_offset_m: Optional[npt.ArrayLike] = None,
         gain: Optional[npt.ArrayLike] = None,
+        mixed: Optional[str] = None,
         progress: Progress = None,
     ) -> DepthImage:
         """Decodes one frame or a stack on all threads. Raw numbers are read where they are,
@@ -168,6 +169,11 @@ class Decoder:
         delay_offset_m, gain : array_like, shape (H, W), optional
             By how much each pixel decodes too far [m], and its response over a usual one's; NaN
             marks a dead pixel.
+        mixed : {"label", "snap", "drop"}, optional
+            Finds pixels at edges of depth that see two surfaces and gives them the status mixed:
+            label keeps their depth, snap gives them that of the nearest pixel of the surface with
+            more light, drop leaves them none. Needs depth, predicted standard deviation and status
+            among the planes. See docs/filtering.md.
         progress : callable, optional
             Called with (fraction, step); False stops.
 
@@ -197,7 +203,8 @@ class Decoder:
             for m, name in ((delay_offset_m, "delay_offset_m"), (gain, "gain"))
         ]
         means = _check.means(averaged, array)
-        self._handle.decode(array, is_planar, image.planes(), means, maps[0], maps[1], callback)
+        self._handle.decode(array, is_planar, image.planes(), means, maps[0], maps[1],
+                            mixed_word(mixed), callback)
         return image
 
     def decode_recording(
@@ -214,6 +221,7 @@ class Decoder:
         average: int = 1,
         time_filter: Optional[TimeFilterLike] = None,
         filter: Optional[FilterLike] = None,
+        mixed: Optional[str] = None,
         offset_map: Optional[Path] = None,
         gain_map: Optional[Path] = None,
         memory_mb: float = 256.0,
@@ -256,6 +264,8 @@ class Decoder:
         filter : {"light", "normal", "strong"} or dict, optional
             Adds measurements of the same depth before decoding, as Filter does: a strength, or a
             dict of options with "strength" among them ("normal").
+        mixed : {"label", "snap", "drop"}, optional
+            Finds pixels that see two surfaces, as Decoder.decode() does.
         offset_map, gain_map : str or path, optional
             Files of what Decoder.decode() takes as `delay_offset_m` and `gain`.
         memory_mb : float
@@ -297,6 +307,7 @@ class Decoder:
             "average": _check.whole(average, "average", 1),
             "time_filter": None if time_filter is None else time_filter_options(time_filter),
             "filter": None if filter is None else filter_options(filter),
+            "mixed": mixed_word(mixed),
             "offset_map": name(offset_map, "offset_map"),
             "gain_map": name(gain_map, "gain_map"),
             "memory_mb": _check.number(memory_mb, "memory_mb"),
@@ -335,6 +346,11 @@ class Decoder:
         return DepthImage(**made)
 
 
+def mixed_word(mixed: Optional[str]) -> str:
+    """The word, "" for none."""
+    return "" if mixed is None else _check.one_of(mixed, "mixed", tuple(_tofsmith.mixed_pixels()))
+
+
 def decode(
     raw: npt.NDArray[Any],
     code: CodeLike | DecodingTable,
@@ -344,14 +360,17 @@ def decode(
     layout: str = "interleaved",
     planes: Optional[Iterable[str]] = None,
     filter: Optional[FilterLike] = None,
+    mixed: Optional[str] = None,
     progress: Progress = None,
 ) -> DepthImage:
     """Decoder(code, camera, method=method).decode(raw, ..): keep a Decoder for many frames. With
-    `filter`, a strength or a dict of options with "strength" among them, Filter is applied first."""
+    `filter`, a strength or a dict of options with "strength" among them, Filter is applied first;
+    `mixed` as Decoder.decode() takes it."""
     decoder = Decoder(code, camera, method=method)
     if filter is None:
-        return decoder.decode(raw, layout=layout, planes=planes, progress=progress)
+        return decoder.decode(raw, layout=layout, planes=planes, mixed=mixed, progress=progress)
     options = filter_options(filter)
     applied = Filter(decoder.table, strength=options.pop("strength"), options=options)
     numbers, averaged = applied.apply(raw, layout=layout, progress=progress)
-    return decoder.decode(numbers, planes=planes, averaged=averaged, progress=progress)
+    return decoder.decode(numbers, planes=planes, averaged=averaged, mixed=mixed,
+                          progress=progress)

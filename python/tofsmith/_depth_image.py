@@ -17,7 +17,7 @@ from . import _check
 
 class PixelStatus(IntEnum):
     """What became of a pixel; where several apply, the first of invalid, saturated, no_return,
-    low_signal, ambiguous."""
+    low_signal, ambiguous. mixed is said only where mixed pixels are looked for."""
 
     ok = 0
     invalid = 1
@@ -25,6 +25,7 @@ class PixelStatus(IntEnum):
     saturated = 3
     low_signal = 4
     ambiguous = 5
+    mixed = 6
 
 
 class ReturnStatus(IntEnum):

@@ -10,9 +10,9 @@
 namespace tofsmith {
 namespace {
 
-constexpr EnumWords<PixelStatus, 6> pixel_status_words("PixelStatus", "status", "ok", "invalid",
-                                                       "no_return", "saturated", "low_signal",
-                                                       "ambiguous");
+constexpr EnumWords<PixelStatus, all_pixel_statuses.size()> pixel_status_words(
+    "PixelStatus", "status", "ok", "invalid", "no_return", "saturated", "low_signal", "ambiguous",
+    "mixed");
 
 }  // namespace
 

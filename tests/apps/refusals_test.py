@@ -57,6 +57,8 @@ class Refusals(CommandLineTest):
                  ["weak", "light", "strong"]),
                 (["decode", "r.npy", "--code", "c", "--filter-set", "windows=1", "-o", "d.npy"],
                  ["--filter"]),
+                (["decode", "r.npy", "--code", "c", "--mixed", "near", "-o", "d.npy"],
+                 ["near", "label", "snap", "drop"]),
                 (["decode", "r.npy", "--code", "c", "--average", "0", "-o", "d.npy"],
                  ["--average: found 0; must be >= 1"]),
                 (["design", "--exposures", "9"], ["9"]),

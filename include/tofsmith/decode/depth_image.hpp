@@ -8,11 +8,14 @@
 #include <string_view>
 
 #include "tofsmith/core/image.hpp"
+#include "tofsmith/core/progress.hpp"
 
 namespace tofsmith {
 
+struct DecodingTable;
+
 /// What became of a pixel. Where several apply, the first in the order invalid, saturated,
-/// no_return, low_signal, ambiguous is given.
+/// no_return, low_signal, ambiguous is given. Decoders never say mixed: mark_mixed_pixels() does.
 enum class PixelStatus : std::uint8_t {
   ok = 0,
   invalid = 1,     ///< a measurement is NaN or infinite: no depth
@@ -20,13 +23,14 @@ enum class PixelStatus : std::uint8_t {
   saturated = 3,   ///< a measurement is clipped: the depth may be far off
   low_signal = 4,  ///< the signal does not stand out of its noise
   ambiguous = 5,   ///< another depth, far from this one, explains the pixel almost as well
+  mixed = 6,  ///< sees two surfaces at an edge: the depth is that of neither, or of a neighbour
 };
 
-inline constexpr std::array all_pixel_statuses = {PixelStatus::ok,         PixelStatus::invalid,
-                                                  PixelStatus::no_return,  PixelStatus::saturated,
-                                                  PixelStatus::low_signal, PixelStatus::ambiguous};
+inline constexpr std::array all_pixel_statuses = {
+    PixelStatus::ok,         PixelStatus::invalid,   PixelStatus::no_return, PixelStatus::saturated,
+    PixelStatus::low_signal, PixelStatus::ambiguous, PixelStatus::mixed};
 
-/// "ok", "invalid", "no_return", "saturated", "low_signal", "ambiguous".
+/// "ok", "invalid", "no_return", "saturated", "low_signal", "ambiguous", "mixed".
 std::string_view name_of(PixelStatus status);
 
 /// How many returns a pixel shows. It stands beside PixelStatus, which says whether the depth of a
@@ -105,5 +109,43 @@ struct PixelMaps {
 /// @throws std::invalid_argument if the pixels do not lie within a map
 void apply(const PixelMaps& maps, double range_m, const DecodedView& decoded, std::size_t first,
            std::size_t count);
+
+/// What is done with pixels at edges of depth that see two surfaces at once.
+enum class MixedPixels {
+  label,  ///< status mixed; the depth stays as it was decoded
+  snap,   ///< status mixed; the depth of the nearest pixel of the surface that gives more light
+  drop,   ///< status mixed; no depth: NaN in every plane of floats
+};
+
+inline constexpr std::array all_mixed_pixels = {MixedPixels::label, MixedPixels::snap,
+                                                MixedPixels::drop};
+
+/// "label", "snap", "drop".
+std::string_view name_of(MixedPixels mixed);
+/// @throws std::invalid_argument for any other word
+MixedPixels parse_mixed_pixels(std::string_view name);
+
+/// Finds pixels of a decoded frame that see two surfaces, as lenses make them at edges of depth.
+///
+/// In the 7 x 7 pixels around a pixel, those whose depth most of their own neighbours share make
+/// the surfaces. A pixel with none of their depths is mixed where the light of two of them,
+///   y = S1 x(z1) + S2 x(z2) + A a,  S1, S2 > 0,
+/// explains its measurements, by weighted least squares, far better than that of either one alone,
+/// within noise, and not much worse than a single return at the depth decoded. With rank 2, as
+/// K = 3, anything is explained by two returns: nothing is marked. Pixels that are invalid,
+/// saturated or have no depth stay as they are.
+/// @param table    of the decoder
+/// @param raw      what was decoded: filtered numbers with how many measurements they are the mean
+/// of
+/// @param maps     those applied to `decoded`
+/// @param decoded  whole frame, in place: depth_m, predicted_standard_deviation_m and status are
+///                 needed; snap writes depth_m, the deviation of that depth, and status
+/// @return how many pixels were marked
+/// @throws std::invalid_argument if the shapes do not fit or a plane that is needed is null;
+///         Interrupted if progress says so
+/// @note the same bits for any number of threads
+std::int64_t mark_mixed_pixels(const DecodingTable& table, const RawView& raw, MixedPixels mixed,
+                               const DecodedView& decoded, const PixelMaps& maps = {},
+                               const Progress& progress = {});
 
 }  // namespace tofsmith

@@ -83,6 +83,7 @@ struct DecodeRequest {
   /// itself.
   std::optional<TimeFilterOptions> time_filter;
   std::optional<FilterOptions> filter;  ///< of each frame that comes of that; none: not filtered
+  std::optional<MixedPixels> mixed;     ///< mark_mixed_pixels() of each frame; none: not looked for
   std::filesystem::path offset_map;     ///< [m], as PixelMaps::delay_offset_m; empty: none
   std::filesystem::path gain_map;       ///< as PixelMaps::gain; empty: none
   double memory_mb = 256.0;             ///< for frames under way [MB], > 0

@@ -88,6 +88,7 @@ DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
           .planes = planes_to_write(request, decoder),
           .count_statuses = request.outputs.empty() ||
                             std::ranges::count(request.outputs, DecodedPlane::status) > 0,
+          .find_mixed = request.mixed.has_value(),
           .as_z = request.kind == DepthKind::z && request.output.extension() != ".ply",
           .first_frame = request.frame.value_or(0),
           .frames = request.frame ? 1 : frames,
@@ -141,22 +142,23 @@ int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target,
                    const Preparation& preparation, double memory_bytes) {
   const int height = target.view.height, width = target.view.width;
   const double row_planes = static_cast<double>(bytes_per_pixel(target.needed_planes())) * width;
-  const bool in_rows = target.in_rows(), is_filtered = preparation.needs_whole_frames();
+  const bool in_rows = target.in_rows(), in_frames = preparation.needs_frames();
   double whole = static_cast<double>(reader.bytes_in_memory() + target.writing_bytes()) +
                  preparation.frame_bytes(height, width, reader.measurements()) +
                  (in_rows ? 0.0 : row_planes * height);
   double row =
       (reader.bytes_in_memory() > 0 ? 0.0 : 2.0 * static_cast<double>(reader.row_bytes())) +
       preparation.row_bytes(width, reader.measurements()) + (in_rows ? row_planes : 0.0);
-  if (is_filtered) whole += row * height, row = 0.0;
+  if (in_frames) whole += row * height, row = 0.0;
   if (whole + row > memory_bytes)
     throw IoError(
         target.path.string(),
         fmt::format("frames of {} x {} pixels take {:.3g} MB to be {}written so; expected at most "
                     "{:.3g} MB ({}fewer --outputs take less{}; --memory-mb allows more)",
-                    height, width, 1e-6 * (whole + row), is_filtered ? "filtered and " : "",
+                    height, width, 1e-6 * (whole + row),
+                    preparation.filter || preparation.time_filter ? "filtered and " : "",
                     1e-6 * memory_bytes,
-                    is_filtered ? "without a filter they go in bands of rows; " : "",
+                    in_frames ? "without filters and mixed they go in bands of rows; " : "",
                     in_rows ? "" : "; .npy is written row by row, with --stack every plane"));
   // Larger bands are no faster: new memory costs more than another call.
   constexpr double comfortable_bytes = 32e6;
@@ -206,6 +208,7 @@ struct MappedDecoder {
   const AnyDecoder& decoder;
   const DecodingTable& table;
   PixelMaps maps;
+  std::optional<MixedPixels> mixed;  ///< in bands that are whole frames
 
   /// Decodes one band to where it belongs in the planes and counts its statuses.
   void decode(const RawView& raw, const Band& band, const DecodeTarget& target,
@@ -214,6 +217,7 @@ struct MappedDecoder {
     std::visit([&](const auto& d) { d.decode(raw, decoded, progress); }, decoder);
     apply(maps, table.range_m, decoded,
           static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(raw.width), pixels);
+    if (mixed) mark_mixed_pixels(table, raw, *mixed, decoded, maps);
     if (target.as_z && decoded.depth_m)
       turn_into_z(decoded.depth_m, band.first_row, band.rows, target.view);
     if (target.count_statuses) statuses.add({decoded.status, pixels});
@@ -283,11 +287,12 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
       std::visit([](const auto& d) -> const DecodingTable& { return d.table(); }, decoder);
   const RawFramesReader reader = open_recording(request, table);
   const DecodeTarget target = target_of(request, decoder, reader);
-  const MappedDecoder mapped{decoder, table, load_maps(request, reader)};
+  const MappedDecoder mapped{decoder, table, load_maps(request, reader), request.mixed};
   check_inputs_are_kept(request, target);
   check_range_fits(target.path, table.range_m);
   DecodeOutput output(target);
-  Preparation preparation{request.average, request.time_filter, request.filter};
+  Preparation preparation{request.average, request.time_filter, request.filter,
+                          request.mixed.has_value()};
   if (preparation.time_filter && preparation.filter) preparation.time_filter->before_filter = true;
   const int rows = rows_at_a_time(reader, target, preparation, 1e6 * request.memory_mb);
 

@@ -154,6 +154,10 @@ std::vector<DecodedPlane> DecodeTarget::needed_planes() const {
   };
   if (path.extension() == ".ply") need(DecodedPlane::depth);
   if (count_statuses) need(DecodedPlane::status);
+  if (find_mixed)
+    for (const DecodedPlane plane :
+         {DecodedPlane::depth, DecodedPlane::deviation, DecodedPlane::status})
+      need(plane);
   return needed;
 }
 

@@ -34,6 +34,7 @@ struct DecodeTarget {
   bool stack = false;                ///< all frames in one .npy per plane
   std::vector<DecodedPlane> planes;  ///< to write
   bool count_statuses = true;        ///< though the status plane may not be written
+  bool find_mixed = false;           ///< which needs planes that may not be written
   bool as_z = false;                 ///< depth along the axis instead of radial distance
   int first_frame = 0;
   int frames = 1;
@@ -45,7 +46,8 @@ struct DecodeTarget {
   std::vector<std::filesystem::path> paths() const;
   /// Rows are written as they come; else a frame's planes stand in memory as a whole.
   bool in_rows() const { return path.extension() == ".npy"; }
-  /// Planes that must be decoded: those written, what points are made of, what is counted.
+  /// Planes that must be decoded: those written, what points are made of, what is counted
+  /// and what mixed pixels are found by.
   std::vector<DecodedPlane> needed_planes() const;
   /// What writing a frame takes for a while, beside its planes [bytes].
   std::size_t writing_bytes() const;

@@ -42,11 +42,14 @@ double added(double sum, double value, double clipped) {
 }  // namespace
 
 double Preparation::frame_bytes(int height, int width, int measurements) const {
+  // What is known of the pixels while mixed ones are marked.
+  constexpr double bytes_to_find_mixed = 2 * sizeof(float) + 2;
   const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::size_t bytes = 0;
   if (time_filter) bytes += TimeFilter::memory_bytes(height, width, measurements, threads);
   if (filter) bytes += Filter::memory_bytes(*filter, height, width, measurements, threads);
-  return static_cast<double>(bytes);
+  const double for_mixed = find_mixed ? bytes_to_find_mixed * height * width : 0.0;
+  return for_mixed + static_cast<double>(bytes);
 }
 
 double Preparation::row_bytes(int width, int measurements) const {

@@ -17,8 +17,9 @@ struct Preparation {
   int average = 1;  ///< mean of so many consecutive frames, the last of those there are
   std::optional<TimeFilterOptions> time_filter;  ///< of those means
   std::optional<FilterOptions> filter;           ///< of what comes of that
+  bool find_mixed = false;                       ///< afterwards, in whole frames
 
-  bool needs_whole_frames() const { return time_filter || filter; }
+  bool needs_frames() const { return time_filter || filter || find_mixed; }
   /// Frames that come out of so many.
   int frames_of(int recorded) const { return (recorded + average - 1) / average; }
   /// What it takes beside the rows that are read [bytes], in all and for each row under way.

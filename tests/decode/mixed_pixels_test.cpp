@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "decode_setup.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/decode/depth_image.hpp"
+
+namespace tofsmith {
+namespace {
+
+constexpr int height = 40, width = 60, edge = 30;
+
+/// Two surfaces that a pixel sees, and how much of the first.
+struct Seen {
+  double depth_bin = 0.0, signal_e_per_s = 1e5;
+  double second_bin = 0.0, second_e_per_s = 0.0;
+};
+using SceneOfPixels = std::function<Seen(int row, int column)>;
+
+RawFrames frame_seen(const DecodingTable& table, const SceneOfPixels& scene) {
+  RawFrames frame{.frames = 1,
+                  .height = height,
+                  .width = width,
+                  .measurements = table.measurements(),
+                  .values = {}};
+  RandomStream random(1, 0);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const Seen seen = scene(y, x);
+      std::vector<float> second;
+      append_noisy_pixel(table, seen.signal_e_per_s, 1e4, seen.depth_bin, random, frame.values);
+      append_noisy_pixel(table, seen.second_e_per_s, 0.0, seen.second_bin, random, second);
+      if (!(seen.second_e_per_s > 0.0)) continue;
+      for (int k = 0; k < table.measurements(); ++k)
+        frame.values[frame.values.size() - static_cast<std::size_t>(table.measurements() - k)] +=
+            second[static_cast<std::size_t>(k)];
+    }
+  return frame;
+}
+
+/// Near on the left, far on the right, and both in one column between them.
+Seen edge_between(int column) {
+  if (column == edge) return {70.0, 0.6e5, 120.0, 0.4e5};
+  return {column < edge ? 70.0 : 120.0};
+}
+
+DepthImage marked(const DecodeSetup& setup, const RawFrames& raw,
+                  MixedPixels mixed = MixedPixels::label) {
+  DepthImage image = setup.decoder.decode(raw);
+  mark_mixed_pixels(setup.decoder.table(), view_of_frame(raw, 0), mixed, DecodedView::of(image));
+  return image;
+}
+
+double share_marked(const DepthImage& image) {
+  return static_cast<double>(std::ranges::count(image.status.pixels, PixelStatus::mixed)) /
+         static_cast<double>(image.status.size());
+}
+
+DecodeSetup setup_of(const std::string& code = "hamiltonian-k5") {
+  return DecodeSetup(code, camera_with("paper-10f0"));
+}
+
+TEST(MixedPixels, WordsAreReadBack) {
+  for (const MixedPixels mixed : all_mixed_pixels)
+    EXPECT_EQ(parse_mixed_pixels(name_of(mixed)), mixed);
+  EXPECT_THROW(parse_mixed_pixels("near"), std::invalid_argument);
+}
+
+TEST(MixedPixels, SumsOfTwoSurfacesAreLabelledAndKeepTheirDepth) {
+  const DecodeSetup setup = setup_of();
+  const RawFrames raw =
+      frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
+  const DepthImage before = setup.decoder.decode(raw), image = marked(setup, raw);
+  int found = 0, elsewhere = 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const bool is_mixed = image.status(y, x) == PixelStatus::mixed;
+      (x == edge ? found : elsewhere) += is_mixed ? 1 : 0;
+      EXPECT_EQ(image.depth_m(y, x), before.depth_m(y, x));
+      if (!is_mixed) EXPECT_EQ(image.status(y, x), before.status(y, x));
+    }
+  EXPECT_GE(found, height - 2);
+  EXPECT_LE(elsewhere, height * width / 200);
+}
+
+TEST(MixedPixels, SnappedDepthIsThatOfAPixelNearby) {
+  const DecodeSetup setup = setup_of();
+  const RawFrames raw =
+      frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
+  const DepthImage before = setup.decoder.decode(raw);
+  const DepthImage image = marked(setup, raw, MixedPixels::snap);
+  for (int y = 0; y < height; ++y) {
+    if (image.status(y, edge) != PixelStatus::mixed) continue;
+    bool is_neighbours = false;
+    for (int dy = -3; dy <= 3; ++dy)
+      for (int dx = -3; dx <= 3; ++dx)
+        if ((dy != 0 || dx != 0) && y + dy >= 0 && y + dy < height)
+          is_neighbours |= image.depth_m(y, edge) == before.depth_m(y + dy, edge + dx);
+    EXPECT_TRUE(is_neighbours) << y;
+    // The near surface gives more light.
+    EXPECT_NEAR(image.depth_m(y, edge), 70.0 * setup.decoder.table().bin_m(), 0.2) << y;
+  }
+}
+
+TEST(MixedPixels, DroppedPixelsHoldNoNumbers) {
+  const DecodeSetup setup = setup_of();
+  const RawFrames raw =
+      frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
+  const DepthImage image = marked(setup, raw, MixedPixels::drop);
+  EXPECT_GT(share_marked(image), 0.0);
+  for (std::size_t i = 0; i < image.status.size(); ++i) {
+    const bool is_mixed = image.status.pixels[i] == PixelStatus::mixed;
+    EXPECT_EQ(std::isnan(image.depth_m.pixels[i]), is_mixed);
+    EXPECT_EQ(std::isnan(image.signal_e_per_s.pixels[i]), is_mixed);
+    EXPECT_EQ(std::isnan(image.confidence.pixels[i]), is_mixed);
+  }
+}
+
+TEST(MixedPixels, SurfacesWithoutAnEdgeLoseNothing) {
+  const DecodeSetup setup = setup_of();
+  const SceneOfPixels flat = [](int, int) { return Seen{90.0}; };
+  const SceneOfPixels slanted = [](int y, int x) { return Seen{60.0 + 0.6 * x + 0.3 * y}; };
+  const SceneOfPixels textured = [](int y, int x) {
+    return Seen{90.0, (x / 3 + y / 3) % 2 == 0 ? 1e5 : 1.5e4};
+  };
+  for (const SceneOfPixels& scene : {flat, slanted, textured})
+    EXPECT_EQ(share_marked(marked(setup, frame_seen(setup.decoder.table(), scene))), 0.0);
+}
+
+TEST(MixedPixels, NoiseAtASharpEdgeMarksFew) {
+  const DecodeSetup setup = setup_of();
+  const RawFrames raw = frame_seen(setup.decoder.table(), [](int, int x) {
+    return Seen{x < edge ? 70.0 : 120.0, 3e4};
+  });
+  EXPECT_LT(share_marked(marked(setup, raw)), 0.005);
+}
+
+TEST(MixedPixels, ObjectsOnePixelWideAreKept) {
+  const DecodeSetup setup = setup_of();
+  const RawFrames raw = frame_seen(
+      setup.decoder.table(), [](int, int x) { return Seen{x == 12 || x == 40 ? 60.0 : 130.0}; });
+  EXPECT_EQ(share_marked(marked(setup, raw)), 0.0);
+}
+
+TEST(MixedPixels, ThreeMeasurementsTellNothingAndMarkNothing) {
+  const DecodeSetup setup = setup_of("hamiltonian-k3");
+  const RawFrames raw =
+      frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
+  EXPECT_EQ(share_marked(marked(setup, raw)), 0.0);
+}
+
+TEST(MixedPixels, SinglePixelsAndFramesWithoutNumbersStay) {
+  const DecodeSetup setup = setup_of();
+  RawFrames raw = frame_seen(setup.decoder.table(), [](int, int) { return Seen{90.0}; });
+  RawFrames one = raw;
+  one.height = one.width = 1;
+  one.values.resize(static_cast<std::size_t>(one.measurements));
+  EXPECT_EQ(marked(setup, one).status(0, 0), PixelStatus::ok);
+  std::ranges::fill(raw.values, std::numeric_limits<float>::quiet_NaN());
+  for (const PixelStatus status : marked(setup, raw, MixedPixels::drop).status.pixels)
+    EXPECT_EQ(status, PixelStatus::invalid);
+}
+
+TEST(MixedPixels, AreTheSameForAnyNumberOfThreads) {
+  const DecodeSetup setup = setup_of();
+  const RawFrames raw =
+      frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
+  const DepthImage many = marked(setup, raw, MixedPixels::snap);
+  const ThreadLimit limit(1);
+  const DepthImage one = marked(setup, raw, MixedPixels::snap);
+  EXPECT_EQ(one.status.pixels, many.status.pixels);
+  EXPECT_EQ(one.depth_m.pixels, many.depth_m.pixels);
+}
+
+TEST(MixedPixels, NeedPlanesAndShapesThatFit) {
+  const DecodeSetup setup = setup_of();
+  const RawFrames raw = frame_seen(setup.decoder.table(), [](int, int) { return Seen{90.0}; });
+  DepthImage image = setup.decoder.decode(raw);
+  DecodedView view = DecodedView::of(image);
+  view.status = nullptr;
+  EXPECT_THROW(
+      mark_mixed_pixels(setup.decoder.table(), view_of_frame(raw, 0), MixedPixels::label, view),
+      std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tofsmith
