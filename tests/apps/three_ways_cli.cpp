@@ -98,6 +98,12 @@ void decode() {
                     .time_filter = TimeFilterOptions{.max_frames = 2, .max_difference_sigma = 4.0},
                     .policy = policy},
                    decoder);
+  decode_recording({.raw = "raw.npy",
+                    .output = "snapped.npz",
+                    .outputs = {DecodedPlane::depth, DecodedPlane::status},
+                    .mixed = MixedPixels::snap,
+                    .policy = policy},
+                   decoder);
 }
 
 void evaluate_codes() {

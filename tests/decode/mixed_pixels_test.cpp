@@ -84,7 +84,9 @@ TEST(MixedPixels, SumsOfTwoSurfacesAreLabelledAndKeepTheirDepth) {
       const bool is_mixed = image.status(y, x) == PixelStatus::mixed;
       (x == edge ? found : elsewhere) += is_mixed ? 1 : 0;
       EXPECT_EQ(image.depth_m(y, x), before.depth_m(y, x));
-      if (!is_mixed) EXPECT_EQ(image.status(y, x), before.status(y, x));
+      if (!is_mixed) {
+        EXPECT_EQ(image.status(y, x), before.status(y, x));
+      }
     }
   EXPECT_GE(found, height - 2);
   EXPECT_LE(elsewhere, height * width / 200);

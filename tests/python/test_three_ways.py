@@ -154,8 +154,11 @@ def test_decode(ways, camera):
         "raw.npy", "added.npz", time_filter={"max_frames": 2, "max_difference_sigma": 4},
         outputs=["depth", "averaged"])
 
+    command("raw.npy", "snapped.npz", "--mixed", "snap", "--outputs", "depth,status")
+    decoder.decode_recording("raw.npy", "snapped.npz", mixed="snap", outputs=["depth", "status"])
+
     ways.cpp("decode")
-    assert len(ways.same()) == len(given) + 6 * 3 + 1 + 2 + 3 + 3 + 2 + 3
+    assert len(ways.same()) == len(given) + 6 * 3 + 1 + 2 + 3 + 3 + 2 + 3 + 3
 
 
 def test_decode_refuses_alike(ways, camera):

@@ -1,0 +1,50 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Pixels that see two surfaces are found; no depth is invented for them."""
+
+import numpy as np
+import pytest
+
+import tofsmith as ts
+
+code, camera = "hamiltonian-k5", "paper-10f0"
+NEAR_M, FAR_M, EDGE = 3.0, 5.0, 16
+
+
+@pytest.fixture(scope="module")
+def raw():
+    """Near on the left, far on the right, and half of both in one column."""
+    def seen(depth_m):
+        scene = np.full((24, 33), depth_m, np.float32)
+        return ts.capture(scene, code, camera, signal_e_per_s=1e5, ambient_e_per_s=1e4, falloff=False)
+    near, far = seen(NEAR_M), seen(FAR_M)
+    both = np.where(np.arange(33)[None, :, None] < EDGE, near, far)
+    both[:, EDGE] = 0.6 * near[:, EDGE] + 0.4 * far[:, EDGE]
+    return both
+
+
+def decoded(raw, mixed):
+    return ts.Decoder(code, camera).decode(raw, mixed=mixed)
+
+
+def test_they_are_labelled_and_keep_their_depth(raw):
+    plain, labelled = decoded(raw, None), decoded(raw, "label")
+    is_mixed = labelled.status == ts.PixelStatus.mixed
+    assert is_mixed[:, EDGE].sum() >= 22
+    assert np.delete(is_mixed, EDGE, axis=1).mean() < 0.005
+    assert labelled.depth_m.tobytes() == plain.depth_m.tobytes()
+    assert not (plain.status == ts.PixelStatus.mixed).any()
+
+
+def test_they_snap_to_a_surface_or_are_dropped(raw):
+    snapped, dropped = decoded(raw, "snap"), decoded(raw, "drop")
+    is_mixed = snapped.status == ts.PixelStatus.mixed
+    depths = snapped.depth_m[is_mixed]
+    assert np.minimum(abs(depths - NEAR_M), abs(depths - FAR_M)).max() < 0.1
+    assert np.isnan(dropped.depth_m[is_mixed]).all()
+    assert np.isfinite(dropped.depth_m[~is_mixed]).all()
+
+
+def test_another_word_is_refused(raw):
+    with pytest.raises(ValueError, match="mixed: .*label"):
+        decoded(raw, "near")
