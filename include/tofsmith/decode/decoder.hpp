@@ -62,7 +62,8 @@ class Decoder {
   ///   predicted standard deviation: noise of the measurements at the estimate (mu_i + constant
   ///     variance, averaged over a quarter of the chord), carried through the least squares over
   ///     (z, S, A) that z_hat solves;
-  ///   confidence: probability of the best bin b against the second peak s, the best bin outside the
+  ///   confidence: probability of the best bin b against the second peak s, the best bin outside
+  ///   the
   ///     main lobe, which is the run of bins around the best along which the code's own score falls
   ///     (1 if nothing is outside): of equal odds before, the log odds are <d, q> <b, q> |d|^2 / v
   ///     with d = b - s their directions and v the variance of <d, q> at the best bin. The second
