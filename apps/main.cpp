@@ -3,6 +3,7 @@
 // The command line: tofsmith COMMAND. Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted.
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <cerrno>
 #include <cstdio>
