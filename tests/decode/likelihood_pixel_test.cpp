@@ -76,18 +76,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(LikelihoodDecoder, ConfidentPixelsAreRightAsOftenAsTheySay) {
   const LikelihoodSetup setup("hamiltonian-k5", camera_with("paper-30x"));
-  constexpr int classes = 5;
-  RunningStatistics said[classes], right[classes];
-  for_each_confidence(setup, 1e3, 3e3, [&](double confidence, double error_m) {
-    const int at = std::min(classes - 1, static_cast<int>((confidence - 0.5) * 2 * classes));
-    said[at].add(confidence);
-    right[at].add(error_m < 0.1 * setup.camera.range_m());
-  });
   // One second peak is counted, so that the surest are a little less often right than they say.
-  for (int c = 0; c < classes; ++c) {
-    EXPECT_GT(said[c].count(), 1000);
-    EXPECT_NEAR(said[c].mean(), right[c].mean(), 0.06) << "class " << c;
-  }
+  expect_right_as_often_as_said(setup, {1e3}, 3e3, 0.1 * setup.camera.range_m(), 0.06);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -141,17 +142,22 @@ void for_each_confidence(const Setup& setup, double signal, double ambient, cons
   }
 }
 
-/// Of pixels as sure as `sure` next to none may be off by more than `far_m`; of unsure ones many.
-struct SureAndUnsure {
-  int sure = 0, sure_wrong = 0, unsure = 0, unsure_wrong = 0;
-
-  template <typename Setup>
-  SureAndUnsure(const Setup& setup, double signal, double ambient, double sure_from, double far_m) {
+/// In each class of confidence, as many pixels are right, to within `far_m`, as say so.
+template <typename Setup>
+void expect_right_as_often_as_said(const Setup& setup, const std::vector<double>& signals,
+                                   double ambient, double far_m, double tolerance) {
+  constexpr int classes = 5;
+  std::array<RunningStatistics, classes> said, right;
+  for (const double signal : signals)
     for_each_confidence(setup, signal, ambient, [&](double confidence, double error_m) {
-      if (confidence > sure_from) ++sure, sure_wrong += error_m > far_m;
-      if (confidence < 0.8) ++unsure, unsure_wrong += error_m > far_m;
+      const auto at = static_cast<std::size_t>((confidence - 0.5) * 2 * classes);
+      said[std::min<std::size_t>(at, classes - 1)].add(confidence);
+      right[std::min<std::size_t>(at, classes - 1)].add(error_m < far_m);
     });
+  for (std::size_t c = 0; c < classes; ++c) {
+    EXPECT_GT(said[c].count(), 500);
+    EXPECT_NEAR(said[c].mean(), right[c].mean(), tolerance) << "class " << c;
   }
-};
+}
 
 }  // namespace tofsmith
