@@ -8,6 +8,7 @@
 
 #include "core/shared/enum_words.hpp"
 #include "decode/filter/filter_plan.hpp"
+#include "decode/output/pixel_output.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -59,8 +60,7 @@ std::size_t Filter::memory_bytes(const FilterOptions& options, int height, int w
 
 void Filter::apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress) const {
   const Plan& plan = *plan_;
-  require(raw.measurements == plan.measurements, "raw measurements", raw.measurements,
-          "must equal the code's " + std::to_string(plan.measurements));
+  require_measurements(raw, plan.measurements);
   require(raw.height > 0 && raw.width > 0, "raw height and width", std::min(raw.height, raw.width),
           "must be > 0");
   FilterPlanes& frame = *filtered.planes_;

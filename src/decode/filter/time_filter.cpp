@@ -4,6 +4,7 @@
 #include <string>
 
 #include "decode/filter/time_filter_state.hpp"
+#include "decode/output/pixel_output.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -34,8 +35,7 @@ std::size_t TimeFilter::memory_bytes(int height, int width, int measurements, in
 
 RawView TimeFilter::add(const RawView& raw) {
   State& state = *state_;
-  require(raw.measurements == state.measurements, "raw measurements", raw.measurements,
-          "must equal the code's " + std::to_string(state.measurements));
+  require_measurements(raw, state.measurements);
   require(raw.height > 0 && raw.width > 0, "raw height and width", std::min(raw.height, raw.width),
           "must be > 0");
   if (state.is_empty) {

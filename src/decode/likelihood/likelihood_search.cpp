@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "decode/output/pixel_output.hpp"
 #include "decode/search/nearest_bins.hpp"
 #include "tofsmith/core/units.hpp"
 
@@ -194,7 +195,7 @@ double LikelihoodSearch::confidence(const LikelihoodPixel& pixel, const MostLike
     if (above > lobe.end - 1 - lobe.begin)
       second_peak_cost = std::min(second_peak_cost, found.followed[i].cost);
   }
-  return 1.0 / (1.0 + std::exp(-0.5 * std::max(second_peak_cost - found.best.cost, 0.0)));
+  return probability_of(0.5 * std::max(second_peak_cost - found.best.cost, 0.0));
 }
 
 }  // namespace tofsmith

@@ -12,6 +12,7 @@
 
 #include "core/shared/enum_words.hpp"
 #include "decode/mixed/mixed_pixel_fit.hpp"
+#include "decode/output/pixel_output.hpp"
 #include "decode/raw_scale.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
@@ -244,8 +245,7 @@ std::optional<Surface> stronger_of_two(const MixedPixelFit& fit, const double* e
 
 void check(const DecodingTable& table, const RawView& raw, const DecodedView& decoded,
            const PixelMaps& maps) {
-  require(raw.measurements == table.measurements(), "raw measurements", raw.measurements,
-          "must equal the code's " + std::to_string(table.measurements()));
+  require_measurements(raw, table.measurements());
   require(raw.height > 0 && raw.width > 0, "raw height and width", std::min(raw.height, raw.width),
           "must be > 0");
   require(decoded.depth_m && decoded.predicted_standard_deviation_m && decoded.status, "decoded",

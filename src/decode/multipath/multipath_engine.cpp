@@ -325,7 +325,7 @@ void MultipathEngine::store(std::int64_t pixel, const PixelGroup& group, const P
     decoded.ambient_e_per_s[at] = static_cast<float>(ambient_e_per_s(group, fits, lane));
   if (decoded.confidence) {
     const double lead = std::max(fits.second_best_chi2[lane] - fits.chi2[lane], 0.0f);
-    decoded.confidence[at] = static_cast<float>(1.0 / (1.0 + std::exp(-0.5 * lead)));
+    decoded.confidence[at] = static_cast<float>(probability_of(0.5 * lead));
   }
   if (decoded.ratio) decoded.ratio[at] = fits.second_e_per_s[lane] / fits.signal_e_per_s[lane];
   if (decoded.delay_m)

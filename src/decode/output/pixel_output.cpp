@@ -62,16 +62,21 @@ void store_invalid(std::size_t at, const DecodedView& decoded) {
   if (decoded.status) decoded.status[at] = PixelStatus::invalid;
 }
 
+void require_measurements(const RawView& raw, int measurements) {
+  require(raw.measurements == measurements, "raw measurements", raw.measurements,
+          "must equal the code's " + std::to_string(measurements));
+}
+
+double probability_of(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
+
 double confidence_of(double lead, double expected_lead, double deviation) {
   if (deviation == 0.0) return 1.0;
-  return 1.0 /
-         (1.0 + std::exp(-2.0 * std::max(lead, 0.0) * expected_lead / (deviation * deviation)));
+  return probability_of(2.0 * std::max(lead, 0.0) * expected_lead / (deviation * deviation));
 }
 
 void for_each_block(const RawView& raw, int measurements, const Progress& progress,
                     const std::function<void(IndexRange pixels)>& work, std::int64_t block_pixels) {
-  require(raw.measurements == measurements, "raw measurements", raw.measurements,
-          "must equal the code's " + std::to_string(measurements));
+  require_measurements(raw, measurements);
   require(raw.height >= 0 && raw.width >= 0, "raw height and width",
           std::min(raw.height, raw.width), "must be >= 0");
   const std::int64_t count = raw.pixels();

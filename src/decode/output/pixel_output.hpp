@@ -27,6 +27,11 @@ void store_pixel(const DecodingTable& table, const DecodeOptions& options, const
 /// Writes a pixel with a measurement that is no number.
 void store_invalid(std::size_t at, const DecodedView& decoded);
 
+/// @throws InvalidArgument if raw numbers are not of so many measurements
+void require_measurements(const RawView& raw, int measurements);
+
+/// Probability of what has these log odds.
+double probability_of(double log_odds);
 /// Probability of the best of two depths by how far it leads the other: with normal noise of this
 /// deviation the lead is of mean +-expected_lead, whichever of them is the true one.
 double confidence_of(double lead, double expected_lead, double deviation);
