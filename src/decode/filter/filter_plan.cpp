@@ -65,7 +65,7 @@ const float* averaged_of(const RawView& raw, int row, int column) {
 void find_variance(const Filter::Plan& plan, RowBlock& electrons, int pixels, float* variance) {
   std::fill_n(variance, pixels, plan.hidden.floor_variance_e2);
   for (int k = 0; k < plan.measurements; ++k) {
-    const float by = plan.shot_share[static_cast<std::size_t>(k)];
+    const float by = plan.hidden.shot_share[static_cast<std::size_t>(k)];
     const float* const values = electrons[k];
     for (int i = 0; i < pixels; ++i) variance[i] += by * std::max(values[i], 0.0f);
   }
@@ -96,8 +96,6 @@ Filter::Plan::Plan(DecodingTable table, const FilterOptions& options_,
   RowMajorMatrix points = projection.gated * basis;
   points.leftCols(rank) = projection.curve;
   curve = row_by_row(points);
-  const Eigen::VectorXd share = projection.basis.rowwise().squaredNorm() / rank;
-  shot_share.assign(share.begin(), share.end());
 }
 
 void Filter::Plan::read(const RawView& raw, FilterPlanes& frame) const {

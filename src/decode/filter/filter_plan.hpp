@@ -38,7 +38,6 @@ struct Filter::Plan {
   std::vector<float> to_coordinates;   // (K, K): coordinate j of measurement k at j * K + k
   std::vector<float> to_measurements;  // and back, k * K + j
   std::vector<float> curve;            // x = T o chi in coordinates (N, K)
-  std::vector<float> shot_share;  // of a measurement in a coordinate's variance, on average (K)
   HiddenSignal hidden;
   bool has_own_shot_noise = false;  // light that cancels in the measurements still makes noise
 

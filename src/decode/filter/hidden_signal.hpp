@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "decode/expected_noise.hpp"
 
@@ -19,6 +20,7 @@ struct HiddenSignal {
         mean_curve_square(static_cast<float>(projection.curve.rowwise().squaredNorm().mean())) {
     const Eigen::VectorXd share =
         projection.basis.rowwise().squaredNorm() / static_cast<double>(projection.rank());
+    shot_share.assign(share.begin(), share.end());
     floor_variance_e2 =
         static_cast<float>(std::max(min_variance_e2, share.dot(noise.floor_variance_e2)));
     shot_per_signal = static_cast<float>((noise.shot_gated * share).mean());
@@ -33,6 +35,7 @@ struct HiddenSignal {
   }
 
   float rank = 0.0f;
+  std::vector<float> shot_share;   ///< of a measurement in a coordinate's variance, on average (K)
   float floor_variance_e2 = 0.0f;  ///< f
   float shot_per_signal = 0.0f;    ///< m, over all depths
   float mean_curve_square = 0.0f;  ///< <p^2>, over all depths
