@@ -43,7 +43,31 @@ def time_filter_options(time_filter: TimeFilterLike) -> dict[str, Any]:
     return dict(time_filter)
 
 
-class Filter:
+def _frames(
+    raw: npt.NDArray[Any], averaged: Optional[npt.ArrayLike], layout: str
+) -> tuple[npt.NDArray[Any], bool, Optional[npt.NDArray[Any]]]:
+    """Raw numbers, whether they are planar, and of how many measurements they are the mean."""
+    is_planar = _check.one_of(layout, "layout", ("interleaved", "planar")) == "planar"
+    array = _check.raw_array(raw)
+    return array, is_planar, _check.means(averaged, array)
+
+
+class _OfTable:
+    """What filters know."""
+
+    _handle: Union[_tofsmith.Filter, _tofsmith.TimeFilter]
+
+    @property
+    def table(self) -> DecodingTable:
+        return DecodingTable._of(self._handle.table())
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """The fields of FilterOptions or TimeFilterOptions by name."""
+        return self._handle.options()
+
+
+class Filter(_OfTable):
     """Adds the raw measurements of pixels that see the same depth, before anything is decoded.
     Immutable, safe to use from many threads at once.
 
@@ -89,17 +113,8 @@ class Filter:
     ) -> None:
         _check.one_of(strength, "strength", tuple(_tofsmith.filter_strengths()))
         values = {} if options is None else dict(options)
-        self._handle = _tofsmith.Filter(
+        self._handle: _tofsmith.Filter = _tofsmith.Filter(
             table_of(code, camera)._handle, {**values, "strength": strength})
-
-    @property
-    def table(self) -> DecodingTable:
-        return DecodingTable._of(self._handle.table())
-
-    @property
-    def options(self) -> dict[str, Any]:
-        """The fields of FilterOptions by name."""
-        return self._handle.options()
 
     def apply(
         self,
@@ -141,13 +156,10 @@ class Filter:
         -----
         The same bits for any number of threads and any layout.
         """
-        is_planar = _check.one_of(layout, "layout", ("interleaved", "planar")) == "planar"
-        array = _check.raw_array(raw)
-        means = _check.means(averaged, array)
-        return self._handle.apply(array, is_planar, means, _check.progress(progress))
+        return self._handle.apply(*_frames(raw, averaged, layout), _check.progress(progress))
 
 
-class TimeFilter:
+class TimeFilter(_OfTable):
     """Adds the raw measurements of each pixel, frame after frame, as long as they stay the same,
     before anything is decoded: no frame waits for a later one. What changes starts anew, so that
     nothing smears. Keeps the frame so far; not for several threads at once.
@@ -194,19 +206,10 @@ class TimeFilter:
         max_difference_sigma: float = 5.0,
         before_filter: bool = False,
     ) -> None:
-        self._handle = _tofsmith.TimeFilter(table_of(code, camera)._handle, {
+        self._handle: _tofsmith.TimeFilter = _tofsmith.TimeFilter(table_of(code, camera)._handle, {
             "max_frames": _check.whole(max_frames, "max_frames", 1),
             "max_difference_sigma": _check.number(max_difference_sigma, "max_difference_sigma"),
             "before_filter": bool(before_filter)})
-
-    @property
-    def table(self) -> DecodingTable:
-        return DecodingTable._of(self._handle.table())
-
-    @property
-    def options(self) -> dict[str, Any]:
-        """The fields of TimeFilterOptions by name."""
-        return self._handle.options()
 
     def add(
         self,
@@ -248,10 +251,7 @@ class TimeFilter:
         -----
         The same bits for any number of threads and any layout.
         """
-        is_planar = _check.one_of(layout, "layout", ("interleaved", "planar")) == "planar"
-        array = _check.raw_array(raw)
-        means = _check.means(averaged, array)
-        return self._handle.add(array, is_planar, means, _check.progress(progress))
+        return self._handle.add(*_frames(raw, averaged, layout), _check.progress(progress))
 
     def forget(self) -> None:
         """The next frame is the first again, of any size."""
