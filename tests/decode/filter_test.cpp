@@ -27,19 +27,12 @@ using SceneOfPixels = std::function<Seen(int row, int column)>;
 
 RawFrames frame_seen(const DecodingTable& table, int height, int width, const SceneOfPixels& scene,
                      double ambient_e_per_s = 1e4, std::uint64_t seed = 1) {
-  RawFrames frame{.frames = 1,
-                  .height = height,
-                  .width = width,
-                  .measurements = table.measurements(),
-                  .values = {}};
-  RandomStream random(seed, 0);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const Seen seen = scene(y, x);
-      append_noisy_pixel(table, seen.signal_e_per_s, ambient_e_per_s, seen.depth_bin, random,
-                         frame.values);
-    }
-  return frame;
+  return frame_by_pixel(table.measurements(), height, width, seed,
+                        [&](int y, int x, RandomStream& random, std::vector<float>& raw) {
+                          const Seen seen = scene(y, x);
+                          append_noisy_pixel(table, seen.signal_e_per_s, ambient_e_per_s,
+                                             seen.depth_bin, random, raw);
+                        });
 }
 
 DepthImage decoded(const Decoder& decoder, const FilteredFrame& filtered) {

@@ -25,24 +25,18 @@ struct Seen {
 using SceneOfPixels = std::function<Seen(int row, int column)>;
 
 RawFrames frame_seen(const DecodingTable& table, const SceneOfPixels& scene) {
-  RawFrames frame{.frames = 1,
-                  .height = height,
-                  .width = width,
-                  .measurements = table.measurements(),
-                  .values = {}};
-  RandomStream random(1, 0);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const Seen seen = scene(y, x);
-      std::vector<float> second;
-      append_noisy_pixel(table, seen.signal_e_per_s, 1e4, seen.depth_bin, random, frame.values);
-      append_noisy_pixel(table, seen.second_e_per_s, 0.0, seen.second_bin, random, second);
-      if (!(seen.second_e_per_s > 0.0)) continue;
-      for (int k = 0; k < table.measurements(); ++k)
-        frame.values[frame.values.size() - static_cast<std::size_t>(table.measurements() - k)] +=
-            second[static_cast<std::size_t>(k)];
-    }
-  return frame;
+  return frame_by_pixel(
+      table.measurements(), height, width, 1,
+      [&](int y, int x, RandomStream& random, std::vector<float>& raw) {
+        const Seen seen = scene(y, x);
+        std::vector<float> second;
+        append_noisy_pixel(table, seen.signal_e_per_s, 1e4, seen.depth_bin, random, raw);
+        append_noisy_pixel(table, seen.second_e_per_s, 0.0, seen.second_bin, random, second);
+        if (!(seen.second_e_per_s > 0.0)) return;
+        for (int k = 0; k < table.measurements(); ++k)
+          raw[raw.size() - static_cast<std::size_t>(table.measurements() - k)] +=
+              second[static_cast<std::size_t>(k)];
+      });
 }
 
 /// Near on the left, far on the right, and both in one column between them.

@@ -25,16 +25,11 @@ using DepthOfPixels = std::function<double(int row, int column)>;
 
 RawFrames frame_of(const DecodingTable& table, const DepthOfPixels& depth, double signal_e_per_s,
                    double ambient_e_per_s, std::uint64_t seed) {
-  RawFrames raw{.frames = 1,
-                .height = height,
-                .width = width,
-                .measurements = table.measurements(),
-                .values = {}};
-  RandomStream random(seed, 0);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      append_noisy_pixel(table, signal_e_per_s, ambient_e_per_s, depth(y, x), random, raw.values);
-  return raw;
+  return frame_by_pixel(table.measurements(), height, width, seed,
+                        [&](int y, int x, RandomStream& random, std::vector<float>& raw) {
+                          append_noisy_pixel(table, signal_e_per_s, ambient_e_per_s, depth(y, x),
+                                             random, raw);
+                        });
 }
 
 double slanted(int row, int column) { return 60.0 + 0.3 * row + 0.1 * column; }

@@ -75,6 +75,18 @@ inline std::vector<float> noisy_pixels(const DecodingTable& table, double signal
   return raw;
 }
 
+/// A frame, pixel by pixel. @param append  (row, column, random, values) adds the numbers of one
+template <typename AppendPixel>
+RawFrames frame_by_pixel(int measurements, int height, int width, std::uint64_t seed,
+                         const AppendPixel& append) {
+  RawFrames frame{
+      .frames = 1, .height = height, .width = width, .measurements = measurements, .values = {}};
+  RandomStream random(seed, 0);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) append(y, x, random, frame.values);
+  return frame;
+}
+
 /// Noisy raw numbers from dim to bright, in ambient light a hundred times as strong as the signal
 /// and a thousand times weaker.
 inline std::vector<float> pixels_at_all_light_levels(const DecodingTable& table, int each) {
