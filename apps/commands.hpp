@@ -12,6 +12,7 @@ void add_demo_command(CLI::App& app, Session& session);
 void add_codes_command(CLI::App& app, Session& session);
 void add_design_command(CLI::App& app, Session& session);
 void add_evaluate_command(CLI::App& app, Session& session);
+void add_require_command(CLI::App& app, Session& session);
 void add_export_command(CLI::App& app, Session& session);
 void add_upload_command(CLI::App& app, Session& session);
 void add_scene_command(CLI::App& app, Session& session);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "distance_arguments.hpp"
 #include "evaluation_table.hpp"
 #include "method_arguments.hpp"
 #include "multipath_evaluation.hpp"
@@ -106,6 +107,7 @@ struct EvaluateArguments {
   const CLI::Option* trials = nullptr;
   std::string perturb;
   bool every_level = false;
+  DistanceArguments distance;
   TapArguments taps;
   std::string output;
 };
@@ -136,10 +138,11 @@ void note_missed_targets(const Session& session, const std::vector<EvaluatedCode
 void print(const Session& session, const Camera& camera, const std::vector<EvaluatedCode>& codes,
            const EvaluateArguments& arguments) {
   const EvaluateOptions& options = arguments.options;
+  const bool every_level = arguments.every_level || arguments.distance.is_asked();
   if (session.json) return session.print_document(evaluation_document(camera, codes, options));
-  session.say(text_table(evaluation_rows(codes, camera.operating.error, arguments.every_level)));
+  session.say(text_table(evaluation_rows(codes, camera.operating.error, every_level)));
   if (is_compared_with_zncc(codes))
-    session.say(text_table(zncc_comparison_rows(codes, arguments.every_level)));
+    session.say(text_table(zncc_comparison_rows(codes, every_level)));
   if (const auto judged = judged_codes(codes); !judged.empty())
     session.say(text_table(robustness_rows(judged)));
   session.say(fmt::format(
@@ -148,8 +151,7 @@ void print(const Session& session, const Camera& camera, const std::vector<Evalu
       trials_text(codes, options), options.seed, camera.samples,
       options.depth == DepthSampling::bins ? "on bins" : "anywhere in the range",
       name_of(options.method)));
-  if (const std::size_t levels = codes.front().error.points.size();
-      levels > 2 && !arguments.every_level)
+  if (const std::size_t levels = codes.front().error.points.size(); levels > 2 && !every_level)
     session.say(
         fmt::format("all {} light levels: --every-level, or -o FILE (.csv .json .html)", levels));
   note_missed_targets(session, codes, options);
@@ -220,7 +222,7 @@ void write(const std::filesystem::path& path, const Session& session, const Came
 }
 
 void run(EvaluateArguments& arguments, const Session& session) {
-  const Camera camera = arguments.camera.load();
+  const Camera camera = arguments.distance.at(arguments.camera.load(), session);
   if (arguments.on_bins) arguments.options.depth = DepthSampling::bins;
   arguments.options.method = arguments.method.method();
   arguments.options.unwrap_weights = arguments.method.unwrap_weights();
@@ -301,6 +303,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
   arguments->taps.add_to(*command);
   command->add_flag("--every-level", arguments->every_level,
                     "print a row for every light level, not only the mean, the best and the worst");
+  arguments->distance.add_to(*command);
   command->add_option("-o,--output", arguments->output,
                       "write a table (.csv .json) or page (.html)");
   command->callback([arguments, &session] { run(*arguments, session); });

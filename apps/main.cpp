@@ -149,6 +149,7 @@ int run(int argc, char** argv) {
   add_codes_command(app, session);
   add_design_command(app, session);
   add_evaluate_command(app, session);
+  add_require_command(app, session);
   add_export_command(app, session);
   add_upload_command(app, session);
   add_scene_command(app, session);

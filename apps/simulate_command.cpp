@@ -203,15 +203,15 @@ void simulate_set(const SimulateArguments& arguments, Session& session) {
         "scenes; "
         "expected one");
   const Camera camera = arguments.camera.load();
-  const OperatingPoint middle = camera.operating.middle();
+  const OperatingPoint usual = capture_light(camera, arguments.options.reference_distance_m);
   make_training_set(
       {.scenes = arguments.scenes,
        .source = arguments.scene,
        .directory = arguments.output,
        .options = {.signal = light_range("signal", arguments.signal_range, arguments.signal_e_per_s,
-                                         middle.signal_e_per_s),
+                                         usual.signal_e_per_s),
                    .ambient = light_range("ambient", arguments.ambient_range,
-                                          arguments.ambient_e_per_s, middle.ambient_e_per_s),
+                                          arguments.ambient_e_per_s, usual.ambient_e_per_s),
                    .capture = arguments.options,
                    .shard = parse_shard(arguments.shard)}},
       load_camera_code(arguments.code, camera, arguments.taps.file_options()), camera, session);
@@ -251,9 +251,9 @@ void run(SimulateArguments& arguments, Session& session) {
   check_outputs(arguments, session);
   const LoadedScene scene = scene_of(arguments.scene, camera);
   check_truth(arguments, scene, camera);
-  const OperatingPoint middle = camera.operating.middle();
-  arguments.options.signal_e_per_s = arguments.signal_e_per_s.value_or(middle.signal_e_per_s);
-  arguments.options.ambient_e_per_s = arguments.ambient_e_per_s.value_or(middle.ambient_e_per_s);
+  const OperatingPoint usual = capture_light(camera, arguments.options.reference_distance_m);
+  arguments.options.signal_e_per_s = arguments.signal_e_per_s.value_or(usual.signal_e_per_s);
+  arguments.options.ambient_e_per_s = arguments.ambient_e_per_s.value_or(usual.ambient_e_per_s);
   const CapturedScene captured = capture_one(arguments, scene, code, camera);
   const RawFrames& raw = captured.capture.raw;
   write_raw_frames(arguments.output, raw, session.output_policy());
@@ -304,11 +304,11 @@ void add_simulate_command(CLI::App& app, Session& session) {
   command->add_option("--code", arguments->code, "a family or a code file")->required();
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);
-  command->add_option(
-      "--signal", arguments->signal_e_per_s,
-      "signal of albedo 1 at the reference distance [e/s] (middle of the camera's)");
-  command->add_option("--ambient", arguments->ambient_e_per_s,
-                      "ambient light [e/s] (middle of the camera's)");
+  command->add_option("--signal", arguments->signal_e_per_s,
+                      "signal of albedo 1 at the reference distance [e/s] (by the camera's "
+                      "[optics], or the middle of "
+                      "its operating points)");
+  command->add_option("--ambient", arguments->ambient_e_per_s, "ambient light [e/s] (likewise)");
   command->add_option("--signal-range", arguments->signal_range,
                       "a:b, of many scenes: draw --signal of each log-uniformly");
   command->add_option("--ambient-range", arguments->ambient_range,

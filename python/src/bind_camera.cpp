@@ -24,6 +24,11 @@ void bind_camera(py::module_& module) {
                                const Texts& settings) { return with_settings(camera, settings); })
       .def("to_toml", [](const Camera& camera) { return camera_to_toml(camera); })
       .def("to_json", [](const Camera& camera) { return camera_to_json(camera); })
+      .def("at_distances",
+           [](const Camera& camera, const std::vector<double>& distances_m, double albedo,
+              std::optional<double> klux) {
+             return at_distances(camera, distances_m, albedo, klux);
+           })
       .def("range_m", &Camera::range_m)
       .def("bin_m", &Camera::bin_m)
       .def("transfer",

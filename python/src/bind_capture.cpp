@@ -91,9 +91,10 @@ SceneLight light_of(const py::dict& values, const SceneImage& scene) {
 
 CaptureOptions capture_options(const Camera& camera, const py::dict& values) {
   CaptureOptions options;
-  const OperatingPoint middle = camera.operating.middle();
-  options.signal_e_per_s = middle.signal_e_per_s;
-  options.ambient_e_per_s = middle.ambient_e_per_s;
+  read_options(values, "", options);  // the reference distance
+  const OperatingPoint usual = capture_light(camera, options.reference_distance_m);
+  options.signal_e_per_s = usual.signal_e_per_s;
+  options.ambient_e_per_s = usual.ambient_e_per_s;
   read_options(values, "", options);
   return options;
 }

@@ -92,6 +92,17 @@ py::dict design_dict(const Camera& camera, const py::dict& values,
 
 }  // namespace
 
+/// What `require --json` prints.
+std::string requirements_json(const Camera& camera, const py::dict& values,
+                              const py::object& callback) {
+  RequirementOptions options;
+  read_options(values, "", options);
+  const Requirements found = without_gil(callback, [&](const Progress& progress) {
+    return find_requirements(camera, options, progress);
+  });
+  return requirements_document(camera, found, options);
+}
+
 void bind_design(py::module_& module) {
   py::class_<TargetSet>(module, "TargetSet");
   py::class_<FinishedDesign>(module, "FinishedDesign")
@@ -107,6 +118,7 @@ void bind_design(py::module_& module) {
     return suggested_exposures(camera, parse_design_method(word));
   });
   module.def("design", &design_dict);
+  module.def("find_requirements", &requirements_json);
 }
 
 }  // namespace tofsmith::python

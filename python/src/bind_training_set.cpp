@@ -25,13 +25,13 @@ LightRange always(double level_e_per_s) { return {level_e_per_s, level_e_per_s};
 
 TrainingSetOptions set_options(const py::dict& values, const Camera& camera) {
   TrainingSetOptions options;
-  const OperatingPoint middle = camera.operating.middle();
-  options.signal = always(middle.signal_e_per_s);
-  options.ambient = always(middle.ambient_e_per_s);
   OptionReader reader(values, "");
+  reader.fields(options.capture, {"signal_e_per_s", "ambient_e_per_s"});
+  const OperatingPoint usual = capture_light(camera, options.capture.reference_distance_m);
+  options.signal = always(usual.signal_e_per_s);
+  options.ambient = always(usual.ambient_e_per_s);
   read_range(reader, "signal_range", options.signal);
   read_range(reader, "ambient_range", options.ambient);
-  reader.fields(options.capture, {"signal_e_per_s", "ambient_e_per_s"});
   std::vector<int> shard;
   reader.value("shard", shard);
   reader.finish();

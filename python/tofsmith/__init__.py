@@ -27,6 +27,7 @@ from ._camera_fields import (
     Light,
     Operating,
     OperatingMultipath,
+    Optics,
     Sensor,
 )
 from ._code import (
@@ -55,6 +56,7 @@ from ._design import (
     MeasurementReport,
     SearchRecord,
     design,
+    find_requirements,
     suggested_exposures,
 )
 from ._evaluate import best_rotation, evaluate, generator_loss, robustness, table_depth_error_m
@@ -202,6 +204,7 @@ __all__ = [
     "MultipathErrorReport",
     "MultipathMaps",
     "Operating",
+    "Optics",
     "ParametricResponse",
     "PhotonTransfer",
     "PhotonTransferPoint",
@@ -247,6 +250,7 @@ __all__ = [
     "design",
     "evaluate",
     "export_waveforms",
+    "find_requirements",
     "fit_ideal_codes",
     "generator_loss",
     "generator_models",

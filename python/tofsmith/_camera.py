@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any, Optional, Union
 
@@ -22,6 +22,7 @@ from ._camera_fields import (
     Light,
     Operating,
     OperatingMultipath,
+    Optics,
     Sensor,
 )
 from ._check import Path
@@ -68,11 +69,11 @@ def _toml(value: Any, name: str) -> str:
 
 
 def _settings(keys: Mapping[str, Any]) -> list[str]:
-    """Keywords as `key=value`: keys of light, sensor and operating one by one, so that others
-    stay."""
+    """Keywords as `key=value`: keys of light, sensor, optics and operating one by one, so that
+    others stay."""
     settings = []
     for key, value in keys.items():
-        if key in ("light", "sensor", "operating") and isinstance(value, Mapping):
+        if key in ("light", "sensor", "optics", "operating") and isinstance(value, Mapping):
             settings += _settings({f"{key}.{inner}": v for inner, v in value.items()})
         else:
             settings.append(f"{key}={_toml(value, key)}")
@@ -83,8 +84,8 @@ class Camera:
     """A continuous-wave time-of-flight camera. Immutable; pickles.
 
     Keys are those of a camera file (TOML): `fundamental_frequency_hz`, `exposure_s`, `samples`,
-    `light`, `sensor`, `lens`, `operating`; see docs/file_formats.md. Those of light, sensor and
-    operating are dicts, of which keys left out keep what they are.
+    `light`, `sensor`, `lens`, `optics`, `operating`; see docs/file_formats.md. Those of light,
+    sensor, optics and operating are dicts, of which keys left out keep what they are.
 
     Parameters
     ----------
@@ -213,6 +214,50 @@ class Camera:
     def _lens_fields(self, part: Any) -> dict[str, Any]:
         lens = self._fields.get("lens", {})
         return {key: lens[key] for key in part.__dataclass_fields__ if key in lens}
+
+    @cached_property
+    def optics(self) -> Optional[Optics]:
+        """What turns watts and lux into electrons, if the camera says it."""
+        optics = self._fields.get("optics")
+        return None if optics is None else Optics(**_tuples(optics))
+
+    def at_distances(
+        self,
+        distances_m: Union[float, Sequence[float]],
+        *,
+        albedo: float = 1.0,
+        klux: Optional[float] = None,
+    ) -> Camera:
+        """The camera judged on surfaces at these distances: `operating` has the light that its
+        optics make of them, brightest first.
+
+        Parameters
+        ----------
+        distances_m : float or sequence of float
+            [m], > 0.
+        albedo : float
+            Of the surfaces, in (0, 1].
+        klux : float, optional
+            Sunlight on them [klx], in place of the optics' own.
+
+        Raises
+        ------
+        ValueError
+            For a camera without optics, or numbers that break a rule.
+
+        Examples
+        --------
+        >>> optics = {"source_power_w": 0.5, "wavelength_m": 940e-9, "field_of_view_deg": [70, 55],
+        ...           "f_number": 1.2, "pixel_pitch_m": 7e-6, "quantum_efficiency": 0.3}
+        >>> near = Camera("paper-10f0", optics=optics).at_distances(2.0, albedo=0.3)
+        >>> round(near.operating.signal_e_per_s[0])
+        310600
+        """
+        distances = np.atleast_1d(np.asarray(distances_m, dtype=np.float64)).ravel().tolist()
+        sun = None if klux is None else _check.number(klux, "klux")
+        return Camera._of(
+            self._handle.at_distances(distances, _check.number(albedo, "albedo"), sun)
+        )
 
     @cached_property
     def operating(self) -> Operating:

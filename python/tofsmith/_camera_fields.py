@@ -163,6 +163,43 @@ class LensBlur:
 
 
 @dataclass(frozen=True)
+class Optics:
+    """What turns watts and lux into electrons; docs/optics.md.
+
+    Attributes
+    ----------
+    source_power_w : float
+        Mean optical power of the modulated light [W].
+    wavelength_m : float
+        [m].
+    field_of_view_deg : tuple of two floats
+        Full angles that the light fills, across and down [degrees].
+    f_number, pixel_pitch_m : float
+        Of the lens; distance between centres of pixels [m].
+    quantum_efficiency, transmission, fill_factor : float
+        Electrons per photon; of lens and filter; share of a pixel that is sensitive. In (0, 1].
+    filter_width_m : float, optional
+        Band that the filter passes [m]; with sunlight.
+    sunlight_klux : float, optional
+        Illuminance of surfaces by the sun [klx]; between 800 and 1000 nm.
+    sunlight_w_per_m2_nm : float, optional
+        Instead: what falls on them within the filter's band [W / m2 / nm].
+    """
+
+    source_power_w: float
+    wavelength_m: float
+    field_of_view_deg: tuple[float, float]
+    f_number: float
+    pixel_pitch_m: float
+    quantum_efficiency: float
+    transmission: float = 1.0
+    fill_factor: float = 1.0
+    filter_width_m: Optional[float] = None
+    sunlight_klux: Optional[float] = None
+    sunlight_w_per_m2_nm: Optional[float] = None
+
+
+@dataclass(frozen=True)
 class OperatingMultipath:
     """Multipath that a camera meets: second returns, uniform between limits; docs/multipath.md.
 
@@ -192,6 +229,8 @@ class Operating:
         linear or circular: which difference between true and decoded depth counts.
     albedo : float or str
         Scales the signal; "uniform": a fresh draw in (0, 1) for every trial.
+    neighbours : int
+        Pixels of one depth that a filter adds before it decodes: codes are judged on such sums.
     multipath : OperatingMultipath, optional
         What designs take into account; None: light comes back once.
     """
@@ -200,4 +239,5 @@ class Operating:
     ambient_e_per_s: tuple[float, ...]
     error: str
     albedo: Union[float, str]
+    neighbours: int = 1
     multipath: Optional[OperatingMultipath] = None

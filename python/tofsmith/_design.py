@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -285,3 +286,69 @@ def design(
     result = _tofsmith.design(camera._handle, options, targets, _check.progress(progress))
     result["candidates"] = [_candidate(c) for c in result["candidates"]]
     return DesignResult(**result)
+
+
+def find_requirements(
+    camera: CameraLike,
+    error_m: float,
+    *,
+    vary_bandwidth: Optional[bool] = None,
+    vary_power: Optional[bool] = None,
+    vary_exposure: Optional[bool] = None,
+    max_factor: Optional[float] = None,
+    effort: Optional[float] = None,
+    trials: Optional[int] = None,
+    map: Optional[bool] = None,
+    seed: Optional[int] = None,
+    progress: Progress = None,
+) -> dict[str, Any]:
+    """The least bandwidth, power and exposure, each by itself, with which a code reaches an error,
+    and below what no code can.
+
+    Parameters
+    ----------
+    camera : Camera or its name
+        `camera.at_distances(5, albedo=0.3, klux=50)` for the light at a distance.
+    error_m : float
+        Circular depth error that is asked for [m], > 0.
+    vary_bandwidth, vary_power, vary_exposure : bool, optional
+        What is varied (True).
+    max_factor : float, optional
+        Quantities are varied between 1 / this and this times the camera's (64).
+    effort : float, optional
+        Of every design, as in design() (0.1).
+    trials : int, optional
+        Per operating point (50000).
+    map : bool, optional
+        Also the error over bandwidth and power, if both are varied (True).
+    seed : int, optional
+        Of every random choice (1).
+    progress : callable, optional
+
+    Returns
+    -------
+    dict
+        As `tofsmith require --json` prints: `now` (error_m, code, receiver_bound_mae_m), `varied`, a
+        list with quantity, factor (None: not even max_factor suffices), error_m, code and
+        excluded_below, and `map` (bandwidth, power, error_m).
+
+    Raises
+    ------
+    ValueError
+        For bad options, or for bandwidth where neither arm has a limit.
+    """
+    options = {
+        "error_m": error_m,
+        "vary_bandwidth": vary_bandwidth,
+        "vary_power": vary_power,
+        "vary_exposure": vary_exposure,
+        "max_factor": max_factor,
+        "effort": effort,
+        "trials": trials,
+        "map": map,
+        "seed": seed,
+    }
+    handle = camera_of(camera)._handle
+    text = _tofsmith.find_requirements(handle, options, _check.progress(progress))
+    found: dict[str, Any] = json.loads(text)
+    return found

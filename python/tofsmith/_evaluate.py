@@ -29,6 +29,7 @@ def evaluate(
     target_standard_error: Optional[float] = None,
     max_trials: Optional[int] = None,
     draw_every_measurement: Optional[bool] = None,
+    bounds: Optional[bool] = None,
     progress: Progress = None,
 ) -> DepthErrorReport:
     """Monte Carlo depth error at every operating point of the camera, with bounds beside it.
@@ -59,6 +60,8 @@ def evaluate(
     draw_every_measurement : bool, optional
         Draw the noise of every measurement even where it could be drawn in the plane that ZNCC
         looks at (False): so methods are compared on the same noise.
+    bounds : bool, optional
+        Also compute the bounds (True); else they are 0.
     progress : callable, optional
 
     Raises
@@ -79,6 +82,7 @@ def evaluate(
         "target_standard_error": target_standard_error,
         "max_trials": max_trials,
         "draw_every_measurement": draw_every_measurement,
+        "bounds": bounds,
     }
     handle = code_of(code, camera)._handle
     callback = _check.progress(progress)

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "camera/number_checks.hpp"
 #include "camera/shared/actual_code.hpp"
 #include "camera/shared/prototype.hpp"
 #include "tofsmith/code/families.hpp"
@@ -15,13 +16,6 @@
 
 namespace tofsmith {
 namespace {
-
-void require_positive(double value, std::string_view field) {
-  require(std::isfinite(value) && value > 0.0, field, value, "must be finite and > 0");
-}
-void require_not_negative(double value, std::string_view field) {
-  require(std::isfinite(value) && value >= 0.0, field, value, "must be finite and >= 0");
-}
 
 void validate_light(const LightSource& light) {
   require(std::isfinite(light.peak_factor) && light.peak_factor >= 1.0, "light.peak_factor",
@@ -88,6 +82,8 @@ void validate_operating(const OperatingRange& range, double range_m) {
   levels(range.ambient_e_per_s, "operating.ambient_e_per_s", true);
   require(range.albedo > 0.0 && range.albedo <= 1.0, "operating.albedo", range.albedo,
           "must be in (0, 1] or \"uniform\"");
+  require(range.neighbours >= 1 && range.neighbours <= 10000, "operating.neighbours",
+          range.neighbours, "must be in [1, 10000]");
   if (range.multipath) range.multipath->validate(range_m);
 }
 
@@ -183,6 +179,7 @@ void Camera::validate() const {
     require(std::isfinite(lens->cy_px), "lens.cy_px", lens->cy_px, "must be finite");
   }
   if (blur) blur->validate();
+  if (optics) optics->validate();
   validate_operating(operating, range_m());
 }
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <string_view>
 
+#include "camera/number_checks.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -21,9 +21,6 @@ void LensBlur::validate() const {
     require(blur_sigma_px > 0.0 && blur_sigma_px <= 32.0, "lens.blur_sigma_px", blur_sigma_px,
             "must be in (0, 32]");
   if (kind != Kind::disc) return;
-  const auto require_positive = [](double value, std::string_view field) {
-    require(std::isfinite(value) && value > 0.0, field, value, "must be finite and > 0");
-  };
   require_positive(focal_length_m, "lens.focal_length_m");
   require_positive(f_number, "lens.f_number");
   require(std::isfinite(focus_distance_m) && focus_distance_m > focal_length_m,

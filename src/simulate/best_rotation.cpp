@@ -8,8 +8,9 @@
 
 namespace tofsmith {
 
-BestRotation best_rotation(const CodeSet& code, const Camera& camera,
-                           const EvaluateOptions& options, const Progress& progress) {
+BestRotation best_rotation(const CodeSet& code, const Camera& on, const EvaluateOptions& options,
+                           const Progress& progress) {
+  const Camera camera = judged_camera(on);
   constexpr std::int64_t runs_at_once = 64;  // each keeps N figures
   const ForwardModel model(code, camera);
   const DepthTrials trials(model, camera, options);

@@ -27,15 +27,19 @@ Estimate table_depth_error_m(const DecodingTable& table, const OperatingPoint& l
 
 void EvaluateOptions::validate() const { check_fields(*this); }
 
-DepthErrorReport evaluate(const CodeSet& code, const Camera& camera, const EvaluateOptions& options,
+DepthErrorReport evaluate(const CodeSet& code, const Camera& on, const EvaluateOptions& options,
                           const Progress& progress) {
+  const Camera camera = judged_camera(on);
   const ForwardModel model(code, camera);
   const DepthTrials trials(model, camera, options);
+  DepthErrorReport result = trial_errors(trials, code, camera, options, progress);
+  if (!options.bounds) {
+    report(progress, 1.0, "depth error");
+    return result;
+  }
   const CramerRaoBound cramer_rao(model, camera);
   const ReceiverBound receiver(camera, code.exposures());
   const DirectTofBound direct_tof(camera);
-
-  DepthErrorReport result = trial_errors(trials, code, camera, options, progress);
   for (PointDepthError& error : result.points) {
     error.cramer_rao_mae_m = bound_mae_m(cramer_rao, camera, error.point);
     error.receiver_bound_mae_m = bound_mae_m(receiver, camera, error.point);

@@ -85,7 +85,11 @@ OperatingMultipathError error_of(const PixelCapture& pixel, const Camera& camera
 struct OperatingMultipathTrials {
   OperatingMultipathTrials(const CodeSet& code, const Camera& on, const OperatingMultipath& met,
                            const EvaluateOptions& how)
-      : camera(on), later(met), options(how), model(checked_model(code)), pixel(model, on) {}
+      : camera(judged_camera(on)),
+        later(met),
+        options(how),
+        model(checked_model(code)),
+        pixel(model, camera) {}
 
   OperatingMultipathError single_path(const Progress& progress) const {
     const Decoder decoder(make_decoding_table(model, camera));
@@ -113,7 +117,7 @@ struct OperatingMultipathTrials {
     return ForwardModel(code, camera);
   }
 
-  const Camera& camera;
+  const Camera camera;
   const OperatingMultipath& later;
   const EvaluateOptions& options;
   ForwardModel model;

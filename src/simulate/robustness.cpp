@@ -57,8 +57,9 @@ double GeneratorLoss::uncalibrated_ratio(DepthErrorKind kind) const {
   return uncalibrated.of(kind).geometric_mean_m.value / nominal_m(kind).value;
 }
 
-GeneratorLoss generator_loss(const CodeSet& code, const Camera& camera,
-                             const EvaluateOptions& options, const Progress& progress) {
+GeneratorLoss generator_loss(const CodeSet& code, const Camera& on, const EvaluateOptions& options,
+                             const Progress& progress) {
+  const Camera camera = judged_camera(on);
   options.validate();
   Camera ideal = camera;
   ideal.light.generator.reset();
@@ -92,8 +93,9 @@ Estimate RobustnessReport::worst_uncalibrated_m() const {
   return worst;
 }
 
-RobustnessReport robustness(const CodeSet& code, const Camera& camera,
-                            const RobustnessOptions& options, const Progress& progress) {
+RobustnessReport robustness(const CodeSet& code, const Camera& on, const RobustnessOptions& options,
+                            const Progress& progress) {
+  const Camera camera = judged_camera(on);
   const std::vector<PerturbedCamera> cameras = perturbations(camera, options);
   const DepthErrorKind kind = camera.operating.error;
   const Judge judge(kind, options);

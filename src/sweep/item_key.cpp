@@ -76,6 +76,8 @@ std::string item_key(std::string_view setup, const OperatingRange& light,
   append(text, "albedo ", {&light.albedo, 1});
   fmt::format_to(std::back_inserter(text), "{} {}\n", light.uniform_albedo,
                  static_cast<int>(light.error));
+  if (light.neighbours != 1)
+    fmt::format_to(std::back_inserter(text), "neighbours {}\n", light.neighbours);
   return fnv1a_128_hex(text);
 }
 

@@ -92,7 +92,18 @@ Camera every_field_set() {
                          .focus_distance_m = 1.5,
                          .pixel_pitch_m = 1e-5,
                          .pixel_samples = 3};
+  camera.optics = Optics{.source_power_w = 0.5,
+                         .wavelength_m = 850e-9,
+                         .field_of_view_deg = {70, 55.5},
+                         .f_number = 1.4,
+                         .pixel_pitch_m = 1e-5,
+                         .quantum_efficiency = 0.3,
+                         .transmission = 0.8,
+                         .fill_factor = 0.9,
+                         .filter_width_m = 30e-9,
+                         .sunlight_w_per_m2_nm = 0.4};
   camera.operating = {{1e3}, {0.0, 1e2}, DepthErrorKind::circular, 1.0, true};
+  camera.operating.neighbours = 50;
   camera.operating.multipath = OperatingMultipath{{0.0, 1.0}, {0.25, 1.0 / 3}, 0.125};
   return camera;
 }

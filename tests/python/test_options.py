@@ -38,6 +38,7 @@ keywords = [
     ("EvaluateOptions", "simulate/depth_error.hpp", ts.evaluate, set()),
     ("CaptureOptions", "simulate/capture.hpp", ts.capture, set()),
     ("DesignOptions", "design/design.hpp", ts.design, set()),
+    ("RequirementOptions", "design/design.hpp", ts.find_requirements, set()),
     ("MultipathErrorOptions", "simulate/multipath_error.hpp", ts.multipath_error, set()),
     ("DecodeOptions", "decode/decoder.hpp", ts.Decoder, set()),
     ("TimeFilterOptions", "decode/filter.hpp", ts.TimeFilter, set()),

@@ -210,6 +210,26 @@ def test_evaluate(ways, camera):
         assert getattr(report, name).ravel().tolist() == [p[name] for p in code["points"]]
 
 
+def test_evaluate_at_distances(ways):
+    optics = {"source_power_w": 0.5, "wavelength_m": 940e-9, "field_of_view_deg": [70, 55],
+              "f_number": 1.2, "pixel_pitch_m": 7e-6, "quantum_efficiency": 0.3,
+              "filter_width_m": 30e-9}
+    camera = ts.Camera("paper-10f0", samples=120, optics=optics)
+    camera.write(ways.folders["command"] / "mine.toml")
+    ways.command("evaluate", "hamiltonian-k4", "--camera", "mine.toml", "--distance", "1", "4",
+                 "--albedo", "0.3", "--klux", "20", "--trials", "500", "-o", "evaluation.json")
+    (code,) = json.loads(ways.files("command")["evaluation.json"])["codes"]
+    asked = camera.at_distances([1.0, 4.0], albedo=0.3, klux=20)
+    report = ts.evaluate("hamiltonian-k4", asked, trials=500)
+    assert report.linear_mde_m.ravel().tolist() == [p["linear_mde_m"] for p in code["points"]]
+    signals = asked.operating.signal_e_per_s
+    assert [p["signal_e_per_s"] for p in code["points"]] == list(signals)
+    assert signals[0] == pytest.approx(16 * signals[1])
+    assert camera.optics.sunlight_klux is None and asked.optics.sunlight_klux == 20
+    with pytest.raises(ValueError, match="optics = none; must be given"):
+        ts.Camera("paper-10f0").at_distances(1.0)
+
+
 def test_design(ways):
     ways.command("design", "exclusive-3tap-9chip", "--set",
                  "sensor.shortest_pulse_s=15e-9", "--method", "search", "--exposures", "2",
@@ -221,6 +241,16 @@ def test_design(ways):
     # The page tells the command; finished codes stay of a run that could have been interrupted.
     pages = [f"design/{name}" for name in ("report.html", "finished/searched-k2.json")]
     assert len(ways.same(*pages, change=lambda content: seconds.sub(b"", content))) >= 5
+
+
+def test_require(ways, camera):
+    ways.command("require", "paper-10f0", *SMALL, "--error", "20mm", "--vary", "power", "--effort",
+                 "0.01", "--trials", "1000", "-o", "found.json")
+    found = ts.find_requirements(camera, 0.02, vary_bandwidth=False, vary_exposure=False,
+                                 effort=0.01, trials=1000)
+    assert found == json.loads(ways.files("command")["found.json"])
+    (power,) = found["varied"]
+    assert power["quantity"] == "power" and power["error_m"] <= 0.02
 
 
 def test_export(ways, camera):

@@ -12,6 +12,8 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
+#include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/simulate/capture.hpp"
 
 namespace tofsmith {
 namespace {
@@ -224,6 +226,58 @@ TEST(Evaluate, UniformAlbedoAveragesOverSignals) {
   const PointDepthError error = evaluate(code, camera).points[0];
   EXPECT_NEAR(error.circular_mde_m.value, plain, 4 * 2 * error.circular_mde_m.standard_error);
   EXPECT_GT(error.cramer_rao_mae_m, error.receiver_bound_mae_m);
+}
+
+/// Mean circular error of sums of `n` captured pixels of one depth, decoded.
+Estimate error_of_sums(const CodeSet& code, const Camera& camera, int n) {
+  constexpr int depths = 4000;
+  SceneImage scene(1, depths);
+  for (int i = 0; i < depths; ++i)
+    scene.depth_m.pixels[static_cast<std::size_t>(i)] =
+        static_cast<float>((i + 0.5) / depths * camera.range_m());
+  const OperatingPoint light = camera.operating.points().front();
+  const RawFrames raw = capture(scene, code, camera,
+                                {.signal_e_per_s = light.signal_e_per_s,
+                                 .ambient_e_per_s = light.ambient_e_per_s,
+                                 .falloff = false,
+                                 .frames = n});
+  RawFrames sum = raw;
+  sum.frames = 1;
+  const std::size_t values = raw.values.size() / static_cast<std::size_t>(n);
+  sum.values.assign(values, 0.0f);
+  const double gain = camera.sensor.gain_e_per_dn.value_or(1.0);
+  const double black = camera.sensor.black_level_dn.value_or(0.0);
+  for (std::size_t i = 0; i < raw.values.size(); ++i)
+    sum.values[i % values] += static_cast<float>(gain * (raw.values[i] - black));
+  Camera of_sums = judged_camera(camera);
+  of_sums.sensor.full_well_e.reset();
+  const Decoder decoder(make_decoding_table(ForwardModel(code, of_sums), of_sums));
+  const Image<float> depth_m = decoder.decode(sum).depth_m;
+  RunningStatistics circular;
+  for (std::size_t i = 0; i < depth_m.pixels.size(); ++i)
+    circular.add(std::abs(
+        circular_difference(depth_m.pixels[i], scene.depth_m.pixels[i], camera.range_m())));
+  return circular.estimate();
+}
+
+TEST(Evaluate, NeighboursAreJudgedAsSumsOfPixelsAre) {
+  for (const bool counts : {false, true})
+    for (const char* name : {"hamiltonian-k4", "sinusoid-k3"}) {
+      Camera camera = camera_at("paper-10f0", {5e3}, {3e3});
+      camera.sensor.noise = NoiseModel::poisson;
+      if (counts) {
+        camera.sensor.adc_bits = 10;
+        camera.sensor.gain_e_per_dn = 60.0;  // a step as coarse as the noise
+        camera.sensor.black_level_dn = 64.0;
+      }
+      const CodeSet code = build_family(name, camera);
+      const double alone_m = evaluate(code, camera).circular.mean_m.value;
+      camera.operating.neighbours = 16;
+      const Estimate judged = evaluate(code, camera).circular.mean_m;
+      const Estimate sums = error_of_sums(code, camera, 16);
+      EXPECT_NEAR(judged.value, sums.value, 5 * joint(judged, sums)) << name << counts;
+      EXPECT_LT(judged.value, 0.4 * alone_m);
+    }
 }
 
 TEST(Evaluate, StopsWhenAskedAndRefusesNonsense) {

@@ -120,6 +120,19 @@ double generated_switching_time(double switching_time_periods, const Generator& 
 /// does without an edge grid.
 double nearest_point(double switching_time_periods, double points_per_period);
 
+/// Light levels, as photo-electron rates were the sensor fully open.
+struct OperatingPoint {
+  double signal_e_per_s = 0.0;   ///< S, of the modulated light
+  double ambient_e_per_s = 0.0;  ///< A, of everything else
+
+  friend bool operator==(const OperatingPoint&, const OperatingPoint&) = default;
+};
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<OperatingPoint> auto& p) {
+  return std::tuple(Field("signal_e_per_s", p.signal_e_per_s, "finite and >= 0"),
+                    Field("ambient_e_per_s", p.ambient_e_per_s, "finite and >= 0"));
+}
+
 /// How the noise of electrons is drawn.
 enum class NoiseModel {
   poisson,   ///< Poisson electrons plus Gaussian read noise
@@ -222,18 +235,49 @@ struct LensBlur {
   friend bool operator==(const LensBlur&, const LensBlur&) = default;
 };
 
-/// Light levels, as photo-electron rates were the sensor fully open.
-struct OperatingPoint {
-  double signal_e_per_s = 0.0;   ///< S, of the modulated light
-  double ambient_e_per_s = 0.0;  ///< A, of everything else
+/// What turns watts and lux into electrons. Field names are keys of [optics] in the TOML file.
+/// Surfaces are Lambertian and face the camera; the light fills its field of view evenly; the lens
+/// is far from what it sees.
+/// @see docs/optics.md for formulas and their sources
+struct Optics {
+  double source_power_w = 0.0;  ///< mean optical power of the modulated light [W], > 0
+  double wavelength_m = 0.0;    ///< [m]
+  /// Full angles that the light fills, across and down [degrees], (0, 180).
+  std::array<double, 2> field_of_view_deg{};
+  double f_number = 0.0;            ///< of the lens: focal length over aperture, > 0
+  double pixel_pitch_m = 0.0;       ///< between centres of pixels [m], > 0
+  double quantum_efficiency = 0.0;  ///< electrons per photon on the sensitive area, (0, 1]
+  double transmission = 1.0;        ///< of lens and filter, at the wavelength, (0, 1]
+  double fill_factor = 1.0;         ///< share of a pixel that is sensitive, (0, 1]
+  std::optional<double> filter_width_m = {};  ///< band that the filter passes [m]; with sunlight
+  /// Sunlight on the surface, by its illuminance [klx]: the global spectrum of ASTM G173-03, which
+  /// has 109.9 klx. Where the filter passes within 800 to 1000 nm.
+  std::optional<double> sunlight_klux = {};
+  /// Or sunlight on the surface within the filter's band [W / m2 / nm].
+  std::optional<double> sunlight_w_per_m2_nm = {};
 
-  friend bool operator==(const OperatingPoint&, const OperatingPoint&) = default;
+  /// S and A of a surface of that albedo [e/s]:
+  ///   S = albedo E tau / (4 k^2) pitch^2 fill QE lambda / (h c),
+  ///   E = P / (4 d^2 tan(h / 2) tan(v / 2)); A the same of the sunlight that the filter passes.
+  /// @throws std::invalid_argument naming field, value and rule
+  OperatingPoint light_at(double distance_m, double albedo = 1.0) const;
+  /// How far away a surface returns that signal [m].
+  double distance_m(double signal_e_per_s, double albedo = 1.0) const;
+  /// The mean optical power that it takes for that signal at that distance [W].
+  double source_power_for_w(double signal_e_per_s, double distance_m, double albedo = 1.0) const;
+
+  /// Irradiance by the light itself on a surface that faces it [W / m2].
+  double source_w_per_m2(double distance_m) const;
+  /// Irradiance by the sunlight that the filter passes on such a surface [W / m2].
+  double sunlight_w_per_m2() const;
+  /// Electrons of a pixel per joule that falls on a square metre of white surface.
+  double electrons_per_j_per_m2() const;
+
+  /// @throws std::invalid_argument naming the field as optics.*, value and rule
+  void validate() const;
+
+  friend bool operator==(const Optics&, const Optics&) = default;
 };
-/// Its fields (core/fields.hpp).
-auto fields_of(ConstOrNot<OperatingPoint> auto& p) {
-  return std::tuple(Field("signal_e_per_s", p.signal_e_per_s, "finite and >= 0"),
-                    Field("ambient_e_per_s", p.ambient_e_per_s, "finite and >= 0"));
-}
 
 /// Where a code is judged: every pair of signal and ambient.
 struct OperatingRange {
@@ -242,6 +286,9 @@ struct OperatingRange {
   DepthErrorKind error = DepthErrorKind::linear;
   double albedo = 1.0;          ///< scales the signal, (0, 1]
   bool uniform_albedo = false;  ///< instead: a fresh uniform draw in (0, 1) for every trial
+  /// Pixels of one depth that a filter adds before it decodes, 1 .. 10000: codes are judged on such
+  /// sums (judged_camera()).
+  int neighbours = 1;
   /// Multipath that designs take into account; none: light comes back once.
   std::optional<OperatingMultipath> multipath = {};
 
@@ -272,6 +319,7 @@ struct Camera {
   Sensor sensor;
   std::optional<Lens> lens;      ///< the pinhole: four keys of [lens]
   std::optional<LensBlur> blur;  ///< the other keys of [lens]; none: sharp
+  std::optional<Optics> optics;  ///< what turns watts and lux into electrons; none: unknown
   OperatingRange operating;
 
   /// Time from the beginning of a frame to that of the next [s]: sensor.frame_period_s, or as long
@@ -306,6 +354,25 @@ struct Camera {
 
   friend bool operator==(const Camera&, const Camera&) = default;
 };
+
+/// The camera judged on surfaces of that albedo at each of these distances: its operating points
+/// are what its optics make of them, brightest first.
+/// @param klux  sunlight on the surfaces, in place of the optics' own
+/// @throws std::invalid_argument naming field, value and rule; also for a camera without optics
+Camera at_distances(Camera camera, std::vector<double> distances_m, double albedo = 1.0,
+                    std::optional<double> klux = {});
+
+/// Light that captures have if nobody says another: that of the camera's optics on white surfaces
+/// at that distance, with its sunlight, if it has any; else the middle of the operating points.
+OperatingPoint capture_light(const Camera& camera, double reference_distance_m);
+
+/// The camera whose single pixels measure what sums of `operating.neighbours` = n pixels do, and
+/// what its codes are judged on: exposures n times as long, read noise sqrt(n) times as large with
+/// quantization in it, full well and saturation of the converter n times as high, one neighbour.
+/// The camera itself for n = 1. Counts cut off at 0 are not known any more: a converter's black
+/// level is taken as high enough.
+/// @throws std::invalid_argument if the camera is invalid
+Camera judged_camera(const Camera& camera);
 
 /// Why `code` cannot be played and read out on `camera`, a valid one: taps, samples, peak,
 /// exposures, what a sensor without drain leaves to no tap, or pulses too short for the light's

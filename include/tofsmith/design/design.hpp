@@ -151,4 +151,82 @@ DesignResult judge(const Camera& camera, std::vector<Candidate> candidates,
 DesignResult design(const Camera& camera, const DesignOptions& options = {},
                     const Progress& progress = {}, const DesignStore& store = {});
 
+/// What a requirement can vary of a camera.
+enum class CameraQuantity {
+  bandwidth,  ///< of both arms: their cutoffs; shorter pulses with it
+  power,      ///< of the modulated light
+  exposure,   ///< integration time
+};
+/// The enumerator's name.
+std::string_view name_of(CameraQuantity quantity);
+/// @throws std::invalid_argument for any other word
+CameraQuantity parse_camera_quantity(std::string_view name);
+
+/// The camera with `factor` times as much of a quantity, > 0.
+/// @throws InvalidArgument for bandwidth, where neither arm has a limit
+Camera with_scaled(Camera camera, CameraQuantity quantity, double factor);
+
+/// How a requirement is met.
+struct RequirementOptions {
+  double error_m = 0.005;  ///< circular; geometric mean over the operating points
+  bool vary_bandwidth = true;
+  bool vary_power = true;
+  bool vary_exposure = true;
+  double max_factor = 64.0;  ///< quantities are varied between 1 / this and this, in (1, 1e6]
+  double effort = 0.1;       ///< of every design, as of with_effort()
+  int trials = 50000;        ///< per operating point, to judge codes, >= 1000
+  bool map = true;           ///< also the error over bandwidth and power, if both are varied
+  std::uint64_t seed = 1;
+
+  /// What is varied, in the order of the enumeration.
+  std::vector<CameraQuantity> varied() const;
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<RequirementOptions> auto& o) {
+  return std::tuple(
+      Field("error_m", o.error_m, "finite and > 0"), Field("vary_bandwidth", o.vary_bandwidth),
+      Field("vary_power", o.vary_power), Field("vary_exposure", o.vary_exposure),
+      Field("max_factor", o.max_factor, "in (1, 1e6]"), Field("effort", o.effort, "in [0.01, 100]"),
+      Field("trials", o.trials, ">= 1000"), Field("map", o.map), Field("seed", o.seed));
+}
+
+/// How much of one quantity it takes, everything else as the camera has it.
+struct Sufficiency {
+  CameraQuantity quantity = CameraQuantity::power;
+  /// Times the camera's: the least that suffices; none: not even max_factor does.
+  std::optional<double> factor;
+  double error_m = 0.0;  ///< there, or at max_factor
+  CodeSet code;          ///< that reaches it
+  /// Below this factor no code can, by ReceiverBound; 0: the bound excludes nothing.
+  double excluded_below = 0.0;
+};
+
+/// Error of the best code found at each bandwidth, over power.
+struct RequirementMap {
+  std::vector<double> bandwidth, power;  ///< factors, ascending
+  Eigen::MatrixXd error_m;               ///< (bandwidth, power)
+};
+
+/// What it takes of a camera to measure depth as well as asked.
+struct Requirements {
+  double error_m = 0.0;             ///< that the camera reaches as it is
+  CodeSet code;                     ///< with this code
+  double bound_m = 0.0;             ///< ReceiverBound of the camera as it is; 0: none
+  std::vector<Sufficiency> varied;  ///< in the order of the enumeration
+  std::optional<RequirementMap> map;
+};
+
+/// Finds, for each quantity by itself, the least with which a code reaches the error: codes are
+/// designed at every factor of four on the way and again where the search ends, and every code
+/// found is judged with the baselines, by the same random numbers. The error falls with each
+/// quantity, so the least is found by halving; to 0.5 %. The circular error counts, whatever the
+/// camera says: at a given distance nothing wraps.
+/// @throws std::invalid_argument as design(), for bad options, or for bandwidth where there is no
+///         limit; Interrupted
+Requirements find_requirements(const Camera& camera, const RequirementOptions& options,
+                               const Progress& progress = {});
+
 }  // namespace tofsmith

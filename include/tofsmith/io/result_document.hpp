@@ -39,6 +39,11 @@ std::string evaluation_document(const Camera& camera, std::span<const EvaluatedC
 std::string design_document(const Camera& camera, const DesignResult& result,
                             const DesignOptions& options);
 
+/// What `tofsmith require --json` prints: camera and options, the error as it is, what of each
+/// quantity suffices and what the bound excludes, and the error over bandwidth and power.
+std::string requirements_document(const Camera& camera, const Requirements& found,
+                                  const RequirementOptions& options);
+
 /// What `evaluate --multipath` found, as JSON: per code, per signal, every cell; what a code cannot
 /// do is null.
 /// @param scene  what became of a scene, by mean delay of its multipath light; null: none

@@ -34,6 +34,15 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
 Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
                        std::span<const EvaluatedCode> evaluated, const std::string& command_line);
 
+/// The lines of a table of what it takes to reach an error, headings first.
+std::vector<std::vector<std::string>> requirement_rows(const Camera& camera,
+                                                       const Requirements& found,
+                                                       const RequirementOptions& options);
+
+/// The same as a page, with the error over bandwidth and power.
+Page requirements_report(const Camera& camera, const Requirements& found,
+                         const RequirementOptions& options, const std::string& command_line);
+
 /// A code and what becomes of its depth error on perturbed cameras.
 struct JudgedCode {
   std::string name;

@@ -41,20 +41,21 @@ struct EvaluateOptions {
   /// Draw the noise of every measurement even where it could be drawn in the plane that ZNCC looks
   /// at: methods are so compared on the same noise.
   bool draw_every_measurement = false;
+  bool bounds = true;  ///< also compute the bounds; else they stay 0
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
-  return std::tuple(Field("trials", o.trials, "in [2, 4e9]"), Field("seed", o.seed),
-                    Field("outlier_threshold_m", o.outlier_threshold_m, ">= 0"),
-                    Field("sub_bin", o.sub_bin), Field("depth", o.depth),
-                    Field("clip_to_open_sensor", o.clip_to_open_sensor), Field("method", o.method),
-                    Field("unwrap_weights", o.unwrap_weights),
-                    Field("target_standard_error", o.target_standard_error, "in [0, 1)"),
-                    Field("max_trials", o.max_trials, "in [2, 4e9]"),
-                    Field("draw_every_measurement", o.draw_every_measurement));
+  return std::tuple(
+      Field("trials", o.trials, "in [2, 4e9]"), Field("seed", o.seed),
+      Field("outlier_threshold_m", o.outlier_threshold_m, ">= 0"), Field("sub_bin", o.sub_bin),
+      Field("depth", o.depth), Field("clip_to_open_sensor", o.clip_to_open_sensor),
+      Field("method", o.method), Field("unwrap_weights", o.unwrap_weights),
+      Field("target_standard_error", o.target_standard_error, "in [0, 1)"),
+      Field("max_trials", o.max_trials, "in [2, 4e9]"),
+      Field("draw_every_measurement", o.draw_every_measurement), Field("bounds", o.bounds));
 }
 
 /// Depth error at one operating point.

@@ -245,10 +245,10 @@ ChipSearchCounts& ChipSearchCounts::operator+=(const ChipSearchCounts& other) {
   return *this;
 }
 
-ChipSearchResult search_chip_codes(const Camera& camera, const ChipSearchOptions& options,
+ChipSearchResult search_chip_codes(const Camera& on, const ChipSearchOptions& options,
                                    const Progress& progress) {
   options.validate();
-  camera.validate();
+  const Camera camera = judged_camera(on);
   require(why_not_searchable(camera, options.exposures));
   const auto begin = std::chrono::steady_clock::now();
   const AssignmentRules rules{.chips = chips_of(camera),

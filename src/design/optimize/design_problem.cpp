@@ -180,11 +180,12 @@ std::size_t CameraVariant::usual_levels() const {
                     [](const LightLevel& level) { return level.returns != TrialReturns::two; }));
 }
 
-DesignProblem make_design_problem(std::span<const Camera> variants, int exposures, int samples,
+DesignProblem make_design_problem(std::span<const Camera> given, int exposures, int samples,
                                   double two_return_weight) {
-  require(!variants.empty(), "variants", variants.size(), "must hold at least one camera");
+  require(!given.empty(), "variants", given.size(), "must hold at least one camera");
+  std::vector<Camera> variants;
+  for (const Camera& variant : given) variants.push_back(judged_camera(variant));
   const Camera& camera = variants.front();
-  camera.validate();
   require(why_not_optimizable(camera, exposures));
   DesignProblem problem;
   problem.space = waveform_space(camera, exposures, samples);
@@ -198,7 +199,6 @@ DesignProblem make_design_problem(std::span<const Camera> variants, int exposure
   if (problem.later && two_return_weight > 0.0)
     problem.multipath_as_two = decoded_as_two(*problem.later, problem.space.samples());
   for (const Camera& variant : variants) {
-    variant.validate();
     require(variant.sensor.taps == camera.sensor.taps &&
                 variant.sensor.readout == camera.sensor.readout,
             "variants", variant.name, "must have the taps and the readout of the first");

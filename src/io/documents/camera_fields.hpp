@@ -123,6 +123,23 @@ void visit_lens(Table& table, Field<Table, Camera>& camera) {
 }
 
 template <typename Table>
+void visit_optics(Table& table, Field<Table, Optics>& optics) {
+  table.required("source_power_w", "0.5").value("source_power_w", optics.source_power_w);
+  table.required("wavelength_m", "850e-9").value("wavelength_m", optics.wavelength_m);
+  table.required("field_of_view_deg", "[70, 55]")
+      .value("field_of_view_deg", optics.field_of_view_deg);
+  table.required("f_number", "1.4").value("f_number", optics.f_number);
+  table.required("pixel_pitch_m", "10e-6").value("pixel_pitch_m", optics.pixel_pitch_m);
+  table.required("quantum_efficiency", "0.3")
+      .value("quantum_efficiency", optics.quantum_efficiency);
+  table.value("transmission", optics.transmission);
+  table.value("fill_factor", optics.fill_factor);
+  table.value("filter_width_m", optics.filter_width_m);
+  table.value("sunlight_klux", optics.sunlight_klux);
+  table.value("sunlight_w_per_m2_nm", optics.sunlight_w_per_m2_nm);
+}
+
+template <typename Table>
 void visit_operating_multipath(Table& table, Field<Table, OperatingMultipath>& returns) {
   table.value("ratio", returns.ratio);
   table.value("delay_m", returns.delay_m);
@@ -135,6 +152,7 @@ void visit_operating(Table& table, Field<Table, OperatingRange>& range) {
   table.value("ambient_e_per_s", range.ambient_e_per_s);
   table.choice("error", range.error, words_by_name<DepthErrorKind, 2>("DepthErrorKind", "error"));
   table.number_or_word("albedo", range.albedo, "uniform", range.uniform_albedo);
+  table.value("neighbours", range.neighbours);
   table.table("multipath", range.multipath, visit_operating_multipath<Table>);
 }
 
@@ -148,6 +166,7 @@ void visit_camera(Table& table, Field<Table, Camera>& camera) {
   table.table("light", camera.light, visit_light<Table>);
   table.table("sensor", camera.sensor, visit_sensor<Table>);
   table.table("lens", camera, visit_lens<Table>);
+  table.table("optics", camera.optics, visit_optics<Table>);
   table.table("operating", camera.operating, visit_operating<Table>);
 }
 

@@ -197,6 +197,34 @@ std::string evaluation_document(const Camera& camera, std::span<const EvaluatedC
   return document.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
+std::string requirements_document(const Camera& camera, const Requirements& found,
+                                  const RequirementOptions& options) {
+  const auto finite_or_null = [](double value) {
+    return std::isfinite(value) && value > 0.0 ? Json(value) : Json();
+  };
+  Json document = {{"tofsmith", TOFSMITH_VERSION}, {"camera", camera_document(camera)}};
+  document.update(fields_json(options));
+  document["now"] = {{"error_m", found.error_m},
+                     {"code", found.code.name()},
+                     {"receiver_bound_mae_m", finite_or_null(found.bound_m)}};
+  document["varied"] = Json::array();
+  for (const Sufficiency& s : found.varied)
+    document["varied"].push_back({{"quantity", name_of(s.quantity)},
+                                  {"factor", s.factor ? Json(*s.factor) : Json()},
+                                  {"error_m", s.error_m},
+                                  {"code", s.code.name()},
+                                  {"excluded_below", finite_or_null(s.excluded_below)}});
+  if (found.map) {
+    Json errors = Json::array();
+    for (Eigen::Index b = 0; b < found.map->error_m.rows(); ++b)
+      errors.push_back(
+          std::vector<double>(found.map->error_m.row(b).begin(), found.map->error_m.row(b).end()));
+    document["map"] = {
+        {"bandwidth", found.map->bandwidth}, {"power", found.map->power}, {"error_m", errors}};
+  }
+  return document.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string design_document(const Camera& camera, const DesignResult& result,
                             const DesignOptions& options) {
   return design_json(camera, result, options).dump(2, ' ', false, Json::error_handler_t::replace);

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "distance_arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "number_checks.hpp"
+#include "tofsmith/camera/camera.hpp"
+
+namespace tofsmith::apps {
+
+void DistanceArguments::add_to(CLI::App& command) {
+  CLI::Option* distance =
+      command
+          .add_option("--distance", distances_m_,
+                      "at surfaces this far away [m], instead of the camera's operating points: "
+                      "light from its [optics]")
+          ->check(positive_number());
+  command.add_option("--albedo", albedo_, "of those surfaces")
+      ->check(positive_number(1.0))
+      ->capture_default_str()
+      ->needs(distance);
+  command.add_option("--klux", klux_, "sunlight on those surfaces [klx]")
+      ->check(number_from_0_on())
+      ->needs(distance);
+}
+
+Camera DistanceArguments::at(const Camera& camera, const Session& session) const {
+  if (!is_asked()) return camera;
+  const Camera judged = at_distances(camera, distances_m_, albedo_, klux_);
+  for (const double distance_m : distances_m_) {
+    const OperatingPoint light = judged.optics->light_at(distance_m, albedo_);
+    session.say(fmt::format("{:.4g} m, albedo {:.3g}: S = {:.4g} e/s, A = {:.4g} e/s{}", distance_m,
+                            albedo_, light.signal_e_per_s, light.ambient_e_per_s,
+                            distance_m < camera.range_m()
+                                ? std::string()
+                                : fmt::format("; beyond the range of {:.4g} m, where depths repeat",
+                                              camera.range_m())));
+  }
+  return judged;
+}
+
+}  // namespace tofsmith::apps

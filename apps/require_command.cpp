@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "distance_arguments.hpp"
+#include "method_arguments.hpp"
+#include "number_checks.hpp"
+#include "session.hpp"
+#include "terminal_progress.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/io/result_document.hpp"
+#include "tofsmith/report/design_report.hpp"
+
+namespace tofsmith::apps {
+namespace {
+
+struct RequireArguments {
+  CameraArguments camera;
+  DistanceArguments distance;
+  RequirementOptions options;
+  std::string error;
+  std::vector<std::string> vary;
+  std::string output;
+};
+
+/// "5mm", "2 cm", "0.005 m". @throws UsageError
+double length_of(const std::string& text) {
+  for (const auto& [unit, metres] :
+       {std::pair("mm", 1e-3), std::pair("cm", 1e-2), std::pair("m", 1.0)}) {
+    if (!text.ends_with(unit)) continue;
+    double value = 0.0;
+    const std::string number = CLI::detail::trim_copy(text.substr(0, text.find(unit)));
+    if (CLI::detail::lexical_cast(number, value) && value > 0.0 && std::isfinite(value))
+      return value * metres;
+    break;
+  }
+  throw UsageError(
+      fmt::format("--error: found '{}'; expected a length > 0 with its unit, such as 5mm", text));
+}
+
+void run(RequireArguments& arguments, const Session& session) {
+  RequirementOptions& options = arguments.options;
+  options.error_m = length_of(arguments.error);
+  if (!arguments.vary.empty())
+    options.vary_bandwidth = options.vary_power = options.vary_exposure = false;
+  for (const std::string& word : arguments.vary) switch (parse_camera_quantity(word)) {
+      case CameraQuantity::bandwidth:
+        options.vary_bandwidth = true;
+        break;
+      case CameraQuantity::power:
+        options.vary_power = true;
+        break;
+      case CameraQuantity::exposure:
+        options.vary_exposure = true;
+        break;
+    }
+  const std::string extension = std::filesystem::path(arguments.output).extension().string();
+  if (!arguments.output.empty()) {
+    if (extension != ".json" && extension != ".html")
+      throw UsageError(fmt::format("-o {}: found {}; expected .json or .html", arguments.output,
+                                   extension.empty() ? "no extension" : extension));
+    session.check_output(arguments.output);
+  }
+  const Camera camera = arguments.distance.at(arguments.camera.load(), session);
+  const Requirements found = find_requirements(camera, options, terminal_progress("designing"));
+  if (extension == ".json")
+    write_file_atomically(arguments.output, requirements_document(camera, found, options) + "\n",
+                          session.output_policy());
+  if (extension == ".html")
+    write_file_atomically(arguments.output,
+                          render(requirements_report(camera, found, options, session.command_line)),
+                          session.output_policy());
+  if (session.json) return session.print_document(requirements_document(camera, found, options));
+  session.say(fmt::format("asked for {}; as it is, {} errs {}{}", length_text(options.error_m),
+                          found.code.name(), length_text(found.error_m),
+                          found.bound_m > 0.0
+                              ? fmt::format(" (no code less than {})", length_text(found.bound_m))
+                              : std::string()));
+  session.say(text_table(requirement_rows(camera, found, options)));
+  session.say(
+      fmt::format("each by itself, all else as the camera has it; circular error, designs of "
+                  "effort {:.3g}, {} trials, seed {}",
+                  options.effort, options.trials, options.seed));
+  if (!arguments.output.empty()) session.say(fmt::format("wrote {}", arguments.output));
+}
+
+}  // namespace
+
+void add_require_command(CLI::App& app, Session& session) {
+  auto arguments = std::make_shared<RequireArguments>();
+  CLI::App* command = app.add_subcommand(
+      "require", "how much bandwidth, power or exposure a depth error takes, and what no code can");
+  arguments->camera.add_positional(*command);
+  arguments->camera.add_to(*command);
+  command->add_option("--error", arguments->error, "depth error that is asked for, such as 5mm")
+      ->required();
+  arguments->distance.add_to(*command);
+  command
+      ->add_option("--vary", arguments->vary,
+                   "what to vary, each by itself: bandwidth,power,exposure (all three)")
+      ->delimiter(',')
+      ->check(one_of({"bandwidth", "power", "exposure"}));
+  command
+      ->add_option("--max-factor", arguments->options.max_factor, "at most so many times as much")
+      ->check(number_that("> 1", [](double factor) { return factor > 1.0; }))
+      ->capture_default_str();
+  command->add_option("--effort", arguments->options.effort, "how long to search for each code")
+      ->check(CLI::Range(0.01, 100.0))
+      ->capture_default_str();
+  command->add_option("--trials", arguments->options.trials, "trials per operating point")
+      ->check(CLI::Range(1000, 100'000'000))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->options.seed, "seed of every random choice")
+      ->capture_default_str();
+  command->add_flag("!--no-map", arguments->options.map,
+                    "no map of the error over bandwidth and power");
+  command->add_option("-o,--output", arguments->output,
+                      "write a page (.html) or all numbers (.json)");
+  command->callback([arguments, &session] { run(*arguments, session); });
+}
+
+}  // namespace tofsmith::apps

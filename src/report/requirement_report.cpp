@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/shared/level_text.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/report/design_report.hpp"
+#include "tofsmith/report/figure.hpp"
+#include "tofsmith/version.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// The narrower cutoff of both arms; 0: measured responses have none.
+double cutoff_hz(const Camera& camera) {
+  double least_hz = infinity;
+  for (const ImpulseResponse* response :
+       {&camera.light.impulse_response, &camera.sensor.impulse_response})
+    for (const double cutoff_hz : {response->f_max_hz, response->cutoff_hz})
+      if (cutoff_hz > 0.0) least_hz = std::min(least_hz, cutoff_hz);
+  return std::isfinite(least_hz) ? least_hz : 0.0;
+}
+
+/// A quantity of a camera in its own unit; empty where only the factor is known.
+std::string amount_text(const Camera& camera, CameraQuantity quantity) {
+  switch (quantity) {
+    case CameraQuantity::bandwidth:
+      return cutoff_hz(camera) > 0.0 ? plain_number(cutoff_hz(camera) / 1e6, 4) + " MHz" : "";
+    case CameraQuantity::power:
+      return camera.optics ? plain_number(camera.optics->source_power_w, 4) + " W" : "";
+    case CameraQuantity::exposure: {
+      double total_s = camera.exposure_s.total_s;
+      if (!camera.exposure_s.each_s.empty()) {
+        total_s = 0.0;
+        for (const double exposure_s : camera.exposure_s.each_s) total_s += exposure_s;
+      }
+      return plain_number(1e3 * total_s, 4) + " ms";
+    }
+  }
+  return "";
+}
+
+/// "2.3 x = 345 MHz".
+std::string scaled_text(const Camera& camera, CameraQuantity quantity, double factor) {
+  const std::string amount = amount_text(with_scaled(camera, quantity, factor), quantity);
+  const std::string times = plain_number(factor, 3) + " x";
+  return amount.empty() ? times : fmt::format("{} = {}", times, amount);
+}
+
+Figure error_over_power(const Camera& camera, const RequirementMap& map, double error_m) {
+  std::vector<Series> series;
+  ColourAssignment colours;
+  for (std::size_t b = 0; b < map.bandwidth.size(); b += 2) {
+    const std::string name = scaled_text(camera, CameraQuantity::bandwidth, map.bandwidth[b]);
+    Series curve{.name = name, .x = map.power, .y = {}, .mark = Mark::line_and_markers};
+    for (std::size_t p = 0; p < map.power.size(); ++p)
+      curve.y.push_back(1e3 *
+                        map.error_m(static_cast<Eigen::Index>(b), static_cast<Eigen::Index>(p)));
+    curve.style = colours.style(name);
+    series.push_back(std::move(curve));
+  }
+  series.push_back({.name = "asked for",
+                    .x = {map.power.front(), map.power.back()},
+                    .y = {1e3 * error_m, 1e3 * error_m},
+                    .style = reference_style()});
+  return line_figure({.id = "error-over-power",
+                      .title = "Depth error over power, at several bandwidths",
+                      .caption = "Of the best code found for each bandwidth, designed at the power "
+                                 "that the camera has, baselines among them."},
+                     series, {.label = "power", .unit = "times the camera's", .logarithmic = true},
+                     {.label = "depth error", .unit = "mm", .logarithmic = true});
+}
+
+Figure error_map(const RequirementMap& map, double error_m) {
+  HeatMap values{.title = "", .values = 1e3 * map.error_m};
+  CategoryAxis x{.label = "power", .unit = "times the camera's"};
+  CategoryAxis y{.label = "bandwidth", .unit = "times the camera's"};
+  for (const double factor : map.power) x.ticks.push_back(plain_number(factor, 2));
+  for (const double factor : map.bandwidth) y.ticks.push_back(plain_number(factor, 2));
+  return heat_map_figure(
+      {.id = "error-map",
+       .title = "Depth error over bandwidth and power",
+       .caption = fmt::format("In mm; {} is asked for: everything above and to the right of the "
+                              "cells with that number suffices.",
+                              length_text(error_m))},
+      {values}, x, y, {.label = "depth error", .unit = "mm", .logarithmic = true});
+}
+
+}  // namespace
+
+std::vector<std::vector<std::string>> requirement_rows(const Camera& camera,
+                                                       const Requirements& found,
+                                                       const RequirementOptions& options) {
+  std::vector<std::vector<std::string>> rows{
+      {"vary", "now", "suffices", "error (mm)", "code", "no code below"}};
+  for (const Sufficiency& s : found.varied) {
+    const std::string now = amount_text(camera, s.quantity);
+    rows.push_back({std::string(name_of(s.quantity)), now.empty() ? "1 x" : now,
+                    s.factor ? scaled_text(camera, s.quantity, *s.factor)
+                             : fmt::format("not even {} x", plain_number(options.max_factor, 3)),
+                    plain_number(1e3 * s.error_m, 4), s.code.name(),
+                    s.excluded_below == 0.0 ? "(no bound)"
+                    : s.excluded_below >= options.max_factor
+                        ? fmt::format("even {} x", plain_number(options.max_factor, 3))
+                        : scaled_text(camera, s.quantity, s.excluded_below)});
+  }
+  return rows;
+}
+
+Page requirements_report(const Camera& camera, const Requirements& found,
+                         const RequirementOptions& options, const std::string& command_line) {
+  Page page{
+      .title = fmt::format("What it takes for {} on {}", length_text(options.error_m), camera.name),
+      .subtitle = fmt::format("as it is: {} by {}", length_text(found.error_m), found.code.name()),
+      .footer = "tofsmith " TOFSMITH_VERSION};
+  const auto rows = requirement_rows(camera, found, options);
+  Table table{.id = "requirements",
+              .caption =
+                  "The least of each quantity that suffices, everything else as the camera "
+                  "has it, and below what no code can, by the receiver bound."};
+  for (const std::string& header : rows.front())
+    table.columns.push_back({header, header == "error (mm)"});
+  table.rows.assign(rows.begin() + 1, rows.end());
+  page.sections.push_back({"What suffices", {std::move(table)}});
+  if (found.map)
+    page.sections.push_back({"Bandwidth against power",
+                             {error_map(*found.map, options.error_m),
+                              error_over_power(camera, *found.map, options.error_m)}});
+  if (!command_line.empty()) page.sections.push_back({"Command", {CodeBlock{command_line}}});
+  return page;
+}
+
+}  // namespace tofsmith

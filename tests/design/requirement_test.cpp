@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// What it takes of a camera to reach an error.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/design/design.hpp"
+
+namespace tofsmith {
+namespace {
+
+/// One light level, few harmonics: designs in a moment.
+Camera small_camera() {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.samples = 48;
+  camera.operating.signal_e_per_s = {3e4};
+  camera.operating.ambient_e_per_s = {1e4};
+  camera.operating.error = DepthErrorKind::circular;
+  return camera;
+}
+
+RequirementOptions quick(double error_m) {
+  return {.error_m = error_m, .max_factor = 16.0, .effort = 0.01, .trials = 1000, .map = false};
+}
+
+double error_of(const CodeSet& code, const Camera& camera, const RequirementOptions& options) {
+  const EvaluateOptions judging{.trials = options.trials, .seed = options.seed + 2};
+  return geometric_mean_error_m(evaluate(code, camera, judging), DepthErrorKind::circular);
+}
+
+TEST(Requirements, WhatIsFoundSufficesAndLessDoesNot) {
+  const Camera camera = small_camera();
+  RequirementOptions options = quick(0.0);
+  for (const double error_m : {0.01, 0.1}) {  // more than it has, and less
+    options.error_m = error_m;
+    const Requirements found = find_requirements(camera, options);
+    ASSERT_EQ(found.varied.size(), 3u);
+    EXPECT_EQ(found.error_m < error_m, error_m == 0.1);
+    for (const Sufficiency& s : found.varied) {
+      EXPECT_LE(s.excluded_below, s.factor.value_or(16.0));
+      if (!s.factor) {
+        EXPECT_EQ(s.quantity, CameraQuantity::bandwidth) << "light alone suffices";
+        EXPECT_GT(s.error_m, error_m);
+        continue;
+      }
+      EXPECT_EQ(*s.factor < 1.0, error_m == 0.1) << name_of(s.quantity);
+      EXPECT_LE(s.error_m, error_m);
+      EXPECT_EQ(s.error_m, error_of(s.code, with_scaled(camera, s.quantity, *s.factor), options));
+      EXPECT_GT(error_of(s.code, with_scaled(camera, s.quantity, 0.98 * *s.factor), options),
+                error_m);
+    }
+  }
+}
+
+TEST(Requirements, PowerIsExposureWhereOnlyTheSignalHasNoise) {
+  Camera camera = small_camera();
+  camera.sensor.read_noise_e = 0.0;
+  camera.operating.ambient_e_per_s = {0.0};
+  RequirementOptions options = quick(0.008);
+  options.vary_bandwidth = false;
+  const Requirements found = find_requirements(camera, options);
+  EXPECT_NEAR(*found.varied[0].factor / *found.varied[1].factor, 1.0, 0.02);
+}
+
+TEST(Requirements, SaysWhatCannotBeHad) {
+  RequirementOptions options = quick(1e-4);
+  options.max_factor = 1.5;
+  options.vary_bandwidth = options.vary_exposure = false;
+  const Requirements found = find_requirements(small_camera(), options);
+  ASSERT_EQ(found.varied.size(), 1u);
+  EXPECT_FALSE(found.varied[0].factor.has_value());
+  EXPECT_GT(found.varied[0].error_m, 1e-4);
+  EXPECT_EQ(found.varied[0].excluded_below, 1.5);
+}
+
+TEST(Requirements, TheMapFallsWithBandwidthAndPower) {
+  RequirementOptions options = quick(0.02);
+  options.vary_exposure = false;
+  options.map = true;
+  const Requirements found = find_requirements(small_camera(), options);
+  ASSERT_TRUE(found.map.has_value());
+  const Eigen::MatrixXd& error_m = found.map->error_m;
+  ASSERT_EQ(error_m.rows(), std::ssize(found.map->bandwidth));
+  ASSERT_EQ(error_m.cols(), std::ssize(found.map->power));
+  for (Eigen::Index b = 0; b < error_m.rows(); ++b)
+    for (Eigen::Index p = 1; p < error_m.cols(); ++p)
+      EXPECT_LT(error_m(b, p), 1.02 * error_m(b, p - 1));
+  EXPECT_LT(error_m(error_m.rows() - 1, error_m.cols() - 1), 0.5 * error_m(0, 0));
+}
+
+TEST(Requirements, SameForTheSameSeed) {
+  RequirementOptions options = quick(0.01);
+  options.vary_bandwidth = options.vary_exposure = false;
+  options.max_factor = 4.0;
+  const Requirements a = find_requirements(small_camera(), options),
+                     b = find_requirements(small_camera(), options);
+  EXPECT_EQ(a.varied[0].factor, b.varied[0].factor);
+  EXPECT_EQ(a.varied[0].error_m, b.varied[0].error_m);
+}
+
+TEST(ScaledCamera, HasMoreOfOneQuantity) {
+  const Camera camera = built_in_camera("paper-10f0");
+  const Camera wider = with_scaled(camera, CameraQuantity::bandwidth, 2.0);
+  EXPECT_NEAR(std::abs(wider.transfer(8)[8] - camera.transfer(4)[4]), 0.0, 1e-12);
+  EXPECT_EQ(with_scaled(camera, CameraQuantity::power, 3.0).operating.middle().signal_e_per_s,
+            3.0 * camera.operating.middle().signal_e_per_s);
+  EXPECT_EQ(with_scaled(camera, CameraQuantity::exposure, 0.5).exposure_s.of(0, 3),
+            0.5 * camera.exposure_s.of(0, 3));
+}
+
+TEST(Requirements, RefusesNonsense) {
+  const Camera camera = small_camera();
+  EXPECT_THROW(find_requirements(camera, quick(0.0)), InvalidArgument);
+  EXPECT_THROW(with_scaled(camera, CameraQuantity::power, -1.0), InvalidArgument);
+  RequirementOptions nothing = quick(0.01);
+  nothing.vary_bandwidth = nothing.vary_power = nothing.vary_exposure = false;
+  EXPECT_THROW(find_requirements(camera, nothing), InvalidArgument);
+  Camera unlimited = camera;
+  unlimited.light.impulse_response = unlimited.sensor.impulse_response = {};
+  unlimited.sensor.shortest_pulse_s = 2e-9;
+  try {
+    static_cast<void>(find_requirements(unlimited, quick(0.01)));
+    ADD_FAILURE() << "accepted";
+  } catch (const InvalidArgument& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("impulse_response = none; must limit an arm"));
+  }
+}
+
+}  // namespace
+}  // namespace tofsmith
