@@ -71,6 +71,9 @@ struct Filter::Plan {
   CurvePoints points() const { return {curve.data(), samples(), measurements, rank}; }
   void split(FilterPlanes& frame, int from, int to, int row) const;
   void join(FilterPlanes& frame, int set, int row) const;
+  /// Gives `to` back what was there before a window, of which `rest` holds the rest, where that
+  /// window added what is of another surface.
+  void keep_near_sums(FilterPlanes& frame, int rest, int to, int window) const;
 };
 
 /// Calls work(row) for all rows of a frame, on all threads.

@@ -209,7 +209,7 @@ void split_row(const CurvePoints& curve, const SplitRow& row, int width) {
 void join_row(const CurvePoints& curve, const JoinRow& row, int width) {
   const Vector zero = hn::Zero(Floats());
   for (int x = 0; x < width; x += lanes_of()) {
-    const Vector signal = load(row.signal + x), shift = load(row.shift + x);
+    const Vector signal = load(row.signal + x), shift = row.shift ? load(row.shift + x) : zero;
     // Where noise leaves next to no signal, there is nothing to be moved.
     const Mask can_move = hn::Gt(signal, hn::Mul(hn::Abs(shift), all(0.25f)));
     const Vector beyond = hn::IfThenElseZero(can_move, hn::Div(shift, signal));
@@ -220,6 +220,73 @@ void join_row(const CurvePoints& curve, const JoinRow& row, int width) {
       float* const light = row.light.data()[k] + x;
       store(hn::MulAdd(added, places.on(curve, k), load(light)), light);
     }
+  }
+}
+
+/// Pixels around one that are looked at together: 5 x 5, every other one, because near sums of
+/// pixels side by side share most of their measurements.
+constexpr int compared_reach = 4, compared_step = 2;
+/// Of the near sum's variance, so much is the least that its difference from the far one has.
+constexpr float least_noise_share = 0.25f;
+/// Chi^2 of a direction per degree of freedom that noise is taken to make.
+constexpr float explained_by_noise = 1.6f;
+/// Near sums of fewer standard deviations, squared, tell too little of their direction.
+constexpr float least_energy = 25.0f;
+
+void compare_sums(const NearAndFar& sums, const FilterGrid& grid, int row) {
+  const Vector zero = hn::Zero(Floats()), tiny = all(1e-30f);
+  for (int x = 0; x < grid.width; x += lanes_of()) {
+    const std::ptrdiff_t at = row * grid.stride + x;
+    Vector far2 = zero, dot = zero;
+    for (int j = 0; j < sums.rank; ++j) {
+      const Vector far = load(sums.far.data()[j] + at);
+      far2 = hn::MulAdd(far, far, far2);
+      dot = hn::MulAdd(load(sums.near.data()[j] + at), far, dot);
+    }
+    // What of the near sum is not along the far one.
+    const Vector along = hn::Div(hn::Max(dot, zero), hn::Max(far2, tiny));
+    Vector across = zero;
+    for (int j = 0; j < sums.rank; ++j) {
+      const Vector beside =
+          hn::NegMulAdd(along, load(sums.far.data()[j] + at), load(sums.near.data()[j] + at));
+      across = hn::MulAdd(beside, beside, across);
+    }
+    // The far sum holds the near one, so their difference has less noise than that has.
+    const Vector near_variance = hn::Max(load(sums.near_variance + at), all(1e-12f));
+    const Vector noise = hn::Max(hn::Sub(near_variance, load(sums.far_variance + at)),
+                                 hn::Mul(near_variance, all(least_noise_share)));
+    const Vector chi2 = hn::Div(across, noise);
+    const Mask is_told = hn::And(hn::Gt(load(sums.usable + at), zero),
+                                 hn::Gt(far2, hn::Mul(near_variance, all(least_energy))));
+    store(hn::IfThenElseZero(is_told, chi2), sums.difference + at);
+  }
+}
+
+void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row) {
+  const Vector zero = hn::Zero(Floats()), one = all(1.0f);
+  const Vector noise = all(explained_by_noise * static_cast<float>(sums.rank - 1));
+  for (int x = 0; x < grid.width; x += lanes_of()) {
+    const std::ptrdiff_t at = row * grid.stride + x;
+    Vector chi2 = zero, count = zero;
+    for (int dy = -compared_reach; dy <= compared_reach; dy += compared_step)
+      for (int dx = -compared_reach; dx <= compared_reach; dx += compared_step) {
+        const std::ptrdiff_t pixel = at + dy * grid.stride + dx;
+        const Vector usable = load(sums.usable + pixel);
+        chi2 = hn::MulAdd(usable, load(sums.difference + pixel), chi2);
+        count = hn::Add(count, usable);
+      }
+    const Vector kept =
+        hn::Max(hn::NegMulAdd(noise, hn::Div(count, hn::Max(chi2, all(1e-30f))), one), zero);
+    if (hn::AllTrue(Floats(), hn::Le(kept, zero))) continue;
+    for (int k = 0; k < sums.planes; ++k) {
+      float* const light = sums.far.data()[k] + at;
+      const Vector far = load(light);
+      store(hn::MulAdd(kept, hn::Sub(load(sums.near.data()[k] + at), far), far), light);
+    }
+    // The far sum is a mean of all: its covariance with the near one is its own variance.
+    const Vector far = load(sums.far_variance + at);
+    const Vector beyond = hn::Max(hn::Sub(load(sums.near_variance + at), far), zero);
+    store(hn::MulAdd(hn::Mul(kept, kept), beyond, far), sums.far_variance + at);
   }
 }
 
@@ -235,6 +302,8 @@ HWY_EXPORT(weigh_along_slopes);
 HWY_EXPORT(find_slopes);
 HWY_EXPORT(split_row);
 HWY_EXPORT(join_row);
+HWY_EXPORT(compare_sums);
+HWY_EXPORT(keep_near);
 
 void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const FilterStrip& strip,
                         const PairWeights& weights) {
@@ -252,6 +321,14 @@ void split_row(const CurvePoints& curve, const SplitRow& row, int width) {
 
 void join_row(const CurvePoints& curve, const JoinRow& row, int width) {
   HWY_DYNAMIC_DISPATCH(join_row)(curve, row, width);
+}
+
+void compare_sums(const NearAndFar& sums, const FilterGrid& grid, int row) {
+  HWY_DYNAMIC_DISPATCH(compare_sums)(sums, grid, row);
+}
+
+void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row) {
+  HWY_DYNAMIC_DISPATCH(keep_near)(sums, grid, row);
 }
 
 }  // namespace tofsmith

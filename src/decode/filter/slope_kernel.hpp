@@ -48,9 +48,27 @@ struct JoinRow {
   const float* depth = nullptr;
   const float* guided = nullptr;
   const float* signal = nullptr;
-  const float* shift = nullptr;  ///< [signal bin]
+  const float* shift = nullptr;  ///< [signal bin]; null where nothing is moved
   std::array<float*, max_measurements> light{};
 };
 void join_row(const CurvePoints& curve, const JoinRow& row, int width);
+
+/// Two sums for each pixel: of near neighbours, and of these and far ones.
+struct NearAndFar {
+  std::array<const float*, max_measurements> near{};
+  std::array<float*, max_measurements> far{};  ///< and then what is kept of both
+  int planes = 0;
+  int rank = 0;                   ///< of the planes, those of the decoding plane
+  const float* usable = nullptr;  ///< 1 or 0
+  const float* near_variance = nullptr;
+  float* far_variance = nullptr;  ///< and then that of what is kept
+  float* difference = nullptr;    ///< chi^2 of the two directions
+};
+/// `difference` of a row.
+void compare_sums(const NearAndFar& sums, const FilterGrid& grid, int row);
+/// Far neighbours may be of another surface by less than the test of a pair sees. Where the sums
+/// with them, of pixels around one, have other directions than the near sums by more than noise
+/// explains, so much of the near sum is kept. Needs `difference` of the rows around.
+void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row);
 
 }  // namespace tofsmith

@@ -78,6 +78,31 @@ void Filter::Plan::join(FilterPlanes& frame, int set, int row) const {
   join_row(points(), join, frame.grid.width);
 }
 
+void Filter::Plan::keep_near_sums(FilterPlanes& frame, int rest, int to, int window) const {
+  const WindowVariances variances(window);
+  NearAndFar sums{.planes = measurements,
+                  .rank = rank,
+                  .usable = frame.scalar(FilterPlanes::usable),
+                  .near_variance = frame.scalar(variances.in),
+                  .far_variance = frame.scalar(variances.out),
+                  .difference = frame.scalar(FilterPlanes::shift)};
+  for (int k = 0; k < measurements; ++k) {
+    sums.near[static_cast<std::size_t>(k)] = frame.light(rest, k);
+    sums.far[static_cast<std::size_t>(k)] = frame.light(to, k);
+  }
+  for_each_row(frame, [&](int row) {
+    const std::ptrdiff_t at = row * frame.grid.stride;
+    JoinRow unmoved{.depth = frame.scalar(FilterPlanes::depth) + at,
+                    .guided = frame.scalar(FilterPlanes::usable) + at,
+                    .signal = frame.scalar(FilterPlanes::signal) + at};
+    for (int k = 0; k < measurements; ++k)
+      unmoved.light[static_cast<std::size_t>(k)] = frame.light(rest, k) + at;
+    join_row(points(), unmoved, frame.grid.width);
+    compare_sums(sums, frame.grid, row);
+  });
+  for_each_row(frame, [&](int row) { keep_near(sums, frame.grid, row); });
+}
+
 void Filter::Plan::add_along_slopes(FilterPlanes& frame, int light, int rest, int to,
                                     int window) const {
   const SlopeTest test{
@@ -106,6 +131,7 @@ void Filter::Plan::add_along_slopes(FilterPlanes& frame, int light, int rest, in
                    add_weighted(sums, frame.grid, strip, weights);
                    for (int r = 0; r < strip.rows; ++r) join(frame, to, strip.first_row + r);
                  });
+  if (window > 0) keep_near_sums(frame, rest, to, window);
   if (window + 1 < options.windows) return;
   for_each_row(frame, [&](int row) {
     const float* const guided = frame.scalar(FilterPlanes::usable) + row * frame.grid.stride;
