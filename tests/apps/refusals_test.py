@@ -203,7 +203,7 @@ class Refusals(CommandLineTest):
         refuse_array(good[:0], "0")
         refuse_array(good.astype("c8"), "complex", "expected")
         refuse_array(good.astype("?"), "bool", "expected numbers", "astype")
-        refuse_array(good[:, :, 0], "shape (4, 5)", "expected")
+        refuse_array(good[:, :, 0], "shape (4, 5)", "all files")
         refuse_array(good.astype("U3"), "expected")
         refuse_bytes(content[:-1], "expected")
         refuse_bytes(content + b"x", "expected")

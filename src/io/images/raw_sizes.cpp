@@ -59,8 +59,11 @@ RawFrames checked_raw_sizes(NpyType type, const NpyShape& shape, const RawReadOp
                                     "raw.astype(numpy.float32))",
                                     name_of(type)));
   if (shape.size() != 3 && shape.size() != 4)
-    throw IoError(file, fmt::format("found an array of shape {}; expected {}",
-                                    describe_shape(shape), shapes_of(options.layout)));
+    throw IoError(file, fmt::format("found an array of shape {}; expected {}{}",
+                                    describe_shape(shape), shapes_of(options.layout),
+                                    shape.size() == 2 ? ", or all files where each holds one "
+                                                        "measurement"
+                                                      : ""));
   const Axes axes = axes_of(shape, options.layout);
   constexpr std::size_t max_axis = std::numeric_limits<int>::max();
   if (axes.frames < 1 || axes.frames > max_axis || axes.measurements < 1 ||
