@@ -22,7 +22,8 @@ namespace {
 
 struct DecodeArguments {
   DecodeRequest request;
-  std::string raw, raw_format, offset_map, gain_map, code, output;
+  std::vector<std::string> raw;
+  std::string raw_format, offset_map, gain_map, code, output;
   CameraArguments camera;
   TapArguments taps;
   TableArguments table;
@@ -39,7 +40,7 @@ struct DecodeArguments {
 DecodeRequest request_of(const DecodeArguments& arguments, const Camera& camera,
                          const Session& session) {
   DecodeRequest request = arguments.request;
-  request.raw = arguments.raw;
+  request.raw.assign(arguments.raw.begin(), arguments.raw.end());
   request.layout = parse_raw_layout(arguments.layout);
   request.raw_format = arguments.raw_format;
   request.output = arguments.output;
@@ -97,6 +98,7 @@ void run(const DecodeArguments& arguments, Session& session) {
       {"range_source", source.range_source},
       {"method", name_of(arguments.method.method())},
       {"average", request.average},
+      {"averaged", request.averaged},
       {"time_filter", request.time_filter ? nlohmann::ordered_json(request.time_filter->max_frames)
                                           : nlohmann::ordered_json("off")},
       {"filter", arguments.filter.name()},
@@ -135,7 +137,8 @@ void add_decode_command(CLI::App& app, Session& session) {
   CLI::App* command = app.add_subcommand("decode", "depth from raw measurements");
   command
       ->add_option("RAW", arguments->raw,
-                   "raw frames (.npy .npz): (H,W,K) or (F,H,W,K); any dump with --raw-format")
+                   "raw frames (.npy .npz): (H,W,K) or (F,H,W,K); any dump with --raw-format; or "
+                   "K files, one a measurement in their order, (H,W) or (F,H,W) each")
       ->required();
   CLI::Option* const layout =
       command
@@ -192,6 +195,12 @@ void add_decode_command(CLI::App& app, Session& session) {
       ->add_option("--average", arguments->request.average,
                    "decode the means of so many consecutive frames; the last one is of those left")
       ->check(number_that(">= 1", [](double value) { return value >= 1.0; }))
+      ->capture_default_str();
+  command
+      ->add_option("--averaged", arguments->request.averaged,
+                   "RAW holds means of so many equal measurements already: their noise is so much "
+                   "smaller")
+      ->check(positive_number(1e9))
       ->capture_default_str();
   command
       ->add_option(

@@ -116,8 +116,8 @@ void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_p
   });
 }
 
-DecodeRequest request_of(const std::string& raw, const std::string& output, const py::object& lens,
-                         const py::dict& values) {
+DecodeRequest request_of(const std::vector<std::string>& raw, const std::string& output,
+                         const py::object& lens, const py::dict& values) {
   DecodeRequest request;
   std::string raw_format, mixed, offset_map, gain_map;
   std::vector<std::string> outputs;
@@ -130,6 +130,7 @@ DecodeRequest request_of(const std::string& raw, const std::string& output, cons
       .value("frame", request.frame)
       .value("stack", request.stack)
       .value("average", request.average)
+      .value("averaged", request.averaged)
       .value("mixed", mixed)
       .value("offset_map", offset_map)
       .value("gain_map", gain_map)
@@ -142,7 +143,7 @@ DecodeRequest request_of(const std::string& raw, const std::string& output, cons
   if (const py::dict filter = reader.table("time_filter"); !filter.empty())
     request.time_filter = time_filter_options(filter);
   reader.finish();
-  request.raw = raw;
+  request.raw.assign(raw.begin(), raw.end());
   request.output = output;
   request.raw_format = raw_format;
   request.offset_map = offset_map;
@@ -163,7 +164,7 @@ std::map<std::string, std::int64_t> counts_of(const StatusCounts& statuses) {
   return counts;
 }
 
-py::dict decode_a_recording(const BoundDecoder& decoder, const std::string& raw,
+py::dict decode_a_recording(const BoundDecoder& decoder, const std::vector<std::string>& raw,
                             const std::string& output, const py::object& lens,
                             const py::dict& values, const py::object& callback) {
   const DecodeRequest request = request_of(raw, output, lens, values);

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Optional, TypeVar, Union
 
 import numpy as np
@@ -16,6 +16,8 @@ Path = Union[str, "os.PathLike[str]"]
 #: Called now and then with the share of work that is done and what is being done; False stops.
 Progress = Optional[Callable[[float, str], Optional[bool]]]
 FloatArray = npt.NDArray[np.float64]
+#: Raw numbers in one array, or one array a measurement.
+RawLike = Union[npt.NDArray[Any], Sequence[npt.NDArray[Any]]]
 
 
 def shown(value: object) -> str:
@@ -42,6 +44,13 @@ def path(value: Path, name: str = "path") -> str:
     if not isinstance(text, str) or "\0" in text:
         raise TypeError(f"{name}: got {shown(value)}; needs the name of a file as text")
     return text
+
+
+def paths(value: Any, name: str) -> list[str]:
+    """Names of files, of one or of a list."""
+    if isinstance(value, (list, tuple)):
+        return [path(file, f"{name}[{k}]") for k, file in enumerate(value)]
+    return [path(value, name)]
 
 
 def text(value: object, name: str) -> str:
@@ -86,8 +95,11 @@ def real_array(value: Any, name: str, axes: str) -> npt.NDArray[Any]:
     return array
 
 
-def means(averaged: Any, raw: npt.NDArray[Any]) -> Optional[npt.NDArray[Any]]:
-    """Of how many measurements each pixel of `raw` is the mean; None: of one."""
+def means(averaged: Any, raw: npt.NDArray[Any], is_planar: bool) -> Optional[npt.NDArray[Any]]:
+    """Of how many measurements each pixel of `raw` is the mean, or all are; None: of one."""
+    if averaged is not None and np.ndim(averaged) == 0 and raw.ndim in (3, 4):
+        shape = raw.shape[:-3] + raw.shape[-2:] if is_planar else raw.shape[:-1]
+        return np.full(shape, number(averaged, "averaged"), np.float32)
     axes = "(H, W)" if raw.ndim == 3 else "(F, H, W)"
     return None if averaged is None else real_array(averaged, "averaged", axes)
 
@@ -115,8 +127,33 @@ def progress(value: Progress) -> Progress:
     )
 
 
-def raw_array(raw: Any) -> npt.NDArray[Any]:
-    """Raw numbers where they are; int16 as floats."""
+def raw_array(raw: Any, layout: str) -> tuple[npt.NDArray[Any], bool]:
+    """Raw numbers where they are, and whether they are planar; a list of arrays, one a measurement,
+    is put together. int8 and int16 come as float32, larger whole numbers as float64."""
+    is_planar = one_of(layout, "layout", ("interleaved", "planar")) == "planar"
+    if isinstance(raw, (list, tuple)):
+        raw, is_planar = _together(raw), True
     if not isinstance(raw, np.ndarray):
-        raise TypeError(f"raw: got {shown(raw)}; needs a numpy.ndarray")
-    return raw.astype(np.float32) if raw.dtype == np.int16 else raw
+        raise TypeError(f"raw: got {shown(raw)}; needs a numpy.ndarray, or a list of them, one a "
+                        "measurement")
+    if raw.dtype in (np.int8, np.int16):
+        raw = raw.astype(np.float32)
+    elif raw.dtype.kind in "iu" and raw.dtype.itemsize > 2:
+        raw = raw.astype(np.float64)
+    return raw, is_planar
+
+
+def _together(arrays: Sequence[Any]) -> npt.NDArray[Any]:
+    """(H, W) each to (K, H, W), (F, H, W) each to (F, K, H, W)."""
+    for k, array in enumerate(arrays):
+        if not isinstance(array, np.ndarray):
+            raise TypeError(f"raw[{k}]: got {shown(array)}; needs a numpy.ndarray")
+        if array.ndim not in (2, 3):
+            raise ValueError(f"raw[{k}]: got shape {array.shape}; needs (H, W) or (F, H, W), as "
+                             "each holds one measurement")
+        if (array.shape, array.dtype) != (arrays[0].shape, arrays[0].dtype):
+            raise ValueError(f"raw[{k}]: got {array.dtype} of shape {array.shape}; needs "
+                             f"{arrays[0].dtype} of shape {arrays[0].shape}, as raw[0]")
+    if not arrays:
+        raise ValueError("raw: got no arrays; needs one a measurement")
+    return np.stack(arrays, axis=-3)

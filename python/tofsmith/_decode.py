@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import Any, Optional
@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from . import _check, _tofsmith
 from ._camera import CameraLike, camera_of
-from ._check import FloatArray, Path, Progress
+from ._check import FloatArray, Path, Progress, RawLike
 from ._code import CodeLike
 from ._decoding_table import DecodingTable, table_of
 from ._depth_image import (
@@ -138,7 +138,7 @@ class Decoder:
 
     def decode(
         self,
-        raw: npt.NDArray[Any],
+        raw: RawLike,
         *,
         layout: str = "interleaved",
         planes: Optional[Iterable[str]] = None,
@@ -154,16 +154,18 @@ class Decoder:
 
         Parameters
         ----------
-        raw : ndarray of float32, float64, uint16 or uint8 (int16 is copied)
-            (H, W, K) or (F, H, W, K); planar: (K, H, W) or (F, K, H, W). Electrons, or counts where
-            the camera has an ADC. NaN and infinity make a pixel invalid.
+        raw : ndarray of float32, float64, uint16 or uint8 (other whole numbers are copied), or a
+                list of them
+            (H, W, K) or (F, H, W, K); planar: (K, H, W) or (F, K, H, W); a list has one array a
+            measurement, in their order, (H, W) or (F, H, W) each. Electrons, or counts where the
+            camera has an ADC. NaN and infinity make a pixel invalid.
         layout : {"interleaved", "planar"}
             Never guessed.
         planes : iterable of str, optional
             Names of planes of DepthImage; others are not computed. None: all but bin.
         out : DepthImage, optional
             Planes to write into: C order, of the frame's shape; instead of `planes`.
-        averaged : array_like, shape (H, W) or (F, H, W), optional
+        averaged : float, or array_like of shape (H, W) or (F, H, W), optional
             Of how many equal measurements the numbers of each pixel are the mean, > 0, so that
             their noise is so much smaller: of Filter.apply(), or of frames averaged by hand.
         delay_offset_m, gain : array_like, shape (H, W), optional
@@ -193,8 +195,7 @@ class Decoder:
         -----
         The same bits for any number of threads and any layout.
         """
-        array = _check.raw_array(raw)
-        is_planar = _check.one_of(layout, "layout", ("interleaved", "planar")) == "planar"
+        array, is_planar = _check.raw_array(raw, layout)
         image = self._new_planes(array, is_planar, planes) if out is None else planes_of(
             out, planes)
         callback = _check.progress(progress)
@@ -202,14 +203,14 @@ class Decoder:
             None if m is None else np.asarray(_check.real_array(m, name, "(H, W)"), np.float32)
             for m, name in ((delay_offset_m, "delay_offset_m"), (gain, "gain"))
         ]
-        means = _check.means(averaged, array)
+        means = _check.means(averaged, array, is_planar)
         self._handle.decode(array, is_planar, image.planes(), means, maps[0], maps[1],
                             mixed_word(mixed), callback)
         return image
 
     def decode_recording(
         self,
-        raw: Path,
+        raw: Path | Sequence[Path],
         output: Path,
         *,
         layout: str = "interleaved",
@@ -219,6 +220,7 @@ class Decoder:
         frame: Optional[int] = None,
         stack: bool = False,
         average: int = 1,
+        averaged: float = 1.0,
         time_filter: Optional[TimeFilterLike] = None,
         filter: Optional[FilterLike] = None,
         mixed: Optional[str] = None,
@@ -233,8 +235,9 @@ class Decoder:
 
         Parameters
         ----------
-        raw : str or path
-            .npy or .npz, (H, W, K) or (F, H, W, K), or a dump that `raw_format` describes.
+        raw : str or path, or a list of them
+            .npy or .npz, (H, W, K) or (F, H, W, K), or a dump that `raw_format` describes. A list
+            has one file a measurement, in their order, (H, W) or (F, H, W) each.
         output : str or path
             .npy .pfm .png (16 bits, mm): depth alone; .npz: an array of each plane; .exr: a channel
             of each; .ply: points with planes as scalars. Files of several frames get numbers:
@@ -258,6 +261,9 @@ class Decoder:
         average : int
             Decodes the means of so many consecutive frames; the last is of those that are left.
             `frame` counts means.
+        averaged : float
+            Of how many equal measurements the numbers are the mean already, > 0: their noise is so
+            much smaller.
         time_filter : int or dict, optional
             Adds to each pixel the frames before, or means of frames, as long as they stay the same,
             as TimeFilter does: max_frames, or a dict of it and other options.
@@ -305,6 +311,7 @@ class Decoder:
             "frame": None if frame is None else _check.whole(frame, "frame", 0),
             "stack": bool(stack),
             "average": _check.whole(average, "average", 1),
+            "averaged": _check.number(averaged, "averaged"),
             "time_filter": None if time_filter is None else time_filter_options(time_filter),
             "filter": None if filter is None else filter_options(filter),
             "mixed": mixed_word(mixed),
@@ -315,7 +322,7 @@ class Decoder:
             "other_inputs": self._inputs,
         }
         values = self._handle.decode_recording(
-            _check.path(raw, "raw"), _check.path(output, "output"), self._lens, options,
+            _check.paths(raw, "raw"), _check.path(output, "output"), self._lens, options,
             _check.progress(progress))
         values["files"] = [FilePath(file) for file in values["files"]]
         return DecodedRecording(**values)
@@ -352,7 +359,7 @@ def mixed_word(mixed: Optional[str]) -> str:
 
 
 def decode(
-    raw: npt.NDArray[Any],
+    raw: RawLike,
     code: CodeLike | DecodingTable,
     camera: Optional[CameraLike] = None,
     *,

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _check, _tofsmith
 from ._camera import CameraLike
-from ._check import Progress
+from ._check import Progress, RawLike
 from ._code import CodeLike
 from ._decoding_table import DecodingTable, table_of
 
@@ -44,12 +44,11 @@ def time_filter_options(time_filter: TimeFilterLike) -> dict[str, Any]:
 
 
 def _frames(
-    raw: npt.NDArray[Any], averaged: Optional[npt.ArrayLike], layout: str
+    raw: RawLike, averaged: Optional[npt.ArrayLike], layout: str
 ) -> tuple[npt.NDArray[Any], bool, Optional[npt.NDArray[Any]]]:
     """Raw numbers, whether they are planar, and of how many measurements they are the mean."""
-    is_planar = _check.one_of(layout, "layout", ("interleaved", "planar")) == "planar"
-    array = _check.raw_array(raw)
-    return array, is_planar, _check.means(averaged, array)
+    array, is_planar = _check.raw_array(raw, layout)
+    return array, is_planar, _check.means(averaged, array, is_planar)
 
 
 class _OfTable:
@@ -118,7 +117,7 @@ class Filter(_OfTable):
 
     def apply(
         self,
-        raw: npt.NDArray[Any],
+        raw: RawLike,
         *,
         averaged: Optional[npt.ArrayLike] = None,
         layout: str = "interleaved",
@@ -131,7 +130,7 @@ class Filter(_OfTable):
         raw : ndarray
             As Decoder.decode() takes it, as it leaves the sensor. Pixels that are invalid or
             saturated stay as they are and are added to none.
-        averaged : array_like, shape (H, W) or (F, H, W), optional
+        averaged : float, or array_like of shape (H, W) or (F, H, W), optional
             Of how many measurements each pixel's numbers are the mean, where they are.
         layout : {"interleaved", "planar"}
             Never guessed.
@@ -213,7 +212,7 @@ class TimeFilter(_OfTable):
 
     def add(
         self,
-        raw: npt.NDArray[Any],
+        raw: RawLike,
         *,
         averaged: Optional[npt.ArrayLike] = None,
         layout: str = "interleaved",
@@ -226,7 +225,7 @@ class TimeFilter(_OfTable):
         raw : ndarray
             As Decoder.decode() takes it, as it leaves the sensor, as large as the frames before.
             Pixels that are invalid or saturated stay as they are and start anew.
-        averaged : array_like, shape (H, W) or (F, H, W), optional
+        averaged : float, or array_like of shape (H, W) or (F, H, W), optional
             Of how many measurements each pixel's numbers are the mean, where they are.
         layout : {"interleaved", "planar"}
             Never guessed.

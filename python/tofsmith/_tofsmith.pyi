@@ -146,8 +146,8 @@ class Decoder:
         progress: _Progress, /
     ) -> None: ...
     def decode_recording(
-        self, raw: str, output: str, lens: Optional[Sequence[float]], options: _Options, progress:
-        _Progress, /
+        self, raw: Sequence[str], output: str, lens: Optional[Sequence[float]], options: _Options,
+        progress: _Progress, /
     ) -> _Dict: ...
     def decode_depth_bins(self, measurements: _Any, /) -> _Doubles: ...
 

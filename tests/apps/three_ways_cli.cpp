@@ -58,15 +58,15 @@ AnyDecoder decoder_of(DecodeMethod method, const std::string& code) {
 void decode() {
   const AnyDecoder decoder = decoder_of(DecodeMethod::zncc, "hamiltonian-k4");
   for (const char* output : {"d.npy", "d.npz", "d.exr", "d.pfm", "d.png", "d.ply"})
-    decode_recording({.raw = "raw.npy", .output = output, .policy = policy}, decoder);
-  decode_recording({.raw = "raw.npy",
+    decode_recording({.raw = {"raw.npy"}, .output = output, .policy = policy}, decoder);
+  decode_recording({.raw = {"raw.npy"},
                     .output = "z.npz",
                     .outputs = {DecodedPlane::bin, DecodedPlane::depth, DecodedPlane::deviation},
                     .kind = DepthKind::z,
                     .frame = 1,
                     .policy = policy},
                    decoder);
-  decode_recording({.raw = "raw.npy",
+  decode_recording({.raw = {"raw.npy"},
                     .output = "stack.npy",
                     .outputs = {DecodedPlane::depth, DecodedPlane::status},
                     .stack = true,
@@ -75,30 +75,35 @@ void decode() {
                     .memory_mb = 0.05,
                     .policy = policy},
                    decoder_of(DecodeMethod::ml, "hamiltonian-k4"));
-  decode_recording({.raw = "planar.npy",
+  decode_recording({.raw = {"planar.npy"},
                     .layout = RawLayout::planar,
                     .output = "measured.npy",
                     .policy = policy},
                    decoder_of(DecodeMethod::zncc, "table.npy"));
   decode_recording(
-      {.raw = "dump.bin", .raw_format = "dump.raw.toml", .output = "dump.npz", .policy = policy},
+      {.raw = {"dump.bin"}, .raw_format = "dump.raw.toml", .output = "dump.npz", .policy = policy},
       decoder);
+  decode_recording({.raw = {"p0.npy", "p1.npy", "p2.npy", "p3.npy"},
+                    .output = "phases.npz",
+                    .averaged = 12.5,
+                    .policy = policy},
+                   decoder);
   FilterOptions options = FilterOptions::of(FilterStrength::strong);
   options.trusted_pixels = 8.0;
-  decode_recording({.raw = "raw.npy",
+  decode_recording({.raw = {"raw.npy"},
                     .output = "filtered.npz",
                     .outputs = {DecodedPlane::depth, DecodedPlane::averaged},
                     .average = 2,
                     .filter = options,
                     .policy = policy},
                    decoder);
-  decode_recording({.raw = "raw.npy",
+  decode_recording({.raw = {"raw.npy"},
                     .output = "added.npz",
                     .outputs = {DecodedPlane::depth, DecodedPlane::averaged},
                     .time_filter = TimeFilterOptions{.max_frames = 2, .max_difference_sigma = 4.0},
                     .policy = policy},
                    decoder);
-  decode_recording({.raw = "raw.npy",
+  decode_recording({.raw = {"raw.npy"},
                     .output = "snapped.npz",
                     .outputs = {DecodedPlane::depth, DecodedPlane::status},
                     .mixed = MixedPixels::snap,

@@ -71,6 +71,13 @@ class HowTo(BenchRecordsTest):
         self.shell(f"tofsmith simulate table-top {SMALL} --code {code} {settings} --signal 3e7 "
                    "--ambient 1e5 -o raw.npy --force")
 
+    def make_p0_npy(self, command):
+        self.make_raw_npy(command)
+        for k, phase in enumerate(np.moveaxis(np.load(self.path("raw.npy")), 2, 0)):
+            np.save(self.path(f"p{k}.npy"), phase)
+
+    make_p1_npy = make_p2_npy = make_p3_npy = make_p0_npy
+
     def make_night_npy(self, _):
         self.shell(f"tofsmith simulate corner {SMALL} --code hamiltonian-k4 --frames 3 "
                    "-o night.npy")

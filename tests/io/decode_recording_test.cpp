@@ -37,7 +37,7 @@ class DecodeRecording : public testing::Test {
   }
   std::filesystem::path path(const char* name) const { return directory_.path() / name; }
   DecodeRequest request(const char* output) const {
-    return {.raw = path("raw.npy"), .output = path(output)};
+    return {.raw = {path("raw.npy")}, .output = path(output)};
   }
   /// Of frame number `frame` of a stack.
   std::vector<float> plane(const char* name, std::size_t frame) const {
@@ -151,7 +151,7 @@ TEST_F(DecodeRecording, MeansOfEqualFramesAreTheFrameWithLessNoise) {
     equal.values.insert(equal.values.end(), raw_.values.begin(), raw_.values.begin() + frame_size);
   write_raw_frames(path("equal.npy"), equal, OutputPolicy::refuse_existing);
   DecodeRequest alone = request("alone.npy"), mean = request("mean.npy");
-  alone.raw = mean.raw = path("equal.npy");
+  alone.raw = mean.raw = {path("equal.npy")};
   alone.stack = mean.stack = true;
   alone.outputs =
       mean.outputs = {DecodedPlane::depth, DecodedPlane::deviation, DecodedPlane::averaged};
@@ -170,6 +170,56 @@ TEST_F(DecodeRecording, MeansOfEqualFramesAreTheFrameWithLessNoise) {
       EXPECT_NEAR(less[i] * std::sqrt(frames), single[i], 2e-3F * single[i]);
   }
   EXPECT_EQ(plane("alone-averaged.npy", 0), std::vector<float>(6 * 5, 1.0F));
+}
+
+TEST_F(DecodeRecording, MeansMadeElsewhereHaveTheNoiseOfAsManyMeasurements) {
+  DecodeRequest single = request("single.npy");
+  single.stack = true;
+  single.outputs = {DecodedPlane::depth, DecodedPlane::deviation, DecodedPlane::averaged};
+  DecodeRequest means = single;
+  means.output = path("means.npy");
+  means.averaged = 9.0;
+  decode_recording(single, decoder_);
+  decode_recording(means, decoder_);
+  EXPECT_EQ(plane("means.npy", 2), plane("single.npy", 2));
+  EXPECT_EQ(plane("means-averaged.npy", 2), std::vector<float>(6 * 5, 9.0F));
+  const std::vector<float> more = plane("single-deviation.npy", 2),
+                           less = plane("means-deviation.npy", 2);
+  for (std::size_t i = 0; i < less.size(); ++i)
+    EXPECT_NEAR(3.0F * less[i], more[i], 2e-3F * more[i]);
+  means.output = path("both.npy");
+  means.average = 2;
+  decode_recording(means, decoder_);
+  EXPECT_EQ(plane("both-averaged.npy", 0), std::vector<float>(6 * 5, 18.0F));
+  EXPECT_EQ(plane("both-averaged.npy", 1), std::vector<float>(6 * 5, 9.0F));
+}
+
+TEST_F(DecodeRecording, OneFilePerMeasurementIsTheRecordingThatTheyMakeTogether) {
+  DecodeRequest together = request("together.npy"), apart = request("apart.npy");
+  together.stack = apart.stack = true;
+  apart.raw.clear();
+  for (std::size_t k = 0; k < 4; ++k) {
+    NpyArray phase(NpyType::float32, {3, 6, 5});
+    auto* const numbers = reinterpret_cast<float*>(phase.bytes().data());
+    for (std::size_t i = 0; i < 3 * 6 * 5; ++i) numbers[i] = raw_.values[4 * i + k];
+    apart.raw.push_back(path(("p" + std::to_string(k) + ".npy").c_str()));
+    write_npy(apart.raw.back(), phase, OutputPolicy::refuse_existing);
+  }
+  decode_recording(together, decoder_);
+  decode_recording(apart, decoder_);
+  EXPECT_TRUE(std::ranges::equal(read_npy(path("together.npy")).bytes(),
+                                 read_npy(path("apart.npy")).bytes()));
+  DecodeRequest bands = apart;
+  bands.output = path("bands.npy");
+  bands.memory_mb = 0.001;
+  decode_recording(bands, decoder_);
+  EXPECT_TRUE(
+      std::ranges::equal(read_npy(path("bands.npy")).bytes(), read_npy(path("apart.npy")).bytes()));
+  // An input among several is kept, too.
+  bands.raw = apart.raw;
+  bands.output = apart.raw[2];
+  bands.policy = OutputPolicy::overwrite;
+  EXPECT_THROW(decode_recording(bands, decoder_), IoError);
 }
 
 TEST_F(DecodeRecording, MeansAreTheSameInBandsAndFiltersKnowTheirNoise) {
@@ -210,7 +260,7 @@ TEST_F(DecodeRecording, WhatIsClippedOrInvalidInOneFrameIsSoInTheMean) {
   number(0, 2) = std::numeric_limits<float>::infinity();
   write_raw_frames(path("some.npy"), raw_, OutputPolicy::refuse_existing);
   DecodeRequest mean = request("d.npz");
-  mean.raw = path("some.npy");
+  mean.raw = {path("some.npy")};
   mean.average = 3;
   const DecodedRecording result = decode_recording(mean, decoder);
   EXPECT_EQ(result.total().of(PixelStatus::saturated), 1);
@@ -228,6 +278,12 @@ TEST_F(DecodeRecording, RefusesWhatCannotBeBeforeAnythingIsWritten) {
   wrong = request("d.npz");
   wrong.stack = true;
   refused(wrong, "stack = true");
+  wrong = request("d.npz");
+  wrong.averaged = 0.0;
+  refused(wrong, "averaged = 0");
+  wrong = request("d.npz");
+  wrong.raw.clear();
+  refused(wrong, "raw = no file");
   wrong = request("d.npz");
   wrong.outputs = {DecodedPlane::ratio};
   refused(wrong, "outputs = ratio");

@@ -40,10 +40,10 @@ TEST(MixedRecording, FilesHoldWhatMarkingAFrameGivesThoughOnlyDepthIsWritten) {
       std::filesystem::path(testing::TempDir()) / "mixed_recording";
   std::filesystem::create_directories(folder);
   DecodeRequest request;
-  request.raw = folder / "raw.npy";
+  request.raw = {folder / "raw.npy"};
   request.output = folder / "depth.npy";
   request.policy = OutputPolicy::overwrite;
-  write_npy(request.raw,
+  write_npy(request.raw.front(),
             NpyArray::of<float>(
                 {static_cast<std::size_t>(raw.height), static_cast<std::size_t>(raw.width),
                  static_cast<std::size_t>(raw.measurements)},

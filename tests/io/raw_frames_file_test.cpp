@@ -96,7 +96,7 @@ TEST(RawFramesFile, RefusesArraysThatAreNoFrames) {
     write_npy(directory / "a.npy", NpyArray(type, shape), overwrite);
     return io_error_of([&] { read_raw_frames(directory / "a.npy"); });
   };
-  EXPECT_THAT(refusal(NpyType::int32, {1, 1, 4}), HasSubstr("type int32; expected float32"));
+  EXPECT_THAT(refusal(NpyType::boolean, {1, 1, 4}), HasSubstr("type bool; expected numbers"));
   EXPECT_THAT(refusal(NpyType::float32, {2, 4}), HasSubstr("shape (2, 4); expected (H, W, K)"));
   EXPECT_THAT(refusal(NpyType::float32, {1, 1, 1, 1, 1}), HasSubstr("(1, 1, 1, 1, 1)"));
   EXPECT_THAT(refusal(NpyType::float32, {2, 2, 0}), HasSubstr("at least one"));

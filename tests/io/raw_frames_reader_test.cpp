@@ -189,6 +189,58 @@ TEST(RawFramesReader, SaysWhichLayoutWouldFit) {
   EXPECT_THAT(refusal({6, 8}, RawLayout::planar), HasSubstr("expected (K, H, W) or (F, K, H, W)"));
 }
 
+TEST(RawFramesReader, TakesOneFilePerMeasurementAndNamesTheOneThatDiffers) {
+  const TemporaryDirectory directory;
+  const auto write = [&](const char* name, const NpyArray& array) {
+    write_npy(directory / name, array, overwrite);
+    return directory / name;
+  };
+  const auto message_of = [&](const std::vector<std::filesystem::path>& files) {
+    return io_error_of([&] { RawFramesReader(files, {.measurements = 2}); });
+  };
+  const std::vector<std::int32_t> first = {1, -2, 3, 4, 5, 6}, second = {7, 8, 9, 10, 11, 1 << 30};
+  const auto a = write("a.npy", NpyArray::of<std::int32_t>({2, 3}, first)),
+             b = write("b.npy", NpyArray::of<std::int32_t>({2, 3}, second));
+  const RawFramesReader reader({a, b}, {.measurements = 2});
+  EXPECT_EQ(reader.frames(), 1);
+  EXPECT_EQ(reader.measurements(), 2);
+  EXPECT_TRUE(reader.holds_integers());
+  std::vector<std::byte> buffer;
+  const RawView row = reader.read_rows(0, 1, 1, buffer);
+  const auto* numbers = std::get<const double*>(row.data);
+  EXPECT_EQ(numbers[2], 6.0);
+  EXPECT_EQ(numbers[row.measurement_stride + 2], static_cast<double>(1 << 30));
+
+  EXPECT_THAT(message_of({a, b, a}), HasSubstr("found 3 files, one a measurement; expected 2"));
+  const auto turned = write("turned.npy", NpyArray::of<std::int32_t>({3, 2}, first));
+  EXPECT_THAT(message_of({a, turned}), HasSubstr("turned.npy: found 1 frame of 3 x 2; expected 1 "
+                                                 "frame of 2 x 3 as in"));
+  const auto floats = write("floats.npy", NpyArray(NpyType::float64, {2, 3}));
+  EXPECT_THAT(message_of({a, floats}), HasSubstr("floats.npy: found numbers"));
+  const auto flat = write("flat.npy", NpyArray(NpyType::int32, {6}));
+  EXPECT_THAT(message_of({a, flat}), HasSubstr("flat.npy: found an array of shape (6,)"));
+}
+
+template <typename Number>
+class WholeNumbers : public testing::Test {};
+using WholeTypes = testing::Types<std::int8_t, std::int16_t, std::int32_t, std::int64_t,
+                                  std::uint8_t, std::uint16_t, std::uint32_t, std::uint64_t>;
+TYPED_TEST_SUITE(WholeNumbers, WholeTypes);
+
+TYPED_TEST(WholeNumbers, AreReadAsTheyAre) {
+  const TemporaryDirectory directory;
+  const std::vector<TypeParam> numbers = {1, 2, std::numeric_limits<std::int8_t>::max(), 4};
+  for (const char* name : {"a.npy", "a.npz"}) {
+    const auto array = NpyArray::of<TypeParam>({1, 1, 4}, numbers);
+    if (std::string(name) == "a.npy")
+      write_npy(directory / name, array, overwrite);
+    else
+      write_npz(directory / name, {{"raw", array}}, overwrite);
+    EXPECT_EQ(RawFramesReader(directory / name).read_frame(0).values,
+              (std::vector<float>{1.0f, 2.0f, 127.0f, 4.0f}));
+  }
+}
+
 TEST(RawFramesReader, DoesNotGuessTheLayoutOfACube) {
   const TemporaryDirectory directory;
   std::vector<std::uint8_t> values(4 * 4 * 4);

@@ -51,8 +51,9 @@ def test_means_count_as_what_they_are_the_mean_of(camera, raw):
     assert of_three.mean() == pytest.approx(3 * single.mean(), rel=0.3)
     with pytest.raises(ValueError, match="averaged"):
         filter.apply(mean, averaged=np.zeros(mean.shape[:2]))
+    np.testing.assert_array_equal(filter.apply(mean, averaged=3.0)[1], of_three)
     with pytest.raises(ValueError, match=r"averaged.*\(H, W\)"):
-        filter.apply(mean, averaged=3.0)
+        filter.apply(mean, averaged=[3.0])
 
 
 def test_options_take_the_place_of_a_strength_s(camera):

@@ -169,7 +169,7 @@ def test_layouts_and_types_do_not_change_depth(camera):
         depth = decoder.decode(array, layout=layout, planes=["depth_m"]).depth_m
         assert np.array_equal(depth, truth.depth_m, equal_nan=True), name
     counts = np.round(np.clip(raw, 0, 65535))
-    for kind in (np.uint16, np.int16):
+    for kind in (np.uint16, np.int16, np.int32, np.uint64):
         small = np.clip(counts, 0, 32767)
         assert np.array_equal(decoder.decode(small.astype(kind)).depth_m,
                               decoder.decode(small.astype(np.float32)).depth_m, equal_nan=True)

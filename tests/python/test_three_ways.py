@@ -107,6 +107,8 @@ def test_decode(ways, camera):
     ways.give("table.npy", ts.ForwardModel("hamiltonian-k4", camera).correlation_table())
     ways.give("offset.npy", np.full((30, 40), 0.125, np.float32))
     ways.give("gain.npy", np.linspace(0.5, 2, 1200, dtype=np.float32).reshape(30, 40))
+    for k in range(4):
+        ways.give(f"p{k}.npy", raw[..., k].astype(np.int32))
     given = list(ways.files("python"))
 
     def command(name, output, *more, code="hamiltonian-k4"):
@@ -141,6 +143,16 @@ def test_decode(ways, camera):
     result = decoder.decode_recording("dump.bin", "dump.npz", raw_format="dump.raw.toml")
     assert "taken as electrons" in result.notes[0]
 
+    phases = [f"p{k}.npy" for k in range(4)]
+    ways.command("decode", *phases, "--averaged", "12.5", "--code", "hamiltonian-k4", *SMALL, "-o",
+                 "phases.npz")
+    result = decoder.decode_recording(phases, "phases.npz", averaged=12.5)
+    image = decoder.decode([np.load(phase) for phase in phases], averaged=12.5)
+    for frame, file in enumerate(result.files):
+        for name, plane in (("depth", image.depth_m),
+                            ("deviation", image.predicted_standard_deviation_m)):
+            np.testing.assert_array_equal(np.load(file)[name], plane[frame])
+
     command("raw.npy", "filtered.npz", "--filter", "strong", "--filter-set", "trusted_pixels=8",
             "--average", "2", "--outputs", "depth,averaged")
     result = decoder.decode_recording(
@@ -158,7 +170,7 @@ def test_decode(ways, camera):
     decoder.decode_recording("raw.npy", "snapped.npz", mixed="snap", outputs=["depth", "status"])
 
     ways.cpp("decode")
-    assert len(ways.same()) == len(given) + 6 * 3 + 1 + 2 + 3 + 3 + 2 + 3 + 3
+    assert len(ways.same()) == len(given) + 6 * 3 + 1 + 2 + 3 + 3 + 3 + 2 + 3 + 3
 
 
 def test_decode_refuses_alike(ways, camera):
@@ -189,6 +201,12 @@ def test_decode_refuses_alike(ways, camera):
         decoder.decode_recording("raw.npy", "d.npz", filter="weak")
     with pytest.raises(ValueError, match="average: got 0"):
         decoder.decode_recording("raw.npy", "d.npz", average=0)
+    with pytest.raises(ValueError, match="averaged = 0; must be > 0"):
+        decoder.decode_recording("raw.npy", "d.npz", averaged=0)
+    with pytest.raises(OSError, match="found 2 files, one a measurement; expected 4"):
+        decoder.decode_recording(["raw.npy", "raw.npy"], "d.npz")
+    with pytest.raises(ValueError, match=r"raw\[1\]: got float64 of shape \(2, 3\); needs float32"):
+        decoder.decode([np.ones((2, 3), np.float32), np.ones((2, 3))])
     with pytest.raises(ts.Interrupted):
         decoder.decode_recording("raw.npy", "d.npz", progress=lambda share, step: False)
     assert list(ways.files("python")) == ["raw.npy"]

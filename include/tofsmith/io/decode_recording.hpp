@@ -62,8 +62,10 @@ DepthKind parse_depth_kind(std::string_view name);
 
 /// A recording to be decoded into files.
 struct DecodeRequest {
-  std::filesystem::path raw;  ///< .npy or .npz, (H, W, K) or (F, H, W, K), of any size
-  RawLayout layout = RawLayout::interleaved;  ///< of .npy and .npz; never guessed
+  /// .npy or .npz, (H, W, K) or (F, H, W, K), of any size; or K files, one a measurement in their
+  /// order, (H, W) or (F, H, W) each.
+  std::vector<std::filesystem::path> raw;
+  RawLayout layout = RawLayout::interleaved;  ///< of one .npy or .npz; never guessed
   std::filesystem::path raw_format;  ///< describes a sensor's dump (*.raw.toml); empty: no dump
 
   /// .npy .pfm .png (16 bits, mm): depth alone; .npz: an array of each plane; .exr: a channel of
@@ -78,6 +80,9 @@ struct DecodeRequest {
   /// smaller; the last one is of those that are left. What is invalid or saturated in one is so in
   /// the mean. `frame` counts means. From 1 to the number of frames.
   int average = 1;
+  /// Of how many equal measurements each raw number is the mean already, > 0: their noise is so
+  /// much smaller. With `average` it multiplies.
+  double averaged = 1.0;
   /// Of the frames, or means of frames, one after another: what stays the same is added up. `frame`
   /// counts all frames before it in. With `filter` it is `before_filter`. None: each frame for
   /// itself.

@@ -105,7 +105,7 @@ void unpack_numbers(const RawFormat& format, std::span<const std::byte> row, int
                     std::span<double> numbers);
 
 /// Raw measurements of shape (H, W, K), or (F, H, W, K) for several frames, from .npy or .npz (the
-/// array "raw", or the only one): uint8, uint16, int16, float32 or float64. Values are kept as they
+/// array "raw", or the only one), of whole numbers or floats but float16. Values are kept as they
 /// are, NaN and infinity too.
 /// @param measurements  K that the code asks for, if one is known
 /// @throws IoError if the extension, the shape or the type is another, or K differs
@@ -153,6 +153,11 @@ class RawFramesReader {
   /// in parts would take
   ///         more memory than allowed
   explicit RawFramesReader(const std::filesystem::path& path, const RawReadOptions& options = {});
+  /// One file for each measurement of a pixel, in their order: (H, W) or (F, H, W) each, or dumps
+  /// of one measurement. One file alone holds all measurements; `layout` counts for it only.
+  /// @throws IoError as above; naming the file whose type or shape is not that of the first
+  explicit RawFramesReader(const std::vector<std::filesystem::path>& files,
+                           const RawReadOptions& options = {});
   ~RawFramesReader();
   RawFramesReader(RawFramesReader&&) noexcept;
 
@@ -160,17 +165,19 @@ class RawFramesReader {
   int height() const { return sizes_.height; }
   int width() const { return sizes_.width; }
   int measurements() const { return sizes_.measurements; }
-  /// Of the numbers that read_rows() gives: int16 and dumps come as floats.
+  /// Of the numbers that read_rows() gives: int8, int16 and dumps come as float32, whole numbers of
+  /// more than 16 bits as float64.
   NpyType type() const { return type_; }
   /// Whether the file holds whole numbers.
   bool holds_integers() const { return holds_integers_; }
   /// What one row of a frame takes [bytes].
   std::size_t row_bytes() const;
   /// What the reader itself holds [bytes]: the values of a file that cannot be read in parts.
-  std::size_t bytes_in_memory() const { return whole_.bytes().size(); }
+  std::size_t bytes_in_memory() const;
 
   /// Rows first_row .. first_row + rows - 1 of a frame, in the file's layout and in type(): numbers
-  /// of .npy and .npz but int16 are not converted, big-endian ones are turned round.
+  /// of .npy and .npz in one of the types of RawView are not converted, big-endian ones are turned
+  /// round.
   /// @param buffer  what the view looks at, as long as no later call changes it
   /// @throws std::invalid_argument if there is no such frame or row
   /// @throws IoError if the file cannot be read or became shorter
@@ -179,18 +186,24 @@ class RawFramesReader {
   RawFrames read_frame(int index) const;
 
  private:
-  void open_array(const std::filesystem::path& path, const RawReadOptions& options);
+  struct OneMeasurement {};
+  RawFramesReader(const std::filesystem::path& path, const RawReadOptions& options, OneMeasurement);
+  void open_array(const std::filesystem::path& path, const RawReadOptions& options,
+                  bool is_one_measurement);
+  void open_parts(const std::vector<std::filesystem::path>& files, const RawReadOptions& options);
   void open_dump(const std::filesystem::path& path, const RawReadOptions& options);
   void read_stored_rows(int frame, int first_row, int rows, std::vector<std::byte>& buffer) const;
   RawView view_of(const std::byte* data, int rows, int rows_of_a_plane) const;
   RawView rows_in_memory(int frame, int first_row, int rows) const;
+  RawView rows_of_parts(int frame, int first_row, int rows, std::vector<std::byte>& buffer) const;
 
   std::optional<NpyReader> file_;        // none if `whole_` holds everything
   std::unique_ptr<RawDumpReader> dump_;  // of a dump: the only one of the three
+  std::vector<RawFramesReader> parts_;   // one a measurement; then none of the others
   NpyArray whole_;
   NpyType type_ = NpyType::float32;
   bool holds_integers_ = false;
-  RawLayout layout_;
+  RawLayout layout_ = RawLayout::interleaved;
   RawFrames sizes_;  // without values
 };
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <functional>
 #include <numeric>
 #include <span>
@@ -43,17 +44,73 @@ std::uint64_t bytes_of(const NpyReader& reader) {
                          std::uint64_t{item_size(reader.type())}, std::multiplies<>());
 }
 
+/// What numbers of a file are decoded as: the types of RawView as they are, others in the smallest
+/// that holds them (64-bit ones up to 2^53).
+NpyType decoded_type(NpyType stored) {
+  switch (stored) {
+    case NpyType::uint8:
+    case NpyType::uint16:
+    case NpyType::float32:
+    case NpyType::float64:
+      return stored;
+    case NpyType::int8:
+    case NpyType::int16:
+      return NpyType::float32;
+    default:
+      return NpyType::float64;
+  }
+}
+
+NpyArray in_type(NpyArray array, NpyType type) {
+  if (array.type() == type) return array;
+  if (type == NpyType::float32) return NpyArray::of<float>(array.shape(), array.to_floats());
+  return NpyArray::of<double>(array.shape(), array.to_doubles());
+}
+
+/// (H, W) and (F, H, W) as what a planar file of one measurement is.
+NpyShape with_measurements(const NpyShape& shape, const std::string& file) {
+  if (shape.size() == 2) return {1, shape[0], shape[1]};
+  if (shape.size() == 3) return {shape[0], 1, shape[1], shape[2]};
+  throw IoError(file, fmt::format("found an array of shape {}; expected (H, W) or (F, H, W), as of "
+                                  "several files each holds one measurement",
+                                  describe_shape(shape)));
+}
+
+std::string describe_sizes(const RawFramesReader& reader) {
+  return fmt::format("{} frame{} of {} x {}", reader.frames(), reader.frames() == 1 ? "" : "s",
+                     reader.height(), reader.width());
+}
+
 }  // namespace
 
 RawFramesReader::RawFramesReader(const std::filesystem::path& path, const RawReadOptions& options)
     : layout_(options.layout) {
-  options.format ? open_dump(path, options) : open_array(path, options);
+  options.format ? open_dump(path, options) : open_array(path, options, false);
+}
+
+RawFramesReader::RawFramesReader(const std::filesystem::path& path, const RawReadOptions& options,
+                                 OneMeasurement)
+    : layout_(options.layout) {
+  options.format ? open_dump(path, options) : open_array(path, options, true);
+}
+
+RawFramesReader::RawFramesReader(const std::vector<std::filesystem::path>& files,
+                                 const RawReadOptions& options)
+    : layout_(options.layout) {
+  require(!files.empty(), "raw", "no file", "must name one, or one a measurement");
+  if (files.size() > 1)
+    open_parts(files, options);
+  else if (options.format)
+    open_dump(files.front(), options);
+  else
+    open_array(files.front(), options, false);
 }
 
 RawFramesReader::~RawFramesReader() = default;
 RawFramesReader::RawFramesReader(RawFramesReader&&) noexcept = default;
 
-void RawFramesReader::open_array(const std::filesystem::path& path, const RawReadOptions& options) {
+void RawFramesReader::open_array(const std::filesystem::path& path, const RawReadOptions& options,
+                                 bool is_one_measurement) {
   if (known_extension(path, {".npy", ".npz"}) == ".npz") {
     whole_ = read_npz_array(path, options);
   } else {
@@ -64,13 +121,45 @@ void RawFramesReader::open_array(const std::filesystem::path& path, const RawRea
       file_.reset();
     }
   }
-  type_ = file_ ? file_->type() : whole_.type();
-  sizes_ =
-      checked_raw_sizes(type_, file_ ? file_->shape() : whole_.shape(), options, path.string());
-  holds_integers_ = type_ != NpyType::float32 && type_ != NpyType::float64;
-  if (type_ != NpyType::int16) return;
-  type_ = NpyType::float32;
-  if (!file_) whole_ = NpyArray::of<float>(whole_.shape(), whole_.to_floats());
+  const NpyType stored = file_ ? file_->type() : whole_.type();
+  const NpyShape& shape = file_ ? file_->shape() : whole_.shape();
+  sizes_ = checked_raw_sizes(stored,
+                             is_one_measurement ? with_measurements(shape, path.string()) : shape,
+                             options, path.string());
+  holds_integers_ = stored != NpyType::float32 && stored != NpyType::float64;
+  type_ = decoded_type(stored);
+  if (!file_) whole_ = in_type(std::move(whole_), type_);
+}
+
+void RawFramesReader::open_parts(const std::vector<std::filesystem::path>& files,
+                                 const RawReadOptions& options) {
+  const std::string first = files.front().string();
+  if (options.measurements && files.size() != static_cast<std::size_t>(*options.measurements))
+    throw IoError(first, fmt::format("found {} files, one a measurement; expected {} as the code "
+                                     "takes",
+                                     files.size(), *options.measurements));
+  RawReadOptions one = options;
+  one.measurements = 1;
+  one.layout = RawLayout::planar;
+  one.max_in_memory = options.max_in_memory / files.size();
+  for (const std::filesystem::path& file : files) {
+    parts_.push_back(RawFramesReader(file, one, OneMeasurement{}));
+    const RawFramesReader &part = parts_.back(), &model = parts_.front();
+    if (describe_sizes(part) != describe_sizes(model))
+      throw IoError(file.string(), fmt::format("found {}; expected {} as in {}",
+                                               describe_sizes(part), describe_sizes(model), first));
+    if (part.type_ != model.type_ || part.holds_integers_ != model.holds_integers_)
+      throw IoError(
+          file.string(),
+          fmt::format("found numbers that are read as {}{}; expected {}{} as in {}",
+                      name_of(part.type_), part.holds_integers_ ? " (whole)" : "",
+                      name_of(model.type_), model.holds_integers_ ? " (whole)" : "", first));
+  }
+  type_ = parts_.front().type_;
+  holds_integers_ = parts_.front().holds_integers_;
+  layout_ = RawLayout::planar;
+  sizes_ = parts_.front().sizes_;
+  sizes_.measurements = static_cast<int>(files.size());
 }
 
 void RawFramesReader::open_dump(const std::filesystem::path& path, const RawReadOptions& options) {
@@ -97,6 +186,12 @@ std::size_t RawFramesReader::row_bytes() const {
          item_size(type_);
 }
 
+std::size_t RawFramesReader::bytes_in_memory() const {
+  std::size_t bytes = whole_.bytes().size();
+  for (const RawFramesReader& part : parts_) bytes += part.bytes_in_memory();
+  return bytes;
+}
+
 RawView RawFramesReader::read_rows(int frame, int first_row, int rows,
                                    std::vector<std::byte>& buffer) const {
   require(frame >= 0 && frame < frames(), "frame", frame,
@@ -105,6 +200,7 @@ RawView RawFramesReader::read_rows(int frame, int first_row, int rows,
           fmt::format("must be 0 .. {}", height()));
   require(rows >= 0 && rows <= height() - first_row, "rows", rows,
           fmt::format("must be 0 .. {} from row {} on", height() - first_row, first_row));
+  if (!parts_.empty()) return rows_of_parts(frame, first_row, rows, buffer);
   if (dump_) {
     buffer.resize(static_cast<std::size_t>(rows) * row_bytes());
     if (type_ == NpyType::float64)
@@ -114,15 +210,12 @@ RawView RawFramesReader::read_rows(int frame, int first_row, int rows,
     return view_of(buffer.data(), rows, rows);
   }
   if (!file_) return rows_in_memory(frame, first_row, rows);
-  if (file_->type() == NpyType::int16) {
-    std::vector<std::byte> stored;
-    read_stored_rows(frame, first_row, rows, stored);
-    const std::size_t count = stored.size() / sizeof(std::int16_t);
-    buffer.resize(count * sizeof(float));
-    std::copy_n(reinterpret_cast<const std::int16_t*>(stored.data()), count,
-                reinterpret_cast<float*>(buffer.data()));
-  } else {
-    read_stored_rows(frame, first_row, rows, buffer);
+  read_stored_rows(frame, first_row, rows, buffer);
+  if (file_->type() != type_) {
+    NpyArray stored(file_->type(), {buffer.size() / item_size(file_->type())});
+    std::ranges::copy(buffer, stored.bytes().begin());
+    const NpyArray numbers = in_type(std::move(stored), type_);
+    buffer.assign(numbers.bytes().begin(), numbers.bytes().end());
   }
   return view_of(buffer.data(), rows, rows);
 }
@@ -151,6 +244,20 @@ RawView RawFramesReader::rows_in_memory(int frame, int first_row, int rows) cons
   const std::byte* first = whole_.bytes().data() + static_cast<std::size_t>(frame) * frame_bytes +
                            static_cast<std::size_t>(first_row) * step;
   return view_of(first, rows, height());
+}
+
+/// The parts' rows one after another.
+RawView RawFramesReader::rows_of_parts(int frame, int first_row, int rows,
+                                       std::vector<std::byte>& buffer) const {
+  const std::size_t bytes = static_cast<std::size_t>(rows) * row_bytes() / parts_.size();
+  buffer.resize(bytes * parts_.size());
+  std::vector<std::byte> read;
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    const RawView part = parts_[k].read_rows(frame, first_row, rows, read);
+    std::visit([&](const auto* first) { std::memcpy(buffer.data() + k * bytes, first, bytes); },
+               part.data);
+  }
+  return view_of(buffer.data(), rows, rows);
 }
 
 /// @param rows_of_a_plane  from one measurement's image to the next, if the layout is planar

@@ -54,14 +54,16 @@ constexpr EnumWords<RawLayout, 2> layout_words("RawLayout", "layout", "interleav
 
 RawFrames checked_raw_sizes(NpyType type, const NpyShape& shape, const RawReadOptions& options,
                             const std::string& file) {
-  if (type != NpyType::uint8 && type != NpyType::uint16 && type != NpyType::int16 &&
-      type != NpyType::float32 && type != NpyType::float64)
-    throw IoError(file, fmt::format("found items of type {}; expected float32, float64, int16, "
-                                    "uint16 or uint8",
+  if (type == NpyType::boolean)
+    throw IoError(file, fmt::format("found items of type {}; expected numbers (in NumPy: "
+                                    "raw.astype(numpy.float32))",
                                     name_of(type)));
   if (shape.size() != 3 && shape.size() != 4)
-    throw IoError(file, fmt::format("found an array of shape {}; expected {}",
-                                    describe_shape(shape), shapes_of(options.layout)));
+    throw IoError(file, fmt::format("found an array of shape {}; expected {}{}",
+                                    describe_shape(shape), shapes_of(options.layout),
+                                    shape.size() == 2 ? ", or all files where each holds one "
+                                                        "measurement"
+                                                      : ""));
   const Axes axes = axes_of(shape, options.layout);
   constexpr std::size_t max_axis = std::numeric_limits<int>::max();
   if (axes.frames < 1 || axes.frames > max_axis || axes.measurements < 1 ||

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -33,7 +34,10 @@ bool finds_multipath(const AnyDecoder& decoder) {
 void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
   const std::filesystem::path& output = request.output;
   require(request.memory_mb > 0.0, "memory_mb", request.memory_mb, "must be > 0");
+  require(!request.raw.empty(), "raw", "no file", "must name one, or one a measurement");
   require(request.average >= 1, "average", request.average, "must be >= 1");
+  require(request.averaged > 0.0 && std::isfinite(request.averaged), "averaged", request.averaged,
+          "must be > 0");
   if (request.time_filter) request.time_filter->validate();
   if (request.filter) request.filter->validate();
   require(request.frame.value_or(0) >= 0, "frame", request.frame.value_or(0), "must be >= 0");
@@ -73,10 +77,10 @@ RawFramesReader open_recording(const DecodeRequest& request, const DecodingTable
 
 DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
                        const RawFramesReader& reader) {
-  const std::string held = fmt::format("{} holds {} frame{}", request.raw.string(), reader.frames(),
-                                       reader.frames() == 1 ? "" : "s");
+  const std::string held = fmt::format("{} holds {} frame{}", request.raw.front().string(),
+                                       reader.frames(), reader.frames() == 1 ? "" : "s");
   require(request.average <= reader.frames(), "average", request.average, held);
-  const int frames = Preparation{request.average, {}, {}}.frames_of(reader.frames());
+  const int frames = Preparation{.average = request.average}.frames_of(reader.frames());
   require(!request.frame || *request.frame < frames, "frame", request.frame.value_or(0),
           fmt::format("{}{}, counted from 0", held,
                       request.average > 1 ? fmt::format(", {} means", frames) : ""));
@@ -120,8 +124,9 @@ PixelMaps load_maps(const DecodeRequest& request, const RawFramesReader& reader)
 void check_inputs_are_kept(const DecodeRequest& request, const DecodeTarget& target) {
   std::vector<std::string> inputs = request.other_inputs;
   for (const std::filesystem::path& path :
-       {request.raw, request.raw_format, request.offset_map, request.gain_map})
+       {request.raw_format, request.offset_map, request.gain_map})
     inputs.push_back(path.string());
+  for (const std::filesystem::path& path : request.raw) inputs.push_back(path.string());
   for (const std::filesystem::path& path : target.paths()) check_not_input(path, inputs);
 }
 
@@ -291,7 +296,7 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
   check_inputs_are_kept(request, target);
   check_range_fits(target.path, table.range_m);
   DecodeOutput output(target);
-  Preparation preparation{request.average, request.time_filter, request.filter,
+  Preparation preparation{request.average, request.averaged, request.time_filter, request.filter,
                           request.mixed.has_value()};
   if (preparation.time_filter && preparation.filter) preparation.time_filter->before_filter = true;
   const int rows = rows_at_a_time(reader, target, preparation, 1e6 * request.memory_mb);

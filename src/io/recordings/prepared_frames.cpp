@@ -53,7 +53,7 @@ double Preparation::frame_bytes(int height, int width, int measurements) const {
 }
 
 double Preparation::row_bytes(int width, int measurements) const {
-  if (average == 1) return 0.0;
+  if (average == 1) return averaged == 1.0 ? 0.0 : static_cast<double>(sizeof(float)) * width;
   return static_cast<double>(width) *
          (static_cast<double>(sizeof(double)) * measurements + sizeof(float));
 }
@@ -83,11 +83,11 @@ void RowSums::add(const RawView& raw) {
   ++frames_;
 }
 
-RawView RowSums::means() {
+RawView RowSums::means(double averaged) {
   const double level = saturation_level_.value_or(std::numeric_limits<float>::infinity());
   for (double& sum : sums_) sum = std::isinf(sum) ? level : sum / frames_;
   averaged_.assign(static_cast<std::size_t>(height_) * static_cast<std::size_t>(width_),
-                   static_cast<float>(frames_));
+                   static_cast<float>(averaged * frames_));
   RawView view = RawView::interleaved(sums_.data(), height_, width_, measurements_);
   view.averaged = averaged_.data();
   return view;
@@ -106,7 +106,14 @@ PreparedFrames::PreparedFrames(const RawFramesReader& reader, const DecodingTabl
 
 /// A band of frame `frame` as it is read or, of several, as their mean.
 RawView PreparedFrames::measured(int frame, const Progress& progress) {
-  if (preparation_.average == 1) return input_.next();
+  if (preparation_.average == 1) {
+    RawView raw = input_.next();
+    if (preparation_.averaged == 1.0) return raw;
+    averaged_.assign(static_cast<std::size_t>(raw.pixels()),
+                     static_cast<float>(preparation_.averaged));
+    raw.averaged = averaged_.data();
+    return raw;
+  }
   const int frames = frames_of_mean(preparation_, recorded_, frame);
   for (int i = 0; i < frames; ++i) {
     report(progress, static_cast<double>(i) / frames, "averaging");
@@ -114,7 +121,7 @@ RawView PreparedFrames::measured(int frame, const Progress& progress) {
     if (i == 0) sums_.start(raw, table_.saturation_level);
     sums_.add(raw);
   }
-  return sums_.means();
+  return sums_.means(preparation_.averaged);
 }
 
 /// Frame `frame` with what is the same in those before.

@@ -14,7 +14,8 @@ namespace tofsmith {
 
 /// What is done to raw numbers before they are decoded.
 struct Preparation {
-  int average = 1;  ///< mean of so many consecutive frames, the last of those there are
+  int average = 1;        ///< mean of so many consecutive frames, the last of those there are
+  double averaged = 1.0;  ///< of how many measurements raw numbers are the mean as they are read
   std::optional<TimeFilterOptions> time_filter;  ///< of those means
   std::optional<FilterOptions> filter;           ///< of what comes of that
   bool find_mixed = false;                       ///< afterwards, in whole frames
@@ -34,8 +35,9 @@ class RowSums {
   ///                          infinite in one is NaN
   void start(const RawView& first, std::optional<float> saturation_level);
   void add(const RawView& raw);
-  /// The means, with how many frames they are of, until the next start().
-  RawView means();
+  /// The means, with how many measurements they are of, until the next start().
+  /// @param averaged  of how many the numbers of one frame are
+  RawView means(double averaged);
 
  private:
   int height_ = 0, width_ = 0, measurements_ = 0, frames_ = 0;
@@ -75,6 +77,7 @@ class PreparedFrames {
   std::size_t next_ = 0;
   ReadAhead input_;
   RowSums sums_;
+  std::vector<float> averaged_;  // of numbers that are read, unless of one
   std::optional<TimeFilter> time_filter_;
   int frames_added_ = 0;  // to time_filter_
   std::optional<Filter> filter_;
