@@ -38,9 +38,16 @@ std::string lines_of(const CalibratedDepth& found) {
   std::string lines = fmt::format(
       "{} pixels: depth errs by {} rms but for an offset, {} on blocks held out once corrected\n",
       found.pixels, length_text(found.rms_before_m), length_text(found.rms_m));
-  for (const CalibratedTerm& term : found.terms)
+  constexpr double apart_m = 20e-3;
+  int mingled = 0;
+  for (const CalibratedTerm& term : found.terms) {
+    if (term.value_m.standard_error > apart_m && ++mingled) continue;
     lines += fmt::format("{:<18} {:10.3f} ± {:.3f} mm\n", term.name, 1e3 * term.value_m.value,
                          1.96e3 * term.value_m.standard_error);
+  }
+  if (mingled > 0)
+    lines +=
+        fmt::format("{} more terms, which this part of the range does not tell apart\n", mingled);
   lines += fmt::format("known in {:.0f} % of the range", 100.0 * found.known_share);
   if (found.known_share < 0.999)
     lines += fmt::format("; beyond, by {}: {} on parts of the range held out",
@@ -65,7 +72,7 @@ void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Se
   }
   session.print_json(document_of(found));
   session.say(lines_of(found));
-  if (!arguments.camera_path.empty()) arguments.write_camera(arguments.camera);
+  if (!arguments.camera_path.empty()) arguments.write_camera(with_depth(arguments.camera, found));
   if (arguments.table.empty()) return;
   write_calibrated_table(arguments.table, found.table, session.output_policy());
   session.say(

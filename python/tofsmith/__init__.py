@@ -46,6 +46,7 @@ from ._correlation_calibration import (
     calibrate_correlation,
     read_delay_sweep,
 )
+from ._depth_calibration import CalibratedDepth
 from ._decode import DecodedRecording, Decoder, decode
 from ._decoding_table import DecodingTable
 from ._depth_image import DepthImage, PixelStatus, ReturnStatus
@@ -164,6 +165,7 @@ def set_threads(threads: int) -> None:
 
 __all__ = [
     "CalibratedCorrelation",
+    "CalibratedDepth",
     "CalibratedResponse",
     "Camera",
     "Candidate",

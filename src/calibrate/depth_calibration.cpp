@@ -6,11 +6,9 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <limits>
 
-#include "calibrate/depth_error_fit.hpp"
+#include "calibrate/depth_term_choice.hpp"
 #include "calibrate/harmonic_basis.hpp"
-#include "calibrate/reference_samples.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
@@ -19,7 +17,7 @@ namespace tofsmith {
 
 namespace {
 
-constexpr int range_parts = 128, slabs = 4, checkers = 2;
+constexpr int range_parts = 128;
 
 /// The functions that the camera's model says, in the table's own form.
 MeasuredTable nominal_table(const ForwardModel& model, const CodeSet& code, const Camera& camera) {
@@ -31,43 +29,6 @@ MeasuredTable nominal_table(const ForwardModel& model, const CodeSet& code, cons
   return table;
 }
 
-/// What is fitted: samples with the terms of each.
-struct DepthFit {
-  std::vector<ReferenceSample> samples;
-  double range_m = 0.0;
-  int height = 0, width = 0;
-  double start_m = 0.0;  // offset ahead of the fit
-  double signal_e_per_s = 1.0, min_signal_e_per_s = 0.0, max_signal_e_per_s = 0.0;
-  Eigen::MatrixXd terms;    // (error_terms, samples)
-  Eigen::VectorXd error_m;  // depth - reference - start
-  Eigen::VectorXd base;     // weight by predicted noise
-  Eigen::VectorXd weight;   // and by the residual
-  double scale_m = 0.0;     // robust standard deviation of residuals
-
-  Eigen::Index size() const { return static_cast<Eigen::Index>(samples.size()); }
-};
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-double quantile_of(std::vector<double> values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-template <typename Get>
-std::vector<double> each(const std::vector<ReferenceSample>& samples, const Get& get) {
-  std::vector<double> values;
-  values.reserve(samples.size());
-  for (const ReferenceSample& s : samples) values.push_back(get(s));
-  return values;
-}
-
 DepthFit start(std::vector<ReferenceSample> samples, int height, int width, double range_m) {
   DepthFit fit{.samples = std::move(samples), .range_m = range_m, .height = height, .width = width};
   std::complex<double> sum = 0.0;
@@ -75,11 +36,11 @@ DepthFit start(std::vector<ReferenceSample> samples, int height, int width, doub
     sum += std::polar(1.0, turn * (s.depth_m - s.reference_m) / range_m);
   fit.start_m = std::arg(sum) / turn * range_m;
   const auto signal = each(fit.samples, [](const auto& s) { return s.signal_e_per_s; });
-  fit.signal_e_per_s = std::max(1e-30, median_of(signal));
+  fit.signal_e_per_s = std::max(1e-30, quantile_of(signal, 0.5));
   fit.min_signal_e_per_s = std::max(1e-3 * fit.signal_e_per_s, quantile_of(signal, 0.01));
   fit.max_signal_e_per_s = std::max(fit.min_signal_e_per_s, quantile_of(signal, 0.99));
-  const double usual_m =
-      std::max(1e-12, median_of(each(fit.samples, [](const auto& s) { return s.deviation_m; })));
+  const double usual_m = std::max(
+      1e-12, quantile_of(each(fit.samples, [](const auto& s) { return s.deviation_m; }), 0.5));
   fit.error_m.resize(fit.size());
   fit.base.resize(fit.size());
   for (Eigen::Index i = 0; i < fit.size(); ++i) {
@@ -121,7 +82,7 @@ void weigh(const Eigen::VectorXd& residual_m, DepthFit& fit) {
   std::vector<double> size_m(static_cast<std::size_t>(residual_m.size()));
   for (Eigen::Index i = 0; i < residual_m.size(); ++i)
     size_m[static_cast<std::size_t>(i)] = std::abs(residual_m[i]) * std::sqrt(fit.base[i]);
-  fit.scale_m = std::max(1e-9 * fit.range_m, 1.4826 * median_of(std::move(size_m)));
+  fit.scale_m = std::max(1e-9 * fit.range_m, 1.4826 * quantile_of(std::move(size_m), 0.5));
   for (Eigen::Index i = 0; i < residual_m.size(); ++i) {
     const double u = residual_m[i] * std::sqrt(fit.base[i]) / (biweight_reach * fit.scale_m);
     fit.weight[i] = std::abs(u) < 1.0 ? fit.base[i] * std::pow(1.0 - u * u, 2) : 0.0;
@@ -176,96 +137,6 @@ Eigen::VectorXd known_share_of(std::vector<bool> has, int highest_harmonic) {
     share[p] = at(p) || back + ahead <= reach ? 1.0 : 0.0;
   }
   return share;
-}
-
-struct Chosen {
-  TermChoice known, beyond;
-  double known_rms_m = 0.0, beyond_rms_m = 0.0;
-};
-
-/// Cells of held-out samples: the colour of a checkerboard of blocks, and a quarter of the range.
-std::vector<int> cells_of(const DepthFit& fit) {
-  const auto at_m = each(fit.samples, [](const auto& s) { return s.reference_m; });
-  std::array<double, slabs - 1> border_m{};
-  for (int q = 1; q < slabs; ++q)
-    border_m[static_cast<std::size_t>(q - 1)] = quantile_of(at_m, static_cast<double>(q) / slabs);
-  const int block_rows = std::max(1, fit.height / 8), block_columns = std::max(1, fit.width / 8);
-  std::vector<int> cell;
-  for (const ReferenceSample& s : fit.samples) {
-    const int slab = static_cast<int>(
-        std::ranges::count_if(border_m, [&](double border) { return s.reference_m > border; }));
-    const int colour = (s.row / block_rows + s.column / block_columns + s.frame) % checkers;
-    cell.push_back(slab * checkers + colour);
-  }
-  return cell;
-}
-
-/// rms that a choice leaves on folds of cells held out in turn.
-double held_out_rms_m(const std::vector<NormalSums>& sums, const TermChoice& choice,
-                      bool by_range) {
-  const std::vector<int> columns = choice.columns();
-  double left = 0.0, weight = 0.0;
-  for (int fold = 0; fold < (by_range ? slabs : checkers); ++fold) {
-    NormalSums kept, out;
-    for (std::size_t c = 0; c < sums.size(); ++c) {
-      const int its = static_cast<int>(c);
-      (((by_range ? its / checkers : its % checkers) == fold) ? out : kept).add(sums[c]);
-    }
-    if (!(out.weight > 0.0) || !(kept.weight > 0.0)) continue;
-    left += out.left(columns, kept.solve(columns));
-    weight += out.weight;
-  }
-  return std::sqrt(left / std::max(1e-300, weight));
-}
-
-/// Sets of harmonics that errors of usual cameras have; of k equally spaced phases, k and 2 k.
-std::vector<unsigned> harmonic_sets(int highest) {
-  const auto set = [](std::initializer_list<int> list) {
-    unsigned bits = 0;
-    for (const int h : list) bits |= 1u << (h - 1);
-    return bits;
-  };
-  std::vector<unsigned> sets;
-  for (const unsigned bits :
-       {0u, set({1}), set({2}), set({3}), set({4}), set({1, 2}), set({2, 4}), set({3, 6}),
-        set({4, 8}), set({1, 2, 3}), set({1, 2, 4}), set({1, 2, 3, 4}), set({2, 4, 6, 8}),
-        set({1, 2, 3, 4, 8}), set({1, 2, 3, 4, 5, 6}), set({1, 2, 3, 4, 5, 6, 7, 8})})
-    if (bits < (1u << highest)) sets.push_back(bits);
-  return sets;
-}
-
-Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree) {
-  const std::vector<NormalSums> sums =
-      sums_of(fit.terms, fit.error_m, fit.weight, cells_of(fit), slabs * checkers);
-  struct Candidate {
-    TermChoice choice;
-    double near_m, far_m;
-  };
-  std::vector<Candidate> candidates;
-  for (const unsigned harmonics : harmonic_sets(highest_harmonic))
-    for (int degree = 0; degree <= max_degree; ++degree)
-      for (int signal = 0; signal <= max_error_signal; ++signal) {
-        const TermChoice choice{harmonics, degree, signal};
-        candidates.push_back(
-            {choice, held_out_rms_m(sums, choice, false), held_out_rms_m(sums, choice, true)});
-      }
-  const auto& near = *std::ranges::min_element(candidates, {}, &Candidate::near_m);
-  const auto& far = *std::ranges::min_element(candidates, {}, &Candidate::far_m);
-  // Terms in the signal only where they show; of the others the most that predict as well, since a
-  // term left out shifts those beside it.
-  constexpr double shows = 1.01, as_well = 1.005;
-  int signal = near.choice.signal;
-  for (const Candidate& c : candidates)
-    if (c.near_m <= shows * near.near_m) signal = std::min(signal, c.choice.signal);
-  double least_m = std::numeric_limits<double>::infinity();
-  for (const Candidate& c : candidates)
-    if (c.choice.signal == signal) least_m = std::min(least_m, c.near_m);
-  const Candidate* best = nullptr;
-  for (const Candidate& c : candidates)
-    if (c.choice.signal == signal && c.near_m <= as_well * least_m &&
-        (!best || c.choice.size() > best->choice.size()))
-      best = &c;
-  return {best->choice, far.choice, best->near_m, far.far_m};
 }
 
 /// Tiles of pixels, the same in every frame, at least some hundred.
@@ -406,6 +277,16 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   result.table.correction = correction;
   add_notes(fit, reference, fitted_m, covered, result);
   return result;
+}
+
+Camera with_depth(Camera camera, const CalibratedDepth& found) {
+  Playback playback = camera.playback.value_or(Playback());
+  const double offset_m = found.table.correction ? found.table.correction->known.offset_m : 0.0;
+  playback.offset_m = offset_m + (found.reversed ? -playback.offset_m : playback.offset_m);
+  playback.reversed = playback.reversed != found.reversed;
+  camera.playback = playback;
+  camera.validate();
+  return camera;
 }
 
 }  // namespace tofsmith

@@ -79,8 +79,8 @@ double DepthCorrection::error_m(double depth_m, double range_m, int row, int col
   const double r = place(row, height), c = place(column, width);
   double log_signal = 0.0;
   if (needs_signal())
-    log_signal = std::log(
-        std::clamp(signal_e_per_s_here, min_signal_e_per_s, max_signal_e_per_s) / signal_e_per_s);
+    log_signal = std::log(std::clamp(signal_e_per_s_here, min_signal_e_per_s, max_signal_e_per_s) /
+                          signal_e_per_s);
   // Between the middles of two parts the one model turns into the other.
   double share = 1.0;
   if (const Eigen::Index parts = known_share.size(); parts > 0) {
@@ -100,10 +100,10 @@ void DepthCorrection::validate() const {
           std::to_string(height) + " x " + std::to_string(width), "must be at least 1 x 1");
   validate_terms(known, "correction.known");
   validate_terms(beyond, "correction.beyond");
-  require(known_share.size() == 0 ||
-              (known_share.minCoeff() >= 0.0 && known_share.maxCoeff() <= 1.0),
-          "correction.known_share", std::to_string(known_share.size()) + " entries",
-          "must be in [0, 1]");
+  require(
+      known_share.size() == 0 || (known_share.minCoeff() >= 0.0 && known_share.maxCoeff() <= 1.0),
+      "correction.known_share", std::to_string(known_share.size()) + " entries",
+      "must be in [0, 1]");
   if (!needs_signal()) return;
   require(std::isfinite(signal_e_per_s) && signal_e_per_s > 0.0, "correction.signal_e_per_s",
           signal_e_per_s, "must be finite and > 0");
@@ -117,10 +117,9 @@ void apply(const DepthCorrection& correction, double range_m, const DecodedView&
            int height, int width, std::size_t first, std::size_t count) {
   require(std::isfinite(range_m) && range_m > 0.0, "range_m", range_m, "must be finite and > 0");
   const auto text = [](int h, int w) { return std::to_string(h) + " x " + std::to_string(w); };
-  require(correction.height == height && correction.width == width, "frame size",
-          text(height, width),
-          "must be that of the table's depth correction, " +
-              text(correction.height, correction.width));
+  require(
+      correction.height == height && correction.width == width, "frame size", text(height, width),
+      "must be that of the table's depth correction, " + text(correction.height, correction.width));
   if (!decoded.depth_m) return;
   require(!correction.needs_signal() || decoded.signal_e_per_s, "signal_e_per_s", "null",
           "is needed: the depth correction has terms in the signal");

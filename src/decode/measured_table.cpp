@@ -67,6 +67,15 @@ Eigen::VectorXd ambient_gain_of(const Eigen::MatrixXd& correlation, MeasuredAmbi
                                    ambient == MeasuredAmbient::none ? 0.0 : 1.0);
 }
 
+MeasuredTable MeasuredTable::in_order(const Eigen::VectorXi& source) const {
+  MeasuredTable ordered = *this;
+  ordered.correlation = correlation(Eigen::all, source).eval();
+  for (Eigen::VectorXd* list :
+       {&ordered.ambient_gain, &ordered.exposure_s, &ordered.black_level, &ordered.gain_e_per_raw})
+    if (list->size() > 0) *list = (*list)(source).eval();
+  return ordered;
+}
+
 void MeasuredTable::validate() const {
   require(columns() >= 1, "columns of the measured table", columns(), "must be >= 1");
   require(!differences || taps == 1, "taps of the measured table", taps,
@@ -101,8 +110,8 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   const Eigen::VectorXd ambient_gain =
       measured.ambient_gain.size() > 0
           ? measured.ambient_gain
-          : ambient_gain_of(measured.correlation, measured.differences ? MeasuredAmbient::none
-                                                                       : MeasuredAmbient::equal);
+          : ambient_gain_of(measured.correlation,
+                            measured.differences ? MeasuredAmbient::none : MeasuredAmbient::equal);
   const Eigen::VectorXd gain_e_per_raw =
       measured.gain_e_per_raw.size() > 0
           ? measured.gain_e_per_raw

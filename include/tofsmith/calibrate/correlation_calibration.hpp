@@ -164,6 +164,10 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
                                 const CodeSet& code, const Camera& camera,
                                 const Progress& progress = {});
 
+/// The camera with the offset and the direction of delay that were found, for its code to decode
+/// without the table.
+Camera with_depth(Camera camera, const CalibratedDepth& found);
+
 /// Writes a table with its correction, as read_measured_table() reads it.
 /// @throws IoError as below
 void write_calibrated_table(const std::filesystem::path& path, const MeasuredTable& table,

@@ -57,8 +57,8 @@ struct DepthCorrection {
   int width = 0;
   DepthErrorTerms known;
   DepthErrorTerms beyond;
-  Eigen::VectorXd known_share;  ///< of equal parts of the range: 1 where `known` counts, else 0
-  double signal_e_per_s = 1.0;  ///< S0 [e/s], > 0
+  Eigen::VectorXd known_share;      ///< of equal parts of the range: 1 where `known` counts, else 0
+  double signal_e_per_s = 1.0;      ///< S0 [e/s], > 0
   double min_signal_e_per_s = 0.0;  ///< signals below count as this one [e/s]
   double max_signal_e_per_s = 0.0;  ///< and above as this one [e/s]
 
@@ -172,6 +172,10 @@ struct MeasuredTable {
 
   int samples() const { return static_cast<int>(correlation.rows()); }
   int columns() const { return static_cast<int>(correlation.cols()); }
+
+  /// The same with its columns, and what is known of each, in another order.
+  /// @param source  which column each is now (K)
+  MeasuredTable in_order(const Eigen::VectorXi& source) const;
 
   /// Whether the sizes agree. @throws std::invalid_argument naming field, value and rule
   void validate() const;

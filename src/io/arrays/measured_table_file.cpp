@@ -145,10 +145,7 @@ void sort_columns(MeasuredTable& table, const TapLayout& layout, const std::stri
     for (int t = 0; t < layout.taps; ++t)
       source[e * layout.taps + t] =
           static_cast<int>(column_of(e, t, exposures, layout.taps, layout.order));
-  table.correlation = table.correlation(Eigen::all, source).eval();
-  for (Eigen::VectorXd* list :
-       {&table.ambient_gain, &table.exposure_s, &table.black_level, &table.gain_e_per_raw})
-    if (list->size() > 0) *list = (*list)(source).eval();
+  table = table.in_order(source);
 }
 
 constexpr EnumWords<TableAxes, 2> axes_words("TableAxes", "axes of the table", "nk", "kn");

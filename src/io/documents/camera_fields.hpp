@@ -139,6 +139,14 @@ void visit_operating(Table& table, Field<Table, OperatingRange>& range) {
 }
 
 template <typename Table>
+void visit_playback(Table& table, Field<Table, Playback>& playback) {
+  table.value("order", playback.order);
+  table.value("reversed", playback.reversed);
+  table.value("inverted", playback.inverted);
+  table.value("offset_m", playback.offset_m);
+}
+
+template <typename Table>
 void visit_camera(Table& table, Field<Table, Camera>& camera) {
   table.value("name", camera.name);
   table.required("fundamental_frequency_hz", "15e6")
@@ -149,6 +157,7 @@ void visit_camera(Table& table, Field<Table, Camera>& camera) {
   table.table("sensor", camera.sensor, visit_sensor<Table>);
   table.table("lens", camera, visit_lens<Table>);
   table.table("operating", camera.operating, visit_operating<Table>);
+  table.table("playback", camera.playback, visit_playback<Table>);
 }
 
 }  // namespace tofsmith::camera_fields

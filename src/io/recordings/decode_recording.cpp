@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -113,6 +114,13 @@ void load_map(const std::filesystem::path& path, const char* name, const RawFram
 PixelMaps load_maps(const DecodeRequest& request, const RawFramesReader& reader) {
   PixelMaps maps;
   load_map(request.offset_map, "offset", reader, &PixelMaps::delay_offset_m, maps);
+  if (request.offset_m != 0.0) {
+    require(std::isfinite(request.offset_m), "offset_m", request.offset_m, "must be finite");
+    if (maps.delay_offset_m.empty())
+      maps.delay_offset_m = Image<float>(reader.height(), reader.width(), 0.0f);
+    for (float& offset_m : maps.delay_offset_m.pixels)
+      offset_m += static_cast<float>(request.offset_m);
+  }
   load_map(request.gain_map, "gain", reader, &PixelMaps::gain, maps);
   return maps;
 }
@@ -294,11 +302,11 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
   const DecodeTarget target = target_of(request, decoder, table, reader);
   if (const auto& correction = table.correction)
     if (correction->height != reader.height() || correction->width != reader.width())
-      throw IoError(request.raw.string(),
-                    fmt::format("found frames of {} x {} pixels; expected {} x {}, of which the "
-                                "table's depth correction is",
-                                reader.height(), reader.width(), correction->height,
-                                correction->width));
+      throw IoError(
+          request.raw.string(),
+          fmt::format("found frames of {} x {} pixels; expected {} x {}, of which the "
+                      "table's depth correction is",
+                      reader.height(), reader.width(), correction->height, correction->width));
   const MappedDecoder mapped{decoder, table, load_maps(request, reader), request.mixed};
   check_inputs_are_kept(request, target);
   check_range_fits(target.path, table.range_m);
