@@ -50,6 +50,25 @@ double coherence(const std::vector<ReferenceSample>& samples, double range_m, do
   return count < 0.5 * static_cast<double>(samples.size()) ? 0.0 : std::abs(sum) / count;
 }
 
+/// Median distance of depth -+ reference from their usual offset [m]: wrong pixels do not count.
+template <typename Reference>
+double scatter_of(const std::vector<ReferenceSample>& samples, double range_m, double sign,
+                  const Reference& reference_m) {
+  std::complex<double> sum = 0.0;
+  std::vector<double> difference_m;
+  for (const ReferenceSample& s : samples) {
+    const double here_m = s.depth_m - sign * reference_m(s);
+    if (std::isnan(here_m)) continue;
+    difference_m.push_back(here_m);
+    sum += std::polar(1.0, turn * here_m / range_m);
+  }
+  if (difference_m.size() < samples.size() / 2) return INFINITY;
+  const double usual_m = std::arg(sum) / turn * range_m;
+  for (double& d : difference_m) d = std::abs(wrapped_difference_m(d - usual_m, range_m));
+  std::ranges::nth_element(difference_m, difference_m.begin() + difference_m.size() / 2);
+  return difference_m[difference_m.size() / 2];
+}
+
 }  // namespace
 
 double reference_at(const ReferenceDepth& reference, int frame, int row, int column) {
@@ -117,6 +136,7 @@ bool runs_backwards(const std::vector<ReferenceSample>& samples, const Reference
         require(coherence(samples, range_m, direction,
                           [&](const ReferenceSample& s) { return scale * s.reference_m; }) < agrees,
                 "reference", unit, "must be in metres");
+  const double scatter_m = scatter_of(samples, range_m, sign, plain);
   struct Flip {
     bool rows, columns;
     const char* name;
@@ -125,11 +145,11 @@ bool runs_backwards(const std::vector<ReferenceSample>& samples, const Reference
        {Flip{true, false, "flipped top to bottom"}, Flip{false, true, "mirrored left to right"},
         Flip{true, true, "turned by 180 degrees"}})
     for (const double direction : {1.0, -1.0}) {
-      const double other = coherence(samples, range_m, direction, [&](const ReferenceSample& s) {
+      const double other_m = scatter_of(samples, range_m, direction, [&](const ReferenceSample& s) {
         return reference_at(reference, s.frame, flip.rows ? height - 1 - s.row : s.row,
                             flip.columns ? width - 1 - s.column : s.column);
       });
-      require(other < agrees || 1.0 - other > 0.3 * (1.0 - found), "reference", flip.name,
+      require(other_m > 0.3 * scatter_m, "reference", flip.name,
               "must show what the frames show, pixel by pixel");
     }
   require(found >= differs, "reference", fmt::format("agreement {:.2f}", found),

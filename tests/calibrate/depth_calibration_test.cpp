@@ -62,7 +62,7 @@ struct Bench {
               static_cast<float>(true_m - range_m * std::floor(true_m / range_m));
           if (random.uniform() < wrong_share)
             depth_m(row, column) = static_cast<float>(range_m * random.uniform());
-          const double amplitude = 8e3 * (1.2 + std::cos(0.3 * column));
+          const double amplitude = 2e5 * (1.2 + std::cos(0.3 * column));
           const double phase_rad = (reversed ? -1.0 : 1.0) * turn_rad * nominal_m / range_m;
           for (int k = 0; k < 4; ++k)
             raw.values.push_back(
