@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibrate_depth.hpp"
 #include "calibrate_output.hpp"
 #include "number_checks.hpp"
 #include "tap_arguments.hpp"
@@ -24,7 +25,7 @@ namespace tofsmith::apps {
 namespace {
 
 struct CorrelationArguments {
-  std::string file, shifts, dark;
+  std::string file, shifts, dark, reference;
   std::string table, offset_map, gain_map;
   std::string unit = "s", decimal = "auto", axes;
   std::vector<std::string> codes;
@@ -133,7 +134,7 @@ nlohmann::ordered_json document_of(const CalibratedCorrelation& found,
 
 void check_outputs(const CorrelationArguments& arguments, const Session& session) {
   const std::vector<std::string> inputs = {arguments.file, arguments.shifts, arguments.dark,
-                                           arguments.camera.name};
+                                           arguments.reference, arguments.camera.name};
   arguments.output.check(session, inputs);
   for (const std::string& path : {arguments.table, arguments.offset_map, arguments.gain_map}) {
     if (path.empty()) continue;
@@ -161,6 +162,14 @@ void write_maps(const CorrelationArguments& arguments, const CalibratedCorrelati
 void run(const CorrelationArguments& arguments, const Session& session) {
   const Camera base = arguments.camera.load();
   check_outputs(arguments, session);
+  if (!arguments.reference.empty()) {
+    calibrate_by_reference(
+        {arguments.file, arguments.reference, arguments.table, arguments.output.camera_path,
+         arguments.camera.name, arguments.codes, arguments.taps.file_options(), base,
+         [&](const Camera& camera) { arguments.output.write_camera(camera, session); }},
+        session);
+    return;
+  }
   const DelaySweep sweep = load_sweep(arguments, base);
   CalibratedCorrelation found;
   try {
@@ -232,6 +241,10 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
                    "unit of the delays: s ms us ns ps, m of depth, bin, period")
       ->check(one_of({"s", "ms", "us", "ns", "ps", "m", "bin", "period"}))
       ->capture_default_str();
+  command->add_option("--reference", arguments->reference,
+                      "instead of delays: depth along the ray that the frames should show, in m "
+                      "(.npy .npz .exr .pfm .png; NaN or 0: not known), or a distance for each "
+                      "frame (.npy); the error of --code against it is found");
   command->add_option("--dark", arguments->dark, "frames with the light off, room as in the sweep");
   command
       ->add_option("--target-distance-m", arguments->target_distance_m,

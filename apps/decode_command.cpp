@@ -163,6 +163,10 @@ void add_decode_command(CLI::App& app, Session& session) {
   command->add_option("--offset-map", arguments->offset_map,
                       "how much too far each pixel decodes in metres (.npy .npz .exr .pfm), taken "
                       "off its depth; NaN marks a dead pixel");
+  command
+      ->add_option("--offset-m", arguments->request.offset_m,
+                   "how much too far every pixel decodes in metres, taken off its depth")
+      ->capture_default_str();
   command->add_option("--gain-map", arguments->gain_map,
                       "response of each pixel over that of a usual one, taken out of signal and "
                       "ambient; NaN marks a dead pixel");

@@ -24,6 +24,12 @@ void TableArguments::add_to(CLI::App& command) {
       .add_option("--table-axes", axes_,
                   "axes of a measured table: samples by measurements (nk), or the other way (kn)")
       ->check(one_of({"nk", "kn"}));
+  command
+      .add_option("--order", order_,
+                  "exposures of the code or table in the order in which frames have them: 0,3,2,1")
+      ->delimiter(',');
+  command.add_flag("--reverse", reversed_,
+                   "delay runs against what code, camera or table say: near is far");
   command.add_flag("--keep-end-point", keep_end_point_,
                    "keep a measured table's last sample though it equals the first");
 }
@@ -45,7 +51,9 @@ DecodingSource TableArguments::load(const std::string& code, const Camera& camer
                                .range_m = range_m_,
                                .ambient = {},
                                .axes = {},
-                               .keep_end_point = keep_end_point_};
+                               .keep_end_point = keep_end_point_,
+                               .order = order_,
+                               .reversed = reversed_};
   if (!ambient_.empty()) options.ambient = parse_measured_ambient(ambient_);
   if (!axes_.empty()) options.axes = parse_table_axes(axes_);
   DecodingSource source{load_decoding_table(code, camera, options), {}, {}};

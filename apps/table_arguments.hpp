@@ -18,7 +18,7 @@ struct DecodingSource : LoadedDecodingTable {
 };
 
 /// What a measured table's file does not say: `--range-m`, `--ambient`, `--table-axes`,
-/// `--keep-end-point`.
+/// `--keep-end-point`; and of codes, too, `--order` and `--reverse`.
 class TableArguments {
  public:
   void add_to(CLI::App& command);
@@ -32,6 +32,8 @@ class TableArguments {
  private:
   std::optional<double> range_m_;
   std::string ambient_, axes_;
+  std::vector<int> order_;
+  bool reversed_ = false;
   bool keep_end_point_ = false;
 };
 

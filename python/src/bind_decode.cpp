@@ -107,10 +107,17 @@ void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_p
   without_gil(callback, [&](const Progress& progress) {
     const auto pixels = static_cast<std::size_t>(raw.frames.front().pixels());
     const ProgressParts parts(progress, raw.frames.size());
+    const DecodingTable& table = table_of(decoder);
+    std::vector<float> signal;  // where the correction alone needs it
+    if (table.correction && table.correction->needs_signal() && !planes.view().signal_e_per_s)
+      signal.resize(pixels);
     for (std::size_t f = 0; f < raw.frames.size(); ++f) {
-      const DecodedView decoded = planes.view().from(f * pixels);
+      DecodedView decoded = planes.view().from(f * pixels);
+      if (!signal.empty()) decoded.signal_e_per_s = signal.data();
       std::visit([&](const auto& d) { d.decode(raw.frames[f], decoded, parts[f]); }, decoder.any);
-      if (!maps.empty()) apply(maps, table_of(decoder).range_m, decoded, 0, pixels);
+      if (table.correction)
+        apply(*table.correction, table.range_m, decoded, raw.height, raw.width, 0, pixels);
+      if (!maps.empty()) apply(maps, table.range_m, decoded, 0, pixels);
       if (marking) mark_mixed_pixels(table_of(decoder), raw.frames[f], *marking, decoded, maps);
     }
   });
@@ -133,6 +140,7 @@ DecodeRequest request_of(const std::vector<std::string>& raw, const std::string&
       .value("averaged", request.averaged)
       .value("mixed", mixed)
       .value("offset_map", offset_map)
+      .value("offset_m", request.offset_m)
       .value("gain_map", gain_map)
       .value("memory_mb", request.memory_mb)
       .value("other_inputs", request.other_inputs)
@@ -228,7 +236,9 @@ py::tuple load_table(const std::string& code, const Camera& camera, const py::di
       .value("range_m", options.range_m)
       .value("ambient", ambient)
       .value("axes", axes)
-      .value("keep_end_point", options.keep_end_point);
+      .value("keep_end_point", options.keep_end_point)
+      .value("order", options.order)
+      .value("reversed", options.reversed);
   reader.finish();
   if (!tap_order.empty()) options.file.tap_order = parse_tap_order(tap_order);
   if (!ambient.empty()) options.ambient = parse_measured_ambient(ambient);

@@ -149,9 +149,65 @@ std::vector<IdealCodeFit> fits_of(const CalibratedCorrelation& found, const Came
                          codes ? *codes : ideal_codes(camera, found.table.columns()));
 }
 
+ReferenceDepth reference_of(const py::list& images) {
+  ReferenceDepth reference;
+  for (const py::handle& image : images)
+    reference.depth_m.push_back(to_image(py::reinterpret_borrow<py::object>(image), "reference"));
+  return reference;
+}
+
+py::list read_reference(const std::string& path) {
+  py::list images;
+  for (Image<float>& image : read_reference_depth(path).depth_m)
+    images.append(adopt(std::move(image)));
+  return images;
+}
+
+CalibratedDepth calibrate_by_reference(const py::object& frames, const py::list& images,
+                                       const CodeSet& code, const Camera& camera,
+                                       const py::object& callback) {
+  const RawFrames raw = to_raw_frames(frames, "frames");
+  const ReferenceDepth reference = reference_of(images);
+  return without_gil(callback, [&](const Progress& progress) {
+    return calibrate_depth(raw, reference, code, camera, progress);
+  });
+}
+
+py::dict depth_dict(const CalibratedDepth& found) {
+  py::list terms;
+  for (const CalibratedTerm& term : found.terms)
+    terms.append(py::make_tuple(term.name, pair_of(term.value_m)));
+  py::dict dict;
+  dict["reversed"] = found.reversed;
+  dict["terms"] = terms;
+  dict["far_terms"] = found.far_terms;
+  dict["known_share"] = found.known_share;
+  dict["rms_before_m"] = found.rms_before_m;
+  dict["rms_m"] = found.rms_m;
+  dict["far_rms_m"] = found.far_rms_m;
+  dict["outlier_share"] = found.outlier_share;
+  dict["pixels"] = found.pixels;
+  dict["notes"] = found.notes;
+  return dict;
+}
+
 }  // namespace
 
 void bind_delay_sweep(py::module_& module) {
+  module.def("read_reference_depth", &read_reference);
+  module.def("calibrate_depth", &calibrate_by_reference);
+  py::class_<CalibratedDepth>(module, "CalibratedDepth")
+      .def("fields", &depth_dict)
+      .def("camera", [](const CalibratedDepth& found,
+                        const Camera& camera) { return with_depth(camera, found); })
+      .def("decoding_table",
+           [](const CalibratedDepth& found, const Camera& camera) {
+             return make_decoding_table(found.table, camera);
+           })
+      .def("write_table",
+           [](const CalibratedDepth& found, const std::string& path, bool overwrite) {
+             write_calibrated_table(path, found.table, policy_of(overwrite));
+           });
   module.def("read_delay_sweep", &read_sweep);
   py::class_<CalibratedCorrelation>(module, "CalibratedCorrelation")
       .def("fields", &correlation_dict)

@@ -47,6 +47,7 @@ from ._correlation_calibration import (
     calibrate_correlation,
     read_delay_sweep,
 )
+from ._depth_calibration import CalibratedDepth
 from ._decode import DecodedRecording, Decoder, decode
 from ._decoding_table import DecodingTable
 from ._depth_image import DepthImage, PixelStatus, ReturnStatus
@@ -166,6 +167,7 @@ def set_threads(threads: int) -> None:
 
 __all__ = [
     "CalibratedCorrelation",
+    "CalibratedDepth",
     "CalibratedResponse",
     "Camera",
     "Candidate",

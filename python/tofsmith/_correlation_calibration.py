@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from typing import Any, Optional, Union
+from typing import Any, Optional, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +14,9 @@ import numpy.typing as npt
 from . import _check, _tofsmith
 from ._camera import CameraLike, camera_of
 from ._check import FloatArray, Path, Progress
+from ._code import CodeLike
 from ._decoding_table import DecodingTable
+from ._depth_calibration import CalibratedDepth, calibrate_depth
 from ._reports import Estimate
 
 
@@ -193,6 +195,7 @@ def read_delay_sweep(
     return DelaySweep(**_tofsmith.read_delay_sweep(_check.path(path), handle, options))
 
 
+@overload
 def calibrate_correlation(
     sweep: Union[DelaySweep, Path],
     camera: CameraLike,
@@ -202,8 +205,36 @@ def calibrate_correlation(
     saturation_level: Optional[float] = None,
     target_distance_m: Optional[float] = None,
     geometry_m: Optional[npt.ArrayLike] = None,
+    reference: None = None,
+    code: None = None,
     progress: Progress = None,
-) -> CalibratedCorrelation:
+) -> CalibratedCorrelation: ...
+
+
+@overload
+def calibrate_correlation(
+    sweep: Union[Path, npt.ArrayLike],
+    camera: CameraLike,
+    *,
+    reference: Union[Path, npt.ArrayLike],
+    code: CodeLike,
+    progress: Progress = None,
+) -> CalibratedDepth: ...
+
+
+def calibrate_correlation(
+    sweep: Any,
+    camera: CameraLike,
+    *,
+    dark: Optional[npt.ArrayLike] = None,
+    black_level: Optional[float] = None,
+    saturation_level: Optional[float] = None,
+    target_distance_m: Optional[float] = None,
+    geometry_m: Optional[npt.ArrayLike] = None,
+    reference: Optional[Union[Path, npt.ArrayLike]] = None,
+    code: Optional[CodeLike] = None,
+    progress: Progress = None,
+) -> Union[CalibratedCorrelation, CalibratedDepth]:
     """Correlation functions of a camera, and delay and gain of every pixel, from a flat target at
     known delays.
 
@@ -223,6 +254,12 @@ def calibrate_correlation(
         camera's lens.
     geometry_m : array_like, shape (H, W), optional
         Instead: depth of the target in each pixel less that on the axis [m].
+    reference : str or path, or array_like, shape (H, W), (F, H, W) or (F,), optional
+        Instead of delays: depth along the ray that the frames should show [m], NaN where it is not
+        known, or a distance for each frame. `sweep` then is frames (F, H, W, K) or their file, and
+        what comes back is a CalibratedDepth: the error of `code` against it.
+    code : CodeSet, name or file, optional
+        With a reference: what the camera played.
     progress : callable, optional
 
     Raises
@@ -238,6 +275,10 @@ def calibrate_correlation(
     >>> image = decoder.decode(raw, delay_offset_m=found.delay_offset_m)  # doctest: +SKIP
     """
     camera = camera_of(camera)
+    if reference is not None:
+        if code is None:
+            raise ValueError("code: got None; needs the code that the camera played")
+        return calibrate_depth(sweep, camera, reference, code, progress)
     if isinstance(sweep, (str, os.PathLike)):
         sweep = read_delay_sweep(sweep, camera)
     _check.instance(sweep, DelaySweep, "sweep")

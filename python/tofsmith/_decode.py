@@ -168,7 +168,7 @@ class Decoder:
         averaged : float, or array_like of shape (H, W) or (F, H, W), optional
             Of how many equal measurements the numbers of each pixel are the mean, > 0, so that
             their noise is so much smaller: of Filter.apply(), or of frames averaged by hand.
-        delay_offset_m, gain : array_like, shape (H, W), optional
+        delay_offset_m, gain : array_like, shape (H, W), or float, optional
             By how much each pixel decodes too far [m], and its response over a usual one's; NaN
             marks a dead pixel.
         mixed : {"label", "snap", "drop"}, optional
@@ -199,8 +199,10 @@ class Decoder:
         image = self._new_planes(array, is_planar, planes) if out is None else planes_of(
             out, planes)
         callback = _check.progress(progress)
+        size = array.shape[-2:] if is_planar else array.shape[-3:-1]
         maps = [
-            None if m is None else np.asarray(_check.real_array(m, name, "(H, W)"), np.float32)
+            None if m is None else np.asarray(_check.real_array(
+                np.full(size, m) if np.ndim(m) == 0 else m, name, "(H, W)"), np.float32)
             for m, name in ((delay_offset_m, "delay_offset_m"), (gain, "gain"))
         ]
         means = _check.means(averaged, array, is_planar)
@@ -225,6 +227,7 @@ class Decoder:
         filter: Optional[FilterLike] = None,
         mixed: Optional[str] = None,
         offset_map: Optional[Path] = None,
+        offset_m: float = 0.0,
         gain_map: Optional[Path] = None,
         memory_mb: float = 256.0,
         overwrite: bool = False,
@@ -274,6 +277,8 @@ class Decoder:
             Finds pixels that see two surfaces, as Decoder.decode() does.
         offset_map, gain_map : str or path, optional
             Files of what Decoder.decode() takes as `delay_offset_m` and `gain`.
+        offset_m : float
+            How much too far every pixel decodes, beside its map [m].
         memory_mb : float
             For frames under way [MB]; larger frames go in bands of rows.
         overwrite : bool
@@ -316,6 +321,7 @@ class Decoder:
             "filter": None if filter is None else filter_options(filter),
             "mixed": mixed_word(mixed),
             "offset_map": name(offset_map, "offset_map"),
+            "offset_m": _check.number(offset_m, "offset_m"),
             "gain_map": name(gain_map, "gain_map"),
             "memory_mb": _check.number(memory_mb, "memory_mb"),
             "overwrite": bool(overwrite),

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from typing import Optional
 
 import numpy.typing as npt
@@ -52,6 +53,8 @@ class DecodingTable:
         keep_end_point: bool = False,
         taps: Optional[int] = None,
         tap_order: Optional[str] = None,
+        order: Optional[Sequence[int]] = None,
+        reversed: bool = False,
     ) -> DecodingTable:
         """The table of a family, of a code's file, or of a file of measured correlation functions,
         as `tofsmith decode --code` takes them.
@@ -74,6 +77,10 @@ class DecodingTable:
             Of an .npz file; None: the camera's.
         tap_order : {"blocked", "interleaved"}, optional
             How the columns of an .npz file run; never guessed.
+        order : sequence of int, optional
+            Exposures of the code or table in the order in which frames have them.
+        reversed : bool
+            Delay runs against what code, camera or table say.
 
         Returns
         -------
@@ -94,6 +101,8 @@ class DecodingTable:
             "keep_end_point": bool(keep_end_point),
             "taps": taps,
             "tap_order": tap_order,
+            "order": None if order is None else [int(e) for e in order],
+            "reversed": bool(reversed),
         }
         name = _check.path(code, "code")
         handle, _, notes = _tofsmith.load_decoding_table(name, camera_of(camera)._handle, options)

@@ -337,6 +337,7 @@ CalibratedCorrelation calibrate_correlation(const DelaySweep& sweep,
 
   // The table and its errors, the maps, and what the taps say of each other.
   result.table.taps = options.differences ? 1 : options.taps;
+  result.table.differences = options.differences;
   result.table.correlation = table_of(bench, alignment);
   set_errors(bench, alignment, result, options.range_m);
   set_maps(bench, alignment, options, result);

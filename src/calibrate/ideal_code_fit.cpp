@@ -40,6 +40,7 @@ Camera unlimited_camera(Camera camera) {
   camera.sensor.modulation_contrast = 1.0;
   camera.sensor.tap_mismatch = 0.0;
   camera.exposure_s.each_s.clear();
+  camera.playback.reset();
   return camera;
 }
 
@@ -224,6 +225,14 @@ std::vector<IdealCodeFit> fit_ideal_codes(const Eigen::MatrixXd& table,
 
 Camera with_fit(Camera camera, const IdealCodeFit& fit, const std::vector<Estimate>& tap_mismatch) {
   camera.light.impulse_response = camera.sensor.impulse_response = fit.response;
+  // A shift below this is one that the fit cannot tell from none.
+  constexpr double least_delay_periods = 1e-3;
+  Playback playback{.reversed = fit.reversed, .inverted = fit.inverted};
+  if (std::abs(fit.delay_periods) >= least_delay_periods)
+    playback.offset_m = -fit.delay_periods * camera.range_m();
+  if (!std::ranges::is_sorted(fit.exposure)) playback.order = fit.exposure;
+  camera.playback.reset();
+  if (playback != Playback()) camera.playback = playback;
   if (!tap_mismatch.empty()) {
     const Estimate mean = mean_of(tap_mismatch);
     if (std::abs(mean.value) > 3 * mean.standard_error) camera.sensor.tap_mismatch = mean.value;

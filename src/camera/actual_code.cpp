@@ -18,6 +18,23 @@ Waveform scaled(const Waveform& waveform, double factor) {
                               : Waveform::sampled(factor * waveform.samples());
 }
 
+/// Exposures in the order in which they are played, with their taps as they are read out.
+void play(const Playback& playback, int taps, ActualCode& actual) {
+  const ActualCode said = actual;
+  for (std::size_t e = 0; e < playback.order.size(); ++e) {
+    const auto from = static_cast<std::size_t>(playback.order[e]), side = std::size_t(taps);
+    actual.modulation[e] = said.modulation[from];
+    for (std::size_t t = 0; t < side; ++t)
+      actual.demodulation[e * side + t] = said.demodulation[from * side + t];
+  }
+  if (!playback.inverted) return;
+  for (std::size_t i = 0; i < actual.demodulation.size(); ++i)
+    if (taps == 1)
+      actual.demodulation[i] = actual.demodulation[i].complement();
+    else if (i % 2 == 1)
+      std::swap(actual.demodulation[i - 1], actual.demodulation[i]);
+}
+
 /// `points` is what the generator makes of modulation e.
 std::optional<BrokenRule> lost_pulse(const CodeSet& code, int e, const Waveform& points,
                                      const Generator& generator, double frequency_hz) {
@@ -73,6 +90,7 @@ ActualCode actual_code(const CodeSet& code, const Camera& camera) {
       actual.demodulation.push_back(
           generated(code.demodulation(i), *camera.sensor.generator, frequency_hz));
   }
+  if (camera.playback) play(*camera.playback, code.taps(), actual);
   return actual;
 }
 

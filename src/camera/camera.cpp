@@ -3,6 +3,7 @@
 #include "tofsmith/camera/camera.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -163,6 +164,17 @@ Eigen::VectorXcd Camera::sensor_transfer(int highest) const {
                       highest);
 }
 
+void Playback::validate(int taps) const {
+  require(std::isfinite(offset_m), "playback.offset_m", offset_m, "must be finite");
+  require(!inverted || taps <= 2, "playback.inverted", "true", "goes with one or two taps");
+  std::vector<int> sorted = order;
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t e = 0; e < sorted.size(); ++e)
+    require(sorted[e] == static_cast<int>(e), "playback.order",
+            fmt::format("{}", fmt::join(order, ", ")),
+            "must hold each of 0, 1, .. once: the code's exposures as they are played");
+}
+
 void Camera::validate() const {
   require_positive(fundamental_frequency_hz, "fundamental_frequency_hz");
   require(samples >= 8 && samples <= 65536, "samples", samples, "must be in [8, 65536]");
@@ -181,6 +193,7 @@ void Camera::validate() const {
   if (blur) blur->validate();
   if (optics) optics->validate();
   validate_operating(operating, range_m());
+  if (playback) playback->validate(sensor.taps);
 }
 
 namespace {
@@ -212,6 +225,10 @@ std::optional<BrokenRule> what_does_not_fit(const CodeSet& code, const Camera& c
         fmt::format("must be <= the camera's light.peak_factor = {}", camera.light.peak_factor));
   if (!camera.sensor.drain)
     if (auto unfilled = unfilled_taps(code, what)) return unfilled;
+  const std::size_t ordered = camera.playback ? camera.playback->order.size() : 0;
+  if (ordered > 0 && ordered != static_cast<std::size_t>(code.exposures()))
+    return broken("number of playback.order", ordered,
+                  fmt::format("must equal the {} exposures of {}", code.exposures(), what));
   const std::vector<double>& each_s = camera.exposure_s.each_s;
   if (!each_s.empty() && each_s.size() != static_cast<std::size_t>(code.exposures()))
     return broken("number of exposure_s", each_s.size(),

@@ -40,18 +40,23 @@ class Integral {
   std::vector<double> at_breakpoint_;
 };
 
-/// Positions where the correlation of two step functions changes slope, sorted, without repeats.
-std::vector<double> corner_positions(const StepFunction& d, const StepFunction& m) {
-  std::vector<double> corners{0.0};
-  corners.reserve(d.breakpoints.size() * m.breakpoints.size() + 1);
-  for (const double t : d.breakpoints)
-    for (const double s : m.breakpoints) corners.push_back(wrap(t - s, 1.0));
+/// Sorts positions in [0, 1), the first of which is 0, and leaves out repeats.
+void sort_corners(std::vector<double>& corners) {
   std::sort(corners.begin(), corners.end());
   constexpr double same = 1e-12;  // differences that are rounding
   const auto last =
       std::unique(corners.begin(), corners.end(), [](double a, double b) { return b - a < same; });
   corners.erase(last, corners.end());
   while (corners.size() > 1 && corners.back() > 1.0 - same) corners.pop_back();
+}
+
+/// Positions where the correlation of two step functions changes slope, sorted, without repeats.
+std::vector<double> corner_positions(const StepFunction& d, const StepFunction& m) {
+  std::vector<double> corners{0.0};
+  corners.reserve(d.breakpoints.size() * m.breakpoints.size() + 1);
+  for (const double t : d.breakpoints)
+    for (const double s : m.breakpoints) corners.push_back(wrap(t - s, 1.0));
+  sort_corners(corners);
   return corners;
 }
 
@@ -79,6 +84,23 @@ CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Wav
   harmonics_ = demodulation.harmonics(highest)
                    .cwiseProduct(modulation.harmonics(highest).conjugate())
                    .cwiseProduct(transfer);
+}
+
+CorrelationFunction CorrelationFunction::moved(double delay, bool reversed) const {
+  CorrelationFunction result;
+  const double sign = reversed ? -1.0 : 1.0;
+  if (harmonics_.size() > 0) {
+    result.harmonics_ = reversed ? harmonics_.conjugate().eval() : harmonics_;
+    for (Eigen::Index n = 1; n < harmonics_.size(); ++n)
+      result.harmonics_[n] *=
+          std::polar(1.0, -2 * std::numbers::pi * wrap(static_cast<double>(n) * delay, 1.0));
+    return result;
+  }
+  result.corners_ = {0.0};
+  for (const double corner : corners_) result.corners_.push_back(wrap(sign * corner + delay, 1.0));
+  sort_corners(result.corners_);
+  for (const double u : result.corners_) result.values_.push_back((*this)(sign * (u - delay)));
+  return result;
 }
 
 double CorrelationFunction::operator()(double u) const {

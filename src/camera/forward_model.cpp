@@ -77,6 +77,9 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
     const Waveform& m = actual.modulation[static_cast<std::size_t>(code.exposure_of(i))];
     functions_.push_back(camera.band_limited() ? CorrelationFunction(d, m, transfer)
                                                : CorrelationFunction(d, m));
+    if (camera.playback)
+      functions_.back() = functions_.back().moved(-camera.playback->offset_m / camera.range_m(),
+                                                  camera.playback->reversed);
     gain[i] = d.mean();
     tap_exposure_s_[i] = camera.exposure_s.of(code.exposure_of(i), code.exposures());
   }

@@ -67,14 +67,26 @@ Eigen::VectorXd ambient_gain_of(const Eigen::MatrixXd& correlation, MeasuredAmbi
                                    ambient == MeasuredAmbient::none ? 0.0 : 1.0);
 }
 
+MeasuredTable MeasuredTable::in_order(const Eigen::VectorXi& source) const {
+  MeasuredTable ordered = *this;
+  ordered.correlation = correlation(Eigen::all, source).eval();
+  for (Eigen::VectorXd* list :
+       {&ordered.ambient_gain, &ordered.exposure_s, &ordered.black_level, &ordered.gain_e_per_raw})
+    if (list->size() > 0) *list = (*list)(source).eval();
+  return ordered;
+}
+
 void MeasuredTable::validate() const {
   require(columns() >= 1, "columns of the measured table", columns(), "must be >= 1");
+  require(!differences || taps == 1, "taps of the measured table", taps,
+          "must be 1 where its columns are differences");
   require(taps >= 1 && columns() % taps == 0, "columns of the measured table", columns(),
           "must be a multiple of taps = " + std::to_string(taps));
   require_one_each(ambient_gain, "ambient_gain", columns());
   require_one_each(exposure_s, "exposure_s", columns());
   require_one_each(black_level, "black_level", columns());
   require_one_each(gain_e_per_raw, "gain_e_per_raw", columns());
+  if (correction) correction->validate();
 }
 
 DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& camera) {
@@ -82,17 +94,24 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   measured.validate();
   const Sensor& sensor = camera.sensor;
   const int columns = measured.columns();
-  const bool subtracts = sensor.readout == Readout::difference;
+  const bool differs = sensor.readout == Readout::difference;
+  require(!measured.differences || differs, "readout", "separate",
+          "must be difference: the measured table is one of differences of taps");
+  const bool subtracts = differs && !measured.differences;
   require(!subtracts || measured.taps == 2, "taps of the measured table", measured.taps,
           "must be 2 where the camera reads differences");
-  const Eigen::MatrixXd readout = readout_matrix(columns, sensor.readout);
+  const Eigen::MatrixXd readout =
+      readout_matrix(columns, subtracts ? Readout::difference : Readout::separate);
   const Eigen::MatrixXd sums = readout.cwiseAbs();
+  // A difference that was read out holds the dark electrons and the read noise of two taps.
+  const double taps_read = measured.differences ? 2.0 : 1.0;
 
   const Eigen::VectorXd exposure_s = exposure_s_of(measured, camera.exposure_s);
   const Eigen::VectorXd ambient_gain =
       measured.ambient_gain.size() > 0
           ? measured.ambient_gain
-          : ambient_gain_of(measured.correlation, MeasuredAmbient::equal);
+          : ambient_gain_of(measured.correlation,
+                            measured.differences ? MeasuredAmbient::none : MeasuredAmbient::equal);
   const Eigen::VectorXd gain_e_per_raw =
       measured.gain_e_per_raw.size() > 0
           ? measured.gain_e_per_raw
@@ -100,7 +119,8 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   const Eigen::VectorXd black_level =
       measured.black_level.size() > 0
           ? measured.black_level
-          : Eigen::VectorXd::Constant(columns, sensor.black_level_dn.value_or(0.0));
+          : Eigen::VectorXd::Constant(
+                columns, measured.differences ? 0.0 : sensor.black_level_dn.value_or(0.0));
   const Eigen::VectorXd dark_e = sensor.dark_current_e_per_s * exposure_s;
 
   DecodingTable table =
@@ -109,12 +129,14 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   table.exposure_s = subtracts ? of_pairs(exposure_s, "exposure_s") : exposure_s;
   table.gain_e_per_raw = subtracts ? of_pairs(gain_e_per_raw, "gain_e_per_raw") : gain_e_per_raw;
   table.black_level = readout * black_level;
-  table.dark_electrons = readout * dark_e;
+  table.dark_electrons =
+      measured.differences ? Eigen::VectorXd::Zero(columns).eval() : (readout * dark_e).eval();
   table.shot_correlation = light_of(measured.correlation) * sums.transpose();
   table.shot_ambient_gain = sums * ambient_gain.cwiseAbs();
-  table.shot_dark_electrons = sums * dark_e;
-  table.constant_variance_e2 = constant_variance_e2_of(sensor) * sums.rowwise().sum();
-  if (!subtracts) table.saturation_level = saturation_level_of(sensor);
+  table.shot_dark_electrons = taps_read * (sums * dark_e);
+  table.constant_variance_e2 = taps_read * constant_variance_e2_of(sensor) * sums.rowwise().sum();
+  table.correction = measured.correction;
+  if (!differs) table.saturation_level = saturation_level_of(sensor);
   return table;
 }
 

@@ -29,6 +29,7 @@ Camera ideal_camera(const Camera& camera) {
   ideal.sensor.readout = Readout::separate;
   ideal.sensor.modulation_contrast = 1.0;
   ideal.light.peak_factor = 1e6;
+  ideal.playback.reset();
   return ideal;
 }
 

@@ -68,6 +68,90 @@ class Calibrate(BenchRecordsTest):
         self.refuse(["calibrate", "correlation", "short.npy", "--shifts", "some.txt",
                      "--shift-unit", "bin", "--camera", "camera.toml"], "whole period", "missing")
 
+    def swept(self, *, taps, difference=False, order=(0, 1, 2, 3), sign=1):
+        """A camera.toml of four phases, its sweep with wiggle, and a frame of 64 delays."""
+        self.write("camera.toml", "fundamental_frequency_hz = 60e6\nsamples = 60\n[sensor]\n"
+                   f"taps = {taps}\ndrain = {'true' if taps == 1 else 'false'}\n"
+                   + ('readout = "difference"\n' if difference else ""))
+
+        def raw(delay_bin):
+            phase = 2 * np.pi * (sign * delay_bin[:, None] / 60 - np.array(order) / 4)
+            a = 1e5 * (1 + .6 * np.cos(phase) + .05 * np.cos(3 * phase))
+            b = 2e5 - a
+            return a - b if difference else a if taps == 1 else np.stack([a, b], 2).reshape(-1, 8)
+
+        noise = np.random.default_rng(1)
+        sweep = raw(np.arange(60.0))
+        sweep = sweep[:, None, None, :] + noise.normal(size=(60, 6, 6, sweep.shape[1])) * 100
+        np.save(self.path("sweep.npy"), sweep.astype(np.float32))
+        np.savetxt(self.path("shifts.txt"), np.arange(60))
+        delay_bin = np.linspace(2, 56, 64)
+        np.save(self.path("raw.npy"), raw(delay_bin)[None].astype(np.float32))
+        return delay_bin / 60 * 299792458 / 120e6
+
+    def errors_m(self, depth, truth):
+        range_m = 299792458 / 120e6
+        return np.abs((np.load(self.path(depth))[0] - truth + range_m / 2) % range_m - range_m / 2)
+
+    def test_the_next_command_decodes_tables_of_any_taps_and_readout(self):
+        for taps, difference in ((1, False), (2, False), (2, True)):
+            truth = self.swept(taps=taps, difference=difference)
+            text = self.do("calibrate", "correlation", "sweep.npy", "--shifts", "shifts.txt",
+                           "--shift-unit", "bin", "--camera", "camera.toml", "--table", "t.npz",
+                           "-o", "fitted.toml", "--force")
+            line = next(line for line in text.splitlines() if "next: tofsmith decode" in line)
+            command = line.removeprefix("next: tofsmith ").replace("RAW", "raw.npy").split()
+            self.do(*command, "--force")
+            self.assertLess(self.errors_m("depth.npy", truth).max(), 5e-3, (taps, difference))
+
+    def test_direction_and_order_are_kept_by_the_camera_and_can_be_said(self):
+        truth = self.swept(taps=2, difference=True, order=(0, 1, 3, 2), sign=-1)
+        self.do("calibrate", "correlation", "sweep.npy", "--shifts", "shifts.txt", "--shift-unit",
+                "bin", "--camera", "camera.toml", "--code", "sinusoid-k4", "-o", "fitted.toml")
+        self.assertIn("[playback]", self.bytes_of("fitted.toml").decode())
+        self.do("decode", "raw.npy", "--code", "sinusoid-k4", "--camera", "fitted.toml", "-o",
+                "d.npy")
+        self.assertLess(self.errors_m("d.npy", truth).max(), 60e-3)       # its harmonics remain
+        said = ["decode", "raw.npy", "--code", "sinusoid-k4", "--camera", "camera.toml", "-o",
+                "d.npy", "--force"]
+        self.do(*said, "--order", "0,1,3,2", "--reverse")
+        plain = np.load(self.path("d.npy"))
+        self.assertLess(np.ptp(np.unwrap((plain[0] - truth) * 2 * np.pi / 2.498)), 0.3)
+        self.do(*said, "--order", "0,1,3,2", "--reverse", "--offset-m", "0.25")
+        np.testing.assert_allclose((plain - np.load(self.path("d.npy"))) % 2.49827, 0.25, atol=1e-4)
+        self.refuse([*said, "--order", "0,1,1,2"], "order", "once")
+        self.refuse([*said, "--order", "0,1,2"], "order")
+
+    def test_reference_depth_becomes_a_corrected_table(self):
+        self.write("camera.toml", "fundamental_frequency_hz = 60e6\n[sensor]\ntaps = 2\n"
+                   'drain = false\nreadout = "difference"\n')
+        range_m = 299792458 / 120e6
+        random = np.random.default_rng(2)
+        rows, columns = np.mgrid[0:48, 0:64]
+        nominal = range_m * (np.arange(4)[:, None, None] + 0.5 + 0.5 * np.sin(
+            rows / 9 + columns / 7)) / 4
+        phase = 2 * np.pi * nominal / range_m
+        error = 0.4 + 0.012 * np.cos(4 * phase + 1) + 0.005 * (2 * rows / 47 - 1)
+        raw = 2e4 * np.cos(phase[..., None] - np.arange(4) * np.pi / 2)
+        raw = raw + random.normal(size=raw.shape) * 100
+        reference = (nominal - error) % range_m
+        np.save(self.path("raw.npy"), raw.astype(np.float32))
+        np.save(self.path("ref.npy"), np.where(columns < 32, reference, np.nan))
+        command = ["calibrate", "correlation", "raw.npy", "--reference", "ref.npy", "--camera",
+                   "camera.toml", "--table", "t.npz", "-o", "mine.toml"]
+        self.refuse(command, "--code", code=2)
+        text = self.do(*command, "--code", "sinusoid-k4")
+        self.assertIn("next: tofsmith decode RAW --code t.npz --camera mine.toml", text)
+        self.do("decode", "raw.npy", "--code", "t.npz", "--camera", "mine.toml", "--stack", "-o",
+                "d.npy")
+        off = (np.load(self.path("d.npy")) - reference + range_m / 2) % range_m - range_m / 2
+        self.assertLess(np.median(np.abs(off[:, :, :32])), 2.5e-3)
+        np.save(self.path("ref.npy"), 1e3 * reference)
+        self.refuse([*command, "--code", "sinusoid-k4", "--force"], "metres")
+        np.save(self.path("small.npy"), raw[:, :20].astype(np.float32))
+        self.refuse(["decode", "small.npy", "--code", "t.npz", "--camera", "mine.toml", "-o",
+                     "e.npy"], "48 x 64")
+
     def test_pairs_of_frames_become_noise(self):
         self.flat_frames()
         command = ["calibrate", "noise", "1.npy", "2.npy", "3.npy", "--camera", "camera.toml"]

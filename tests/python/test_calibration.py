@@ -211,3 +211,30 @@ def test_existing_files_stay(both, scope, sweep):
     means = ts.DelaySweep(sweep[0].delay_periods, sweep[0].frames.mean((1, 2), keepdims=True))
     with pytest.raises(ValueError, match="a table of means, which has no pixels"):
         ts.calibrate_correlation(means, base).write_maps(both[1] / "map.npy")
+
+
+def test_reference_depth_gives_the_commands_table(both, cli):
+    camera = base.replace(fundamental_frequency_hz=60e6, sensor={
+        "taps": 2, "readout": "difference", "drain": False})
+    camera.write(both[0] / "phases.toml")
+    rows, columns = np.mgrid[0:40, 0:48]
+    nominal = camera.range_m * (np.arange(4)[:, None, None] + 0.5 + 0.5 * np.sin(
+        rows / 9 + columns / 7)) / 4
+    phase = 2 * np.pi * nominal / camera.range_m
+    raw = 2e4 * np.cos(phase[..., None] - np.arange(4) * np.pi / 2)
+    raw = (raw + np.random.default_rng(3).normal(size=raw.shape) * 100).astype(np.float32)
+    depth = (nominal - 0.4 - 0.01 * np.cos(4 * phase)) % camera.range_m
+    np.save(both[0] / "frames.npy", raw)
+    np.save(both[0] / "depth.npy", depth)
+    said = printed(cli, both[0], "correlation", "frames.npy", "--reference", "depth.npy", "--code",
+                   "sinusoid-k4", "--camera", "phases.toml", "--table", "wiggle.npz")
+    found = ts.calibrate_correlation(raw, camera, reference=depth, code="sinusoid-k4")
+    assert {t["name"]: (t["value_m"], t["standard_error_m"]) for t in said["terms"]} == found.terms
+    found.write_table(both[1] / "wiggle.npz")
+    same(both, "wiggle.npz")
+    assert abs(found.terms["cos 4"].value - 0.01) < 4 * found.terms["cos 4"].standard_error
+    image = ts.Decoder(found.decoding_table(camera)).decode(raw[0])
+    off = (image.depth_m - depth[0] + camera.range_m / 2) % camera.range_m - camera.range_m / 2
+    assert np.median(np.abs(off)) < 2.5e-3
+    with pytest.raises(ValueError, match="code: got None"):
+        ts.calibrate_correlation(raw, camera, reference=depth)

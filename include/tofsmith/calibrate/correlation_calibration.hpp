@@ -114,8 +114,68 @@ CalibratedCorrelation calibrate_correlation(const DelaySweep& sweep,
                                             const CorrelationCalibrationOptions& options,
                                             const Progress& progress = {});
 
-/// Writes the table as read_measured_table() reads it: corrfs, corrfs_se, offset_dn and, where they
-/// are known, ambient and exposure_s. Columns hold the taps of an exposure side by side.
+/// Depth that something else knows of what frames show: another sensor, a plane at a known pose,
+/// the camera's own engine, a stage.
+struct ReferenceDepth {
+  /// Along the ray [m]: one for all frames or one for each, of their size, or 1 x 1 for a target
+  /// that is as far in every pixel. NaN, infinite or <= 0: not known.
+  std::vector<Image<float>> depth_m;
+};
+
+/// Reads reference depth in metres: .npy of shape (H, W), (F, H, W), or (F,), a distance for each
+/// frame; .npz .exr .pfm, and .png (16 bits, mm), of one image.
+/// @throws IoError naming the file for what does not fit
+ReferenceDepth read_reference_depth(const std::filesystem::path& path);
+
+/// One term of a depth correction, as it was found.
+struct CalibratedTerm {
+  std::string name;  ///< offset, cos 4, sin 4, row, column, row^2 column, log signal, ..
+  Estimate value_m;  ///< its 95 % interval is +- 1.96 standard errors
+};
+
+/// What reference depth says of a camera.
+struct CalibratedDepth {
+  MeasuredTable table;                 ///< the nominal functions, with the correction
+  bool reversed = false;               ///< delay runs backwards; the table does too
+  std::vector<CalibratedTerm> terms;   ///< of the known part of the range
+  std::vector<std::string> far_terms;  ///< names of those that count beyond it
+  double known_share = 0.0;            ///< of the range in which the reference had depths
+  double rms_before_m = 0.0;           ///< depth error without offset, ahead of the correction
+  double rms_m = 0.0;                  ///< left over on blocks of pixels held out
+  double far_rms_m = 0.0;      ///< left over by the terms beyond, on parts of the range held out
+  double outlier_share = 0.0;  ///< of the pixels, which count for nothing
+  std::int64_t pixels = 0;     ///< that were compared
+  std::vector<std::string> notes;
+};
+
+/// The depth error of a nominal code against reference depth, on any part of the range.
+///   1. The code decodes the frames; delay that runs backwards is turned.
+///   2. Offset, harmonics 1 to 8 of the phase, a field over rows and columns of degree 0 to 4 and
+///      terms in the logarithm of the signal, by least squares with Tukey's biweight (flying pixels
+///      and wrong references count for nothing), at the phase that the reference predicts, so that
+///      noise of the depth is not taken for an error that depends on it.
+///   3. Which terms: by blocks of a checkerboard held out in turn. Beyond the depths that the
+///      reference had, those count that predict parts of the range held out.
+///   4. Standard errors from tiles of pixels, whose errors may be alike.
+/// @param camera  its model of the code is what is nominal
+/// @throws std::invalid_argument if sizes disagree, fewer than 100 pixels can be compared, or the
+///         reference is in another unit, flipped, or of something else
+CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& reference,
+                                const CodeSet& code, const Camera& camera,
+                                const Progress& progress = {});
+
+/// The camera with the offset and the direction of delay that were found, for its code to decode
+/// without the table.
+Camera with_depth(Camera camera, const CalibratedDepth& found);
+
+/// Writes a table with its correction, as read_measured_table() reads it.
+/// @throws IoError as below
+void write_calibrated_table(const std::filesystem::path& path, const MeasuredTable& table,
+                            OutputPolicy policy);
+
+/// Writes the table as read_measured_table() reads it: corrfs, corrfs_se, offset_dn, taps,
+/// differences and, where they are known, ambient and exposure_s. Columns hold the taps of an
+/// exposure side by side.
 /// @throws IoError unless the extension is .npz, or as AtomicFile does
 void write_calibrated_table(const std::filesystem::path& path, const CalibratedCorrelation& found,
                             OutputPolicy policy);

@@ -309,6 +309,23 @@ struct ExposureTime {
   friend bool operator==(const ExposureTime&, const ExposureTime&) = default;
 };
 
+/// How what a camera plays and reads out differs from the code's own words: what a calibration
+/// finds once and everything then honours. Measured tables have it in them already.
+struct Playback {
+  /// Exposure of the code that is played first, second, ..: a permutation of 0, 1, ..; empty: as
+  /// the code has them.
+  std::vector<int> order;
+  bool reversed = false;  ///< delay runs backwards: chi(-z) is measured where the code says chi(z)
+  bool inverted = false;  ///< signs are opposite: taps are swapped, a single tap is open when the
+                          ///< code says shut
+  double offset_m = 0.0;  ///< everything looks so much farther [m]
+
+  /// @throws std::invalid_argument naming the field as playback.*, value and rule
+  void validate(int taps) const;
+
+  friend bool operator==(const Playback&, const Playback&) = default;
+};
+
 /// A continuous-wave time-of-flight camera. Field names are the keys of the TOML file.
 struct Camera {
   std::string name = "camera";
@@ -321,6 +338,7 @@ struct Camera {
   std::optional<LensBlur> blur;  ///< the other keys of [lens]; none: sharp
   std::optional<Optics> optics;  ///< what turns watts and lux into electrons; none: unknown
   OperatingRange operating;
+  std::optional<Playback> playback;  ///< none: as codes say
 
   /// Time from the beginning of a frame to that of the next [s]: sensor.frame_period_s, or as long
   /// as the exposures take, each with its gap.

@@ -24,12 +24,17 @@ class CorrelationFunction {
   CorrelationFunction(const Waveform& demodulation, const Waveform& modulation,
                       const Eigen::VectorXcd& transfer);
 
+  /// The same `delay` later [periods], and with `reversed` in -u: f(+-(u - delay)).
+  CorrelationFunction moved(double delay, bool reversed) const;
+
   /// Value at depth `u` [periods]; any real u, period 1.
   double operator()(double u) const;
   /// Values at u = j / points, j = 0 .. points - 1.
   Eigen::VectorXd table(int points) const;
 
  private:
+  CorrelationFunction() = default;
+
   std::vector<double> corners_;  // positions in [0, 1), sorted; empty when harmonics are kept
   std::vector<double> values_;   // at the corners
   Eigen::VectorXcd harmonics_;

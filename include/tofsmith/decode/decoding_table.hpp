@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/fields.hpp"
 
 namespace tofsmith {
 
@@ -32,6 +33,50 @@ struct MeasurementTable {
   }
 };
 
+/// How much too far pixels decode: terms in the phase phi = 2 pi depth / range of the depth as it
+/// decodes, in the pixel's place, r and c in [-1, 1] over rows and columns, and in its signal.
+///   e = offset + sum_h (harmonic_m[2 h - 2] cos(h phi) + harmonic_m[2 h - 1] sin(h phi))
+///       + sum_d sum_i field_m[..] r^(d - i) c^i, d = 1, 2, ..; i = 0 .. d
+///       + sum_j signal_m[j] log(S / S0)^(j + 1)
+struct DepthErrorTerms {
+  double offset_m = 0.0;
+  Eigen::VectorXd harmonic_m;  ///< cos and sin of harmonic 1, 2, .. [m]; empty: none
+  Eigen::VectorXd field_m;     ///< of degree 1 (2 terms), 2 (3 more), .. [m]; empty: none
+  Eigen::VectorXd signal_m;    ///< of powers 1, 2 of the logarithm [m]; empty: none
+};
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<DepthErrorTerms> auto& t) {
+  return std::tuple(Field("offset_m", t.offset_m), Field("harmonic_m", t.harmonic_m),
+                    Field("field_m", t.field_m), Field("signal_m", t.signal_m));
+}
+
+/// What is taken off depths that a table decodes, as a calibration against reference depth finds
+/// it: `known` where the reference had depths, and `beyond`, of fewer terms, elsewhere.
+struct DepthCorrection {
+  int height = 0;  ///< of the frames [pixels], >= 1
+  int width = 0;
+  DepthErrorTerms known;
+  DepthErrorTerms beyond;
+  Eigen::VectorXd known_share;      ///< of equal parts of the range: 1 where `known` counts, else 0
+  double signal_e_per_s = 1.0;      ///< S0 [e/s], > 0
+  double min_signal_e_per_s = 0.0;  ///< signals below count as this one [e/s]
+  double max_signal_e_per_s = 0.0;  ///< and above as this one [e/s]
+
+  bool needs_signal() const { return known.signal_m.size() > 0 || beyond.signal_m.size() > 0; }
+  /// e [m] of a pixel that decodes to `depth_m`.
+  double error_m(double depth_m, double range_m, int row, int column, double signal_e_per_s) const;
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<DepthCorrection> auto& c) {
+  return std::tuple(Field("height", c.height), Field("width", c.width), Field("known", c.known),
+                    Field("beyond", c.beyond), Field("known_share", c.known_share),
+                    Field("signal_e_per_s", c.signal_e_per_s),
+                    Field("min_signal_e_per_s", c.min_signal_e_per_s),
+                    Field("max_signal_e_per_s", c.max_signal_e_per_s));
+}
+
 /// Everything a decoder needs to know of a code on a camera. Measurements are what leaves the
 /// sensor (K of them: one per tap, or the differences of two-bucket pairs):
 ///   expected electrons  mu_i(z) = T_i (S chi_i(z) + A kappa_i) + dark_i
@@ -51,6 +96,8 @@ struct DecodingTable : MeasurementTable {
   Eigen::VectorXd gain_e_per_raw;         ///< electrons per raw number (K), each > 0
   std::optional<float> saturation_level;  ///< raw numbers from here on are clipped; none: no limit
   double range_m = 0.0;                   ///< depth of a whole period [m], > 0
+  /// Of frames of one size; apply() takes it off what decoders give. None: nothing.
+  std::optional<DepthCorrection> correction = {};
 
   /// Dark electrons collected [e] (K): shot_dark_electrons, or what stands for them.
   const Eigen::VectorXd& shot_dark() const {
@@ -116,13 +163,19 @@ struct MeasuredTable {
   /// be negative. A constant along ambient_gain changes no depth, only the ambient light found.
   Eigen::MatrixXd correlation;
   int taps = 1;                    ///< columns hold the taps of an exposure side by side
+  bool differences = false;        ///< columns are differences of two taps, as they were read out
   Eigen::VectorXd ambient_gain;    ///< kappa (K), or empty: equal
   Eigen::VectorXd exposure_s;      ///< T [s] (K), each > 0, or empty: the camera's
   Eigen::VectorXd black_level;     ///< raw number without light (K), or empty: the camera's
   Eigen::VectorXd gain_e_per_raw;  ///< electrons per raw number (K), or empty: the camera's
+  std::optional<DepthCorrection> correction = {};  ///< taken off what it decodes; none: nothing
 
   int samples() const { return static_cast<int>(correlation.rows()); }
   int columns() const { return static_cast<int>(correlation.cols()); }
+
+  /// The same with its columns, and what is known of each, in another order.
+  /// @param source  which column each is now (K)
+  MeasuredTable in_order(const Eigen::VectorXi& source) const;
 
   /// Whether the sizes agree. @throws std::invalid_argument naming field, value and rule
   void validate() const;

@@ -13,6 +13,7 @@
 namespace tofsmith {
 
 struct DecodingTable;
+struct DepthCorrection;
 
 /// What became of a pixel. Where several apply, the first in the order invalid, saturated,
 /// no_return, low_signal, ambiguous is given. Decoders never say mixed: mark_mixed_pixels() does.
@@ -109,6 +110,17 @@ struct PixelMaps {
 /// @throws std::invalid_argument if the pixels do not lie within a map
 void apply(const PixelMaps& maps, double range_m, const DecodedView& decoded, std::size_t first,
            std::size_t count);
+
+/// Takes what a calibration found off decoded depths, which wrap into [0, range), of pixels first
+/// .. first + count - 1 (row by row), ahead of their maps. Pixels without depth stay as they are.
+/// @param decoded  planes whose first value is that of pixel `first`; the signal is needed where
+/// the
+///                 correction has terms in it
+/// @throws std::invalid_argument if the frame, `height` x `width`, has another size, or a plane
+/// that
+///         is needed is null
+void apply(const DepthCorrection& correction, double range_m, const DecodedView& decoded,
+           int height, int width, std::size_t first, std::size_t count);
 
 /// What is done with pixels at edges of depth that see two surfaces at once.
 enum class MixedPixels {

@@ -90,6 +90,7 @@ struct DecodeRequest {
   std::optional<FilterOptions> filter;  ///< of each frame that comes of that; none: not filtered
   std::optional<MixedPixels> mixed;     ///< mark_mixed_pixels() of each frame; none: not looked for
   std::filesystem::path offset_map;     ///< [m], as PixelMaps::delay_offset_m; empty: none
+  double offset_m = 0.0;                ///< of every pixel, beside that of its map [m]
   std::filesystem::path gain_map;       ///< as PixelMaps::gain; empty: none
   double memory_mb = 256.0;             ///< for frames under way [MB], > 0
   OutputPolicy policy = OutputPolicy::refuse_existing;

@@ -30,6 +30,9 @@ struct DecodingTableOptions {
   std::optional<MeasuredAmbient> ambient;  ///< of a measured table; none: the file's, or equal
   std::optional<TableAxes> axes;           ///< of a measured table; none: (N, K) where it can be
   bool keep_end_point = false;             ///< of a measured table, though it equals the first one
+  /// Exposures of the code or table as frames have them, as Playback::order; empty: no change.
+  std::vector<int> order;
+  bool reversed = false;  ///< delay runs against what code, camera or table say
 };
 
 /// What a decoder decodes with.

@@ -63,7 +63,9 @@ bool is_measured_table(const std::filesystem::path& path);
 ///   exposure_s     [s]
 ///   offset_dn      raw number without light
 ///   gain_e_per_dn  electrons per raw number
-/// and `corrfs_se`, standard errors that decoding does not need.
+/// and `corrfs_se`, standard errors that decoding does not need. Of calibrated functions, it also
+/// says what `taps` stand side by side in its columns, and by `differences` = 1 that they are
+/// differences of two taps; what `options` say of taps then does not count.
 /// corrfs itself is without offset, gain and exposure. A last sample that repeats the first is
 /// dropped with a note, unless the table is flat there. Columns come out exposure by exposure, the
 /// taps of each side by side, as decoders take measurements.

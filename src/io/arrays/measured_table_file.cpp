@@ -10,6 +10,7 @@
 
 #include "core/shared/enum_words.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
+#include "io/arrays/shared/correction_arrays.hpp"
 #include "io/shared/file_kind.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
@@ -96,13 +97,41 @@ Eigen::VectorXd list_of(const NpzReader& archive, const std::string& file, const
   return Eigen::Map<const Eigen::VectorXd>(values.data(), columns);
 }
 
+/// A number that stands alone in the archive; none: not there.
+std::optional<int> whole_number(const NpzReader& archive, const std::string& file,
+                                const char* name) {
+  if (!archive.contains(name)) return std::nullopt;
+  const NpyArray array = archive.read(name);
+  const double value = array.size() == 1 ? array.to_doubles().front() : -1.0;
+  if (!(value >= 0.0 && value <= 64.0 && value == std::floor(value)))
+    throw IoError(
+        fmt::format("{}: {}", file, name),
+        fmt::format("found {}; expected one whole number, 0 to 64",
+                    array.size() == 1 ? fmt::format("{}", value) : describe_shape(array.shape())));
+  return static_cast<int>(value);
+}
+
+/// What an archive of calibrated functions says of its taps: `taps`, side by side. A word of the
+/// user's on their order must agree.
+TapLayout layout_of(const NpzReader& archive, const std::string& file, const TapLayout& given) {
+  const std::optional<int> taps = whole_number(archive, file, "taps");
+  if (!taps) return given;
+  if (given.order == TapOrder::blocked && *taps > 1)
+    throw IoError(fmt::format("{}: taps", file),
+                  "its columns hold the taps of an exposure side by side; expected --tap-order "
+                  "interleaved, or none");
+  return {.taps = *taps, .order = TapOrder::interleaved};
+}
+
 void note_unused(const NpzReader& archive, const std::string& file,
                  std::vector<std::string>& notes) {
-  constexpr std::array<std::string_view, 6> known = {"corrfs",    "ambient",       "exposure_s",
-                                                     "offset_dn", "gain_e_per_dn", "corrfs_se"};
+  constexpr std::array<std::string_view, 8> known = {"corrfs",    "ambient",       "exposure_s",
+                                                     "offset_dn", "gain_e_per_dn", "corrfs_se",
+                                                     "taps",      "differences"};
   std::vector<std::string> unused;
   for (const std::string& name : archive.names())
-    if (std::ranges::find(known, name) == known.end()) unused.push_back(name);
+    if (std::ranges::find(known, name) == known.end() && !name.starts_with(correction_prefix))
+      unused.push_back(name);
   if (!unused.empty())
     notes.push_back(fmt::format("{}: not used: {}", file, fmt::join(unused, ", ")));
 }
@@ -116,10 +145,7 @@ void sort_columns(MeasuredTable& table, const TapLayout& layout, const std::stri
     for (int t = 0; t < layout.taps; ++t)
       source[e * layout.taps + t] =
           static_cast<int>(column_of(e, t, exposures, layout.taps, layout.order));
-  table.correlation = table.correlation(Eigen::all, source).eval();
-  for (Eigen::VectorXd* list :
-       {&table.ambient_gain, &table.exposure_s, &table.black_level, &table.gain_e_per_raw})
-    if (list->size() > 0) *list = (*list)(source).eval();
+  table = table.in_order(source);
 }
 
 constexpr EnumWords<TableAxes, 2> axes_words("TableAxes", "axes of the table", "nk", "kn");
@@ -161,6 +187,7 @@ bool is_measured_table(const std::filesystem::path& path) {
 MeasuredTableFile read_measured_table(const std::filesystem::path& path,
                                       const MeasuredTableOptions& options) {
   MeasuredTableFile file;
+  TapLayout layout = options.layout;
   MeasuredTable& table = file.table;
   const std::string name = path.string();
   table.correlation = correlation_matrix_of(path);
@@ -173,8 +200,12 @@ MeasuredTableFile read_measured_table(const std::filesystem::path& path,
     table.black_level = list_of(archive, name, "offset_dn", table.columns());
     table.gain_e_per_raw = list_of(archive, name, "gain_e_per_dn", table.columns());
     note_unused(archive, name, file.notes);
+    table.correction = correction_of(archive, name);
+    layout = layout_of(archive, name, layout);
+    table.differences = whole_number(archive, name, "differences").value_or(0) != 0;
+    if (table.differences) layout.taps = 1;
   }
-  sort_columns(table, options.layout, name);
+  sort_columns(table, layout, name);
   return file;
 }
 

@@ -157,6 +157,14 @@ void visit_operating(Table& table, Field<Table, OperatingRange>& range) {
 }
 
 template <typename Table>
+void visit_playback(Table& table, Field<Table, Playback>& playback) {
+  table.value("order", playback.order);
+  table.value("reversed", playback.reversed);
+  table.value("inverted", playback.inverted);
+  table.value("offset_m", playback.offset_m);
+}
+
+template <typename Table>
 void visit_camera(Table& table, Field<Table, Camera>& camera) {
   table.value("name", camera.name);
   table.required("fundamental_frequency_hz", "15e6")
@@ -168,6 +176,7 @@ void visit_camera(Table& table, Field<Table, Camera>& camera) {
   table.table("lens", camera, visit_lens<Table>);
   table.table("optics", camera.optics, visit_optics<Table>);
   table.table("operating", camera.operating, visit_operating<Table>);
+  table.table("playback", camera.playback, visit_playback<Table>);
 }
 
 }  // namespace tofsmith::camera_fields

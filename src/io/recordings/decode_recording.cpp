@@ -76,7 +76,7 @@ RawFramesReader open_recording(const DecodeRequest& request, const DecodingTable
 }
 
 DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
-                       const RawFramesReader& reader) {
+                       const DecodingTable& table, const RawFramesReader& reader) {
   const std::string held = fmt::format("{} holds {} frame{}", request.raw.front().string(),
                                        reader.frames(), reader.frames() == 1 ? "" : "s");
   require(request.average <= reader.frames(), "average", request.average, held);
@@ -93,6 +93,7 @@ DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
           .count_statuses = request.outputs.empty() ||
                             std::ranges::count(request.outputs, DecodedPlane::status) > 0,
           .find_mixed = request.mixed.has_value(),
+          .needs_signal = table.correction && table.correction->needs_signal(),
           .as_z = request.kind == DepthKind::z && request.output.extension() != ".ply",
           .first_frame = request.frame.value_or(0),
           .frames = request.frame ? 1 : frames,
@@ -116,6 +117,13 @@ void load_map(const std::filesystem::path& path, const char* name, const RawFram
 PixelMaps load_maps(const DecodeRequest& request, const RawFramesReader& reader) {
   PixelMaps maps;
   load_map(request.offset_map, "offset", reader, &PixelMaps::delay_offset_m, maps);
+  if (request.offset_m != 0.0) {
+    require(std::isfinite(request.offset_m), "offset_m", request.offset_m, "must be finite");
+    if (maps.delay_offset_m.empty())
+      maps.delay_offset_m = Image<float>(reader.height(), reader.width(), 0.0f);
+    for (float& offset_m : maps.delay_offset_m.pixels)
+      offset_m += static_cast<float>(request.offset_m);
+  }
   load_map(request.gain_map, "gain", reader, &PixelMaps::gain, maps);
   return maps;
 }
@@ -220,8 +228,12 @@ struct MappedDecoder {
               const DecodedView& decoded, const Progress& progress, StatusCounts& statuses) const {
     const auto pixels = static_cast<std::size_t>(raw.pixels());
     std::visit([&](const auto& d) { d.decode(raw, decoded, progress); }, decoder);
-    apply(maps, table.range_m, decoded,
-          static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(raw.width), pixels);
+    const std::size_t first =
+        static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(raw.width);
+    if (table.correction)
+      apply(*table.correction, table.range_m, decoded, target.view.height, target.view.width, first,
+            pixels);
+    apply(maps, table.range_m, decoded, first, pixels);
     if (mixed) mark_mixed_pixels(table, raw, *mixed, decoded, maps);
     if (target.as_z && decoded.depth_m)
       turn_into_z(decoded.depth_m, band.first_row, band.rows, target.view);
@@ -291,7 +303,14 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
   const DecodingTable& table =
       std::visit([](const auto& d) -> const DecodingTable& { return d.table(); }, decoder);
   const RawFramesReader reader = open_recording(request, table);
-  const DecodeTarget target = target_of(request, decoder, reader);
+  const DecodeTarget target = target_of(request, decoder, table, reader);
+  if (const auto& correction = table.correction)
+    if (correction->height != reader.height() || correction->width != reader.width())
+      throw IoError(
+          request.raw.string(),
+          fmt::format("found frames of {} x {} pixels; expected {} x {}, of which the "
+                      "table's depth correction is",
+                      reader.height(), reader.width(), correction->height, correction->width));
   const MappedDecoder mapped{decoder, table, load_maps(request, reader), request.mixed};
   check_inputs_are_kept(request, target);
   check_range_fits(target.path, table.range_m);

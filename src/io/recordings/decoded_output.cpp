@@ -154,6 +154,7 @@ std::vector<DecodedPlane> DecodeTarget::needed_planes() const {
   };
   if (path.extension() == ".ply") need(DecodedPlane::depth);
   if (count_statuses) need(DecodedPlane::status);
+  if (needs_signal) need(DecodedPlane::signal);
   if (find_mixed)
     for (const DecodedPlane plane :
          {DecodedPlane::depth, DecodedPlane::deviation, DecodedPlane::status})

@@ -35,6 +35,7 @@ struct DecodeTarget {
   std::vector<DecodedPlane> planes;  ///< to write
   bool count_statuses = true;        ///< though the status plane may not be written
   bool find_mixed = false;           ///< which needs planes that may not be written
+  bool needs_signal = false;         ///< to correct depth, though it may not be written
   bool as_z = false;                 ///< depth along the axis instead of radial distance
   int first_frame = 0;
   int frames = 1;

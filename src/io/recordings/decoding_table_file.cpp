@@ -45,12 +45,32 @@ void refuse_table_options(const std::string& code, const DecodingTableOptions& o
         "{}: goes with a measured table; {} is a code, which the camera says all of", field, code));
 }
 
+/// The columns of another order of exposures, and the rows of delay that runs backwards.
+void play(const DecodingTableOptions& options, MeasuredTable& measured) {
+  if (!options.order.empty()) {
+    const int side = measured.taps, exposures = measured.columns() / side;
+    Playback{.order = options.order}.validate(side);
+    require(static_cast<int>(options.order.size()) == exposures, "order",
+            fmt::format("{} entries", options.order.size()),
+            fmt::format("must have one for each of the {} exposures", exposures));
+    Eigen::VectorXi source(measured.columns());
+    for (int i = 0; i < measured.columns(); ++i)
+      source[i] = options.order[static_cast<std::size_t>(i / side)] * side + i % side;
+    measured = measured.in_order(source);
+  }
+  if (!options.reversed) return;
+  const Eigen::Index rest = measured.correlation.rows() - 1;
+  measured.correlation.bottomRows(rest) =
+      measured.correlation.bottomRows(rest).colwise().reverse().eval();
+}
+
 LoadedDecodingTable load_measured(const std::string& path, const Camera& camera,
                                   const DecodingTableOptions& options) {
   auto [measured, notes] = read_measured_table(
       path, {.layout = {options.file.taps.value_or(camera.sensor.taps), options.file.tap_order},
              .axes = options.axes,
              .keep_end_point = options.keep_end_point});
+  play(options, measured);
   if (options.ambient)
     measured.ambient_gain = ambient_gain_of(measured.correlation, *options.ambient);
   else if (measured.ambient_gain.size() == 0 && camera.sensor.readout == Readout::separate)
@@ -66,6 +86,16 @@ LoadedDecodingTable load_measured(const std::string& path, const Camera& camera,
   } catch (const std::invalid_argument& error) {
     throw IoError(path, error.what());
   }
+}
+
+/// The camera with what a user says beyond it.
+Camera as_played(Camera camera, const DecodingTableOptions& options) {
+  if (options.order.empty() && !options.reversed) return camera;
+  Playback playback = camera.playback.value_or(Playback());
+  if (!options.order.empty()) playback.order = options.order;
+  if (options.reversed) playback.reversed = !playback.reversed;
+  camera.playback = playback;
+  return camera;
 }
 
 }  // namespace
@@ -119,7 +149,8 @@ LoadedDecodingTable load_decoding_table(const std::string& code, const Camera& c
     const CodeSet actual = load_camera_code(code, camera, options.file);
     refuse_table_options(code, options);
     loaded.name = actual.name();
-    loaded.table = make_decoding_table(ForwardModel(actual, camera), camera);
+    const Camera playing = as_played(camera, options);
+    loaded.table = make_decoding_table(ForwardModel(actual, playing), playing);
   }
   if (const auto note = ambiguity_note(loaded.table)) loaded.notes.push_back(*note);
   return loaded;

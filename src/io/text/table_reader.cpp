@@ -244,6 +244,19 @@ void TableReader::value(std::string_view key, std::vector<double>& target) {
   target = number_list(full(key), *node->as_array());
 }
 
+void TableReader::value(std::string_view key, std::vector<int>& target) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  if (!node->is_array()) mistyped(full(key), *node, "a list of integers");
+  target.clear();
+  for (const toml::node& element : *node->as_array()) {
+    const auto* number = element.as_integer();
+    if (!number || number->get() < 0 || number->get() > 65535)
+      mistyped(full(key), element, "an integer of 0 to 65535");
+    target.push_back(static_cast<int>(number->get()));
+  }
+}
+
 void TableReader::value(std::string_view key, std::vector<std::string>& target) {
   const toml::node* node = find(key);
   if (!node) return;

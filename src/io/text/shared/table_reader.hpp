@@ -77,6 +77,8 @@ class TableReader {
   void value(std::string_view key, std::string& target);
   /// A list of numbers.
   void value(std::string_view key, std::vector<double>& target);
+  /// A list of integers.
+  void value(std::string_view key, std::vector<int>& target);
   /// A list of texts.
   void value(std::string_view key, std::vector<std::string>& target);
   /// An integer >= 0 of at most 63 bits.

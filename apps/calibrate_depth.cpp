@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "calibrate_depth.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "terminal_progress.hpp"
+#include "tofsmith/calibrate/correlation_calibration.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/io/decoding_table_file.hpp"
+#include "tofsmith/io/raw_frames.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+nlohmann::ordered_json document_of(const CalibratedDepth& found) {
+  nlohmann::ordered_json terms = nlohmann::ordered_json::array();
+  for (const CalibratedTerm& term : found.terms)
+    terms.push_back({{"name", term.name},
+                     {"value_m", term.value_m.value},
+                     {"standard_error_m", term.value_m.standard_error}});
+  return {{"pixels", found.pixels},
+          {"reversed", found.reversed},
+          {"known_share", found.known_share},
+          {"rms_before_m", found.rms_before_m},
+          {"rms_m", found.rms_m},
+          {"far_rms_m", found.far_rms_m},
+          {"outlier_share", found.outlier_share},
+          {"terms", terms},
+          {"far_terms", found.far_terms},
+          {"notes", found.notes}};
+}
+
+std::string lines_of(const CalibratedDepth& found) {
+  std::string lines = fmt::format(
+      "{} pixels: depth errs by {} rms but for an offset, {} on blocks held out once corrected\n",
+      found.pixels, length_text(found.rms_before_m), length_text(found.rms_m));
+  constexpr double apart_m = 20e-3;
+  int mingled = 0;
+  for (const CalibratedTerm& term : found.terms) {
+    if (term.value_m.standard_error > apart_m && ++mingled) continue;
+    lines += fmt::format("{:<18} {:10.3f} ± {:.3f} mm\n", term.name, 1e3 * term.value_m.value,
+                         1.96e3 * term.value_m.standard_error);
+  }
+  if (mingled > 0)
+    lines +=
+        fmt::format("{} more terms, which this part of the range does not tell apart\n", mingled);
+  lines += fmt::format("known in {:.0f} % of the range", 100.0 * found.known_share);
+  if (found.known_share < 0.999)
+    lines += fmt::format("; beyond, by {}: {} on parts of the range held out",
+                         fmt::join(found.far_terms, ", "), length_text(found.far_rms_m));
+  return lines + "\n" + note_lines(found.notes);
+}
+
+}  // namespace
+
+void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Session& session) {
+  if (arguments.codes.size() != 1)
+    throw UsageError("--reference needs --code, the one that the camera played");
+  const CodeSet code = load_camera_code(arguments.codes.front(), arguments.camera, arguments.file);
+  RawFrames frames = read_raw_frames(arguments.frames);
+  const ReferenceDepth reference = read_reference_depth(arguments.reference);
+  CalibratedDepth found;
+  try {
+    found = calibrate_depth(frames, reference, code, arguments.camera,
+                            terminal_progress("calibrating"));
+  } catch (const std::invalid_argument& error) {
+    throw IoError(arguments.frames, error.what());
+  }
+  session.print_json(document_of(found));
+  session.say(lines_of(found));
+  if (!arguments.camera_path.empty()) arguments.write_camera(with_depth(arguments.camera, found));
+  if (arguments.table.empty()) return;
+  write_calibrated_table(arguments.table, found.table, session.output_policy());
+  session.say(
+      fmt::format("wrote {}\nnext: tofsmith decode RAW --code {} --camera {} -o depth.npy",
+                  arguments.table, arguments.table,
+                  !arguments.camera_path.empty() ? arguments.camera_path : arguments.camera_name));
+}
+
+}  // namespace tofsmith::apps

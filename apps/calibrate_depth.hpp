@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "calibrate_output.hpp"
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/io/code_file.hpp"
+
+namespace tofsmith::apps {
+
+/// What `calibrate correlation --reference` was given.
+struct DepthCalibrationArguments {
+  std::string frames, reference, table, camera_path, camera_name;
+  std::vector<std::string> codes;
+  CodeFileOptions file;
+  Camera camera;
+  std::function<void(const Camera&)> write_camera;
+};
+
+/// Calibrates against reference depth, says what was found and writes the table.
+/// @throws UsageError without exactly one code; IoError for files that do not fit
+void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Session& session);
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,102 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""The depth error of a nominal code against reference depth; docs/calibration.md."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _check, _tofsmith
+from ._camera import Camera, CameraLike, camera_of
+from ._check import Path, Progress
+from ._code import CodeLike, code_of
+from ._decoding_table import DecodingTable
+from ._files import read_raw
+from ._reports import Estimate
+
+
+@dataclass(frozen=True)
+class CalibratedDepth:
+    """What reference depth says of a camera.
+
+    Attributes
+    ----------
+    reversed : bool
+        Delay runs backwards; the table does, too.
+    terms : dict of str to Estimate
+        Of the known part of the range [m]: offset, cos 4, sin 4, row, row^2 column, log signal, ..
+        A 95 % interval is +- 1.96 standard errors.
+    far_terms : list of str
+        Those that count beyond it.
+    known_share : float
+        Of the range in which the reference had depths.
+    rms_before_m, rms_m, far_rms_m : float
+        Error without offset ahead of the correction; left on blocks of pixels held out; and left
+        by the far terms on parts of the range held out [m].
+    outlier_share : float
+        Of the pixels, which count for nothing.
+    pixels : int
+        That were compared.
+    notes : list of str
+    """
+
+    reversed: bool
+    terms: dict[str, Estimate]
+    far_terms: list[str]
+    known_share: float
+    rms_before_m: float
+    rms_m: float
+    far_rms_m: float
+    outlier_share: float
+    pixels: int
+    notes: list[str]
+    _handle: _tofsmith.CalibratedDepth = field(repr=False, compare=False)
+
+    def decoding_table(self, camera: CameraLike) -> DecodingTable:
+        """The nominal functions with the correction, for a Decoder, which then takes it off."""
+        return DecodingTable._of(self._handle.decoding_table(camera_of(camera)._handle))
+
+    def camera(self, camera: CameraLike) -> Camera:
+        """The camera with the offset and the direction of delay that were found."""
+        return Camera._of(self._handle.camera(camera_of(camera)._handle))
+
+    def write_table(self, path: Path, *, overwrite: bool = False) -> None:
+        """Writes the table with its correction (.npz), for `tofsmith decode --code`."""
+        self._handle.write_table(_check.path(path), bool(overwrite))
+
+
+def calibrate_depth(
+    frames: Union[Path, npt.ArrayLike],
+    camera: CameraLike,
+    reference: Union[Path, npt.ArrayLike],
+    code: CodeLike,
+    progress: Progress = None,
+) -> CalibratedDepth:
+    """calibrate_correlation() with a reference."""
+    camera = camera_of(camera)
+    if isinstance(frames, (str, os.PathLike)):
+        frames = read_raw(frames)
+    if isinstance(reference, (str, os.PathLike)):
+        images = _tofsmith.read_reference_depth(_check.path(reference, "reference"))
+    else:
+        depth = np.asarray(reference, np.float32)
+        if depth.ndim not in (1, 2, 3):
+            raise ValueError(f"reference: got an array of {depth.ndim} axes; needs (H, W), "
+                             "(F, H, W) or (F,)")
+        images = {1: lambda: [np.full((1, 1), d) for d in depth], 2: lambda: [depth],
+                  3: lambda: list(depth)}[depth.ndim]()
+    handle = _tofsmith.calibrate_depth(
+        _check.frames(frames, "frames"),
+        images,
+        code_of(code, camera)._handle,
+        camera._handle,
+        _check.progress(progress),
+    )
+    fields = handle.fields()
+    fields["terms"] = {name: Estimate(*value) for name, value in fields["terms"]}
+    return CalibratedDepth(**fields, _handle=handle)

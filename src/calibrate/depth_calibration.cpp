@@ -1,0 +1,292 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+
+#include "calibrate/depth_term_choice.hpp"
+#include "calibrate/harmonic_basis.hpp"
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr int range_parts = 128;
+
+/// The functions that the camera's model says, in the table's own form.
+MeasuredTable nominal_table(const ForwardModel& model, const CodeSet& code, const Camera& camera) {
+  MeasuredTable table;
+  table.differences = camera.sensor.readout == Readout::difference;
+  table.taps = table.differences ? 1 : code.taps();
+  table.correlation = model.correlation_table(code.samples());
+  table.ambient_gain = model.ambient_gain();
+  return table;
+}
+
+DepthFit start(std::vector<ReferenceSample> samples, int height, int width, double range_m) {
+  DepthFit fit{.samples = std::move(samples), .range_m = range_m, .height = height, .width = width};
+  std::complex<double> sum = 0.0;
+  for (const ReferenceSample& s : fit.samples)
+    sum += std::polar(1.0, turn * (s.depth_m - s.reference_m) / range_m);
+  fit.start_m = std::arg(sum) / turn * range_m;
+  const auto signal = each(fit.samples, [](const auto& s) { return s.signal_e_per_s; });
+  fit.signal_e_per_s = std::max(1e-30, quantile_of(signal, 0.5));
+  fit.min_signal_e_per_s = std::max(1e-3 * fit.signal_e_per_s, quantile_of(signal, 0.01));
+  fit.max_signal_e_per_s = std::max(fit.min_signal_e_per_s, quantile_of(signal, 0.99));
+  const double usual_m = std::max(
+      1e-12, quantile_of(each(fit.samples, [](const auto& s) { return s.deviation_m; }), 0.5));
+  fit.error_m.resize(fit.size());
+  fit.base.resize(fit.size());
+  for (Eigen::Index i = 0; i < fit.size(); ++i) {
+    const ReferenceSample& s = fit.samples[static_cast<std::size_t>(i)];
+    fit.error_m[i] = wrapped_difference_m(s.depth_m - s.reference_m - fit.start_m, range_m);
+    fit.base[i] = 2.0 / (1.0 + std::pow(s.deviation_m / usual_m, 2));
+  }
+  fit.weight = fit.base;
+  return fit;
+}
+
+/// Terms at the phase that the reference and the errors found so far predict.
+void fill_terms(const Eigen::VectorXd& predicted_m, DepthFit& fit) {
+  fit.terms.resize(error_terms, fit.size());
+  const auto place = [](int at, int n) { return n > 1 ? 2.0 * at / (n - 1) - 1.0 : 0.0; };
+  parallel_for_blocks(fit.size(), 8192, [&](IndexRange range) {
+    for (Eigen::Index i = range.begin; i < range.end; ++i) {
+      const ReferenceSample& s = fit.samples[static_cast<std::size_t>(i)];
+      const double signal =
+          std::clamp(s.signal_e_per_s, fit.min_signal_e_per_s, fit.max_signal_e_per_s);
+      fill_error_terms(turn * (s.reference_m + fit.start_m + predicted_m[i]) / fit.range_m,
+                       place(s.row, fit.height), place(s.column, fit.width),
+                       std::log(signal / fit.signal_e_per_s), fit.terms.col(i).data());
+    }
+  });
+}
+
+Eigen::VectorXd predicted(const DepthFit& fit, const std::vector<int>& columns,
+                          const Eigen::VectorXd& coefficient) {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(error_terms);
+  all(columns) = coefficient;
+  return fit.terms.transpose() * all;
+}
+
+constexpr double biweight_reach = 4.685;  // of standard deviations: 95 % as efficient as the mean
+
+/// Weights by the residuals that coefficients leave: Tukey's biweight.
+void weigh(const Eigen::VectorXd& residual_m, DepthFit& fit) {
+  std::vector<double> size_m(static_cast<std::size_t>(residual_m.size()));
+  for (Eigen::Index i = 0; i < residual_m.size(); ++i)
+    size_m[static_cast<std::size_t>(i)] = std::abs(residual_m[i]) * std::sqrt(fit.base[i]);
+  fit.scale_m = std::max(1e-9 * fit.range_m, 1.4826 * quantile_of(std::move(size_m), 0.5));
+  for (Eigen::Index i = 0; i < residual_m.size(); ++i) {
+    const double u = residual_m[i] * std::sqrt(fit.base[i]) / (biweight_reach * fit.scale_m);
+    fit.weight[i] = std::abs(u) < 1.0 ? fit.base[i] * std::pow(1.0 - u * u, 2) : 0.0;
+  }
+}
+
+/// Reweighted least squares over some columns, with the phase predicted anew.
+Eigen::VectorXd solve_robustly(const std::vector<int>& columns, int rounds, DepthFit& fit) {
+  const std::vector<int> one_cell(fit.samples.size(), 0);
+  Eigen::VectorXd coefficient, fitted_m;
+  for (int round = 0; round < rounds; ++round) {
+    coefficient = sums_of(fit.terms, fit.error_m, fit.weight, one_cell, 1).front().solve(columns);
+    fitted_m = predicted(fit, columns, coefficient);
+    weigh(fit.error_m - fitted_m, fit);
+    // Terms of the last round stay those that its coefficients belong to.
+    if (round + 1 < rounds && round % 2 == 1) fill_terms(fitted_m, fit);
+  }
+  return coefficient;
+}
+
+int part_of(double depth_m, double range_m) {
+  const double share = depth_m / range_m - std::floor(depth_m / range_m);
+  return std::min(range_parts - 1, static_cast<int>(share * range_parts));
+}
+
+/// In which parts of the nominal range enough samples count.
+std::vector<bool> parts_with_depths(const DepthFit& fit) {
+  std::array<int, range_parts> count{};
+  int all = 0;
+  for (Eigen::Index i = 0; i < fit.size(); ++i)
+    if (fit.weight[i] > 0.0)
+      ++count[static_cast<std::size_t>(
+          part_of(fit.samples[static_cast<std::size_t>(i)].depth_m, fit.range_m))],
+          ++all;
+  const int needed = std::max(3, static_cast<int>(0.02 * all / range_parts));
+  std::vector<bool> has;
+  for (const int c : count) has.push_back(c >= needed);
+  return has;
+}
+
+/// Gaps that the highest harmonic spans belong to what is known.
+Eigen::VectorXd known_share_of(std::vector<bool> has, int highest_harmonic) {
+  const int reach = range_parts / (2 * std::max(1, highest_harmonic) + 1);
+  Eigen::VectorXd share(range_parts);
+  for (int p = 0; p < range_parts; ++p) {
+    int back = 0, ahead = 0;
+    const auto at = [&](int q) {
+      return static_cast<bool>(has[static_cast<std::size_t>((q + range_parts) % range_parts)]);
+    };
+    while (back < reach && !at(p - back)) ++back;
+    while (ahead < reach && !at(p + ahead)) ++ahead;
+    share[p] = at(p) || back + ahead <= reach ? 1.0 : 0.0;
+  }
+  return share;
+}
+
+/// Tiles of pixels, the same in every frame, at least some hundred.
+std::vector<int> tiles_of(const DepthFit& fit, int& tiles) {
+  constexpr int enough = 200;
+  int side = 16;
+  const auto along = [&](int length) { return (length + side - 1) / side; };
+  while (side > 1 && along(fit.height) * along(fit.width) < enough) side /= 2;
+  tiles = along(fit.height) * along(fit.width);
+  std::vector<int> tile;
+  for (const ReferenceSample& s : fit.samples)
+    tile.push_back(s.row / side * along(fit.width) + s.column / side);
+  return tile;
+}
+
+/// Degree of a field that the places of the samples can carry.
+int degree_within(const DepthFit& fit, std::vector<std::string>& notes) {
+  const auto [top, bottom] =
+      std::ranges::minmax(each(fit.samples, [](const auto& s) { return double(s.row); }));
+  const auto [left, right] =
+      std::ranges::minmax(each(fit.samples, [](const auto& s) { return double(s.column); }));
+  const double share =
+      std::min((bottom - top + 1.0) / fit.height, (right - left + 1.0) / fit.width);
+  if (share > 0.7) return max_error_degree;
+  notes.push_back(fmt::format(
+      "the reference spans {:.0f} % of the image's rows or columns: beyond them the field over "
+      "rows and columns is {}",
+      100.0 * share, share > 0.3 ? "a plane" : "constant"));
+  return share > 0.3 ? 1 : 0;
+}
+
+/// Influence and its slope of every sample, for the errors.
+Eigen::VectorXd standard_errors(const DepthFit& fit, const std::vector<int>& columns,
+                                const Eigen::VectorXd& residual_m) {
+  Eigen::VectorXd slope(fit.size()), influence(fit.size());
+  for (Eigen::Index i = 0; i < fit.size(); ++i) {
+    const double u = residual_m[i] * std::sqrt(fit.base[i]) / (biweight_reach * fit.scale_m);
+    const bool counts = std::abs(u) < 1.0;
+    slope[i] = counts ? fit.base[i] * (1.0 - u * u) * (1.0 - 5.0 * u * u) : 0.0;
+    influence[i] = fit.weight[i] * residual_m[i];
+  }
+  int tiles = 0;
+  const std::vector<int> tile = tiles_of(fit, tiles);
+  return tile_errors(fit.terms, columns, slope, influence, tile, tiles);
+}
+
+void turn_backwards(MeasuredTable& table, std::vector<ReferenceSample>& samples, double range_m) {
+  const Eigen::Index n = table.correlation.rows();
+  table.correlation.bottomRows(n - 1) =
+      table.correlation.bottomRows(n - 1).colwise().reverse().eval();
+  for (ReferenceSample& s : samples) s.depth_m = range_m - s.depth_m;
+}
+
+void add_notes(const DepthFit& fit, const ReferenceDepth& reference,
+               const Eigen::VectorXd& fitted_m, double covered, CalibratedDepth& result) {
+  if (result.reversed) result.notes.push_back("delay runs backwards: the table written does, too");
+  if (covered < 0.05)
+    result.notes.push_back(
+        "the reference hardly changes: only an offset and a field over the image were looked for, "
+        "at this distance");
+  else if (result.known_share < 0.999)
+    result.notes.push_back(fmt::format(
+        "known from the reference: {:.0f} % of the range; in the rest the correction is the "
+        "model's word, of {} terms",
+        100.0 * result.known_share, result.far_terms.size()));
+  if (result.outlier_share > 0.3)
+    result.notes.push_back(fmt::format("{:.0f} % of the pixels fit nothing and were left out",
+                                       100.0 * result.outlier_share));
+  std::vector<double> expected_m;
+  for (Eigen::Index i = 0; i < fit.size(); ++i)
+    expected_m.push_back(fit.samples[static_cast<std::size_t>(i)].depth_m - fit.start_m -
+                         fitted_m[i]);
+  if (auto note = shift_note(fit.samples, reference, expected_m, fit.range_m, fit.scale_m))
+    result.notes.push_back(*note);
+}
+
+}  // namespace
+
+CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& reference,
+                                const CodeSet& code, const Camera& camera,
+                                const Progress& progress) {
+  CalibratedDepth result;
+  const ForwardModel model(code, camera);
+  result.table = nominal_table(model, code, camera);
+  const DecodingTable table = make_decoding_table(result.table, camera);
+  const double range_m = table.range_m;
+  const ProgressParts parts(progress, {3.0, 1.0});
+
+  // Pixels that can be compared, and the direction of delay.
+  std::vector<ReferenceSample> samples = reference_samples(frames, reference, table, parts[0]);
+  result.pixels = static_cast<std::int64_t>(samples.size());
+  result.reversed = runs_backwards(samples, reference, frames.height, frames.width, range_m);
+  if (result.reversed) turn_backwards(result.table, samples, range_m);
+
+  // All terms, robustly: which pixels count.
+  DepthFit fit = start(std::move(samples), frames.height, frames.width, range_m);
+  weigh(fit.error_m, fit);
+  result.rms_before_m = std::sqrt((fit.weight.dot(fit.error_m.cwiseAbs2())) / fit.weight.sum());
+  std::vector<bool> has = parts_with_depths(fit);
+  const auto covered_parts = static_cast<int>(std::ranges::count(has, true));
+  const double covered = static_cast<double>(covered_parts) / range_parts;
+  const int highest =
+      covered < 0.05 ? 0 : std::clamp((covered_parts - 2) / 2, 1, max_error_harmonic);
+  const TermChoice all{(1u << highest) - 1u, degree_within(fit, result.notes), max_error_signal};
+  report(parts[1], 0.1, "fitting");
+  fill_terms(Eigen::VectorXd::Zero(fit.size()), fit);
+  solve_robustly(all.columns(), 10, fit);
+
+  // Which terms, by what is held out; then those alone.
+  report(parts[1], 0.5, "choosing terms");
+  const Chosen chosen = choose(fit, highest, all.degree);
+  const std::vector<int> far_columns = chosen.beyond.columns(), columns = chosen.known.columns();
+  const Eigen::VectorXd far = solve_robustly(far_columns, 4, fit);
+  const Eigen::VectorXd near = solve_robustly(columns, 6, fit);
+  const Eigen::VectorXd fitted_m = predicted(fit, columns, near);
+  const Eigen::VectorXd error_m = standard_errors(fit, columns, fit.error_m - fitted_m);
+
+  DepthCorrection correction{.height = frames.height,
+                             .width = frames.width,
+                             .known = terms_of(chosen.known, near),
+                             .beyond = terms_of(chosen.beyond, far),
+                             .known_share = known_share_of(has, highest),
+                             .signal_e_per_s = fit.signal_e_per_s,
+                             .min_signal_e_per_s = fit.min_signal_e_per_s,
+                             .max_signal_e_per_s = fit.max_signal_e_per_s};
+  correction.known.offset_m += fit.start_m;
+  correction.beyond.offset_m += fit.start_m;
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    result.terms.push_back({error_term_name(columns[k]),
+                            {near[static_cast<Eigen::Index>(k)] + (k == 0 ? fit.start_m : 0.0),
+                             error_m[static_cast<Eigen::Index>(k)]}});
+  for (const int column : far_columns) result.far_terms.push_back(error_term_name(column));
+  result.known_share = correction.known_share.mean();
+  result.rms_m = chosen.known_rms_m;
+  result.far_rms_m = chosen.beyond_rms_m;
+  result.outlier_share =
+      static_cast<double>((fit.weight.array() == 0.0).count()) / static_cast<double>(fit.size());
+  result.table.correction = correction;
+  add_notes(fit, reference, fitted_m, covered, result);
+  return result;
+}
+
+Camera with_depth(Camera camera, const CalibratedDepth& found) {
+  Playback playback = camera.playback.value_or(Playback());
+  const double offset_m = found.table.correction ? found.table.correction->known.offset_m : 0.0;
+  playback.offset_m = offset_m + (found.reversed ? -playback.offset_m : playback.offset_m);
+  playback.reversed = playback.reversed != found.reversed;
+  camera.playback = playback;
+  camera.validate();
+  return camera;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "tofsmith/decode/decoding_table.hpp"
+
+namespace tofsmith {
+
+inline constexpr int max_error_harmonic = 8, max_error_degree = 4, max_error_signal = 2;
+inline constexpr int field_terms = (max_error_degree + 1) * (max_error_degree + 2) / 2 - 1;
+inline constexpr int error_terms = 1 + 2 * max_error_harmonic + field_terms + max_error_signal;
+
+/// Which terms of a depth error are looked for.
+struct TermChoice {
+  unsigned harmonics = 0;  ///< bit h - 1: harmonic h
+  int degree = 0;          ///< of the field
+  int signal = 0;          ///< powers of its logarithm
+
+  /// Their columns among all error_terms: offset, harmonics, field, signal.
+  std::vector<int> columns() const;
+  int size() const { return static_cast<int>(columns().size()); }
+};
+
+/// "offset", "cos 4", "row^2 column", "log signal^2": what a column is called.
+std::string error_term_name(int column);
+
+/// All terms at one pixel, as DepthErrorTerms defines them.
+void fill_error_terms(double phase_rad, double row, double column, double log_signal,
+                      double* terms);
+
+/// The coefficients of chosen columns as terms of a correction.
+DepthErrorTerms terms_of(const TermChoice& choice, const Eigen::VectorXd& coefficient);
+
+/// Sums of weighted least squares: what they need of any number of samples.
+struct NormalSums {
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(error_terms, error_terms);
+  Eigen::VectorXd moment = Eigen::VectorXd::Zero(error_terms);
+  double square = 0.0;
+  double weight = 0.0;
+
+  void add(const NormalSums& other);
+  /// Least squares over some columns.
+  Eigen::VectorXd solve(const std::vector<int>& columns) const;
+  /// Weighted sum of squares that coefficients of some columns leave.
+  double left(const std::vector<int>& columns, const Eigen::VectorXd& coefficient) const;
+};
+
+/// Sums over samples, cell by cell.
+/// @param terms   (error_terms, samples)
+/// @param cell    of each sample, in [0, cells)
+std::vector<NormalSums> sums_of(const Eigen::MatrixXd& terms, const Eigen::VectorXd& error_m,
+                                const Eigen::VectorXd& weight, const std::vector<int>& cell,
+                                int cells);
+
+/// Standard errors of coefficients whose residuals may be alike within a tile: the sandwich of sums
+/// by tiles.
+/// @param slope  derivative of each sample's influence by its residual
+/// @param influence  weight times residual
+Eigen::VectorXd tile_errors(const Eigen::MatrixXd& terms, const std::vector<int>& columns,
+                            const Eigen::VectorXd& slope, const Eigen::VectorXd& influence,
+                            const std::vector<int>& tile, int tiles);
+
+}  // namespace tofsmith

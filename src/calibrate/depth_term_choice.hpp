@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "calibrate/depth_error_fit.hpp"
+#include "calibrate/reference_samples.hpp"
+
+namespace tofsmith {
+
+/// What is fitted: samples with the terms of each.
+struct DepthFit {
+  std::vector<ReferenceSample> samples;
+  double range_m = 0.0;
+  int height = 0, width = 0;
+  double start_m = 0.0;  // offset ahead of the fit
+  double signal_e_per_s = 1.0, min_signal_e_per_s = 0.0, max_signal_e_per_s = 0.0;
+  Eigen::MatrixXd terms;    // (error_terms, samples)
+  Eigen::VectorXd error_m;  // depth - reference - start
+  Eigen::VectorXd base;     // weight by predicted noise
+  Eigen::VectorXd weight;   // and by the residual
+  double scale_m = 0.0;     // robust standard deviation of residuals
+
+  Eigen::Index size() const { return static_cast<Eigen::Index>(samples.size()); }
+};
+
+/// The value of a list below which a share of it lies, 0 .. 1.
+double quantile_of(std::vector<double> values, double share);
+
+/// A number of each sample.
+template <typename Get>
+std::vector<double> each(const std::vector<ReferenceSample>& samples, const Get& get) {
+  std::vector<double> values;
+  values.reserve(samples.size());
+  for (const ReferenceSample& s : samples) values.push_back(get(s));
+  return values;
+}
+
+/// Terms that count where the reference had depths and beyond, with what they leave on samples held
+/// out [m].
+struct Chosen {
+  TermChoice known, beyond;
+  double known_rms_m = 0.0, beyond_rms_m = 0.0;
+};
+
+/// Chooses among sets of terms by samples held out: blocks of a checkerboard, and quarters of the
+/// reference's range.
+Chosen choose(const DepthFit& fit, int highest_harmonic, int max_degree);
+
+}  // namespace tofsmith

@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "core/shared/random.hpp"
+#include "tofsmith/calibrate/correlation_calibration.hpp"
+#include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/io/npy.hpp"
+#include "tofsmith/io/raw_frames.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+constexpr double turn_rad = 2 * std::numbers::pi;
+
+Camera phase_camera() {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.fundamental_frequency_hz = 60e6;
+  camera.exposure_s.total_s = 1e-3;
+  camera.sensor.taps = 2;
+  camera.sensor.readout = Readout::difference;
+  camera.sensor.drain = false;
+  return camera;
+}
+
+/// A camera that errs in a known way, and a scene with its true depth.
+struct Bench {
+  int frames = 6, height = 40, width = 56;
+  double first_share = 0.0, last_share = 1.0;  // of the range that the scene spans
+  double wrong_share = 0.05;                   // of reference pixels
+  bool reversed = false;
+  std::uint64_t seed = 1;
+
+  DepthErrorTerms truth;
+  RawFrames raw = {};
+  ReferenceDepth reference = {};
+
+  double range_m = phase_camera().range_m();
+
+  void run() {
+    RandomStream random(seed, 1, 0);
+    raw = {.frames = frames, .height = height, .width = width, .measurements = 4};
+    reference.depth_m.clear();
+    const DepthCorrection error{.height = height, .width = width, .known = truth};
+    for (int f = 0; f < frames; ++f) {
+      Image<float> depth_m(height, width);
+      for (int row = 0; row < height; ++row)
+        for (int column = 0; column < width; ++column) {
+          const double wave = 0.5 + 0.5 * std::sin(0.11 * row + 0.17 * column + f);
+          const double share = (f + wave) / frames;
+          const double nominal_m = range_m * (first_share + share * (last_share - first_share));
+          const double true_m = nominal_m - error.error_m(nominal_m, range_m, row, column, 1.0);
+          depth_m(row, column) =
+              static_cast<float>(true_m - range_m * std::floor(true_m / range_m));
+          if (random.uniform() < wrong_share)
+            depth_m(row, column) = static_cast<float>(range_m * random.uniform());
+          const double amplitude = 2e5 * (1.2 + std::cos(0.3 * column));
+          const double phase_rad = (reversed ? -1.0 : 1.0) * turn_rad * nominal_m / range_m;
+          for (int k = 0; k < 4; ++k)
+            raw.values.push_back(
+                static_cast<float>(amplitude * std::cos(phase_rad - k * turn_rad / 4) +
+                                   std::sqrt(amplitude) * random.normal()));
+        }
+      reference.depth_m.push_back(std::move(depth_m));
+    }
+  }
+
+  CalibratedDepth calibrate() const {
+    const Camera camera = phase_camera();
+    return calibrate_depth(raw, reference, build_family("sinusoid-k4", camera), camera);
+  }
+
+  /// Decodes by the table and takes its correction off: median of what is left [m].
+  double median_error_m(const MeasuredTable& measured) const {
+    const Decoder decoder(make_decoding_table(measured, phase_camera()));
+    std::vector<double> left_m;
+    for (int f = 0; f < frames; ++f) {
+      DepthImage image = decoder.decode(raw, f);
+      apply(*measured.correction, range_m, DecodedView::of(image), height, width, 0,
+            image.depth_m.size());
+      for (std::size_t i = 0; i < image.depth_m.size(); ++i) {
+        const double off_m = static_cast<double>(
+            image.depth_m.pixels[i] - reference.depth_m[static_cast<std::size_t>(f)].pixels[i]);
+        left_m.push_back(std::abs(off_m - range_m * std::round(off_m / range_m)));
+      }
+    }
+    std::ranges::nth_element(left_m, left_m.begin() + static_cast<int>(left_m.size() / 2));
+    return left_m[left_m.size() / 2];
+  }
+};
+
+DepthErrorTerms wiggle() {
+  DepthErrorTerms terms;
+  terms.offset_m = 0.7;
+  terms.harmonic_m = Eigen::VectorXd::Zero(16);
+  terms.harmonic_m[0] = 3e-3;
+  terms.harmonic_m[6] = 9e-3;
+  terms.harmonic_m[7] = -5e-3;
+  terms.harmonic_m[15] = 2e-3;
+  terms.field_m = Eigen::Vector2d(4e-3, -6e-3);
+  return terms;
+}
+
+TEST(DepthCalibration, RecoversKnownTermsWithinTheirIntervals) {
+  int inside = 0, all = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Bench bench{.seed = seed, .truth = wiggle()};
+    bench.run();
+    const CalibratedDepth found = bench.calibrate();
+    EXPECT_FALSE(found.reversed);
+    EXPECT_NEAR(found.known_share, 1.0, 1e-9);
+    EXPECT_LT(bench.median_error_m(found.table), 2e-3);
+    for (const CalibratedTerm& term : found.terms) {
+      double truth_m = 0.0;
+      if (term.name == "offset") truth_m = 0.7;
+      if (term.name == "cos 1") truth_m = 3e-3;
+      if (term.name == "cos 4") truth_m = 9e-3;
+      if (term.name == "sin 4") truth_m = -5e-3;
+      if (term.name == "sin 8") truth_m = 2e-3;
+      if (term.name == "row") truth_m = 4e-3;
+      if (term.name == "column") truth_m = -6e-3;
+      ++all;
+      if (std::abs(term.value_m.value - truth_m) < 1.96 * term.value_m.standard_error) ++inside;
+    }
+  }
+  // Of some hundred terms 95 % are; 4 standard errors of that share are 8 %.
+  EXPECT_GT(inside, 0.87 * all);
+}
+
+TEST(DepthCalibration, DelayThatRunsBackwardsIsTurnedInTableAndCamera) {
+  Bench bench{.reversed = true, .truth = wiggle()};
+  bench.run();
+  const CalibratedDepth found = bench.calibrate();
+  EXPECT_TRUE(found.reversed);
+  EXPECT_THAT(found.notes, Contains(HasSubstr("backwards")));
+  EXPECT_LT(bench.median_error_m(found.table), 2e-3);
+  // The camera alone decodes with its code, up to the wiggle.
+  const Camera camera = with_depth(phase_camera(), found);
+  ASSERT_TRUE(camera.playback);
+  EXPECT_TRUE(camera.playback->reversed);
+  MeasuredTable plain = found.table;
+  plain.correlation =
+      ForwardModel(build_family("sinusoid-k4", camera), camera).correlation_table(camera.samples);
+  plain.correction = DepthCorrection{.height = bench.height, .width = bench.width};
+  EXPECT_LT(bench.median_error_m(plain), 15e-3);
+}
+
+TEST(DepthCalibration, APartOfTheRangeIsKnownAndTheRestIsTheModelsWord) {
+  Bench bench{.last_share = 0.4, .truth = wiggle()};
+  bench.run();
+  const CalibratedDepth found = bench.calibrate();
+  EXPECT_GT(found.known_share, 0.35);
+  EXPECT_LT(found.known_share, 0.5);
+  EXPECT_THAT(found.notes, Contains(HasSubstr("model's word")));
+  EXPECT_LT(bench.median_error_m(found.table), 2e-3);
+}
+
+TEST(DepthCalibration, RefusesReferencesThatAreOfSomethingElse) {
+  Bench bench{.truth = wiggle()};
+  bench.run();
+  const auto refuses = [&](const Bench& changed, const char* why) {
+    try {
+      changed.calibrate();
+      FAIL() << why;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_THAT(error.what(), HasSubstr(why));
+    }
+  };
+  const auto each_pixel = [&](const auto& change) {
+    Bench changed = bench;
+    for (Image<float>& image : changed.reference.depth_m) {
+      const Image<float> before = image;
+      for (int row = 0; row < image.height; ++row)
+        for (int column = 0; column < image.width; ++column)
+          image(row, column) = change(before, row, column);
+    }
+    return changed;
+  };
+  refuses(each_pixel([](const auto& image, int r, int c) { return 1e3f * image(r, c); }), "metres");
+  refuses(each_pixel([&](const auto& i, int r, int c) { return i(bench.height - 1 - r, c); }),
+          "flipped top to bottom");
+  refuses(each_pixel([&](const auto& i, int r, int c) { return i(r, bench.width - 1 - c); }),
+          "mirrored left to right");
+  refuses(each_pixel([](const auto&, int, int) { return NAN; }), "at least 100 pixels");
+  Bench few = bench;
+  few.reference.depth_m.resize(2);
+  refuses(few, "one for each of the 6 frames");
+}
+
+TEST(DepthCalibration, AConstantReferenceGivesAnOffsetAndAField) {
+  Bench bench{.frames = 1, .first_share = 0.5, .last_share = 0.5, .truth = wiggle()};
+  bench.run();
+  const CalibratedDepth found = bench.calibrate();
+  EXPECT_THAT(found.notes, Contains(HasSubstr("hardly changes")));
+  for (const CalibratedTerm& term : found.terms) EXPECT_THAT(term.name, Not(HasSubstr("cos")));
+  EXPECT_LT(bench.median_error_m(found.table), 2e-3);
+}
+
+TEST(DepthCalibration, LeavesLessThanThePublishedModelsOnARealCamera) {
+  const auto folder = std::filesystem::path(TOFSMITH_SOURCE_DIR) / "../shared/data/melexis_quads";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "without the recording";
+  std::vector<std::vector<double>> quads;
+  for (const char* name : {"phase0_avg.npy", "phase90_avg.npy", "phase180_avg.npy",
+                           "phase270_avg.npy", "dist_avg.npy", "amp_avg.npy"})
+    quads.push_back(read_npy(folder / name).to_doubles());
+  Bench bench{.frames = 1, .height = 385, .width = 640};
+  bench.raw = {.frames = 1, .height = 385, .width = 640, .measurements = 4};
+  Image<float> known(385, 640), all(385, 640);
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    for (std::size_t k = 0; k < 4; ++k) bench.raw.values.push_back(static_cast<float>(quads[k][i]));
+    all.pixels[i] = static_cast<float>(1e-3 * quads[4][i]);
+    const bool is_held_out = (i / 640 / 55 + i % 640 / 80) % 2 == 1;
+    known.pixels[i] = is_held_out ? NAN : all.pixels[i];
+  }
+  bench.reference.depth_m = {known};
+  const CalibratedDepth found = bench.calibrate();
+  const Decoder decoder(make_decoding_table(found.table, phase_camera()));
+  DepthImage image = decoder.decode(bench.raw, 0);
+  apply(*found.table.correction, bench.range_m, DecodedView::of(image), 385, 640, 0, all.size());
+  double sum = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!std::isnan(known.pixels[i]) || !(quads[5][i] > 100)) continue;
+    const double off_m = static_cast<double>(image.depth_m.pixels[i] - all.pixels[i]);
+    sum += std::pow(off_m - bench.range_m * std::round(off_m / bench.range_m), 2);
+    count += 1.0;
+  }
+  EXPECT_LT(std::sqrt(sum / count), 1.3e-3);
+}
+
+}  // namespace
+}  // namespace tofsmith
