@@ -307,7 +307,7 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
   if (const auto& correction = table.correction)
     if (correction->height != reader.height() || correction->width != reader.width())
       throw IoError(
-          request.raw.string(),
+          request.raw.front().string(),
           fmt::format("found frames of {} x {} pixels; expected {} x {}, of which the "
                       "table's depth correction is",
                       reader.height(), reader.width(), correction->height, correction->width));

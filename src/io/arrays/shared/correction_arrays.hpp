@@ -11,7 +11,8 @@
 
 namespace tofsmith {
 
-/// What names of a depth correction's arrays begin with: correction_height, correction_known_field_m.
+/// What names of a depth correction's arrays begin with: correction_height,
+/// correction_known_field_m.
 inline constexpr std::string_view correction_prefix = "correction_";
 
 /// Adds an array for each field of the correction.
