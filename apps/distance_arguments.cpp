@@ -15,8 +15,10 @@ void DistanceArguments::add_to(CLI::App& command) {
   CLI::Option* distance =
       command
           .add_option("--distance", distances_m_,
-                      "at surfaces this far away [m], instead of the camera's operating points: "
-                      "light from its [optics]")
+                      "at surfaces this far away [m], 1,2,5, instead of the camera's operating "
+                      "points: light from its [optics]")
+          ->delimiter(',')
+          ->allow_extra_args(false)
           ->check(positive_number());
   command.add_option("--albedo", albedo_, "of those surfaces")
       ->check(positive_number(1.0))
@@ -29,7 +31,7 @@ void DistanceArguments::add_to(CLI::App& command) {
 
 Camera DistanceArguments::at(const Camera& camera, const Session& session) const {
   if (!is_asked()) return camera;
-  const Camera judged = at_distances(camera, distances_m_, albedo_, klux_);
+  Camera judged = at_distances(camera, distances_m_, albedo_, klux_);
   for (const double distance_m : distances_m_) {
     const OperatingPoint light = judged.optics->light_at(distance_m, albedo_);
     session.say(fmt::format("{:.4g} m, albedo {:.3g}: S = {:.4g} e/s, A = {:.4g} e/s{}", distance_m,

@@ -105,6 +105,7 @@ void add_require_command(CLI::App& app, Session& session) {
       ->add_option("--vary", arguments->vary,
                    "what to vary, each by itself: bandwidth,power,exposure (all three)")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(one_of({"bandwidth", "power", "exposure"}));
   command
       ->add_option("--max-factor", arguments->options.max_factor, "at most so many times as much")

@@ -28,6 +28,7 @@ from ._camera_fields import (
     Operating,
     OperatingMultipath,
     Optics,
+    Playback,
     Sensor,
 )
 from ._code import (
@@ -211,6 +212,7 @@ __all__ = [
     "PhotonTransfer",
     "PhotonTransferPoint",
     "PixelStatus",
+    "Playback",
     "ReadBackNumber",
     "ReceiverBound",
     "ReproducedItem",

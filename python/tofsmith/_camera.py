@@ -23,6 +23,7 @@ from ._camera_fields import (
     Operating,
     OperatingMultipath,
     Optics,
+    Playback,
     Sensor,
 )
 from ._check import Path
@@ -220,6 +221,12 @@ class Camera:
         """What turns watts and lux into electrons, if the camera says it."""
         optics = self._fields.get("optics")
         return None if optics is None else Optics(**_tuples(optics))
+
+    @cached_property
+    def playback(self) -> Optional[Playback]:
+        """How what is played differs from what codes say, if it does."""
+        playback = self._fields.get("playback")
+        return None if playback is None else Playback(**_tuples(playback))
 
     def at_distances(
         self,

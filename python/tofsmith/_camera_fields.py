@@ -241,3 +241,23 @@ class Operating:
     albedo: Union[float, str]
     neighbours: int = 1
     multipath: Optional[OperatingMultipath] = None
+
+
+@dataclass(frozen=True)
+class Playback:
+    """How what is played differs from what the code says; `calibrate` finds it.
+
+    Attributes
+    ----------
+    order : tuple of int
+        Exposure of the code that is played first, second, ..; empty: as the code has them.
+    reversed, inverted : bool
+        Delay runs backwards; signs are opposite, taps swapped.
+    offset_m : float
+        Everything looks so much farther [m].
+    """
+
+    order: tuple[int, ...] = ()
+    reversed: bool = False
+    inverted: bool = False
+    offset_m: float = 0.0

@@ -88,8 +88,10 @@ def calibrate_depth(
         if depth.ndim not in (1, 2, 3):
             raise ValueError(f"reference: got an array of {depth.ndim} axes; needs (H, W), "
                              "(F, H, W) or (F,)")
-        images = {1: lambda: [np.full((1, 1), d) for d in depth], 2: lambda: [depth],
-                  3: lambda: list(depth)}[depth.ndim]()
+        if depth.ndim == 1:
+            images = [np.full((1, 1), d, np.float32) for d in depth]
+        else:
+            images = [depth] if depth.ndim == 2 else list(depth)
     handle = _tofsmith.calibrate_depth(
         _check.frames(frames, "frames"),
         images,

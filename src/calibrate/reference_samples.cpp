@@ -134,7 +134,9 @@ bool runs_backwards(const std::vector<ReferenceSample>& samples, const Reference
          {std::pair{1e-3, "millimetres"}, std::pair{1e-2, "centimetres"}})
       for (const double direction : {1.0, -1.0})
         require(coherence(samples, range_m, direction,
-                          [&](const ReferenceSample& s) { return scale * s.reference_m; }) < agrees,
+                          [in_m = scale](const ReferenceSample& s) {
+                            return in_m * s.reference_m;
+                          }) < agrees,
                 "reference", unit, "must be in metres");
   const double scatter_m = scatter_of(samples, range_m, sign, plain);
   struct Flip {

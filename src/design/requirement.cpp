@@ -70,7 +70,8 @@ class CodePool {
   /// Codes that may be best on either camera or on one between them.
   Codes contenders(const Camera& a, const Camera& b) const {
     const std::vector<double> on_a = first_errors(a, all()), on_b = first_errors(b, all());
-    const double least_a = std::ranges::min(on_a), least_b = std::ranges::min(on_b);
+    const double least_a = *std::min_element(on_a.begin(), on_a.end());
+    const double least_b = *std::min_element(on_b.begin(), on_b.end());
     Codes codes;
     for (std::size_t i = 0; i < codes_.size(); ++i)
       if (on_a[i] < 1.3 * least_a || on_b[i] < 1.3 * least_b) codes.push_back(&codes_[i]);
@@ -81,7 +82,7 @@ class CodePool {
   /// on.
   BestCode best_on(const Camera& camera, const Codes& codes) const {
     const std::vector<double> first = first_errors(camera, codes);
-    const double least_m = std::ranges::min(first);
+    const double least_m = *std::min_element(first.begin(), first.end());
     BestCode best;
     for (std::size_t i = 0; i < codes.size(); ++i) {
       if (!(first[i] <= 1.1 * least_m)) continue;

@@ -24,9 +24,19 @@ from command_line import TOOL  # noqa: E402
 from sweep_text import sweep_text  # noqa: E402
 
 SHORTER = {" design ": " design --effort 0.01 --trials 1000 ",
+           " require ": " require --effort 0.01 --trials 1000 --vary power ",
            " reproduce all ": " reproduce fig2 --fast ",
            " --bounces 1 ": " --bounces 1 --bounce-rays 16 ",
            " --average 30 ": " --average 2 "}
+OPTICS = """[optics]
+source_power_w = 0.5
+wavelength_m = 940e-9
+field_of_view_deg = [70, 55]
+f_number = 1.2
+pixel_pitch_m = 7e-6
+quantum_efficiency = 0.3
+filter_width_m = 30e-9
+"""
 SMALL = "--width 32 --height 24"
 DUMP = """width = 32
 height = 24
@@ -148,7 +158,7 @@ class HowTo(BenchRecordsTest):
                 continue
             with self.subTest(command):
                 self.setUp()
-                self.write("mine.toml", CAMERA)
+                self.write("mine.toml", CAMERA + OPTICS)
                 written = self.prepare(command)
                 self.shell(shortened(command))
                 for name in written:

@@ -33,7 +33,8 @@ def test_cameras_come_from_names_files_and_keywords_alike(tmp_path):
 
 
 def test_every_key_of_a_camera_file_is_an_attribute():
-    parts = {"light": ts.Light, "sensor": ts.Sensor, "lens": ts.Lens, "optics": ts.Optics, "operating": ts.Operating,
+    parts = {"light": ts.Light, "sensor": ts.Sensor, "lens": ts.Lens, "optics": ts.Optics, "playback": ts.Playback,
+             "operating": ts.Operating,
              "multipath": ts.OperatingMultipath, "impulse_response": ts.ImpulseResponse, "generator": ts.Generator}
     for key in ts.camera_keys():
         *path, last = key.split(".")

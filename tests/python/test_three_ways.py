@@ -234,7 +234,7 @@ def test_evaluate_at_distances(ways):
               "filter_width_m": 30e-9}
     camera = ts.Camera("paper-10f0", samples=120, optics=optics)
     camera.write(ways.folders["command"] / "mine.toml")
-    ways.command("evaluate", "hamiltonian-k4", "--camera", "mine.toml", "--distance", "1", "4",
+    ways.command("evaluate", "hamiltonian-k4", "--camera", "mine.toml", "--distance", "1,4",
                  "--albedo", "0.3", "--klux", "20", "--trials", "500", "-o", "evaluation.json")
     (code,) = json.loads(ways.files("command")["evaluation.json"])["codes"]
     asked = camera.at_distances([1.0, 4.0], albedo=0.3, klux=20)
