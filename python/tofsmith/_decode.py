@@ -154,11 +154,11 @@ class Decoder:
 
         Parameters
         ----------
-        raw : ndarray of float32, float64, uint16 or uint8 (other whole numbers are copied), or a
-                list of them
-            (H, W, K) or (F, H, W, K); planar: (K, H, W) or (F, K, H, W); a list has one array a
-            measurement, in their order, (H, W) or (F, H, W) each. Electrons, or counts where the
-            camera has an ADC. NaN and infinity make a pixel invalid.
+        raw : ndarray, or a list of them
+            float32, float64, uint16 or uint8 (other whole numbers are copied), (H, W, K) or
+            (F, H, W, K); planar: (K, H, W) or (F, K, H, W); a list has one array a measurement, in
+            their order, (H, W) or (F, H, W) each. Electrons, or counts where the camera has an ADC.
+            NaN and infinity make a pixel invalid.
         layout : {"interleaved", "planar"}
             Never guessed.
         planes : iterable of str, optional

@@ -111,14 +111,12 @@ struct PixelMaps {
 void apply(const PixelMaps& maps, double range_m, const DecodedView& decoded, std::size_t first,
            std::size_t count);
 
-/// Takes what a calibration found off decoded depths, which wrap into [0, range), of pixels first
-/// .. first + count - 1 (row by row), ahead of their maps. Pixels without depth stay as they are.
-/// @param decoded  planes whose first value is that of pixel `first`; the signal is needed where
-/// the
-///                 correction has terms in it
-/// @throws std::invalid_argument if the frame, `height` x `width`, has another size, or a plane
-/// that
-///         is needed is null
+/// Takes what a calibration found off decoded depths, which wrap into [0, range), of `count`
+/// pixels from `first` on (row by row), ahead of their maps. Pixels without depth stay as they are.
+/// @param decoded  planes whose first value is that of pixel `first`; the signal is needed
+///                 where the correction has terms in it
+/// @throws std::invalid_argument if the frame, `height` x `width`, has another size, or a
+///         plane that is needed is null
 void apply(const DepthCorrection& correction, double range_m, const DecodedView& decoded,
            int height, int width, std::size_t first, std::size_t count);
 
