@@ -23,6 +23,12 @@ EvaluateOptions with_even_trials(EvaluateOptions options) {
   return options;
 }
 
+/// About, where they go on until a target is met.
+std::int64_t all_trials(const EvaluateOptions& options, std::size_t points) {
+  return static_cast<std::int64_t>(points) *
+         (options.target_standard_error > 0.0 ? options.max_trials : options.trials);
+}
+
 }  // namespace
 
 DepthTrials::DepthTrials(const ForwardModel& model, const Camera& camera,
@@ -36,7 +42,8 @@ DepthTrials::DepthTrials(const ForwardModel& model, const Camera& camera,
       albedo_(camera.operating.albedo),
       points_(camera.operating.points()),
       model_(model, camera),
-      decoder_(options.method, std::move(believed), options.unwrap_weights) {
+      decoder_(options.method, std::move(believed), options.unwrap_weights,
+               all_trials(options_, points_.size())) {
   const PlaneMap* map = decoder_.plane_map();
   const bool in_plane = map != nullptr && model_.is_linear() && !options_.clip_to_open_sensor &&
                         !options_.draw_every_measurement;
@@ -55,7 +62,7 @@ DepthTrials::DepthTrials(const DecodingTable& table, const OperatingPoint& light
     : options_(with_even_trials(options)),
       points_{light},
       model_(table),
-      decoder_(DecodeMethod::zncc, table, options.unwrap_weights) {
+      decoder_(DecodeMethod::zncc, table, options.unwrap_weights, options_.trials) {
   plane_noise_.emplace_back(model_, *decoder_.plane_map(), light.ambient_e_per_s);
 }
 

@@ -78,5 +78,24 @@ TEST(BinMatcher, FindsRivalsOfPixelsThatDoubleArithmeticDecides) {
   expect_second_peaks({"hamiltonian-k4", {0.02, 0.05, 0.1, 0.13}, 1e3, 1e7});
 }
 
+TEST(BinMatcher, FindsTheSameBinsForFewPixelsAsForMany) {
+  const Camera camera = camera_with("paper-10f0");
+  for (const char* code : {"hamiltonian-k4", "hamiltonian-k5"}) {
+    const DecodeSetup setup(code, camera);
+    const DecodingTable& table = setup.decoder.table();
+    const AmbientProjection projection(table);
+    const BinMatcher of_many(table, projection), of_few(table, projection, true);
+    constexpr int pixels = 40 * pixels_per_tile;
+    const std::vector<float> raw = noisy_pixels(table, 3e3, 1e4, pixels, 7);
+    const RawView view = RawView::interleaved(raw.data(), 1, pixels, table.measurements());
+    const auto many = std::make_unique<PixelTile>(), few = std::make_unique<PixelTile>();
+    for (int first = 0; first < pixels; first += pixels_per_tile) {
+      of_many.match(view, first, pixels_per_tile, false, *many);
+      of_few.match(view, first, pixels_per_tile, false, *few);
+      for (int i = 0; i < pixels_per_tile; ++i) ASSERT_EQ(many->bin[i], few->bin[i]) << code;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tofsmith

@@ -80,6 +80,7 @@ TEST(Requirements, SaysWhatCannotBeHadTheSameWayForTheSameSeed) {
 
 TEST(Requirements, TheMapFallsWithBandwidthAndPower) {
   RequirementOptions options = quick(0.02);
+  options.max_factor = 4.0;
   options.vary_exposure = false;
   options.map = true;
   const Requirements found = find_requirements(small_camera(), options);

@@ -98,7 +98,8 @@ TEST(DepthTrials, NoiseInThePlaneHasTheProjectedCovariance) {
     if (std::string_view(name) == "hamiltonian-k8") fitting.samples = 252;
     const ForwardModel model(build_family(name, fitting), fitting);
     const TrialModel trial_model(model, fitting);
-    const TrialDecoder decoder(DecodeMethod::zncc, make_decoding_table(model, fitting), {});
+    const TrialDecoder decoder(DecodeMethod::zncc, make_decoding_table(model, fitting), {},
+                               1 << 20);
     const PlaneMap& map = *decoder.plane_map();
     const PlaneNoise noise(trial_model, map, 1e3);
 

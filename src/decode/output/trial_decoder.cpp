@@ -18,21 +18,28 @@ PlaneMap plane_map_of(const DecodingTable& table, const AmbientProjection& proje
   return {projection.basis.transpose() * gain.asDiagonal(), projection.basis.transpose() * at_zero};
 }
 
+/// From how many trials on a table of cells pays: its time grows with the samples, as measured.
+std::int64_t trials_worth_cells(int rank, int samples) {
+  return std::int64_t{rank <= 3 ? 1000 : 4000} * samples;
+}
+
 }  // namespace
 
-TrialDecoder::Zncc::Zncc(const DecodingTable& table, const AmbientProjection& projection)
+TrialDecoder::Zncc::Zncc(const DecodingTable& table, const AmbientProjection& projection,
+                         std::int64_t trials)
     : plane_map(plane_map_of(table, projection)),
-      matcher(table, projection),
+      matcher(table, projection, trials < trials_worth_cells(projection.rank(), table.samples())),
       outputs(table, projection, {}) {}
 
-TrialDecoder::TrialDecoder(DecodeMethod method, DecodingTable table, UnwrapWeights unwrap_weights)
+TrialDecoder::TrialDecoder(DecodeMethod method, DecodingTable table, UnwrapWeights unwrap_weights,
+                           std::int64_t trials)
     : measurements_(table.measurements()), samples_(table.samples()) {
   if (method != DecodeMethod::zncc) {
     other_ = make_decoder(method, std::move(table), {}, unwrap_weights);
     return;
   }
   table.validate();
-  zncc_ = std::make_unique<const Zncc>(table, AmbientProjection(table));
+  zncc_ = std::make_unique<const Zncc>(table, AmbientProjection(table), trials);
 }
 
 void TrialDecoder::decode_plane(bool sub_bin, PixelTile& tile, double* depth_bin) const {

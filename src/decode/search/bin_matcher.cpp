@@ -30,7 +30,8 @@ Value normalized(const PixelTile& tile, int pixel, int rank,
 
 }  // namespace
 
-BinMatcher::BinMatcher(const DecodingTable& table, const AmbientProjection& projection)
+BinMatcher::BinMatcher(const DecodingTable& table, const AmbientProjection& projection,
+                       bool for_few)
     : directions_(projection),
       arcs_(directions_),
       second_peaks_(directions_, arcs_),
@@ -39,7 +40,7 @@ BinMatcher::BinMatcher(const DecodingTable& table, const AmbientProjection& proj
       exact_(table, projection) {
   if (CircleSearch::serves(distinct_))
     search_.emplace<CircleSearch>(distinct_, second_peaks_);
-  else if (CellTable::serves(distinct_))
+  else if (!for_few && CellTable::serves(distinct_))
     search_.emplace<CellSearch>(distinct_, second_peaks_);
 }
 

@@ -16,7 +16,9 @@ namespace tofsmith {
 /// precision proves most of them, double arithmetic decides the others.
 class BinMatcher {
  public:
-  BinMatcher(const DecodingTable& table, const AmbientProjection& projection);
+  /// @param for_few  for so few pixels that proving a table of cells would take longer than they do
+  ///                 without one; its second peaks are those of the pixels' own vectors
+  BinMatcher(const DecodingTable& table, const AmbientProjection& projection, bool for_few = false);
   BinMatcher(const BinMatcher&) = delete;
   BinMatcher& operator=(const BinMatcher&) = delete;
 

@@ -22,8 +22,10 @@ struct PlaneMap {
 /// single precision between bins.
 class TrialDecoder {
  public:
+  /// @param trials  as many as will be decoded, about
   /// @throws std::invalid_argument if the method cannot decode this table
-  TrialDecoder(DecodeMethod method, DecodingTable table, UnwrapWeights unwrap_weights);
+  TrialDecoder(DecodeMethod method, DecodingTable table, UnwrapWeights unwrap_weights,
+               std::int64_t trials);
 
   int measurements() const { return measurements_; }
   int samples() const { return samples_; }
@@ -40,7 +42,7 @@ class TrialDecoder {
 
  private:
   struct Zncc {
-    Zncc(const DecodingTable& table, const AmbientProjection& projection);
+    Zncc(const DecodingTable& table, const AmbientProjection& projection, std::int64_t trials);
     PlaneMap plane_map;
     BinMatcher matcher;
     OutputKernel outputs;
