@@ -92,9 +92,24 @@ class CodePool {
     return best;
   }
 
+  /// Whether the best of some on a camera errs as little as asked. Far from it, a tenth of the
+  /// trials tells.
+  bool suffice_on(const Camera& camera, const Codes& codes) const {
+    constexpr double far = 1.25;
+    const double least_m = least_first_error_m(camera, codes);
+    if (least_m > far * options_.error_m) return false;
+    if (far * least_m < options_.error_m) return true;
+    return best_on(camera, codes).error_m <= options_.error_m;
+  }
+
+  /// Of some codes on a camera, by a tenth of the trials.
+  double least_first_error_m(const Camera& camera, const Codes& codes) const {
+    const std::vector<double> first_m = first_errors(camera, codes);
+    return *std::min_element(first_m.begin(), first_m.end());
+  }
+
  private:
-  /// By a tenth of the trials. Most of the time goes into the decoders' tables, one after another:
-  /// so codes go side by side.
+  /// By a tenth of the trials, codes side by side: what surrounds so few trials runs on one thread.
   std::vector<double> first_errors(const Camera& camera, const Codes& codes) const {
     std::vector<double> errors_m(codes.size(), infinity);
     parallel_for_blocks(std::ssize(codes), 1, [&](IndexRange block) {
@@ -173,9 +188,7 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
       static_cast<int>(std::ceil(std::log(options.max_factor) / std::log(stride)));
   const ProgressParts parts(progress, static_cast<std::size_t>(most_steps) + 2);
   const auto on = [&](double factor) { return with_scaled(camera, quantity, factor); };
-  const auto suffices = [&](double factor) {
-    return pool.best_on(on(factor), pool.all()).error_m <= options.error_m;
-  };
+  const auto suffices = [&](double factor) { return pool.suffice_on(on(factor), pool.all()); };
   // Which numbers of exposures are best depends on the band, hardly on light.
   const auto design_at = [&](double factor, std::size_t part) {
     const Camera there = on(factor);
@@ -184,9 +197,8 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
   };
   const auto least_within = [&](double low, double high) {
     const Codes codes = pool.contenders(on(low), on(high));
-    return least_between(low, high, [&](double factor) {
-      return pool.best_on(on(factor), codes).error_m <= options.error_m;
-    });
+    return least_between(low, high,
+                         [&](double factor) { return pool.suffice_on(on(factor), codes); });
   };
 
   // 1. Strides, up or down, until the error is on the other side.
@@ -255,7 +267,8 @@ RequirementMap map_of(const Camera& camera, CodePool& pool, const Progress& prog
     const Codes codes = pool.contenders(of_band, of_band);
     for (std::size_t p = 0; p < map.power.size(); ++p)
       map.error_m(static_cast<Eigen::Index>(b), static_cast<Eigen::Index>(p)) =
-          pool.best_on(with_scaled(of_band, CameraQuantity::power, map.power[p]), codes).error_m;
+          pool.least_first_error_m(with_scaled(of_band, CameraQuantity::power, map.power[p]),
+                                   codes);
   }
   return map;
 }

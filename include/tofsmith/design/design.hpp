@@ -204,7 +204,7 @@ struct Sufficiency {
   double excluded_below = 0.0;
 };
 
-/// Error of the best code found at each bandwidth, over power.
+/// Error of the best code found at each bandwidth, over power, by a tenth of the trials.
 struct RequirementMap {
   std::vector<double> bandwidth, power;  ///< factors, ascending
   Eigen::MatrixXd error_m;               ///< (bandwidth, power)
