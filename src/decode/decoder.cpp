@@ -10,7 +10,7 @@
 #include "decode/output/output_kernel.hpp"
 #include "decode/output/pixel_model.hpp"
 #include "decode/output/pixel_output.hpp"
-#include "decode/search/bin_matcher.hpp"
+#include "decode/search/chord_matcher.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -18,9 +18,9 @@ namespace tofsmith {
 namespace {
 
 /// Calls use(tile, first pixel) for pixels [begin, end) of a view, tile by tile.
-template <typename Use>
-void for_each_tile(const BinMatcher& matcher, const RawView& raw, IndexRange pixels,
-                   bool for_outputs, const Use& use) {
+template <typename Matcher, typename Use>
+void for_each_tile(const Matcher& matcher, const RawView& raw, IndexRange pixels, bool for_outputs,
+                   const Use& use) {
   PixelTile tile;
   for (std::int64_t first = pixels.begin; first < pixels.end; first += pixels_per_tile) {
     const auto count =
@@ -52,7 +52,7 @@ struct Decoder::Plan {
   DecodingTable table;
   DecodeOptions options;
   PixelModel model;
-  BinMatcher matcher;
+  ChordMatcher matcher;
   OutputKernel outputs;
 
   void write(PixelTile& tile, const float* averaged, const DecodedView& planes) const;
@@ -73,8 +73,8 @@ const DecodeOptions& Decoder::options() const { return plan_->options; }
 int Decoder::rank() const { return plan_->model.rank(); }
 
 void Decoder::decode_bins(const float* measurements, std::int64_t pixels, std::int32_t* bin) const {
-  for_each_tile(plan_->matcher, column_of(measurements, pixels, this->measurements()), {0, pixels},
-                false, [&](const PixelTile& tile, std::int64_t first) {
+  for_each_tile(plan_->matcher.bins(), column_of(measurements, pixels, this->measurements()),
+                {0, pixels}, false, [&](const PixelTile& tile, std::int64_t first) {
                   std::copy_n(tile.bin, tile.pixels, bin + first);
                 });
 }
@@ -92,7 +92,7 @@ void Decoder::decode_depth_bins(const float* measurements, std::int64_t pixels,
                     if (tile.bin[i] < 0) continue;
                     for (int k = 0; k < this->measurements(); ++k)
                       raw[static_cast<std::size_t>(k)] = tile.raw[k * pixels_per_tile + i];
-                    plan_->matcher.exact().project(raw.data(), plane);
+                    plan_->matcher.bins().exact().project(raw.data(), plane);
                     for (int j = 0; j < rank; ++j)
                       plane.unit[static_cast<std::size_t>(j)] *= plane.length;
                     position =
@@ -105,14 +105,17 @@ void Decoder::decode(const RawView& raw, const DecodedView& decoded,
                      const Progress& progress) const {
   const bool is_bin_enough = decoded.wants_bins_only();
   for_each_block(raw, measurements(), progress, [&](IndexRange block) {
-    for_each_tile(plan_->matcher, raw, block, !is_bin_enough,
-                  [&](PixelTile& tile, std::int64_t first) {
-                    const DecodedView planes = decoded.from(static_cast<std::size_t>(first));
-                    if (is_bin_enough)
-                      std::copy_n(tile.bin, tile.pixels, planes.bin);
-                    else
-                      plan_->write(tile, raw.averaged ? raw.averaged + first : nullptr, planes);
-                  });
+    const auto write_bins = [&](const PixelTile& tile, std::int64_t first) {
+      std::copy_n(tile.bin, tile.pixels, decoded.bin + first);
+    };
+    if (!is_bin_enough)
+      for_each_tile(plan_->matcher, raw, block, true, [&](PixelTile& tile, std::int64_t first) {
+        plan_->write(tile, raw.averaged ? raw.averaged + first : nullptr,
+                     decoded.from(static_cast<std::size_t>(first)));
+      });
+    // Planes are those of the best chords: bins that are not beside these come by themselves.
+    if (is_bin_enough || (decoded.bin && plan_->matcher.is_coarse()))
+      for_each_tile(plan_->matcher.bins(), raw, block, false, write_bins);
   });
 }
 
@@ -135,7 +138,7 @@ void Decoder::Plan::write(PixelTile& tile, const float* averaged, const DecodedV
     for (int k = 0; k < model.measurements(); ++k)
       for (int i = 0; i < tile.pixels; ++i) {
         float& value = tile.raw[k * pixels_per_tile + i];
-        value = static_cast<float>(matcher.exact().electrons(value, k));
+        value = static_cast<float>(matcher.bins().exact().electrons(value, k));
       }
   outputs.write({.pixels = tile.pixels,
                  .plane = tile.plane,

@@ -18,7 +18,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/io/camera_toml.hpp"
-#include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/decoding_table_file.hpp"
 
 namespace tofsmith {
 
@@ -86,14 +86,10 @@ Camera load_chosen_camera(const SweepSpec& spec, const Choice& choice) {
 }
 
 CodeSet load_chosen_code(const SweepSpec& spec, const Choice& choice, const Camera& camera) {
-  // What is no file is perhaps a family's name with a slip: load_code() says so.
+  // What is no file is perhaps a family's name with a slip: load_camera_code() says so.
   const std::string file = resolved(spec, choice.code, is_family(choice.code));
   const bool is_file = std::filesystem::exists(file);
-  CodeSet code = load_code(is_file ? file : choice.code, camera);
-  if (code.samples() != camera.samples)
-    throw IoError(choice.code, fmt::format("found {} samples per period; expected {} as of the "
-                                           "camera",
-                                           code.samples(), camera.samples));
+  CodeSet code = load_camera_code(is_file ? file : choice.code, camera);
   require_fits(code, camera);
   return code;
 }

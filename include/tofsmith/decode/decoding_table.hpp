@@ -141,6 +141,11 @@ struct AmbiguousDepths {
 /// Gray codes) have no direction and are left out.
 std::vector<AmbiguousDepths> ambiguous_depths(const DecodingTable& table);
 
+/// The furthest that a table turns from one bin to the next [rad], jumps (more than 75 degrees, as
+/// where a ramp falls back) left out. Depths between bins are taken to lie on the chords: where this
+/// is more than 10 degrees, the curve between bins may be another.
+double furthest_turn_rad(const DecodingTable& table);
+
 /// What constant light adds to the measurements of a measured table.
 enum class MeasuredAmbient {
   equal,  ///< the same to all, as with equal duties; it cancels in differences of taps

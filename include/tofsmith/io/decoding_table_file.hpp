@@ -18,7 +18,8 @@ bool names_measured_table(const std::string& code);
 /// What decoding alone takes. @throws IoError if names_measured_table(code)
 void require_no_measured_table(const std::string& code);
 
-/// The code that the camera plays, of its number of samples.
+/// The code that the camera plays. One of another number of samples is sampled anew: switching
+/// times stay, sampled waveforms become means over the new samples.
 /// @throws IoError as load_code(), or for a measured table
 CodeSet load_camera_code(const std::string& code, const Camera& camera,
                          const CodeFileOptions& options = {});

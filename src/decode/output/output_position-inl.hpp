@@ -25,7 +25,8 @@ HWY_INLINE Vector along(const OutputChunk& chunk, int rank, int field, int i) {
 
 /// Best point on the chords left and right. With x = <q, p> / |p|^2 and v = <q, w>, rising to the
 /// side where it is > 0: S = x - v beta / c, t = v / (c S). Of two rising sides the steeper is
-/// best.
+/// best, unless its best point lies past the end of the chord: so it may at a bin that is not the
+/// best one (ChordMatcher).
 HWY_INLINE void refine(const RecordLayout& layout, int rank, OutputChunk& chunk) {
   const Floats d;
   const Vector zero = hn::Zero(d);
@@ -33,12 +34,23 @@ HWY_INLINE void refine(const RecordLayout& layout, int rank, OutputChunk& chunk)
     const Vector at_bin = along(chunk, rank, layout.point(), i);
     const Vector to_left = along(chunk, rank, layout.left(), i);
     const Vector to_right = along(chunk, rank, layout.right(), i);
-    const Mask is_left = hn::Ge(to_left, to_right);
-    const Vector rise = hn::Max(hn::Max(to_left, to_right), zero);
-    const Vector turn = hn::IfThenElse(is_left, load(chunk.field(layout.turn()), i),
-                                       load(chunk.field(layout.turn() + 1), i));
-    const Vector reach = hn::IfThenElse(is_left, load(chunk.field(layout.reach()), i),
-                                        load(chunk.field(layout.reach() + 1), i));
+    const Vector turn_left = load(chunk.field(layout.turn()), i);
+    const Vector turn_right = load(chunk.field(layout.turn() + 1), i);
+    const Vector reach_left = load(chunk.field(layout.reach()), i);
+    const Vector reach_right = load(chunk.field(layout.reach() + 1), i);
+    const auto ends_first = [&](Vector rise, Vector turn, Vector reach) {
+      return hn::Gt(hn::Mul(rise, hn::Add(reach, turn)), at_bin);
+    };
+    const Mask left_is_on =
+        hn::AndNot(ends_first(to_left, turn_left, reach_left), hn::Gt(to_left, zero));
+    const Mask right_is_on =
+        hn::AndNot(ends_first(to_right, turn_right, reach_right), hn::Gt(to_right, zero));
+    const Mask is_left =
+        hn::Or(hn::AndNot(right_is_on, left_is_on),
+               hn::AndNot(hn::Xor(left_is_on, right_is_on), hn::Ge(to_left, to_right)));
+    const Vector rise = hn::Max(hn::IfThenElse(is_left, to_left, to_right), zero);
+    const Vector turn = hn::IfThenElse(is_left, turn_left, turn_right);
+    const Vector reach = hn::IfThenElse(is_left, reach_left, reach_right);
     const Vector inside = hn::Sub(at_bin, hn::Mul(rise, turn));
     const Mask has_depth = hn::And(hn::Gt(at_bin, zero), hn::Gt(inside, zero));
     const Vector t = hn::Min(hn::Div(hn::Mul(rise, reach), inside), all(1.0f));

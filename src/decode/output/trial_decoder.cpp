@@ -43,7 +43,10 @@ TrialDecoder::TrialDecoder(DecodeMethod method, DecodingTable table, UnwrapWeigh
 }
 
 void TrialDecoder::decode_plane(bool sub_bin, PixelTile& tile, double* depth_bin) const {
-  zncc_->matcher.match_plane(tile);
+  if (sub_bin)
+    zncc_->matcher.match_plane(tile);
+  else
+    zncc_->matcher.bins().match_plane(tile);
   positions_of(sub_bin, tile, depth_bin);
 }
 
@@ -52,7 +55,10 @@ void TrialDecoder::decode_raw(const float* raw, bool sub_bin, PixelTile& tile,
   const int count = tile.pixels;
   const RawView view = RawView::planar(raw, 1, pixels_per_tile, measurements_);
   if (zncc_) {
-    zncc_->matcher.match(view, 0, count, false, tile);
+    if (sub_bin)
+      zncc_->matcher.match(view, 0, count, false, tile);
+    else
+      zncc_->matcher.bins().match(view, 0, count, false, tile);
     return positions_of(sub_bin, tile, depth_bin);
   }
   // The slower methods want the measurements of a pixel side by side.

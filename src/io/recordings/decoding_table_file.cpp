@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <stdexcept>
 #include <system_error>
 
@@ -88,6 +89,21 @@ LoadedDecodingTable load_measured(const std::string& path, const Camera& camera,
   }
 }
 
+/// Says so where a table turns far from bin to bin, with what would not.
+std::optional<std::string> coarse_note(const DecodingTable& table, bool is_measured) {
+  constexpr double fine_deg = 10.0;
+  const double turn_deg = furthest_turn_rad(table) * 180.0 / std::numbers::pi;
+  if (!(turn_deg > fine_deg)) return std::nullopt;
+  const double times = std::ceil(turn_deg / fine_deg);
+  return fmt::format(
+      "N = {}: from bin to bin the code turns by up to {:.0f} degrees, and depths between are "
+      "taken "
+      "to lie on straight lines; {}",
+      table.samples(), turn_deg,
+      is_measured ? "measure it at more delays"
+                  : fmt::format("--set samples={:.0f} does not", times * table.samples()));
+}
+
 /// The camera with what a user says beyond it.
 Camera as_played(Camera camera, const DecodingTableOptions& options) {
   if (options.order.empty() && !options.reversed) return camera;
@@ -133,11 +149,7 @@ CodeSet load_camera_code(const std::string& code, const Camera& camera,
                          const CodeFileOptions& options) {
   require_no_measured_table(code);
   CodeSet actual = load_code(code, camera, options);
-  if (actual.samples() != camera.samples)
-    throw IoError(code, fmt::format("found {} samples per period; expected {} as of the camera "
-                                    "(--set samples={} makes it fit)",
-                                    actual.samples(), camera.samples, actual.samples()));
-  return actual;
+  return actual.samples() == camera.samples ? actual : actual.resampled(camera.samples);
 }
 
 LoadedDecodingTable load_decoding_table(const std::string& code, const Camera& camera,
@@ -153,6 +165,8 @@ LoadedDecodingTable load_decoding_table(const std::string& code, const Camera& c
     loaded.table = make_decoding_table(ForwardModel(actual, playing), playing);
   }
   if (const auto note = ambiguity_note(loaded.table)) loaded.notes.push_back(*note);
+  if (const auto note = coarse_note(loaded.table, names_measured_table(code)))
+    loaded.notes.push_back(*note);
   return loaded;
 }
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "decode/output/output_kernel.hpp"
-#include "decode/search/bin_matcher.hpp"
+#include "decode/search/chord_matcher.hpp"
 #include "tofsmith/decode/decode_method.hpp"
 
 namespace tofsmith {
@@ -44,7 +44,7 @@ class TrialDecoder {
   struct Zncc {
     Zncc(const DecodingTable& table, const AmbientProjection& projection, std::int64_t trials);
     PlaneMap plane_map;
-    BinMatcher matcher;
+    ChordMatcher matcher;
     OutputKernel outputs;
   };
   void positions_of(bool sub_bin, const PixelTile& tile, double* depth_bin) const;

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "decode/search/bin_matcher.hpp"
+
+namespace tofsmith {
+
+/// The most that a table may turn from one bin to the next [rad] for the best point on its chords
+/// to lie beside the best bin.
+inline constexpr double coarse_turn_rad = 10.0 * std::numbers::pi / 180.0;
+
+/// Beyond, a table jumps, as a ramp does where it falls back: no pixel is sought between the ends.
+inline constexpr double jump_turn_rad = 75.0 * std::numbers::pi / 180.0;
+
+/// The turn of the curve from each bin to the next [rad], (N); 0 where one of them has no contrast.
+Eigen::VectorXd turns_of(const RowMajorMatrix& curve);
+
+/// The bins beside which pixels' best points on the chords lie. Where a table turns little from bin
+/// to bin those are the best bins. Where it turns far, both ends of the best chord may score worse
+/// than a bin elsewhere: long chords are searched in pieces, and the end next to the best piece is
+/// taken.
+class ChordMatcher {
+ public:
+  /// @param for_few  as of BinMatcher
+  ChordMatcher(const DecodingTable& table, const AmbientProjection& projection,
+               bool for_few = false);
+
+  /// The best bins themselves.
+  const BinMatcher& bins() const { return bins_; }
+  bool is_coarse() const { return pieces_.has_value(); }
+
+  /// As BinMatcher's.
+  void match(const RawView& view, std::int64_t first, int pixels, bool for_outputs,
+             PixelTile& tile) const;
+  void match_plane(PixelTile& tile) const;
+  void find_second_peaks(PixelTile& tile) const;
+
+ private:
+  /// A curve with points between the bins of long chords.
+  struct Pieces {
+    Pieces(const DecodingTable& table, const AmbientProjection& projection,
+           const Eigen::VectorXd& turn_rad, bool for_few);
+    std::vector<std::int32_t> bin_of_point;  ///< the end of its chord that is closer
+    std::vector<std::int32_t> point_of_bin;  ///< (N)
+    std::optional<BinMatcher> matcher;
+  };
+  void to_bins(PixelTile& tile) const;
+
+  BinMatcher bins_;
+  std::optional<Pieces> pieces_;
+};
+
+}  // namespace tofsmith

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// Tables of codes as they come from files.
+#include "tofsmith/io/decoding_table_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "temporary_directory.hpp"
+#include "tofsmith/camera/forward_model.hpp"
+
+namespace tofsmith {
+namespace {
+
+TEST(CodeOfAFile, IsPlayedAtTheSamplesOfTheCamera) {
+  const TemporaryDirectory directory;
+  Camera camera = built_in_camera("paper-10f0");
+  const CodeSet code = build_family("hamiltonian-k5", camera);
+  for (const char* name : {"code.json", "code.npz"}) {
+    const std::string file = directory.path() / name;
+    write_code(file, code, OutputPolicy::refuse_existing);
+    camera.samples = 2 * code.samples();
+    const CodeSet fine = load_camera_code(file, camera);
+    EXPECT_EQ(fine.samples(), camera.samples);
+    const ForwardModel of_file(fine, camera),
+        of_code(build_family("hamiltonian-k5", camera), camera);
+    EXPECT_LT((of_file.correlation(100.5) - of_code.correlation(100.5)).norm(),
+              1e-9 * of_code.correlation(100.5).norm())
+        << name;
+  }
+}
+
+TEST(TableOfACode, IsSaidToBeCoarseWhereItTurnsFarBetweenBins) {
+  Camera camera = built_in_camera("paper-30x");
+  camera.samples = 60;
+  const LoadedDecodingTable coarse = load_decoding_table("multifrequency-k5", camera);
+  EXPECT_GT(furthest_turn_rad(coarse.table), 0.2);
+  EXPECT_THAT(coarse.notes, testing::Contains(testing::HasSubstr("N = 60: from bin to bin")));
+  camera.samples = 1200;
+  const LoadedDecodingTable fine = load_decoding_table("multifrequency-k5", camera);
+  EXPECT_LT(furthest_turn_rad(fine.table), 0.1);
+  EXPECT_THAT(fine.notes, testing::Not(testing::Contains(testing::HasSubstr("from bin to bin"))));
+}
+
+}  // namespace
+}  // namespace tofsmith
