@@ -25,7 +25,8 @@ namespace tofsmith::apps {
 namespace {
 
 struct CorrelationArguments {
-  std::string file, shifts, dark, reference;
+  std::vector<std::string> files;
+  std::string raw_format, shifts, dark, reference;
   std::string table, offset_map, gain_map;
   std::string unit = "s", decimal = "auto", axes;
   std::vector<std::string> codes;
@@ -34,6 +35,8 @@ struct CorrelationArguments {
   CameraArguments camera;
   TapArguments taps;
   CalibrateOutput output;
+
+  const std::string& file() const { return files.front(); }
 };
 
 DelaySweep load_sweep(const CorrelationArguments& arguments, const Camera& camera) {
@@ -47,7 +50,7 @@ DelaySweep load_sweep(const CorrelationArguments& arguments, const Camera& camer
   if (!arguments.axes.empty()) options.table.axes = parse_table_axes(arguments.axes);
   if (const auto order = arguments.taps.tap_order())
     options.table.layout = {.taps = camera.sensor.taps, .order = *order};
-  return read_delay_sweep(arguments.file, options);
+  return read_delay_sweep(arguments.file(), options);
 }
 
 CorrelationCalibrationOptions options_for(const CorrelationArguments& arguments,
@@ -133,8 +136,10 @@ nlohmann::ordered_json document_of(const CalibratedCorrelation& found,
 }
 
 void check_outputs(const CorrelationArguments& arguments, const Session& session) {
-  const std::vector<std::string> inputs = {arguments.file, arguments.shifts, arguments.dark,
-                                           arguments.reference, arguments.camera.name};
+  std::vector<std::string> inputs = arguments.files;
+  for (const std::string& file : {arguments.shifts, arguments.dark, arguments.reference,
+                                  arguments.raw_format, arguments.camera.name})
+    inputs.push_back(file);
   arguments.output.check(session, inputs);
   for (const std::string& path : {arguments.table, arguments.offset_map, arguments.gain_map}) {
     if (path.empty()) continue;
@@ -164,19 +169,28 @@ void run(const CorrelationArguments& arguments, const Session& session) {
   check_outputs(arguments, session);
   if (!arguments.reference.empty()) {
     calibrate_by_reference(
-        {arguments.file, arguments.reference, arguments.table, arguments.output.camera_path,
-         arguments.camera.name, arguments.codes, arguments.taps.file_options(), base,
+        {{arguments.files.begin(), arguments.files.end()},
+         arguments.raw_format,
+         arguments.reference,
+         arguments.table,
+         arguments.output.camera_path,
+         arguments.camera.name,
+         arguments.codes,
+         arguments.taps.file_options(),
+         base,
          [&](const Camera& camera) { arguments.output.write_camera(camera, session); }},
         session);
     return;
   }
+  if (arguments.files.size() > 1)
+    throw UsageError("several files, one a measurement, need --reference; expected one SWEEP");
   const DelaySweep sweep = load_sweep(arguments, base);
   CalibratedCorrelation found;
   try {
     found = calibrate_correlation(sweep, options_for(arguments, base, sweep),
                                   terminal_progress("calibrating"));
   } catch (const std::invalid_argument& error) {
-    throw IoError(arguments.file, error.what());
+    throw IoError(arguments.file(), error.what());
   }
   const std::vector<CodeSet> codes = candidates(arguments, base, found.table.columns());
   std::vector<IdealCodeFit> fits;
@@ -214,8 +228,8 @@ void run(const CorrelationArguments& arguments, const Session& session) {
         arguments.output.camera_path.empty() ? "CAMERA.toml" : arguments.output.camera_path));
   }
   write_maps(arguments, found, session);
-  arguments.output.write_page(correlation_report(found, fits, arguments.file, session.command_line),
-                              session);
+  arguments.output.write_page(
+      correlation_report(found, fits, arguments.file(), session.command_line), session);
   if (!arguments.output.camera_path.empty()) {
     if (fits.empty()) throw UsageError("-o: no code was fitted, so that no response is known");
     arguments.output.write_camera(with_fit(base, fits.front(), found.tap_mismatch), session);
@@ -230,9 +244,10 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
       "correlation",
       "correlation functions, pixel maps and responses from a flat target at known delays");
   command
-      ->add_option("SWEEP", arguments->file,
+      ->add_option("SWEEP", arguments->files,
                    "a table of delay and K values (.csv .txt), a stack of frames (F,H,W,K) with "
-                   "--shifts, or an array (N,K) of one period (.npy .npz)")
+                   "--shifts, or an array (N,K) of one period (.npy .npz); with --reference frames "
+                   "as decode takes them, also one file for each measurement")
       ->required();
   command->add_option("--shifts", arguments->shifts,
                       "delay of each frame of a stack, one per line or .npy");
@@ -241,10 +256,15 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
                    "unit of the delays: s ms us ns ps, m of depth, bin, period")
       ->check(one_of({"s", "ms", "us", "ns", "ps", "m", "bin", "period"}))
       ->capture_default_str();
-  command->add_option("--reference", arguments->reference,
-                      "instead of delays: depth along the ray that the frames should show, in m "
-                      "(.npy .npz .exr .pfm .png; NaN or 0: not known), or a distance for each "
-                      "frame (.npy); the error of --code against it is found");
+  CLI::Option* reference = command->add_option(
+      "--reference", arguments->reference,
+      "instead of delays: depth along the ray that the frames should show, in m "
+      "(.npy .npz .exr .pfm .png; NaN or 0: not known), or a distance for each "
+      "frame (.npy); the error of --code against it is found");
+  command
+      ->add_option("--raw-format", arguments->raw_format,
+                   "the frames are a sensor's dump, as this .raw.toml file describes it")
+      ->needs(reference);
   command->add_option("--dark", arguments->dark, "frames with the light off, room as in the sweep");
   command
       ->add_option("--target-distance-m", arguments->target_distance_m,

@@ -61,14 +61,16 @@ void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Se
   if (arguments.codes.size() != 1)
     throw UsageError("--reference needs --code, the one that the camera played");
   const CodeSet code = load_camera_code(arguments.codes.front(), arguments.camera, arguments.file);
-  RawFrames frames = read_raw_frames(arguments.frames);
+  RawReadOptions reading;
+  if (!arguments.raw_format.empty()) reading.format = read_raw_format(arguments.raw_format);
+  const RawFrames frames = read_raw_frames(arguments.frames, reading);
   const ReferenceDepth reference = read_reference_depth(arguments.reference);
   CalibratedDepth found;
   try {
     found = calibrate_depth(frames, reference, code, arguments.camera,
                             terminal_progress("calibrating"));
   } catch (const std::invalid_argument& error) {
-    throw IoError(arguments.frames, error.what());
+    throw IoError(arguments.frames.front().string(), error.what());
   }
   session.print_json(document_of(found));
   session.say(lines_of(found));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -14,7 +15,9 @@ namespace tofsmith::apps {
 
 /// What `calibrate correlation --reference` was given.
 struct DepthCalibrationArguments {
-  std::string frames, reference, table, camera_path, camera_name;
+  std::vector<std::filesystem::path> frames;
+  std::string raw_format;  ///< file; empty: .npy or .npz
+  std::string reference, table, camera_path, camera_name;
   std::vector<std::string> codes;
   CodeFileOptions file;
   Camera camera;

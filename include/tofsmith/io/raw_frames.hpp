@@ -207,4 +207,9 @@ class RawFramesReader {
   RawFrames sizes_;  // without values
 };
 
+/// All frames of one file, or of one file for each measurement, in memory.
+/// @throws IoError as RawFramesReader
+RawFrames read_raw_frames(const std::vector<std::filesystem::path>& files,
+                          const RawReadOptions& options);
+
 }  // namespace tofsmith

@@ -291,4 +291,19 @@ RawFrames RawFramesReader::read_frame(int index) const {
   return frame;
 }
 
+RawFrames read_raw_frames(const std::vector<std::filesystem::path>& files,
+                          const RawReadOptions& options) {
+  const RawFramesReader reader(files, options);
+  RawFrames all;
+  for (int f = 0; f < reader.frames(); ++f) {
+    RawFrames frame = reader.read_frame(f);
+    all.height = frame.height;
+    all.width = frame.width;
+    all.measurements = frame.measurements;
+    all.frames = f + 1;
+    all.values.insert(all.values.end(), frame.values.begin(), frame.values.end());
+  }
+  return all;
+}
+
 }  // namespace tofsmith
