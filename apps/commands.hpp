@@ -9,6 +9,7 @@ namespace tofsmith::apps {
 /// Each adds one subcommand, in a file of its own. The subcommand's callback does the work and
 /// throws on failure; main() turns exceptions into messages and exit codes.
 void add_demo_command(CLI::App& app, Session& session);
+void add_cameras_command(CLI::App& app, Session& session);
 void add_codes_command(CLI::App& app, Session& session);
 void add_design_command(CLI::App& app, Session& session);
 void add_evaluate_command(CLI::App& app, Session& session);

@@ -146,6 +146,7 @@ int run(int argc, char** argv) {
       [&] { thread_limit = std::make_unique<ThreadLimit>(session.threads); });
 
   add_demo_command(app, session);
+  add_cameras_command(app, session);
   add_codes_command(app, session);
   add_design_command(app, session);
   add_evaluate_command(app, session);

@@ -10,7 +10,6 @@
 
 #include "camera/number_checks.hpp"
 #include "camera/shared/actual_code.hpp"
-#include "camera/shared/prototype.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
@@ -278,60 +277,6 @@ OperatingRange paper_operating_range() {
   range.signal_e_per_s = {1e3, 3162.2776601683795, 1e4, 31622.776601683792, 1e5};
   range.ambient_e_per_s = {1e2, 1e3, 1e4, 31622.776601683792, 1e5};
   return range;
-}
-
-namespace {
-/// Three exclusive taps behind a clock of nine chips per period. Peak power is what is fixed: a
-/// source that may shine all the time (peak factor 1) makes S the rate at peak light.
-Camera three_tap_camera() {
-  Camera camera;
-  camera.name = "exclusive-3tap-9chip";
-  constexpr double chip_s = 10e-9;
-  camera.fundamental_frequency_hz = 1.0 / (9 * chip_s);
-  camera.exposure_s.total_s = 10e-3;
-  camera.samples = 180;  // chips of 9, 10, 12, 15, 18 and 20 per period are whole bins
-  camera.light.peak_factor = 1.0;
-  camera.sensor.taps = 3;
-  camera.sensor.shortest_pulse_s = chip_s;
-  camera.operating = {.signal_e_per_s = {1.1e6, 1.7e7},
-                      .ambient_e_per_s = {0.0, 8e7},
-                      .error = DepthErrorKind::circular};
-  return camera;
-}
-}  // namespace
-
-std::vector<std::string> built_in_camera_names() {
-  return {"paper-30x", "paper-10f0", "paper-5f0", "prototype", "exclusive-3tap-9chip"};
-}
-
-Camera built_in_camera(const std::string& name) {
-  if (name == "prototype") return prototype_camera();
-  if (name == "exclusive-3tap-9chip") return three_tap_camera();
-  Camera camera;
-  camera.name = name;
-  camera.sensor.noise = NoiseModel::gaussian;  // as the paper simulates it
-  camera.operating = paper_operating_range();
-  const auto limit_band = [&](double multiple) {
-    ImpulseResponse response;
-    response.kind = ImpulseResponse::Kind::hann;
-    response.f_max_hz = multiple * camera.fundamental_frequency_hz;
-    camera.light.impulse_response = camera.sensor.impulse_response = response;
-  };
-  if (name == "paper-30x") {
-    camera.light.peak_factor = 30.0;
-  } else if (name == "paper-10f0") {
-    camera.light.peak_factor = 15.0;
-    limit_band(10.0);
-  } else if (name == "paper-5f0") {
-    camera.light.peak_factor = 15.0;
-    limit_band(5.0);
-  } else {
-    const std::string near = nearest_word(name, built_in_camera_names());
-    reject("camera", name,
-           fmt::format("is not a built-in camera ({}){}", fmt::join(built_in_camera_names(), ", "),
-                       near.empty() ? "" : fmt::format("; did you mean {}?", near)));
-  }
-  return camera;
 }
 
 }  // namespace tofsmith

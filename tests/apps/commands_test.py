@@ -30,6 +30,23 @@ class Commands(CommandLineTest):
     def decode(self, *more, code="hamiltonian-k3", raw="raw.npy", output="depth.npy"):
         return self.do_json("decode", raw, "--code", code, "-o", output, *more)
 
+    def test_cameras_lists_them(self):
+        cameras = {camera["name"]: camera for camera in self.do_json("cameras")}
+        self.assertAlmostEqual(cameras["kinect-v2"]["range_m"], 18.737, places=3)
+        text = self.do("cameras")
+        for name, camera in cameras.items():
+            self.assertIn(name, text)
+            self.assertIn(camera["description"], text)
+
+    def test_cameras_prints_the_start_of_ones_own(self):
+        self.write("mine.toml", self.do("cameras", "mlx75027"))
+        code = self.do_json("cameras", "mlx75027")["code"]
+        mine, built_in = (self.do_json("evaluate", code, *FAST, "--camera", camera)
+                          for camera in ("mine.toml", "mlx75027"))
+        self.assertEqual(mine["results"] if "results" in mine else mine,
+                         built_in["results"] if "results" in built_in else built_in)
+        self.refuse(["cameras", "kinect-v1"], "kinect-v1", "did you mean kinect-v2?")
+
     def test_codes_lists_families(self):
         names = [family["name"] for family in self.do_json("codes")]
         self.assertIn("hamiltonian-kK", names)

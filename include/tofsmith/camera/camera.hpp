@@ -409,8 +409,28 @@ std::optional<std::string> why_no_family(std::string_view name, const Camera& ca
 /// @throws InvalidArgument with the text of why_no_family(), if there is one
 CodeSet build_family(std::string_view name, const Camera& camera);
 
-/// Cameras that need no file: paper-30x, paper-10f0, paper-5f0, prototype (the paper's bench) and
-/// exclusive-3tap-9chip: three taps and a clock of 9 chips of 10 ns, for design/chip_search.hpp.
+/// Where a number of a camera's description is from.
+struct NumberSource {
+  std::string key;     ///< "sensor.taps", or the table or value that holds several keys
+  std::string source;  ///< data sheet or paper, by name
+};
+
+/// A camera that needs no file, as lists show it: those of the paper, and some of the trade.
+struct BuiltInCamera {
+  std::string name;
+  std::string description;  ///< one line
+  /// The family that its raw frames are of, or that suits it (list_families()); "": its taps play
+  /// none.
+  std::string code;
+  std::vector<NumberSource> sources;
+
+  /// Source of a key's value, "light.peak_factor"; "assumed" where none is known.
+  std::string source_of(std::string_view key) const;
+};
+
+/// All of them; built_in_camera() builds each. built_in_camera_toml() writes one with its sources.
+std::vector<BuiltInCamera> list_built_in_cameras();
+/// Their names.
 std::vector<std::string> built_in_camera_names();
 /// @throws std::invalid_argument for an unknown name, with the nearest known one
 Camera built_in_camera(const std::string& name);

@@ -52,6 +52,10 @@ std::vector<std::string> camera_keys();
 /// The camera as TOML, every default filled in: parse_camera_toml(camera_to_toml(c)) == c.
 /// @throws std::invalid_argument if the camera is invalid
 std::string camera_to_toml(const Camera& camera);
+/// A built-in camera as such TOML, with the source of every value as a comment beside it, or
+/// "assumed": parse_camera_toml(built_in_camera_toml(n)) == built_in_camera(n).
+/// @throws std::invalid_argument for an unknown name, with the nearest known one
+std::string built_in_camera_toml(const std::string& name);
 /// Writes that, named after the file. @throws IoError as AtomicFile does
 void write_camera_toml(const std::filesystem::path& path, Camera camera, OutputPolicy policy);
 /// The same document as JSON.

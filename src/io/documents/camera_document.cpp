@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/documents/camera_document.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
 #include "io/documents/camera_fields.hpp"
 #include "io/documents/shared/document_text.hpp"
 #include "io/text/table_writer.hpp"
@@ -31,6 +36,25 @@ std::string camera_to_json(const Camera& camera) {
 }
 
 std::string camera_to_toml(const Camera& camera) { return format_toml(camera_document(camera)); }
+
+std::string built_in_camera_toml(const std::string& name) {
+  const std::string toml = camera_to_toml(built_in_camera(name));
+  const std::vector<BuiltInCamera> all = list_built_in_cameras();
+  const BuiltInCamera& listed = *std::ranges::find(all, name, &BuiltInCamera::name);
+  std::string text = fmt::format("# {}\n", listed.description);
+  if (!listed.code.empty()) text += fmt::format("# code: {}\n", listed.code);
+  std::istringstream lines(toml);
+  std::string table;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string key = line.substr(0, line.find(" = "));
+    if (line.starts_with('[')) table = line.substr(1, line.find(']') - 1) + ".";
+    if (key == line || key == "name")
+      text += line + "\n";
+    else
+      text += fmt::format("{:40}  # {}\n", line, listed.source_of(table + key));
+  }
+  return text;
+}
 
 void write_camera_toml(const std::filesystem::path& path, Camera camera, OutputPolicy policy) {
   camera.name = path.stem().string();

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "tofsmith/io/camera_toml.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+nlohmann::ordered_json entry_of(const BuiltInCamera& listed, const Camera& camera) {
+  return {{"name", listed.name},
+          {"description", listed.description},
+          {"code", listed.code},
+          {"fundamental_frequency_hz", camera.fundamental_frequency_hz},
+          {"range_m", camera.range_m()}};
+}
+
+void list_cameras(const Session& session) {
+  nlohmann::ordered_json document = nlohmann::ordered_json::array();
+  std::string text;
+  for (const BuiltInCamera& listed : list_built_in_cameras()) {
+    const Camera camera = built_in_camera(listed.name);
+    document.push_back(entry_of(listed, camera));
+    text += fmt::format("  {:20}  {}\n  {:20}  f0 {:.4g} MHz, range {:.2f} m{}\n", listed.name,
+                        listed.description, "", camera.fundamental_frequency_hz / 1e6,
+                        camera.range_m(), listed.code.empty() ? "" : ", code " + listed.code);
+  }
+  session.print_json(document);
+  session.say("Built-in cameras:\n" + text +
+              "Begin a description of your own with `tofsmith cameras kinect-v2 > mine.toml`.");
+}
+
+void show_camera(const Session& session, const std::string& name) {
+  std::string toml = built_in_camera_toml(name);
+  const Camera camera = built_in_camera(name);
+  const std::vector<BuiltInCamera> all = list_built_in_cameras();
+  const auto listed = std::ranges::find(all, name, &BuiltInCamera::name);
+  nlohmann::ordered_json document = entry_of(*listed, camera);
+  document["camera"] = nlohmann::ordered_json::parse(camera_to_json(camera));
+  document["sources"] = nlohmann::ordered_json::object();
+  for (const NumberSource& known : listed->sources) document["sources"][known.key] = known.source;
+  session.print_json(document);
+  toml.pop_back();  // say() ends the line
+  session.say(toml);
+}
+
+}  // namespace
+
+void add_cameras_command(CLI::App& app, Session& session) {
+  auto name = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand(
+      "cameras", "list the built-in cameras, or print one as TOML with its sources");
+  command->add_option("NAME", *name, "a built-in camera");
+  command->callback([name, &session] {
+    if (name->empty()) return list_cameras(session);
+    show_camera(session, *name);
+  });
+}
+
+}  // namespace tofsmith::apps

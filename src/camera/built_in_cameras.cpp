@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "camera/shared/prototype.hpp"
+#include "tofsmith/camera/camera.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+namespace {
+
+using Sources = std::vector<NumberSource>;
+
+constexpr const char* paper = "Gutierrez-Barragan et al., CVPR 2019";
+
+/// A camera of the paper's simulations.
+Camera paper_camera(double peak_factor, std::optional<double> band_in_f0) {
+  Camera camera;
+  camera.sensor.noise = NoiseModel::gaussian;  // as the paper simulates it
+  camera.operating = paper_operating_range();
+  camera.light.peak_factor = peak_factor;
+  if (band_in_f0) {
+    ImpulseResponse response;
+    response.kind = ImpulseResponse::Kind::hann;
+    response.f_max_hz = *band_in_f0 * camera.fundamental_frequency_hz;
+    camera.light.impulse_response = camera.sensor.impulse_response = response;
+  }
+  return camera;
+}
+
+Sources paper_sources() {
+  Sources sources;
+  for (const char* key :
+       {"fundamental_frequency_hz", "exposure_s", "light.peak_factor", "light.impulse_response",
+        "sensor.impulse_response", "sensor.read_noise_e", "sensor.noise", "operating"})
+    sources.push_back({key, paper});
+  return sources;
+}
+
+/// Three exclusive taps behind a clock of nine chips per period. Peak power is what is fixed: a
+/// source that may shine all the time (peak factor 1) makes S the rate at peak light.
+Camera three_tap_camera() {
+  Camera camera;
+  constexpr double chip_s = 10e-9;
+  camera.fundamental_frequency_hz = 1.0 / (9 * chip_s);
+  camera.exposure_s.total_s = 10e-3;
+  camera.samples = 180;  // chips of 9, 10, 12, 15, 18 and 20 per period are whole bins
+  camera.light.peak_factor = 1.0;
+  camera.sensor.taps = 3;
+  camera.sensor.shortest_pulse_s = chip_s;
+  camera.operating = {.signal_e_per_s = {1.1e6, 1.7e7},
+                      .ambient_e_per_s = {0.0, 8e7},
+                      .error = DepthErrorKind::circular};
+  return camera;
+}
+
+/// A camera of the trade: two taps read out as their difference, light that is on half of the time.
+/// Full well and converter stay open: no source says how many electrons a count is.
+Camera two_tap_camera(double fundamental_frequency_hz, double exposure_s) {
+  Camera camera;
+  camera.fundamental_frequency_hz = fundamental_frequency_hz;
+  camera.exposure_s.total_s = exposure_s;
+  camera.samples = 720;  // 36 or more in a period of the highest of their frequencies
+  camera.light.peak_factor = 2.0;
+  camera.sensor.taps = 2;
+  camera.sensor.drain = false;
+  camera.sensor.readout = Readout::difference;
+  camera.sensor.modulation_contrast = 0.7;
+  camera.operating = {.signal_e_per_s = {1e5, 1e6, 1e7},
+                      .ambient_e_per_s = {1e5, 1e6},
+                      .error = DepthErrorKind::circular};
+  return camera;
+}
+
+struct Entry {
+  BuiltInCamera listed;
+  Camera camera;
+};
+
+/// The one list of them.
+std::vector<Entry> entries() {
+  constexpr const char* kinect_pixel =
+      "Sell and O'Connor, IEEE Micro 34(2), 2014, by libfreenect2's issue 150: differential";
+  constexpr const char* melexis = "Melexis MLX75027 datasheet, as in mlx75027_config's registers";
+  return {
+      {{"paper-30x", "the paper's simulations, peak factor 30, no band limit", "hamiltonian-k4",
+        paper_sources()},
+       paper_camera(30.0, {})},
+      {{"paper-10f0", "the paper's simulations, both arms limited to 10 f0", "hamiltonian-k4",
+        paper_sources()},
+       paper_camera(15.0, 10.0)},
+      {{"paper-5f0", "the paper's simulations, both arms limited to 5 f0", "hamiltonian-k4",
+        paper_sources()},
+       paper_camera(15.0, 5.0)},
+      {{"prototype",
+        "the paper's bench, with its waveform generators",
+        "hamiltonian-k4",
+        {{"light.peak_factor", paper},
+         {"light.generator", paper},
+         {"sensor.generator", paper},
+         {"sensor.read_noise_e", std::string(paper) + ": 20 e, over the root of two taps"}}},
+       prototype_camera()},
+      {{"exclusive-3tap-9chip", "three exclusive taps on a clock of nine chips", "", {}},
+       three_tap_camera()},
+      {{"kinect-v2",
+        "Microsoft Kinect v2: 16, 80 and 120 MHz, three phases each",
+        "multifrequency-2x3-10x3-15x3",
+        {{"fundamental_frequency_hz",
+          "gcd of 16, 80, 120 MHz: Järemo Lawin et al., ECCV 2016; phases: libfreenect2"},
+         {"sensor.taps", kinect_pixel},
+         {"sensor.readout", kinect_pixel}}},
+       two_tap_camera(8e6, 9e-3)},
+      {{"mlx75027",
+        "Melexis MLX75027, VGA: 80 and 100 MHz, four phases each",
+        "multifrequency-4x4-5x4",
+        {{"fundamental_frequency_hz",
+          std::string(melexis) + ": 4 to 100 MHz; that it is these two is assumed"},
+         {"exposure_s", std::string(melexis) + ": 1 ms a phase by default"},
+         {"sensor.taps", std::string(melexis) + ": A and B"},
+         {"sensor.readout", std::string(melexis) + ": A - B by default"}}},
+       two_tap_camera(20e6, 8e-3)},
+      {{"epc660",
+        "ESPROS epc660, QVGA: 12 MHz, four phases",
+        "sinusoid-k4",
+        {{"fundamental_frequency_hz",
+          "epc660 datasheet, as in mlx75027_config's registers: 96 MHz / 2 / 4 by default"}}},
+       two_tap_camera(12e6, 4e-3)},
+      {{"adsd3100",
+        "Analog Devices ADSD3100, 1 megapixel: three frequencies (assumed), three phases each",
+        "multifrequency-15x3-18x3-20x3",
+        {{"exposure_s",
+          "nine raw frames in the long-range mode: ToF SDK, mode_info.cpp; 1 ms each is assumed"}}},
+       two_tap_camera(10e6, 9e-3)},
+      {{"arducam-tof",
+        "Arducam ToF camera, 240 x 180: 37.5 MHz, the mode of 4 m, four phases",
+        "sinusoid-k4",
+        {{"fundamental_frequency_hz",
+          "Arducam's SDK: _f_mod = 375e5 for a range of 4 (Arducam_tof_camera, issue 62)"}}},
+       two_tap_camera(37.5e6, 4e-3)},
+  };
+}
+
+}  // namespace
+
+std::string BuiltInCamera::source_of(std::string_view key) const {
+  std::string source = "assumed";
+  std::size_t longest = 0;
+  for (const NumberSource& candidate : sources) {
+    const std::string& part = candidate.key;
+    const bool covers =
+        key.starts_with(part) && (key.size() == part.size() || key[part.size()] == '.');
+    if (!covers || part.size() < longest) continue;
+    longest = part.size();
+    source = candidate.source;
+  }
+  return source;
+}
+
+std::vector<BuiltInCamera> list_built_in_cameras() {
+  std::vector<BuiltInCamera> all;
+  for (Entry& entry : entries()) all.push_back(std::move(entry.listed));
+  return all;
+}
+
+std::vector<std::string> built_in_camera_names() {
+  std::vector<std::string> names;
+  for (const Entry& entry : entries()) names.push_back(entry.listed.name);
+  return names;
+}
+
+Camera built_in_camera(const std::string& name) {
+  for (Entry& entry : entries()) {
+    if (entry.listed.name != name) continue;
+    entry.camera.name = name;
+    return std::move(entry.camera);
+  }
+  const std::vector<std::string> names = built_in_camera_names();
+  const std::string near = nearest_word(name, names);
+  reject("camera", name,
+         fmt::format("is not a built-in camera ({}){}", fmt::join(names, ", "),
+                     near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+}
+
+}  // namespace tofsmith
