@@ -182,6 +182,7 @@ py::dict depth_dict(const CalibratedDepth& found) {
   dict["terms"] = terms;
   dict["far_terms"] = found.far_terms;
   dict["known_share"] = found.known_share;
+  dict["mean_error_m"] = found.mean_error_m;
   dict["rms_before_m"] = found.rms_before_m;
   dict["rms_m"] = found.rms_m;
   dict["far_rms_m"] = found.far_rms_m;

@@ -234,6 +234,8 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   // All terms, robustly: which pixels count.
   DepthFit fit = start(std::move(samples), frames.height, frames.width, range_m);
   weigh(fit.error_m, fit);
+  result.mean_error_m =
+      wrapped_difference_m(fit.start_m + fit.weight.dot(fit.error_m) / fit.weight.sum(), range_m);
   result.rms_before_m = std::sqrt((fit.weight.dot(fit.error_m.cwiseAbs2())) / fit.weight.sum());
   std::vector<bool> has = parts_with_depths(fit);
   const auto covered_parts = static_cast<int>(std::ranges::count(has, true));
@@ -281,8 +283,9 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
 
 Camera with_depth(Camera camera, const CalibratedDepth& found) {
   Playback playback = camera.playback.value_or(Playback());
-  const double offset_m = found.table.correction ? found.table.correction->known.offset_m : 0.0;
-  playback.offset_m = offset_m + (found.reversed ? -playback.offset_m : playback.offset_m);
+  // The mean, not the term: where part of the range is known, harmonics share the offset.
+  playback.offset_m =
+      found.mean_error_m + (found.reversed ? -playback.offset_m : playback.offset_m);
   playback.reversed = playback.reversed != found.reversed;
   camera.playback = playback;
   camera.validate();

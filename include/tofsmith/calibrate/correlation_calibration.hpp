@@ -140,7 +140,8 @@ struct CalibratedDepth {
   std::vector<CalibratedTerm> terms;   ///< of the known part of the range
   std::vector<std::string> far_terms;  ///< names of those that count beyond it
   double known_share = 0.0;            ///< of the range in which the reference had depths
-  double rms_before_m = 0.0;           ///< depth error without offset, ahead of the correction
+  double mean_error_m = 0.0;           ///< of the nominal depth, in [-range / 2, range / 2]
+  double rms_before_m = 0.0;           ///< of its error, but for the mean
   double rms_m = 0.0;                  ///< left over on blocks of pixels held out
   double far_rms_m = 0.0;      ///< left over by the terms beyond, on parts of the range held out
   double outlier_share = 0.0;  ///< of the pixels, which count for nothing
