@@ -113,7 +113,7 @@ void run(const DecodeArguments& arguments, Session& session) {
   if (source.tell_range)
     lines += fmt::format("\nrange {:.4g} m ({})", source.table.range_m, source.range_source);
   for (const std::string& note : notes) lines += "\n" + note;
-  if (!camera.lens && (request.output.extension() == ".ply" || request.kind == DepthKind::z))
+  if (!camera.lens && (holds_points(request.output) || request.kind == DepthKind::z))
     lines += "\nthe camera has no [lens]: its view was taken to be 60 degrees wide";
   session.say(lines);
 }
@@ -185,7 +185,7 @@ void add_decode_command(CLI::App& app, Session& session) {
       ->add_option(
           "--kind", arguments->kind,
           "depth to write: radial distance, as the camera measures it, or z along the axis "
-          "(what simulate and demo take a depth image for); .ply holds points either way")
+          "(what simulate and demo take a depth image for); .ply and .pcd hold points either way")
       ->check(one_of({"radial", "z"}))
       ->capture_default_str();
   arguments->filter.add_to(*command);
@@ -221,9 +221,12 @@ void add_decode_command(CLI::App& app, Session& session) {
                    "pixels below are marked ambiguous")
       ->capture_default_str();
   command
-      ->add_option("-o,--output", arguments->output,
-                   "depth: .npy .npz .exr .pfm .png (16 bits, mm) .ply; several frames get numbers")
+      ->add_option(
+          "-o,--output", arguments->output,
+          "depth: .npy .npz .exr .pfm .png (16 bits, mm) .ply .pcd; several frames get numbers")
       ->required();
+  command->add_flag("--all-points", arguments->request.all_points,
+                    "in .ply and .pcd also points of pixels that are not ok");
   command->add_flag("--stack", arguments->request.stack,
                     "all frames in one .npy, (F,H,W), written as they come; with --outputs each "
                     "plane but depth in a file of its own, NAME-PLANE.npy");

@@ -6,7 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -14,6 +18,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
+#include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 
@@ -337,6 +342,52 @@ TEST(LoadDecodingTable, GivesTablesOptionsToTablesOnly) {
         load_decoding_table("hamiltonian-k3", built_in_camera("paper-10f0"), {.range_m = 3.0});
       },
       ThrowsMessage<std::invalid_argument>(HasSubstr("range_m: goes with a measured table")));
+}
+
+TEST_F(DecodeRecording, CloudsHoldThePointsOfPixelsThatAreOk) {
+  for (std::size_t i = 0; i < 40; ++i) raw_.values[i] = 1e6F;  // constant: nothing returns
+  raw_.values[40] = std::numeric_limits<float>::quiet_NaN();
+  write_raw_frames(path("raw.npy"), raw_, OutputPolicy::overwrite);
+  DecodeRequest asked = request("d.ply");
+  asked.frame = 0;
+  asked.outputs = {DecodedPlane::signal};
+  const auto points_of = [&] {
+    decode_recording(asked, decoder_);
+    return read_ply(asked.output).points_m.size();
+  };
+  DepthImage image = std::get<Decoder>(decoder_).decode(raw_, 0);
+  const auto ok =
+      static_cast<std::size_t>(std::ranges::count(image.status.pixels, PixelStatus::ok));
+  const auto with_depth = static_cast<std::size_t>(std::ranges::count_if(
+      image.depth_m.pixels, [](float depth_m) { return std::isfinite(depth_m); }));
+  ASSERT_LT(ok, with_depth);
+  EXPECT_EQ(points_of(), ok);
+  asked.policy = OutputPolicy::overwrite;
+  asked.all_points = true;
+  EXPECT_EQ(points_of(), with_depth);
+
+  asked.output = path("d.pcd");
+  asked.all_points = false;
+  decode_recording(asked, decoder_);
+  std::ifstream file(asked.output, std::ios::binary);
+  const std::string content((std::istreambuf_iterator<char>(file)), {});
+  const auto data = content.find("DATA binary\n") + 12;
+  EXPECT_THAT(content.substr(0, data),
+              AllOf(HasSubstr("FIELDS x y z signal\n"), HasSubstr("WIDTH 5\nHEIGHT 6\n"),
+                    HasSubstr("POINTS 30\n")));
+  ASSERT_EQ(content.size() - data, 30 * 4 * sizeof(float));
+  std::size_t points = 0;
+  for (std::size_t i = 0; i < 30; ++i) {
+    std::array<float, 4> point;
+    std::memcpy(point.data(), content.data() + data + i * sizeof(point), sizeof(point));
+    const bool is_ok = image.status.pixels[i] == PixelStatus::ok;
+    EXPECT_EQ(std::isfinite(point[2]), is_ok) << i;
+    if (!is_ok) continue;
+    ++points;
+    EXPECT_NEAR(std::hypot(point[0], point[1], point[2]), image.depth_m.pixels[i], 1e-5);
+    EXPECT_EQ(point[3], image.signal_e_per_s.pixels[i]);
+  }
+  EXPECT_EQ(points, ok);
 }
 
 }  // namespace

@@ -92,9 +92,10 @@ DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
           .planes = planes_to_write(request, decoder),
           .count_statuses = request.outputs.empty() ||
                             std::ranges::count(request.outputs, DecodedPlane::status) > 0,
+          .all_points = request.all_points,
           .find_mixed = request.mixed.has_value(),
           .needs_signal = table.correction && table.correction->needs_signal(),
-          .as_z = request.kind == DepthKind::z && request.output.extension() != ".ply",
+          .as_z = request.kind == DepthKind::z && !holds_points(request.output),
           .first_frame = request.frame.value_or(0),
           .frames = request.frame ? 1 : frames,
           .view = view};
