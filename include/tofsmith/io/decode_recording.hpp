@@ -3,8 +3,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -150,6 +152,31 @@ DecodedRecording decode_recording(const DecodeRequest& request, const AnyDecoder
 /// @param result  filled frame by frame
 void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
                       const Progress& progress, DecodedRecording& result);
+
+/// Fills bytes from a stream; gives how many, fewer only at its end.
+using ReadStream = std::function<std::size_t(std::span<std::byte> into)>;
+/// Takes bytes.
+using WriteStream = std::function<void(std::span<const std::byte> bytes)>;
+
+/// What came of a stream.
+struct DecodedStream {
+  std::int64_t frames = 0;  ///< decoded and written
+  StatusCounts statuses;    ///< of their pixels, if status is among the outputs
+  double seconds = 0.0;     ///< until the last was written, waiting for them included
+};
+
+/// Decodes frames as they come, each written before the next is read: in the memory of a few
+/// frames, with nothing held back. What comes out of a frame are its planes, one after another in
+/// the order of the request's `outputs` (depth, if it names none), of H x W items each, row by row,
+/// little end first: float32, status and returns uint8, bin int32. The same numbers as in
+/// decode_recording().
+/// @param request  its raw_format describes a stream: its header, then frame after frame; `raw`,
+///                 `output`, `frame`, `stack`, `memory_mb` and `policy` say nothing
+/// @param result   filled frame by frame, also when it throws
+/// @throws std::invalid_argument, IoError as decode_recording(); IoError if the stream ends in a
+///         frame, or ahead of the first; what `read` and `write` throw; Interrupted
+void decode_stream(const DecodeRequest& request, const AnyDecoder& decoder, const ReadStream& read,
+                   const WriteStream& write, const Progress& progress, DecodedStream& result);
 
 /// Writes what a decoder gave of a frame, by extension as DecodeRequest::output.
 /// @param planes      of depth, signal, ambient, confidence, deviation, status; not of .npy .pfm
