@@ -136,16 +136,9 @@ nlohmann::ordered_json document_of(const CalibratedCorrelation& found,
 }
 
 void check_outputs(const CorrelationArguments& arguments, const Session& session) {
-  std::vector<std::string> inputs = arguments.files;
-  for (const std::string& file : {arguments.shifts, arguments.dark, arguments.reference,
-                                  arguments.raw_format, arguments.camera.name})
-    inputs.push_back(file);
-  arguments.output.check(session, inputs);
-  for (const std::string& path : {arguments.table, arguments.offset_map, arguments.gain_map}) {
-    if (path.empty()) continue;
-    check_not_input(path, inputs);
-    session.check_output(path);
-  }
+  arguments.output.check(session);
+  for (const std::string& path : {arguments.table, arguments.offset_map, arguments.gain_map})
+    if (!path.empty()) session.check_output(path);
   if (!arguments.table.empty() && std::filesystem::path(arguments.table).extension() != ".npz")
     throw UsageError(fmt::format("--table {}: unknown extension; expected .npz", arguments.table));
 }
