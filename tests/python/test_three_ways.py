@@ -170,7 +170,7 @@ def test_decode(ways, camera):
     decoder.decode_recording("raw.npy", "snapped.npz", mixed="snap", outputs=["depth", "status"])
 
     ways.cpp("decode")
-    assert len(ways.same()) == len(given) + 6 * 3 + 1 + 2 + 3 + 3 + 3 + 2 + 3 + 3
+    assert len(ways.same()) == len(given) + 7 * 3 + 1 + 2 + 3 + 3 + 3 + 2 + 3 + 3
 
 
 def test_decode_refuses_alike(ways, camera):
