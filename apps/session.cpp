@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string>
-#include <vector>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
@@ -32,7 +32,8 @@ void Session::check_output(const std::filesystem::path& path) const {
   bool is_itself = false;
   for (const std::string& word : words) {
     // --option=value, and lists of values
-    for (std::size_t begin = word.starts_with('-') ? word.find('=') + 1 : 0; begin <= word.size();) {
+    for (std::size_t begin = word.starts_with('-') ? word.find('=') + 1 : 0;
+         begin <= word.size();) {
       const std::size_t end = std::min(word.find(',', begin), word.size());
       const std::string value = word.substr(begin, end - begin);
       if (value == path.string() && !is_itself)
