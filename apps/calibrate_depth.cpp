@@ -66,7 +66,8 @@ void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Se
   RawReadOptions reading;
   if (!arguments.raw_format.empty()) reading.format = read_raw_format(arguments.raw_format);
   const RawFrames frames = read_raw_frames(arguments.frames, reading);
-  const ReferenceDepth reference = read_reference_depth(arguments.reference);
+  ReferenceDepth reference = read_reference_depth(arguments.reference);
+  reference.is_z = arguments.reference_is_z;
   CalibratedDepth found;
   try {
     found = calibrate_depth(frames, reference, code, arguments.camera,

@@ -163,11 +163,12 @@ py::list read_reference(const std::string& path) {
   return images;
 }
 
-CalibratedDepth calibrate_by_reference(const py::object& frames, const py::list& images,
+CalibratedDepth calibrate_by_reference(const py::object& frames, const py::list& images, bool is_z,
                                        const CodeSet& code, const Camera& camera,
                                        const py::object& callback) {
   const RawFrames raw = to_raw_frames(frames, "frames");
-  const ReferenceDepth reference = reference_of(images);
+  ReferenceDepth reference = reference_of(images);
+  reference.is_z = is_z;
   return without_gil(callback, [&](const Progress& progress) {
     return calibrate_depth(raw, reference, code, camera, progress);
   });

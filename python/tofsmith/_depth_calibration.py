@@ -78,6 +78,7 @@ def calibrate_depth(
     camera: CameraLike,
     reference: Union[Path, npt.ArrayLike],
     code: CodeLike,
+    reference_kind: str = "radial",
     progress: Progress = None,
 ) -> CalibratedDepth:
     """calibrate_correlation() with a reference."""
@@ -98,6 +99,7 @@ def calibrate_depth(
     handle = _tofsmith.calibrate_depth(
         _check.frames(frames, "frames"),
         images,
+        _check.one_of(reference_kind, "reference_kind", ("radial", "z")) == "z",
         code_of(code, camera)._handle,
         camera._handle,
         _check.progress(progress),

@@ -120,6 +120,7 @@ struct ReferenceDepth {
   /// Along the ray [m]: one for all frames or one for each, of their size, or 1 x 1 for a target
   /// that is as far in every pixel. NaN, infinite or <= 0: not known.
   std::vector<Image<float>> depth_m;
+  bool is_z = false;  ///< along the optical axis instead: the camera's lens says where pixels look
 };
 
 /// Reads reference depth in metres: .npy of shape (H, W), (F, H, W), or (F,), a distance for each
