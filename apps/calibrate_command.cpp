@@ -17,13 +17,12 @@ void CalibrateOutput::add_to(CLI::App& command) {
   command.add_option("--report", page_path, "write a page with pictures (.html)");
 }
 
-void CalibrateOutput::check(const Session& session, const std::vector<std::string>& inputs) const {
+void CalibrateOutput::check(const Session& session) const {
   const auto check_one = [&](const std::string& path, const char* option, const char* extension) {
     if (path.empty()) return;
     if (std::filesystem::path(path).extension() != extension)
       throw UsageError(
           fmt::format("{} {}: unknown extension; expected {}", option, path, extension));
-    check_not_input(path, inputs);
     session.check_output(path);
   };
   check_one(camera_path, "-o", ".toml");

@@ -16,6 +16,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/io/image_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 #include "tofsmith/report/instrument_reports.hpp"
@@ -26,7 +27,7 @@ namespace {
 
 struct CorrelationArguments {
   std::vector<std::string> files;
-  std::string raw_format, shifts, dark, reference;
+  std::string raw_format, shifts, dark, reference, reference_kind = "radial";
   std::string table, offset_map, gain_map;
   std::string unit = "s", decimal = "auto", axes;
   std::vector<std::string> codes;
@@ -136,16 +137,9 @@ nlohmann::ordered_json document_of(const CalibratedCorrelation& found,
 }
 
 void check_outputs(const CorrelationArguments& arguments, const Session& session) {
-  std::vector<std::string> inputs = arguments.files;
-  for (const std::string& file : {arguments.shifts, arguments.dark, arguments.reference,
-                                  arguments.raw_format, arguments.camera.name})
-    inputs.push_back(file);
-  arguments.output.check(session, inputs);
-  for (const std::string& path : {arguments.table, arguments.offset_map, arguments.gain_map}) {
-    if (path.empty()) continue;
-    check_not_input(path, inputs);
-    session.check_output(path);
-  }
+  arguments.output.check(session);
+  for (const std::string& path : {arguments.table, arguments.offset_map, arguments.gain_map})
+    if (!path.empty()) session.check_output(path);
   if (!arguments.table.empty() && std::filesystem::path(arguments.table).extension() != ".npz")
     throw UsageError(fmt::format("--table {}: unknown extension; expected .npz", arguments.table));
 }
@@ -171,6 +165,7 @@ void run(const CorrelationArguments& arguments, const Session& session) {
     calibrate_by_reference(
         {{arguments.files.begin(), arguments.files.end()},
          arguments.raw_format,
+         parse_depth_kind(arguments.reference_kind) == DepthKind::z,
          arguments.reference,
          arguments.table,
          arguments.output.camera_path,
@@ -261,6 +256,13 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
       "instead of delays: depth along the ray that the frames should show, in m "
       "(.npy .npz .exr .pfm .png; NaN or 0: not known), or a distance for each "
       "frame (.npy); the error of --code against it is found");
+  command
+      ->add_option("--reference-kind", arguments->reference_kind,
+                   "the reference is depth along the ray (radial) or along the axis (z), which the "
+                   "camera's [lens] turns")
+      ->needs(reference)
+      ->check(one_of({"radial", "z"}))
+      ->capture_default_str();
   command
       ->add_option("--raw-format", arguments->raw_format,
                    "the frames are a sensor's dump, as this .raw.toml file describes it")

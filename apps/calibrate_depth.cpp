@@ -25,6 +25,7 @@ nlohmann::ordered_json document_of(const CalibratedDepth& found) {
   return {{"pixels", found.pixels},
           {"reversed", found.reversed},
           {"known_share", found.known_share},
+          {"mean_error_m", found.mean_error_m},
           {"rms_before_m", found.rms_before_m},
           {"rms_m", found.rms_m},
           {"far_rms_m", found.far_rms_m},
@@ -36,8 +37,9 @@ nlohmann::ordered_json document_of(const CalibratedDepth& found) {
 
 std::string lines_of(const CalibratedDepth& found) {
   std::string lines = fmt::format(
-      "{} pixels: depth errs by {} rms but for an offset, {} on blocks held out once corrected\n",
-      found.pixels, length_text(found.rms_before_m), length_text(found.rms_m));
+      "{} pixels: depth is {:+.4g} m off in the mean, {} rms around it; {} on blocks held out once "
+      "corrected\n",
+      found.pixels, found.mean_error_m, length_text(found.rms_before_m), length_text(found.rms_m));
   constexpr double apart_m = 20e-3;
   int mingled = 0;
   for (const CalibratedTerm& term : found.terms) {
@@ -64,7 +66,8 @@ void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Se
   RawReadOptions reading;
   if (!arguments.raw_format.empty()) reading.format = read_raw_format(arguments.raw_format);
   const RawFrames frames = read_raw_frames(arguments.frames, reading);
-  const ReferenceDepth reference = read_reference_depth(arguments.reference);
+  ReferenceDepth reference = read_reference_depth(arguments.reference);
+  reference.is_z = arguments.reference_is_z;
   CalibratedDepth found;
   try {
     found = calibrate_depth(frames, reference, code, arguments.camera,

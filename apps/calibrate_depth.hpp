@@ -17,6 +17,7 @@ namespace tofsmith::apps {
 struct DepthCalibrationArguments {
   std::vector<std::filesystem::path> frames;
   std::string raw_format;  ///< file; empty: .npy or .npz
+  bool reference_is_z = false;
   std::string reference, table, camera_path, camera_name;
   std::vector<std::string> codes;
   CodeFileOptions file;

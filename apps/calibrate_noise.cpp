@@ -42,10 +42,7 @@ nlohmann::ordered_json document_of(const PhotonTransfer& found) {
 
 void run(const NoiseArguments& arguments, const Session& session) {
   const Camera base = arguments.camera.load();
-  std::vector<std::string> inputs = arguments.files;
-  inputs.push_back(arguments.dark);
-  inputs.push_back(arguments.camera.name);
-  arguments.output.check(session, inputs);
+  arguments.output.check(session);
   PhotonTransferOptions options;
   try {
     options = noise_options(base, !arguments.dark.empty());

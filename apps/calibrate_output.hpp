@@ -24,7 +24,7 @@ struct CalibrateOutput {
 
   void add_to(CLI::App& command);
   /// Looks at the outputs before the work. @throws UsageError, IoError
-  void check(const Session& session, const std::vector<std::string>& inputs) const;
+  void check(const Session& session) const;
   void write_camera(const Camera& camera, const Session& session) const;
   void write_page(const Page& page, const Session& session) const;
 };

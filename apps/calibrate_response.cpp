@@ -51,13 +51,12 @@ nlohmann::ordered_json document_of(const CalibratedResponse& result) {
 
 void run(ResponseArguments& arguments, const Session& session) {
   const Camera base = arguments.camera.load();
-  arguments.output.check(session, {arguments.file, arguments.camera.name});
+  arguments.output.check(session);
   const ImpulseResponse::Kind kind = parse_response_kind(arguments.as);
   const bool measured = kind == ImpulseResponse::Kind::file;
   const bool writes_camera = !arguments.output.camera_path.empty();
   if (measured && writes_camera) {
     const std::filesystem::path path = response_path(arguments.output.camera_path);
-    check_not_input(path, {arguments.file, arguments.camera.name});
     session.check_output(path);
   }
   arguments.record.decimal = parse_decimal_mark(arguments.decimal);

@@ -98,6 +98,7 @@ void show(const Session& session, const CodeSet& code, const Camera& camera) {
 
 void write(const Session& session, const CodeSet& code, const Camera& camera,
            const std::filesystem::path& path, std::optional<TapOrder> order) {
+  session.check_output(path);
   if (path.extension() == ".csv")
     write_file_atomically(path, waveforms_to_csv(code, camera.fundamental_frequency_hz),
                           session.output_policy());

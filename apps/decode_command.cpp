@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "decode_pipe.hpp"
 #include "decode_report.hpp"
 #include "filter_arguments.hpp"
 #include "method_arguments.hpp"
@@ -79,7 +81,23 @@ DecodedRecording decode_all(const DecodeRequest& request, const AnyDecoder& deco
   return result;
 }
 
+/// Whether frames come from standard input and go to standard output.
+bool reads_pipe(const DecodeArguments& arguments) {
+  const bool from_pipe = std::ranges::find(arguments.raw, pipe_word) != arguments.raw.end();
+  const bool to_pipe = arguments.output == pipe_word;
+  if (from_pipe && arguments.raw.size() > 1) throw UsageError("RAW -: expected it alone, or files");
+  if (from_pipe != to_pipe)
+    throw UsageError(
+        fmt::format("{}: expected RAW - together with -o -: frames from standard input, planes to "
+                    "standard output",
+                    from_pipe ? "RAW -" : "-o -"));
+  if (from_pipe && arguments.raw_format.empty())
+    throw UsageError("RAW -: --raw-format is needed, a file that says how frames run");
+  return from_pipe;
+}
+
 void run(const DecodeArguments& arguments, Session& session) {
+  reads_pipe(arguments);  // wrong usage comes before what files hold
   const Camera camera = arguments.camera.load();
   const DecodingSource source =
       arguments.table.load(arguments.code, camera, arguments.camera.is_default(), arguments.taps);
@@ -87,6 +105,10 @@ void run(const DecodeArguments& arguments, Session& session) {
       make_decoder(arguments.method.method(), source.table, arguments.options,
                    arguments.method.unwrap_weights(), arguments.multipath.options());
   const DecodeRequest request = request_of(arguments, camera, session);
+  if (reads_pipe(arguments)) {
+    for (const std::string& note : source.notes) fmt::print(stderr, "{}\n", note);
+    return decode_pipe(request, decoder, session);
+  }
   const DecodedRecording result = decode_all(request, decoder, session);
   std::vector<std::string> notes = source.notes;
   notes.insert(notes.end(), result.notes.begin(), result.notes.end());
@@ -113,7 +135,7 @@ void run(const DecodeArguments& arguments, Session& session) {
   if (source.tell_range)
     lines += fmt::format("\nrange {:.4g} m ({})", source.table.range_m, source.range_source);
   for (const std::string& note : notes) lines += "\n" + note;
-  if (!camera.lens && (request.output.extension() == ".ply" || request.kind == DepthKind::z))
+  if (!camera.lens && (holds_points(request.output) || request.kind == DepthKind::z))
     lines += "\nthe camera has no [lens]: its view was taken to be 60 degrees wide";
   session.say(lines);
 }
@@ -136,9 +158,11 @@ void add_decode_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<DecodeArguments>();
   CLI::App* command = app.add_subcommand("decode", "depth from raw measurements");
   command
-      ->add_option("RAW", arguments->raw,
-                   "raw frames (.npy .npz): (H,W,K) or (F,H,W,K); any dump with --raw-format; or "
-                   "K files, one a measurement in their order, (H,W) or (F,H,W) each")
+      ->add_option(
+          "RAW", arguments->raw,
+          "raw frames (.npy .npz): (H,W,K) or (F,H,W,K); any dump with --raw-format; or "
+          "K files, one a measurement in their order, (H,W) or (F,H,W) each; or - for frames "
+          "of --raw-format from standard input, with -o -")
       ->required();
   CLI::Option* const layout =
       command
@@ -185,7 +209,7 @@ void add_decode_command(CLI::App& app, Session& session) {
       ->add_option(
           "--kind", arguments->kind,
           "depth to write: radial distance, as the camera measures it, or z along the axis "
-          "(what simulate and demo take a depth image for); .ply holds points either way")
+          "(what simulate and demo take a depth image for); .ply and .pcd hold points either way")
       ->check(one_of({"radial", "z"}))
       ->capture_default_str();
   arguments->filter.add_to(*command);
@@ -221,9 +245,14 @@ void add_decode_command(CLI::App& app, Session& session) {
                    "pixels below are marked ambiguous")
       ->capture_default_str();
   command
-      ->add_option("-o,--output", arguments->output,
-                   "depth: .npy .npz .exr .pfm .png (16 bits, mm) .ply; several frames get numbers")
+      ->add_option(
+          "-o,--output", arguments->output,
+          "depth: .npy .npz .exr .pfm .png (16 bits, mm) .ply .pcd; several frames get numbers; - "
+          "writes the --outputs (depth) of each frame to standard output, as they are in "
+          ".npy without its header")
       ->required();
+  command->add_flag("--all-points", arguments->request.all_points,
+                    "in .ply and .pcd also points of pixels that are not ok");
   command->add_flag("--stack", arguments->request.stack,
                     "all frames in one .npy, (F,H,W), written as they come; with --outputs each "
                     "plane but depth in a file of its own, NAME-PLANE.npy");

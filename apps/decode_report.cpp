@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t max_lines = 8, first_lines = 3, max_listed = 100'000;
 
 std::string kind_of(const DecodeRequest& request) {
-  if (request.output.extension() == ".ply") return "points";
+  if (holds_points(request.output)) return "points";
   return request.kind == DepthKind::z ? "z-depth" : "radial distance";
 }
 

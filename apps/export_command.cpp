@@ -60,7 +60,7 @@ void run(ExportArguments& arguments, const Session& session) {
     return render(export_page(exported, session.command_line));
   };
   const bool one_file = is_one_file(request);
-  check_not_input(request.output, {arguments.code, arguments.camera.name});
+  if (one_file) session.check_output(request.output);
   const Camera camera = arguments.camera.load();
   require_no_measured_table(arguments.code);
   const ExportedCode exported =

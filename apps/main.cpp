@@ -126,6 +126,7 @@ int run(int argc, char** argv) {
   pin_target();
   Session session;
   session.command_line = as_typed(argc, argv);
+  session.words.assign(argv + std::min(argc, 1), argv + argc);
   CLI::App app{
       "tofsmith designs, evaluates, simulates and decodes the coding functions of "
       "continuous-wave time-of-flight cameras."};

@@ -25,6 +25,7 @@ void run(const ReportArguments& arguments, const Session& session) {
   const std::filesystem::path output = arguments.output.empty()
                                            ? directory / "report.html"
                                            : std::filesystem::path(arguments.output);
+  session.check_output(output);
   if (interrupted()) throw Interrupted();
   write_file_atomically(output, render(design_report(found, session.command_line)),
                         session.output_policy());

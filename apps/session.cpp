@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
@@ -26,6 +28,22 @@ void Session::print_document(std::string_view document) const {
 }
 
 void Session::check_output(const std::filesystem::path& path) const {
+  std::vector<std::string> inputs;
+  bool is_itself = false;
+  for (const std::string& word : words) {
+    // --option=value, and lists of values
+    for (std::size_t begin = word.starts_with('-') ? word.find('=') + 1 : 0;
+         begin <= word.size();) {
+      const std::size_t end = std::min(word.find(',', begin), word.size());
+      const std::string value = word.substr(begin, end - begin);
+      if (value == path.string() && !is_itself)
+        is_itself = true;
+      else
+        inputs.push_back(value);
+      begin = end + 1;
+    }
+  }
+  check_not_input(path, inputs);
   const AtomicFile probe(path, output_policy());  // never committed
 }
 

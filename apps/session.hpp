@@ -30,6 +30,7 @@ struct Session {
   bool tells_what_is_kept = false;  ///< the command says what an interrupt leaves, if anything
   int threads = 0;                  ///< 0 = every core
   std::string command_line;         ///< as typed, for reports
+  std::vector<std::string> words;   ///< as typed, after the program
   std::filesystem::path directory;  ///< or store in which finished work is kept, if it is
 
   OutputPolicy output_policy() const {
@@ -42,8 +43,9 @@ struct Session {
   /// Prints a finished document with --json.
   void print_document(std::string_view document) const;
 
-  /// Fails before long work, not after it, when its output could not be written.
-  /// @throws IoError as write_file_atomically() would
+  /// Fails before long work, not after it, when its output could not be written, or is a file that
+  /// another word of the command names, also through links: not even --force replaces that.
+  /// @throws IoError as write_file_atomically() would, or check_not_input()
   void check_output(const std::filesystem::path& path) const;
 };
 

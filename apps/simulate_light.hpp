@@ -26,8 +26,6 @@ class MultipathLightArguments {
     return !multipath_.empty() || tail_m_ || !returns_.empty() || !transient_.empty() ||
            bounces_ > 0 || !truth_.empty();
   }
-  /// Files that are read.
-  std::vector<std::string> inputs() const { return {returns_, transient_}; }
   const std::string& truth() const { return truth_; }
 
  private:

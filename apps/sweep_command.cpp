@@ -186,10 +186,7 @@ void check_outputs(const SweepArguments& arguments, const Session& session) {
     if (outputs.back().extension() != ".html")
       throw UsageError(fmt::format("--report {}: expected .html", arguments.report));
   }
-  for (const auto& path : outputs) {
-    check_not_input(path, {arguments.sweep, arguments.store});
-    session.check_output(path);
-  }
+  for (const auto& path : outputs) session.check_output(path);
 }
 
 WorkList read_list(const SweepArguments& arguments) {
@@ -292,8 +289,7 @@ void run(const SweepArguments& arguments, Session& session) {
 void merge(const MergeArguments& arguments, Session& session) {
   SweepRanks ranks = SweepRanks::join();
   if (ranks.rank() != 0) return follow("", session, ranks);  // there is no work to share
-  for (const std::filesystem::path& part : arguments.parts)
-    check_not_input(arguments.output, {part.string()});
+  session.check_output(arguments.output);
   AtomicFile file(arguments.output, session.output_policy());
   SweepStore::merge(file.temporary_path(), arguments.parts);
   file.commit();

@@ -163,11 +163,12 @@ py::list read_reference(const std::string& path) {
   return images;
 }
 
-CalibratedDepth calibrate_by_reference(const py::object& frames, const py::list& images,
+CalibratedDepth calibrate_by_reference(const py::object& frames, const py::list& images, bool is_z,
                                        const CodeSet& code, const Camera& camera,
                                        const py::object& callback) {
   const RawFrames raw = to_raw_frames(frames, "frames");
-  const ReferenceDepth reference = reference_of(images);
+  ReferenceDepth reference = reference_of(images);
+  reference.is_z = is_z;
   return without_gil(callback, [&](const Progress& progress) {
     return calibrate_depth(raw, reference, code, camera, progress);
   });
@@ -182,6 +183,7 @@ py::dict depth_dict(const CalibratedDepth& found) {
   dict["terms"] = terms;
   dict["far_terms"] = found.far_terms;
   dict["known_share"] = found.known_share;
+  dict["mean_error_m"] = found.mean_error_m;
   dict["rms_before_m"] = found.rms_before_m;
   dict["rms_m"] = found.rms_m;
   dict["far_rms_m"] = found.far_rms_m;

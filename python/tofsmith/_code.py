@@ -198,8 +198,9 @@ CodeLike = Union[CodeSet, Path]
 
 
 def code_of(code: CodeLike, camera: CameraLike) -> CodeSet:
-    if isinstance(code, (str, os.PathLike)):
-        return load_code(code, camera)
+    if isinstance(code, (str, os.PathLike)):  # as commands do, at the camera's samples
+        loaded, samples = load_code(code, camera), camera_of(camera).samples
+        return loaded if loaded.samples == samples else loaded.resampled(samples)
     return _check.instance(code, CodeSet, "code")
 
 

@@ -206,6 +206,7 @@ def calibrate_correlation(
     target_distance_m: Optional[float] = None,
     geometry_m: Optional[npt.ArrayLike] = None,
     reference: None = None,
+    reference_kind: str = "radial",
     code: None = None,
     progress: Progress = None,
 ) -> CalibratedCorrelation: ...
@@ -217,6 +218,7 @@ def calibrate_correlation(
     camera: CameraLike,
     *,
     reference: Union[Path, npt.ArrayLike],
+    reference_kind: str = "radial",
     code: CodeLike,
     progress: Progress = None,
 ) -> CalibratedDepth: ...
@@ -232,6 +234,7 @@ def calibrate_correlation(
     target_distance_m: Optional[float] = None,
     geometry_m: Optional[npt.ArrayLike] = None,
     reference: Optional[Union[Path, npt.ArrayLike]] = None,
+    reference_kind: str = "radial",
     code: Optional[CodeLike] = None,
     progress: Progress = None,
 ) -> Union[CalibratedCorrelation, CalibratedDepth]:
@@ -258,6 +261,8 @@ def calibrate_correlation(
         Instead of delays: depth along the ray that the frames should show [m], NaN where it is not
         known, or a distance for each frame. `sweep` then is frames (F, H, W, K) or their file, and
         what comes back is a CalibratedDepth: the error of `code` against it.
+    reference_kind : {"radial", "z"}
+        The reference is depth along the ray, or along the axis, which the camera's lens turns.
     code : CodeSet, name or file, optional
         With a reference: what the camera played.
     progress : callable, optional
@@ -278,7 +283,7 @@ def calibrate_correlation(
     if reference is not None:
         if code is None:
             raise ValueError("code: got None; needs the code that the camera played")
-        return calibrate_depth(sweep, camera, reference, code, progress)
+        return calibrate_depth(sweep, camera, reference, code, reference_kind, progress)
     if isinstance(sweep, (str, os.PathLike)):
         sweep = read_delay_sweep(sweep, camera)
     _check.instance(sweep, DelaySweep, "sweep")

@@ -219,6 +219,7 @@ class Decoder:
         raw_format: Optional[Path] = None,
         outputs: Optional[Iterable[str]] = None,
         kind: str = "radial",
+        all_points: bool = False,
         frame: Optional[int] = None,
         stack: bool = False,
         average: int = 1,
@@ -243,8 +244,8 @@ class Decoder:
             has one file a measurement, in their order, (H, W) or (F, H, W) each.
         output : str or path
             .npy .pfm .png (16 bits, mm): depth alone; .npz: an array of each plane; .exr: a channel
-            of each; .ply: points with planes as scalars. Files of several frames get numbers:
-            name-03.npz.
+            of each; .ply, .pcd (organized): points with planes as scalars. Files of several frames
+            get numbers: name-03.npz.
         layout : {"interleaved", "planar"}
             Of .npy and .npz; never guessed.
         raw_format : str or path, optional
@@ -255,7 +256,9 @@ class Decoder:
             and tail also delay, ratio, returns. None: as many of the usual ones as `output` holds.
         kind : {"radial", "z"}
             Distance along the ray, or along the optical axis of the camera's lens (without one: of
-            a view 60 degrees wide); .ply holds points either way.
+            a view 60 degrees wide); .ply and .pcd hold points either way.
+        all_points : bool
+            Points of pixels that are not ok, too.
         frame : int, optional
             This frame alone, counted from 0.
         stack : bool
@@ -314,6 +317,7 @@ class Decoder:
                 _check.one_of(plane, "outputs", planes) for plane in outputs],
             "kind": kind,
             "frame": None if frame is None else _check.whole(frame, "frame", 0),
+            "all_points": bool(all_points),
             "stack": bool(stack),
             "average": _check.whole(average, "average", 1),
             "averaged": _check.number(averaged, "averaged"),

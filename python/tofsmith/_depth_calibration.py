@@ -35,8 +35,10 @@ class CalibratedDepth:
         Those that count beyond it.
     known_share : float
         Of the range in which the reference had depths.
+    mean_error_m : float
+        Of the nominal depth, in [-range / 2, range / 2].
     rms_before_m, rms_m, far_rms_m : float
-        Error without offset ahead of the correction; left on blocks of pixels held out; and left
+        Of its error, but for the mean, ahead of the correction; left on blocks of pixels held out; and left
         by the far terms on parts of the range held out [m].
     outlier_share : float
         Of the pixels, which count for nothing.
@@ -49,6 +51,7 @@ class CalibratedDepth:
     terms: dict[str, Estimate]
     far_terms: list[str]
     known_share: float
+    mean_error_m: float
     rms_before_m: float
     rms_m: float
     far_rms_m: float
@@ -75,6 +78,7 @@ def calibrate_depth(
     camera: CameraLike,
     reference: Union[Path, npt.ArrayLike],
     code: CodeLike,
+    reference_kind: str = "radial",
     progress: Progress = None,
 ) -> CalibratedDepth:
     """calibrate_correlation() with a reference."""
@@ -95,6 +99,7 @@ def calibrate_depth(
     handle = _tofsmith.calibrate_depth(
         _check.frames(frames, "frames"),
         images,
+        _check.one_of(reference_kind, "reference_kind", ("radial", "z")) == "z",
         code_of(code, camera)._handle,
         camera._handle,
         _check.progress(progress),

@@ -314,7 +314,8 @@ class CalibratedDepth:
 
 def read_reference_depth(path: str, /) -> list[_Floats]: ...
 def calibrate_depth(
-    frames: _Floats, reference: list[_Floats], code: CodeSet, camera: Camera, progress: _Progress, /
+    frames: _Floats, reference: list[_Floats], is_z: bool, code: CodeSet, camera: Camera,
+    progress: _Progress, /
 ) -> CalibratedDepth: ...
 def calibrate_correlation(
     delay_periods: _Doubles, frames: _Floats, notes: Sequence[str], camera: Camera, dark:

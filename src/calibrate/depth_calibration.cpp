@@ -12,6 +12,7 @@
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/simulate/scene_result.hpp"
 
 namespace tofsmith {
 
@@ -213,11 +214,28 @@ void add_notes(const DepthFit& fit, const ReferenceDepth& reference,
     result.notes.push_back(*note);
 }
 
+/// Along the rays of the camera's pixels. Images of other sizes are refused later, as they are.
+ReferenceDepth along_rays(ReferenceDepth z, const Camera& camera, int height, int width) {
+  require(camera.lens.has_value(), "lens", "none",
+          "must say where pixels look, so that a reference along the axis can be turned");
+  const PinholeView view = view_of(camera.lens, width, height);
+  view.validate();
+  for (Image<float>& depth_m : z.depth_m) {
+    if (depth_m.size() == 1) depth_m = Image<float>(height, width, depth_m.pixels.front());
+    if (depth_m.height == height && depth_m.width == width) depth_m = radial_from_z(depth_m, view);
+  }
+  z.is_z = false;
+  return z;
+}
+
 }  // namespace
 
 CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& reference,
                                 const CodeSet& code, const Camera& camera,
                                 const Progress& progress) {
+  if (reference.is_z)
+    return calibrate_depth(frames, along_rays(reference, camera, frames.height, frames.width), code,
+                           camera, progress);
   CalibratedDepth result;
   const ForwardModel model(code, camera);
   result.table = nominal_table(model, code, camera);
@@ -234,6 +252,8 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   // All terms, robustly: which pixels count.
   DepthFit fit = start(std::move(samples), frames.height, frames.width, range_m);
   weigh(fit.error_m, fit);
+  result.mean_error_m =
+      wrapped_difference_m(fit.start_m + fit.weight.dot(fit.error_m) / fit.weight.sum(), range_m);
   result.rms_before_m = std::sqrt((fit.weight.dot(fit.error_m.cwiseAbs2())) / fit.weight.sum());
   std::vector<bool> has = parts_with_depths(fit);
   const auto covered_parts = static_cast<int>(std::ranges::count(has, true));
@@ -281,8 +301,9 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
 
 Camera with_depth(Camera camera, const CalibratedDepth& found) {
   Playback playback = camera.playback.value_or(Playback());
-  const double offset_m = found.table.correction ? found.table.correction->known.offset_m : 0.0;
-  playback.offset_m = offset_m + (found.reversed ? -playback.offset_m : playback.offset_m);
+  // The mean, not the term: where part of the range is known, harmonics share the offset.
+  playback.offset_m =
+      found.mean_error_m + (found.reversed ? -playback.offset_m : playback.offset_m);
   playback.reversed = playback.reversed != found.reversed;
   camera.playback = playback;
   camera.validate();

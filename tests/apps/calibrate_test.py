@@ -146,6 +146,20 @@ class Calibrate(BenchRecordsTest):
                 "d.npy")
         off = (np.load(self.path("d.npy")) - reference + range_m / 2) % range_m - range_m / 2
         self.assertLess(np.median(np.abs(off[:, :, :32])), 2.5e-3)
+        phases = [f"p{k}.npy" for k in range(4)]
+        for k, name in enumerate(phases):
+            np.save(self.path(name), raw[..., k].astype(np.float32))
+        raw.transpose(0, 3, 1, 2).astype("<f4").tofile(self.path("raw.bin"))
+        self.write("raw.toml", 'width = 64\nheight = 48\nmeasurements = 4\nbits = 32\n'
+                   'numbers = "float"\n')
+        for frames in (phases, ["raw.bin", "--raw-format", "raw.toml"]):
+            said = [*command[:2], *frames, *command[3:], "--code", "sinusoid-k4", "--force"]
+            said[said.index("t.npz")] = "u.npz"
+            self.do(*said)
+            one, other = np.load(self.path("t.npz")), np.load(self.path("u.npz"))
+            for name in one.files:
+                np.testing.assert_array_equal(one[name], other[name], name)
+        self.refuse(["calibrate", "correlation", *phases], "--reference", code=2)
         np.save(self.path("ref.npy"), 1e3 * reference)
         self.refuse([*command, "--code", "sinusoid-k4", "--force"], "metres")
         np.save(self.path("small.npy"), raw[:, :20].astype(np.float32))

@@ -179,7 +179,7 @@ class Refusals(CommandLineTest):
     def test_codes_for_another_camera(self):
         self.do("codes", "hamiltonian-k3", "-o", "h.code.json")
         evaluate = ["evaluate", "h.code.json", "--set"]
-        self.refuse([*evaluate, "samples=480"], "240", "480", "--set samples=240")
+        self.assertIn("N = 480", self.do(*evaluate, "samples=480"))  # sampled anew
         self.refuse([*evaluate, "light.peak_factor=2"], "peak = 6", "peak_factor = 2")
         self.refuse([*evaluate, "sensor.taps=2"], "taps = 1", "sensor.taps = 2")
 
@@ -332,6 +332,19 @@ class Refusals(CommandLineTest):
                     "input")
         self.refuse(["simulate", "map.npy", "--code", "sinusoid-k4", "-o", "map.npy", "--force"],
                     "map.npy", "input")
+
+    def test_no_command_replaces_what_it_reads(self):
+        np.save(self.path("depth.npy"), np.ones((4, 5), np.float32))
+        self.do("codes", "sinusoid-k4", "-o", "code.json")
+        os.symlink("code.json", self.path("link.json"))
+        before = self.bytes_of("code.json")
+        for command in (["scene", "depth.npy", "-o", "depth.npy"],
+                        ["codes", "code.json", "-o", "link.json"],
+                        ["codes", "code.json", "--output=./code.json"],
+                        ["evaluate", "sinusoid-k4", "code.json", "-o", "link.json"]):
+            output = command[-1].split("=")[-1]
+            self.refuse([*command, "--force"], output, "input", "choose another name")
+        self.assertEqual(self.bytes_of("code.json"), before)
 
     def test_designs(self):
         self.refuse(["report", "."], "design.json")

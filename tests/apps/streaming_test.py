@@ -32,6 +32,50 @@ class Streaming(CommandLineTest):
         np.save(self.path("raw.npy"), raw)
         return raw
 
+    def pipe(self, *more):
+        self.write("s.raw.toml", 'width = 40\nheight = 30\nmeasurements = 3\nbits = 16\n'
+                   'layout = "interleaved"\n')
+        return [command_line.TOOL, "decode", "-", "--raw-format", "s.raw.toml", "--code",
+                "hamiltonian-k3", *more, "-o", "-"]
+
+    def test_frames_go_through_a_pipe_one_by_one(self):
+        raw = self.record()
+        self.decode("--stack", "--outputs", "depth,status")
+        depth, status = np.load(self.path("d.npy")), np.load(self.path("d-status.npy"))
+        process = subprocess.Popen(self.pipe("--outputs", "depth,status"), cwd=self.directory,
+                                   stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE)
+        for frame in range(3):  # each comes out though no other has gone in
+            process.stdin.write(raw[frame].tobytes())
+            process.stdin.flush()
+            out = process.stdout.read(30 * 40 * 5)
+            np.testing.assert_array_equal(np.frombuffer(out[:4800], "<f4").reshape(30, 40),
+                                          depth[frame])
+            np.testing.assert_array_equal(np.frombuffer(out[4800:], "u1").reshape(30, 40),
+                                          status[frame])
+        process.stdin.write(raw[0].tobytes()[:100])
+        out, error = process.communicate(timeout=60)
+        self.assertEqual((process.returncode, out), (1, b""))
+        self.assertIn("decoded 3 frames", error.decode())
+        self.assertIn("found 100 bytes and the end; expected 7200 of frame 3", error.decode())
+
+    def test_a_pipe_can_be_interrupted_while_it_waits(self):
+        process = subprocess.Popen(self.pipe(), cwd=self.directory, stdin=subprocess.PIPE,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=10), 130)
+        self.assertIn("decoded 0 frames", process.communicate()[1].decode())
+
+    def test_a_pipe_is_not_mixed_with_files(self):
+        self.record()
+        self.write("s.raw.toml", "width = 40\nheight = 30\nmeasurements = 3\nbits = 16\n")
+        code = ("--code", "hamiltonian-k3")
+        self.refuse(["decode", "-", *code, "-o", "d.npy"], "-o -", code=2)
+        self.refuse(["decode", "raw.npy", *code, "-o", "-"], "RAW -", code=2)
+        self.refuse(["decode", "-", *code, "-o", "-"], "--raw-format", code=2)
+        self.refuse(["decode", "-", "-", *code, "-o", "-"], "alone", code=2)
+
     def arguments(self, *more, raw="raw.npy", output="d.npy"):
         return ["decode", raw, "--code", "hamiltonian-k3", "-o", output, *more]
 

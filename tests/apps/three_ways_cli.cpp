@@ -57,7 +57,7 @@ AnyDecoder decoder_of(DecodeMethod method, const std::string& code) {
 
 void decode() {
   const AnyDecoder decoder = decoder_of(DecodeMethod::zncc, "hamiltonian-k4");
-  for (const char* output : {"d.npy", "d.npz", "d.exr", "d.pfm", "d.png", "d.ply"})
+  for (const char* output : {"d.npy", "d.npz", "d.exr", "d.pfm", "d.png", "d.ply", "d.pcd"})
     decode_recording({.raw = {"raw.npy"}, .output = output, .policy = policy}, decoder);
   decode_recording({.raw = {"raw.npy"},
                     .output = "z.npz",

@@ -139,7 +139,7 @@ class HowTo(BenchRecordsTest):
         self.shell("tofsmith design --method factorize --effort 0.05 --trials 1000 -o designed")
 
     def prepare(self, command):
-        written = set(re.findall(r"(?:-o|--truth|--store|--export) (\S+)", command))
+        written = set(re.findall(r"(?:-o|--truth|--store|--export|>) ([^\s-]\S*)", command))
         named = dict.fromkeys(word.rstrip("/") for word in command.split())
         for word in [word for word in named if word not in written and "*" not in word]:
             make = getattr(self, "make_" + re.sub(r"\W", "_", word), None)

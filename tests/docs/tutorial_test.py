@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""The tutorial does what it says: its files are written and its commands run, in order, in an empty
-directory. PYTHONPATH has the Python package.
+"""The tutorial and the page on a camera of one's own do what they say: their files are written and
+their commands run, in order, in an empty directory. PYTHONPATH has the Python package.
 
     tutorial_test.py TOFSMITH DOCS
 """
@@ -33,9 +33,10 @@ class Tutorial(unittest.TestCase):
         self.assertEqual(done.returncode, 0, f"{text}\n{done.stdout}\n{done.stderr}")
         return done.stdout
 
-    def test_commands_run_in_order(self):
-        blocks = blocks_of("tutorial.md")
-        self.assertGreater(len(blocks), 7)
+    def run_page(self, page, made):
+        """Everything that a page prints, its files written and its blocks run, in order."""
+        blocks = blocks_of(page)
+        self.assertGreater(len(blocks), 4)
         printed = ""
         with tempfile.TemporaryDirectory(prefix="tofsmith-tutorial-") as directory:
             for language, text in blocks:
@@ -45,11 +46,22 @@ class Tutorial(unittest.TestCase):
                 else:
                     command = ["bash", "-e"] if language == "bash" else [sys.executable, "-B", "-"]
                     printed += self.run_in(directory, command, text)
-            for name in MADE:
+            for name in made:
                 self.assertGreater(os.path.getsize(os.path.join(directory, name)), 0, name)
+        return printed
+
+    def test_commands_run_in_order(self):
+        printed = self.run_page("tutorial.md", MADE)
         errors = [float(mm) for mm in re.findall(r"median error ([\d.]+) mm", printed)]
         self.assertEqual(len(errors), 2)
         self.assertLess(2 * errors[0], errors[1], "the designed code is not twice as good")
+
+    def test_a_camera_is_calibrated_as_its_page_says(self):
+        printed = self.run_page("your_camera.md", ("first.png", "table.npz", "depth.npz", "cloud.ply"))
+        off_m, rms_mm = re.search(r"depth is ([+-][\d.]+) m off in the mean, ([\d.]+) mm", printed).groups()
+        self.assertAlmostEqual(float(off_m), 0.31, delta=0.01)
+        error_mm = float(re.search(r"median error ([\d.]+) mm", printed)[1])
+        self.assertLess(3 * error_mm, float(rms_mm))
 
 
 if __name__ == "__main__":

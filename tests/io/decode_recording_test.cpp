@@ -6,7 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -14,6 +18,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
+#include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 
@@ -337,6 +342,145 @@ TEST(LoadDecodingTable, GivesTablesOptionsToTablesOnly) {
         load_decoding_table("hamiltonian-k3", built_in_camera("paper-10f0"), {.range_m = 3.0});
       },
       ThrowsMessage<std::invalid_argument>(HasSubstr("range_m: goes with a measured table")));
+}
+
+TEST_F(DecodeRecording, CloudsHoldThePointsOfPixelsThatAreOk) {
+  for (std::size_t i = 0; i < 40; ++i) raw_.values[i] = 1e6F;  // constant: nothing returns
+  raw_.values[40] = std::numeric_limits<float>::quiet_NaN();
+  write_raw_frames(path("raw.npy"), raw_, OutputPolicy::overwrite);
+  DecodeRequest asked = request("d.ply");
+  asked.frame = 0;
+  asked.outputs = {DecodedPlane::signal};
+  const auto points_of = [&] {
+    decode_recording(asked, decoder_);
+    return read_ply(asked.output).points_m.size();
+  };
+  DepthImage image = std::get<Decoder>(decoder_).decode(raw_, 0);
+  const auto ok =
+      static_cast<std::size_t>(std::ranges::count(image.status.pixels, PixelStatus::ok));
+  const auto with_depth = static_cast<std::size_t>(std::ranges::count_if(
+      image.depth_m.pixels, [](float depth_m) { return std::isfinite(depth_m); }));
+  ASSERT_LT(ok, with_depth);
+  EXPECT_EQ(points_of(), ok);
+  asked.policy = OutputPolicy::overwrite;
+  asked.all_points = true;
+  EXPECT_EQ(points_of(), with_depth);
+
+  asked.output = path("d.pcd");
+  asked.all_points = false;
+  decode_recording(asked, decoder_);
+  std::ifstream file(asked.output, std::ios::binary);
+  const std::string content((std::istreambuf_iterator<char>(file)), {});
+  const auto data = content.find("DATA binary\n") + 12;
+  EXPECT_THAT(content.substr(0, data),
+              AllOf(HasSubstr("FIELDS x y z signal\n"), HasSubstr("WIDTH 5\nHEIGHT 6\n"),
+                    HasSubstr("POINTS 30\n")));
+  ASSERT_EQ(content.size() - data, 30 * 4 * sizeof(float));
+  std::size_t points = 0;
+  for (std::size_t i = 0; i < 30; ++i) {
+    std::array<float, 4> point;
+    std::memcpy(point.data(), content.data() + data + i * sizeof(point), sizeof(point));
+    const bool is_ok = image.status.pixels[i] == PixelStatus::ok;
+    EXPECT_EQ(std::isfinite(point[2]), is_ok) << i;
+    if (!is_ok) continue;
+    ++points;
+    EXPECT_NEAR(std::hypot(point[0], point[1], point[2]), image.depth_m.pixels[i], 1e-5);
+    EXPECT_EQ(point[3], image.signal_e_per_s.pixels[i]);
+  }
+  EXPECT_EQ(points, ok);
+}
+
+class DecodeStream : public DecodeRecording {
+ protected:
+  DecodeStream() {
+    std::ofstream(path("s.raw.toml")) << "width = 5\nheight = 6\nmeasurements = 4\nbits = 32\n"
+                                         "numbers = \"float\"\nlayout = \"interleaved\"\n"
+                                         "header_bytes = 3\n";
+    const auto bytes = std::as_bytes(std::span(raw_.values));
+    stream_.assign(3, std::byte{7});
+    stream_.insert(stream_.end(), bytes.begin(), bytes.end());
+    std::ofstream(path("dump.bin"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(stream_.data()), std::ssize(stream_));
+  }
+
+  /// What comes out of the first `bytes` of the stream; frames are read only once those before are
+  /// out.
+  DecodedStream run(DecodeRequest request, std::size_t bytes) {
+    request.raw_format = path("s.raw.toml");
+    std::size_t at = 0;
+    written_.clear();
+    DecodedStream result;
+    const ReadStream read = [&](std::span<std::byte> into) {
+      const std::size_t frames = at < 3 ? 0 : (at - 3) / (6 * 5 * 4 * sizeof(float));
+      if (request.average == 1) {
+        EXPECT_EQ(result.frames, static_cast<std::int64_t>(frames));
+      }
+      const std::size_t count = std::min(into.size(), bytes - at);
+      std::copy_n(stream_.begin() + static_cast<std::ptrdiff_t>(at), count, into.begin());
+      at += count;
+      return count;
+    };
+    const WriteStream write = [&](std::span<const std::byte> bytes_of_plane) {
+      written_.insert(written_.end(), bytes_of_plane.begin(), bytes_of_plane.end());
+    };
+    decode_stream(request, decoder_, read, write, {}, result);
+    return result;
+  }
+  /// Planes of a stack as they stand in its files, frame by frame.
+  std::vector<std::byte> of_files(DecodeRequest request) {
+    request.raw = {path("dump.bin")};
+    request.raw_format = path("s.raw.toml");
+    request.output = path("stack.npy");
+    request.stack = true;
+    request.policy = OutputPolicy::overwrite;
+    const DecodedRecording result = decode_recording(request, decoder_);
+    std::vector<std::byte> bytes;
+    for (std::size_t frame = 0; frame < result.frames.size(); ++frame)
+      for (const std::filesystem::path& file : result.files) {
+        const NpyArray array = read_npy(file);
+        const std::size_t size = array.bytes().size() / result.frames.size();
+        const auto part = array.bytes().subspan(frame * size, size);
+        bytes.insert(bytes.end(), part.begin(), part.end());
+      }
+    return bytes;
+  }
+
+  std::vector<std::byte> stream_, written_;
+};
+
+TEST_F(DecodeStream, GivesTheBytesOfFilesFrameByFrame) {
+  DecodeRequest plain, filtered, means;
+  plain.outputs = {DecodedPlane::depth, DecodedPlane::status};
+  filtered.outputs = {DecodedPlane::depth, DecodedPlane::bin};
+  filtered.filter = FilterOptions{};
+  filtered.time_filter = TimeFilterOptions{};
+  filtered.offset_m = 0.5;
+  means.outputs = {DecodedPlane::signal};
+  means.average = 2;
+  for (const DecodeRequest& request : {plain, filtered, means}) {
+    const DecodedStream result = run(request, stream_.size());
+    EXPECT_EQ(result.frames, request.average == 2 ? 2 : 3);
+    EXPECT_EQ(written_, of_files(request));
+  }
+  EXPECT_EQ(run(plain, stream_.size()).statuses.pixels(), 3 * 6 * 5);
+  run({}, stream_.size());
+  DecodeRequest depth;
+  depth.outputs = {DecodedPlane::depth};
+  EXPECT_EQ(written_, of_files(depth)) << "depth, if nothing is asked for";
+}
+
+TEST_F(DecodeStream, KeepsWholeFramesOfOneThatBreaksOff) {
+  const std::size_t frame = 6 * 5 * 4 * sizeof(float);
+  EXPECT_THAT([&] { run({}, 3 + 2 * frame + 7); },
+              ThrowsMessage<IoError>(AllOf(HasSubstr("found 7 bytes and the end"),
+                                           HasSubstr("expected 480 of frame 2"))));
+  EXPECT_EQ(written_.size(), 2 * 6 * 5 * sizeof(float));
+  EXPECT_THAT([&] { run({}, 3); }, ThrowsMessage<IoError>(HasSubstr("frame 0")));
+  EXPECT_THAT([&] { run({}, 2); }, ThrowsMessage<IoError>(HasSubstr("header")));
+  DecodeRequest stack;
+  stack.stack = true;
+  EXPECT_THAT([&] { run(stack, 3); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("files only")));
 }
 
 }  // namespace

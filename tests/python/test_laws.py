@@ -32,6 +32,15 @@ def test_cameras_come_from_names_files_and_keywords_alike(tmp_path):
     assert pickle.loads(pickle.dumps(by_name)) == by_name and by_name != ts.Camera("paper-5f0")
 
 
+def test_codes_of_files_are_played_at_the_samples_of_the_camera(tmp_path):
+    camera, fine = ts.Camera("paper-10f0", samples=120), ts.Camera("paper-10f0", samples=240)
+    path = tmp_path / "code.code.json"
+    ts.write_code(path, ts.build_family("hamiltonian-k4", camera))
+    np.testing.assert_allclose(ts.ForwardModel(path, fine).correlation_table(240),
+                               ts.ForwardModel("hamiltonian-k4", fine).correlation_table(240),
+                               atol=1e-12)
+
+
 def test_every_key_of_a_camera_file_is_an_attribute():
     parts = {"light": ts.Light, "sensor": ts.Sensor, "lens": ts.Lens, "optics": ts.Optics, "playback": ts.Playback,
              "operating": ts.Operating,

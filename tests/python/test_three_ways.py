@@ -115,7 +115,7 @@ def test_decode(ways, camera):
         ways.command("decode", name, "--code", code, *SMALL, "-o", output, *more)
 
     decoder = ts.Decoder("hamiltonian-k4", camera)
-    for output in ("d.npy", "d.npz", "d.exr", "d.pfm", "d.png", "d.ply"):
+    for output in ("d.npy", "d.npz", "d.exr", "d.pfm", "d.png", "d.ply", "d.pcd"):
         command("raw.npy", output)
         result = decoder.decode_recording("raw.npy", output)
         assert [str(file) for file in result.files] == [
@@ -170,7 +170,7 @@ def test_decode(ways, camera):
     decoder.decode_recording("raw.npy", "snapped.npz", mixed="snap", outputs=["depth", "status"])
 
     ways.cpp("decode")
-    assert len(ways.same()) == len(given) + 6 * 3 + 1 + 2 + 3 + 3 + 3 + 2 + 3 + 3
+    assert len(ways.same()) == len(given) + 7 * 3 + 1 + 2 + 3 + 3 + 3 + 2 + 3 + 3
 
 
 def test_decode_refuses_alike(ways, camera):

@@ -120,6 +120,7 @@ struct ReferenceDepth {
   /// Along the ray [m]: one for all frames or one for each, of their size, or 1 x 1 for a target
   /// that is as far in every pixel. NaN, infinite or <= 0: not known.
   std::vector<Image<float>> depth_m;
+  bool is_z = false;  ///< along the optical axis instead: the camera's lens says where pixels look
 };
 
 /// Reads reference depth in metres: .npy of shape (H, W), (F, H, W), or (F,), a distance for each
@@ -140,7 +141,8 @@ struct CalibratedDepth {
   std::vector<CalibratedTerm> terms;   ///< of the known part of the range
   std::vector<std::string> far_terms;  ///< names of those that count beyond it
   double known_share = 0.0;            ///< of the range in which the reference had depths
-  double rms_before_m = 0.0;           ///< depth error without offset, ahead of the correction
+  double mean_error_m = 0.0;           ///< of the nominal depth, in [-range / 2, range / 2]
+  double rms_before_m = 0.0;           ///< of its error, but for the mean
   double rms_m = 0.0;                  ///< left over on blocks of pixels held out
   double far_rms_m = 0.0;      ///< left over by the terms beyond, on parts of the range held out
   double outlier_share = 0.0;  ///< of the pixels, which count for nothing

@@ -142,8 +142,8 @@ struct AmbiguousDepths {
 std::vector<AmbiguousDepths> ambiguous_depths(const DecodingTable& table);
 
 /// The furthest that a table turns from one bin to the next [rad], jumps (more than 75 degrees, as
-/// where a ramp falls back) left out. Depths between bins are taken to lie on the chords: where this
-/// is more than 10 degrees, the curve between bins may be another.
+/// where a ramp falls back) left out. Depths between bins are taken to lie on the chords: where
+/// this is more than 10 degrees, the curve between bins may be another.
 double furthest_turn_rad(const DecodingTable& table);
 
 /// What constant light adds to the measurements of a measured table.

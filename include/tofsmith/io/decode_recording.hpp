@@ -3,8 +3,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -60,6 +62,9 @@ std::string_view name_of(DepthKind kind);
 /// @throws std::invalid_argument for any other word
 DepthKind parse_depth_kind(std::string_view name);
 
+/// Whether an output of this name holds points: .ply, .pcd.
+bool holds_points(const std::filesystem::path& path);
+
 /// A recording to be decoded into files.
 struct DecodeRequest {
   /// .npy or .npz, (H, W, K) or (F, H, W, K), of any size; or K files, one a measurement in their
@@ -69,10 +74,12 @@ struct DecodeRequest {
   std::filesystem::path raw_format;  ///< describes a sensor's dump (*.raw.toml); empty: no dump
 
   /// .npy .pfm .png (16 bits, mm): depth alone; .npz: an array of each plane; .exr: a channel of
-  /// each; .ply: points with planes as scalars. Files of several frames get numbers: name-03.npz.
+  /// each; .ply, .pcd (organized): points with planes as scalars. Files of several frames get
+  /// numbers: name-03.npz.
   std::filesystem::path output;
   std::vector<DecodedPlane> outputs;   ///< others are not computed; empty: what `output` holds
-  DepthKind kind = DepthKind::radial;  ///< .ply holds points either way
+  DepthKind kind = DepthKind::radial;  ///< .ply and .pcd hold points either way
+  bool all_points = false;             ///< in .ply and .pcd; else those of pixels that are ok
   std::optional<Lens> lens;            ///< of points and z; none: a view 60 degrees wide
   std::optional<int> frame;            ///< this one alone, counted from 0; none: all
   bool stack = false;                  ///< all frames in one .npy a plane, name-PLANE.npy
@@ -146,13 +153,40 @@ DecodedRecording decode_recording(const DecodeRequest& request, const AnyDecoder
 void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
                       const Progress& progress, DecodedRecording& result);
 
+/// Fills bytes from a stream; gives how many, fewer only at its end.
+using ReadStream = std::function<std::size_t(std::span<std::byte> into)>;
+/// Takes bytes.
+using WriteStream = std::function<void(std::span<const std::byte> bytes)>;
+
+/// What came of a stream.
+struct DecodedStream {
+  std::int64_t frames = 0;  ///< decoded and written
+  StatusCounts statuses;    ///< of their pixels, if status is among the outputs
+  double seconds = 0.0;     ///< until the last was written, waiting for them included
+};
+
+/// Decodes frames as they come, each written before the next is read: in the memory of a few
+/// frames, with nothing held back. What comes out of a frame are its planes, one after another in
+/// the order of the request's `outputs` (depth, if it names none), of H x W items each, row by row,
+/// little end first: float32, status and returns uint8, bin int32. The same numbers as in
+/// decode_recording().
+/// @param request  its raw_format describes a stream: its header, then frame after frame; `raw`,
+///                 `output`, `frame`, `stack`, `memory_mb` and `policy` say nothing
+/// @param result   filled frame by frame, also when it throws
+/// @throws std::invalid_argument, IoError as decode_recording(); IoError if the stream ends in a
+///         frame, or ahead of the first; what `read` and `write` throw; Interrupted
+void decode_stream(const DecodeRequest& request, const AnyDecoder& decoder, const ReadStream& read,
+                   const WriteStream& write, const Progress& progress, DecodedStream& result);
+
 /// Writes what a decoder gave of a frame, by extension as DecodeRequest::output.
-/// @param planes  of depth, signal, ambient, confidence, deviation, status; not of .npy .pfm .png
-/// @param view    of points (.ply)
+/// @param planes      of depth, signal, ambient, confidence, deviation, status; not of .npy .pfm
+///                    .png
+/// @param view        of points (.ply, .pcd)
+/// @param all_points  of pixels that are not ok, too
 /// @throws std::invalid_argument for a plane that is not there; IoError for an unknown extension,
 ///         or as AtomicFile
 void write_decoded(const std::filesystem::path& path, const DepthImage& image,
                    const std::vector<DecodedPlane>& planes, const PinholeView& view,
-                   OutputPolicy policy);
+                   OutputPolicy policy, bool all_points = false);
 
 }  // namespace tofsmith

@@ -4,8 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
+#include <memory>
 
+#include "io/input_file.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -45,11 +48,26 @@ int frames_in(std::uint64_t found, const RawFormat& format, const std::string& f
 }  // namespace
 
 RawDumpReader::RawDumpReader(const std::filesystem::path& path, RawFormat format)
-    : file_(path), format_(std::move(format)) {
+    : format_(std::move(format)) {
   format_.validate();
-  if (!file_.size())
-    throw IoError(path.string(), "found a pipe or device; expected a file, read in slices");
-  frames_ = frames_in(*file_.size(), format_, path.string());
+  const auto file = std::make_shared<InputFile>(path);
+  if (!file->size())
+    throw IoError(path.string(),
+                  "found a pipe or device; expected a file, read in slices (decode takes frames "
+                  "from a pipe as RAW -)");
+  frames_ = frames_in(*file->size(), format_, path.string());
+  read_at_ = [file](std::uint64_t offset, std::span<std::byte> into) {
+    file->read_at(offset, into);
+  };
+}
+
+RawDumpReader::RawDumpReader(std::span<const std::byte> bytes, RawFormat format)
+    : read_at_([bytes](std::uint64_t offset, std::span<std::byte> into) {
+        std::ranges::copy(bytes.subspan(offset, into.size()), into.begin());
+      }),
+      format_(std::move(format)) {
+  format_.validate();
+  frames_ = frames_in(bytes.size(), format_, "bytes");
 }
 
 /// Row `row` of an image of the file.
@@ -72,7 +90,7 @@ void RawDumpReader::read_file_row(int frame, std::size_t image, std::size_t row,
     size = (static_cast<std::uint64_t>(first_bit) + bits + 7) / 8;
   }
   bytes.resize(size);
-  file_.read_at(at, bytes);
+  read_at_(at, bytes);
   unpack_numbers(f, bytes, first_bit, numbers);
 }
 
@@ -88,20 +106,24 @@ void RawDumpReader::read_rows(int frame, int first_row, int rows, Number* number
     const int scene_row = first_row + r;
     const auto file_row =
         static_cast<std::size_t>(f.flip_rows ? f.height - 1 - scene_row : scene_row);
-    const auto put = [&](std::size_t j, std::size_t column, double number) {
-      const std::size_t k = f.order.empty() ? j : static_cast<std::size_t>(f.order[j]);
-      pixels[(f.flip_columns ? width - 1 - column : column) * measurements + k] = number;
+    // Measurement k of the code at column c stands at pixels[c * measurements + k].
+    const auto measurement = [&](std::size_t j) {
+      return f.order.empty() ? j : static_cast<std::size_t>(f.order[j]);
+    };
+    const auto put = [&](std::size_t j, const double* from, std::size_t stride) {
+      double* const to = pixels.data() + measurement(j);
+      for (std::size_t i = 0; i < width; ++i)
+        to[(f.flip_columns ? width - 1 - i : i) * measurements] = from[i * stride];
     };
     if (f.layout == RawOrder::interleaved) {
       read_file_row(frame, 0, file_row, bytes, row_numbers);
-      for (std::size_t i = 0; i < row_numbers.size(); ++i)
-        put(i % measurements, i / measurements, row_numbers[i]);
+      for (std::size_t j = 0; j < measurements; ++j) put(j, row_numbers.data() + j, measurements);
     } else {
       const bool planar = f.layout == RawOrder::planar;
       for (std::size_t j = 0; j < measurements; ++j) {
         read_file_row(frame, planar ? j : 0, planar ? file_row : file_row * measurements + j, bytes,
                       row_numbers);
-        for (std::size_t i = 0; i < width; ++i) put(j, i, row_numbers[i]);
+        put(j, row_numbers.data(), 1);
       }
     }
     Number* const out = numbers + static_cast<std::size_t>(r) * width * outputs;

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <span>
 #include <vector>
 
-#include "io/input_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 
 namespace tofsmith {
@@ -16,6 +18,9 @@ class RawDumpReader {
  public:
   /// @throws IoError if the file cannot be read or is not as long as the format says
   RawDumpReader(const std::filesystem::path& path, RawFormat format);
+  /// Of bytes that stay where they are and may change between calls, as many as the format's
+  /// frames.
+  RawDumpReader(std::span<const std::byte> bytes, RawFormat format);
 
   const RawFormat& format() const { return format_; }
   int frames() const { return frames_; }
@@ -30,7 +35,7 @@ class RawDumpReader {
   void read_file_row(int frame, std::size_t image, std::size_t row, std::vector<std::byte>& bytes,
                      std::vector<double>& numbers) const;
 
-  InputFile file_;
+  std::function<void(std::uint64_t offset, std::span<std::byte> into)> read_at_;
   RawFormat format_;
   int frames_ = 0;
 };

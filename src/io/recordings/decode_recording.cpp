@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "io/recordings/decode_plan.hpp"
 #include "io/recordings/decoded_output.hpp"
-#include "io/recordings/prepared_frames.hpp"
 #include "io/recordings/recording_notes.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
@@ -24,47 +24,6 @@
 namespace tofsmith {
 
 namespace {
-
-bool finds_multipath(const AnyDecoder& decoder) {
-  return std::holds_alternative<TwoReturnDecoder>(decoder) ||
-         std::holds_alternative<TailDecoder>(decoder);
-}
-
-/// Everything of a request that needs no file. @throws std::invalid_argument
-void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
-  const std::filesystem::path& output = request.output;
-  require(request.memory_mb > 0.0, "memory_mb", request.memory_mb, "must be > 0");
-  require(!request.raw.empty(), "raw", "no file", "must name one, or one a measurement");
-  require(request.average >= 1, "average", request.average, "must be >= 1");
-  require(request.averaged > 0.0 && std::isfinite(request.averaged), "averaged", request.averaged,
-          "must be > 0");
-  if (request.time_filter) request.time_filter->validate();
-  if (request.filter) request.filter->validate();
-  require(request.frame.value_or(0) >= 0, "frame", request.frame.value_or(0), "must be >= 0");
-  require(!request.stack || output.extension() == ".npy", "stack", "true",
-          fmt::format("goes with a .npy file; the output is {}", output.string()));
-  for (const DecodedPlane plane : request.outputs) {
-    require(!is_multipath_plane(plane) || finds_multipath(decoder), "outputs", name_of(plane),
-            fmt::format("goes with two-return or tail, which alone fill it; the method is {}",
-                        name_of(all_decode_methods[decoder.index()])));
-    require(plane == DecodedPlane::depth || !holds_depth_only(output) || request.stack, "outputs",
-            name_of(plane),
-            fmt::format("a {} file holds depth only; .npz, .exr and .ply hold other planes, and "
-                        ".npy does with --stack",
-                        output.extension().string()));
-  }
-}
-
-/// The planes to write; every plane once.
-std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const AnyDecoder& decoder) {
-  if (request.outputs.empty())
-    return holds_depth_only(request.output) ? std::vector{DecodedPlane::depth}
-                                            : usual_planes(finds_multipath(decoder));
-  std::vector<DecodedPlane> planes;
-  for (const DecodedPlane plane : request.outputs)
-    if (std::ranges::find(planes, plane) == planes.end()) planes.push_back(plane);
-  return planes;
-}
 
 RawFramesReader open_recording(const DecodeRequest& request, const DecodingTable& table) {
   RawReadOptions options{.measurements = table.measurements(),
@@ -92,40 +51,13 @@ DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
           .planes = planes_to_write(request, decoder),
           .count_statuses = request.outputs.empty() ||
                             std::ranges::count(request.outputs, DecodedPlane::status) > 0,
+          .all_points = request.all_points,
           .find_mixed = request.mixed.has_value(),
           .needs_signal = table.correction && table.correction->needs_signal(),
-          .as_z = request.kind == DepthKind::z && request.output.extension() != ".ply",
+          .as_z = request.kind == DepthKind::z && !holds_points(request.output),
           .first_frame = request.frame.value_or(0),
           .frames = request.frame ? 1 : frames,
           .view = view};
-}
-
-/// Reads one map and checks it alone, so that errors name its file.
-void load_map(const std::filesystem::path& path, const char* name, const RawFramesReader& reader,
-              Image<float> PixelMaps::*map, PixelMaps& maps) {
-  if (path.empty()) return;
-  PixelMaps alone;
-  alone.*map = read_float_image(path, name);
-  try {
-    alone.validate(reader.height(), reader.width());
-  } catch (const std::invalid_argument& error) {
-    throw IoError(path.string(), error.what());
-  }
-  maps.*map = std::move(alone.*map);
-}
-
-PixelMaps load_maps(const DecodeRequest& request, const RawFramesReader& reader) {
-  PixelMaps maps;
-  load_map(request.offset_map, "offset", reader, &PixelMaps::delay_offset_m, maps);
-  if (request.offset_m != 0.0) {
-    require(std::isfinite(request.offset_m), "offset_m", request.offset_m, "must be finite");
-    if (maps.delay_offset_m.empty())
-      maps.delay_offset_m = Image<float>(reader.height(), reader.width(), 0.0f);
-    for (float& offset_m : maps.delay_offset_m.pixels)
-      offset_m += static_cast<float>(request.offset_m);
-  }
-  load_map(request.gain_map, "gain", reader, &PixelMaps::gain, maps);
-  return maps;
 }
 
 /// Not even OutputPolicy::overwrite may replace what is being read.
@@ -216,31 +148,6 @@ class Pace {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// A decoder with what differs from pixel to pixel.
-struct MappedDecoder {
-  const AnyDecoder& decoder;
-  const DecodingTable& table;
-  PixelMaps maps;
-  std::optional<MixedPixels> mixed;  ///< in bands that are whole frames
-
-  /// Decodes one band to where it belongs in the planes and counts its statuses.
-  void decode(const RawView& raw, const Band& band, const DecodeTarget& target,
-              const DecodedView& decoded, const Progress& progress, StatusCounts& statuses) const {
-    const auto pixels = static_cast<std::size_t>(raw.pixels());
-    std::visit([&](const auto& d) { d.decode(raw, decoded, progress); }, decoder);
-    const std::size_t first =
-        static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(raw.width);
-    if (table.correction)
-      apply(*table.correction, table.range_m, decoded, target.view.height, target.view.width, first,
-            pixels);
-    apply(maps, table.range_m, decoded, first, pixels);
-    if (mixed) mark_mixed_pixels(table, raw, *mixed, decoded, maps);
-    if (target.as_z && decoded.depth_m)
-      turn_into_z(decoded.depth_m, band.first_row, band.rows, target.view);
-    if (target.count_statuses) statuses.add({decoded.status, pixels});
-  }
-};
-
 /// Decodes the target's frames in bands of at most `rows` rows.
 void decode_frames(const RawFramesReader& reader, const Preparation& preparation, int rows,
                    const MappedDecoder& decoder, DecodeOutput& output, const Progress& progress,
@@ -249,16 +156,18 @@ void decode_frames(const RawFramesReader& reader, const Preparation& preparation
   const int height = target.view.height, width = target.view.width;
   const bool in_rows = target.in_rows();
   DecodedPlanes planes(target.needed_planes(), in_rows ? rows : height, width);
-  PreparedFrames input(
-      reader, decoder.table, preparation,
-      bands_of(target.first_frame, target.first_frame + target.frames, height, rows));
+  const std::vector<Band> bands =
+      bands_of(target.first_frame, target.first_frame + target.frames, height, rows);
+  ReadAhead recorded(reader, bands_to_read(preparation, reader.frames(), bands));
+  PreparedFrames input([&] { return recorded.next(); }, decoder.table(), preparation,
+                       reader.frames());
   const Pace pace(progress, target);
   StatusCounts statuses;
-  for (const Band& band : input.bands()) {
+  for (const Band& band : bands) {
     const Progress here = pace.of_band(band, result.pixels);
     report(here, 0.0, "reading");
     const ProgressParts parts(here, {input.effort(), 1.0});
-    const RawView raw = input.next(parts[0]);
+    const RawView raw = *input.next(band.frame, parts[0]);
     const std::size_t first =
         in_rows ? 0 : static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(width);
     planes.keep_averaged(raw, first);
@@ -300,24 +209,15 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
   // All that can be wrong is found before the first frame.
   result = {};
   check_request(request, decoder);
-  const DecodingTable& table =
-      std::visit([](const auto& d) -> const DecodingTable& { return d.table(); }, decoder);
+  const DecodingTable& table = table_of(decoder);
   const RawFramesReader reader = open_recording(request, table);
   const DecodeTarget target = target_of(request, decoder, table, reader);
-  if (const auto& correction = table.correction)
-    if (correction->height != reader.height() || correction->width != reader.width())
-      throw IoError(
-          request.raw.front().string(),
-          fmt::format("found frames of {} x {} pixels; expected {} x {}, of which the "
-                      "table's depth correction is",
-                      reader.height(), reader.width(), correction->height, correction->width));
-  const MappedDecoder mapped{decoder, table, load_maps(request, reader), request.mixed};
+  const MappedDecoder mapped(request, decoder, request.raw.front().string(), reader.height(),
+                             reader.width());
   check_inputs_are_kept(request, target);
   check_range_fits(target.path, table.range_m);
   DecodeOutput output(target);
-  Preparation preparation{request.average, request.averaged, request.time_filter, request.filter,
-                          request.mixed.has_value()};
-  if (preparation.time_filter && preparation.filter) preparation.time_filter->before_filter = true;
+  const Preparation preparation = preparation_of(request);
   const int rows = rows_at_a_time(reader, target, preparation, 1e6 * request.memory_mb);
 
   result.height = reader.height();

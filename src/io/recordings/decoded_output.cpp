@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "io/images/exr.hpp"
+#include "io/meshes/pcd.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/mesh_file.hpp"
@@ -32,8 +34,11 @@ NpzArrays arrays(const DecodedPlanes& decoded, const std::vector<DecodedPlane>& 
   return result;
 }
 
+/// Points of pixels with depth that are ok, or of all with depth.
+/// @param organized  others stand there, too, as NaN
 PointCloud cloud(const DecodedPlanes& decoded, const std::vector<DecodedPlane>& planes,
-                 const PinholeView& view) {
+                 const PinholeView& view, bool all_points, bool organized) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   PointCloud result;
   std::vector<std::size_t> kept;
   result.points_m.reserve(
@@ -42,10 +47,15 @@ PointCloud cloud(const DecodedPlanes& decoded, const std::vector<DecodedPlane>& 
   for (int row = 0; row < decoded.height(); ++row)
     for (int column = 0; column < decoded.width(); ++column) {
       const float depth_m = decoded.depth_m()(row, column);
-      if (!std::isfinite(depth_m)) continue;
+      const bool has_point = std::isfinite(depth_m) &&
+                             (all_points || decoded.statuses()(row, column) == PixelStatus::ok);
+      if (!has_point && !organized) continue;
       const Eigen::Vector3d point = view.ray(row, column) * static_cast<double>(depth_m);
-      result.points_m.push_back({static_cast<float>(point.x()), static_cast<float>(point.y()),
-                                 static_cast<float>(point.z())});
+      if (has_point)
+        result.points_m.push_back({static_cast<float>(point.x()), static_cast<float>(point.y()),
+                                   static_cast<float>(point.z())});
+      else
+        result.points_m.push_back({nan, nan, nan});
       kept.push_back(static_cast<std::size_t>(row) * static_cast<std::size_t>(decoded.width()) +
                      static_cast<std::size_t>(column));
     }
@@ -76,7 +86,8 @@ std::size_t writing_bytes_per_pixel(std::string_view extension,
   const std::size_t held = bytes_per_pixel(planes), depth = sizeof(float);
   if (extension == ".npz") return held;  // as arrays
   // The list of kept pixels, and the points with their scalars twice: as lists and as a file.
-  if (extension == ".ply") return sizeof(std::size_t) + 2 * (3 + planes.size()) * sizeof(float);
+  if (extension == ".ply" || extension == ".pcd")
+    return sizeof(std::size_t) + 2 * (3 + planes.size()) * sizeof(float);
   // Channels of floats, and at worst the same again in the file.
   if (extension == ".exr") return 2 * planes.size() * sizeof(float);
   return 2 * depth;  // .pfm, .png: converted, and the file
@@ -85,13 +96,16 @@ std::size_t writing_bytes_per_pixel(std::string_view extension,
 }  // namespace
 
 void write_planes(const std::filesystem::path& path, const DecodedPlanes& decoded,
-                  const std::vector<DecodedPlane>& planes, const PinholeView& view,
+                  const std::vector<DecodedPlane>& planes, const PinholeView& view, bool all_points,
                   OutputPolicy policy) {
   const std::string extension = path.extension().string();
   if (extension == ".npz") {
     write_npz(path, arrays(decoded, planes), policy);
   } else if (extension == ".ply") {
-    write_ply(path, cloud(decoded, planes, view), policy);
+    write_ply(path, cloud(decoded, planes, view, all_points, false), policy);
+  } else if (extension == ".pcd") {
+    write_pcd(path, cloud(decoded, planes, view, all_points, true), decoded.height(),
+              decoded.width(), policy);
   } else if (extension == ".exr") {
     ExrPlanes channels;
     for (const DecodedPlane plane : planes)
@@ -105,14 +119,18 @@ void write_planes(const std::filesystem::path& path, const DecodedPlanes& decode
 
 void write_decoded(const std::filesystem::path& path, const DepthImage& image,
                    const std::vector<DecodedPlane>& planes, const PinholeView& view,
-                   OutputPolicy policy) {
+                   OutputPolicy policy, bool all_points) {
   const DecodedPlanes decoded(image);
   for (const DecodedPlane plane : planes)
     if (!decoded.has(plane))
       throw std::invalid_argument(
           fmt::format("planes = {}; must be planes that the image has", name_of(plane)));
   check_decoded_output(path, policy);
-  write_planes(path, decoded, planes, view, policy);
+  write_planes(path, decoded, planes, view, all_points, policy);
+}
+
+bool holds_points(const std::filesystem::path& path) {
+  return path.extension() == ".ply" || path.extension() == ".pcd";
 }
 
 bool holds_depth_only(const std::filesystem::path& path) {
@@ -122,11 +140,12 @@ bool holds_depth_only(const std::filesystem::path& path) {
 
 void check_decoded_output(const std::filesystem::path& path, OutputPolicy policy) {
   const std::string extension = path.extension().string();
-  constexpr std::array<std::string_view, 6> known{".npy", ".npz", ".exr", ".pfm", ".png", ".ply"};
+  constexpr std::array<std::string_view, 7> known{".npy", ".npz", ".exr", ".pfm",
+                                                  ".png", ".ply", ".pcd"};
   if (std::ranges::find(known, extension) == known.end())
     throw IoError(path.string(),
                   fmt::format("unknown extension \"{}\"; expected .npy, .npz, .exr, .pfm, .png "
-                              "(16 bits, mm) or .ply",
+                              "(16 bits, mm), .ply or .pcd",
                               extension));
   const AtomicFile probe(path, policy);  // never committed
 }
@@ -152,7 +171,10 @@ std::vector<DecodedPlane> DecodeTarget::needed_planes() const {
   const auto need = [&](DecodedPlane plane) {
     if (std::ranges::find(needed, plane) == needed.end()) needed.push_back(plane);
   };
-  if (path.extension() == ".ply") need(DecodedPlane::depth);
+  if (holds_points(path)) {
+    need(DecodedPlane::depth);
+    if (!all_points) need(DecodedPlane::status);
+  }
   if (count_statuses) need(DecodedPlane::status);
   if (needs_signal) need(DecodedPlane::signal);
   if (find_mixed)
@@ -177,7 +199,8 @@ void DecodeOutput::take(int frame, int first_row, int rows, const DecodedPlanes&
   const bool first = first_row == 0, last = first_row + rows == target_.view.height;
   if (!target_.in_rows()) {
     if (last)
-      write_planes(target_.frame_path(frame), planes, target_.planes, target_.view, target_.policy);
+      write_planes(target_.frame_path(frame), planes, target_.planes, target_.view,
+                   target_.all_points, target_.policy);
     return;
   }
   if (first && !(target_.stack && frame > target_.first_frame)) open_files(frame);

@@ -14,11 +14,13 @@
 namespace tofsmith {
 
 /// Writes planes by extension: .npy, .pfm and .png hold depth; .exr every chosen plane as a
-/// channel; .npz every chosen plane as an array; .ply a point cloud with the chosen planes as
-/// scalars.
-/// @param planes  those of `decoded` to write; .npy, .pfm and .png take depth, .ply needs it too
+/// channel; .npz every chosen plane as an array; .ply and .pcd a point cloud with the chosen planes
+/// as scalars.
+/// @param planes      those of `decoded` to write; .npy, .pfm and .png take depth, points need it
+///                    and status too
+/// @param all_points  though their pixels are not ok
 void write_planes(const std::filesystem::path& path, const DecodedPlanes& decoded,
-                  const std::vector<DecodedPlane>& planes, const PinholeView& view,
+                  const std::vector<DecodedPlane>& planes, const PinholeView& view, bool all_points,
                   OutputPolicy policy);
 
 /// Whether a file of this name holds depth alone: .npy, .pfm, .png.
@@ -34,6 +36,7 @@ struct DecodeTarget {
   bool stack = false;                ///< all frames in one .npy per plane
   std::vector<DecodedPlane> planes;  ///< to write
   bool count_statuses = true;        ///< though the status plane may not be written
+  bool all_points = false;           ///< of pixels that are not ok, too
   bool find_mixed = false;           ///< which needs planes that may not be written
   bool needs_signal = false;         ///< to correct depth, though it may not be written
   bool as_z = false;                 ///< depth along the axis instead of radial distance

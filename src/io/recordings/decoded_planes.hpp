@@ -38,6 +38,7 @@ class DecodedPlanes {
   void keep_averaged(const RawView& raw, std::size_t first);
 
   const Image<float>& depth_m() const { return image_.depth_m; }
+  const Image<PixelStatus>& statuses() const { return image_.status; }
   bool has(DecodedPlane plane) const;
   /// A plane as floats: codes of status, numbers of bins.
   Image<float> floats(DecodedPlane plane) const;

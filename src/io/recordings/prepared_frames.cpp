@@ -20,7 +20,13 @@ int frames_of_mean(const Preparation& preparation, int recorded, int index) {
   return std::min(preparation.average, recorded - index * preparation.average);
 }
 
-/// Bands to read for those that come out.
+double added(double sum, double value, double clipped) {
+  if (!std::isfinite(value) || std::isnan(sum)) return std::numeric_limits<double>::quiet_NaN();
+  return value >= clipped ? std::numeric_limits<double>::infinity() : sum + value;
+}
+
+}  // namespace
+
 std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
                                 const std::vector<Band>& bands) {
   std::vector<Band> needed;
@@ -33,13 +39,6 @@ std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
       all.push_back({band.frame * preparation.average + i, band.first_row, band.rows});
   return all;
 }
-
-double added(double sum, double value, double clipped) {
-  if (!std::isfinite(value) || std::isnan(sum)) return std::numeric_limits<double>::quiet_NaN();
-  return value >= clipped ? std::numeric_limits<double>::infinity() : sum + value;
-}
-
-}  // namespace
 
 double Preparation::frame_bytes(int height, int width, int measurements) const {
   // What is known of the pixels while mixed ones are marked.
@@ -93,58 +92,54 @@ RawView RowSums::means(double averaged) {
   return view;
 }
 
-PreparedFrames::PreparedFrames(const RawFramesReader& reader, const DecodingTable& table,
-                               const Preparation& preparation, std::vector<Band> bands)
-    : table_(table),
-      preparation_(preparation),
-      recorded_(reader.frames()),
-      bands_(std::move(bands)),
-      input_(reader, bands_to_read(preparation, recorded_, bands_)) {
+PreparedFrames::PreparedFrames(Input input, const DecodingTable& table,
+                               const Preparation& preparation, int recorded)
+    : table_(table), preparation_(preparation), recorded_(recorded), input_(std::move(input)) {
   if (preparation.time_filter) time_filter_.emplace(table, *preparation.time_filter);
   if (preparation.filter) filter_.emplace(table, *preparation.filter);
 }
 
 /// A band of frame `frame` as it is read or, of several, as their mean.
-RawView PreparedFrames::measured(int frame, const Progress& progress) {
+std::optional<RawView> PreparedFrames::measured(int frame, const Progress& progress) {
   if (preparation_.average == 1) {
-    RawView raw = input_.next();
-    if (preparation_.averaged == 1.0) return raw;
-    averaged_.assign(static_cast<std::size_t>(raw.pixels()),
+    std::optional<RawView> raw = input_();
+    if (!raw || preparation_.averaged == 1.0) return raw;
+    averaged_.assign(static_cast<std::size_t>(raw->pixels()),
                      static_cast<float>(preparation_.averaged));
-    raw.averaged = averaged_.data();
+    raw->averaged = averaged_.data();
     return raw;
   }
   const int frames = frames_of_mean(preparation_, recorded_, frame);
   for (int i = 0; i < frames; ++i) {
     report(progress, static_cast<double>(i) / frames, "averaging");
-    const RawView raw = input_.next();
-    if (i == 0) sums_.start(raw, table_.saturation_level);
-    sums_.add(raw);
+    const std::optional<RawView> raw = input_();
+    if (!raw && i == 0) return std::nullopt;
+    if (!raw) break;
+    if (i == 0) sums_.start(*raw, table_.saturation_level);
+    sums_.add(*raw);
   }
   return sums_.means(preparation_.averaged);
 }
 
 /// Frame `frame` with what is the same in those before.
-RawView PreparedFrames::added_up(int frame, const Progress& progress) {
+std::optional<RawView> PreparedFrames::added_up(int frame, const Progress& progress) {
   const ProgressParts parts(progress, static_cast<std::size_t>(frame + 1 - frames_added_));
-  RawView raw;
+  std::optional<RawView> raw;
   for (std::size_t part = 0; frames_added_ <= frame; ++frames_added_, ++part) {
-    raw = time_filter_->add(measured(frames_added_, parts[part]));
+    raw = measured(frames_added_, parts[part]);
+    if (!raw) break;
+    raw = time_filter_->add(*raw);
     report(parts[part], 1.0, "filtering");
   }
   return raw;
 }
 
-RawView PreparedFrames::next(const Progress& progress) {
-  const int frame = bands_[next_].frame;
+std::optional<RawView> PreparedFrames::next(int frame, const Progress& progress) {
   const ProgressParts parts(progress, {1.0, filter_ ? 8.0 : 0.0});
-  RawView raw = time_filter_ ? added_up(frame, parts[0]) : measured(frame, parts[0]);
-  if (filter_) {
-    filter_->apply(raw, filtered_, parts[1]);
-    raw = filtered_.view();
-  }
-  ++next_;
-  return raw;
+  std::optional<RawView> raw = time_filter_ ? added_up(frame, parts[0]) : measured(frame, parts[0]);
+  if (!raw || !filter_) return raw;
+  filter_->apply(*raw, filtered_, parts[1]);
+  return filtered_.view();
 }
 
 }  // namespace tofsmith

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -46,36 +47,41 @@ class RowSums {
   std::vector<float> averaged_;
 };
 
-/// Gives bands of a recording as they are decoded: as they are read, as means of several frames,
-/// filtered.
+/// Bands to read for those that come out, of a recording of so many frames.
+std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
+                                const std::vector<Band>& bands);
+
+/// Gives bands of frames as they are decoded: as they come, as means of several frames, filtered.
 class PreparedFrames {
  public:
-  /// @param reader  outlives this, as does the table
-  /// @param bands   of frames that come out; whole frames if there is a filter; one in time
-  ///                is given all frames before the first, too
-  PreparedFrames(const RawFramesReader& reader, const DecodingTable& table,
-                 const Preparation& preparation, std::vector<Band> bands);
+  /// The raw numbers of the next band, until the call after; none after the last.
+  using Input = std::function<std::optional<RawView>()>;
 
-  const std::vector<Band>& bands() const { return bands_; }
+  /// @param input     gives bands_to_read(); whole frames if there is a filter; for one in time all
+  ///                  frames before the first, too
+  /// @param table     outlives this
+  /// @param recorded  frames that there are; of a stream the most an int holds
+  PreparedFrames(Input input, const DecodingTable& table, const Preparation& preparation,
+                 int recorded);
+
   /// How long next() takes, where decoding takes 1: about.
   double effort() const {
     return (preparation_.average > 1 ? 1.0 : 0.0) + (time_filter_ ? 1.0 : 0.0) +
            (filter_ ? 8.0 : 0.0);
   }
-  /// The raw numbers of the next band, until the call after.
-  /// @throws IoError as RawFramesReader::read_rows(); Interrupted if progress says so
-  RawView next(const Progress& progress);
+  /// The raw numbers of the next band, of frame `frame` of those that come out, until the call
+  /// after; none after the last.
+  /// @throws IoError as the input; Interrupted if progress says so
+  std::optional<RawView> next(int frame, const Progress& progress);
 
  private:
-  RawView measured(int frame, const Progress& progress);
-  RawView added_up(int frame, const Progress& progress);
+  std::optional<RawView> measured(int frame, const Progress& progress);
+  std::optional<RawView> added_up(int frame, const Progress& progress);
 
   const DecodingTable& table_;
   Preparation preparation_;
   int recorded_;
-  std::vector<Band> bands_;
-  std::size_t next_ = 0;
-  ReadAhead input_;
+  Input input_;
   RowSums sums_;
   std::vector<float> averaged_;  // of numbers that are read, unless of one
   std::optional<TimeFilter> time_filter_;

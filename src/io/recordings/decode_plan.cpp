@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "io/recordings/decode_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/decode/depth_image.hpp"
+#include "tofsmith/io/image_file.hpp"
+#include "tofsmith/simulate/scene_result.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+bool finds_multipath(const AnyDecoder& decoder) {
+  return std::holds_alternative<TwoReturnDecoder>(decoder) ||
+         std::holds_alternative<TailDecoder>(decoder);
+}
+
+/// Reads one map and checks it alone, so that errors name its file.
+void load_map(const std::filesystem::path& path, const char* name, int height, int width,
+              Image<float> PixelMaps::*map, PixelMaps& maps) {
+  if (path.empty()) return;
+  PixelMaps alone;
+  alone.*map = read_float_image(path, name);
+  try {
+    alone.validate(height, width);
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path.string(), error.what());
+  }
+  maps.*map = std::move(alone.*map);
+}
+
+PixelMaps load_maps(const DecodeRequest& request, int height, int width) {
+  PixelMaps maps;
+  load_map(request.offset_map, "offset", height, width, &PixelMaps::delay_offset_m, maps);
+  if (request.offset_m != 0.0) {
+    require(std::isfinite(request.offset_m), "offset_m", request.offset_m, "must be finite");
+    if (maps.delay_offset_m.empty()) maps.delay_offset_m = Image<float>(height, width, 0.0f);
+    for (float& offset_m : maps.delay_offset_m.pixels)
+      offset_m += static_cast<float>(request.offset_m);
+  }
+  load_map(request.gain_map, "gain", height, width, &PixelMaps::gain, maps);
+  return maps;
+}
+
+}  // namespace
+
+void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
+  const std::filesystem::path& output = request.output;
+  require(request.memory_mb > 0.0, "memory_mb", request.memory_mb, "must be > 0");
+  require(!request.raw.empty(), "raw", "no file", "must name one, or one a measurement");
+  require(request.average >= 1, "average", request.average, "must be >= 1");
+  require(request.averaged > 0.0 && std::isfinite(request.averaged), "averaged", request.averaged,
+          "must be > 0");
+  if (request.time_filter) request.time_filter->validate();
+  if (request.filter) request.filter->validate();
+  require(request.frame.value_or(0) >= 0, "frame", request.frame.value_or(0), "must be >= 0");
+  require(!request.stack || output.extension() == ".npy", "stack", "true",
+          fmt::format("goes with a .npy file; the output is {}", output.string()));
+  for (const DecodedPlane plane : request.outputs) {
+    require(!is_multipath_plane(plane) || finds_multipath(decoder), "outputs", name_of(plane),
+            fmt::format("goes with two-return or tail, which alone fill it; the method is {}",
+                        name_of(all_decode_methods[decoder.index()])));
+    require(plane == DecodedPlane::depth || !holds_depth_only(output) || request.stack, "outputs",
+            name_of(plane),
+            fmt::format("a {} file holds depth only; .npz, .exr and .ply hold other planes, and "
+                        ".npy does with --stack",
+                        output.extension().string()));
+  }
+}
+
+std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const AnyDecoder& decoder) {
+  if (request.outputs.empty())
+    return holds_depth_only(request.output) ? std::vector{DecodedPlane::depth}
+                                            : usual_planes(finds_multipath(decoder));
+  std::vector<DecodedPlane> planes;
+  for (const DecodedPlane plane : request.outputs)
+    if (std::ranges::find(planes, plane) == planes.end()) planes.push_back(plane);
+  return planes;
+}
+
+Preparation preparation_of(const DecodeRequest& request) {
+  Preparation preparation{request.average, request.averaged, request.time_filter, request.filter,
+                          request.mixed.has_value()};
+  if (preparation.time_filter && preparation.filter) preparation.time_filter->before_filter = true;
+  return preparation;
+}
+
+const DecodingTable& table_of(const AnyDecoder& decoder) {
+  return std::visit([](const auto& d) -> const DecodingTable& { return d.table(); }, decoder);
+}
+
+MappedDecoder::MappedDecoder(const DecodeRequest& request, const AnyDecoder& decoder,
+                             const std::string& source, int height, int width)
+    : decoder_(decoder),
+      table_(table_of(decoder)),
+      maps_(load_maps(request, height, width)),
+      mixed_(request.mixed) {
+  if (const auto& correction = table_.correction)
+    if (correction->height != height || correction->width != width)
+      throw IoError(source, fmt::format("found frames of {} x {} pixels; expected {} x {}, of "
+                                        "which the table's depth correction is",
+                                        height, width, correction->height, correction->width));
+}
+
+void MappedDecoder::decode(const RawView& raw, const Band& band, const DecodeTarget& target,
+                           const DecodedView& decoded, const Progress& progress,
+                           StatusCounts& statuses) const {
+  const auto pixels = static_cast<std::size_t>(raw.pixels());
+  std::visit([&](const auto& d) { d.decode(raw, decoded, progress); }, decoder_);
+  const std::size_t first =
+      static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(raw.width);
+  if (table_.correction)
+    apply(*table_.correction, table_.range_m, decoded, target.view.height, target.view.width, first,
+          pixels);
+  apply(maps_, table_.range_m, decoded, first, pixels);
+  if (mixed_) mark_mixed_pixels(table_, raw, *mixed_, decoded, maps_);
+  if (target.as_z && decoded.depth_m)
+    turn_into_z(decoded.depth_m, band.first_row, band.rows, target.view);
+  if (target.count_statuses) statuses.add({decoded.status, pixels});
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/recordings/decoded_output.hpp"
+#include "io/recordings/prepared_frames.hpp"
+#include "tofsmith/io/decode_recording.hpp"
+
+namespace tofsmith {
+
+/// Everything of a request that needs no file. @throws std::invalid_argument
+void check_request(const DecodeRequest& request, const AnyDecoder& decoder);
+
+/// The planes to write; every plane once.
+std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const AnyDecoder& decoder);
+
+Preparation preparation_of(const DecodeRequest& request);
+
+/// A decoder with what differs from pixel to pixel.
+class MappedDecoder {
+ public:
+  /// @param source  of the frames, for errors
+  /// @throws IoError if maps cannot be read or do not fit, or frames are not of the size of the
+  ///         table's depth correction
+  MappedDecoder(const DecodeRequest& request, const AnyDecoder& decoder, const std::string& source,
+                int height, int width);
+
+  const DecodingTable& table() const { return table_; }
+
+  /// Decodes one band to where it belongs in the planes and counts its statuses.
+  void decode(const RawView& raw, const Band& band, const DecodeTarget& target,
+              const DecodedView& decoded, const Progress& progress, StatusCounts& statuses) const;
+
+ private:
+  const AnyDecoder& decoder_;
+  const DecodingTable& table_;
+  PixelMaps maps_;
+  std::optional<MixedPixels> mixed_;  // in bands that are whole frames
+};
+
+/// What every decoder decodes with.
+const DecodingTable& table_of(const AnyDecoder& decoder);
+
+}  // namespace tofsmith

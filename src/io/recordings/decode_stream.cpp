@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+#include "io/image_limits.hpp"
+#include "io/images/raw_dump_reader.hpp"
+#include "io/recordings/decode_plan.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/simulate/scene_result.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr const char* stream_name = "the stream";
+
+/// Frames of a stream, one after another.
+class StreamFrames {
+ public:
+  StreamFrames(const ReadStream& read, RawFormat format)
+      : read_(read), header_(format.header_bytes), bytes_(format.frame_bytes()) {
+    format.header_bytes = 0;
+    format.frames = 1;
+    frame_ = std::make_unique<RawDumpReader>(bytes_, std::move(format));
+  }
+
+  /// The raw numbers of the next frame, until the call after; none after the last.
+  /// @throws IoError if the stream ends in a frame
+  std::optional<RawView> next() {
+    if (const std::size_t found = read_(header_); found < header_.size()) fail(found, header_);
+    header_.clear();
+    const std::size_t found = read_(bytes_);
+    if (found == 0 && frames_ > 0) return std::nullopt;
+    if (found < bytes_.size()) fail(found, bytes_);
+    ++frames_;
+    return frame_->format().needs_doubles() ? numbers(doubles_) : numbers(floats_);
+  }
+
+ private:
+  template <typename Number>
+  RawView numbers(std::vector<Number>& values) const {
+    const RawFormat& f = frame_->format();
+    const auto row =
+        static_cast<std::size_t>(f.width) * static_cast<std::size_t>(f.output_measurements());
+    values.resize(static_cast<std::size_t>(f.height) * row);
+    parallel_for_blocks(f.height, 16, [&](IndexRange rows) {
+      const auto first = static_cast<int>(rows.begin);
+      frame_->read_rows(0, first, static_cast<int>(rows.end) - first,
+                        values.data() + static_cast<std::size_t>(first) * row);
+    });
+    return RawView::interleaved(values.data(), f.height, f.width, f.output_measurements());
+  }
+
+  [[noreturn]] void fail(std::size_t found, const std::vector<std::byte>& expected) const {
+    throw IoError(
+        stream_name,
+        fmt::format(
+            "found {} bytes and the end; expected {} of {}", found, expected.size(),
+            !header_.empty() ? "its header" : fmt::format("frame {}, counted from 0", frames_)));
+  }
+
+  const ReadStream& read_;
+  std::vector<std::byte> header_, bytes_;
+  std::unique_ptr<RawDumpReader> frame_;
+  std::vector<float> floats_;
+  std::vector<double> doubles_;
+  std::int64_t frames_ = 0;
+};
+
+/// What there is to a request for a stream.
+DecodeRequest checked(DecodeRequest request, const AnyDecoder& decoder) {
+  require(!request.raw_format.empty(), "raw_format", "none",
+          "must be a file that describes the frames of the stream");
+  require(!request.frame, "frame", request.frame.value_or(0), "goes with files only");
+  require(!request.stack, "stack", "true", "goes with files only");
+  if (request.outputs.empty()) request.outputs = {DecodedPlane::depth};
+  request.raw = {stream_name};
+  request.output.clear();
+  check_request(request, decoder);
+  return request;
+}
+
+}  // namespace
+
+void decode_stream(const DecodeRequest& asked, const AnyDecoder& decoder, const ReadStream& read,
+                   const WriteStream& write, const Progress& progress, DecodedStream& result) {
+  result = {};
+  const DecodeRequest request = checked(asked, decoder);
+  const RawFormat format = read_raw_format(request.raw_format);
+  const std::string source = request.raw_format.string();
+  const int height = format.height, width = format.width;
+  check_image_size(source, static_cast<std::uint64_t>(height), static_cast<std::uint64_t>(width));
+  const int expected = table_of(decoder).measurements();
+  if (format.output_measurements() != expected)
+    throw IoError(source, fmt::format("the description gives {} measurements per pixel; expected "
+                                      "{} as the code takes",
+                                      format.output_measurements(), expected));
+  const MappedDecoder mapped(request, decoder, source, height, width);
+  const PinholeView view = view_of(request.lens, width, height);
+  if (request.lens) view.validate();
+  const auto& correction = mapped.table().correction;
+  const DecodeTarget target{
+      .planes = planes_to_write(request, decoder),
+      .count_statuses = std::ranges::count(request.outputs, DecodedPlane::status) > 0,
+      .find_mixed = request.mixed.has_value(),
+      .needs_signal = correction && correction->needs_signal(),
+      .as_z = request.kind == DepthKind::z,
+      .view = view};
+
+  StreamFrames frames(read, format);
+  PreparedFrames input([&] { return frames.next(); }, mapped.table(), preparation_of(request),
+                       std::numeric_limits<int>::max());
+  DecodedPlanes planes(target.needed_planes(), height, width);
+  const auto start = std::chrono::steady_clock::now();
+  for (;;) {
+    report(progress, 0.0, fmt::format("frame {}", result.frames));
+    const ProgressParts parts(progress, {0.0, 0.0, 1.0});  // how long a stream is nobody knows
+    // A filter in time counts its frames up to an int's; nothing else looks at the number.
+    const auto frame = static_cast<int>(
+        std::min<std::int64_t>(result.frames, std::numeric_limits<int>::max() / 2));
+    const std::optional<RawView> raw = input.next(frame, parts[0]);
+    if (!raw) break;
+    planes.keep_averaged(*raw, 0);
+    mapped.decode(*raw, {0, 0, height}, target, planes.view(), parts[1], result.statuses);
+    for (const DecodedPlane plane : target.planes) write(planes.items(plane, height));
+    ++result.frames;
+    result.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+}
+
+}  // namespace tofsmith
