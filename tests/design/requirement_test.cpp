@@ -12,10 +12,11 @@
 namespace tofsmith {
 namespace {
 
-/// One light level, few harmonics: designs in a moment.
+/// One light level, few harmonics, three exposures: designs in a moment.
 Camera small_camera() {
   Camera camera = built_in_camera("paper-10f0");
   camera.samples = 48;
+  camera.exposure_s.each_s = {0.1, 0.1, 0.1};
   camera.operating.signal_e_per_s = {3e4};
   camera.operating.ambient_e_per_s = {1e4};
   camera.operating.error = DepthErrorKind::circular;
