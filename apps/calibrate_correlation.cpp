@@ -27,7 +27,7 @@ namespace {
 
 struct CorrelationArguments {
   std::vector<std::string> files;
-  std::string raw_format, shifts, dark, reference, reference_kind = "radial";
+  std::string raw_format, dataset, shifts, dark, reference, reference_kind = "radial";
   std::string table, offset_map, gain_map;
   std::string unit = "s", decimal = "auto", axes;
   std::vector<std::string> codes;
@@ -165,6 +165,7 @@ void run(const CorrelationArguments& arguments, const Session& session) {
     calibrate_by_reference(
         {{arguments.files.begin(), arguments.files.end()},
          arguments.raw_format,
+         arguments.dataset,
          parse_depth_kind(arguments.reference_kind) == DepthKind::z,
          arguments.reference,
          arguments.table,
@@ -266,6 +267,10 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
   command
       ->add_option("--raw-format", arguments->raw_format,
                    "the frames are a sensor's dump, as this .raw.toml file describes it")
+      ->needs(reference);
+  command
+      ->add_option("--dataset", arguments->dataset,
+                   "which array of an .npz, or data set of an .h5, the frames are")
       ->needs(reference);
   command->add_option("--dark", arguments->dark, "frames with the light off, room as in the sweep");
   command

@@ -16,7 +16,8 @@ namespace tofsmith::apps {
 /// What `calibrate correlation --reference` was given.
 struct DepthCalibrationArguments {
   std::vector<std::filesystem::path> frames;
-  std::string raw_format;  ///< file; empty: .npy or .npz
+  std::string raw_format;  ///< file; empty: .npy, .npz or .h5
+  std::string dataset;     ///< of .npz and .h5; empty: the one called raw, or the only one
   bool reference_is_z = false;
   std::string reference, table, camera_path, camera_name;
   std::vector<std::string> codes;

@@ -160,7 +160,7 @@ void add_decode_command(CLI::App& app, Session& session) {
   command
       ->add_option(
           "RAW", arguments->raw,
-          "raw frames (.npy .npz): (H,W,K) or (F,H,W,K); any dump with --raw-format; or "
+          "raw frames (.npy .npz .h5): (H,W,K) or (F,H,W,K); any dump with --raw-format; or "
           "K files, one a measurement in their order, (H,W) or (F,H,W) each; or - for frames "
           "of --raw-format from standard input, with -o -")
       ->required();
@@ -171,11 +171,16 @@ void add_decode_command(CLI::App& app, Session& session) {
               "how RAW runs: interleaved, or planar for (K,H,W) and (F,K,H,W); never guessed")
           ->check(one_of({"interleaved", "planar"}))
           ->capture_default_str();
+  CLI::Option* const dataset =
+      command->add_option("--dataset", arguments->request.dataset,
+                          "which array of an .npz, or data set of an .h5, RAW is (the one called "
+                          "raw, or the only one)");
   command
       ->add_option("--raw-format", arguments->raw_format,
                    "RAW is a sensor's dump without header, as this .raw.toml file describes it "
                    "(docs/raw_formats.md)")
-      ->excludes(layout);
+      ->excludes(layout)
+      ->excludes(dataset);
   command
       ->add_option(
           "--code", arguments->code,

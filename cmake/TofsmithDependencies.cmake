@@ -41,6 +41,7 @@ if(TOFSMITH_HAS_io)
   find_package(TBB REQUIRED)  # Embree's threads
   find_package(assimp REQUIRED)
   pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
+  pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)  # not the one for MPI
 endif()
 
 set(TOFSMITH_HAS_LXI OFF)

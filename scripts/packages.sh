@@ -24,7 +24,7 @@ packages_design=("${packages_core[@]}")
 packages_build=(
   "${packages_core[@]}"
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
-  libzip-dev libopenexr-dev libpng-dev
+  libzip-dev libhdf5-dev libopenexr-dev libpng-dev
   libembree-dev libassimp-dev  # ray casting, meshes
   libsqlite3-dev      # sweep store
   libboost-dev        # Asio: generators in the network
@@ -50,6 +50,7 @@ packages_test=(
   libgtest-dev libgmock-dev
   libopenmpi-dev openmpi-bin                 # sweeps of several ranks
   python3-pytest mypy                        # the Python package
+  python3-h5py                               # writes what .h5 readers must read
   python3-cvxopt                             # an independent solver of the sub-problem
   chromium chromium-driver python3-selenium  # the report, in a browser
 )

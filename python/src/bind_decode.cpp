@@ -133,6 +133,7 @@ DecodeRequest request_of(const std::vector<std::string>& raw, const std::string&
   reader.word("layout", request.layout, parse_raw_layout)
       .word("kind", request.kind, parse_depth_kind)
       .value("raw_format", raw_format)
+      .value("dataset", request.dataset)
       .value("outputs", outputs)
       .value("frame", request.frame)
       .value("all_points", request.all_points)

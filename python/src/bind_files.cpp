@@ -17,26 +17,17 @@ namespace {
 
 /// All frames as (F, H, W, K) floats.
 py::array_t<float> read_raw(const std::string& path, const std::optional<int>& measurements,
-                            const std::string& layout, const std::optional<std::string>& format) {
+                            const std::string& layout, const std::optional<std::string>& format,
+                            const std::string& dataset) {
   RawReadOptions options;
   options.measurements = measurements;
   options.layout = parse_raw_layout(layout);
   if (format) options.format = read_raw_format(*format);
+  options.dataset = dataset;
   RawFrames all;
   {
     const py::gil_scoped_release release;
-    const RawFramesReader reader(path, options);
-    all.frames = reader.frames();
-    all.height = reader.height();
-    all.width = reader.width();
-    all.measurements = reader.measurements();
-    const std::size_t size = all.pixels_per_frame() * static_cast<std::size_t>(all.measurements);
-    all.values.resize(size * static_cast<std::size_t>(all.frames));
-    std::vector<std::byte> buffer;
-    for (int f = 0; f < all.frames; ++f) {
-      const RawView view = reader.read_rows(f, 0, all.height, buffer);
-      copy_pixels(view, 0, view.pixels(), all.frame(f));
-    }
+    all = read_raw_frames(std::vector<std::filesystem::path>{path}, options);
   }
   return adopt(std::move(all));
 }

@@ -217,6 +217,7 @@ class Decoder:
         *,
         layout: str = "interleaved",
         raw_format: Optional[Path] = None,
+        dataset: str = "",
         outputs: Optional[Iterable[str]] = None,
         kind: str = "radial",
         all_points: bool = False,
@@ -240,16 +241,18 @@ class Decoder:
         Parameters
         ----------
         raw : str or path, or a list of them
-            .npy or .npz, (H, W, K) or (F, H, W, K), or a dump that `raw_format` describes. A list
+            .npy, .npz or .h5, (H, W, K) or (F, H, W, K), or a dump that `raw_format` describes. A list
             has one file a measurement, in their order, (H, W) or (F, H, W) each.
         output : str or path
             .npy .pfm .png (16 bits, mm): depth alone; .npz: an array of each plane; .exr: a channel
             of each; .ply, .pcd (organized): points with planes as scalars. Files of several frames
             get numbers: name-03.npz.
         layout : {"interleaved", "planar"}
-            Of .npy and .npz; never guessed.
+            Of .npy, .npz and .h5; never guessed.
         raw_format : str or path, optional
             A .raw.toml file; see docs/raw_formats.md.
+        dataset : str
+            The array of an .npz or data set of an .h5; "": the one called "raw", or the only one.
         outputs : iterable of str, optional
             Planes to write, others are not computed: depth, signal, ambient, confidence, deviation,
             status, bin, averaged (of how many measurements numbers are the mean); of two-return
@@ -313,6 +316,7 @@ class Decoder:
         options = {
             "layout": layout,
             "raw_format": name(raw_format, "raw_format"),
+            "dataset": _check.text(dataset, "dataset"),
             "outputs": [] if outputs is None else [
                 _check.one_of(plane, "outputs", planes) for plane in outputs],
             "kind": kind,

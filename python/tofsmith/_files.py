@@ -20,8 +20,9 @@ def read_raw(
     measurements: Optional[int] = None,
     layout: str = "interleaved",
     raw_format: Optional[Path] = None,
+    dataset: str = "",
 ) -> npt.NDArray[np.float32]:
-    """Raw frames from .npy or .npz, or from any dump that a .raw.toml file describes.
+    """Raw frames from .npy, .npz or .h5, or from any dump that a .raw.toml file describes.
 
     Parameters
     ----------
@@ -32,6 +33,8 @@ def read_raw(
         Of the file; never guessed.
     raw_format : str or path, optional
         A .raw.toml file, see docs/raw_formats.md.
+    dataset : str
+        The array of an .npz or data set of an .h5; "": the one called "raw", or the only one.
 
     Returns
     -------
@@ -47,6 +50,7 @@ def read_raw(
         None if measurements is None else _check.whole(measurements, "measurements", 1),
         _check.text(layout, "layout"),
         None if raw_format is None else _check.path(raw_format, "raw_format"),
+        _check.text(dataset, "dataset"),
     )
 
 

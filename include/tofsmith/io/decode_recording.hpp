@@ -67,10 +67,11 @@ bool holds_points(const std::filesystem::path& path);
 
 /// A recording to be decoded into files.
 struct DecodeRequest {
-  /// .npy or .npz, (H, W, K) or (F, H, W, K), of any size; or K files, one a measurement in their
-  /// order, (H, W) or (F, H, W) each.
+  /// .npy, .npz or .h5, (H, W, K) or (F, H, W, K), of any size; or K files, one a measurement in
+  /// their order, (H, W) or (F, H, W) each.
   std::vector<std::filesystem::path> raw;
-  RawLayout layout = RawLayout::interleaved;  ///< of one .npy or .npz; never guessed
+  RawLayout layout = RawLayout::interleaved;  ///< of one .npy, .npz or .h5; never guessed
+  std::string dataset;  ///< of .npz and .h5; empty: the one called raw, or the only one
   std::filesystem::path raw_format;  ///< describes a sensor's dump (*.raw.toml); empty: no dump
 
   /// .npy .pfm .png (16 bits, mm): depth alone; .npz: an array of each plane; .exr: a channel of

@@ -104,9 +104,9 @@ RawFormat read_raw_format(const std::filesystem::path& path);
 void unpack_numbers(const RawFormat& format, std::span<const std::byte> row, int first_bit,
                     std::span<double> numbers);
 
-/// Raw measurements of shape (H, W, K), or (F, H, W, K) for several frames, from .npy or .npz (the
-/// array "raw", or the only one), of whole numbers or floats but float16. Values are kept as they
-/// are, NaN and infinity too.
+/// Raw measurements of shape (H, W, K), or (F, H, W, K) for several frames, from .npy, .npz or .h5
+/// (the array "raw", or the only one), of whole numbers or floats but float16. Values are kept as
+/// they are, NaN and infinity too.
 /// @param measurements  K that the code asks for, if one is known
 /// @throws IoError if the extension, the shape or the type is another, or K differs
 RawFrames read_raw_frames(const std::filesystem::path& path,
@@ -134,24 +134,28 @@ struct RawReadOptions {
   std::optional<int> measurements;
   /// Never guessed; where the other one would fit, the error says so.
   RawLayout layout = RawLayout::interleaved;
-  /// Most memory [bytes] for files that cannot be read in parts: .npz, and .npy in Fortran order.
+  /// Most memory [bytes] for files that cannot be read in parts: .npz, .npy in Fortran order, and
+  /// chunks of .h5.
   std::uint64_t max_in_memory = max_npz_bytes;
+  /// The array of an .npz, or the data set of an .h5 ("/camera/raw"); empty: the one called "raw",
+  /// or the only one.
+  std::string dataset;
   /// How a dump without header is laid out; the file is then read as one, whatever its extension,
   /// and `layout` does not count.
   std::optional<RawFormat> format;
 };
 
 class RawDumpReader;
+struct StoredArray;
 
-/// Reads rows of the frames of a recording as they stand in the file, .npy of any size in the
-/// memory of those rows; so is a dump that a RawFormat describes. An .npz, or an .npy in Fortran
-/// order, is held in memory as a whole.
+/// Reads rows of the frames of a recording as they stand in the file, .npy and .h5 of any size in
+/// the memory of those rows; so is a dump that a RawFormat describes. An .npz, or an .npy in
+/// Fortran order, is held in memory as a whole.
 /// @note reading is safe from many threads at once, each with a buffer of its own
 class RawFramesReader {
  public:
-  /// @throws IoError as read_raw_frames(), or if a file that cannot be read
-  /// in parts would take
-  ///         more memory than allowed
+  /// @throws IoError as read_raw_frames(), if a file that cannot be read in parts would take more
+  ///         memory than allowed, or if an .h5 has no such data set
   explicit RawFramesReader(const std::filesystem::path& path, const RawReadOptions& options = {});
   /// One file for each measurement of a pixel, in their order: (H, W) or (F, H, W) each, or dumps
   /// of one measurement. One file alone holds all measurements; `layout` counts for it only.
@@ -197,7 +201,7 @@ class RawFramesReader {
   RawView rows_in_memory(int frame, int first_row, int rows) const;
   RawView rows_of_parts(int frame, int first_row, int rows, std::vector<std::byte>& buffer) const;
 
-  std::optional<NpyReader> file_;        // none if `whole_` holds everything
+  std::unique_ptr<StoredArray> file_;    // none if `whole_` holds everything
   std::unique_ptr<RawDumpReader> dump_;  // of a dump: the only one of the three
   std::vector<RawFramesReader> parts_;   // one a measurement; then none of the others
   NpyArray whole_;

@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 
+#include "io/arrays/stored_array.hpp"
 #include "io/image_limits.hpp"
 #include "io/images/array_image.hpp"
 #include "io/images/raw_dump_reader.hpp"
@@ -34,9 +35,19 @@ void check_memory(std::uint64_t bytes, const RawReadOptions& options, const std:
 
 NpyArray read_npz_array(const std::filesystem::path& path, const RawReadOptions& options) {
   const NpzReader archive(path);
-  const std::string name = name_called_or_only(archive, "raw", path.string());
+  const std::string name = options.dataset.empty()
+                               ? name_called_or_only(archive, "raw", path.string())
+                               : options.dataset;
   check_memory(archive.unpacked_bytes(name), options, path.string(), "an .npz");
   return archive.read(name);
+}
+
+/// Of a file that holds one array, without a name.
+void refuse_dataset(const std::filesystem::path& path, const RawReadOptions& options) {
+  if (options.dataset.empty()) return;
+  throw IoError(path.string(), fmt::format("found a file of one array without a name; expected "
+                                           ".npz or .h5, as the data set '{}' was asked for",
+                                           options.dataset));
 }
 
 std::uint64_t bytes_of(const NpyReader& reader) {
@@ -111,18 +122,24 @@ RawFramesReader::RawFramesReader(RawFramesReader&&) noexcept = default;
 
 void RawFramesReader::open_array(const std::filesystem::path& path, const RawReadOptions& options,
                                  bool is_one_measurement) {
-  if (known_extension(path, {".npy", ".npz"}) == ".npz") {
+  const std::string extension = known_extension(path, {".npy", ".npz", ".h5", ".hdf5"});
+  if (extension == ".npz") {
     whole_ = read_npz_array(path, options);
+  } else if (extension != ".npy") {
+    file_ =
+        std::make_unique<StoredArray>(open_hdf5(path, options.dataset, options.max_in_memory / 2));
   } else {
-    file_.emplace(path);
-    if (file_->fortran_order()) {
-      check_memory(bytes_of(*file_), options, path.string(), "an .npy in Fortran order");
-      whole_ = file_->read_all();
-      file_.reset();
+    refuse_dataset(path, options);
+    NpyReader reader(path);
+    if (reader.fortran_order()) {
+      check_memory(bytes_of(reader), options, path.string(), "an .npy in Fortran order");
+      whole_ = reader.read_all();
+    } else {
+      file_ = std::make_unique<StoredArray>(stored_array(std::move(reader)));
     }
   }
-  const NpyType stored = file_ ? file_->type() : whole_.type();
-  const NpyShape& shape = file_ ? file_->shape() : whole_.shape();
+  const NpyType stored = file_ ? file_->type : whole_.type();
+  const NpyShape& shape = file_ ? file_->shape : whole_.shape();
   sizes_ = checked_raw_sizes(stored,
                              is_one_measurement ? with_measurements(shape, path.string()) : shape,
                              options, path.string());
@@ -163,6 +180,7 @@ void RawFramesReader::open_parts(const std::vector<std::filesystem::path>& files
 }
 
 void RawFramesReader::open_dump(const std::filesystem::path& path, const RawReadOptions& options) {
+  refuse_dataset(path, options);
   dump_ = std::make_unique<RawDumpReader>(path, *options.format);
   const RawFormat& format = dump_->format();
   type_ = format.needs_doubles() ? NpyType::float64 : NpyType::float32;
@@ -187,7 +205,7 @@ std::size_t RawFramesReader::row_bytes() const {
 }
 
 std::size_t RawFramesReader::bytes_in_memory() const {
-  std::size_t bytes = whole_.bytes().size();
+  std::size_t bytes = whole_.bytes().size() + (file_ ? file_->bytes_in_memory : 0);
   for (const RawFramesReader& part : parts_) bytes += part.bytes_in_memory();
   return bytes;
 }
@@ -211,8 +229,8 @@ RawView RawFramesReader::read_rows(int frame, int first_row, int rows,
   }
   if (!file_) return rows_in_memory(frame, first_row, rows);
   read_stored_rows(frame, first_row, rows, buffer);
-  if (file_->type() != type_) {
-    NpyArray stored(file_->type(), {buffer.size() / item_size(file_->type())});
+  if (file_->type != type_) {
+    NpyArray stored(file_->type, {buffer.size() / item_size(file_->type)});
     std::ranges::copy(buffer, stored.bytes().begin());
     const NpyArray numbers = in_type(std::move(stored), type_);
     buffer.assign(numbers.bytes().begin(), numbers.bytes().end());
@@ -225,7 +243,7 @@ void RawFramesReader::read_stored_rows(int frame, int first_row, int rows,
                                        std::vector<std::byte>& buffer) const {
   const bool planar = layout_ == RawLayout::planar;
   const auto planes = static_cast<std::size_t>(planar ? measurements() : 1);
-  const std::size_t item = item_size(file_->type()),
+  const std::size_t item = item_size(file_->type),
                     row_items = row_bytes() / item_size(type_) / planes;
   const std::size_t plane_bytes = static_cast<std::size_t>(rows) * row_items * item;
   buffer.resize(planes * plane_bytes);
@@ -295,15 +313,22 @@ RawFrames read_raw_frames(const std::vector<std::filesystem::path>& files,
                           const RawReadOptions& options) {
   const RawFramesReader reader(files, options);
   RawFrames all;
-  for (int f = 0; f < reader.frames(); ++f) {
-    RawFrames frame = reader.read_frame(f);
-    all.height = frame.height;
-    all.width = frame.width;
-    all.measurements = frame.measurements;
-    all.frames = f + 1;
-    all.values.insert(all.values.end(), frame.values.begin(), frame.values.end());
+  all.frames = reader.frames();
+  all.height = reader.height();
+  all.width = reader.width();
+  all.measurements = reader.measurements();
+  all.values.resize(all.pixels_per_frame() * static_cast<std::size_t>(all.measurements) *
+                    static_cast<std::size_t>(all.frames));
+  std::vector<std::byte> buffer;
+  for (int f = 0; f < all.frames; ++f) {
+    const RawView view = reader.read_rows(f, 0, all.height, buffer);
+    copy_pixels(view, 0, view.pixels(), all.frame(f));
   }
   return all;
+}
+
+RawFrames read_raw_frames(const std::filesystem::path& path, std::optional<int> measurements) {
+  return read_raw_frames(std::vector{path}, {.measurements = measurements});
 }
 
 }  // namespace tofsmith

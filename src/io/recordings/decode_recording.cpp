@@ -29,6 +29,7 @@ RawFramesReader open_recording(const DecodeRequest& request, const DecodingTable
   RawReadOptions options{.measurements = table.measurements(),
                          .layout = request.layout,
                          .max_in_memory = static_cast<std::uint64_t>(1e6 * request.memory_mb),
+                         .dataset = request.dataset,
                          .format = {}};
   if (!request.raw_format.empty()) options.format = read_raw_format(request.raw_format);
   return RawFramesReader(request.raw, options);
