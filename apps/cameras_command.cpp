@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -8,6 +9,7 @@
 
 #include "commands.hpp"
 #include "tofsmith/io/camera_toml.hpp"
+#include "tofsmith/io/raw_frames.hpp"
 
 namespace tofsmith::apps {
 
@@ -50,14 +52,28 @@ void show_camera(const Session& session, const std::string& name) {
   session.say(toml);
 }
 
+void show_raw_format(const Session& session, const std::string& name) {
+  if (name.empty())
+    throw UsageError(fmt::format("--raw-format needs the NAME of a camera ({})",
+                                 fmt::join(built_in_raw_format_names(), ", ")));
+  std::string toml = built_in_raw_format_toml(name);
+  session.print_json({{"name", name}, {"raw_format", toml}});
+  toml.pop_back();
+  session.say(toml);
+}
+
 }  // namespace
 
 void add_cameras_command(CLI::App& app, Session& session) {
   auto name = std::make_shared<std::string>();
+  auto raw_format = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand(
       "cameras", "list the built-in cameras, or print one as TOML with its sources");
   command->add_option("NAME", *name, "a built-in camera");
-  command->callback([name, &session] {
+  command->add_flag("--raw-format", *raw_format,
+                    "print how its raw frames run instead, as `decode --raw-format` takes it");
+  command->callback([name, raw_format, &session] {
+    if (*raw_format) return show_raw_format(session, *name);
     if (name->empty()) return list_cameras(session);
     show_camera(session, *name);
   });

@@ -47,6 +47,16 @@ class Commands(CommandLineTest):
                          built_in["results"] if "results" in built_in else built_in)
         self.refuse(["cameras", "kinect-v1"], "kinect-v1", "did you mean kinect-v2?")
 
+    def test_cameras_prints_how_raw_frames_run(self):
+        self.write("sensor.raw.toml", self.do("cameras", "arducam-tof", "--raw-format"))
+        with open(self.path("dump.bin"), "wb") as dump:
+            dump.write(bytes(2 * 4 * 240 * 180))
+        found = self.do_json("decode", "dump.bin", "--raw-format", "sensor.raw.toml", "--camera",
+                             "arducam-tof", "--code", "sinusoid-k4", "-o", "depth.npy")
+        self.assertEqual((found["height"], found["width"]), (180, 240))
+        self.refuse(["cameras", "kinect-v2", "--raw-format"], "interleaved", "arducam-tof")
+        self.refuse(["cameras", "--raw-format"], "needs the NAME")
+
     def test_codes_lists_families(self):
         names = [family["name"] for family in self.do_json("codes")]
         self.assertIn("hamiltonian-kK", names)
