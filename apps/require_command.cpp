@@ -4,16 +4,19 @@
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "commands.hpp"
 #include "distance_arguments.hpp"
+#include "fresh_directory.hpp"
 #include "method_arguments.hpp"
 #include "number_checks.hpp"
 #include "session.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/units.hpp"
+#include "tofsmith/io/design_directory.hpp"
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/report/design_report.hpp"
 
@@ -44,6 +47,46 @@ double length_of(const std::string& text) {
       fmt::format("--error: found '{}'; expected a length > 0 with its unit, such as 5mm", text));
 }
 
+/// How the output is written: as its extension says, or a directory without one.
+enum class OutputKind { none, numbers, page, directory };
+
+OutputKind kind_of(const std::string& output) {
+  const std::string extension = std::filesystem::path(output).extension().string();
+  if (output.empty()) return OutputKind::none;
+  if (extension == ".json") return OutputKind::numbers;
+  if (extension == ".html") return OutputKind::page;
+  if (extension.empty()) return OutputKind::directory;
+  throw UsageError(
+      fmt::format("-o {}: found {}; expected .json, .html, or a directory", output, extension));
+}
+
+/// Before the work: nothing that stands is replaced without --force.
+void check_outputs(const std::string& output, OutputKind kind, const Session& session) {
+  if (kind == OutputKind::numbers || kind == OutputKind::page) session.check_output(output);
+  if (kind != OutputKind::directory) return;
+  const std::filesystem::path directory(output);
+  make_output_directory(directory);
+  for (const char* name : {"requirements.json", "report.html"})
+    session.check_output((directory / name).string());
+}
+
+void write(const std::string& output, OutputKind kind, const Camera& camera,
+           const Requirements& found, const RequirementOptions& options, const Session& session) {
+  const auto page = [&](const std::filesystem::path& path) {
+    write_file_atomically(path,
+                          render(requirements_report(camera, found, options, session.command_line)),
+                          session.output_policy());
+  };
+  if (kind == OutputKind::numbers)
+    write_file_atomically(output, requirements_document(camera, found, options) + "\n",
+                          session.output_policy());
+  if (kind == OutputKind::page) page(output);
+  if (kind == OutputKind::directory) {
+    write_requirements(output, camera, found, options, session.output_policy());
+    page(std::filesystem::path(output) / "report.html");
+  }
+}
+
 void run(RequireArguments& arguments, const Session& session) {
   RequirementOptions& options = arguments.options;
   options.error_m = length_of(arguments.error);
@@ -60,22 +103,13 @@ void run(RequireArguments& arguments, const Session& session) {
         options.vary_exposure = true;
         break;
     }
-  const std::string extension = std::filesystem::path(arguments.output).extension().string();
-  if (!arguments.output.empty()) {
-    if (extension != ".json" && extension != ".html")
-      throw UsageError(fmt::format("-o {}: found {}; expected .json or .html", arguments.output,
-                                   extension.empty() ? "no extension" : extension));
-    session.check_output(arguments.output);
-  }
+  const OutputKind kind = kind_of(arguments.output);
+  std::optional<FreshDirectory> directory;
+  if (kind == OutputKind::directory) directory.emplace(arguments.output);
+  check_outputs(arguments.output, kind, session);
   const Camera camera = arguments.distance.at(arguments.camera.load(), session);
   const Requirements found = find_requirements(camera, options, terminal_progress("designing"));
-  if (extension == ".json")
-    write_file_atomically(arguments.output, requirements_document(camera, found, options) + "\n",
-                          session.output_policy());
-  if (extension == ".html")
-    write_file_atomically(arguments.output,
-                          render(requirements_report(camera, found, options, session.command_line)),
-                          session.output_policy());
+  write(arguments.output, kind, camera, found, options, session);
   if (session.json) return session.print_document(requirements_document(camera, found, options));
   session.say(fmt::format("asked for {}; as it is, {} errs {}{}", length_text(options.error_m),
                           found.code.name(), length_text(found.error_m),
@@ -87,7 +121,16 @@ void run(RequireArguments& arguments, const Session& session) {
       fmt::format("each by itself, all else as the camera has it; circular error, designs of "
                   "effort {:.3g}, {} trials, seed {}",
                   options.effort, options.trials, options.seed));
-  if (!arguments.output.empty()) session.say(fmt::format("wrote {}", arguments.output));
+  if (kind == OutputKind::none) return;
+  session.say(fmt::format("wrote {}", arguments.output));
+  for (const Sufficiency& s : found.varied) {
+    if (kind != OutputKind::directory || !s.factor) continue;
+    const std::string part =
+        (std::filesystem::path(arguments.output) / name_of(s.quantity)).string();
+    session.say(
+        fmt::format("next: tofsmith evaluate {}.code.json --camera {}.camera.toml", part, part));
+    break;
+  }
 }
 
 }  // namespace
@@ -122,7 +165,8 @@ void add_require_command(CLI::App& app, Session& session) {
   command->add_flag("!--no-map", arguments->options.map,
                     "no map of the error over bandwidth and power");
   command->add_option("-o,--output", arguments->output,
-                      "write a page (.html) or all numbers (.json)");
+                      "write a page (.html), all numbers (.json), or a directory with both, the "
+                      "codes found and the cameras that suffice");
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

@@ -90,18 +90,61 @@ py::dict design_dict(const Camera& camera, const py::dict& values,
   return dict;
 }
 
-}  // namespace
+/// Requirements with what was asked, to be written as the command writes them.
+struct FoundRequirements {
+  Camera camera;
+  RequirementOptions options;
+  Requirements found;
+};
 
-/// What `require --json` prints.
-std::string requirements_json(const Camera& camera, const py::dict& values,
-                              const py::object& callback) {
+py::dict sufficiency_dict(const Camera& camera, const Sufficiency& s) {
+  py::dict dict;
+  dict["quantity"] = name_of(s.quantity);
+  dict["factor"] = s.factor;
+  dict["error_m"] = s.error_m;
+  dict["code"] = s.code;
+  dict["camera"] =
+      s.factor ? py::cast(with_scaled(camera, s.quantity, *s.factor)) : py::object(py::none());
+  dict["excluded_below"] = s.excluded_below > 0.0 ? py::cast(s.excluded_below) : py::none();
+  return dict;
+}
+
+py::dict requirements_dict(const Camera& camera, const py::dict& values,
+                           const py::object& callback) {
   RequirementOptions options;
   read_options(values, "", options);
-  const Requirements found = without_gil(callback, [&](const Progress& progress) {
+  Requirements found = without_gil(callback, [&](const Progress& progress) {
     return find_requirements(camera, options, progress);
   });
-  return requirements_document(camera, found, options);
+  py::dict dict;
+  dict["error_m"] = found.error_m;
+  dict["code"] = found.code;
+  dict["receiver_bound_mae_m"] = found.bound_m > 0.0 ? py::cast(found.bound_m) : py::none();
+  py::list varied;
+  for (const Sufficiency& s : found.varied) varied.append(sufficiency_dict(camera, s));
+  dict["varied"] = varied;
+  dict["map"] = py::none();
+  if (found.map) {
+    py::dict map;
+    map["bandwidth"] = adopt(std::vector<double>(found.map->bandwidth));
+    map["power"] = adopt(std::vector<double>(found.map->power));
+    map["error_m"] = adopt(Eigen::MatrixXd(found.map->error_m));
+    dict["map"] = map;
+  }
+  dict["_handle"] = FoundRequirements{camera, options, std::move(found)};
+  return dict;
 }
+
+/// The directory of `tofsmith require -o`, with its page.
+void write_found(const FoundRequirements& asked, const std::string& path, bool overwrite) {
+  const py::gil_scoped_release release;
+  write_requirements(path, asked.camera, asked.found, asked.options, policy_of(overwrite));
+  write_file_atomically(std::filesystem::path(path) / "report.html",
+                        render(requirements_report(asked.camera, asked.found, asked.options, "")),
+                        policy_of(overwrite));
+}
+
+}  // namespace
 
 void bind_design(py::module_& module) {
   py::class_<TargetSet>(module, "TargetSet");
@@ -118,7 +161,8 @@ void bind_design(py::module_& module) {
     return suggested_exposures(camera, parse_design_method(word));
   });
   module.def("design", &design_dict);
-  module.def("find_requirements", &requirements_json);
+  py::class_<FoundRequirements>(module, "FoundRequirements").def("write", &write_found);
+  module.def("find_requirements", &requirements_dict);
 }
 
 }  // namespace tofsmith::python

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -288,6 +287,81 @@ def design(
     return DesignResult(**result)
 
 
+@dataclass(frozen=True)
+class Sufficiency:
+    """How much of one quantity suffices, all else as the camera has it.
+
+    Attributes
+    ----------
+    quantity : str
+        bandwidth, power or exposure.
+    factor : float, optional
+        Times the camera's: the least that suffices; None: not even `max_factor` does.
+    error_m : float
+        There, or at `max_factor` [m].
+    code : CodeSet
+        That reaches it.
+    camera : Camera, optional
+        With as much of the quantity.
+    excluded_below : float, optional
+        Below this factor no code can; None: the bound excludes nothing.
+    """
+
+    quantity: str
+    factor: Optional[float]
+    error_m: float
+    code: CodeSet
+    camera: Optional[Camera]
+    excluded_below: Optional[float]
+
+
+@dataclass(frozen=True)
+class RequirementMap:
+    """Error (bandwidth, power) [m] of the best code found at each bandwidth, over factors of bandwidth
+    and power."""
+
+    bandwidth: FloatArray
+    power: FloatArray
+    error_m: FloatArray
+
+
+@dataclass(frozen=True)
+class Requirements:
+    """What it takes of a camera to measure depth as well as asked.
+
+    Attributes
+    ----------
+    error_m : float
+        That the camera reaches as it is [m], with `code`.
+    code : CodeSet
+    receiver_bound_mae_m : float, optional
+        What no code undercuts on the camera as it is [m].
+    varied : list of Sufficiency
+    map : RequirementMap, optional
+    """
+
+    error_m: float
+    code: CodeSet
+    receiver_bound_mae_m: Optional[float]
+    varied: list[Sufficiency]
+    map: Optional[RequirementMap]
+    _handle: Optional[_tofsmith.FoundRequirements] = field(default=None, repr=False, compare=False)
+
+    def write(self, directory: Path, *, overwrite: bool = False) -> None:
+        """Writes the directory that `tofsmith require -o` does: codes, cameras, numbers and
+        report.html.
+
+        Raises
+        ------
+        OSError
+            If files exist and `overwrite` is not set, or cannot be written.
+        """
+        if self._handle is None:
+            raise ValueError("these requirements were not found here: only results of "
+                             "find_requirements() can be written")
+        self._handle.write(_check.path(directory), bool(overwrite))
+
+
 def find_requirements(
     camera: CameraLike,
     error_m: float,
@@ -301,7 +375,7 @@ def find_requirements(
     map: Optional[bool] = None,
     seed: Optional[int] = None,
     progress: Progress = None,
-) -> dict[str, Any]:
+) -> Requirements:
     """The least bandwidth, power and exposure, each by itself, with which a code reaches an error,
     and below what no code can.
 
@@ -327,10 +401,7 @@ def find_requirements(
 
     Returns
     -------
-    dict
-        As `tofsmith require --json` prints: `now` (error_m, code, receiver_bound_mae_m), `varied`, a
-        list with quantity, factor (None: not even max_factor suffices), error_m, code and
-        excluded_below, and `map` (bandwidth, power, error_m).
+    Requirements
 
     Raises
     ------
@@ -349,6 +420,11 @@ def find_requirements(
         "seed": seed,
     }
     handle = camera_of(camera)._handle
-    text = _tofsmith.find_requirements(handle, options, _check.progress(progress))
-    found: dict[str, Any] = json.loads(text)
-    return found
+    found = _tofsmith.find_requirements(handle, options, _check.progress(progress))
+    found["code"] = CodeSet._of(found["code"])
+    for s in found["varied"]:
+        s["code"] = CodeSet._of(s["code"])
+        s["camera"] = None if s["camera"] is None else Camera._of(s["camera"])
+    found["varied"] = [Sufficiency(**s) for s in found["varied"]]
+    found["map"] = None if found["map"] is None else RequirementMap(**found["map"])
+    return Requirements(**found)

@@ -55,7 +55,7 @@ class Commands(CommandLineTest):
                              "arducam-tof", "--code", "sinusoid-k4", "-o", "depth.npy")
         self.assertEqual((found["height"], found["width"]), (180, 240))
         self.refuse(["cameras", "kinect-v2", "--raw-format"], "interleaved", "arducam-tof")
-        self.refuse(["cameras", "--raw-format"], "needs the NAME")
+        self.refuse(["cameras", "--raw-format"], "needs the NAME", code=2)
 
     def test_codes_lists_families(self):
         names = [family["name"] for family in self.do_json("codes")]

@@ -263,12 +263,24 @@ def test_design(ways):
 
 def test_require(ways, camera):
     ways.command("require", "paper-10f0", *SMALL, "--error", "20mm", "--vary", "power", "--effort",
-                 "0.01", "--trials", "1000", "-o", "found.json")
+                 "0.01", "--trials", "1000", "-o", "found")
     found = ts.find_requirements(camera, 0.02, vary_bandwidth=False, vary_exposure=False,
                                  effort=0.01, trials=1000)
-    assert found == json.loads(ways.files("command")["found.json"])
-    (power,) = found["varied"]
-    assert power["quantity"] == "power" and power["error_m"] <= 0.02
+    found.write("found")
+    (power,) = found.varied
+    assert power.quantity == "power" and power.error_m <= 0.02 and found.map is None
+    command, python = ways.files("command"), ways.files("python")
+    for name in ("as_it_is.code.json", "power.code.json", "power.camera.toml",
+                 "requirements.json"):
+        assert command[f"found/{name}"] == python[f"found/{name}"]
+    document = json.loads(command["found/requirements.json"])
+    assert document["varied"][0]["factor"] == power.factor
+    # What was written does what was said.
+    assert ts.Camera("found/power.camera.toml") == power.camera
+    error = ts.evaluate("found/power.code.json", power.camera, trials=1000).circular
+    assert error.geometric_mean_m == pytest.approx(power.error_m, rel=0.1)
+    with pytest.raises(OSError, match="exists"):
+        found.write("found")
 
 
 def test_export(ways, camera):

@@ -44,4 +44,14 @@ class DesignDirectory {
   std::filesystem::path path_;
 };
 
+/// What requirements found as files:
+///   as_it_is.code.json    the code that the camera does best with as it is
+///   QUANTITY.code.json    of bandwidth, power and exposure: the code that suffices,
+///   QUANTITY.camera.toml  and the camera with as much of it; neither where nothing suffices
+///   requirements.json     requirements_document(), last
+/// @throws IoError if files exist and may not be replaced, or cannot be written
+void write_requirements(const std::filesystem::path& directory, const Camera& camera,
+                        const Requirements& found, const RequirementOptions& options,
+                        OutputPolicy policy);
+
 }  // namespace tofsmith
