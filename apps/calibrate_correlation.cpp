@@ -174,7 +174,8 @@ void run(const CorrelationArguments& arguments, const Session& session) {
          arguments.codes,
          arguments.taps.file_options(),
          base,
-         [&](const Camera& camera) { arguments.output.write_camera(camera, session); }},
+         [&](const Camera& camera) { arguments.output.write_camera(camera, session); },
+         [&](const Page& page) { arguments.output.write_page(page, session); }},
         session);
     return;
   }

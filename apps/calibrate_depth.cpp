@@ -11,6 +11,7 @@
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
+#include "tofsmith/report/instrument_reports.hpp"
 
 namespace tofsmith::apps {
 
@@ -40,16 +41,11 @@ std::string lines_of(const CalibratedDepth& found) {
       "{} pixels: depth is {:+.4g} m off in the mean, {} rms around it; {} on blocks held out once "
       "corrected\n",
       found.pixels, found.mean_error_m, length_text(found.rms_before_m), length_text(found.rms_m));
-  constexpr double apart_m = 20e-3;
-  int mingled = 0;
-  for (const CalibratedTerm& term : found.terms) {
-    if (term.value_m.standard_error > apart_m && ++mingled) continue;
-    lines += fmt::format("{:<18} {:10.3f} ± {:.3f} mm\n", term.name, 1e3 * term.value_m.value,
-                         1.96e3 * term.value_m.standard_error);
-  }
-  if (mingled > 0)
-    lines +=
-        fmt::format("{} more terms, which this part of the range does not tell apart\n", mingled);
+  const auto rows = depth_term_rows(found);
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    lines += rows[i][1].empty()
+                 ? rows[i][0] + "\n"
+                 : fmt::format("{:<18} {:>10} {} mm\n", rows[i][0], rows[i][1], rows[i][2]);
   lines += fmt::format("known in {:.0f} % of the range", 100.0 * found.known_share);
   if (found.known_share < 0.999)
     lines += fmt::format("; beyond, by {}: {} on parts of the range held out",
@@ -79,6 +75,8 @@ void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Se
   session.print_json(document_of(found));
   session.say(lines_of(found));
   if (!arguments.camera_path.empty()) arguments.write_camera(with_depth(arguments.camera, found));
+  arguments.write_page(
+      depth_report(found, arguments.frames.front().string(), session.command_line));
   if (arguments.table.empty()) return;
   write_calibrated_table(arguments.table, found.table, session.output_policy());
   session.say(

@@ -10,6 +10,7 @@
 #include "calibrate_output.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/io/code_file.hpp"
+#include "tofsmith/report/page.hpp"
 
 namespace tofsmith::apps {
 
@@ -24,6 +25,7 @@ struct DepthCalibrationArguments {
   CodeFileOptions file;
   Camera camera;
   std::function<void(const Camera&)> write_camera;
+  std::function<void(const Page&)> write_page;
 };
 
 /// Calibrates against reference depth, says what was found and writes the table.

@@ -209,7 +209,11 @@ void bind_delay_sweep(py::module_& module) {
       .def("write_table",
            [](const CalibratedDepth& found, const std::string& path, bool overwrite) {
              write_calibrated_table(path, found.table, policy_of(overwrite));
-           });
+           })
+      .def("write_report", [](const CalibratedDepth& found, const std::string& path,
+                              const std::string& source, bool overwrite) {
+        write_file_atomically(path, render(depth_report(found, source, "")), policy_of(overwrite));
+      });
   module.def("read_delay_sweep", &read_sweep);
   py::class_<CalibratedCorrelation>(module, "CalibratedCorrelation")
       .def("fields", &correlation_dict)

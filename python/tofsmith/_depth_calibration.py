@@ -72,6 +72,15 @@ class CalibratedDepth:
         """Writes the table with its correction (.npz), for `tofsmith decode --code`."""
         self._handle.write_table(_check.path(path), bool(overwrite))
 
+    def write_report(
+        self, path: Path, *, source: str = "frames", overwrite: bool = False
+    ) -> None:
+        """Writes the page of `tofsmith calibrate correlation --reference --report` (.html): the error
+        over depth and over the image, before and after, and its terms."""
+        self._handle.write_report(
+            _check.path(path), _check.text(source, "source"), bool(overwrite)
+        )
+
 
 def calibrate_depth(
     frames: Union[Path, npt.ArrayLike],

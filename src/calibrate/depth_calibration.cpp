@@ -7,6 +7,7 @@
 #include <cmath>
 #include <complex>
 
+#include "calibrate/depth_error_picture.hpp"
 #include "calibrate/depth_term_choice.hpp"
 #include "calibrate/harmonic_basis.hpp"
 #include "tofsmith/camera/forward_model.hpp"
@@ -194,6 +195,13 @@ void turn_backwards(MeasuredTable& table, std::vector<ReferenceSample>& samples,
 void add_notes(const DepthFit& fit, const ReferenceDepth& reference,
                const Eigen::VectorXd& fitted_m, double covered, CalibratedDepth& result) {
   if (result.reversed) result.notes.push_back("delay runs backwards: the table written does, too");
+  const auto [nearest, farthest] =
+      std::ranges::minmax(each(fit.samples, [](const auto& s) { return s.reference_m; }));
+  if (covered > 0.1 && farthest - nearest < 1e-3 * fit.range_m)
+    result.notes.push_back(fmt::format(
+        "the reference is {:.4g} m everywhere, but depths spread over {:.0f} % of the range: is it "
+        "of this scene? A number for each frame is the distance of a flat target",
+        nearest, 100.0 * covered));
   if (covered < 0.05)
     result.notes.push_back(
         "the reference hardly changes: only an offset and a field over the image were looked for, "
@@ -295,6 +303,8 @@ CalibratedDepth calibrate_depth(const RawFrames& frames, const ReferenceDepth& r
   result.outlier_share =
       static_cast<double>((fit.weight.array() == 0.0).count()) / static_cast<double>(fit.size());
   result.table.correction = correction;
+  result.picture =
+      picture_of(fit, fitted_m, wrapped_difference_m(result.mean_error_m - fit.start_m, range_m));
   add_notes(fit, reference, fitted_m, covered, result);
   return result;
 }

@@ -140,7 +140,10 @@ class Calibrate(BenchRecordsTest):
         command = ["calibrate", "correlation", "raw.npy", "--reference", "ref.npy", "--camera",
                    "camera.toml", "--table", "t.npz", "-o", "mine.toml"]
         self.refuse(command, "--code", code=2)
-        text = self.do(*command, "--code", "sinusoid-k4")
+        text = self.do(*command, "--code", "sinusoid-k4", "--report", "page.html")
+        page = self.bytes_of("page.html").decode()
+        for word in ("error-over-depth", "taken off", "cos 4"):
+            self.assertTrue(word in page, word)
         self.assertIn("next: tofsmith decode RAW --code t.npz --camera mine.toml", text)
         self.do("decode", "raw.npy", "--code", "t.npz", "--camera", "mine.toml", "--stack", "-o",
                 "d.npy")

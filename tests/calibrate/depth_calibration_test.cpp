@@ -227,6 +227,30 @@ TEST(DepthCalibration, AConstantReferenceGivesAnOffsetAndAField) {
   EXPECT_LT(bench.median_error_m(found.table), 2e-3);
 }
 
+TEST(DepthCalibration, AReferenceOfAnotherSceneIsTold) {
+  Bench bench{.first_share = 0.4, .last_share = 0.6, .truth = wiggle()};
+  bench.run();
+  for (Image<float>& depth_m : bench.reference.depth_m) depth_m = Image<float>(1, 1, 0.8f);
+  EXPECT_THAT(bench.calibrate().notes, Contains(HasSubstr("0.8 m everywhere")));
+}
+
+TEST(DepthCalibration, ThePictureShowsTheErrorAndWhatIsLeft) {
+  Bench bench{.frames = 8, .truth = wiggle()};
+  bench.run();
+  const DepthErrorPicture picture = bench.calibrate().picture;
+  const DepthCorrection truth{.height = 1, .width = 1, .known = wiggle()};
+  ASSERT_EQ(picture.depth_m.size(), picture.before_m.size());
+  for (std::size_t p = 0; p < picture.depth_m.size(); ++p) {
+    if (std::isnan(picture.before_m[p])) continue;
+    const double wiggle_m = truth.error_m(picture.depth_m[p], bench.range_m, 0, 0, 1.0) - 0.7;
+    EXPECT_NEAR(picture.before_m[p], wiggle_m, 6e-3) << picture.depth_m[p];
+    EXPECT_NEAR(picture.after_m[p], 0.0, 2e-3) << picture.depth_m[p];
+  }
+  EXPECT_EQ(picture.after_image_m.height, bench.height);
+  EXPECT_EQ(picture.after_image_m.width, bench.width);
+  for (const float left_m : picture.after_image_m.pixels) EXPECT_NEAR(left_m, 0.0, 0.02);
+}
+
 TEST(DepthCalibration, LeavesLessThanThePublishedModelsOnARealCamera) {
   const auto folder = std::filesystem::path(TOFSMITH_SOURCE_DIR) / "../shared/data/melexis_quads";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "without the recording";

@@ -232,6 +232,8 @@ def test_reference_depth_gives_the_commands_table(both, cli):
     assert {t["name"]: (t["value_m"], t["standard_error_m"]) for t in said["terms"]} == found.terms
     found.write_table(both[1] / "wiggle.npz")
     same(both, "wiggle.npz")
+    found.write_report(both[1] / "page.html", source="my camera")
+    assert "Depth of my camera against a reference" in (both[1] / "page.html").read_text()
     assert abs(found.terms["cos 4"].value - 0.01) < 4 * found.terms["cos 4"].standard_error
     image = ts.Decoder(found.decoding_table(camera)).decode(raw[0])
     off = (image.depth_m - depth[0] + camera.range_m / 2) % camera.range_m - camera.range_m / 2

@@ -134,6 +134,17 @@ struct CalibratedTerm {
   Estimate value_m;  ///< its 95 % interval is +- 1.96 standard errors
 };
 
+/// The error of nominal depth, less its mean, to be looked at: means over pixels that count; not a
+/// number where there are none.
+struct DepthErrorPicture {
+  std::vector<double>
+      depth_m;  ///< centres of equal parts of the range, as the nominal code decodes
+  std::vector<double> before_m;  ///< over each of them
+  std::vector<double> after_m;   ///< what the correction leaves of it
+  Image<float> before_image_m;   ///< over all frames, of square cells of pixels
+  Image<float> after_image_m;
+};
+
 /// What reference depth says of a camera.
 struct CalibratedDepth {
   MeasuredTable table;                 ///< the nominal functions, with the correction
@@ -147,6 +158,7 @@ struct CalibratedDepth {
   double far_rms_m = 0.0;      ///< left over by the terms beyond, on parts of the range held out
   double outlier_share = 0.0;  ///< of the pixels, which count for nothing
   std::int64_t pixels = 0;     ///< that were compared
+  DepthErrorPicture picture;
   std::vector<std::string> notes;
 };
 

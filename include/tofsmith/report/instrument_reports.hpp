@@ -26,8 +26,11 @@ std::vector<std::vector<std::string>> generator_loss_rows(const GeneratorLoss& l
 /// error that the limits cost.
 Page export_page(const ExportedCode& exported, const std::string& command_line);
 
-/// The lines of a table of what fits a record, headings first, and of what a sensor's noise is.
+/// The lines of a table of what fits a record, headings first, of the terms of a depth error, and
+/// of what a sensor's noise is. Terms that are not told apart are left out, but for a last line on
+/// them.
 std::vector<std::vector<std::string>> response_rows(const CalibratedResponse& found);
+std::vector<std::vector<std::string>> depth_term_rows(const CalibratedDepth& found);
 std::vector<std::vector<std::string>> noise_rows(const PhotonTransfer& found);
 
 /// Pages of calibrations: what was found, as tables and figures, and the notes.
@@ -37,6 +40,8 @@ Page response_report(const CalibratedResponse& found, const std::string& source,
                      const std::string& command_line);
 Page correlation_report(const CalibratedCorrelation& found, const std::vector<IdealCodeFit>& fits,
                         const std::string& source, const std::string& command_line);
+Page depth_report(const CalibratedDepth& found, const std::string& source,
+                  const std::string& command_line);
 Page noise_report(const PhotonTransfer& found, const std::string& command_line);
 
 }  // namespace tofsmith

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "report/calibration_page.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/report/figure.hpp"
+#include "tofsmith/report/instrument_reports.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// What the correction takes off in the middle of the image, less the mean error [mm].
+std::vector<Series> correction_curves(const CalibratedDepth& found) {
+  ColourAssignment colours;
+  Series known{.name = "taken off", .style = colours.style("taken off")};
+  Series beyond{.name = "taken off, the model's word", .style = colours.style("taken off")};
+  beyond.style.dash = Dash::dash;
+  const DepthCorrection& correction = *found.table.correction;
+  const std::vector<double>& depths = found.picture.depth_m;
+  const double range_m = 2.0 * depths.front() * static_cast<double>(depths.size());
+  for (const double depth_m : depths) {
+    const double error_m = correction.error_m(depth_m, range_m, correction.height / 2,
+                                              correction.width / 2, correction.signal_e_per_s);
+    const double off_m = std::remainder(error_m - found.mean_error_m, range_m);
+    const auto part = static_cast<Eigen::Index>(depth_m / range_m *
+                                                static_cast<double>(correction.known_share.size()));
+    const bool is_known = correction.known_share[part] > 0.5;
+    for (auto [series, counts] : {std::pair{&known, is_known}, {&beyond, !is_known}}) {
+      series->x.push_back(depth_m);
+      series->y.push_back(counts ? 1e3 * off_m : std::nan(""));
+    }
+  }
+  std::vector<Series> curves{std::move(known)};
+  if (found.known_share < 0.999) curves.push_back(std::move(beyond));
+  return curves;
+}
+
+Figure error_figure(const CalibratedDepth& found) {
+  ColourAssignment colours;
+  const auto points = [&](const std::string& name, const std::vector<double>& errors_m) {
+    Series series{.name = name, .mark = Mark::markers, .style = colours.style(name)};
+    for (std::size_t p = 0; p < errors_m.size(); ++p) {
+      if (!std::isfinite(errors_m[p])) continue;
+      series.x.push_back(found.picture.depth_m[p]);
+      series.y.push_back(1e3 * errors_m[p]);
+    }
+    return series;
+  };
+  std::vector<Series> series = correction_curves(found);
+  for (const Series& curve : series) colours.style(curve.name);
+  series.push_back(points("error", found.picture.before_m));
+  series.push_back(points("left over", found.picture.after_m));
+  return line_figure({.id = "error-over-depth",
+                      .title = "Depth error over depth",
+                      .caption = "Less its mean; the curve is that of the image's middle at the "
+                                 "usual signal, points are means over the whole image."},
+                     series, {.label = "depth as decoded", .unit = "m"},
+                     {.label = "depth error", .unit = "mm"});
+}
+
+}  // namespace
+
+std::vector<std::vector<std::string>> depth_term_rows(const CalibratedDepth& found) {
+  constexpr double apart_m = 20e-3;
+  std::vector<std::vector<std::string>> rows{{"term", "value (mm)", "95 % (mm)"}};
+  int mingled = 0;
+  for (const CalibratedTerm& term : found.terms) {
+    if (term.value_m.standard_error > apart_m && ++mingled) continue;
+    rows.push_back({term.name, fmt::format("{:.3f}", 1e3 * term.value_m.value),
+                    fmt::format("± {:.3f}", 1.96e3 * term.value_m.standard_error)});
+  }
+  if (mingled > 0)
+    rows.push_back(
+        {fmt::format("{} more, which this part of the range does not tell apart", mingled), "",
+         ""});
+  return rows;
+}
+
+Page depth_report(const CalibratedDepth& found, const std::string& source,
+                  const std::string& command_line) {
+  Page page{.title = fmt::format("Depth of {} against a reference", source),
+            .subtitle = fmt::format(
+                "{:+.4g} m off in the mean, {} rms around it; {} on blocks held out once corrected",
+                found.mean_error_m, length_text(found.rms_before_m), length_text(found.rms_m))};
+  Table terms{.id = "terms",
+              .caption = "Terms of the error in the known part of the range, with 95 % intervals.",
+              .columns = {{"term"}, {"value (mm)", true}, {"95 % (mm)", true}}};
+  const auto rows = depth_term_rows(found);
+  terms.rows.assign(rows.begin() + 1, rows.end());
+  const auto image = [&](const std::string& id, const std::string& title,
+                         const std::string& caption) {
+    return image_figure(
+        {.id = id, .title = title, .caption = caption},
+        {{"before", found.picture.before_image_m}, {"corrected", found.picture.after_image_m}},
+        {.label = "depth error", .unit = "m", .clip_fraction = 0.02});
+  };
+  page.sections.push_back({"Over depth", {error_figure(found), std::move(terms)}});
+  page.sections.push_back(
+      {"Over the image",
+       {image("error-image", "Depth error",
+              "Less its mean, over all frames; pixels that fit nothing are left out.")}});
+  return finished_calibration_page(std::move(page), found.notes, command_line);
+}
+
+}  // namespace tofsmith
