@@ -39,7 +39,6 @@ if(TOFSMITH_HAS_io)
   find_package(PNG REQUIRED)
   find_package(embree 3.13 REQUIRED)
   find_package(TBB REQUIRED)  # Embree's threads
-  find_package(assimp REQUIRED)
   pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
   pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)  # not the one for MPI
 endif()

@@ -26,7 +26,7 @@ if(TOFSMITH_IS_STATIC)
          "pkg_check_modules(FFTW REQUIRED QUIET IMPORTED_TARGET fftw3)")
   endif()
   set(finds_io "find_dependency(TBB)" "find_dependency(tomlplusplus)" "find_dependency(OpenEXR)"
-      "find_dependency(PNG)" "find_dependency(embree 3.13)" "find_dependency(assimp)"
+      "find_dependency(PNG)" "find_dependency(embree 3.13)"
       "find_dependency(PkgConfig)"
       "pkg_check_modules(LIBZIP REQUIRED QUIET IMPORTED_TARGET libzip)"
       "pkg_check_modules(HDF5 REQUIRED QUIET IMPORTED_TARGET hdf5-serial)")

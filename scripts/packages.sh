@@ -25,7 +25,7 @@ packages_build=(
   "${packages_core[@]}"
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
   libzip-dev libhdf5-dev libopenexr-dev libpng-dev
-  libembree-dev libassimp-dev  # ray casting, meshes
+  libembree-dev       # ray casting
   libsqlite3-dev      # sweep store
   libboost-dev        # Asio: generators in the network
   python3-plotly      # its plotly.js goes into the reports

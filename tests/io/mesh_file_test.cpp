@@ -47,6 +47,16 @@ std::string ply_header(const std::string& format, int vertices = 4) {
 const std::string ply_rows = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
 const std::string ply_square = ply_header("ascii") + ply_rows;
 
+std::string ply_big_endian_square() {
+  const auto turned = [](std::string bytes) { return std::string(bytes.rbegin(), bytes.rend()); };
+  std::string text = ply_header("binary_big_endian");
+  for (const int f : {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0})
+    text += turned(raw(static_cast<float>(f)));
+  for (const int i : {0, 1, 2}) text += (i == 0 ? "\3" : "") + turned(raw(i));
+  for (const int i : {0, 2, 3}) text += (i == 0 ? "\3" : "") + turned(raw(i));
+  return text;
+}
+
 std::string ply_binary_square() {
   std::string text = ply_header("binary_little_endian");
   for (const int f : {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) text += raw(static_cast<float>(f));
@@ -88,7 +98,8 @@ TEST(MeshFile, EveryFormatHoldsTheSameSquare) {
   EXPECT_EQ(corners(square)[4], Eigen::Vector3d(1, 1, 0));
   for (const auto& [text, file] :
        {std::pair(ply_square, "a.ply"), std::pair(ply_binary_square(), "b.PLY"),
-        std::pair(stl_square, "a.stl"), std::pair(stl_binary_square(), "b.stl")}) {
+        std::pair(ply_big_endian_square(), "c.ply"), std::pair(stl_square, "a.stl"),
+        std::pair(stl_binary_square(), "b.stl")}) {
     const TriangleMesh mesh = parse(text, file);
     EXPECT_EQ(mesh.vertices.size(), 4u) << file;
     EXPECT_EQ(corners(mesh), corners(square)) << file;
@@ -122,6 +133,17 @@ TEST(MeshFile, TinyMeshesKeepTheirVertices) {
   EXPECT_EQ(mesh.vertices.size(), 3u);
 }
 
+TEST(MeshFile, TextureCoordinatesOfPlyAreThoseOfItsVertices) {
+  const TriangleMesh mesh = parse(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty float y\n"
+      "property float z\nproperty uchar red\nproperty float s\nproperty float t\n"
+      "element face 1\nproperty uchar flags\nproperty list uchar uint vertex_index\n"
+      "end_header\n0 0 0 9 .25 0\n1 0 0 9 1 .5\n0 1 0 9 0 1\n7 3 0 1 2\n",
+      "a.ply");
+  ASSERT_EQ(mesh.texture_coordinates.size(), 3u);
+  EXPECT_EQ(mesh.texture_coordinates[1], Eigen::Vector2d(1.0, 0.5));
+}
+
 TEST(MeshFile, NoOtherFileIsNeeded) {
   const TemporaryDirectory directory;
   std::ofstream(directory / "a.obj") << "mtllib /etc/passwd\nusemtl skin\n" << obj_square;
@@ -149,6 +171,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadMesh{"a.obj", "", "empty file"},
         BadMesh{"a.obj", three, "found no faces; expected triangles or polygons"},
+        BadMesh{"a.obj", std::string("mtllib 00\0a00000", 16), "found no faces"},
+        BadMesh{"a.obj", three + "vt x\nf 1 2 3\n", "a.obj:4: found the coordinate 'x'"},
         BadMesh{"a.obj", "hello, this is a text and no mesh at all\n", "a.obj"},
         BadMesh{"a.obj", three + "f 1 2 4\n", "a.obj:4: found the vertex index 4; expected 1 .. 3"},
         BadMesh{"a.obj", three + "f 0 1 2\n", "a.obj:4: found the vertex index 0"},
@@ -195,6 +219,15 @@ INSTANTIATE_TEST_SUITE_P(
                 "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
                 "element vertex 9\nproperty float x\nend_header\n",
                 "found a second element 'vertex'; expected each once"},
+        BadMesh{"a.ply",
+                "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
+                "property float y\nproperty float z\nproperty list uint float w\nend_header\n" +
+                    std::string(12, '\0') + "\xff\xff\xff\x7f",
+                "found a list of 2147483647 numbers, but the file has only 0 bytes more"},
+        BadMesh{"a.ply",
+                "ply\nformat ascii 1.0\nelement face 1\n"
+                "property list uchar int vertex_indices\nend_header\n3 0 1 2\n",
+                "expected vertices with x, y and z"},
         BadMesh{"a.ply", ply_square + "3 0 1 2\n", "8 bytes more than the header announces"},
         BadMesh{"a.ply", ply_header("binary_little_endian") + ply_rows, "a.ply: byte "},
         BadMesh{"a.ply",
@@ -209,6 +242,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadMesh{"a.stl", "nothing", "found 7 bytes; expected 'solid' or a header of 84 bytes"},
         BadMesh{"a.stl", stl_square.substr(0, stl_square.find("endsolid")),
                 "the file ends here; expected endsolid"},
+        BadMesh{"a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nendloop\n",
+                "a.stl:5: found a loop of 1 corners; expected 3"},
+        BadMesh{"a.stl", "solid a\nouter loop\nvertex 0 0 0\nendfacet\n",
+                "a.stl:4: found 'endfacet'; expected endloop"},
+        BadMesh{"a.stl", "solid a\nvertex 0 0 q\n", "a.stl:2: found the coordinate 'q'"},
+        BadMesh{"a.stl", "solid a\nfacets\n", "a.stl:2: found 'facets'; expected facet"},
         BadMesh{"a.stl", stl_binary_square() + "x",
                 "found 185 bytes; expected 184 for the 2 triangles announced"},
         BadMesh{"a.stl",

@@ -78,8 +78,8 @@ SceneImage read_truth(const fs::path& directory) {
 }
 
 /// The plane whose file a member names.
-Image<float> read_plane(const JsonReader& json, std::string_view member, std::string_view what,
-                        const fs::path& directory, const SceneImage& truth) {
+Image<float> read_plane_file(const JsonReader& json, std::string_view member, std::string_view what,
+                             const fs::path& directory, const SceneImage& truth) {
   const std::string file = json.member(member).text();
   if (fs::path(file).has_parent_path())
     json.member(member).mistyped("a file of the same directory");
@@ -89,12 +89,12 @@ Image<float> read_plane(const JsonReader& json, std::string_view member, std::st
 SceneDecoding read_decoding(const JsonReader& json, const fs::path& directory,
                             const SceneImage& truth) {
   SceneDecoding decoding{.code = json.member("code").text(),
-                         .depth_m = read_plane(json, "file", "depth", directory, truth),
+                         .depth_m = read_plane_file(json, "file", "depth", directory, truth),
                          .error = error_from_json(json.member("error"))};
   if (const auto filtered = json.optional_member("filtered"))
     decoding.filtered = {
-        .depth_m = read_plane(*filtered, "file", "depth", directory, truth),
-        .averaged = read_plane(*filtered, "averaged_file", "averaged", directory, truth),
+        .depth_m = read_plane_file(*filtered, "file", "depth", directory, truth),
+        .averaged = read_plane_file(*filtered, "averaged_file", "averaged", directory, truth),
         .error = error_from_json(filtered->member("error"))};
   return decoding;
 }

@@ -16,30 +16,6 @@
 namespace tofsmith {
 namespace {
 
-double take_binary(const std::byte*& at, PlyType type) {
-  const std::byte* item = at;
-  at += ply_item_size(type);
-  switch (type) {
-    case PlyType::int8:
-      return load_little_endian<std::int8_t>(item);
-    case PlyType::uint8:
-      return load_little_endian<std::uint8_t>(item);
-    case PlyType::int16:
-      return load_little_endian<std::int16_t>(item);
-    case PlyType::uint16:
-      return load_little_endian<std::uint16_t>(item);
-    case PlyType::int32:
-      return load_little_endian<std::int32_t>(item);
-    case PlyType::uint32:
-      return load_little_endian<std::uint32_t>(item);
-    case PlyType::float32:
-      return load_little_endian<float>(item);
-    case PlyType::float64:
-      return load_little_endian<double>(item);
-  }
-  return 0.0;
-}
-
 /// The numbers of one line, as many as there are in `row`.
 void take_ascii_row(ByteCursor& cursor, std::vector<double>& row) {
   const std::size_t start = cursor.position();
@@ -172,8 +148,10 @@ PointCloud parse_ply(std::span<const std::byte> content, std::string_view file) 
       take_ascii_row(cursor, row);
     } else {
       const std::byte* item = cursor.take(header.row_bytes(), "a vertex").data();
-      for (std::size_t c = 0; c < row.size(); ++c)
-        row[c] = take_binary(item, header.properties[c].type);
+      for (std::size_t c = 0; c < row.size(); ++c) {
+        row[c] = ply_number(item, header.properties[c].type);
+        item += ply_item_size(header.properties[c].type);
+      }
     }
     sorter.add(row, cloud);
   }

@@ -8,6 +8,8 @@
 #include <array>
 #include <charconv>
 
+#include "io/shared/byte_order.hpp"
+
 namespace tofsmith {
 namespace {
 
@@ -114,6 +116,28 @@ std::size_t ply_item_size(PlyType type) {
       return 8;
   }
   return 1;
+}
+
+double ply_number(const std::byte* item, PlyType type) {
+  switch (type) {
+    case PlyType::int8:
+      return load_little_endian<std::int8_t>(item);
+    case PlyType::uint8:
+      return load_little_endian<std::uint8_t>(item);
+    case PlyType::int16:
+      return load_little_endian<std::int16_t>(item);
+    case PlyType::uint16:
+      return load_little_endian<std::uint16_t>(item);
+    case PlyType::int32:
+      return load_little_endian<std::int32_t>(item);
+    case PlyType::uint32:
+      return load_little_endian<std::uint32_t>(item);
+    case PlyType::float32:
+      return load_little_endian<float>(item);
+    case PlyType::float64:
+      return load_little_endian<double>(item);
+  }
+  return 0.0;
 }
 
 std::size_t PlyHeader::row_bytes() const {

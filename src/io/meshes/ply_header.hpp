@@ -15,6 +15,8 @@ namespace tofsmith {
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
 std::size_t ply_item_size(PlyType type);
+/// The number that stands at `item`, little end first.
+double ply_number(const std::byte* item, PlyType type);
 /// The type that a word such as "uchar" or "float32" names.
 std::optional<PlyType> ply_type_of(std::string_view word);
 

@@ -1,29 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/meshes/mesh_checks.hpp"
-
 #include <fmt/format.h>
 
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <string>
 
-#include "io/shared/byte_cursor.hpp"
+#include "io/meshes/polygon_soup.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 namespace {
-
-constexpr std::string_view blanks = " \t\r\v\f";
-
-/// Cuts the next word off a line; "" at its end.
-std::string_view next_word(std::string_view& line) {
-  line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
-  const std::string_view word = line.substr(0, line.find_first_of(blanks));
-  line.remove_prefix(word.size());
-  return word;
-}
 
 /// Cuts the next line off a text. A backslash at the end of a line joins the next one to it.
 std::string next_line(std::string_view& text, int& lines) {
@@ -46,18 +33,20 @@ struct ObjCounts {
   std::int64_t vertices = 0, texture_coordinates = 0, normals = 0;
 };
 
-class ObjCheck {
+class ObjReader {
  public:
-  ObjCheck(std::string_view text, std::string_view file) : text_(text), file_(file) {}
+  ObjReader(std::string_view text, std::string_view file) : text_(text), file_(file) {}
 
-  void run() {
+  PolygonSoup read() {
     const ObjCounts all = count();
     ObjCounts so_far;
     visit([&](std::string_view key, std::string_view rest) {
-      if (key == "v") check_vertex(rest);
-      if (key == "f") check_face(rest, so_far, all);
+      if (key == "v") read_vertex(rest);
+      if (key == "vt") read_texture(rest);
+      if (key == "f") read_face(rest, so_far, all);
       add(key, so_far);
     });
+    return std::move(soup_);
   }
 
  private:
@@ -89,23 +78,38 @@ class ObjCheck {
     throw IoError(fmt::format("{}:{}", file_, line_), problem);
   }
 
-  void check_vertex(std::string_view rest) const {
-    int numbers = 0;
+  /// The numbers of a line, at least `least` of them and as many as `first` holds.
+  template <std::size_t n>
+  void read_numbers(std::string_view rest, std::string_view what, std::size_t least,
+                    std::array<float, n>& first) const {
+    std::size_t numbers = 0;
     for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
-      if (word.starts_with('+')) word.remove_prefix(1);
+      std::string_view digits = word;
+      if (digits.starts_with('+')) digits.remove_prefix(1);
       double number = 0.0;
-      const auto result = std::from_chars(word.data(), word.data() + word.size(), number);
-      if (result.ec != std::errc() || result.ptr != word.data() + word.size() ||
+      const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+      if (result.ec != std::errc() || result.ptr != digits.data() + digits.size() ||
           !std::isfinite(number) || !std::isfinite(static_cast<float>(number)))
         fail(fmt::format("found the coordinate '{}'; expected a finite number", word));
+      if (numbers < n) first[numbers] = static_cast<float>(number);
       ++numbers;
     }
-    if (numbers < 3) fail(fmt::format("found a vertex of {} numbers; expected 3 or more", numbers));
+    if (numbers < least)
+      fail(fmt::format("found a {} of {} numbers; expected {} or more", what, numbers, least));
+  }
+
+  void read_vertex(std::string_view rest) {
+    read_numbers(rest, "vertex", 3, soup_.positions.emplace_back());
+  }
+
+  void read_texture(std::string_view rest) {
+    read_numbers(rest, "texture coordinate", 1, soup_.textures.emplace_back());
   }
 
   /// One of the numbers of a corner "7/3/-1"; a negative one counts back from the last.
-  void check_index(std::string_view& corner, std::string_view what, std::int64_t so_far,
-                   std::int64_t all) const {
+  /// From 0 on.
+  std::uint32_t take_index(std::string_view& corner, std::string_view what, std::int64_t so_far,
+                           std::int64_t all) const {
     std::int64_t index = 0;
     const auto result = std::from_chars(corner.data(), corner.data() + corner.size(), index);
     const bool whole = result.ec == std::errc() &&
@@ -115,12 +119,14 @@ class ObjCheck {
     if (index == 0 || index > all || index < -so_far)
       fail(fmt::format("found the {} index {}; expected 1 .. {}", what, index, all));
     corner.remove_prefix(static_cast<std::size_t>(result.ptr - corner.data()));
+    return static_cast<std::uint32_t>(index > 0 ? index - 1 : so_far + index);
   }
 
-  void check_face(std::string_view rest, const ObjCounts& so_far, const ObjCounts& all) const {
+  void read_face(std::string_view rest, const ObjCounts& so_far, const ObjCounts& all) {
     int corners = 0;
     for (std::string_view corner = next_word(rest); !corner.empty(); corner = next_word(rest)) {
-      check_index(corner, "vertex", so_far.vertices, all.vertices);
+      soup_.position_of.push_back(take_index(corner, "vertex", so_far.vertices, all.vertices));
+      std::uint32_t texture = PolygonSoup::none;
       const auto slash = [&corner] {
         const bool is = corner.starts_with('/');
         if (is) corner.remove_prefix(1);
@@ -128,47 +134,29 @@ class ObjCheck {
       };
       if (slash()) {
         if (!corner.starts_with('/'))
-          check_index(corner, "texture coordinate", so_far.texture_coordinates,
-                      all.texture_coordinates);
-        if (slash()) check_index(corner, "normal", so_far.normals, all.normals);
+          texture = take_index(corner, "texture coordinate", so_far.texture_coordinates,
+                               all.texture_coordinates);
+        if (slash()) take_index(corner, "normal", so_far.normals, all.normals);
       }
       if (!corner.empty())
         fail(fmt::format("found '{}' after a face's corner; expected a blank", corner));
+      soup_.texture_of.push_back(texture);
       ++corners;
     }
     if (corners < 3) fail(fmt::format("found a face of {} corners; expected 3 or more", corners));
+    soup_.face_end.push_back(soup_.position_of.size());
   }
 
   std::string_view text_;
   std::string file_;
   int line_ = 0;
+  PolygonSoup soup_;
 };
 
 }  // namespace
 
-void check_obj(std::string_view text, std::string_view file) { ObjCheck(text, file).run(); }
-
-void check_stl(std::span<const std::byte> content, std::string_view file) {
-  constexpr std::size_t header_bytes = 84, triangle_bytes = 50;
-  const std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
-  const bool may_be_text = text.starts_with("solid");
-  if (content.size() >= header_bytes) {
-    ByteCursor cursor(content, file);
-    cursor.take(header_bytes - 4, "the header");
-    const std::uint64_t triangles = cursor.take_u32_little("the count of triangles");
-    const std::uint64_t expected = header_bytes + triangle_bytes * triangles;
-    if (content.size() == expected) return;
-    if (!may_be_text)
-      throw IoError(file, fmt::format("found {} bytes; expected {} for the {} triangles announced",
-                                      content.size(), expected, triangles));
-  } else if (!may_be_text) {
-    throw IoError(file, fmt::format("found {} bytes; expected 'solid' or a header of {} bytes",
-                                    content.size(), header_bytes));
-  }
-  const std::size_t last_facet = text.rfind("endfacet");
-  if (text.find("endsolid", last_facet == std::string_view::npos ? 0 : last_facet) ==
-      std::string_view::npos)
-    throw IoError(file, fmt::format("byte {}: the file ends here; expected endsolid", text.size()));
+PolygonSoup parse_obj(std::string_view text, std::string_view file) {
+  return ObjReader(text, file).read();
 }
 
 }  // namespace tofsmith
