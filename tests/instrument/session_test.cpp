@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <deque>
+#include <thread>
 
 #include "simulated_server.hpp"
 #include "tofsmith/core/error.hpp"
@@ -127,6 +129,59 @@ SimulatedGenerator example_generator() { return {SimulatedGenerator::Family::key
 
 std::unique_ptr<InstrumentConnection> connected(int port, double deadline_s = 5.0) {
   return connect_instrument({Protocol::raw_socket, "127.0.0.1", port}, deadline_s);
+}
+
+/// Never stops giving the same piece, with a breath between.
+class DrippingConnection : public InstrumentConnection {
+ public:
+  explicit DrippingConnection(std::string piece) : piece_(std::move(piece)) {}
+  void send(std::string_view, double) override { sent_ = true; }
+  std::string receive(double) override {
+    if (!sent_) return "";
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    return piece_;
+  }
+  std::string name() const override { return "here"; }
+
+ private:
+  std::string piece_;
+  bool sent_ = false;
+};
+
+TEST(ScpiSession, AnswersThatNeverEndAreGivenUp) {
+  for (const char* piece : {"\n", "x", "#"})
+    for (const int kind : {0, 1, 2}) {
+      ScpiSession session(std::make_unique<DrippingConnection>(piece), 0.1);
+      session.send("*IDN?\n");
+      EXPECT_THROW(kind == 0   ? session.read_line()
+                   : kind == 1 ? session.read_block(1 << 20)
+                               : session.read_wave_data(1 << 20, 1 << 20),
+                   IoError)
+          << piece << kind;
+    }
+}
+
+TEST(ScpiSession, AnswersThatNeverEndCanBeStopped) {
+  for (const int kind : {0, 1, 2}) {
+    int calls = 0;
+    ScpiSession session(std::make_unique<DrippingConnection>("\n"), 60.0, [&] {
+      if (++calls > 3) throw Interrupted();
+    });
+    session.send("*IDN?\n");
+    EXPECT_THROW(kind == 0   ? session.read_line()
+                 : kind == 1 ? session.read_block(1 << 20)
+                             : session.read_wave_data(1 << 20, 1 << 20),
+                 Interrupted);
+  }
+}
+
+TEST(ScpiSession, ALengthIsCheckedInItsUnit) {
+  ScpiSession session(std::make_unique<ScriptedConnection>(
+                          std::deque<std::string>{"C1:WVDT WVNM,x,LENGTH,2000000KB,WAVEDATA,"}),
+                      0.1);
+  session.send("C1:WVDT?\n");
+  EXPECT_THAT(problem_of([&] { session.read_wave_data(100, 1 << 24); }),
+              HasSubstr("expected a LENGTH of at most 16777216 bytes"));
 }
 
 TEST(TcpConnection, UploadsOverTheLoopback) {

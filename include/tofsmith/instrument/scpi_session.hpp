@@ -64,8 +64,9 @@ bool has_vxi11();
 /// instrument, what was sent, what came and what to do next.
 class ScpiSession {
  public:
-  /// @param answer_s    longest wait for an answer [s]
-  /// @param check_stop  called while an answer is waited for; may throw
+  /// @param answer_s    longest wait for a whole answer [s]; blocks of data have a second more for
+  ///                    each 100 kB
+  /// @param check_stop  called while an answer is waited for, and with each piece of it; may throw
   ScpiSession(std::unique_ptr<InstrumentConnection> connection, double answer_s,
               StopCheck check_stop = {});
 
@@ -90,8 +91,10 @@ class ScpiSession {
   std::string name() const { return connection_->name(); }
 
  private:
+  class AnswerTime;
+
   /// Waits until there are so many bytes. @throws IoError naming what is missing
-  void fill(std::size_t bytes, std::string_view what, double more_s = 0.0);
+  void fill(std::size_t bytes, std::string_view what, const AnswerTime& time);
   /// One more piece, or none in time.
   bool receive_more(double seconds);
   void skip_line_ends();
