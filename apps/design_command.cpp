@@ -161,14 +161,20 @@ void run(const DesignArguments& arguments, const Session& session) {
   const DesignDirectory directory(arguments.output);
   if (directory.holds_design() && !session.force)
     throw IoError((directory.path() / "design.json").string(),
-                  "already exists; use --force to replace the finished design, or another -o DIR");
+                  "already exists; use --force to replace the finished design, or another -o DIR "
+                  "(`tofsmith report` makes its page again)");
+  // Without its last file but with codes under way the directory is that of a run that was stopped,
+  // perhaps while it wrote its results: this one goes on.
+  const bool goes_on =
+      !directory.holds_design() && std::filesystem::exists(directory.path() / "finished");
+  const OutputPolicy policy = goes_on ? OutputPolicy::overwrite : session.output_policy();
   for (const char* name : {"camera.toml", "details.json", "report.html"})
     if (std::filesystem::exists(directory.path() / name))
-      session.check_output(directory.path() / name);
+      session.check_output(directory.path() / name, policy);
   const DesignResult result =
       design(camera, options, terminal_progress("designing"), directory.store(camera, options));
-  directory.write(camera, result, options, session.output_policy());
-  write_report(session, directory.path(), session.output_policy());
+  directory.write(camera, result, options, policy);
+  write_report(session, directory.path(), policy);
   print_design(session, camera, result, options);
   session.say(fmt::format("wrote {}", (directory.path() / "report.html").string()));
 }

@@ -24,7 +24,7 @@ namespace {
 using namespace tofsmith;
 using namespace tofsmith::apps;
 
-constexpr int exit_failed = 1, exit_usage = 2, exit_interrupted = 130;
+constexpr int exit_failed = 1, exit_usage = 2;
 
 std::string as_typed(int argc, char** argv) {
   std::string line = "tofsmith";

@@ -27,7 +27,8 @@ void Session::print_document(std::string_view document) const {
   if (json) fmt::print("{}\n", document);
 }
 
-void Session::check_output(const std::filesystem::path& path) const {
+void Session::check_output(const std::filesystem::path& path,
+                           std::optional<OutputPolicy> policy) const {
   std::vector<std::string> inputs;
   bool is_itself = false;
   for (const std::string& word : words) {
@@ -44,7 +45,7 @@ void Session::check_output(const std::filesystem::path& path) const {
     }
   }
   check_not_input(path, inputs);
-  const AtomicFile probe(path, output_policy());  // never committed
+  const AtomicFile probe(path, policy.value_or(output_policy()));  // never committed
 }
 
 void CameraArguments::add_to(CLI::App& command) {

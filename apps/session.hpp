@@ -46,7 +46,9 @@ struct Session {
   /// Fails before long work, not after it, when its output could not be written, or is a file that
   /// another word of the command names, also through links: not even --force replaces that.
   /// @throws IoError as write_file_atomically() would, or check_not_input()
-  void check_output(const std::filesystem::path& path) const;
+  /// @param policy  other than that of the session
+  void check_output(const std::filesystem::path& path,
+                    std::optional<OutputPolicy> policy = std::nullopt) const;
 };
 
 /// The options that name a camera: a positional or `--camera` name or file, and `--set key=value`.

@@ -4,14 +4,19 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
+#include <mutex>
+#include <set>
 #include <system_error>
 
+#include "core/shared/hash.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -30,6 +35,41 @@ fs::path follow_link(fs::path path) {
 
 fs::path directory_of(const fs::path& target) {
   return target.has_parent_path() ? target.parent_path() : fs::path(".");
+}
+
+/// What hidden files of this machine begin with: others may share the directory.
+const std::string& hidden_prefix() {
+  static const std::string prefix = [] {
+    char host[256] = {};
+    if (::gethostname(host, sizeof(host) - 1) != 0) host[0] = '\0';
+    return fmt::format(".tofsmith-{:08x}-", fnv1a_64(host) & 0xffffffffu);
+  }();
+  return prefix;
+}
+
+/// The process that a hidden file of this machine is of; 0: it is none.
+pid_t owner_of(const std::string& name) {
+  if (!name.starts_with(hidden_prefix())) return 0;
+  pid_t owner = 0;
+  const char* const begin = name.data() + hidden_prefix().size();
+  const auto [end, error] = std::from_chars(begin, name.data() + name.size(), owner);
+  return error == std::errc() && end != name.data() + name.size() && *end == '-' ? owner : 0;
+}
+
+/// Takes away what processes that were killed have left in a directory. Each is looked at once.
+void remove_leftovers(const fs::path& directory) {
+  static std::mutex mutex;
+  static std::set<fs::path> seen;
+  std::error_code ignored;
+  {
+    const std::lock_guard lock(mutex);
+    if (!seen.insert(fs::absolute(directory, ignored)).second) return;
+  }
+  for (fs::directory_iterator it(directory, ignored), end; it != end; it.increment(ignored)) {
+    if (ignored) return;
+    const pid_t owner = owner_of(it->path().filename().string());
+    if (owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH) fs::remove(it->path(), ignored);
+  }
 }
 
 [[noreturn]] void refuse_existing_file(const fs::path& target) {
@@ -80,9 +120,10 @@ void AtomicFile::create_temporary() {
   static std::atomic<unsigned> counter{0};
   std::string extension = target_.extension().string();
   if (extension.size() > 32) extension.clear();  // a name has at most 255 bytes
+  remove_leftovers(directory_of(target_));
   do {
-    temporary_ =
-        directory_of(target_) / fmt::format(".tofsmith-{}-{}{}", ::getpid(), counter++, extension);
+    temporary_ = directory_of(target_) /
+                 fmt::format("{}{}-{}{}", hidden_prefix(), ::getpid(), counter++, extension);
     descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   } while (descriptor_ < 0 && errno == EEXIST);  // left behind by a killed run
   if (descriptor_ < 0)

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "io/documents/shared/result_json.hpp"
+#include "io/shared/read_file.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
 
@@ -38,7 +39,16 @@ std::span<const std::byte> bytes_of(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
 
-void write_all(const std::vector<Product>& products, OutputPolicy policy) {
+/// Whether a file is there with just these bytes: a run that was stopped has written it.
+bool is_written(const Product& product) {
+  const auto& [path, content] = product;
+  std::error_code ignored;
+  if (std::filesystem::file_size(path, ignored) != content.size() || ignored) return false;
+  return std::ranges::equal(read_binary_file(path), content);
+}
+
+void write_all(std::vector<Product> products, OutputPolicy policy) {
+  std::erase_if(products, is_written);
   for (const auto& [path, content] : products) const AtomicFile probe(path, policy);
   for (const auto& [path, content] : products) write_file_atomically(path, content, policy);
 }

@@ -32,6 +32,53 @@ class Interrupts(CommandLineTest):
             time.sleep(0.1)
         self.fail(f"{name} did not appear")
 
+    def contents(self):
+        return {name: self.bytes_of(name) for name in self.files()
+                if os.path.isfile(self.path(name))}
+
+    def test_while_input_is_waited_for(self):
+        os.mkfifo(self.path("pipe.npy"))
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            process = self.start("decode", "pipe.npy", "--code", "sinusoid-k4", "-o", "d.npy")
+            time.sleep(0.3)
+            process.send_signal(number)
+            out, error = process.communicate(timeout=10)
+            self.assertEqual((process.returncode, out), (130, b""), error)
+            self.assertEqual(error, b"tofsmith: interrupted; nothing was written\n")
+        self.assertEqual(self.files(), ["pipe.npy"])
+
+    def test_a_hang_up_stops_as_ctrl_c_does(self):
+        process = self.start("evaluate", "sinusoid-k4", *LONG)
+        time.sleep(0.5)
+        process.send_signal(signal.SIGHUP)
+        self.assertEqual(process.communicate(timeout=60)[1],
+                         b"tofsmith: interrupted; nothing was written\n")
+
+    def test_a_design_killed_while_it_writes_goes_on(self):
+        asked = ("design", "--method", "factorize", "--exposures", "3", "--trials", "1000", "-o",
+                 "d")
+        self.do(*asked)
+        before = self.contents()
+        for name in ("d/design.json", "d/details.json", "d/report.html"):
+            os.remove(self.path(name))
+        with open(self.path("d/camera.toml"), "w") as half:
+            half.write("[")
+        self.do(*asked)
+        self.assertEqual(sorted(before), sorted(self.contents()))
+        for name in ("d/camera.toml", "d/codes/hamiltonian-k3.code.json"):
+            self.assertEqual(self.bytes_of(name), before[name])
+
+    def test_an_export_killed_while_it_writes_goes_on(self):
+        asked = ("export", "square-k4", "--format", "csv", "--samples", "60", "--no-loss", "-o", "e")
+        self.do(*asked)
+        before = self.contents()
+        lost = sorted(before)[-1]
+        os.remove(self.path(lost))
+        self.do(*asked)
+        self.assertEqual(self.contents(), before)
+        self.write(lost, "mine")
+        self.refuse(list(asked), lost, "exists already")
+
     def test_evaluate(self):
         self.interrupt("evaluate", "sinusoid-k4", *LONG, "-o", "e.csv")
         self.assertEqual(self.files(), [])

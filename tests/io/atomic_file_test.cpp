@@ -7,6 +7,8 @@
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -103,6 +105,24 @@ TEST(AtomicFile, KeepsPermissionsAndFollowsLinks) {
   struct stat status {};
   ASSERT_EQ(stat((directory / "a.txt").c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 07777, 0640u);
+}
+
+TEST(AtomicFile, WhatAKilledProcessLeftGoesWithTheNextFile) {
+  const TemporaryDirectory directory;
+  const pid_t child = fork();
+  if (child == 0) {  // killed half way
+    AtomicFile file(directory / "a.txt", refuse);
+    file.write("half");
+    kill(getpid(), SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  std::ofstream(directory / ".tofsmith-of-another-machine-1-0.txt") << "not ours";
+  EXPECT_EQ(directory.files(), 2);
+  AtomicFile running(directory / "b.txt", refuse);
+  EXPECT_EQ(directory.files(), 2);  // ours, and the other machine's
+  EXPECT_TRUE(std::filesystem::exists(directory / ".tofsmith-of-another-machine-1-0.txt"));
 }
 
 TEST(AtomicFile, TemporaryPathMayBeReplacedByALibrary) {

@@ -31,7 +31,8 @@ enum class OutputPolicy { refuse_existing, overwrite };
 
 /// An output file that appears whole or not at all: everything goes to a hidden file in the same
 /// directory, and commit() renames it. Without commit(), the destructor removes the hidden file
-/// and what was there before stays as it was.
+/// and what was there before stays as it was. Hidden files of processes that were killed are taken
+/// away by the next one that writes there, on the same machine.
 /// A symbolic link as target is followed; a file that is overwritten keeps its permissions.
 class AtomicFile {
  public:
