@@ -14,6 +14,7 @@
 #include "command_listing.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "printed_text.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/core/build_info.hpp"
 #include "tofsmith/core/error.hpp"
@@ -45,6 +46,19 @@ const CLI::App& chosen(const CLI::App& app) {
 std::string words_of(const CLI::App& command) {
   const CLI::App* parent = command.get_parent();
   return parent == nullptr ? std::string() : words_of(*parent) + " " + command.get_name();
+}
+
+/// The empty name of an output would pass for one that was not given.
+void refuse_outputs_without_name(int argc, char** argv) {
+  constexpr std::string_view outputs[] = {"-o",      "--output",     "--store",   "--report",
+                                          "--table", "--offset-map", "--gain-map"};
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    for (const std::string_view output : outputs)
+      if ((word == output && i + 1 < argc && argv[i + 1][0] == '\0') ||
+          (word.size() == output.size() + 1 && word.starts_with(output) && word.back() == '='))
+        throw IoError(output, "found an empty file name; expected a path");
+  }
 }
 
 /// What could have been meant: commands where none was given, options elsewhere.
@@ -80,7 +94,8 @@ std::string usage_problem(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 int refuse_usage(const CLI::App& app, const std::string& problem) {
-  fmt::print(stderr, "tofsmith: {}\nSee `tofsmith{} --help`.\n", problem, words_of(chosen(app)));
+  fmt::print(stderr, "tofsmith: {}\nSee `tofsmith{} --help`.\n", printed(problem),
+             words_of(chosen(app)));
   return exit_usage;
 }
 
@@ -124,6 +139,7 @@ void pin_target() {
 
 int run(int argc, char** argv) {
   pin_target();
+  refuse_outputs_without_name(argc, argv);
   Session session;
   session.command_line = as_typed(argc, argv);
   session.words.assign(argv + std::min(argc, 1), argv + argc);
@@ -188,12 +204,12 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const UsageError& error) {
-    fmt::print(stderr, "tofsmith: {}\n", error.what());
+    fmt::print(stderr, "tofsmith: {}\n", printed(error.what()));
     return exit_usage;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "tofsmith: out of memory\n");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "tofsmith: {}\n", error.what());
+    fmt::print(stderr, "tofsmith: {}\n", printed(error.what()));
   }
   return interrupted() ? exit_interrupted : exit_failed;
 }

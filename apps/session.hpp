@@ -58,7 +58,13 @@ struct CameraArguments {
   const CLI::Option* option = nullptr;  ///< `--camera`, if the subcommand has it
 
   /// Whether nobody named a camera.
-  bool is_default() const { return option != nullptr && option->count() == 0; }
+  /// Whether nobody said which camera it is, nor how far it sees.
+  bool is_default() const {
+    return option != nullptr && option->count() == 0 &&
+           std::ranges::none_of(settings, [](const std::string& setting) {
+             return setting.starts_with("fundamental_frequency_hz");
+           });
+  }
 
   /// Adds `--camera` and `--set` to a subcommand.
   void add_to(CLI::App& command);

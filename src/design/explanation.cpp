@@ -88,8 +88,9 @@ std::string what_limits_it(const DesignResult& result) {
   };
   if (points.size() == 1) return fmt::format("Its circular error is {}.", describe(*min));
   return fmt::format(
-      "In the best light (S = {:.3g}, A = {:.3g} e/s) its circular error is {}; in the worst "
-      "(S = {:.3g}, A = {:.3g} e/s), where {:.0f} % of depths are outliers, {}.",
+      "Where it errs least (S = {:.3g}, A = {:.3g} e/s) its circular error is {}; where it errs "
+      "most "
+      "(S = {:.3g}, A = {:.3g} e/s) and {:.0f} % of depths are outliers, {}.",
       min->point.signal_e_per_s, min->point.ambient_e_per_s, describe(*min),
       max->point.signal_e_per_s, max->point.ambient_e_per_s, 100 * max->outlier_rate.value,
       describe(*max));

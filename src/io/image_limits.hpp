@@ -9,7 +9,7 @@ namespace tofsmith {
 
 /// Largest image any reader accepts, so that a few damaged bytes cannot claim all memory.
 inline constexpr std::uint64_t max_image_side = 65536;
-inline constexpr std::uint64_t max_image_pixels = std::uint64_t{1} << 28;
+inline constexpr std::uint64_t max_image_pixels = std::uint64_t{1} << 26;
 
 /// @throws IoError naming `file` unless 1 <= height, width <= max_image_side and there are at most
 ///         max_image_pixels pixels

@@ -22,6 +22,8 @@ namespace {
 template <typename Container>
 Container read_whole_file(const std::filesystem::path& path, std::uint64_t max_bytes) {
   InputFile file(path);
+  constexpr std::uint64_t endless_bytes = std::uint64_t{1} << 28;  // what never ends, ends here
+  if (!file.size()) max_bytes = std::min(max_bytes, endless_bytes);
   const std::uint64_t announced = file.size().value_or(0);
   if (announced > max_bytes) refuse_size(path, fmt::format("{}", announced), max_bytes);
   Container content;

@@ -37,6 +37,9 @@ std::string_view advice(int code) {
 }  // namespace
 
 SqliteDatabase::SqliteDatabase(const std::filesystem::path& path, Access access) : path_(path) {
+  if (const std::string name = path.string(); name.empty() || name.starts_with(':'))
+    throw IoError(name.empty() ? "store" : name,
+                  "expected the name of a file; what SQLite keeps in memory would be lost");
   sqlite3* connection = nullptr;
   const int flags =
       access == Access::read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <sstream>
 
@@ -74,6 +75,15 @@ std::vector<SettingValue> logarithmic_values(const TableReader& table, double fr
   return values;
 }
 
+bool may_be_value(const std::string& line) {
+  const auto is_of_a_word = [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("+-_./").find(static_cast<char>(c)) != std::string_view::npos;
+  };
+  const bool in_brackets = std::string_view("\"'[{").find(line.front()) != std::string_view::npos;
+  return line.size() <= 4096 && (in_brackets || std::ranges::all_of(line, is_of_a_word));
+}
+
 std::vector<SettingValue> file_values(const TableReader& table, const std::string& name) {
   const std::filesystem::path path = table.resolve("file", name);
   std::string text;
@@ -90,8 +100,13 @@ std::vector<SettingValue> file_values(const TableReader& table, const std::strin
     const std::size_t begin = line.find_first_not_of(" \t\r");
     if (begin == std::string::npos || line[begin] == '#') continue;
     const std::size_t end = line.find_last_not_of(" \t\r");
-    values.push_back(toml_value_of_line(line.substr(begin, end + 1 - begin),
-                                        fmt::format("{}:{}:{}", path.string(), number, begin + 1)));
+    const std::string value = line.substr(begin, end + 1 - begin);
+    const std::string place = fmt::format("{}:{}:{}", path.string(), number, begin + 1);
+    if (!may_be_value(value))  // nor shown: it may be of a file that nobody meant
+      throw IoError(place,
+                    "found a line that is no value; expected a number, a word, a path or a "
+                    "text in quotes");
+    values.push_back(toml_value_of_line(value, place));
   }
   if (values.empty())
     table.fail("file", fmt::format("{} holds no value; expected one a line", path.string()));
@@ -272,7 +287,7 @@ SweepSpec parse_sweep_toml(std::string_view text, std::string_view source_name) 
 }
 
 SweepSpec read_sweep_toml(const std::filesystem::path& path) {
-  return parse_sweep_toml(read_text_file(path), path.string());
+  return parse_sweep_toml(read_text_file(path, max_settings_file_bytes), path.string());
 }
 
 }  // namespace tofsmith

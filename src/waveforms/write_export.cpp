@@ -47,8 +47,9 @@ bool is_written(const Product& product) {
   return std::ranges::equal(read_binary_file(path), content);
 }
 
+/// Goes on where a run was stopped; where all is there, that is refused as anything else.
 void write_all(std::vector<Product> products, OutputPolicy policy) {
-  std::erase_if(products, is_written);
+  if (!std::ranges::all_of(products, is_written)) std::erase_if(products, is_written);
   for (const auto& [path, content] : products) const AtomicFile probe(path, policy);
   for (const auto& [path, content] : products) write_file_atomically(path, content, policy);
 }

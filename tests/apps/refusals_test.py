@@ -27,6 +27,22 @@ class Refusals(CommandLineTest):
     def refuse_setting(self, setting, *words, code="sinusoid-k4"):
         self.refuse(["evaluate", code, "--trials", "1000", "--set", setting], *words)
 
+    def test_messages_do_not_steer_a_terminal(self):
+        for name, shown in ((b"\x1b[31mred", "\\x1b[31mred"), (b"a\xff\xc2\x9bb", "a\\xff\\xc2\\x9bb"),
+                            ("Größe".encode(), "Größe")):
+            process = self.start("evaluate", os.fsdecode(name))
+            error = process.communicate()[1]
+            self.assertEqual(process.returncode, 1)
+            self.assertIn(shown, error.decode())  # which is UTF-8
+            self.assertNotIn(b"\x1b", error)
+        process = self.start("evaluate", "x" * 100_000)
+        self.assertLess(len(process.communicate()[1]), 6000)
+
+    def test_an_output_has_a_name(self):
+        for words in (["codes", "sinusoid-k4", "-o", ""], ["codes", "sinusoid-k4", "--output="],
+                      ["sweep", "s.toml", "--store", ""]):
+            self.refuse(words, "found an empty file name")
+
     def test_usage(self):
         for arguments, words in (
                 (["bogus"], ["unknown command 'bogus'", "expected one of"]),

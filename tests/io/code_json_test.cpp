@@ -125,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadMember{"/samples", 18446744073709551615ull,
                   "c.json: /samples: found 18446744073709551615; expected an integer in [2, "
                   "65536]"},
-        BadMember{"/taps", 0, "c.json: /taps: found 0; expected an integer in [1, 2048]"},
+        BadMember{"/taps", 0, "c.json: /taps: found 0; expected an integer in [1, 32]"},
         BadMember{"/taps", 3,
                   "c.json: /demodulation: found a list of 4; expected a list of 6: /exposures x "
                   "/taps functions"},

@@ -94,7 +94,7 @@ TEST(Exr, RefusesWhatItDoesNotRead) {
   EXPECT_THAT(refusal(small_file(1, 0x10)), HasSubstr("several parts"));
   EXPECT_THAT(refusal(small_file(1, 0x40)), HasSubstr("unknown flags"));
   EXPECT_THAT(refusal(small_file(1, 0, "\xff\xff\xff\x7f\xff\xff\xff\x7f")), HasSubstr("at most"));
-  EXPECT_THAT(refusal(small_file(1, 0, std::string("\0\x30\0\0\0\x30\0\0", 8))),
+  EXPECT_THAT(refusal(small_file(1, 0, std::string("\0\x1f\0\0\0\x1f\0\0", 8))),
               HasSubstr("can unpack to"));
   EXPECT_THAT(refusal(small_file(1, 0, "\xf0\xff\xff\xff\xff\xff\xff\xff")),
               HasSubstr("found an image"));

@@ -25,6 +25,7 @@ TEST(JsonText, ErrorsNameLineAndColumn) {
   EXPECT_THAT(refusal(""), StartsWith("a.json:1:1: "));
   EXPECT_THAT(refusal("[1,\n"), StartsWith("a.json:2:1: "));
   EXPECT_THAT(refusal("[1] 2"), StartsWith("a.json:1:5: "));
+  EXPECT_THAT(refusal(std::string(10'000'000, '[')), HasSubstr("more than 64 deep"));
   EXPECT_THAT(refusal("\"\xff\""), StartsWith("a.json:1:"));
   EXPECT_THAT(refusal("[1e999]"), StartsWith("a.json"));
 }

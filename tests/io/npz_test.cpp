@@ -96,6 +96,18 @@ TEST(Npz, AnArrayThatIsRefusedDoesNotHideTheOthers) {
   EXPECT_THROW(reader.read("raw"), IoError);
 }
 
+TEST(Npz, AnArrayLargerThanAskedForIsNotUnpacked) {
+  const auto content = serialize_npz({{"zeros", NpyArray(NpyType::float64, {1000, 1000})}},
+                                     NpzCompression::deflated);
+  EXPECT_LT(content.size(), 20'000u);
+  const NpzReader reader(content, "a.npz");
+  EXPECT_EQ(reader.read("zeros").size(), 1'000'000u);
+  EXPECT_THAT(
+      io_error_of([&] { reader.read("zeros", 1'000'000); }),
+      testing::HasSubstr("entry 'zeros': found 8000128 bytes once unpacked; expected at most "
+                         "1000000"));
+}
+
 TEST(Npz, RefusesToWriteArraysWithoutName) {
   EXPECT_THROW(serialize_npz({}), std::invalid_argument);
   EXPECT_THROW(serialize_npz({{"", NpyArray()}}), std::invalid_argument);

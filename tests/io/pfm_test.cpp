@@ -74,7 +74,7 @@ TEST(Pfm, RefusesMalformedHeadersAtAByte) {
   EXPECT_THAT(refusal("Pf\n1 1\nnan\n1234"), HasSubstr("scale"));
   EXPECT_THAT(refusal("Pf\n0 1\n-1\n"), HasSubstr("0 pixels"));
   EXPECT_THAT(refusal("Pf\n4000000000 4000000000\n-1\n1234"), HasSubstr("at most"));
-  EXPECT_THAT(refusal("Pf\n60000 4000\n-1\n1234"), HasSubstr("found 4 bytes of data"));
+  EXPECT_THAT(refusal("Pf\n6000 4000\n-1\n1234"), HasSubstr("found 4 bytes of data"));
   EXPECT_THAT(refusal("Pf\n1 1\n-1\n12345"), HasSubstr("found 5 bytes of data; expected 4"));
   EXPECT_THAT(refusal("Pf\n" + std::string(1000, '1')), HasSubstr("the width"));
 }

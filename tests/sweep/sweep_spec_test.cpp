@@ -7,6 +7,7 @@
 
 #include <fstream>
 
+#include "damaged_files.hpp"
 #include "temporary_directory.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
@@ -66,6 +67,16 @@ TEST(SweepSpec, AFileHoldsAValueALine) {
   const SweepSpec spec = read_sweep_toml(directory / "s.toml");
   EXPECT_THAT(texts(spec.axes.at(0)), ElementsAre("5", "7.5"));
   EXPECT_EQ(spec.axes[0].values[1].place, (directory / "peaks.txt").string() + ":4:1");
+}
+
+TEST(SweepSpec, AFileThatIsNoneOfValuesIsNotShown) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "passwd") << "root:x:0:0:root:/root:/bin/bash\n";
+  std::ofstream(directory / "s.toml")
+      << head << "[[axis]]\nkey = \"light.peak_factor\"\nfile = \"passwd\"\n";
+  const std::string message = io_error_of([&] { read_sweep_toml(directory / "s.toml"); });
+  EXPECT_THAT(message, testing::HasSubstr("passwd:1:1: found a line that is no value"));
+  EXPECT_THAT(message, testing::Not(testing::HasSubstr("bash")));
 }
 
 TEST(SweepSpec, AProductHasEveryPairAndItsLastAxisIsFastest) {

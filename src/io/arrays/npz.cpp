@@ -159,7 +159,11 @@ std::uint64_t NpzReader::unpacked_bytes(std::string_view name) const {
   return state_->sizes[state_->index_of(name)];
 }
 
-NpyArray NpzReader::read(std::string_view name) const {
+NpyArray NpzReader::read(std::string_view name, std::uint64_t max_bytes) const {
+  if (const std::uint64_t bytes = unpacked_bytes(name); bytes > max_bytes)
+    throw IoError(state_->file, fmt::format("entry '{}': found {} bytes once unpacked; expected at "
+                                            "most {}",
+                                            name, bytes, max_bytes));
   const auto content = state_->unpack(state_->index_of(name));
   return parse_npy(content, fmt::format("{}: entry '{}'", state_->file, name));
 }
@@ -168,7 +172,7 @@ namespace {
 
 NpzArrays read_all(const NpzReader& reader) {
   NpzArrays arrays;
-  for (const std::string& name : reader.names()) arrays.emplace(name, reader.read(name));
+  for (const std::string& name : reader.names()) arrays.emplace(name, reader.read(name, max_npz_bytes));
   return arrays;
 }
 

@@ -72,7 +72,7 @@ Camera parse_camera_toml(std::string_view text, std::string_view source_name, Se
 }
 
 Camera read_camera_toml(const std::filesystem::path& path, Settings settings) {
-  return parse_camera_toml(read_text_file(path), path.string(), settings);
+  return parse_camera_toml(read_text_file(path, max_settings_file_bytes), path.string(), settings);
 }
 
 Camera with_settings(const Camera& camera, Settings settings) {

@@ -20,9 +20,9 @@ using OrderedJson = nlohmann::ordered_json;
 
 constexpr std::string_view format_name = "tofsmith-code";
 constexpr int format_version = 1;
-constexpr int max_samples = 65536;  // as a camera's
-constexpr int max_measurements = 4096;
-constexpr double tolerance = 1e-9;  // as CodeSet's
+constexpr int max_samples = 65536;    // as a camera's
+constexpr int max_measurements = 64;  // as decoders take
+constexpr double tolerance = 1e-9;    // as CodeSet's
 
 OrderedJson waveform_to_json(const Waveform& waveform) {
   if (!waveform.is_binary()) {

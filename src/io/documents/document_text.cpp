@@ -82,8 +82,16 @@ std::string toml_value(const Json& value) {
 }  // namespace
 
 nlohmann::json parse_json(std::string_view text, std::string_view file) {
+  constexpr int deepest = 64;
+  const auto check_depth = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
+    if (depth > deepest)
+      throw IoError(file, fmt::format("found lists within lists more than {} deep; expected a "
+                                      "document",
+                                      deepest));
+    return true;
+  };
   try {
-    return nlohmann::json::parse(text);
+    return nlohmann::json::parse(text, check_depth);
   } catch (const nlohmann::json::parse_error& error) {
     const std::size_t byte = error.byte > 0 ? error.byte - 1 : 0;
     throw IoError(place_of(text, byte, file), problem_of(error.what()));

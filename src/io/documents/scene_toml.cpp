@@ -248,7 +248,7 @@ StagedScene parse_scene_toml(std::string_view text, std::string_view source_name
 
 StagedScene read_scene_toml(const std::filesystem::path& path,
                             std::span<const std::string> settings) {
-  return parse_scene_toml(read_text_file(path), path.string(), settings);
+  return parse_scene_toml(read_text_file(path, max_settings_file_bytes), path.string(), settings);
 }
 
 }  // namespace tofsmith

@@ -60,7 +60,7 @@ void note_data_window(ByteCursor value, Layout& layout, std::string_view file) {
 
 void note_channels(ByteCursor value, Layout& layout) {
   constexpr std::uint32_t half_type = 1, float_type = 2;
-  constexpr std::uint64_t max_channels = 64;
+  constexpr std::uint64_t max_channels = 32;
   layout.channels = 0;
   for (;;) {
     const std::string_view name = value.take_until('\0', "a channel name");
@@ -102,8 +102,13 @@ void check_tile_count(const Layout& layout, std::size_t file_bytes, const ByteCu
 /// A flat image can be packed almost without end, so a bound on the ratio alone would refuse small
 /// ones; the ratio is what a constant image reaches in large DWA blocks.
 void check_unpacked_size(const Layout& layout, std::size_t file_bytes, const ByteCursor& cursor) {
-  constexpr std::uint64_t harmless_bytes = std::uint64_t{1} << 26, max_ratio = 65536;
+  constexpr std::uint64_t harmless_bytes = std::uint64_t{1} << 26, max_ratio = 65536,
+                          max_bytes = std::uint64_t{1} << 30;
   const std::uint64_t unpacked = layout.channels * layout.height * layout.width * sizeof(float);
+  if (unpacked > max_bytes)
+    cursor.fail(
+        fmt::format("found {} channels of {} x {} pixels; expected at most {} numbers in all",
+                    layout.channels, layout.height, layout.width, max_bytes / sizeof(float)));
   if (unpacked > harmless_bytes && unpacked / max_ratio > file_bytes)
     cursor.fail(
         fmt::format("found {} channels of {} x {} pixels; expected at most what a file of "

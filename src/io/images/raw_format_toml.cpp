@@ -71,7 +71,7 @@ RawFormat parse_raw_format(std::string_view text, std::string_view source_name) 
 }
 
 RawFormat read_raw_format(const std::filesystem::path& path) {
-  return parse_raw_format(read_text_file(path), path.string());
+  return parse_raw_format(read_text_file(path, max_settings_file_bytes), path.string());
 }
 
 }  // namespace tofsmith

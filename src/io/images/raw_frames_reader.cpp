@@ -39,7 +39,7 @@ NpyArray read_npz_array(const std::filesystem::path& path, const RawReadOptions&
                                ? name_called_or_only(archive, "raw", path.string())
                                : options.dataset;
   check_memory(archive.unpacked_bytes(name), options, path.string(), "an .npz");
-  return archive.read(name);
+  return archive.read(name, options.max_in_memory);
 }
 
 /// Of a file that holds one array, without a name.

@@ -10,12 +10,14 @@
 
 namespace tofsmith {
 
-/// Settings, codes and tables are far below this [bytes].
-inline constexpr std::uint64_t max_text_file_bytes = std::uint64_t{1} << 28;
+/// Codes and tables are far below this [bytes].
+inline constexpr std::uint64_t max_text_file_bytes = std::uint64_t{1} << 26;
+/// So are TOML files below this one.
+inline constexpr std::uint64_t max_settings_file_bytes = std::uint64_t{1} << 24;
 /// Most that one array or image file may hold when it is read as a whole [bytes].
 inline constexpr std::uint64_t max_binary_file_bytes = std::uint64_t{1} << 34;
 
-/// The whole content of a file (or of a pipe, up to its end).
+/// The whole content of a file (or of a pipe or device, up to its end and 256 MB at most).
 /// @throws IoError if it is missing, a directory, unreadable, or larger than `max_bytes`
 std::string read_text_file(const std::filesystem::path& path,
                            std::uint64_t max_bytes = max_text_file_bytes);
