@@ -68,6 +68,7 @@ void add_calibrate_command(CLI::App& app, Session& session) {
   add_calibrate_response(*command, session);
   add_calibrate_correlation(*command, session);
   add_calibrate_noise(*command, session);
+  add_calibrate_temperature(*command, session);
 }
 
 }  // namespace tofsmith::apps

@@ -180,6 +180,23 @@ class Calibrate(BenchRecordsTest):
                     "differences", code=2)
         self.refuse(["calibrate", "noise", "1.npy"], "--dark", code=2)
 
+    def test_frames_that_warm_up_become_drift_per_degree(self):
+        degrees = np.linspace(20, 47, 10)
+        warmer = (degrees - 20)[:, None, None, None]
+        depth = np.linspace(1, 8, 36).reshape(1, 6, 6, 1) + 1e-3 * warmer
+        signal = 1e5 * np.exp(-4e-3 * warmer)
+        phase = 2 * np.pi * (depth / 9.9930819 - np.arange(4) / 4)
+        light = signal * (1.2 + np.cos(phase))
+        np.save(self.path("warm.npy"), np.random.default_rng(1).poisson(light).astype(np.float32))
+        np.savetxt(self.path("degrees.txt"), degrees)
+        command = ["calibrate", "temperature", "warm.npy", "--code", "sinusoid-k4", "--set",
+                   "fundamental_frequency_hz=15e6", "--temperatures"]
+        found = self.do_json(*command, "degrees.txt")
+        for key, truth in (("offset_m_per_c", 1e-3), ("signal_per_c", -4e-3)):
+            self.assertLess(abs(found[key]["value"] - truth), 5 * found[key]["standard_error"], key)
+        np.savetxt(self.path("few.txt"), degrees[:3])
+        self.refuse([*command, "few.txt"], "one for each of the 10 frames")
+
     def test_perturbations_are_told_alone_and_together(self):
         arguments = ["evaluate", "hamiltonian-k3", "--trials", "200"]
         report = self.do_json(*arguments, "--perturb", "jitter=50ps,clock=5ns,droop=3%")
