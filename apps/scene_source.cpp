@@ -3,6 +3,7 @@
 #include "scene_source.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -33,8 +34,13 @@ void add_scene_options(CLI::App& command, SceneSource& source) {
 }
 
 std::string lens_setting(const PinholeView& view) {
-  return fmt::format("lens={{ fx_px = {:.6g}, fy_px = {:.6g}, cx_px = {:.6g}, cy_px = {:.6g} }}",
-                     view.fx_px, view.fy_px, view.cx_px, view.cy_px);
+  std::string keys = fmt::format("fx_px = {:.6g}, fy_px = {:.6g}, cx_px = {:.6g}, cy_px = {:.6g}",
+                                 view.fx_px, view.fy_px, view.cx_px, view.cy_px);
+  if (view.distortion)
+    keys += fmt::format(", distortion_model = \"{}\", distortion = [{}]",
+                        name_of(view.distortion->model),
+                        fmt::join(view.distortion->coefficients, ", "));
+  return "lens={ " + keys + " }";
 }
 
 LoadedScene scene_of(const SceneSource& source, const Camera& camera) {

@@ -264,11 +264,7 @@ void run(SimulateArguments& arguments, Session& session) {
                       {"seed", arguments.options.seed},
                       {"range_m", extent.range_m},
                       {"beyond_range_share", extent.beyond_range_share()},
-                      {"lens",
-                       {{"fx_px", scene.view.fx_px},
-                        {"fy_px", scene.view.fy_px},
-                        {"cx_px", scene.view.cx_px},
-                        {"cy_px", scene.view.cy_px}}},
+                      {"lens", nlohmann::ordered_json::parse(lens_to_json(lens_of(scene.view)))},
                       {"output", arguments.output}});
   session.say(fmt::format(
       "wrote {}: {} frame{} of {} x {} pixels, {} measurements of {} (S = {:.4g} e/s at {:.3g} m, "

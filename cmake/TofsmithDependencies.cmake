@@ -40,6 +40,7 @@ if(TOFSMITH_HAS_io)
   find_package(embree 3.13 REQUIRED)
   find_package(TBB REQUIRED)  # Embree's threads
   pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
+  pkg_check_modules(YAML_CPP REQUIRED IMPORTED_TARGET yaml-cpp)
   pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)  # not the one for MPI
 endif()
 

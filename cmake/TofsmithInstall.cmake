@@ -29,6 +29,7 @@ if(TOFSMITH_IS_STATIC)
       "find_dependency(PNG)" "find_dependency(embree 3.13)"
       "find_dependency(PkgConfig)"
       "pkg_check_modules(LIBZIP REQUIRED QUIET IMPORTED_TARGET libzip)"
+      "pkg_check_modules(YAML_CPP REQUIRED QUIET IMPORTED_TARGET yaml-cpp)"
       "pkg_check_modules(HDF5 REQUIRED QUIET IMPORTED_TARGET hdf5-serial)")
   if(TOFSMITH_HAS_LXI)
     set(finds_lab "find_dependency(PkgConfig)"

@@ -25,6 +25,7 @@ packages_build=(
   "${packages_core[@]}"
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
   libzip-dev libhdf5-dev libopenexr-dev libpng-dev
+  libyaml-cpp-dev     # calibrations of lenses
   libembree-dev       # ray casting
   libsqlite3-dev      # sweep store
   libboost-dev        # Asio: generators in the network
@@ -51,6 +52,7 @@ packages_test=(
   libopenmpi-dev openmpi-bin                 # sweeps of several ranks
   python3-pytest mypy                        # the Python package
   python3-h5py                               # writes what .h5 readers must read
+  python3-opencv                             # distorts as lenses must
   python3-cvxopt                             # an independent solver of the sub-problem
   chromium chromium-driver python3-selenium  # the report, in a browser
 )

@@ -14,6 +14,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/image.hpp"
+#include "tofsmith/core/lens_distortion.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/core/statistics.hpp"

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
-#include <array>
 #include <map>
 
 #include "bindings.hpp"
 #include "filter_options.hpp"
+#include "lens.hpp"
 #include "multipath_options.hpp"
 #include "options.hpp"
 #include "output_policy.hpp"
@@ -160,10 +160,7 @@ DecodeRequest request_of(const std::vector<std::string>& raw, const std::string&
   request.gain_map = gain_map;
   request.policy = policy_of(overwrite);
   for (const std::string& plane : outputs) request.outputs.push_back(parse_decoded_plane(plane));
-  if (!lens.is_none()) {
-    const auto [fx_px, fy_px, cx_px, cy_px] = py::cast<std::array<double, 4>>(lens);
-    request.lens = Lens{.fx_px = fx_px, .fy_px = fy_px, .cx_px = cx_px, .cy_px = cy_px};
-  }
+  request.lens = to_optional_lens(lens);
   return request;
 }
 

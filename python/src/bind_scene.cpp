@@ -4,6 +4,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "lens.hpp"
 #include "options.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/io/scene_toml.hpp"
@@ -13,21 +14,15 @@ namespace tofsmith::python {
 
 namespace {
 
-std::vector<double> lens_list(const PinholeView& view) {
-  return {view.fx_px, view.fy_px, view.cx_px, view.cy_px};
-}
-
 /// The planes of a scene and its lens, by name.
-py::dict load(const std::string& name, const std::optional<std::vector<double>>& lens,
-              const py::dict& values) {
+py::dict load(const std::string& name, const py::object& lens, const py::dict& values) {
   SceneSource source{.scene = name};
   OptionReader(values, "").fields(source, {"scene"}).finish();
+  const std::optional<Lens> seen_through = to_optional_lens(lens);
   LoadedScene loaded;
   {
     const py::gil_scoped_release release;
-    loaded = load_scene(
-        source, lens ? std::optional(Lens{lens->at(0), lens->at(1), lens->at(2), lens->at(3)})
-                     : std::nullopt);
+    loaded = load_scene(source, seen_through);
   }
   py::dict scene;
   const auto add = [&](const char* plane, Image<float>& values) {
@@ -37,20 +32,29 @@ py::dict load(const std::string& name, const std::optional<std::vector<double>>&
   add("albedo", loaded.image.albedo);
   add("cosine", loaded.image.cosine);
   add("ambient_scale", loaded.image.ambient_scale);
-  scene["lens"] = lens_list(loaded.view);
+  scene["lens"] = lens_dict(loaded.view);
   return scene;
 }
 
-PinholeView view_of(const std::vector<double>& lens, int width, int height) {
-  const PinholeView view{lens.at(0), lens.at(1), lens.at(2), lens.at(3), width, height};
-  view.validate();
-  return view;
-}
-
-py::array_t<float> convert(const py::object& depth_m, const std::vector<double>& lens,
+py::array_t<float> convert(const py::object& depth_m, const py::dict& lens,
                            Image<float> (*how)(const Image<float>&, const PinholeView&)) {
   const Image<float> image = to_image(depth_m, "depth_m");
-  return adopt(how(image, view_of(lens, image.width, image.height)));
+  return adopt(how(image, checked_view(lens, image.width, image.height)));
+}
+
+/// (H, W, 3), NaN without depth.
+py::array_t<float> points(const py::object& radial_m, const py::dict& lens) {
+  const Image<float> radial = to_image(radial_m, "radial_m");
+  const PixelRays rays(checked_view(lens, radial.width, radial.height));
+  std::vector<float> points_m;
+  points_m.reserve(3 * radial.size());
+  for (int row = 0; row < radial.height; ++row)
+    for (int column = 0; column < radial.width; ++column) {
+      const Eigen::Vector3f point =
+          (rays.ray(row, column) * static_cast<double>(radial(row, column))).cast<float>();
+      points_m.insert(points_m.end(), point.begin(), point.end());
+    }
+  return adopt(std::move(points_m), {radial.height, radial.width, 3});
 }
 
 }  // namespace
@@ -58,14 +62,15 @@ py::array_t<float> convert(const py::object& depth_m, const std::vector<double>&
 void bind_scene(py::module_& module) {
   module.def("built_in_scene_names", &built_in_scene_names);
   module.def("load_scene", &load);
-  module.def("radial_from_z", [](const py::object& z_m, const std::vector<double>& lens) {
+  module.def("radial_from_z", [](const py::object& z_m, const py::dict& lens) {
     return convert(z_m, lens, &radial_from_z);
   });
-  module.def("z_from_radial", [](const py::object& radial_m, const std::vector<double>& lens) {
+  module.def("z_from_radial", [](const py::object& radial_m, const py::dict& lens) {
     return convert(radial_m, lens, &z_from_radial);
   });
+  module.def("points_m", &points);
   module.def("centred_lens", [](int width, int height, double horizontal_angle_rad) {
-    return lens_list(PinholeView::centred(width, height, horizontal_angle_rad));
+    return lens_dict(PinholeView::centred(width, height, horizontal_angle_rad));
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include "bindings.hpp"
 #include "capture_arguments.hpp"
+#include "lens.hpp"
 #include "progress.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 #include "tofsmith/sweep/training_set.hpp"
@@ -49,10 +50,8 @@ LoadedTrainingScene load_scene(const py::object& load, const std::string& name) 
   try {
     const py::dict scene = load(name);
     LoadedTrainingScene loaded{scene_of(scene), {}};
-    const auto lens = py::cast<std::vector<double>>(scene["lens"]);
-    loaded.view = {lens.at(0), lens.at(1),           lens.at(2),
-                   lens.at(3), loaded.image.width(), loaded.image.height()};
-    loaded.view.validate();
+    loaded.view =
+        checked_view(py::dict(scene["lens"]), loaded.image.width(), loaded.image.height());
     return loaded;
   } catch (const py::error_already_set& error) {  // goes with its thread state
     throw std::runtime_error(error.what());

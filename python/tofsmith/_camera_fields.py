@@ -129,12 +129,28 @@ class Sensor:
 
 @dataclass(frozen=True)
 class Lens:
-    """An ideal pinhole: focal lengths and optical axis [px]; pixel centres are whole numbers."""
+    """A pinhole, ideal unless the lens distorts; pixel centres are whole numbers.
+
+    Attributes
+    ----------
+    fx_px, fy_px, cx_px, cy_px : float
+        Focal lengths and optical axis [px].
+    distortion_model : str, optional
+        opencv or fisheye, of `distortion`; None: opencv.
+    distortion : tuple of float, optional
+        OpenCV's coefficients: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4]]]; of a fisheye k1 k2 k3 k4.
+    width_px, height_px : int, optional
+        Of the images that all this is of; None: of any.
+    """
 
     fx_px: float
     fy_px: float
     cx_px: float
     cy_px: float
+    distortion_model: Optional[str] = None
+    distortion: Optional[tuple[float, ...]] = None
+    width_px: Optional[int] = None
+    height_px: Optional[int] = None
 
 
 @dataclass(frozen=True)

@@ -32,6 +32,7 @@ from ._filter import (
     filter_options,
     time_filter_options,
 )
+from ._scene import lens_dict
 
 
 @dataclass(frozen=True)
@@ -116,7 +117,7 @@ class Decoder:
     ) -> None:
         table = table_of(code, camera)
         lens = None if camera is None else camera_of(camera).lens
-        self._lens = None if lens is None else (lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px)
+        self._lens = None if lens is None else lens_dict(lens)
         self._inputs = table._inputs
         self._method = _check.one_of(method, "method", tuple(_tofsmith.decode_methods()))
         options = {

@@ -39,7 +39,7 @@ class Scene:
     ambient_scale : ndarray, optional
         Ambient light relative to the scene's, >= 0; None: 1.
     lens : Lens, optional
-        The pinhole it is seen through.
+        The pinhole it is seen through, and how it distorts.
     """
 
     depth_m: npt.NDArray[Any]
@@ -116,31 +116,38 @@ def load_scene(
         "time_s": time_s,
     }
     name = _check.path(scene, "scene")
-    seen = _tofsmith.load_scene(name, None if lens is None else _lens(lens), options)
-    view = Lens(*seen.pop("lens"))
+    seen = _tofsmith.load_scene(name, None if lens is None else lens_dict(lens), options)
+    view = lens_from(seen.pop("lens"))
     return Scene(**seen, lens=view)
 
 
-def _lens(lens: Lens) -> list[float]:
+def lens_dict(lens: Lens) -> dict[str, Any]:
+    """A lens under the keys of a camera file."""
     _check.instance(lens, Lens, "lens")
-    return [lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px]
+    keys = {key: getattr(lens, key) for key in lens.__dataclass_fields__}
+    return {key: value for key, value in keys.items() if value is not None}
+
+
+def lens_from(keys: dict[str, Any]) -> Lens:
+    """The same back."""
+    return Lens(**{key: tuple(v) if isinstance(v, list) else v for key, v in keys.items()})
 
 
 def centred_lens(width: int, height: int, horizontal_angle_rad: float = pi / 3) -> Lens:
     """Square pixels, the axis in the middle, so wide between the outer edges of the image."""
     size = _check.whole(width, "width", 1), _check.whole(height, "height", 1)
     angle = _check.number(horizontal_angle_rad, "horizontal_angle_rad")
-    return Lens(*_tofsmith.centred_lens(*size, angle))
+    return lens_from(_tofsmith.centred_lens(*size, angle))
 
 
 def radial_from_z(z_m: npt.ArrayLike, lens: Lens) -> FloatImage:
     """Radial distance [m] from depth along the axis [m], both (H, W); NaN stays NaN."""
-    return _tofsmith.radial_from_z(_check.real_array(z_m, "z_m", "(H, W)"), _lens(lens))
+    return _tofsmith.radial_from_z(_check.real_array(z_m, "z_m", "(H, W)"), lens_dict(lens))
 
 
 def z_from_radial(radial_m: npt.ArrayLike, lens: Lens) -> FloatImage:
     """Depth along the axis [m] from radial distance [m], both (H, W); NaN stays NaN."""
-    return _tofsmith.z_from_radial(_check.real_array(radial_m, "radial_m", "(H, W)"), _lens(lens))
+    return _tofsmith.z_from_radial(_check.real_array(radial_m, "radial_m", "(H, W)"), lens_dict(lens))
 
 
 def points_m(radial_m: npt.ArrayLike, lens: Lens) -> FloatImage:
@@ -156,11 +163,8 @@ def points_m(radial_m: npt.ArrayLike, lens: Lens) -> FloatImage:
     ndarray of float32, shape (H, W, 3)
         NaN where there is no depth.
     """
-    z_m = z_from_radial(radial_m, lens)
-    row, column = np.mgrid[: z_m.shape[0], : z_m.shape[1]]
-    x_m = (column - lens.cx_px) / lens.fx_px * z_m
-    y_m = (row - lens.cy_px) / lens.fy_px * z_m
-    points: FloatImage = np.stack([x_m, y_m, z_m], axis=-1).astype(np.float32)
+    radial = _check.real_array(radial_m, "radial_m", "(H, W)")
+    points: FloatImage = _tofsmith.points_m(radial, lens_dict(lens))
     return points
 
 

@@ -15,7 +15,7 @@ from . import _check, _tofsmith
 from ._camera import CameraLike, camera_of
 from ._check import Path, Progress
 from ._code import CodeLike, code_of
-from ._scene import Scene, centred_lens, scene_named, scene_planes
+from ._scene import Scene, centred_lens, lens_dict, scene_named, scene_planes
 
 #: As of capture(), or a function that returns one when its turn comes.
 SceneLike = Union[Scene, str, npt.NDArray[Any], Callable[[], Any]]
@@ -112,7 +112,7 @@ def write_training_set(
         planes: dict[str, Any] = dict(scene_planes(scene))
         height, width = planes["depth_m"].shape
         lens = scene.lens or known.lens or centred_lens(width, height)
-        return planes | {"lens": [lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px]}
+        return planes | {"lens": lens_dict(lens)}
 
     folder = _check.path(directory, "directory")
     handle = code_of(code, known)._handle

@@ -8,6 +8,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/measured_table_file.hpp"
 #include "tofsmith/scene/scene_image.hpp"
+#include "tofsmith/simulate/scene_result.hpp"
 
 namespace tofsmith {
 
@@ -46,17 +47,12 @@ Image<float> flat_target_geometry_m(double distance_m, const Camera& camera, int
   if (!camera.lens)
     throw std::invalid_argument(
         "target_distance_m needs the camera's [lens], which says where pixels look");
-  const PinholeView view{camera.lens->fx_px,
-                         camera.lens->fy_px,
-                         camera.lens->cx_px,
-                         camera.lens->cy_px,
-                         width,
-                         height};
+  const PixelRays rays(view_of(camera.lens, width, height));
   Image<float> geometry_m(height, width);
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column)
       geometry_m(row, column) =
-          static_cast<float>(distance_m * (view.radial_per_z(row, column) - 1.0));
+          static_cast<float>(distance_m * (rays.radial_per_z(row, column) - 1.0));
   return geometry_m;
 }
 

@@ -188,6 +188,14 @@ void Camera::validate() const {
     require_positive(lens->fy_px, "lens.fy_px");
     require(std::isfinite(lens->cx_px), "lens.cx_px", lens->cx_px, "must be finite");
     require(std::isfinite(lens->cy_px), "lens.cy_px", lens->cy_px, "must be finite");
+    if (lens->distortion) lens->distortion->validate("lens.distortion");
+    require(lens->width_px.value_or(1) > 0, "lens.width_px", lens->width_px.value_or(1),
+            "must be > 0");
+    require(lens->height_px.value_or(1) > 0, "lens.height_px", lens->height_px.value_or(1),
+            "must be > 0");
+    require(lens->width_px.has_value() == lens->height_px.has_value(), "lens.width_px",
+            lens->width_px ? fmt::format("{}", *lens->width_px) : "none",
+            "goes with lens.height_px: both or neither");
   }
   if (blur) blur->validate();
   if (optics) optics->validate();

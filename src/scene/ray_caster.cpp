@@ -74,7 +74,12 @@ std::optional<Hit> RayCaster::nearest(const Ray& ray) const {
 }
 
 SeenScene RayCaster::see(const PinholeView& view, const Eigen::Isometry3d& camera_to_world) const {
-  view.validate();
+  return see(PixelRays(view), camera_to_world);
+}
+
+SeenScene RayCaster::see(const PixelRays& pixel_rays,
+                         const Eigen::Isometry3d& camera_to_world) const {
+  const PinholeView& view = pixel_rays.view();
   require_rigid(camera_to_world, "camera_to_world");
   SeenScene seen{SceneImage(view.height, view.width),
                  Image<std::int32_t>(view.height, view.width, -1)};
@@ -88,7 +93,7 @@ SeenScene RayCaster::see(const PinholeView& view, const Eigen::Isometry3d& camer
       const int count = std::min(packet, view.width - begin);
       std::array<NearestHit, MeshSearch::packet> nearest;
       for (int lane = 0; lane < count; ++lane)
-        rays[static_cast<std::size_t>(lane)] = {origin, turn * view.ray(row, begin + lane)};
+        rays[static_cast<std::size_t>(lane)] = {origin, turn * pixel_rays.ray(row, begin + lane)};
       const auto lanes = static_cast<std::size_t>(count);
       prepared_->trace({rays.data(), lanes}, {nearest.data(), lanes});
       for (std::size_t lane = 0; lane < lanes; ++lane) {

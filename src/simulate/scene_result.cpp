@@ -9,6 +9,7 @@
 #include <numeric>
 #include <vector>
 
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/decode/decoder.hpp"
 #include "tofsmith/simulate/capture.hpp"
@@ -24,7 +25,20 @@ double share(std::int64_t part, std::int64_t whole) {
 
 PinholeView view_of(const std::optional<Lens>& lens, int width, int height) {
   if (!lens) return PinholeView::centred(width, height, std::numbers::pi / 3);
-  return {lens->fx_px, lens->fy_px, lens->cx_px, lens->cy_px, width, height};
+  if (lens->width_px && lens->height_px)
+    require(*lens->width_px == width && *lens->height_px == height, "image size",
+            fmt::format("{} x {}", height, width),
+            fmt::format("must be {} x {}, of which lens.height_px and lens.width_px say it is",
+                        *lens->height_px, *lens->width_px));
+  return {lens->fx_px, lens->fy_px, lens->cx_px, lens->cy_px, width, height, lens->distortion};
+}
+
+Lens lens_of(const PinholeView& view) {
+  return {.fx_px = view.fx_px,
+          .fy_px = view.fy_px,
+          .cx_px = view.cx_px,
+          .cy_px = view.cy_px,
+          .distortion = view.distortion};
 }
 
 double SceneExtent::no_return_share() const { return share(pixels - returns, pixels); }

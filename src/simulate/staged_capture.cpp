@@ -23,10 +23,10 @@ Image<float> repeated(const Image<float>& image, int n) {
   return result;
 }
 
-/// What rays meet, samples x samples for each pixel.
-SceneImage rays_of(const RayCaster& caster, const StagedScene& scene, const StagedSetup& setup,
-                   int samples) {
-  SceneImage rays = caster.see(scene.view.divided(samples), scene.camera_to_world).image;
+/// What rays meet. @param pixel_rays  of the scene's view, each pixel divided samples x samples
+SceneImage rays_of(const RayCaster& caster, const PixelRays& pixel_rays, const StagedScene& scene,
+                   const StagedSetup& setup, int samples) {
+  SceneImage rays = caster.see(pixel_rays, scene.camera_to_world).image;
   if (!setup.ambient_scale.empty()) rays.ambient_scale = repeated(setup.ambient_scale, samples);
   return rays;
 }
@@ -39,22 +39,38 @@ SceneLight light_of(const StagedScene& scene, const SceneImage& rays, const Stag
   return setup.light(divided, rays);
 }
 
-/// Casts rays at a scene as it is at any time; a search of meshes that stand still is made once.
+/// Casts rays at a scene as it is at any time; a search of meshes that stand still is made once,
+/// and so are the rays of pixels.
 class MovingView {
  public:
-  MovingView(const StagedScene& scene, const StagedSetup& setup) : scene_(scene), setup_(setup) {
+  /// @param samples  as often as pixels are divided in each direction
+  MovingView(const StagedScene& scene, const StagedSetup& setup, int samples)
+      : scene_(scene),
+        setup_(setup),
+        samples_(samples),
+        centres_(scene.view),
+        parts_(samples == 1 ? PixelRays() : PixelRays(scene.view.divided(samples))) {
     if (scene.shapes_are_still()) still_.emplace(scene.shapes, setup.search_of);
   }
 
-  SceneImage rays_at(const StagedScene& now, int samples) const {
-    if (still_) return rays_of(*still_, now, setup_, samples);
-    return rays_of(RayCaster(now.shapes, setup_.search_of), now, setup_, samples);
+  /// Of all parts of pixels.
+  SceneImage rays_at(const StagedScene& now) const {
+    return samples_ == 1 ? centres_at(now) : see(parts_, now, samples_);
   }
+  /// Of the centres of pixels.
+  SceneImage centres_at(const StagedScene& now) const { return see(centres_, now, 1); }
   StagedScene at(double time_s) const { return scene_.at(time_s); }
 
  private:
+  SceneImage see(const PixelRays& pixel_rays, const StagedScene& now, int samples) const {
+    if (still_) return rays_of(*still_, pixel_rays, now, setup_, samples);
+    return rays_of(RayCaster(now.shapes, setup_.search_of), pixel_rays, now, setup_, samples);
+  }
+
   const StagedScene& scene_;
   const StagedSetup& setup_;
+  int samples_;
+  PixelRays centres_, parts_;
   std::optional<RayCaster> still_;
 };
 
@@ -64,9 +80,9 @@ StagedCapture capture_moving(const StagedScene& scene, const CodeSet& code, cons
                              const Progress& progress) {
   options.validate();
   const ForwardModel model(code, camera);
-  const MovingView view(scene, setup);
   const LensBlur blur = camera.blur.value_or(LensBlur());
   const int samples = blur.pixel_samples, exposures = code.exposures();
+  const MovingView view(scene, setup, samples);
   const int height = scene.view.height, width = scene.view.width;
   SceneImage rays(samples * height, samples * width);
   SceneLight light;
@@ -79,14 +95,14 @@ StagedCapture capture_moving(const StagedScene& scene, const CodeSet& code, cons
       report(progress, (frame + static_cast<double>(exposure) / exposures) / options.frames,
              "capture");
       const StagedScene now = view.at(camera.exposure_middle_s(frame, exposure, exposures));
-      rays = view.rays_at(now, samples);
+      rays = view.rays_at(now);
       light = light_of(now, rays, setup, samples);
       light.validate(rays, camera);
       source.see(rays, light, model, camera);
       add_light(source, blur, samples, {exposure * code.taps(), code.taps()}, pixels);
     }
     expose_pixels(source, pixels, frame, result.raw.frame(frame));
-    result.truth.push_back(view.rays_at(view.at(camera.frame_middle_s(frame, exposures)), 1));
+    result.truth.push_back(view.centres_at(view.at(camera.frame_middle_s(frame, exposures))));
     result.near_m.push_back(std::move(pixels.near_m));
     result.far_m.push_back(std::move(pixels.far_m));
   }
@@ -109,7 +125,7 @@ StagedCapture capture(const StagedScene& scene, const CodeSet& code, const Camer
   if (!scene.is_still()) return capture_moving(scene, code, camera, options, setup, progress);
   const RayCaster caster(scene.shapes, setup.search_of);
   StagedCapture result;
-  result.truth = {rays_of(caster, scene, setup, 1)};
+  result.truth = {rays_of(caster, PixelRays(scene.view), scene, setup, 1)};
   const SceneImage& truth = result.truth.front();
   const LensBlur blur = camera.blur.value_or(LensBlur());
   if (blur.is_sharp()) {
@@ -117,7 +133,8 @@ StagedCapture capture(const StagedScene& scene, const CodeSet& code, const Camer
     result.near_m = result.far_m = {truth.depth_m};
     return result;
   }
-  const SceneImage rays = rays_of(caster, scene, setup, blur.pixel_samples);
+  const SceneImage rays = rays_of(caster, PixelRays(scene.view.divided(blur.pixel_samples)), scene,
+                                  setup, blur.pixel_samples);
   const SceneLight light = light_of(scene, rays, setup, blur.pixel_samples);
   light.validate(rays, camera);
   const RowCapture source(rays, light, ForwardModel(code, camera), camera, options);

@@ -13,6 +13,7 @@
 
 #include "core/shared/hash.hpp"
 #include "core/shared/random.hpp"
+#include "io/documents/shared/lens_document.hpp"
 #include "sweep/item_key.hpp"
 #include "sweep/key_order.hpp"
 #include "tofsmith/core/error.hpp"
@@ -174,7 +175,6 @@ class TrainingSet {
 
   Json parameters_of(const TrainingScene& scene, const Example& example,
                      const std::string& stem) const {
-    const PinholeView& view = example.scene.view;
     const CaptureOptions& capture = example.capture;
     return {{"name", scene.name},
             {"key", example.key},
@@ -191,11 +191,7 @@ class TrainingSet {
             {"falloff", capture.falloff},
             {"seed", capture.seed},
             {"beyond_range_share", scene_extent(example.scene.image, camera_).beyond_range_share()},
-            {"lens",
-             {{"fx_px", view.fx_px},
-              {"fy_px", view.fy_px},
-              {"cx_px", view.cx_px},
-              {"cy_px", view.cy_px}}}};
+            {"lens", lens_document(lens_of(example.scene.view))}};
   }
 
   fs::path directory_;

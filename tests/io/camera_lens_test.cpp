@@ -26,6 +26,18 @@ TEST(CameraLens, ALensMayBlurWithoutAPinholeAndTheOtherWayRound) {
   EXPECT_FALSE(sharp.blur.has_value());
 }
 
+TEST(CameraLens, DistortionIsWrittenAsItIsRead) {
+  std::string text(shortest);
+  text +=
+      "[lens]\nfx_px = 60\nfy_px = 60\ncx_px = 39.5\ncy_px = 29.5\ndistortion_model = "
+      "\"fisheye\"\ndistortion = [0.05, -0.01, 0.004, 0]\nwidth_px = 80\nheight_px = 60\n";
+  const Camera camera = parse_camera_toml(text);
+  EXPECT_EQ(camera.lens->distortion,
+            (LensDistortion{DistortionModel::fisheye, {0.05, -0.01, 0.004, 0.0}}));
+  EXPECT_EQ(camera.lens->width_px, 80);
+  EXPECT_EQ(parse_camera_toml(camera_to_toml(camera), camera.name), camera);
+}
+
 struct BadLine {
   const char* line;
   const char* message;
@@ -44,6 +56,16 @@ TEST(CameraLens, IsRefusedWithThePlaceAndTheRule) {
                 "pixel_pitch_m = 1 }",
                 "c.toml:2:78: lens.focus_distance_m = 1; must be finite and > "
                 "lens.focal_length_m: nothing nearer is ever sharp"},
+        BadLine{"lens = { fx_px = 1, fy_px = 1, cx_px = 1, cy_px = 1, distortion = [1, 2] }",
+                "c.toml:2:67: lens.distortion = [1, 2]; must be 4, 5, 8 or 12 numbers: k1 k2 p1 p2 "
+                "[k3 [k4 k5 k6 [s1 s2 s3 s4]]]"},
+        BadLine{"lens = { fx_px = 1, fy_px = 1, cx_px = 1, cy_px = 1, distortion_model = \"mei\" }",
+                "c.toml:2:73: lens.distortion_model: found \"mei\"; expected one of \"opencv\", "
+                "\"fisheye\""},
+        BadLine{"lens.distortion = [0, 0, 0, 0]",
+                "c.toml:2:1: found no lens.fx_px; expected a line such as `fx_px = 525.0`"},
+        BadLine{"lens = { fx_px = 1, fy_px = 1, cx_px = 1, cy_px = 1, width_px = 4 }",
+                "c.toml:2:65: lens.width_px = 4; goes with lens.height_px: both or neither"},
         BadLine{"lens.pixel_samples = 17",
                 "c.toml:2:22: lens.pixel_samples = 17; must be in [1, 16]"}})
     EXPECT_EQ(

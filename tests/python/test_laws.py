@@ -47,6 +47,8 @@ def test_every_key_of_a_camera_file_is_an_attribute():
              "multipath": ts.OperatingMultipath, "impulse_response": ts.ImpulseResponse, "generator": ts.Generator}
     for key in ts.camera_keys():
         *path, last = key.split(".")
+        if key == "lens.calibration":  # a file in place of the other keys
+            continue
         owner = parts[path[-1]] if path else ts.Camera
         known = getattr(owner, "__dataclass_fields__", vars(owner))
         if owner is ts.Lens and last not in known:  # the lens has two parts

@@ -11,6 +11,7 @@
 
 #include "tofsmith/code/code_set.hpp"
 #include "tofsmith/core/fields.hpp"
+#include "tofsmith/core/lens_distortion.hpp"
 
 namespace tofsmith {
 
@@ -193,12 +194,16 @@ struct Sensor {
   friend bool operator==(const Sensor&, const Sensor&) = default;
 };
 
-/// Pinhole of the sensor; needed for point clouds and to turn z-depth into radial distance.
+/// Pinhole of the sensor, and how its lens distorts; needed for point clouds and to turn z-depth
+/// into radial distance.
 struct Lens {
-  double fx_px = 0.0;  ///< focal length in columns [px], > 0
-  double fy_px = 0.0;  ///< focal length in rows [px], > 0
-  double cx_px = 0.0;  ///< column of the optical axis [px]
-  double cy_px = 0.0;  ///< row of the optical axis [px]
+  double fx_px = 0.0;                             ///< focal length in columns [px], > 0
+  double fy_px = 0.0;                             ///< focal length in rows [px], > 0
+  double cx_px = 0.0;                             ///< column of the optical axis [px]
+  double cy_px = 0.0;                             ///< row of the optical axis [px]
+  std::optional<LensDistortion> distortion = {};  ///< none: an ideal pinhole
+  /// Of the images that all this is of [px], > 0, both or neither; none: of any.
+  std::optional<int> width_px = {}, height_px = {};
 
   friend bool operator==(const Lens&, const Lens&) = default;
 };

@@ -52,6 +52,8 @@ std::vector<std::string> camera_keys();
 /// The camera as TOML, every default filled in: parse_camera_toml(camera_to_toml(c)) == c.
 /// @throws std::invalid_argument if the camera is invalid
 std::string camera_to_toml(const Camera& camera);
+/// A lens under the keys of a camera file, as JSON on one line.
+std::string lens_to_json(const Lens& lens);
 /// A built-in camera as such TOML, with the source of every value as a comment beside it, or
 /// "assumed": parse_camera_toml(built_in_camera_toml(n)) == built_in_camera(n).
 /// @throws std::invalid_argument for an unknown name, with the nearest known one

@@ -21,7 +21,8 @@ namespace tofsmith {
 /// x to the right, y down and z forward [m]; so are the camera's own.
 ///
 ///   [view]      width_px, height_px (320 x 240); horizontal_angle_deg (60), or fx_px with fy_px
-///               (= fx_px), cx_px and cy_px (the middle)
+///               (= fx_px), cx_px and cy_px (the middle), distortion_model and distortion
+///               as in a camera's [lens]
 ///   [camera]    position_m (the origin); look_at_m, or rotation_deg
 ///   [[plane]]   point_m, normal
 ///   [[box]]     centre_m, size_m, rotation_deg

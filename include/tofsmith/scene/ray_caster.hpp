@@ -73,6 +73,9 @@ class RayCaster {
   /// @throws std::invalid_argument if the view is invalid or the pose is not rigid and finite
   SeenScene see(const PinholeView& view,
                 const Eigen::Isometry3d& camera_to_world = Eigen::Isometry3d::Identity()) const;
+  /// The same, of a view whose rays are there already.
+  SeenScene see(const PixelRays& pixel_rays,
+                const Eigen::Isometry3d& camera_to_world = Eigen::Isometry3d::Identity()) const;
 
  private:
   struct Prepared;

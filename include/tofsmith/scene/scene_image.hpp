@@ -3,8 +3,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+#include <vector>
 
 #include "tofsmith/core/image.hpp"
+#include "tofsmith/core/lens_distortion.hpp"
 
 namespace tofsmith {
 
@@ -27,15 +30,16 @@ struct SceneImage {
   void validate() const;
 };
 
-/// An ideal pinhole camera at the origin: x to the right, y down, z along the optical axis.
-/// Pixel (row v, column u) has its centre at integer coordinates.
+/// A pinhole camera at the origin, ideal unless its lens distorts: x to the right, y down, z along
+/// the optical axis. Pixel (row v, column u) has its centre at integer coordinates.
 struct PinholeView {
-  double fx_px = 0.0;  ///< focal length in columns [px], > 0
-  double fy_px = 0.0;  ///< focal length in rows [px], > 0
-  double cx_px = 0.0;  ///< column of the optical axis [px]
-  double cy_px = 0.0;  ///< row of the optical axis [px]
-  int width = 0;       ///< columns, > 0
-  int height = 0;      ///< rows, > 0
+  double fx_px = 0.0;                             ///< focal length in columns [px], > 0
+  double fy_px = 0.0;                             ///< focal length in rows [px], > 0
+  double cx_px = 0.0;                             ///< column of the optical axis [px]
+  double cy_px = 0.0;                             ///< row of the optical axis [px]
+  int width = 0;                                  ///< columns, > 0
+  int height = 0;                                 ///< rows, > 0
+  std::optional<LensDistortion> distortion = {};  ///< none: an ideal pinhole
 
   /// Square pixels, axis in the middle of the image.
   /// @param horizontal_angle_rad  between the first and the last column's outer edges, in (0, pi)
@@ -44,13 +48,45 @@ struct PinholeView {
   /// The same view in n x n parts of each pixel, each a pixel of its own.
   PinholeView divided(int n) const;
 
-  /// Unit vector from the origin through a pixel's centre.
-  Eigen::Vector3d ray(int row, int column) const;
-  /// Radial distance over z-depth in a pixel, >= 1.
-  double radial_per_z(int row, int column) const;
+  /// The same pinhole without distortion.
+  PinholeView ideal() const;
 
-  /// @throws std::invalid_argument naming field, value and rule
+  /// Unit vector from the origin of what a pixel's centre sees; NaN where the distortion folds
+  /// back.
+  /// @note with distortion an equation is solved: PixelRays keeps the rays of all pixels
+  Eigen::Vector3d ray(int row, int column) const;
+  /// Radial distance over z-depth in a pixel, >= 1; NaN as ray().
+  double radial_per_z(int row, int column) const;
+  /// Where a point is seen, as (column, row) [px], be it in the image or not; none behind the
+  /// camera and where the distortion folds back.
+  std::optional<Eigen::Vector2d> pixel_of(const Eigen::Vector3d& point) const;
+
+  /// @throws std::invalid_argument naming field, value and rule; also if the distortion folds back
+  ///         inside the image, with the pixel and how far from the axis
   void validate() const;
+};
+
+/// The rays of all pixels of a view, found once where its lens distorts.
+class PixelRays {
+ public:
+  /// Of no pixels.
+  PixelRays() = default;
+  /// @throws std::invalid_argument as PinholeView::validate()
+  explicit PixelRays(PinholeView view);
+
+  const PinholeView& view() const { return view_; }
+  /// As PinholeView::ray().
+  Eigen::Vector3d ray(int row, int column) const;
+  /// As PinholeView::radial_per_z().
+  double radial_per_z(int row, int column) const;
+  /// Memory that they take beside the view [bytes].
+  std::size_t bytes() const { return slopes_.size() * sizeof(Eigen::Vector2d); }
+
+ private:
+  Eigen::Vector3d at_unit_z(int row, int column) const;
+
+  PinholeView view_;
+  std::vector<Eigen::Vector2d> slopes_;  // x/z and y/z, row by row; empty: view_ says
 };
 
 /// Radial distance of every pixel from its z-depth; NaN stays NaN.

@@ -39,7 +39,10 @@ SceneError scene_error(const Image<float>& decoded_m, const SceneImage& scene, c
                        DepthErrorKind kind, double outlier_threshold_m = 0.3);
 
 /// How an image of this size is seen: through the lens, or 60 degrees wide without one.
+/// @throws std::invalid_argument if the lens is of images of another size
 PinholeView view_of(const std::optional<Lens>& lens, int width, int height);
+/// The lens of a view, of images of any size.
+Lens lens_of(const PinholeView& view);
 
 /// How far away the parts of a scene are, for a camera.
 struct SceneExtent {

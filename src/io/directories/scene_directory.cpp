@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/documents/shared/document_text.hpp"
+#include "io/documents/shared/lens_document.hpp"
 #include "io/shared/read_file.hpp"
 #include "io/text/json_reader.hpp"
 #include "tofsmith/core/error.hpp"
@@ -126,11 +127,7 @@ void write_scene_result(const fs::path& directory, const SceneResult& scene, Out
   write_float_image(directory / "cosine.npy", scene.truth.cosine, "cosine", policy);
   Json document = {{"name", scene.name},
                    {"reference_distance_m", scene.reference_distance_m},
-                   {"view",
-                    {{"fx_px", scene.view.fx_px},
-                     {"fy_px", scene.view.fy_px},
-                     {"cx_px", scene.view.cx_px},
-                     {"cy_px", scene.view.cy_px}}},
+                   {"view", lens_document(lens_of(scene.view))},
                    {"captures", Json::array()}};
   for (const SceneCapture& capture : scene.captures) {
     Json decodings = Json::array();
@@ -154,12 +151,7 @@ SceneResult read_scene_result(const fs::path& directory) {
   SceneResult scene{.name = document.member("name").text(),
                     .truth = read_truth(directory),
                     .reference_distance_m = document.member("reference_distance_m").number()};
-  scene.view = {.fx_px = view.member("fx_px").number(),
-                .fy_px = view.member("fy_px").number(),
-                .cx_px = view.member("cx_px").number(),
-                .cy_px = view.member("cy_px").number(),
-                .width = scene.truth.width(),
-                .height = scene.truth.height()};
+  scene.view = view_of(lens_from_json(view), scene.truth.width(), scene.truth.height());
   try {
     scene.view.validate();
   } catch (const std::invalid_argument& error) {

@@ -9,6 +9,7 @@
 
 #include "io/documents/camera_fields.hpp"
 #include "io/documents/shared/document_text.hpp"
+#include "io/documents/shared/lens_document.hpp"
 #include "io/text/table_writer.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
@@ -22,6 +23,36 @@ void visit_measured_response(TableWriter& table, const ImpulseResponse& response
   else
     table.value("file", response.file);
   table.value("time_step_s", response.time_step_s);
+}
+
+/// A calibration's numbers are written, whatever file they came from.
+bool visit_lens_calibration(TableWriter& /*table*/, const Lens& /*lens*/) { return false; }
+
+nlohmann::ordered_json lens_document(const Lens& lens) {
+  TableWriter writer;
+  camera_fields::visit_pinhole(writer, lens);
+  return writer.document();
+}
+
+std::string lens_to_json(const Lens& lens) { return lens_document(lens).dump(); }
+
+Lens lens_from_json(const JsonReader& json) {
+  Lens lens{.fx_px = json.member("fx_px").number(),
+            .fy_px = json.member("fy_px").number(),
+            .cx_px = json.member("cx_px").number(),
+            .cy_px = json.member("cy_px").number()};
+  if (const auto coefficients = json.optional_member("distortion")) {
+    LensDistortion& distortion = lens.distortion.emplace();
+    for (const JsonReader& number : coefficients->elements())
+      distortion.coefficients.push_back(number.number());
+    const JsonReader model = json.member("distortion_model");
+    try {
+      distortion.model = parse_distortion_model(model.text());
+    } catch (const std::invalid_argument& error) {
+      model.fail(error.what());
+    }
+  }
+  return lens;
 }
 
 nlohmann::ordered_json camera_document(const Camera& camera) {

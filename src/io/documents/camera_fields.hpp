@@ -10,8 +10,9 @@
 #include "tofsmith/camera/camera.hpp"
 
 // The tables and keys of a camera file, described once for reading and for writing: `Table` is a
-// TableReader or a TableWriter, which sees const fields. Only a measured response is read and
-// written differently: visit_measured_response() is overloaded for both.
+// TableReader or a TableWriter, which sees const fields. Only a measured response and a calibrated
+// lens are read and written differently: visit_measured_response() and visit_lens_calibration() are
+// overloaded for both.
 namespace tofsmith::camera_fields {
 
 inline constexpr EnumWords<NoiseModel, 2> noise_models("NoiseModel", "noise", "poisson",
@@ -85,11 +86,28 @@ void visit_sensor(Table& table, Field<Table, Sensor>& sensor) {
 }
 
 template <typename Table>
+void visit_distortion(Table& table, Field<Table, LensDistortion>& distortion) {
+  table.choice("distortion_model", distortion.model,
+               words_by_name<DistortionModel, 2>("DistortionModel", "distortion_model"));
+  table.required("distortion", "[-0.3, 0.1, 0.0, 0.0]")
+      .value("distortion", distortion.coefficients);
+}
+
+/// The pinhole as numbers, or all of it in a calibration file.
+template <typename Table>
 void visit_pinhole(Table& table, Field<Table, Lens>& lens) {
+  if (visit_lens_calibration(table, lens)) {
+    table.refuse({"fx_px", "fy_px", "cx_px", "cy_px", "distortion", "width_px", "height_px"},
+                 "no calibration beside it");
+    return;
+  }
   table.required("fx_px", "525.0").value("fx_px", lens.fx_px);
   table.required("fy_px", "525.0").value("fy_px", lens.fy_px);
   table.required("cx_px", "319.5").value("cx_px", lens.cx_px);
   table.required("cy_px", "239.5").value("cy_px", lens.cy_px);
+  table.part(lens.distortion, {"distortion_model", "distortion"}, visit_distortion<Table>);
+  table.value("width_px", lens.width_px);
+  table.value("height_px", lens.height_px);
 }
 
 template <typename Table>
@@ -115,7 +133,10 @@ void visit_blur(Table& table, Field<Table, LensBlur>& blur) {
 /// The pinhole and the blur, each there if one of its keys is.
 template <typename Table>
 void visit_lens(Table& table, Field<Table, Camera>& camera) {
-  table.part(camera.lens, {"fx_px", "fy_px", "cx_px", "cy_px"}, visit_pinhole<Table>);
+  table.part(camera.lens,
+             {"fx_px", "fy_px", "cx_px", "cy_px", "distortion_model", "distortion", "width_px",
+              "height_px", "calibration"},
+             visit_pinhole<Table>);
   table.part(camera.blur,
              {"blur", "blur_sigma_px", "focal_length_m", "f_number", "focus_distance_m",
               "pixel_pitch_m", "pixel_samples"},

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "io/documents/camera_fields.hpp"
+#include "io/documents/lens_calibration.hpp"
 #include "io/shared/read_file.hpp"
 #include "io/text/shared/table_reader.hpp"
 #include "tofsmith/core/error.hpp"
@@ -33,6 +34,19 @@ void visit_measured_response(TableReader& table, ImpulseResponse& response) {
   // Absolute, so that the camera can be written elsewhere and read back.
   const auto path = std::filesystem::absolute(table.resolve("file", response.file));
   response = read_impulse_response(path.lexically_normal(), time_step_s);
+}
+
+/// The lens of a calibration file, if the table names one.
+bool visit_lens_calibration(TableReader& table, Lens& lens) {
+  if (!table.contains("calibration")) return false;
+  std::string file;
+  table.value("calibration", file);
+  std::optional<DistortionModel> model;
+  if (table.contains("distortion_model"))
+    table.choice("distortion_model", model.emplace(),
+                 words_by_name<DistortionModel, 2>("DistortionModel", "distortion_model"));
+  lens = read_lens_calibration(table.resolve("calibration", file), model);
+  return true;
 }
 
 namespace {

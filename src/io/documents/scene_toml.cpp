@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "io/documents/camera_fields.hpp"
 #include "io/image_limits.hpp"
 #include "io/shared/read_file.hpp"
 #include "io/text/shared/table_reader.hpp"
@@ -153,7 +154,7 @@ void read_view(TableReader& table, PinholeView& view) {
                fmt::format("found {}; expected more than 0 and less than 180", angle_deg));
   view = PinholeView::centred(width, height, angle_deg * rad_per_deg);
   if (!table.contains("fx_px")) {
-    table.refuse({"fy_px", "cx_px", "cy_px"}, "fx_px");
+    table.refuse({"fy_px", "cx_px", "cy_px", "distortion_model", "distortion"}, "fx_px");
     return;
   }
   table.refuse({"horizontal_angle_deg"}, "no fx_px beside it");
@@ -162,6 +163,13 @@ void read_view(TableReader& table, PinholeView& view) {
   read_positive(table, "fy_px", view.fy_px);
   table.value("cx_px", view.cx_px);
   table.value("cy_px", view.cy_px);
+  table.part(view.distortion, {"distortion_model", "distortion"},
+             camera_fields::visit_distortion<TableReader>);
+  try {
+    view.validate();
+  } catch (const InvalidArgument& error) {
+    table.fail("distortion", fmt::format("found {}; {}", error.value(), error.rule()));
+  }
 }
 
 /// Axes of a camera that looks at a point, its rows level: the world's y axis is down.

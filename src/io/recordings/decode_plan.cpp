@@ -76,6 +76,19 @@ void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
   }
 }
 
+PinholeView view_of_frames(const DecodeRequest& request, const std::string& source, int width,
+                           int height) {
+  try {
+    const PinholeView view = view_of(request.lens, width, height);
+    if (request.lens) view.validate();
+    return view;
+  } catch (const InvalidArgument& error) {
+    if (error.field() != "lens.distortion" && error.field() != "image size") throw;
+    throw IoError(source,
+                  fmt::format("found frames of {} x {} pixels; {}", height, width, error.what()));
+  }
+}
+
 std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const AnyDecoder& decoder) {
   if (request.outputs.empty())
     return holds_depth_only(request.output) ? std::vector{DecodedPlane::depth}
@@ -123,7 +136,7 @@ void MappedDecoder::decode(const RawView& raw, const Band& band, const DecodeTar
   apply(maps_, table_.range_m, decoded, first, pixels);
   if (mixed_) mark_mixed_pixels(table_, raw, *mixed_, decoded, maps_);
   if (target.as_z && decoded.depth_m)
-    turn_into_z(decoded.depth_m, band.first_row, band.rows, target.view);
+    turn_into_z(decoded.depth_m, band.first_row, band.rows, target.pixel_rays);
   if (target.count_statuses) statuses.add({decoded.status, pixels});
 }
 

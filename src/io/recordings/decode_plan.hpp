@@ -15,6 +15,12 @@ namespace tofsmith {
 /// Everything of a request that needs no file. @throws std::invalid_argument
 void check_request(const DecodeRequest& request, const AnyDecoder& decoder);
 
+/// How frames are seen. @param source  of the frames, for errors
+/// @throws IoError if the lens is of images of another size or its distortion folds back inside
+/// them
+PinholeView view_of_frames(const DecodeRequest& request, const std::string& source, int width,
+                           int height);
+
 /// The planes to write; every plane once.
 std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const AnyDecoder& decoder);
 

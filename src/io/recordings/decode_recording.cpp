@@ -44,8 +44,9 @@ DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
   require(!request.frame || *request.frame < frames, "frame", request.frame.value_or(0),
           fmt::format("{}{}, counted from 0", held,
                       request.average > 1 ? fmt::format(", {} means", frames) : ""));
-  const PinholeView view = view_of(request.lens, reader.width(), reader.height());
-  if (request.lens) view.validate();
+  const PinholeView view =
+      view_of_frames(request, request.raw.front().string(), reader.width(), reader.height());
+  const bool as_z = request.kind == DepthKind::z && !holds_points(request.output);
   return {.path = request.output,
           .policy = request.policy,
           .stack = request.stack,
@@ -55,10 +56,11 @@ DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
           .all_points = request.all_points,
           .find_mixed = request.mixed.has_value(),
           .needs_signal = table.correction && table.correction->needs_signal(),
-          .as_z = request.kind == DepthKind::z && !holds_points(request.output),
+          .as_z = as_z,
           .first_frame = request.frame.value_or(0),
           .frames = request.frame ? 1 : frames,
-          .view = view};
+          .view = view,
+          .pixel_rays = as_z || holds_points(request.output) ? PixelRays(view) : PixelRays()};
 }
 
 /// Not even OutputPolicy::overwrite may replace what is being read.
@@ -89,7 +91,8 @@ int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target,
   const int height = target.view.height, width = target.view.width;
   const double row_planes = static_cast<double>(bytes_per_pixel(target.needed_planes())) * width;
   const bool in_rows = target.in_rows(), in_frames = preparation.needs_frames();
-  double whole = static_cast<double>(reader.bytes_in_memory() + target.writing_bytes()) +
+  double whole = static_cast<double>(reader.bytes_in_memory() + target.writing_bytes() +
+                                     target.pixel_rays.bytes()) +
                  preparation.frame_bytes(height, width, reader.measurements()) +
                  (in_rows ? 0.0 : row_planes * height);
   double row =

@@ -101,8 +101,7 @@ void decode_stream(const DecodeRequest& asked, const AnyDecoder& decoder, const 
                                       "{} as the code takes",
                                       format.output_measurements(), expected));
   const MappedDecoder mapped(request, decoder, source, height, width);
-  const PinholeView view = view_of(request.lens, width, height);
-  if (request.lens) view.validate();
+  const PinholeView view = view_of_frames(request, source, width, height);
   const auto& correction = mapped.table().correction;
   const DecodeTarget target{
       .planes = planes_to_write(request, decoder),
@@ -110,7 +109,8 @@ void decode_stream(const DecodeRequest& asked, const AnyDecoder& decoder, const 
       .find_mixed = request.mixed.has_value(),
       .needs_signal = correction && correction->needs_signal(),
       .as_z = request.kind == DepthKind::z,
-      .view = view};
+      .view = view,
+      .pixel_rays = request.kind == DepthKind::z ? PixelRays(view) : PixelRays()};
 
   StreamFrames frames(read, format);
   PreparedFrames input([&] { return frames.next(); }, mapped.table(), preparation_of(request),

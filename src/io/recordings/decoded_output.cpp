@@ -37,7 +37,7 @@ NpzArrays arrays(const DecodedPlanes& decoded, const std::vector<DecodedPlane>& 
 /// Points of pixels with depth that are ok, or of all with depth.
 /// @param organized  others stand there, too, as NaN
 PointCloud cloud(const DecodedPlanes& decoded, const std::vector<DecodedPlane>& planes,
-                 const PinholeView& view, bool all_points, bool organized) {
+                 const PixelRays& pixel_rays, bool all_points, bool organized) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   PointCloud result;
   std::vector<std::size_t> kept;
@@ -50,7 +50,7 @@ PointCloud cloud(const DecodedPlanes& decoded, const std::vector<DecodedPlane>& 
       const bool has_point = std::isfinite(depth_m) &&
                              (all_points || decoded.statuses()(row, column) == PixelStatus::ok);
       if (!has_point && !organized) continue;
-      const Eigen::Vector3d point = view.ray(row, column) * static_cast<double>(depth_m);
+      const Eigen::Vector3d point = pixel_rays.ray(row, column) * static_cast<double>(depth_m);
       if (has_point)
         result.points_m.push_back({static_cast<float>(point.x()), static_cast<float>(point.y()),
                                    static_cast<float>(point.z())});
@@ -96,15 +96,15 @@ std::size_t writing_bytes_per_pixel(std::string_view extension,
 }  // namespace
 
 void write_planes(const std::filesystem::path& path, const DecodedPlanes& decoded,
-                  const std::vector<DecodedPlane>& planes, const PinholeView& view, bool all_points,
-                  OutputPolicy policy) {
+                  const std::vector<DecodedPlane>& planes, const PixelRays& pixel_rays,
+                  bool all_points, OutputPolicy policy) {
   const std::string extension = path.extension().string();
   if (extension == ".npz") {
     write_npz(path, arrays(decoded, planes), policy);
   } else if (extension == ".ply") {
-    write_ply(path, cloud(decoded, planes, view, all_points, false), policy);
+    write_ply(path, cloud(decoded, planes, pixel_rays, all_points, false), policy);
   } else if (extension == ".pcd") {
-    write_pcd(path, cloud(decoded, planes, view, all_points, true), decoded.height(),
+    write_pcd(path, cloud(decoded, planes, pixel_rays, all_points, true), decoded.height(),
               decoded.width(), policy);
   } else if (extension == ".exr") {
     ExrPlanes channels;
@@ -126,7 +126,8 @@ void write_decoded(const std::filesystem::path& path, const DepthImage& image,
       throw std::invalid_argument(
           fmt::format("planes = {}; must be planes that the image has", name_of(plane)));
   check_decoded_output(path, policy);
-  write_planes(path, decoded, planes, view, all_points, policy);
+  write_planes(path, decoded, planes, holds_points(path) ? PixelRays(view) : PixelRays(),
+               all_points, policy);
 }
 
 bool holds_points(const std::filesystem::path& path) {
@@ -199,7 +200,7 @@ void DecodeOutput::take(int frame, int first_row, int rows, const DecodedPlanes&
   const bool first = first_row == 0, last = first_row + rows == target_.view.height;
   if (!target_.in_rows()) {
     if (last)
-      write_planes(target_.frame_path(frame), planes, target_.planes, target_.view,
+      write_planes(target_.frame_path(frame), planes, target_.planes, target_.pixel_rays,
                    target_.all_points, target_.policy);
     return;
   }

@@ -18,10 +18,11 @@ namespace tofsmith {
 /// as scalars.
 /// @param planes      those of `decoded` to write; .npy, .pfm and .png take depth, points need it
 ///                    and status too
+/// @param pixel_rays  of points; other files need none
 /// @param all_points  though their pixels are not ok
 void write_planes(const std::filesystem::path& path, const DecodedPlanes& decoded,
-                  const std::vector<DecodedPlane>& planes, const PinholeView& view, bool all_points,
-                  OutputPolicy policy);
+                  const std::vector<DecodedPlane>& planes, const PixelRays& pixel_rays,
+                  bool all_points, OutputPolicy policy);
 
 /// Whether a file of this name holds depth alone: .npy, .pfm, .png.
 bool holds_depth_only(const std::filesystem::path& path);
@@ -42,7 +43,8 @@ struct DecodeTarget {
   bool as_z = false;                 ///< depth along the axis instead of radial distance
   int first_frame = 0;
   int frames = 1;
-  PinholeView view;  ///< of all frames
+  PinholeView view;      ///< of all frames
+  PixelRays pixel_rays;  ///< of the view, if points or depth along the axis are written
 
   /// File of a frame: name.npz, frame 3 of 12 -> name-03.npz.
   std::filesystem::path frame_path(int frame) const;

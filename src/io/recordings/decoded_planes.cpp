@@ -139,12 +139,14 @@ std::span<const std::byte> DecodedPlanes::items(DecodedPlane plane, int rows) co
   });
 }
 
-void turn_into_z(float* depth_m, int first_row, int rows, const PinholeView& view) {
+void turn_into_z(float* depth_m, int first_row, int rows, const PixelRays& pixel_rays) {
+  const int width = pixel_rays.view().width;
   parallel_for(rows, [&](std::int64_t row) {
-    float* depth = depth_m + row * view.width;
-    for (int column = 0; column < view.width; ++column)
+    float* depth = depth_m + row * width;
+    for (int column = 0; column < width; ++column)
       depth[column] = static_cast<float>(
-          depth[column] * (1.0 / view.radial_per_z(first_row + static_cast<int>(row), column)));
+          depth[column] *
+          (1.0 / pixel_rays.radial_per_z(first_row + static_cast<int>(row), column)));
   });
 }
 

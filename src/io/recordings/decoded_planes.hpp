@@ -58,8 +58,8 @@ class DecodedPlanes {
 };
 
 /// Turns radial distance into z-depth in place.
-/// @param depth_m    rows x view.width values
+/// @param depth_m    rows of as many values as the view is wide
 /// @param first_row  of the view
-void turn_into_z(float* depth_m, int first_row, int rows, const PinholeView& view);
+void turn_into_z(float* depth_m, int first_row, int rows, const PixelRays& pixel_rays);
 
 }  // namespace tofsmith

@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "io/text/json_reader.hpp"
+#include "tofsmith/camera/camera.hpp"
+
+namespace tofsmith {
+
+/// A lens under the keys of a camera file.
+nlohmann::ordered_json lens_document(const Lens& lens);
+
+/// The same back, unchecked. @throws IoError naming file and member
+Lens lens_from_json(const JsonReader& lens);
+
+}  // namespace tofsmith

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tofsmith/core/lens_distortion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace tofsmith {
+namespace {
+
+using Eigen::Vector2d;
+
+/// Lenses as calibrations find them, from mild to strong.
+std::vector<LensDistortion> lenses() {
+  using enum DistortionModel;
+  return {{opencv, {-0.28, 0.07, 1e-3, -5e-4}},
+          {opencv, {0.12, -0.2, -1e-3, 2e-3, 0.05}},
+          {opencv, {0.42, -2.6, 6e-4, -2e-4, 1.5, 0.31, -2.4, 1.42}},  // of a depth camera
+          {opencv, {-0.1, 0.02, 0, 0, 0, 0.2, 0.01, 0, 3e-3, -1e-3, -2e-3, 5e-4}},
+          {fisheye, {0.05, -0.02, 0.01, -0.003}},
+          {fisheye, {-0.03, 0.01, -0.008, 0.001}}};
+}
+
+TEST(LensDistortion, UndistortingGivesTheRayWhoseImageItIs) {
+  for (const LensDistortion& lens : lenses())
+    for (double x = -0.75; x <= 0.75; x += 0.125)
+      for (double y = -0.5; y <= 0.5; y += 0.125) {
+        const auto ideal = lens.undistort({x, y});
+        ASSERT_TRUE(ideal) << lens.coefficients[0] << " at " << x << ", " << y;
+        // Of a focal length of 1000 pixels: a millionth of a pixel.
+        EXPECT_LE((lens.distort(*ideal) - Vector2d(x, y)).norm(), 1e-9);
+      }
+}
+
+TEST(LensDistortion, DistortingAndUndistortingIsTheIdentityOnTheFirstFold) {
+  for (const LensDistortion& lens : lenses())
+    for (double x = -0.6; x <= 0.6; x += 0.15)
+      for (double y = -0.45; y <= 0.45; y += 0.15) {
+        const auto back = lens.undistort(lens.distort({x, y}));
+        ASSERT_TRUE(back) << lens.coefficients[0] << " at " << x << ", " << y;
+        EXPECT_LE((*back - Vector2d(x, y)).norm(), 1e-9);
+      }
+}
+
+TEST(LensDistortion, EndsWhereItFoldsBack) {
+  // r' = r - 0.4 r^3 grows up to r = sqrt(1 / 1.2), where r' is 2/3 of that.
+  const LensDistortion barrel{DistortionModel::opencv, {-0.4, 0.0, 0.0, 0.0}};
+  const double edge = 2.0 / 3.0 / std::sqrt(1.2);
+  EXPECT_TRUE(barrel.undistort({0.999 * edge, 0.0}));
+  EXPECT_FALSE(barrel.undistort({1.001 * edge, 0.0}));
+  EXPECT_NEAR(barrel.reach(Vector2d(0.6, 0.8) * 2.0 * edge), 0.5, 1e-4);
+  EXPECT_EQ(barrel.reach({0.9 * edge, 0.0}), 1.0);
+  // Higher terms turn it outwards once more: what lies out there is on another fold.
+  const LensDistortion wave{DistortionModel::opencv, {-0.4, 0.0, 0.0, 0.0, 0.02}};
+  EXPECT_FALSE(wave.undistort({1.2, 0.0}));
+}
+
+TEST(LensDistortion, AFisheyeEndsAtARightAngle) {
+  const LensDistortion fisheye{DistortionModel::fisheye, {0.0, 0.0, 0.0, 0.0}};
+  const auto steep = fisheye.undistort({1.5, 0.0});
+  ASSERT_TRUE(steep);
+  EXPECT_NEAR(steep->x(), std::tan(1.5), 1e-9);
+  EXPECT_FALSE(fisheye.undistort({1.6, 0.0}));
+  EXPECT_NEAR(fisheye.reach({0.0, std::numbers::pi}), 0.5, 1e-12);
+}
+
+TEST(LensDistortion, NamesTheFieldItsValueAndTheRule) {
+  const auto message = [](LensDistortion lens) -> std::string {
+    try {
+      lens.validate("lens.distortion");
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  for (const LensDistortion& lens : lenses()) EXPECT_EQ(message(lens), "accepted");
+  EXPECT_EQ(message({DistortionModel::opencv, {0.1, 0.2}}),
+            "lens.distortion = [0.1, 0.2]; must be 4, 5, 8 or 12 numbers: k1 k2 p1 p2 [k3 [k4 k5 "
+            "k6 [s1 s2 s3 s4]]]");
+  EXPECT_EQ(message({DistortionModel::fisheye, {0, 0, 0, 0, 0}}),
+            "lens.distortion = [0, 0, 0, 0, 0]; must be 4 numbers of a fisheye: k1 k2 k3 k4");
+  EXPECT_EQ(message({DistortionModel::opencv, {0, NAN, 0, 0}}),
+            "lens.distortion = [0, nan, 0, 0]; must be finite");
+}
+
+}  // namespace
+}  // namespace tofsmith

@@ -1,0 +1,97 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Lenses that distort: OpenCV's own numbers, and what is seen through them."""
+
+import numpy as np
+import pytest
+
+import tofsmith as ts
+
+PINHOLE = {"fx_px": 220.0, "fy_px": 222.0, "cx_px": 158.0, "cy_px": 121.5}
+LENSES = [
+    ("opencv", [-0.28, 0.07, 1e-3, -5e-4]),
+    ("opencv", [0.12, -0.2, -1e-3, 2e-3, 0.05]),
+    ("opencv", [0.42, -2.6, 6e-4, -2e-4, 1.5, 0.31, -2.4, 1.42]),
+    ("opencv", [-0.1, 0.02, 0.0, 0.0, 0.0, 0.2, 0.01, 0.0, 3e-3, -1e-3, -2e-3, 5e-4]),
+    ("fisheye", [0.05, -0.02, 0.01, -0.003]),
+]
+
+
+def lens_of(model, coefficients):
+    return ts.Lens(**PINHOLE, distortion_model=model, distortion=tuple(coefficients))
+
+
+@pytest.mark.parametrize("model, coefficients", LENSES)
+def test_opencv_images_the_ray_of_a_pixel_at_that_pixel(model, coefficients):
+    cv2 = pytest.importorskip("cv2", reason="OpenCV, the oracle, is missing (python3-opencv)")
+    points = ts.points_m(np.ones((240, 320)), lens_of(model, coefficients))
+    matrix = np.array([[PINHOLE["fx_px"], 0, PINHOLE["cx_px"]],
+                       [0, PINHOLE["fy_px"], PINHOLE["cy_px"]], [0, 0, 1]])
+    project = cv2.fisheye.projectPoints if model == "fisheye" else cv2.projectPoints
+    at, _ = project(points.reshape(1, -1, 3).astype(float), np.zeros(3), np.zeros(3), matrix,
+                    np.array(coefficients))
+    row, column = np.mgrid[:240, :320]
+    error = np.abs(at.reshape(240, 320, 2) - np.stack([column, row], axis=-1))
+    assert error.max() <= 1e-4  # of points in float32; a hundredth of a pixel is asked for
+
+
+@pytest.mark.parametrize("model, coefficients", LENSES)
+def test_a_plane_cast_through_a_lens_is_a_plane_of_points(tmp_path, model, coefficients):
+    view = "".join(f"{key} = {value}\n" for key, value in PINHOLE.items())
+    (tmp_path / "wall.toml").write_text(
+        f'[view]\nwidth_px = 320\nheight_px = 240\n{view}distortion_model = "{model}"\n'
+        f"distortion = {coefficients}\n[[plane]]\npoint_m = [0, 0, 2]\nnormal = [0.3, 0.1, -1]\n")
+    scene = ts.load_scene(tmp_path / "wall.toml")
+    assert scene.lens == lens_of(model, coefficients)
+    points = ts.points_m(scene.depth_m, scene.lens).reshape(-1, 3)
+    normal = np.array([0.3, 0.1, -1.0])
+    off = (points - [0, 0, 2]) @ normal / np.linalg.norm(normal)
+    assert np.abs(off).max() < 2e-6
+    radial = ts.radial_from_z(ts.z_from_radial(scene.depth_m, scene.lens), scene.lens)
+    assert np.allclose(radial, scene.depth_m, rtol=1e-6)
+
+
+def test_point_files_hold_the_points(tmp_path):
+    lens = lens_of(*LENSES[0])
+    camera = ts.Camera("paper-10f0", lens=lens)
+    assert camera.lens == lens
+    raw = np.random.default_rng(1).poisson(500, (240, 320, 4)).astype(np.float32)
+    ts.write_raw(tmp_path / "raw.npy", raw)
+    decoder = ts.Decoder("hamiltonian-k4", camera)
+    decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "p.pcd", all_points=True,
+                             outputs=["depth"])
+    decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "z.npy", kind="z")
+    depth_m = decoder.decode(raw).depth_m
+    assert np.allclose(np.load(tmp_path / "z.npy"), ts.z_from_radial(depth_m, lens), equal_nan=True)
+    data = (tmp_path / "p.pcd").read_bytes()
+    start = data.index(b"DATA binary\n") + len(b"DATA binary\n")
+    points = np.frombuffer(data[start:], np.float32).reshape(240, 320, -1)[..., :3]
+    assert np.array_equal(points, ts.points_m(depth_m, lens), equal_nan=True)
+
+
+def test_calibrations_that_opencv_writes_are_read(tmp_path):
+    cv2 = pytest.importorskip("cv2", reason="OpenCV, which writes them, is missing")
+    matrix = np.array([[220.0, 0, 158.0], [0, 222.0, 121.5], [0, 0, 1]])
+    for name in ("lens.yml", "lens.yaml"):
+        file = cv2.FileStorage(str(tmp_path / name), cv2.FILE_STORAGE_WRITE)
+        file.write("image_width", 320)
+        file.write("image_height", 240)
+        file.write("camera_matrix", matrix)
+        file.write("distortion_coefficients", np.array([LENSES[1][1]]))
+        file.release()
+        lens = ts.Camera("paper-10f0", lens={"calibration": tmp_path / name}).lens
+        assert lens == ts.Lens(**PINHOLE, distortion_model="opencv",
+                               distortion=tuple(LENSES[1][1]), width_px=320, height_px=240)
+
+
+def test_a_lens_is_refused_for_images_that_are_not_its_own(tmp_path):
+    lens = ts.Lens(**PINHOLE, width_px=320, height_px=240)
+    with pytest.raises(ValueError, match="image size = 100 x 100; must be 240 x 320"):
+        ts.points_m(np.ones((100, 100)), lens)
+    folding = lens_of("opencv", [-0.6, 0, 0, 0])
+    with pytest.raises(ValueError, match=r"lens.distortion = .* must not fold back inside the image"):
+        ts.z_from_radial(np.ones((240, 320)), folding)
+    ts.write_raw(tmp_path / "raw.npy", np.ones((240, 320, 4), np.float32))
+    decoder = ts.Decoder("hamiltonian-k4", ts.Camera("paper-10f0", lens=folding))
+    with pytest.raises(OSError, match=r"raw.npy: found frames of 240 x 320 pixels; lens.distortion"):
+        decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "z.npy", kind="z")
