@@ -125,6 +125,7 @@ void run(const DecodeArguments& arguments, Session& session) {
                                           : nlohmann::ordered_json("off")},
       {"filter", arguments.filter.name()},
       {"mixed", request.mixed ? name_of(*request.mixed) : "off"},
+      {"undistort", request.undistort},
       {"height", result.height},
       {"width", result.width},
       {"measurements", result.measurements}};
@@ -258,6 +259,10 @@ void add_decode_command(CLI::App& app, Session& session) {
       ->required();
   command->add_flag("--all-points", arguments->request.all_points,
                     "in .ply and .pcd also points of pixels that are not ok");
+  command->add_flag(
+      "--undistort", arguments->request.undistort,
+      "planes without the distortion of the camera's lens: each pixel takes the values "
+      "of the nearest one; those that the lens does not see are invalid");
   command->add_flag("--stack", arguments->request.stack,
                     "all frames in one .npy, (F,H,W), written as they come; with --outputs each "
                     "plane but depth in a file of its own, NAME-PLANE.npy");

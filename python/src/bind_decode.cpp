@@ -135,6 +135,7 @@ DecodeRequest request_of(const std::vector<std::string>& raw, const std::string&
       .value("raw_format", raw_format)
       .value("dataset", request.dataset)
       .value("outputs", outputs)
+      .value("undistort", request.undistort)
       .value("frame", request.frame)
       .value("all_points", request.all_points)
       .value("stack", request.stack)

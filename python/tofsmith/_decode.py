@@ -222,6 +222,7 @@ class Decoder:
         outputs: Optional[Iterable[str]] = None,
         kind: str = "radial",
         all_points: bool = False,
+        undistort: bool = False,
         frame: Optional[int] = None,
         stack: bool = False,
         average: int = 1,
@@ -263,6 +264,9 @@ class Decoder:
             a view 60 degrees wide); .ply and .pcd hold points either way.
         all_points : bool
             Points of pixels that are not ok, too.
+        undistort : bool
+            Planes are those of the ideal pinhole, without the distortion of the camera's lens: each
+            pixel takes the values of the nearest one. Those that the lens does not see are invalid.
         frame : int, optional
             This frame alone, counted from 0.
         stack : bool
@@ -323,6 +327,7 @@ class Decoder:
             "kind": kind,
             "frame": None if frame is None else _check.whole(frame, "frame", 0),
             "all_points": bool(all_points),
+            "undistort": bool(undistort),
             "stack": bool(stack),
             "average": _check.whole(average, "average", 1),
             "averaged": _check.number(averaged, "averaged"),

@@ -316,7 +316,7 @@ TEST_F(DecodeRecording, RefusesWhatCannotBeBeforeAnythingIsWritten) {
   wrong.memory_mb = 0.1;
   EXPECT_THAT([&] { decode_recording(wrong, decoder_); },
               ThrowsMessage<IoError>(HasSubstr("to be filtered and written so; expected at most "
-                                               "0.1 MB (without filters and mixed")));
+                                               "0.1 MB (without filters, mixed and undistort")));
   wrong = request("raw.npy");
   wrong.frame = 0;
   wrong.policy = OutputPolicy::overwrite;

@@ -95,3 +95,66 @@ def test_a_lens_is_refused_for_images_that_are_not_its_own(tmp_path):
     decoder = ts.Decoder("hamiltonian-k4", ts.Camera("paper-10f0", lens=folding))
     with pytest.raises(OSError, match=r"raw.npy: found frames of 240 x 320 pixels; lens.distortion"):
         decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "z.npy", kind="z")
+
+
+@pytest.mark.parametrize("model, coefficients", LENSES)
+def test_undistorted_planes_are_those_of_the_nearest_pixels(tmp_path, model, coefficients):
+    lens, ideal = lens_of(model, coefficients), ts.Lens(**PINHOLE)
+    raw = np.random.default_rng(1).poisson(500, (2, 240, 320, 4)).astype(np.float32)
+    ts.write_raw(tmp_path / "raw.npy", raw)
+    decoder = ts.Decoder("hamiltonian-k4", ts.Camera("paper-10f0", lens=lens))
+
+    def decoded(name, **options):
+        decoder.decode_recording(tmp_path / "raw.npy", tmp_path / name, frame=1, **options)
+        return ts.read_depth(tmp_path / name) if name.endswith("npy") else np.load(tmp_path / name)
+
+    before = decoded("a.npz", kind="z")
+    after = decoded("b.npz", kind="z", undistort=True)
+    # Where the rays of the ideal pinhole are seen: the pixel whose own ray is nearest.
+    ones = np.ones((240, 320))
+    rays, asked = ts.points_m(ones, lens), ts.points_m(ones, ideal)
+    rays, asked = rays / rays[..., 2:], asked / asked[..., 2:]
+    for row, column in ((120, 158), (60, 100), (20, 300), (230, 40)):
+        if after["status"][row, column] == ts.PixelStatus.invalid:
+            continue
+        off = np.abs(rays - asked[row, column])[..., :2] @ [PINHOLE["fx_px"], PINHOLE["fy_px"]]
+        nearest = np.unravel_index(off.argmin(), off.shape)
+        window = np.s_[nearest[0] - 1:nearest[0] + 2, nearest[1] - 1:nearest[1] + 2]
+        assert after["depth"][row, column] in before["depth"][window]
+        assert after["signal"][row, column] in before["signal"][window]
+    unseen = after["status"] == ts.PixelStatus.invalid
+    for plane in ("depth", "signal", "confidence"):
+        assert np.array_equal(np.isnan(after[plane]), unseen)
+    # However it is written: radial distance, points, a stack.
+    radial = decoded("c.npz", undistort=True)["depth"]
+    assert np.allclose(ts.z_from_radial(radial, ideal), after["depth"], rtol=1e-6, equal_nan=True)
+    decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "s.npy", stack=True, undistort=True)
+    assert np.array_equal(np.load(tmp_path / "s.npy")[1], radial, equal_nan=True)
+
+
+def test_undistorted_planes_are_opencvs_remap(tmp_path):
+    cv2 = pytest.importorskip("cv2", reason="OpenCV, the oracle, is missing (python3-opencv)")
+    model, coefficients = LENSES[0]
+    raw = np.random.default_rng(2).poisson(500, (240, 320, 4)).astype(np.float32)
+    ts.write_raw(tmp_path / "raw.npy", raw)
+    decoder = ts.Decoder("hamiltonian-k4", ts.Camera("paper-10f0", lens=lens_of(model, coefficients)))
+    decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "z.npy", kind="z")
+    decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "u.npy", kind="z", undistort=True)
+    matrix = np.array([[PINHOLE["fx_px"], 0, PINHOLE["cx_px"]],
+                       [0, PINHOLE["fy_px"], PINHOLE["cy_px"]], [0, 0, 1]])
+    x, y = cv2.initUndistortRectifyMap(matrix, np.array(coefficients), None, matrix, (320, 240),
+                                       cv2.CV_32FC1)
+    at_x, at_y = np.rint(x).astype(int), np.rint(y).astype(int)
+    seen = (at_x >= 0) & (at_x < 320) & (at_y >= 0) & (at_y < 240)
+    # Halfway between two pixels either is the nearest.
+    clear = (np.abs(x - at_x) < 0.49) & (np.abs(y - at_y) < 0.49)
+    expected = np.full((240, 320), np.nan, np.float32)
+    expected[seen] = np.load(tmp_path / "z.npy")[at_y[seen], at_x[seen]]
+    assert np.array_equal(np.load(tmp_path / "u.npy")[clear], expected[clear], equal_nan=True)
+
+
+def test_undistorting_needs_a_lens(tmp_path):
+    ts.write_raw(tmp_path / "raw.npy", np.ones((4, 5, 4), np.float32))
+    with pytest.raises(ValueError, match=r"undistort = true; needs a camera with \[lens\]"):
+        ts.Decoder("hamiltonian-k4", "paper-10f0").decode_recording(
+            tmp_path / "raw.npy", tmp_path / "z.npy", undistort=True)

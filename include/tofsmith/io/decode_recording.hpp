@@ -82,8 +82,12 @@ struct DecodeRequest {
   DepthKind kind = DepthKind::radial;  ///< .ply and .pcd hold points either way
   bool all_points = false;             ///< in .ply and .pcd; else those of pixels that are ok
   std::optional<Lens> lens;            ///< of points and z; none: a view 60 degrees wide
-  std::optional<int> frame;            ///< this one alone, counted from 0; none: all
-  bool stack = false;                  ///< all frames in one .npy a plane, name-PLANE.npy
+  /// Planes are those of the ideal pinhole, without the lens's distortion: each pixel takes the
+  /// values of the nearest one, and its depth along the axis. Pixels that the lens does not see are
+  /// invalid. Needs a lens; nothing changes without distortion.
+  bool undistort = false;
+  std::optional<int> frame;  ///< this one alone, counted from 0; none: all
+  bool stack = false;        ///< all frames in one .npy a plane, name-PLANE.npy
   /// Means of so many consecutive frames are decoded, as frames of their own with a noise so much
   /// smaller; the last one is of those that are left. What is invalid or saturated in one is so in
   /// the mean. `frame` counts means. From 1 to the number of frames.

@@ -61,6 +61,8 @@ void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
           "must be > 0");
   if (request.time_filter) request.time_filter->validate();
   if (request.filter) request.filter->validate();
+  require(!request.undistort || request.lens, "undistort", "true",
+          "needs a camera with [lens], whose distortion is taken out");
   require(request.frame.value_or(0) >= 0, "frame", request.frame.value_or(0), "must be >= 0");
   require(!request.stack || output.extension() == ".npy", "stack", "true",
           fmt::format("goes with a .npy file; the output is {}", output.string()));
@@ -89,6 +91,11 @@ PinholeView view_of_frames(const DecodeRequest& request, const std::string& sour
   }
 }
 
+std::optional<Undistortion> undistortion_of(const DecodeRequest& request, const PinholeView& view) {
+  if (!request.undistort || !view.distortion) return std::nullopt;
+  return Undistortion(view);
+}
+
 std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const AnyDecoder& decoder) {
   if (request.outputs.empty())
     return holds_depth_only(request.output) ? std::vector{DecodedPlane::depth}
@@ -100,8 +107,8 @@ std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const An
 }
 
 Preparation preparation_of(const DecodeRequest& request) {
-  Preparation preparation{request.average, request.averaged, request.time_filter, request.filter,
-                          request.mixed.has_value()};
+  Preparation preparation{request.average, request.averaged,          request.time_filter,
+                          request.filter,  request.mixed.has_value(), request.undistort};
   if (preparation.time_filter && preparation.filter) preparation.time_filter->before_filter = true;
   return preparation;
 }
@@ -124,8 +131,7 @@ MappedDecoder::MappedDecoder(const DecodeRequest& request, const AnyDecoder& dec
 }
 
 void MappedDecoder::decode(const RawView& raw, const Band& band, const DecodeTarget& target,
-                           const DecodedView& decoded, const Progress& progress,
-                           StatusCounts& statuses) const {
+                           const DecodedView& decoded, const Progress& progress) const {
   const auto pixels = static_cast<std::size_t>(raw.pixels());
   std::visit([&](const auto& d) { d.decode(raw, decoded, progress); }, decoder_);
   const std::size_t first =
@@ -137,7 +143,6 @@ void MappedDecoder::decode(const RawView& raw, const Band& band, const DecodeTar
   if (mixed_) mark_mixed_pixels(table_, raw, *mixed_, decoded, maps_);
   if (target.as_z && decoded.depth_m)
     turn_into_z(decoded.depth_m, band.first_row, band.rows, target.pixel_rays);
-  if (target.count_statuses) statuses.add({decoded.status, pixels});
 }
 
 }  // namespace tofsmith

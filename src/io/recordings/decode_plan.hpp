@@ -21,6 +21,9 @@ void check_request(const DecodeRequest& request, const AnyDecoder& decoder);
 PinholeView view_of_frames(const DecodeRequest& request, const std::string& source, int width,
                            int height);
 
+/// How a lens's distortion is taken out of planes, if that is asked for and there is one.
+std::optional<Undistortion> undistortion_of(const DecodeRequest& request, const PinholeView& view);
+
 /// The planes to write; every plane once.
 std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const AnyDecoder& decoder);
 
@@ -37,9 +40,9 @@ class MappedDecoder {
 
   const DecodingTable& table() const { return table_; }
 
-  /// Decodes one band to where it belongs in the planes and counts its statuses.
+  /// Decodes one band to where it belongs in the planes.
   void decode(const RawView& raw, const Band& band, const DecodeTarget& target,
-              const DecodedView& decoded, const Progress& progress, StatusCounts& statuses) const;
+              const DecodedView& decoded, const Progress& progress) const;
 
  private:
   const AnyDecoder& decoder_;

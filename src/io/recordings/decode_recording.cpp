@@ -46,6 +46,7 @@ DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
                       request.average > 1 ? fmt::format(", {} means", frames) : ""));
   const PinholeView view =
       view_of_frames(request, request.raw.front().string(), reader.width(), reader.height());
+  const PinholeView written = request.undistort ? view.ideal() : view;
   const bool as_z = request.kind == DepthKind::z && !holds_points(request.output);
   return {.path = request.output,
           .policy = request.policy,
@@ -60,7 +61,10 @@ DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
           .first_frame = request.frame.value_or(0),
           .frames = request.frame ? 1 : frames,
           .view = view,
-          .pixel_rays = as_z || holds_points(request.output) ? PixelRays(view) : PixelRays()};
+          .pixel_rays = as_z                           ? PixelRays(view)
+                        : holds_points(request.output) ? PixelRays(written)
+                                                       : PixelRays(),
+          .undistortion = undistortion_of(request, view)};
 }
 
 /// Not even OutputPolicy::overwrite may replace what is being read.
@@ -92,7 +96,8 @@ int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target,
   const double row_planes = static_cast<double>(bytes_per_pixel(target.needed_planes())) * width;
   const bool in_rows = target.in_rows(), in_frames = preparation.needs_frames();
   double whole = static_cast<double>(reader.bytes_in_memory() + target.writing_bytes() +
-                                     target.pixel_rays.bytes()) +
+                                     target.pixel_rays.bytes() +
+                                     (target.undistortion ? target.undistortion->bytes() : 0)) +
                  preparation.frame_bytes(height, width, reader.measurements()) +
                  (in_rows ? 0.0 : row_planes * height);
   double row =
@@ -102,13 +107,14 @@ int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target,
   if (whole + row > memory_bytes)
     throw IoError(
         target.path.string(),
-        fmt::format("frames of {} x {} pixels take {:.3g} MB to be {}written so; expected at most "
-                    "{:.3g} MB ({}fewer --outputs take less{}; --memory-mb allows more)",
-                    height, width, 1e-6 * (whole + row),
-                    preparation.filter || preparation.time_filter ? "filtered and " : "",
-                    1e-6 * memory_bytes,
-                    in_frames ? "without filters and mixed they go in bands of rows; " : "",
-                    in_rows ? "" : "; .npy is written row by row, with --stack every plane"));
+        fmt::format(
+            "frames of {} x {} pixels take {:.3g} MB to be {}written so; expected at most "
+            "{:.3g} MB ({}fewer --outputs take less{}; --memory-mb allows more)",
+            height, width, 1e-6 * (whole + row),
+            preparation.filter || preparation.time_filter ? "filtered and " : "",
+            1e-6 * memory_bytes,
+            in_frames ? "without filters, mixed and undistort they go in bands of rows; " : "",
+            in_rows ? "" : "; .npy is written row by row, with --stack every plane"));
   // Larger bands are no faster: new memory costs more than another call.
   constexpr double comfortable_bytes = 32e6;
   const double rows = row > 0.0 ? std::min(memory_bytes - whole, comfortable_bytes) / row : height;
@@ -175,7 +181,11 @@ void decode_frames(const RawFramesReader& reader, const Preparation& preparation
     const std::size_t first =
         in_rows ? 0 : static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(width);
     planes.keep_averaged(raw, first);
-    decoder.decode(raw, band, target, planes.view().from(first), parts[1], statuses);
+    decoder.decode(raw, band, target, planes.view().from(first), parts[1]);
+    if (target.undistortion) planes.undistort(*target.undistortion, target.as_z);
+    if (target.count_statuses)
+      statuses.add(std::span(planes.statuses().pixels)
+                       .subspan(first, static_cast<std::size_t>(raw.pixels())));
     output.take(band.frame, band.first_row, band.rows, planes);
     result.pixels += raw.pixels();
     result.seconds = pace.seconds();
@@ -215,12 +225,13 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
   check_request(request, decoder);
   const DecodingTable& table = table_of(decoder);
   const RawFramesReader reader = open_recording(request, table);
-  const DecodeTarget target = target_of(request, decoder, table, reader);
+  DecodeTarget asked = target_of(request, decoder, table, reader);
   const MappedDecoder mapped(request, decoder, request.raw.front().string(), reader.height(),
                              reader.width());
-  check_inputs_are_kept(request, target);
-  check_range_fits(target.path, table.range_m);
-  DecodeOutput output(target);
+  check_inputs_are_kept(request, asked);
+  check_range_fits(asked.path, table.range_m);
+  DecodeOutput output(std::move(asked));
+  const DecodeTarget& target = output.target();
   const Preparation preparation = preparation_of(request);
   const int rows = rows_at_a_time(reader, target, preparation, 1e6 * request.memory_mb);
 

@@ -110,7 +110,8 @@ void decode_stream(const DecodeRequest& asked, const AnyDecoder& decoder, const 
       .needs_signal = correction && correction->needs_signal(),
       .as_z = request.kind == DepthKind::z,
       .view = view,
-      .pixel_rays = request.kind == DepthKind::z ? PixelRays(view) : PixelRays()};
+      .pixel_rays = request.kind == DepthKind::z ? PixelRays(view) : PixelRays(),
+      .undistortion = undistortion_of(request, view)};
 
   StreamFrames frames(read, format);
   PreparedFrames input([&] { return frames.next(); }, mapped.table(), preparation_of(request),
@@ -126,7 +127,9 @@ void decode_stream(const DecodeRequest& asked, const AnyDecoder& decoder, const 
     const std::optional<RawView> raw = input.next(frame, parts[0]);
     if (!raw) break;
     planes.keep_averaged(*raw, 0);
-    mapped.decode(*raw, {0, 0, height}, target, planes.view(), parts[1], result.statuses);
+    mapped.decode(*raw, {0, 0, height}, target, planes.view(), parts[1]);
+    if (target.undistortion) planes.undistort(*target.undistortion, target.as_z);
+    if (target.count_statuses) result.statuses.add(planes.statuses().pixels);
     for (const DecodedPlane plane : target.planes) write(planes.items(plane, height));
     ++result.frames;
     result.seconds =

@@ -5,10 +5,12 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "io/recordings/decoded_planes.hpp"
+#include "io/recordings/undistortion.hpp"
 #include "tofsmith/io/npy.hpp"
 
 namespace tofsmith {
@@ -44,7 +46,8 @@ struct DecodeTarget {
   int first_frame = 0;
   int frames = 1;
   PinholeView view;      ///< of all frames
-  PixelRays pixel_rays;  ///< of the view, if points or depth along the axis are written
+  PixelRays pixel_rays;  ///< of what is decoded or written, if points or z-depth are written
+  std::optional<Undistortion> undistortion = {};  ///< of decoded planes; none: they stay
 
   /// File of a frame: name.npz, frame 3 of 12 -> name-03.npz.
   std::filesystem::path frame_path(int frame) const;

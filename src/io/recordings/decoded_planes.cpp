@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "core/shared/enum_words.hpp"
@@ -19,6 +20,12 @@ constexpr EnumWords<DecodedPlane, all_decoded_planes.size()> plane_words(
     "DecodedPlane", "plane", "depth", "signal", "ambient", "confidence", "deviation", "status",
     "delay", "ratio", "returns", "bin", "averaged");
 constexpr EnumWords<DepthKind, 2> kind_words("DepthKind", "kind", "radial", "z");
+
+/// What a plane holds where there is nothing.
+float nothing_of(const Image<float>&) { return std::numeric_limits<float>::quiet_NaN(); }
+std::int32_t nothing_of(const Image<std::int32_t>&) { return -1; }
+PixelStatus nothing_of(const Image<PixelStatus>&) { return PixelStatus::invalid; }
+ReturnStatus nothing_of(const Image<ReturnStatus>&) { return ReturnStatus::none; }
 
 }  // namespace
 
@@ -116,6 +123,14 @@ void DecodedPlanes::keep_averaged(const RawView& raw, std::size_t first) {
     std::copy_n(raw.averaged, raw.pixels(), to);
   else
     std::fill_n(to, raw.pixels(), 1.0f);
+}
+
+void DecodedPlanes::undistort(const Undistortion& undistortion, bool as_z) {
+  for (const DecodedPlane plane : all_decoded_planes)
+    with(*this, plane, [&](auto& image) {
+      if (!image.empty()) undistortion.apply(image, nothing_of(image));
+    });
+  if (!as_z && !image_.depth_m.empty()) undistortion.turn_radial(image_.depth_m);
 }
 
 bool DecodedPlanes::has(DecodedPlane plane) const {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "io/recordings/undistortion.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/io/decode_recording.hpp"
@@ -36,6 +37,9 @@ class DecodedPlanes {
   /// Of how many measurements raw numbers are the mean, if that plane was asked for.
   /// @param first  pixel of the planes where they belong
   void keep_averaged(const RawView& raw, std::size_t first);
+
+  /// Turns all planes into those of the ideal pinhole. @param as_z  what depth holds
+  void undistort(const Undistortion& undistortion, bool as_z);
 
   const Image<float>& depth_m() const { return image_.depth_m; }
   const Image<PixelStatus>& statuses() const { return image_.status; }

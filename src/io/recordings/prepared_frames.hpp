@@ -20,8 +20,9 @@ struct Preparation {
   std::optional<TimeFilterOptions> time_filter;  ///< of those means
   std::optional<FilterOptions> filter;           ///< of what comes of that
   bool find_mixed = false;                       ///< afterwards, in whole frames
+  bool undistort = false;                        ///< last of all, in whole frames
 
-  bool needs_frames() const { return time_filter || filter || find_mixed; }
+  bool needs_frames() const { return time_filter || filter || find_mixed || undistort; }
   /// Frames that come out of so many.
   int frames_of(int recorded) const { return (recorded + average - 1) / average; }
   /// What it takes beside the rows that are read [bytes], in all and for each row under way.
