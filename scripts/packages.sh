@@ -5,7 +5,7 @@
 # The Debian packages of the project, in one place. Sourced by the other scripts; run by hand it
 # installs what is missing of the groups named:
 #
-#   scripts/packages.sh core|design|build|python|package|test|docs|benchmark|check ..
+#   scripts/packages.sh core|design|build|python|package|test|docs|benchmark|check|fuzz ..
 #                                                     install what is missing
 #   scripts/packages.sh --list GROUP                  print the names, one a line
 
@@ -74,6 +74,12 @@ packages_check=(
   clang-format clang-tidy shellcheck
 )
 
+# scripts/fuzz.sh.
+packages_fuzz=(
+  "${packages_build[@]}"
+  clang libclang-rt-14-dev
+)
+
 tofsmith_die() {
   printf '%s: %s\n' "$(basename "$0")" "$*" >&2
   exit 1
@@ -91,7 +97,8 @@ packages_of() {
     docs) printf '%s\n' "${packages_docs[@]}" ;;
     benchmark) printf '%s\n' "${packages_benchmark[@]}" ;;
     check) printf '%s\n' "${packages_check[@]}" ;;
-    *) tofsmith_die "no package group '$1'; there are core, design, build, python, package, test, docs, benchmark and check" ;;
+    fuzz) printf '%s\n' "${packages_fuzz[@]}" ;;
+    *) tofsmith_die "no package group '$1'; there are core, design, build, python, package, test, docs, benchmark, check and fuzz" ;;
   esac
 }
 

@@ -30,13 +30,15 @@ DepthErrorPicture picture_of(const DepthFit& fit, const Eigen::VectorXd& fitted_
   const int side = std::max(1, (std::max(fit.height, fit.width) + cells_along - 1) / cells_along);
   const int rows = (fit.height + side - 1) / side, columns = (fit.width + side - 1) / side;
   CellMeans part_before(parts), part_after(parts);
-  CellMeans cell_before(static_cast<std::size_t>(rows * columns)), cell_after = cell_before;
+  CellMeans cell_before(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns)),
+      cell_after = cell_before;
   for (Eigen::Index i = 0; i < fit.size(); ++i) {
     const ReferenceSample& s = fit.samples[static_cast<std::size_t>(i)];
     const double before_m = fit.error_m[i] - offset_m, after_m = fit.error_m[i] - fitted_m[i];
     const double share = s.depth_m / fit.range_m - std::floor(s.depth_m / fit.range_m);
     const auto part = std::min(parts - 1, static_cast<std::size_t>(share * parts));
-    const auto cell = static_cast<std::size_t>(s.row / side * columns + s.column / side);
+    const auto cell = static_cast<std::size_t>(s.row / side) * static_cast<std::size_t>(columns) +
+                      static_cast<std::size_t>(s.column / side);
     part_before.add(part, before_m, fit.weight[i]);
     part_after.add(part, after_m, fit.weight[i]);
     cell_before.add(cell, before_m, fit.weight[i]);

@@ -92,6 +92,13 @@ class HowTo(BenchRecordsTest):
         self.shell(f"tofsmith simulate corner {SMALL} --code hamiltonian-k4 --frames 3 "
                    "-o night.npy")
 
+    def make_warming_npy(self, _):
+        self.shell(f"tofsmith simulate corner {SMALL} --code sinusoid-k4 --camera mine.toml --signal "
+                   "3e7 --ambient 1e5 --frames 6 -o warming.npy")
+
+    def make_degrees_txt(self, _):
+        np.savetxt(self.path("degrees.txt"), 20 + 3 * np.arange(6))
+
     def make_dump_bin(self, command):
         self.make_raw_npy(command)
         np.load(self.path("raw.npy")).astype("<u2").tofile(self.path("dump.bin"))

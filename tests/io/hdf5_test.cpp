@@ -11,7 +11,6 @@
 
 #include "damaged_files.hpp"
 #include "io/arrays/stored_array.hpp"
-#include "io/shared/read_file.hpp"
 #include "temporary_directory.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 
@@ -176,7 +175,9 @@ TEST(Hdf5, NamesTheFileThatIsNone) {
               AllOf(HasSubstr("a.npy"), HasSubstr("the data set 'raw' was asked for")));
 }
 
-TEST(Hdf5, DamagedFilesAreReadOrRefused) {
+// Not of bytes changed at random: libhdf5 1.10 itself reads outside of its memory then
+// (docs/reliability.md).
+TEST(Hdf5, FilesCutShortAreRefused) {
   const TemporaryDirectory directory;
   for (const bool in_chunks : {false, true}) {
     write(directory / "a.h5",
@@ -184,15 +185,13 @@ TEST(Hdf5, DamagedFilesAreReadOrRefused) {
             .shape = {3, 4, 5},
             .chunk = in_chunks ? std::vector<hsize_t>{2, 2, 5} : std::vector<hsize_t>{},
             .deflate = in_chunks}});
-    const int refused = expect_damage_read_or_refused(
-        read_binary_file(directory / "a.h5"), 300, 7, [&](std::span<const std::byte> bytes) {
-          std::ofstream(directory / "b.h5", std::ios::binary)
-              .write(reinterpret_cast<const char*>(bytes.data()),
-                     static_cast<std::streamsize>(bytes.size()));
-          const RawFramesReader reader(directory / "b.h5");
-          reader.read_frame(0);
-        });
-    EXPECT_GT(refused, 50);
+    const std::uintmax_t whole = std::filesystem::file_size(directory / "a.h5");
+    for (std::uintmax_t length = 0; length < whole; length += 61) {
+      std::filesystem::copy_file(directory / "a.h5", directory / "b.h5",
+                                 std::filesystem::copy_options::overwrite_existing);
+      std::filesystem::resize_file(directory / "b.h5", length);
+      EXPECT_THROW(RawFramesReader(directory / "b.h5").read_frame(0), IoError) << length;
+    }
   }
 }
 

@@ -197,8 +197,8 @@ class NpyItemWriter {
   std::size_t missing_bytes_;
 };
 
-/// Most that one of them may hold, unless more is asked for [bytes]: an image of all pixels that are
-/// read, in float64.
+/// Most that one of them may hold, unless more is asked for [bytes]: an image of all pixels that
+/// are read, in float64.
 inline constexpr std::uint64_t max_npz_array_bytes = std::uint64_t{1} << 29;
 /// Most that the arrays of one archive may hold together once unpacked [bytes]. A few kilobytes of
 /// archive can unpack to any size, so there must be an end.
@@ -223,7 +223,8 @@ class NpzReader {
   /// What an array takes once unpacked, its header included [bytes].
   /// @throws IoError if there is no such array
   std::uint64_t unpacked_bytes(std::string_view name) const;
-  /// @throws IoError if there is no such array (says which there are), it is larger than `max_bytes`
+  /// @throws IoError if there is no such array (says which there are), it is larger than
+  /// `max_bytes`
   ///         or damaged, or as parse_npy()
   NpyArray read(std::string_view name, std::uint64_t max_bytes = max_npz_array_bytes) const;
 

@@ -97,8 +97,8 @@ RawFormat parse_raw_format(std::string_view text, std::string_view source_name =
 /// @throws IoError as parse_raw_format(), or if the file cannot be read
 RawFormat read_raw_format(const std::filesystem::path& path);
 
-/// How the raw frames of a built-in camera run as its driver gives them: a description to write to a
-/// file, with its source as a comment.
+/// How the raw frames of a built-in camera run as its driver gives them: a description to write to
+/// a file, with its source as a comment.
 /// @throws std::invalid_argument if there is no such camera, or its layout is not known; says why
 std::string built_in_raw_format_toml(const std::string& camera);
 /// The cameras of which it is known.

@@ -172,7 +172,8 @@ namespace {
 
 NpzArrays read_all(const NpzReader& reader) {
   NpzArrays arrays;
-  for (const std::string& name : reader.names()) arrays.emplace(name, reader.read(name, max_npz_bytes));
+  for (const std::string& name : reader.names())
+    arrays.emplace(name, reader.read(name, max_npz_bytes));
   return arrays;
 }
 
