@@ -4,8 +4,10 @@
 
 #include "calibrate_output.hpp"
 #include "number_checks.hpp"
+#include "tap_arguments.hpp"
 #include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 #include "tofsmith/report/instrument_reports.hpp"
 
@@ -15,9 +17,11 @@ namespace {
 
 struct NoiseArguments {
   std::vector<std::string> files;
-  std::string dark;
+  std::string dark, code;
+  double averaged = 1.0;
   std::optional<double> black_level_dn;
   CameraArguments camera;
+  TapArguments taps;
   CalibrateOutput output;
 };
 
@@ -33,6 +37,7 @@ nlohmann::ordered_json document_of(const PhotonTransfer& found) {
                                      {"black_level_dn", estimate_json(found.black_level_dn)},
                                      {"full_well_e", nullptr},
                                      {"adc_bits", found.adc_bits},
+                                     {"buckets", found.buckets},
                                      {"reduced_chi2", found.reduced_chi2},
                                      {"points", points},
                                      {"notes", found.notes}};
@@ -43,24 +48,34 @@ nlohmann::ordered_json document_of(const PhotonTransfer& found) {
 void run(const NoiseArguments& arguments, const Session& session) {
   const Camera base = arguments.camera.load();
   arguments.output.check(session);
-  PhotonTransferOptions options;
-  try {
-    options = noise_options(base, !arguments.dark.empty());
-  } catch (const std::invalid_argument& error) {
-    throw UsageError(fmt::format("calibrate noise: {}", error.what()));
-  }
+  const bool reads_differences = base.sensor.readout == Readout::difference;
+  if (reads_differences && arguments.code.empty())
+    throw UsageError(
+        "calibrate noise: the camera reads differences, from whose mean shot noise does not "
+        "follow; expected --code, the code that was played, or frames of single taps "
+        "(--set sensor.readout=separate)");
+  if (!reads_differences && !arguments.code.empty())
+    throw UsageError("--code: goes with cameras that read differences (sensor.readout)");
+  PhotonTransferOptions options = noise_options(base, !arguments.dark.empty());
+  options.averaged = arguments.averaged;
   if (arguments.black_level_dn) options.black_level_dn = arguments.black_level_dn;
   std::vector<RawFrames> levels;
   for (const std::string& file : arguments.files) levels.push_back(read_raw_frames(file));
   RawFrames dark;
   if (!arguments.dark.empty()) dark = read_raw_frames(arguments.dark);
-  if (arguments.dark.empty() && !options.black_level_dn)
+  if (arguments.dark.empty() && !options.black_level_dn && !reads_differences)
     throw UsageError(
         "calibrate noise: the black level is not known; expected --dark FILE, frames "
         "with the light off, or --black-level DN");
   PhotonTransfer found;
   try {
-    found = photon_transfer(levels, dark, options);
+    if (reads_differences) {
+      const CodeSet code = load_camera_code(arguments.code, base, arguments.taps.file_options());
+      found = photon_transfer(levels, dark, make_decoding_table(ForwardModel(code, base), base),
+                              options);
+    } else {
+      found = photon_transfer(levels, dark, options);
+    }
   } catch (const std::invalid_argument& error) {
     throw IoError(arguments.files.front(), error.what());
   }
@@ -85,7 +100,14 @@ void add_calibrate_noise(CLI::App& calibrate, Session& session) {
   command->add_option("--dark", arguments->dark, "pairs of frames with the light off");
   command->add_option("--black-level", arguments->black_level_dn, "black level [DN], if known")
       ->check(number_from_0_on());
+  command->add_option("--code", arguments->code,
+                      "of a camera that reads differences: the code that it played");
+  command
+      ->add_option("--averaged", arguments->averaged,
+                   "of how many equal frames each frame is the mean already (1)")
+      ->check(positive_number());
   arguments->camera.add_to(*command);
+  arguments->taps.add_to(*command);
   arguments->output.add_to(*command);
   command->callback([arguments, &session] { run(*arguments, session); });
 }

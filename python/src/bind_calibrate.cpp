@@ -114,6 +114,7 @@ py::dict noise_dict(const PhotonTransfer& found) {
       found.full_well_e ? py::object(pair_of(*found.full_well_e)) : py::object(py::none());
   dict["saturation_dn"] = found.saturation_dn;
   dict["adc_bits"] = found.adc_bits;
+  dict["buckets"] = found.buckets;
   dict["reduced_chi2"] = found.reduced_chi2;
   dict["points"] = points;
   dict["notes"] = found.notes;
@@ -121,7 +122,7 @@ py::dict noise_dict(const PhotonTransfer& found) {
 }
 
 PhotonTransfer measure_noise(const py::list& levels, const py::object& dark, const Camera& camera,
-                             const py::dict& values) {
+                             const std::optional<CodeSet>& code, const py::dict& values) {
   std::vector<RawFrames> frames;
   for (const py::handle level : levels)
     frames.push_back(to_raw_frames(py::reinterpret_borrow<py::object>(level), "levels"));
@@ -129,7 +130,9 @@ PhotonTransfer measure_noise(const py::list& levels, const py::object& dark, con
   PhotonTransferOptions options = noise_options(camera, !dark.is_none());
   read_options(values, "", options);
   const py::gil_scoped_release release;
-  return photon_transfer(frames, dark_frames, options);
+  if (!code) return photon_transfer(frames, dark_frames, options);
+  return photon_transfer(frames, dark_frames,
+                         make_decoding_table(ForwardModel(*code, camera), camera), options);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "bindings.hpp"
+#include "file_objects.hpp"
 #include "filter_options.hpp"
 #include "lens.hpp"
 #include "multipath_options.hpp"
@@ -197,6 +198,30 @@ py::dict decode_a_recording(const BoundDecoder& decoder, const std::vector<std::
   return dict;
 }
 
+py::dict decode_a_stream(const BoundDecoder& decoder, const py::object& source,
+                         const py::object& take, const py::object& write, const py::object& lens,
+                         const py::dict& values, const py::object& callback) {
+  const DecodeRequest request = request_of({}, "", lens, values);
+  DecodedStream result;
+  FrameSink sink(take, write,
+                 request.outputs.empty() ? std::vector{DecodedPlane::depth} : request.outputs,
+                 result);
+  without_gil(callback, [&](const Progress& progress) {
+    try {
+      decode_stream(request, decoder.any, reading_from(source), sink.stream(), progress, result);
+    } catch (const FrameSink::Stopped&) {
+      ++result.frames;  // that was taken
+    }
+  });
+  py::dict dict;
+  dict["height"] = result.height;
+  dict["width"] = result.width;
+  dict["frames"] = result.frames;
+  dict["statuses"] = counts_of(result.statuses);
+  dict["seconds"] = result.seconds;
+  return dict;
+}
+
 py::array_t<double> decode_depth_bins(const BoundDecoder& decoder, const Floats& measurements) {
   const int needed = table_of(decoder).measurements();
   if (measurements.ndim() != 2 || measurements.shape(1) != needed)
@@ -293,6 +318,7 @@ void bind_decode(py::module_& module) {
       .def("table", [](const BoundDecoder& decoder) { return table_of(decoder); })
       .def("decode", &decode)
       .def("decode_recording", &decode_a_recording)
+      .def("decode_stream", &decode_a_stream)
       .def("decode_depth_bins", &decode_depth_bins);
   module.def("decode_methods", [] {
     std::vector<std::string> names;

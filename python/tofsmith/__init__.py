@@ -49,7 +49,7 @@ from ._correlation_calibration import (
     read_delay_sweep,
 )
 from ._depth_calibration import CalibratedDepth
-from ._decode import DecodedRecording, Decoder, decode
+from ._decode import Decoder, decode
 from ._decoding_table import DecodingTable
 from ._depth_image import DepthImage, PixelStatus, ReturnStatus
 from ._design import (
@@ -111,6 +111,7 @@ from ._multipath import (
     single_path_bias_m,
 )
 from ._photon_transfer import PhotonTransfer, PhotonTransferPoint, photon_transfer
+from ._recordings import DecodedRecording, DecodedStream
 from ._report_pages import write_evaluation_report, write_report
 from ._reports import (
     DepthErrorMean,
@@ -180,6 +181,7 @@ __all__ = [
     "CramerRaoBound",
     "DeadPixels",
     "DecodedRecording",
+    "DecodedStream",
     "Decoder",
     "DecodingTable",
     "DelaySweep",

@@ -4,10 +4,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path as FilePath
-from typing import Any, Optional
+from typing import Any, BinaryIO, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -25,48 +24,15 @@ from ._depth_image import (
     planes_of,
     usual_planes,
 )
-from ._filter import (
-    Filter,
-    FilterLike,
-    TimeFilterLike,
-    filter_options,
-    time_filter_options,
+from ._filter import Filter, FilterLike, TimeFilterLike, filter_options
+from ._recordings import (
+    DecodedRecording,
+    DecodedStream,
+    frame_options,
+    mixed_word,
+    path_or_none,
 )
 from ._scene import lens_dict
-
-
-@dataclass(frozen=True)
-class DecodedRecording:
-    """What became of a recording.
-
-    Attributes
-    ----------
-    files : list of pathlib.Path
-        Of every frame; of a stack, of every plane.
-    outputs : list of str
-        The planes written.
-    frames : list of dict
-        How many pixels of every frame have which PixelStatus, by its name; all 0 where `outputs`
-        were asked for without status.
-    first_frame : int
-        Number of the first of them in the recording.
-    height, width, measurements : int
-        Of every frame.
-    seconds : float
-        That decoding took [s].
-    notes : list of str
-        What should be known: raw numbers taken as electrons, no pixel that has a depth.
-    """
-
-    files: list[FilePath]
-    outputs: list[str]
-    frames: list[dict[str, int]]
-    first_frame: int
-    height: int
-    width: int
-    measurements: int
-    seconds: float
-    notes: list[str]
 
 
 class Decoder:
@@ -314,38 +280,103 @@ class Decoder:
         -----
         The same bytes for any number of threads and any memory.
         """
-        def name(path: Optional[Path], what: str) -> Optional[str]:
-            return None if path is None else _check.path(path, what)
-
-        planes = tuple(_tofsmith.decoded_planes())
         options = {
             "layout": layout,
-            "raw_format": name(raw_format, "raw_format"),
+            "raw_format": path_or_none(raw_format, "raw_format"),
             "dataset": _check.text(dataset, "dataset"),
-            "outputs": [] if outputs is None else [
-                _check.one_of(plane, "outputs", planes) for plane in outputs],
-            "kind": kind,
             "frame": None if frame is None else _check.whole(frame, "frame", 0),
             "all_points": bool(all_points),
-            "undistort": bool(undistort),
             "stack": bool(stack),
-            "average": _check.whole(average, "average", 1),
-            "averaged": _check.number(averaged, "averaged"),
-            "time_filter": None if time_filter is None else time_filter_options(time_filter),
-            "filter": None if filter is None else filter_options(filter),
-            "mixed": mixed_word(mixed),
-            "offset_map": name(offset_map, "offset_map"),
-            "offset_m": _check.number(offset_m, "offset_m"),
-            "gain_map": name(gain_map, "gain_map"),
             "memory_mb": _check.number(memory_mb, "memory_mb"),
             "overwrite": bool(overwrite),
             "other_inputs": self._inputs,
-        }
+        } | frame_options(
+            outputs, kind=kind, undistort=undistort, average=average, averaged=averaged,
+            time_filter=time_filter, filter=filter, mixed=mixed, offset_map=offset_map,
+            offset_m=offset_m, gain_map=gain_map)
         values = self._handle.decode_recording(
             _check.paths(raw, "raw"), _check.path(output, "output"), self._lens, options,
             _check.progress(progress))
         values["files"] = [FilePath(file) for file in values["files"]]
         return DecodedRecording(**values)
+
+    def decode_stream(
+        self,
+        source: BinaryIO,
+        sink: Union[BinaryIO, Callable[[dict[str, npt.NDArray[Any]]], object]],
+        *,
+        raw_format: Path,
+        outputs: Optional[Iterable[str]] = None,
+        kind: str = "radial",
+        undistort: bool = False,
+        average: int = 1,
+        averaged: float = 1.0,
+        time_filter: Optional[TimeFilterLike] = None,
+        filter: Optional[FilterLike] = None,
+        mixed: Optional[str] = None,
+        offset_map: Optional[Path] = None,
+        offset_m: float = 0.0,
+        gain_map: Optional[Path] = None,
+        progress: Progress = None,
+    ) -> DecodedStream:
+        """Decodes frames as they come, each handed on before the next is read, in the memory of a
+        few frames, as `tofsmith decode - -o -` does: from a pipe, a socket, a running camera.
+
+        Parameters
+        ----------
+        source : binary file object
+            Its header, then frame after frame, as `raw_format` describes them: what subprocess
+            gives as `stdout`, sys.stdin.buffer, socket.makefile("rb"). It must wait for data.
+        sink : callable, or binary file object
+            Called with the planes of each frame, a dict of arrays (H, W) by the words of `outputs`;
+            False stops. A file object gets the bytes of these planes, one after another: float32,
+            status and returns uint8, bin int32, little end first.
+        raw_format : str or path
+            A .raw.toml file; see docs/raw_formats.md.
+        outputs : iterable of str, optional
+            As decode_recording() takes it; None: depth alone.
+        kind, undistort, average, averaged, time_filter, filter, mixed, offset_map, offset_m, gain_map
+            As decode_recording() takes them.
+        progress : callable, optional
+            Called with (fraction, step); False stops.
+
+        Returns
+        -------
+        DecodedStream
+
+        Raises
+        ------
+        ValueError
+            For a request that cannot be, or a stream that does not wait.
+        OSError
+            If the stream ends within a frame or ahead of the first, or a file cannot be read.
+        Interrupted
+            If `progress` says so. What `source` and `sink` raise passes on.
+
+        Notes
+        -----
+        The same numbers as decode_recording() gives.
+
+        Examples
+        --------
+        >>> camera = subprocess.Popen(["v4l2-ctl", ...], stdout=subprocess.PIPE)  # doctest: +SKIP
+        >>> decoder.decode_stream(camera.stdout, lambda planes: show(planes["depth"]),
+        ...                       raw_format="sensor.raw.toml")  # doctest: +SKIP
+        """
+        if not (hasattr(source, "readinto") or hasattr(source, "read")):
+            raise TypeError(f"source: got {_check.shown(source)}; needs a binary file object")
+        write = getattr(sink, "write", None)
+        take = sink if write is None and callable(sink) else None
+        if write is None and take is None:
+            raise TypeError(f"sink: got {_check.shown(sink)}; needs a callable or a binary file "
+                            "object")
+        options = {"raw_format": _check.path(raw_format, "raw_format")} | frame_options(
+            outputs, kind=kind, undistort=undistort, average=average, averaged=averaged,
+            time_filter=time_filter, filter=filter, mixed=mixed, offset_map=offset_map,
+            offset_m=offset_m, gain_map=gain_map)
+        return DecodedStream(**self._handle.decode_stream(
+            source, take, write, self._lens, options,
+            _check.progress(progress)))
 
     def decode_depth_bins(self, measurements: npt.ArrayLike) -> FloatArray:
         """Positions in [0, N) [bins], refined between bins, of many pixels: (.., K) to (..); one
@@ -371,11 +402,6 @@ class Decoder:
         shape = raw.shape[:-3] + raw.shape[-2:] if is_planar else raw.shape[:-1]
         made: dict[str, Any] = {name: np.empty(shape, plane_types[name]) for name in names}
         return DepthImage(**made)
-
-
-def mixed_word(mixed: Optional[str]) -> str:
-    """The word, "" for none."""
-    return "" if mixed is None else _check.one_of(mixed, "mixed", tuple(_tofsmith.mixed_pixels()))
 
 
 def decode(

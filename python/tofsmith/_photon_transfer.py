@@ -13,13 +13,16 @@ import numpy.typing as npt
 from . import _check, _tofsmith
 from ._camera import Camera, CameraLike, camera_of
 from ._check import Path
+from ._code import CodeLike, code_of
 from ._reports import Estimate
 
 
 @dataclass(frozen=True)
 class PhotonTransferPoint:
     """Mean [DN] and variance of one frame in time [DN^2] of one pair of frames of one measurement;
-    whether of the dark frames, and whether too close to the limit to count."""
+    whether of the dark frames, and whether too close to the limit to count. Of differences: the
+    light that both buckets collected [DN], and the variance of those that collected about so
+    much."""
 
     mean_dn: float
     variance_dn2: Estimate
@@ -29,7 +32,8 @@ class PhotonTransferPoint:
 
 @dataclass(frozen=True)
 class PhotonTransfer:
-    """Noise of a sensor: variance [DN^2] = read_noise^2 / gain^2 + (mean - black) / gain + 1/12.
+    """Noise of a sensor: variance [DN^2] = read_noise^2 / gain^2 + (mean - black) / gain + 1/12;
+    where differences of two buckets are read, 2 read_noise^2 / gain^2 + light / gain + 2/12.
 
     Attributes
     ----------
@@ -40,6 +44,8 @@ class PhotonTransfer:
     saturation_dn : float
         Highest number seen, or where numbers are clipped.
     adc_bits : int
+    buckets : int
+        That a raw number is of: 2 where differences are read.
     reduced_chi2 : float
         Of the fit: near 1 where the model holds.
     points : list of PhotonTransferPoint
@@ -52,6 +58,7 @@ class PhotonTransfer:
     full_well_e: Optional[Estimate]
     saturation_dn: float
     adc_bits: int
+    buckets: int
     reduced_chi2: float
     points: list[PhotonTransferPoint]
     notes: list[str]
@@ -73,6 +80,8 @@ def photon_transfer(
     dark: Optional[npt.ArrayLike] = None,
     black_level_dn: Optional[float] = None,
     adc_bits: Optional[int] = None,
+    code: Optional[CodeLike] = None,
+    averaged: float = 1.0,
 ) -> PhotonTransfer:
     """Noise of a sensor from pairs of frames of the same light.
 
@@ -80,7 +89,7 @@ def photon_transfer(
     ----------
     levels : array_like, shape (F, H, W, K), or a list of such
         Each two frames that follow one another saw the same light; several levels of it in one
-        array or in several. Raw numbers of single taps.
+        array or in several. Raw numbers of single taps, or differences.
     camera : Camera or its name
     dark : array_like, shape (F, H, W, K), optional
         Pairs of frames with the light off.
@@ -88,12 +97,18 @@ def photon_transfer(
         If it is known [DN]; None: from the dark frames, or else the camera's.
     adc_bits : int, optional
         None: the camera's, or else the fewest usual ones.
+    code : CodeSet, name of a family or file, optional
+        What was played: of cameras that read differences, whose shot noise follows from the light
+        that the code collects where each pixel decodes to; with no other light in the room.
+    averaged : float
+        Of how many equal frames each frame is the mean already, > 0.
 
     Raises
     ------
     ValueError
         If frames are no pairs, sizes differ, the black level is unknown, the levels do not differ,
-        or the camera reads differences, from whose mean shot noise does not follow.
+        or the camera reads differences, from whose mean shot noise does not follow, and no `code`
+        is given.
 
     Examples
     --------
@@ -103,9 +118,18 @@ def photon_transfer(
     """
     given: Sequence[Any] = levels if isinstance(levels, (list, tuple)) else [levels]
     frames = [_check.frames(level, f"levels[{i}]") for i, level in enumerate(given)]
-    options = {"black_level_dn": black_level_dn, "adc_bits": adc_bits}
+    options = {"black_level_dn": black_level_dn, "adc_bits": adc_bits,
+               "averaged": _check.number(averaged, "averaged")}
+    camera = camera_of(camera)
+    reads_differences = camera.sensor.readout == "difference"
+    if reads_differences != (code is not None):
+        raise ValueError("code: got none; needs the code that was played, for the camera reads "
+                         "differences, from whose mean shot noise does not follow"
+                         if reads_differences else
+                         "code: goes with cameras that read differences (sensor.readout)")
+    played = None if code is None else code_of(code, camera)._handle
     dark_frames = None if dark is None else _check.frames(dark, "dark")
-    handle = _tofsmith.photon_transfer(frames, dark_frames, camera_of(camera)._handle, options)
+    handle = _tofsmith.photon_transfer(frames, dark_frames, camera._handle, played, options)
     fields = handle.fields()
     for name in ("gain_e_per_dn", "read_noise_e", "black_level_dn", "full_well_e"):
         fields[name] = None if fields[name] is None else Estimate(*fields[name])

@@ -149,6 +149,11 @@ class Decoder:
         self, raw: Sequence[str], output: str, lens: Optional[_Dict], options: _Options,
         progress: _Progress, /
     ) -> _Dict: ...
+    def decode_stream(
+        self, source: Any, take: Optional[Callable[[_Dict], object]],
+        write: Optional[Callable[[memoryview], Optional[int]]], lens: Optional[_Dict],
+        options: _Options, progress: _Progress, /
+    ) -> _Dict: ...
     def decode_depth_bins(self, measurements: _Any, /) -> _Doubles: ...
 
 class Filter:
@@ -301,7 +306,8 @@ class PhotonTransfer:
     def write_report(self, path: str, overwrite: bool, /) -> None: ...
 
 def photon_transfer(
-    levels: list[_Floats], dark: Optional[_Floats], camera: Camera, options: _Options, /
+    levels: list[_Floats], dark: Optional[_Floats], camera: Camera, code: Optional[CodeSet],
+    options: _Options, /
 ) -> PhotonTransfer: ...
 def read_delay_sweep(path: str, camera: Camera, options: _Options, /) -> _Dict: ...
 

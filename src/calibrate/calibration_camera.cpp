@@ -57,12 +57,9 @@ Image<float> flat_target_geometry_m(double distance_m, const Camera& camera, int
 }
 
 PhotonTransferOptions noise_options(const Camera& camera, bool has_dark_frames) {
-  if (camera.sensor.readout == Readout::difference)
-    throw std::invalid_argument(
-        "the camera reads differences, from whose mean shot noise does not follow; expected frames "
-        "of single taps (sensor.readout=separate)");
   PhotonTransferOptions options{.adc_bits = camera.sensor.adc_bits};
-  if (!has_dark_frames) options.black_level_dn = camera.sensor.black_level_dn;
+  if (!has_dark_frames || camera.sensor.readout == Readout::difference)
+    options.black_level_dn = camera.sensor.black_level_dn;
   return options;
 }
 

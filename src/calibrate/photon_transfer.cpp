@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibrate/photon_transfer_fit.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -59,7 +60,9 @@ double limit_of(const std::vector<RawFrames>& levels, bool& piled_up) {
   return highest;
 }
 
-void check_sizes(const RawFrames& raw, const RawFrames& first, const char* name) {
+}  // namespace
+
+void check_pairs(const RawFrames& raw, const RawFrames& first, const char* name) {
   require(raw.frames >= 2 && raw.frames % 2 == 0, fmt::format("{} frames", name), raw.frames,
           "must be pairs of the same light: an even number, at least 2");
   require(raw.height == first.height && raw.width == first.width &&
@@ -72,7 +75,10 @@ void check_sizes(const RawFrames& raw, const RawFrames& first, const char* name)
           "must be >= 16");
 }
 
-void add_points(const RawFrames& raw, double limit, bool dark, PhotonTransfer& result) {
+namespace {
+
+void add_points(const RawFrames& raw, double limit, bool dark, double averaged,
+                PhotonTransfer& result) {
   for (int f = 0; f < raw.frames; f += 2)
     for (int k = 0; k < raw.measurements; ++k) {
       const PairStatistics s = statistics_of(raw, f, k, limit);
@@ -80,7 +86,7 @@ void add_points(const RawFrames& raw, double limit, bool dark, PhotonTransfer& r
       PhotonTransferPoint point{.mean_dn = s.mean.mean(), .dark = dark};
       // A change of light between the two frames is a constant of the difference and not in its
       // variance.
-      const double variance = 0.5 * s.difference.variance();
+      const double variance = 0.5 * averaged * s.difference.variance();
       point.variance_dn2 = {variance,
                             variance * std::sqrt(2.0 / static_cast<double>(s.pixels - 1))};
       point.saturated =
@@ -89,7 +95,7 @@ void add_points(const RawFrames& raw, double limit, bool dark, PhotonTransfer& r
     }
 }
 
-/// variance - 1/12 = a + b (mean - black): weights of the fitted variance, three rounds.
+/// variance - rounding = a + b (mean - black): weights of the fitted variance, three rounds.
 struct FittedLine {
   Eigen::Vector2d value = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
@@ -97,6 +103,7 @@ struct FittedLine {
 };
 
 FittedLine fit_line(const PhotonTransfer& result) {
+  const double rounding = result.buckets * rounding_dn2;
   FittedLine line;
   for (int round = 0; round < 4; ++round) {
     Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
@@ -110,11 +117,11 @@ FittedLine fit_line(const PhotonTransfer& result) {
           p.variance_dn2.standard_error / std::max(1e-300, p.variance_dn2.value);
       const double expected =
           round == 0 ? p.variance_dn2.value
-                     : std::max(1e-3 * p.variance_dn2.value, row.dot(line.value) + rounding_dn2);
+                     : std::max(1e-3 * p.variance_dn2.value, row.dot(line.value) + rounding);
       const double error = std::max(1e-12, expected * relative);
-      const double residual = p.variance_dn2.value - rounding_dn2 - row.dot(line.value);
+      const double residual = p.variance_dn2.value - rounding - row.dot(line.value);
       normal += row * row.transpose() / (error * error);
-      right += row * (p.variance_dn2.value - rounding_dn2) / (error * error);
+      right += row * (p.variance_dn2.value - rounding) / (error * error);
       chi2 += std::pow(residual / error, 2);
       ++count;
     }
@@ -169,11 +176,14 @@ void set_full_well(bool piled_up, PhotonTransfer& result) {
 }
 
 void set_gain_and_read_noise(const FittedLine& line, PhotonTransfer& result) {
-  const double a = line.value[0], b = line.value[1];
+  // The read noise of all buckets is in a number.
+  const double a = line.value[0] / result.buckets, b = line.value[1];
   require(b > 0.0 && b > 3 * std::sqrt(line.covariance(1, 1)), "rise of variance with the mean", b,
           "must be > 0 by 3 standard errors: the levels must differ in light");
   // Points that scatter more than their numbers of pixels say have errors as large as they do.
-  const Eigen::Matrix2d covariance = line.covariance * std::max(1.0, line.reduced_chi2);
+  const Eigen::DiagonalMatrix<double, 2> of_one(1.0 / result.buckets, 1.0);
+  const Eigen::Matrix2d covariance =
+      of_one * line.covariance * of_one * std::max(1.0, line.reduced_chi2);
   const double gain = 1.0 / b;
   result.gain_e_per_dn = {gain, std::sqrt(covariance(1, 1)) / (b * b)};
   const double black_error_dn2 = b * result.black_level_dn.standard_error;  // moves a
@@ -190,45 +200,54 @@ void set_gain_and_read_noise(const FittedLine& line, PhotonTransfer& result) {
 
 }  // namespace
 
+void set_adc_bits(const PhotonTransferOptions& options, double highest_dn, PhotonTransfer& result) {
+  result.adc_bits = options.adc_bits.value_or(min_usual_bits(highest_dn));
+  if (!options.adc_bits)
+    result.notes.push_back(
+        fmt::format("the camera does not say adc_bits; {} bits hold the highest number {:.0f}",
+                    result.adc_bits, highest_dn));
+}
+
+void fit_photon_transfer(PhotonTransfer& result) {
+  const auto fitted =
+      std::ranges::count_if(result.points, [](const auto& p) { return !p.saturated; });
+  require(fitted >= 3, "pairs below saturation", fitted, "must be >= 3, dark ones included");
+  const FittedLine line = fit_line(result);
+  result.reduced_chi2 = line.reduced_chi2;
+  set_gain_and_read_noise(line, result);
+  if (result.reduced_chi2 > 3)
+    result.notes.push_back(fmt::format(
+        "the points scatter {:.2g} times as much as their errors: light that flickers within a "
+        "frame, a response that is not linear, or raw numbers that are not those of {}",
+        std::sqrt(result.reduced_chi2), result.buckets > 1 ? "this code" : "single taps"));
+}
+
 PhotonTransfer photon_transfer(const std::vector<RawFrames>& levels, const RawFrames& dark,
                                const PhotonTransferOptions& options) {
   options.validate();
   require(!levels.empty(), "levels", 0, "must be >= 1");
-  for (const RawFrames& raw : levels) check_sizes(raw, levels.front(), "level");
-  if (dark.frames > 0) check_sizes(dark, levels.front(), "dark");
+  for (const RawFrames& raw : levels) check_pairs(raw, levels.front(), "level");
+  if (dark.frames > 0) check_pairs(dark, levels.front(), "dark");
 
   PhotonTransfer result;
   set_black_level(dark, options, result);
   bool piled_up = false;
   result.saturation_dn = limit_of(levels, piled_up);
-  result.adc_bits = options.adc_bits.value_or(min_usual_bits(result.saturation_dn));
-  if (!options.adc_bits)
-    result.notes.push_back(
-        fmt::format("the camera does not say adc_bits; {} bits hold the highest number {:.0f}",
-                    result.adc_bits, result.saturation_dn));
+  set_adc_bits(options, result.saturation_dn, result);
   const double limit = piled_up ? result.saturation_dn - 0.5 : INFINITY;
-  if (dark.frames > 0) add_points(dark, limit, true, result);
-  for (const RawFrames& raw : levels) add_points(raw, limit, false, result);
-  const auto fitted =
-      std::ranges::count_if(result.points, [](const auto& p) { return !p.saturated; });
-  require(fitted >= 3, "pairs below saturation", fitted, "must be >= 3, dark ones included");
-
-  const FittedLine line = fit_line(result);
-  result.reduced_chi2 = line.reduced_chi2;
-  set_gain_and_read_noise(line, result);
+  if (dark.frames > 0) add_points(dark, limit, true, options.averaged, result);
+  for (const RawFrames& raw : levels) add_points(raw, limit, false, options.averaged, result);
+  fit_photon_transfer(result);
   set_full_well(piled_up, result);
-  if (result.reduced_chi2 > 3)
-    result.notes.push_back(fmt::format(
-        "the points scatter {:.2g} times as much as their errors: light that flickers within a "
-        "frame, a response that is not linear, or raw numbers that are not those of single taps",
-        std::sqrt(result.reduced_chi2)));
   return result;
 }
 
 Camera with_noise(Camera camera, const PhotonTransfer& found) {
   camera.sensor.gain_e_per_dn = found.gain_e_per_dn.value;
   camera.sensor.read_noise_e = found.read_noise_e.value;
-  camera.sensor.black_level_dn = std::max(0.0, found.black_level_dn.value);
+  // In differences the black level cancels.
+  if (camera.sensor.readout != Readout::difference)
+    camera.sensor.black_level_dn = std::max(0.0, found.black_level_dn.value);
   camera.sensor.adc_bits = found.adc_bits;
   if (found.full_well_e) camera.sensor.full_well_e = found.full_well_e->value;
   camera.validate();

@@ -55,9 +55,11 @@ std::vector<std::vector<std::string>> noise_rows(const PhotonTransfer& found) {
   std::vector<std::vector<std::string>> rows{{"quantity", "found"}};
   rows.push_back({"sensor.gain_e_per_dn", estimate_text(found.gain_e_per_dn, 1)});
   rows.push_back({"sensor.read_noise_e", estimate_text(found.read_noise_e, 1)});
-  rows.push_back({"sensor.black_level_dn", estimate_text(found.black_level_dn, 1)});
-  rows.push_back({"sensor.full_well_e",
-                  found.full_well_e ? estimate_text(*found.full_well_e, 1) : "not reached"});
+  if (found.buckets == 1) {
+    rows.push_back({"sensor.black_level_dn", estimate_text(found.black_level_dn, 1)});
+    rows.push_back({"sensor.full_well_e",
+                    found.full_well_e ? estimate_text(*found.full_well_e, 1) : "not reached"});
+  }
   rows.push_back({"sensor.adc_bits", fmt::format("{}", found.adc_bits)});
   rows.push_back({"chi^2 per freedom", fmt::format("{:.3g}", found.reduced_chi2)});
   return rows;
@@ -130,9 +132,10 @@ Page noise_report(const PhotonTransfer& found, const std::string& command_line) 
   }
   Series line{.name = "fit", .style = reference_style()};
   const double gain = found.gain_e_per_dn.value, read_dn = found.read_noise_e.value / gain;
+  const double at_black = found.buckets * (read_dn * read_dn + 1.0 / 12);
   for (const double mean : {found.black_level_dn.value, brightest}) {
     line.x.push_back(mean);
-    line.y.push_back(read_dn * read_dn + (mean - found.black_level_dn.value) / gain + 1.0 / 12);
+    line.y.push_back(at_black + (mean - found.black_level_dn.value) / gain);
   }
   std::vector<Series> series{used, line};
   if (!left.x.empty()) series.push_back(left);
@@ -143,9 +146,11 @@ Page noise_report(const PhotonTransfer& found, const std::string& command_line) 
   section.blocks.push_back(line_figure(
       {.id = "photon-transfer",
        .title = "Photon transfer",
-       .caption = "Variance in time of each pair and measurement over its mean. The slope is one "
-                  "over the gain, the height at black the read noise."},
-      series, {.label = "mean", .unit = "DN"},
+       .caption =
+           fmt::format("Variance in time of each pair and measurement over {}. The slope is "
+                       "one over the gain, the height at black the read noise.",
+                       found.buckets > 1 ? "the light that both buckets collected" : "its mean")},
+      series, {.label = found.buckets > 1 ? "light" : "mean", .unit = "DN"},
       {.label = "variance", .unit = "DN^2", .from_zero = true}));
   return finished_calibration_page({.title = "Noise of a sensor", .sections = {section}},
                                    found.notes, command_line);

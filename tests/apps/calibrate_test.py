@@ -6,7 +6,7 @@ import unittest
 
 import numpy as np
 
-from bench_records import RANGE_M, BenchRecordsTest
+from bench_records import CAMERA, RANGE_M, BenchRecordsTest
 
 
 class Calibrate(BenchRecordsTest):
@@ -177,8 +177,25 @@ class Calibrate(BenchRecordsTest):
             self.assertLess(abs(found[key]["value"] - truth), 4 * found[key]["standard_error"], key)
         self.assertIn("read_noise_e", self.bytes_of("noisy.toml").decode())
         self.refuse([*command, "--set", "sensor.taps=2", "--set", "sensor.readout=difference"],
-                    "differences", code=2)
+                    "--code", code=2)
+        self.refuse([*command, "--code", "sinusoid-k4"], "sensor.readout", code=2)
         self.refuse(["calibrate", "noise", "1.npy"], "--dark", code=2)
+
+    def test_pairs_of_differences_become_noise_by_their_code(self):
+        self.write("camera.toml", CAMERA.replace("read_noise_e",
+                                                 'taps = 2\nreadout = "difference"\nread_noise_e'))
+        np.save(self.path("scene.npy"), np.full((48, 48), 2.0, np.float32))
+        for i, signal in enumerate(("0", "4e6", "1e7", "2e7")):
+            self.do("simulate", "scene.npy", "--kind", "radial", "--code", "sinusoid-k4",
+                    "--camera", "camera.toml", "--signal", signal, "--ambient", "0", "--frames",
+                    "2", "--seed", str(i), "-o", f"{i}.npy")
+        found = self.do_json("calibrate", "noise", "1.npy", "2.npy", "3.npy", "--dark", "0.npy",
+                             "--camera", "camera.toml", "--code", "sinusoid-k4", "-o",
+                             "noisy.toml", "--report", "p.html")
+        for key, truth in (("gain_e_per_dn", 8), ("read_noise_e", 30)):
+            self.assertLess(abs(found[key]["value"] - truth), 4 * found[key]["standard_error"], key)
+        self.assertEqual(found["buckets"], 2)
+        self.assertIn("black_level_dn = 100", self.bytes_of("noisy.toml").decode())
 
     def test_frames_that_warm_up_become_drift_per_degree(self):
         degrees = np.linspace(20, 47, 10)

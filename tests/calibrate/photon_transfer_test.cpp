@@ -102,5 +102,118 @@ TEST(PhotonTransfer, AsksForWhatItNeeds) {
   EXPECT_THROW(photon_transfer({one}, dark), std::invalid_argument);
 }
 
+/// A camera that reads A - B.
+Camera difference_camera() {
+  Camera camera = known_camera();
+  camera.sensor.taps = 2;
+  camera.sensor.readout = Readout::difference;
+  return camera;
+}
+
+/// A pair of frames of a slanted plane of many albedos, under the camera's own light only.
+RawFrames differences_of(const Camera& camera, double signal_e_per_s, std::uint64_t seed) {
+  SceneImage scene(32, 32);
+  for (int row = 0; row < 32; ++row)
+    for (int column = 0; column < 32; ++column) {
+      scene.depth_m(row, column) = 1.5f + 0.05f * static_cast<float>(row);
+      scene.albedo(row, column) = 0.3f + 0.02f * static_cast<float>(column);
+    }
+  return capture(scene, build_family("sinusoid-k4", camera), camera,
+                 {.signal_e_per_s = signal_e_per_s,
+                  .ambient_e_per_s = 0.0,
+                  .reference_distance_m = 2.0,
+                  .seed = seed,
+                  .frames = 2});
+}
+
+TEST(PhotonTransfer, OfDifferencesIsThatOfTheTaps) {
+  const Camera camera = difference_camera();
+  const DecodingTable table =
+      make_decoding_table(ForwardModel(build_family("sinusoid-k4", camera), camera), camera);
+  constexpr int seeds = 12;
+  double gain = 0.0, noise = 0.0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    std::vector<RawFrames> levels;
+    for (int i = 1; i <= 3; ++i)
+      levels.push_back(differences_of(camera, 8e6 * i, 100 * seed + static_cast<unsigned>(i)));
+    const PhotonTransfer found =
+        photon_transfer(levels, differences_of(camera, 0.0, 100 * seed), table, {.adc_bits = 12});
+    EXPECT_EQ(found.buckets, 2);
+    const auto square = [&](const Estimate& e, double truth) {
+      EXPECT_NEAR(e.value, truth, 4 * e.standard_error) << "seed " << seed;
+      return std::pow((e.value - truth) / e.standard_error, 2) / seeds;
+    };
+    gain += square(found.gain_e_per_dn, 7.5);
+    noise += square(found.read_noise_e, 28.0);
+    EXPECT_LT(found.gain_e_per_dn.standard_error, 0.02 * 7.5);
+    EXPECT_LT(found.read_noise_e.standard_error, 0.05 * 28.0);
+    const Camera written = with_noise(camera, found);
+    EXPECT_EQ(written.sensor.black_level_dn, camera.sensor.black_level_dn);
+  }
+  for (const double chi2 : {gain, noise}) {  // of 12 over 12
+    EXPECT_GT(chi2, 0.25);
+    EXPECT_LT(chi2, 2.7);
+  }
+}
+
+TEST(PhotonTransfer, OfMeansIsThatOfSingleFrames) {
+  const Camera camera = known_camera();
+  constexpr int averaged = 4;
+  std::vector<RawFrames> levels;
+  for (std::uint64_t level = 0; level <= 6; ++level) {
+    RawFrames mean = frames_of(camera, 3e6 * static_cast<double>(level), 1000 * level);
+    for (std::uint64_t i = 1; i < averaged; ++i) {
+      const RawFrames more = frames_of(camera, 3e6 * static_cast<double>(level), 1000 * level + i);
+      for (std::size_t at = 0; at < mean.values.size(); ++at) mean.values[at] += more.values[at];
+    }
+    for (float& value : mean.values) value /= averaged;
+    levels.push_back(std::move(mean));
+  }
+  const RawFrames dark = levels.front();
+  levels.erase(levels.begin());
+  const PhotonTransfer found =
+      photon_transfer(levels, dark, {.adc_bits = 12, .averaged = averaged});
+  EXPECT_NEAR(found.gain_e_per_dn.value, 7.5, 4 * found.gain_e_per_dn.standard_error);
+  EXPECT_NEAR(found.read_noise_e.value, 28.0, 4 * found.read_noise_e.standard_error);
+}
+
+TEST(PhotonTransfer, OfDifferencesLeavesOutLightThatChanges) {
+  const Camera camera = difference_camera();
+  const DecodingTable table =
+      make_decoding_table(ForwardModel(build_family("sinusoid-k4", camera), camera), camera);
+  std::vector<RawFrames> levels{differences_of(camera, 2e7, 1)};
+  const RawFrames dark = differences_of(camera, 0.0, 2);
+  const PhotonTransfer steady = photon_transfer(levels, dark, table, {.adc_bits = 12});
+  float* second = levels[0].frame(1);
+  for (std::size_t i = 0; i < levels[0].values.size() / 2; ++i) second[i] *= 0.97f;
+  const PhotonTransfer weaker = photon_transfer(levels, dark, table, {.adc_bits = 12});
+  EXPECT_NEAR(weaker.gain_e_per_dn.value, steady.gain_e_per_dn.value, 0.05 * 7.5);
+}
+
+TEST(PhotonTransfer, OfDifferencesLeavesOutBucketsThatAreClipped) {
+  const Camera camera = difference_camera();
+  const DecodingTable table =
+      make_decoding_table(ForwardModel(build_family("sinusoid-k4", camera), camera), camera);
+  const std::vector<RawFrames> levels{differences_of(camera, 1e7, 1),
+                                      differences_of(camera, 6e7, 3)};
+  const RawFrames dark = differences_of(camera, 0.0, 2);
+  const PhotonTransfer found =
+      photon_transfer(levels, dark, table, {.black_level_dn = 64.0, .adc_bits = 12});
+  EXPECT_NEAR(found.gain_e_per_dn.value, 7.5, 4 * found.gain_e_per_dn.standard_error);
+  EXPECT_THAT(found.notes, testing::Contains(HasSubstr("left out: one of their buckets")));
+}
+
+TEST(PhotonTransfer, OfDifferencesAsksForWhatItNeeds) {
+  const Camera camera = difference_camera();
+  const DecodingTable table =
+      make_decoding_table(ForwardModel(build_family("sinusoid-k4", camera), camera), camera);
+  const RawFrames dark = differences_of(camera, 0.0, 1), lit = differences_of(camera, 2e7, 2);
+  EXPECT_THROW(photon_transfer({dark}, dark, table), std::invalid_argument);  // no light
+  RawFrames short_of_one = lit;
+  short_of_one.measurements = 3;
+  short_of_one.values.resize(lit.values.size() / 4 * 3);
+  EXPECT_THROW(photon_transfer({short_of_one}, {}, table), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace tofsmith

@@ -162,6 +162,23 @@ def test_noise_is_that_of_the_command(both, cli):
     assert ts.photon_transfer(levels[1:], base.replace(sensor=sensor)).black_level_dn.value == 100
 
 
+def test_noise_of_differences_follows_from_their_code():
+    camera = base.replace(sensor=sensor | {"taps": 2, "readout": "difference",
+                                           "gain_e_per_dn": 8.0, "adc_bits": 12,
+                                           "read_noise_e": 20.0})
+    scene = np.full((48, 48), 2.0, np.float32)
+    dark, *levels = (
+        ts.capture(scene, "sinusoid-k4", camera, signal_e_per_s=signal, ambient_e_per_s=0.0,
+                   seed=i, frames=2) for i, signal in enumerate((0.0, 3e5, 6e5, 9e5)))
+    found = ts.photon_transfer(levels, camera, dark=dark, code="sinusoid-k4")
+    assert found.buckets == 2
+    assert abs(found.gain_e_per_dn.value - 8) < 4 * found.gain_e_per_dn.standard_error
+    with pytest.raises(ValueError, match="code: got none"):
+        ts.photon_transfer(levels, camera, dark=dark)
+    with pytest.raises(ValueError, match="code: goes with"):
+        ts.photon_transfer(levels, base, dark=dark, code="sinusoid-k4")
+
+
 frames = np.ones((4, 2, 2, 4))
 delays = np.arange(4) / 4
 

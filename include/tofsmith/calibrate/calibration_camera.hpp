@@ -21,10 +21,8 @@ CorrelationCalibrationOptions sweep_options(const Camera& camera, const DelaySwe
 /// @throws std::invalid_argument unless the camera has a lens, which says where pixels look
 Image<float> flat_target_geometry_m(double distance_m, const Camera& camera, int height, int width);
 
-/// What the camera says of the noise of frames that it took: bits and, without dark frames, the
-/// black level.
-/// @throws std::invalid_argument for a camera that reads differences, from whose mean shot noise
-///         does not follow
+/// What the camera says of the noise of frames that it took: bits and the black level,
+/// unless dark frames say it.
 PhotonTransferOptions noise_options(const Camera& camera, bool has_dark_frames);
 
 /// Whose response was recorded.

@@ -10,12 +10,14 @@
 #include "tofsmith/core/fields.hpp"
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/statistics.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
 
 namespace tofsmith {
 
 struct PhotonTransferOptions {
   std::optional<double> black_level_dn;  ///< [DN], known; none: from dark frames
   std::optional<int> adc_bits;           ///< of the raw numbers; none: the fewest usual ones
+  double averaged = 1.0;                 ///< of how many equal frames each is the mean, > 0
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const { check_fields(*this); }
@@ -23,12 +25,14 @@ struct PhotonTransferOptions {
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<PhotonTransferOptions> auto& o) {
   return std::tuple(Field("black_level_dn", o.black_level_dn, "finite and >= 0"),
-                    Field("adc_bits", o.adc_bits, "in [1, 24]"));
+                    Field("adc_bits", o.adc_bits, "in [1, 24]"),
+                    Field("averaged", o.averaged, "finite and > 0"));
 }
 
-/// Mean and variance of one pair of frames of one measurement.
+/// Mean and variance of one pair of frames of one measurement; of differences, of those that
+/// collected about the same light.
 struct PhotonTransferPoint {
-  double mean_dn = 0.0;    ///< over both frames and all pixels [DN]
+  double mean_dn = 0.0;    ///< over both frames and all pixels; of differences the light [DN]
   Estimate variance_dn2;   ///< of one frame in time [DN^2]
   bool dark = false;       ///< of the dark frames
   bool saturated = false;  ///< too close to the limit to count in the fit
@@ -43,6 +47,7 @@ struct PhotonTransfer {
   std::optional<Estimate> full_well_e;  ///< [e], if frames reach it before the converter's end
   double saturation_dn = 0.0;           ///< highest number seen, or where numbers are clipped
   int adc_bits = 0;
+  int buckets = 1;            ///< that a raw number is of: 2 where differences are read
   double reduced_chi2 = 0.0;  ///< of the fit: near 1 where the model holds
   std::vector<PhotonTransferPoint> points;
   std::vector<std::string> notes;
@@ -63,6 +68,19 @@ struct PhotonTransfer {
 /// @throws std::invalid_argument if frames are no pairs, sizes differ, the black level is unknown,
 ///         or the levels do not differ
 PhotonTransfer photon_transfer(const std::vector<RawFrames>& levels, const RawFrames& dark,
+                               const PhotonTransferOptions& options = {});
+
+/// The same of a camera that reads the differences of two buckets, whose mean says nothing of shot
+/// noise: both together collected the light that the code asks for where a pixel decodes to.
+///   light_k       = T_k S shot_chi_k(z) [DN]
+///   variance_k    = 2 read_noise^2 / gain^2 + light_k / gain + 2/12 [DN^2]
+/// Pixels count whose difference is 8 times its noise and, if `adc_bits` is given, whose buckets
+/// (with `black_level_dn`) stay 5 % below the converter's last number; the weaker light of one
+/// frame of a pair is taken out. Light from elsewhere is not known, so there should be none.
+/// @param table  of the code on the camera
+/// @throws std::invalid_argument also if measurements are not the code's
+PhotonTransfer photon_transfer(const std::vector<RawFrames>& levels, const RawFrames& dark,
+                               const DecodingTable& table,
                                const PhotonTransferOptions& options = {});
 
 /// The camera with what was found: gain, read noise, black level, bits and full well.

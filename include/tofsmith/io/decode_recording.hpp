@@ -165,6 +165,8 @@ using WriteStream = std::function<void(std::span<const std::byte> bytes)>;
 
 /// What came of a stream.
 struct DecodedStream {
+  int height = 0;  ///< of its frames; 0 before their description is read
+  int width = 0;
   std::int64_t frames = 0;  ///< decoded and written
   StatusCounts statuses;    ///< of their pixels, if status is among the outputs
   double seconds = 0.0;     ///< until the last was written, waiting for them included

@@ -94,6 +94,8 @@ void decode_stream(const DecodeRequest& asked, const AnyDecoder& decoder, const 
   const RawFormat format = read_raw_format(request.raw_format);
   const std::string source = request.raw_format.string();
   const int height = format.height, width = format.width;
+  result.height = height;
+  result.width = width;
   check_image_size(source, static_cast<std::uint64_t>(height), static_cast<std::uint64_t>(width));
   const int expected = table_of(decoder).measurements();
   if (format.output_measurements() != expected)

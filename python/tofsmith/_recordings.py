@@ -1,0 +1,113 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""What decoding of recordings and streams shares: what came of them, and how to ask for it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import Any, Optional
+
+from . import _check, _tofsmith
+from ._check import Path
+from ._filter import FilterLike, TimeFilterLike, filter_options, time_filter_options
+
+
+@dataclass(frozen=True)
+class DecodedRecording:
+    """What became of a recording.
+
+    Attributes
+    ----------
+    files : list of pathlib.Path
+        Of every frame; of a stack, of every plane.
+    outputs : list of str
+        The planes written.
+    frames : list of dict
+        How many pixels of every frame have which PixelStatus, by its name; all 0 where `outputs`
+        were asked for without status.
+    first_frame : int
+        Number of the first of them in the recording.
+    height, width, measurements : int
+        Of every frame.
+    seconds : float
+        That decoding took [s].
+    notes : list of str
+        What should be known: raw numbers taken as electrons, no pixel that has a depth.
+    """
+
+    files: list[FilePath]
+    outputs: list[str]
+    frames: list[dict[str, int]]
+    first_frame: int
+    height: int
+    width: int
+    measurements: int
+    seconds: float
+    notes: list[str]
+
+
+@dataclass(frozen=True)
+class DecodedStream:
+    """What became of a stream.
+
+    Attributes
+    ----------
+    frames : int
+        Decoded and handed on.
+    statuses : dict
+        How many of their pixels have which PixelStatus, by its name; all 0 unless status is among
+        the `outputs`.
+    height, width : int
+        Of every frame.
+    seconds : float
+        Until the last was handed on, waiting for them included [s].
+    """
+
+    frames: int
+    statuses: dict[str, int]
+    height: int
+    width: int
+    seconds: float
+
+
+def path_or_none(path: Optional[Path], what: str) -> Optional[str]:
+    return None if path is None else _check.path(path, what)
+
+
+def frame_options(
+    outputs: Optional[Iterable[str]],
+    *,
+    kind: str,
+    undistort: bool,
+    average: int,
+    averaged: float,
+    time_filter: Optional[TimeFilterLike],
+    filter: Optional[FilterLike],
+    mixed: Optional[str],
+    offset_map: Optional[Path],
+    offset_m: float,
+    gain_map: Optional[Path],
+) -> dict[str, Any]:
+    """What recordings and streams share, as the library takes it."""
+    planes = tuple(_tofsmith.decoded_planes())
+    return {
+        "outputs": [] if outputs is None else [
+            _check.one_of(plane, "outputs", planes) for plane in outputs],
+        "kind": kind,
+        "undistort": bool(undistort),
+        "average": _check.whole(average, "average", 1),
+        "averaged": _check.number(averaged, "averaged"),
+        "time_filter": None if time_filter is None else time_filter_options(time_filter),
+        "filter": None if filter is None else filter_options(filter),
+        "mixed": mixed_word(mixed),
+        "offset_map": path_or_none(offset_map, "offset_map"),
+        "offset_m": _check.number(offset_m, "offset_m"),
+        "gain_map": path_or_none(gain_map, "gain_map"),
+    }
+
+
+def mixed_word(mixed: Optional[str]) -> str:
+    """The word, "" for none."""
+    return "" if mixed is None else _check.one_of(mixed, "mixed", tuple(_tofsmith.mixed_pixels()))
