@@ -9,6 +9,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
+#include "tofsmith/report/instrument_reports.hpp"
 
 namespace tofsmith::apps {
 
@@ -16,8 +17,10 @@ namespace {
 
 struct TemperatureArguments {
   std::string file, temperatures, code;
+  std::optional<double> reference_c;
   CameraArguments camera;
   TapArguments taps;
+  CalibrateOutput output;
 };
 
 nlohmann::ordered_json document_of(const TemperatureDrift& found) {
@@ -29,6 +32,7 @@ nlohmann::ordered_json document_of(const TemperatureDrift& found) {
           {"interval_factor", found.interval_factor},
           {"offset_rms_m", found.offset_rms_m},
           {"signal_rms", found.signal_rms},
+          {"temperature_c", found.temperature_c},
           {"offset_m", found.offset_m},
           {"log_signal", found.log_signal},
           {"pixels", found.pixels},
@@ -48,6 +52,7 @@ std::string lines_of(const TemperatureDrift& found) {
 
 void run(const TemperatureArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
+  arguments.output.check(session);
   const CodeSet code = load_camera_code(arguments.code, camera, arguments.taps.file_options());
   const RawFrames frames = read_raw_frames(arguments.file);
   const InstrumentTable table =
@@ -65,6 +70,12 @@ void run(const TemperatureArguments& arguments, const Session& session) {
   }
   session.print_json(document_of(found));
   session.say(lines_of(found));
+  arguments.output.write_page(temperature_report(found, arguments.file, session.command_line),
+                              session);
+  arguments.output.write_camera(with_temperature(camera, found, arguments.reference_c), session);
+  if (!arguments.output.camera_path.empty())
+    session.say(fmt::format("next: tofsmith decode RAW --code {} --camera {} --temperature {:.0f}",
+                            arguments.code, arguments.output.camera_path, found.mean_c));
 }
 
 }  // namespace
@@ -82,8 +93,12 @@ void add_calibrate_temperature(CLI::App& calibrate, Session& session) {
                    "text of one column: the temperature of each frame [degrees C]")
       ->required();
   command->add_option("--code", arguments->code, "the code that the camera played")->required();
+  command->add_option("--reference-c", arguments->reference_c,
+                      "temperature at which the camera was calibrated otherwise, so that nothing "
+                      "changes there [degrees C] (the mean of the frames)");
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);
+  arguments->output.add_to(*command);
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

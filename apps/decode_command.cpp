@@ -121,6 +121,7 @@ void run(const DecodeArguments& arguments, Session& session) {
       {"method", name_of(arguments.method.method())},
       {"average", request.average},
       {"averaged", request.averaged},
+      {"hdr", request.hdr},
       {"time_filter", request.time_filter ? nlohmann::ordered_json(request.time_filter->max_frames)
                                           : nlohmann::ordered_json("off")},
       {"filter", arguments.filter.name()},
@@ -188,6 +189,7 @@ void add_decode_command(CLI::App& app, Session& session) {
           "the code that the camera used: a family or a file; or a measured table (.npz .npy .csv)")
       ->required();
   arguments->camera.add_to(*command);
+  arguments->camera.add_temperature_to(*command);
   arguments->taps.add_to(*command);
   arguments->table.add_to(*command);
   command->add_option("--offset-map", arguments->offset_map,
@@ -230,6 +232,13 @@ void add_decode_command(CLI::App& app, Session& session) {
                    "decode the means of so many consecutive frames; the last one is of those left")
       ->check(number_that(">= 1", [](double value) { return value >= 1.0; }))
       ->capture_default_str();
+  command
+      ->add_option("--hdr", arguments->request.hdr,
+                   "RAW holds groups of frames at these exposures over the shortest, which is the "
+                   "camera's, such as 1,4,16: each group is decoded as one frame, of what is not "
+                   "saturated, by its noise")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command
       ->add_option("--averaged", arguments->request.averaged,
                    "RAW holds means of so many equal measurements already: their noise is so much "

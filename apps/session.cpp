@@ -62,7 +62,24 @@ void CameraArguments::add_positional(CLI::App& command) {
   command.add_option("CAMERA", name, "camera: a TOML file or a built-in name");
 }
 
-Camera CameraArguments::load() const { return load_camera(name, settings); }
+void CameraArguments::add_temperature_to(CLI::App& command) {
+  command.add_option("--temperature", temperature_c,
+                     "of the camera [degrees C]: depth and signal change as its [temperature] "
+                     "says (temperature.now_c, or the reference)");
+}
+
+Camera CameraArguments::load() const {
+  Camera camera = load_camera(name, settings);
+  if (!temperature_c) return camera;
+  if (!camera.temperature)
+    throw UsageError(
+        fmt::format("--temperature: {} has no [temperature]; expected a camera of "
+                    "`tofsmith calibrate temperature .. -o camera.toml`",
+                    name));
+  camera.temperature->now_c = temperature_c;
+  camera.validate();
+  return camera;
+}
 
 std::string time_text(double seconds) {
   return seconds < 1.0 ? fmt::format("{:.3g} ms", seconds * 1e3) : fmt::format("{:.3g} s", seconds);

@@ -55,6 +55,7 @@ struct Session {
 struct CameraArguments {
   std::string name = "paper-10f0";
   std::vector<std::string> settings;
+  std::optional<double> temperature_c;
   const CLI::Option* option = nullptr;  ///< `--camera`, if the subcommand has it
 
   /// Whether nobody named a camera.
@@ -68,8 +69,11 @@ struct CameraArguments {
 
   /// Adds `--camera` and `--set` to a subcommand.
   void add_to(CLI::App& command);
+  /// Adds `--temperature`, too.
+  void add_temperature_to(CLI::App& command);
   /// Adds a positional CAMERA beside them.
   void add_positional(CLI::App& command);
+  /// @throws IoError, UsageError for a temperature that the camera says nothing of
   Camera load() const;
 };
 

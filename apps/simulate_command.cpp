@@ -292,6 +292,7 @@ void add_simulate_command(CLI::App& app, Session& session) {
   add_scene_options(*command, arguments->scene);
   command->add_option("--code", arguments->code, "a family or a code file")->required();
   arguments->camera.add_to(*command);
+  arguments->camera.add_temperature_to(*command);
   arguments->taps.add_to(*command);
   command->add_option("--signal", arguments->signal_e_per_s,
                       "signal of albedo 1 at the reference distance [e/s] (by the camera's "

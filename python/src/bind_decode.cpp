@@ -142,6 +142,7 @@ DecodeRequest request_of(const std::vector<std::string>& raw, const std::string&
       .value("stack", request.stack)
       .value("average", request.average)
       .value("averaged", request.averaged)
+      .value("hdr", request.hdr)
       .value("mixed", mixed)
       .value("offset_map", offset_map)
       .value("offset_m", request.offset_m)

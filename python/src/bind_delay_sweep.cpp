@@ -193,6 +193,33 @@ py::dict depth_dict(const CalibratedDepth& found) {
   return dict;
 }
 
+TemperatureDrift calibrate_drift(const py::object& frames, const std::vector<double>& temperature_c,
+                                 const CodeSet& code, const Camera& camera,
+                                 const py::object& callback) {
+  const RawFrames raw = to_raw_frames(frames, "frames");
+  return without_gil(callback, [&](const Progress& progress) {
+    return calibrate_temperature(raw, temperature_c, code, camera, progress);
+  });
+}
+
+py::dict drift_dict(const TemperatureDrift& found) {
+  py::dict dict;
+  dict["mean_c"] = found.mean_c;
+  dict["offset_m_per_c"] = pair_of(found.offset_m_per_c);
+  dict["signal_per_c"] = pair_of(found.signal_per_c);
+  dict["offset_m_per_c2"] = pair_of(found.offset_m_per_c2);
+  dict["signal_per_c2"] = pair_of(found.signal_per_c2);
+  dict["interval_factor"] = found.interval_factor;
+  dict["offset_rms_m"] = found.offset_rms_m;
+  dict["signal_rms"] = found.signal_rms;
+  dict["temperature_c"] = found.temperature_c;
+  dict["offset_m"] = found.offset_m;
+  dict["log_signal"] = found.log_signal;
+  dict["pixels"] = found.pixels;
+  dict["notes"] = found.notes;
+  return dict;
+}
+
 }  // namespace
 
 void bind_delay_sweep(py::module_& module) {
@@ -213,6 +240,19 @@ void bind_delay_sweep(py::module_& module) {
       .def("write_report", [](const CalibratedDepth& found, const std::string& path,
                               const std::string& source, bool overwrite) {
         write_file_atomically(path, render(depth_report(found, source, "")), policy_of(overwrite));
+      });
+  module.def("calibrate_temperature", &calibrate_drift);
+  py::class_<TemperatureDrift>(module, "TemperatureDrift")
+      .def("fields", &drift_dict)
+      .def("camera",
+           [](const TemperatureDrift& found, const Camera& camera,
+              std::optional<double> reference_c) {
+             return with_temperature(camera, found, reference_c);
+           })
+      .def("write_report", [](const TemperatureDrift& found, const std::string& path,
+                              const std::string& source, bool overwrite) {
+        write_file_atomically(path, render(temperature_report(found, source, "")),
+                              policy_of(overwrite));
       });
   module.def("read_delay_sweep", &read_sweep);
   py::class_<CalibratedCorrelation>(module, "CalibratedCorrelation")

@@ -78,6 +78,21 @@ py::tuple add_to_filter(TimeFilter& filter, const py::array& raw_numbers, bool i
                        });
 }
 
+py::tuple merge_frames(const DecodingTable& table, const py::array& raw_numbers, bool is_planar,
+                       const py::object& averaged, const std::vector<double>& exposures) {
+  RawArray raw = view_raw(raw_numbers, is_planar, table.measurements());
+  const Floats means = averaged.is_none() ? Floats() : Floats::ensure(averaged);
+  if (!averaged.is_none()) raw.set_averaged(means);
+  MergedExposures merged;
+  {
+    const py::gil_scoped_release release;
+    merge_exposures(raw.frames, exposures, table, merged);
+  }
+  return py::make_tuple(
+      adopt(std::move(merged.values.values), {raw.height, raw.width, table.measurements()}),
+      adopt(std::move(merged.averaged.pixels), {raw.height, raw.width}));
+}
+
 }  // namespace
 
 void bind_filter(py::module_& module) {
@@ -100,6 +115,7 @@ void bind_filter(py::module_& module) {
       .def("options", [](const TimeFilter& filter) { return fields_dict(filter.options()); })
       .def("add", &add_to_filter)
       .def("forget", &TimeFilter::forget);
+  module.def("merge_exposures", &merge_frames);
   module.def("filter_strengths", [] {
     std::vector<std::string> names;
     for (const FilterStrength strength : all_filter_strengths)

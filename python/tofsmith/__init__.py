@@ -30,6 +30,7 @@ from ._camera_fields import (
     Optics,
     Playback,
     Sensor,
+    Temperature,
 )
 from ._code import (
     CodeSet,
@@ -76,7 +77,7 @@ from ._files import (
     write_points,
     write_raw,
 )
-from ._filter import Filter, TimeFilter
+from ._filter import Filter, TimeFilter, merge_exposures
 from ._forward_model import (
     ForwardModel,
     coding_curve_in_space,
@@ -143,6 +144,7 @@ from ._scene import (
     z_from_radial,
 )
 from ._sweep import SweepResults, read_sweep, read_sweep_export, run_sweep
+from ._temperature import TemperatureDrift, calibrate_temperature
 from ._tofsmith import Interrupted
 from ._training_set import TrainingSetRun, write_training_set
 from ._waveform import Waveform
@@ -234,6 +236,8 @@ __all__ = [
     "StagedCapture",
     "Sufficiency",
     "SweepResults",
+    "Temperature",
+    "TemperatureDrift",
     "TimeFilter",
     "TrainingSetRun",
     "Transients",
@@ -251,6 +255,7 @@ __all__ = [
     "built_in_scene_names",
     "calibrate_correlation",
     "calibrate_impulse_response",
+    "calibrate_temperature",
     "camera_keys",
     "capture",
     "capture_staged",
@@ -270,6 +275,7 @@ __all__ = [
     "list_families",
     "load_code",
     "load_scene",
+    "merge_exposures",
     "multipath_error",
     "paper_items",
     "photon_transfer",

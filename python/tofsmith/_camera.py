@@ -25,6 +25,7 @@ from ._camera_fields import (
     Optics,
     Playback,
     Sensor,
+    Temperature,
 )
 from ._check import Path
 
@@ -70,11 +71,11 @@ def _toml(value: Any, name: str) -> str:
 
 
 def _settings(keys: Mapping[str, Any]) -> list[str]:
-    """Keywords as `key=value`: keys of light, sensor, optics and operating one by one, so that
-    others stay."""
+    """Keywords as `key=value`: keys of light, sensor, optics, operating and temperature one by one,
+    so that others stay."""
     settings = []
     for key, value in keys.items():
-        if key in ("light", "sensor", "optics", "operating") and isinstance(value, Mapping):
+        if key in ("light", "sensor", "optics", "operating", "temperature") and isinstance(value, Mapping):
             settings += _settings({f"{key}.{inner}": v for inner, v in value.items()})
         else:
             settings.append(f"{key}={_toml(value, key)}")
@@ -85,8 +86,9 @@ class Camera:
     """A continuous-wave time-of-flight camera. Immutable; pickles.
 
     Keys are those of a camera file (TOML): `fundamental_frequency_hz`, `exposure_s`, `samples`,
-    `light`, `sensor`, `lens`, `optics`, `operating`; see docs/file_formats.md. Those of light,
-    sensor, optics and operating are dicts, of which keys left out keep what they are.
+    `light`, `sensor`, `lens`, `optics`, `operating`, `playback`, `temperature`; see
+    docs/cameras.md. Those of light, sensor, optics, operating and temperature are dicts, of which
+    keys left out keep what they are.
 
     Parameters
     ----------
@@ -227,6 +229,32 @@ class Camera:
         """How what is played differs from what codes say, if it does."""
         playback = self._fields.get("playback")
         return None if playback is None else Playback(**_tuples(playback))
+
+    @cached_property
+    def temperature(self) -> Optional[Temperature]:
+        """How depth and signal change with the camera's temperature, if the camera says it."""
+        temperature = self._fields.get("temperature")
+        return None if temperature is None else Temperature(**temperature)
+
+    def at_temperature(self, temperature_c: float) -> Camera:
+        """The camera at that temperature [degrees C], by its [temperature]: what it then simulates
+        and decodes is of frames taken there.
+
+        Raises
+        ------
+        ValueError
+            If the camera does not say how it changes.
+
+        Examples
+        --------
+        >>> warms = Camera("paper-10f0", temperature={"offset_m_per_c": 1e-3, "reference_c": 30.0})
+        >>> warms.at_temperature(42.0).temperature.now_c
+        42.0
+        """
+        if self.temperature is None:
+            raise ValueError("temperature_c: the camera has no [temperature]; needs what "
+                             "calibrate_temperature() finds")
+        return self.replace(**{"temperature.now_c": _check.number(temperature_c, "temperature_c")})
 
     def at_distances(
         self,

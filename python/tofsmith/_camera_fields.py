@@ -277,3 +277,25 @@ class Playback:
     reversed: bool = False
     inverted: bool = False
     offset_m: float = 0.0
+
+
+@dataclass(frozen=True)
+class Temperature:
+    """How depth and signal change with the camera's temperature; `calibrate temperature` finds it.
+
+    Attributes
+    ----------
+    reference_c : float
+        Where nothing changes [degrees C]; measured tables are those of this temperature.
+    offset_m_per_c : float
+        Everything looks so much farther per degree [m].
+    signal_per_c : float
+        d log(signal) per degree: 0.01 is about 1 % more.
+    now_c : float, optional
+        That the camera has [degrees C]; None: the reference. See Camera.at_temperature().
+    """
+
+    reference_c: float = 25.0
+    offset_m_per_c: float = 0.0
+    signal_per_c: float = 0.0
+    now_c: Optional[float] = None

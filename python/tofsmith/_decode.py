@@ -193,6 +193,7 @@ class Decoder:
         stack: bool = False,
         average: int = 1,
         averaged: float = 1.0,
+        hdr: Sequence[float] = (),
         time_filter: Optional[TimeFilterLike] = None,
         filter: Optional[FilterLike] = None,
         mixed: Optional[str] = None,
@@ -244,6 +245,10 @@ class Decoder:
         averaged : float
             Of how many equal measurements the numbers are the mean already, > 0: their noise is so
             much smaller.
+        hdr : sequence of float
+            Exposures of so many consecutive frames, over the shortest, which is the camera's: such
+            as (1, 4, 16). Each group is decoded as one frame, as merge_exposures() makes it; `frame`
+            counts groups. Goes without `average`.
         time_filter : int or dict, optional
             Adds to each pixel the frames before, or means of frames, as long as they stay the same,
             as TimeFilter does: max_frames, or a dict of it and other options.
@@ -292,7 +297,7 @@ class Decoder:
             "other_inputs": self._inputs,
         } | frame_options(
             outputs, kind=kind, undistort=undistort, average=average, averaged=averaged,
-            time_filter=time_filter, filter=filter, mixed=mixed, offset_map=offset_map,
+            hdr=hdr, time_filter=time_filter, filter=filter, mixed=mixed, offset_map=offset_map,
             offset_m=offset_m, gain_map=gain_map)
         values = self._handle.decode_recording(
             _check.paths(raw, "raw"), _check.path(output, "output"), self._lens, options,
@@ -311,6 +316,7 @@ class Decoder:
         undistort: bool = False,
         average: int = 1,
         averaged: float = 1.0,
+        hdr: Sequence[float] = (),
         time_filter: Optional[TimeFilterLike] = None,
         filter: Optional[FilterLike] = None,
         mixed: Optional[str] = None,
@@ -335,7 +341,7 @@ class Decoder:
             A .raw.toml file; see docs/raw_formats.md.
         outputs : iterable of str, optional
             As decode_recording() takes it; None: depth alone.
-        kind, undistort, average, averaged, time_filter, filter, mixed, offset_map, offset_m, gain_map
+        kind, undistort, average, averaged, hdr, time_filter, filter, mixed, offset_map, offset_m, gain_map
             As decode_recording() takes them.
         progress : callable, optional
             Called with (fraction, step); False stops.
@@ -372,7 +378,7 @@ class Decoder:
                             "object")
         options = {"raw_format": _check.path(raw_format, "raw_format")} | frame_options(
             outputs, kind=kind, undistort=undistort, average=average, averaged=averaged,
-            time_filter=time_filter, filter=filter, mixed=mixed, offset_map=offset_map,
+            hdr=hdr, time_filter=time_filter, filter=filter, mixed=mixed, offset_map=offset_map,
             offset_m=offset_m, gain_map=gain_map)
         return DecodedStream(**self._handle.decode_stream(
             source, take, write, self._lens, options,

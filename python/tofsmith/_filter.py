@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -255,3 +255,55 @@ class TimeFilter(_OfTable):
     def forget(self) -> None:
         """The next frame is the first again, of any size."""
         self._handle.forget()
+
+
+def merge_exposures(
+    raw: RawLike,
+    exposures: Sequence[float],
+    code: CodeLike | DecodingTable,
+    camera: Optional[CameraLike] = None,
+    *,
+    averaged: Optional[npt.ArrayLike] = None,
+    layout: str = "interleaved",
+) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
+    """Merges frames of one scene at several exposures (HDR) into one of the shortest, before
+    anything is decoded: in each pixel those that are not saturated there, by their noise. See
+    docs/recordings.md.
+
+    Parameters
+    ----------
+    raw : ndarray, shape (F, H, W, K)
+        As Decoder.decode() takes it, a frame of each exposure.
+    exposures : sequence of float, F of them
+        Over the shortest, which is the camera's: such as (1, 4, 16).
+    code : CodeSet, DecodingTable, name of a family or file
+        As Decoder takes it.
+    camera : Camera or its name
+        Needed unless `code` is a DecodingTable.
+    averaged : float, or array_like of shape (F, H, W), optional
+        Of how many measurements each pixel's numbers are the mean, where they are.
+    layout : {"interleaved", "planar"}
+        Never guessed.
+
+    Returns
+    -------
+    raw : ndarray of float32, shape (H, W, K)
+        Raw numbers as any decoder takes them; pixels saturated in all exposures stay so.
+    averaged : ndarray of float32, shape (H, W)
+        Of how many of the shortest exposure each is the mean, in variance: Decoder.decode()'s
+        `averaged`.
+
+    Raises
+    ------
+    ValueError
+        For another shape, or exposures of which the shortest is not 1.
+
+    Examples
+    --------
+    >>> numbers, averaged = merge_exposures(frames, (1, 4, 16), "hamiltonian-k4",
+    ...                                     camera)  # doctest: +SKIP
+    >>> image = decoder.decode(numbers, averaged=averaged)  # doctest: +SKIP
+    """
+    return _tofsmith.merge_exposures(
+        table_of(code, camera)._handle, *_frames(raw, averaged, layout),
+        [_check.number(exposure, "exposures") for exposure in exposures])

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import Any, Optional
@@ -83,6 +83,7 @@ def frame_options(
     undistort: bool,
     average: int,
     averaged: float,
+    hdr: Sequence[float],
     time_filter: Optional[TimeFilterLike],
     filter: Optional[FilterLike],
     mixed: Optional[str],
@@ -99,6 +100,7 @@ def frame_options(
         "undistort": bool(undistort),
         "average": _check.whole(average, "average", 1),
         "averaged": _check.number(averaged, "averaged"),
+        "hdr": [_check.number(exposure, "hdr") for exposure in hdr],
         "time_filter": None if time_filter is None else time_filter_options(time_filter),
         "filter": None if filter is None else filter_options(filter),
         "mixed": mixed_word(mixed),

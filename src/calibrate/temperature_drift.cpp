@@ -84,7 +84,9 @@ TemperatureDrift calibrate_temperature(const RawFrames& frames,
                                        const CodeSet& code, const Camera& camera,
                                        const Progress& progress) {
   validate(frames, temperature_c);
-  const DecodingTable table = make_decoding_table(ForwardModel(code, camera), camera);
+  Camera cold = camera;
+  cold.temperature.reset();
+  const DecodingTable table = make_decoding_table(ForwardModel(code, cold), cold);
   const double range_m = table.range_m;
   const Decoder decoder(table);
   const auto count = static_cast<std::size_t>(frames.frames);
@@ -95,6 +97,7 @@ TemperatureDrift calibrate_temperature(const RawFrames& frames,
 
   // Each pixel against its own mean over frames.
   TemperatureDrift result;
+  result.temperature_c = temperature_c;
   std::vector<std::vector<Weighted>> offsets(count), signals(count);
   for (std::size_t i = 0; i < frames.pixels_per_frame(); ++i) {
     std::complex<double> direction = 0.0;
@@ -151,6 +154,15 @@ TemperatureDrift calibrate_temperature(const RawFrames& frames,
   if (*most - *least < narrow_c)
     result.notes.push_back(fmt::format("temperatures vary by {:.2g} degrees only", *most - *least));
   return result;
+}
+
+Camera with_temperature(Camera camera, const TemperatureDrift& found,
+                        std::optional<double> reference_c) {
+  camera.temperature = Temperature{.reference_c = reference_c.value_or(found.mean_c),
+                                   .offset_m_per_c = found.offset_m_per_c.value,
+                                   .signal_per_c = found.signal_per_c.value};
+  camera.validate();
+  return camera;
 }
 
 }  // namespace tofsmith

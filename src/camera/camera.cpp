@@ -174,6 +174,23 @@ void Playback::validate(int taps) const {
             "must hold each of 0, 1, .. once: the code's exposures as they are played");
 }
 
+double Temperature::signal_gain() const { return std::exp(signal_per_c * above_reference_c()); }
+
+void Temperature::validate() const {
+  require(std::isfinite(reference_c), "temperature.reference_c", reference_c, "must be finite");
+  require(std::isfinite(now_c.value_or(0.0)), "temperature.now_c", now_c.value_or(0.0),
+          "must be finite");
+  require(std::isfinite(offset_m_per_c), "temperature.offset_m_per_c", offset_m_per_c,
+          "must be finite");
+  require(std::isfinite(signal_per_c), "temperature.signal_per_c", signal_per_c, "must be finite");
+  constexpr double max_gain = 1e3;
+  require(signal_gain() <= max_gain && signal_gain() >= 1.0 / max_gain, "temperature.signal_per_c",
+          signal_per_c,
+          fmt::format("makes the signal {:.3g} times that at the reference, {} degrees away; "
+                      "expected a factor from 0.001 to 1000",
+                      signal_gain(), above_reference_c()));
+}
+
 void Camera::validate() const {
   require_positive(fundamental_frequency_hz, "fundamental_frequency_hz");
   require(samples >= 8 && samples <= 65536, "samples", samples, "must be in [8, 65536]");
@@ -201,6 +218,7 @@ void Camera::validate() const {
   if (optics) optics->validate();
   validate_operating(operating, range_m());
   if (playback) playback->validate(sensor.taps);
+  if (temperature) temperature->validate();
 }
 
 namespace {

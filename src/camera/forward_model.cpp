@@ -70,6 +70,10 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
   const Eigen::VectorXcd transfer =
       camera.band_limited() ? camera.transfer(harmonics_kept(code.samples())) : Eigen::VectorXcd();
   const ActualCode actual = actual_code(code, camera);
+  const double offset_m = (camera.playback ? camera.playback->offset_m : 0.0) +
+                          (camera.temperature ? camera.temperature->offset_m() : 0.0);
+  const bool reversed = camera.playback && camera.playback->reversed;
+  if (camera.temperature) signal_gain_ = camera.temperature->signal_gain();
   Eigen::RowVectorXd gain(tap_values);
   tap_exposure_s_.resize(tap_values);
   for (int i = 0; i < tap_values; ++i) {
@@ -77,9 +81,8 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
     const Waveform& m = actual.modulation[static_cast<std::size_t>(code.exposure_of(i))];
     functions_.push_back(camera.band_limited() ? CorrelationFunction(d, m, transfer)
                                                : CorrelationFunction(d, m));
-    if (camera.playback)
-      functions_.back() = functions_.back().moved(-camera.playback->offset_m / camera.range_m(),
-                                                  camera.playback->reversed);
+    if (offset_m != 0.0 || reversed)
+      functions_.back() = functions_.back().moved(-offset_m / camera.range_m(), reversed);
     gain[i] = d.mean();
     tap_exposure_s_[i] = camera.exposure_s.of(code.exposure_of(i), code.exposures());
   }
@@ -96,7 +99,7 @@ Eigen::VectorXd ForwardModel::tap_correlation(double depth_bin) const {
   for (int i = 0; i < tap_values(); ++i)
     values[i] = functions_[static_cast<std::size_t>(i)](depth_bin / samples_);
   mix_taps(values, taps_, contrast_);
-  return values.transpose().cwiseProduct(sensitivity_);
+  return signal_gain_ * values.transpose().cwiseProduct(sensitivity_);
 }
 
 Eigen::VectorXd ForwardModel::correlation(double depth_bin) const {
@@ -108,7 +111,7 @@ Eigen::MatrixXd ForwardModel::tap_correlation_table(int points) const {
   for (int i = 0; i < tap_values(); ++i)
     table.col(i) = functions_[static_cast<std::size_t>(i)].table(points);
   mix_taps(table, taps_, contrast_);
-  return table * sensitivity_.asDiagonal();
+  return table * (signal_gain_ * sensitivity_).asDiagonal();
 }
 
 Eigen::MatrixXd ForwardModel::correlation_table(int points) const {

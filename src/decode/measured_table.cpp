@@ -89,6 +89,24 @@ void MeasuredTable::validate() const {
   if (correction) correction->validate();
 }
 
+namespace {
+
+/// What a table of the reference temperature is at the camera's: everything looks farther by the
+/// offset, on the same chords that decoding takes, and the light of the scene is another.
+void warm(const Temperature& temperature, double bin_m, Eigen::MatrixXd& table) {
+  const Eigen::MatrixXd cold = table;
+  const Eigen::Index samples = cold.rows();
+  const double bins = temperature.offset_m() / bin_m;
+  const double whole = std::floor(bins), part = bins - whole;
+  const auto wrapped = static_cast<Eigen::Index>(
+      whole - std::floor(whole / static_cast<double>(samples)) * static_cast<double>(samples));
+  for (Eigen::Index n = 0; n < samples; ++n)
+    table.row(n) = temperature.signal_gain() * ((1.0 - part) * cold.row((n + wrapped) % samples) +
+                                                part * cold.row((n + wrapped + 1) % samples));
+}
+
+}  // namespace
+
 DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& camera) {
   camera.validate();
   measured.validate();
@@ -135,6 +153,10 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   table.shot_ambient_gain = sums * ambient_gain.cwiseAbs();
   table.shot_dark_electrons = taps_read * (sums * dark_e);
   table.constant_variance_e2 = taps_read * constant_variance_e2_of(sensor) * sums.rowwise().sum();
+  if (camera.temperature) {
+    warm(*camera.temperature, table.bin_m(), table.correlation);
+    warm(*camera.temperature, table.bin_m(), table.shot_correlation);
+  }
   table.correction = measured.correction;
   if (!differs) table.saturation_level = saturation_level_of(sensor);
   return table;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "report/calibration_page.hpp"
@@ -62,6 +63,25 @@ Figure error_figure(const CalibratedDepth& found) {
                      {.label = "depth error", .unit = "mm"});
 }
 
+/// What frames say over temperature, and the line through it.
+Figure drift_figure(const FigureText& text, const TemperatureDrift& found,
+                    const std::vector<double>& of_frames, const Estimate& per_c, double scale,
+                    const Axis& axis) {
+  ColourAssignment colours;
+  Series frames{.name = "frames", .mark = Mark::markers, .style = colours.style("frames")};
+  Series line{.name = "line", .style = reference_style()};
+  for (std::size_t f = 0; f < of_frames.size(); ++f) {
+    frames.x.push_back(found.temperature_c[f]);
+    frames.y.push_back(scale * of_frames[f]);
+  }
+  const auto [coldest, warmest] = std::ranges::minmax(found.temperature_c);
+  for (const double t : {coldest, warmest}) {
+    line.x.push_back(t);
+    line.y.push_back(scale * per_c.value * (t - found.mean_c));
+  }
+  return line_figure(text, {frames, line}, {.label = "temperature", .unit = "degrees C"}, axis);
+}
+
 }  // namespace
 
 std::vector<std::vector<std::string>> depth_term_rows(const CalibratedDepth& found) {
@@ -104,6 +124,34 @@ Page depth_report(const CalibratedDepth& found, const std::string& source,
        {image("error-image", "Depth error",
               "Less its mean, over all frames; pixels that fit nothing are left out.")}});
   return finished_calibration_page(std::move(page), found.notes, command_line);
+}
+
+Page temperature_report(const TemperatureDrift& found, const std::string& source,
+                        const std::string& command_line) {
+  const auto row = [&](const char* key, const Estimate& e, double scale, const char* unit) {
+    return std::vector<std::string>{
+        key, fmt::format("{:+.4f}", scale * e.value),
+        fmt::format("± {:.4f}", scale * found.interval_factor * e.standard_error), unit};
+  };
+  Table table{
+      .caption = fmt::format("Change per degree, with 95 % intervals, of {} pixels.", found.pixels),
+      .columns = {{"key"}, {"per degree", true}, {"95 %", true}, {"unit"}},
+      .rows = {row("temperature.offset_m_per_c", found.offset_m_per_c, 1e3, "mm"),
+               row("temperature.signal_per_c", found.signal_per_c, 1e2, "%")}};
+  Section section{"Drift", {std::move(table)}};
+  section.blocks.push_back(drift_figure(
+      {.id = "depth-over-temperature",
+       .title = "Depth",
+       .caption = "Of each frame against the mean of all: median over pixels."},
+      found, found.offset_m, found.offset_m_per_c, 1e3, {.label = "depth change", .unit = "mm"}));
+  section.blocks.push_back(drift_figure(
+      {.id = "signal-over-temperature", .title = "Signal", .caption = "Its logarithm, likewise."},
+      found, found.log_signal, found.signal_per_c, 1e2, {.label = "signal change", .unit = "%"}));
+  return finished_calibration_page({.title = fmt::format("Drift with temperature of {}", source),
+                                    .subtitle = fmt::format("{} frames around {:.1f} degrees C",
+                                                            found.offset_m.size(), found.mean_c),
+                                    .sections = {std::move(section)}},
+                                   found.notes, command_line);
 }
 
 }  // namespace tofsmith

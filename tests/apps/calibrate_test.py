@@ -211,6 +211,20 @@ class Calibrate(BenchRecordsTest):
         found = self.do_json(*command, "degrees.txt")
         for key, truth in (("offset_m_per_c", 1e-3), ("signal_per_c", -4e-3)):
             self.assertLess(abs(found[key]["value"] - truth), 5 * found[key]["standard_error"], key)
+        self.do(*command, "degrees.txt", "--reference-c", "20", "-o", "warm.toml", "--report",
+                "drift.html")
+        self.assertIn("depth-over-temperature", self.bytes_of("drift.html").decode())
+        np.save(self.path("last.npy"), np.load(self.path("warm.npy"))[9])
+        decode = ["decode", "last.npy", "--code", "sinusoid-k4", "-o", "last.npz", "--force"]
+        self.do(*decode, "--camera", "warm.toml", "--temperature", "47")
+        cold = np.load(self.path("last.npz"))
+        self.assertLess(abs(np.median(cold["depth"] - np.linspace(1, 8, 36).reshape(6, 6))), 3e-3)
+        self.do(*decode, "--camera", "warm.toml")
+        warm = np.load(self.path("last.npz"))
+        self.assertAlmostEqual(float(np.median(warm["depth"] - cold["depth"])), 0.027, delta=2e-3)
+        self.assertAlmostEqual(float(np.median(warm["signal"] / cold["signal"])),
+                               float(np.exp(-4e-3 * 27)), delta=5e-3)
+        self.refuse([*decode, "--temperature", "47"], "has no [temperature]", code=2)
         np.savetxt(self.path("few.txt"), degrees[:3])
         self.refuse([*command, "few.txt"], "one for each of the 10 frames")
 

@@ -179,6 +179,32 @@ def test_noise_of_differences_follows_from_their_code():
         ts.photon_transfer(levels, base, dark=dark, code="sinusoid-k4")
 
 
+def test_drift_is_that_of_the_command(both, cli):
+    degrees = np.linspace(20, 44, 9)
+    truth = base.replace(temperature={"reference_c": 20.0, "offset_m_per_c": 2e-3,
+                                      "signal_per_c": -4e-3})
+    scene = np.linspace(1, 8, 64, dtype=np.float32).reshape(8, 8)
+    frames = np.concatenate([
+        ts.capture(scene, "sinusoid-k4", truth.at_temperature(t), signal_e_per_s=1e7,
+                   ambient_e_per_s=0.0, falloff=False, seed=i)[None]
+        for i, t in enumerate(degrees)])
+    ts.write_raw(both[0] / "warm.npy", frames)
+    np.savetxt(both[0] / "degrees.txt", degrees)
+    said = printed(cli, both[0], "temperature", "warm.npy", "--temperatures", "degrees.txt",
+                   "--code", "sinusoid-k4", "--camera", "base.toml", "--reference-c", "20",
+                   "-o", "warm.toml", "--report", "drift.html")
+    found = ts.calibrate_temperature(frames, degrees, "sinusoid-k4", base)
+    found.camera(base, reference_c=20).write(both[1] / "warm.toml")
+    same(both, "warm.toml")
+    found.write_report(both[1] / "drift.html", source="warm.npy")
+    same_page(both, "drift.html")
+    assert found.offset_m_per_c == pair(said["offset_m_per_c"])
+    assert abs(found.offset_m_per_c.value - 2e-3) < 5 * found.offset_m_per_c.standard_error
+    assert abs(found.signal_per_c.value + 4e-3) < 5 * found.signal_per_c.standard_error
+    with pytest.raises(ValueError, match="no .temperature."):
+        base.at_temperature(30.0)
+
+
 frames = np.ones((4, 2, 2, 4))
 delays = np.arange(4) / 4
 

@@ -42,7 +42,7 @@ def test_codes_of_files_are_played_at_the_samples_of_the_camera(tmp_path):
 
 
 def test_every_key_of_a_camera_file_is_an_attribute():
-    parts = {"light": ts.Light, "sensor": ts.Sensor, "lens": ts.Lens, "optics": ts.Optics, "playback": ts.Playback,
+    parts = {"light": ts.Light, "sensor": ts.Sensor, "lens": ts.Lens, "optics": ts.Optics, "playback": ts.Playback, "temperature": ts.Temperature,
              "operating": ts.Operating,
              "multipath": ts.OperatingMultipath, "impulse_response": ts.ImpulseResponse, "generator": ts.Generator}
     for key in ts.camera_keys():

@@ -185,17 +185,18 @@ Camera with_depth(Camera camera, const CalibratedDepth& found);
 
 /// How depth and signal of a camera change with its temperature.
 struct TemperatureDrift {
-  double mean_c = 0.0;             ///< of the frames [degrees C]: where both lines were laid
-  Estimate offset_m_per_c;         ///< by how much depth reads farther per degree [m]
-  Estimate signal_per_c;           ///< d log(signal) per degree: 0.01 is about 1 % more
-  Estimate offset_m_per_c2;        ///< second-order term, beside the line: 0 where it is straight
-  Estimate signal_per_c2;          ///< likewise of log(signal)
-  double interval_factor = 0.0;    ///< 95 % intervals of the slopes are +- so many standard errors
-  double offset_rms_m = 0.0;       ///< of the frames around the line [m]
-  double signal_rms = 0.0;         ///< of the frames' log(signal) around the line
-  std::vector<double> offset_m;    ///< of each frame against the mean of all [m] (F)
-  std::vector<double> log_signal;  ///< of each frame against the mean of all (F)
-  std::int64_t pixels = 0;         ///< that decode in every frame
+  double mean_c = 0.0;           ///< of the frames [degrees C]: where both lines were laid
+  Estimate offset_m_per_c;       ///< by how much depth reads farther per degree [m]
+  Estimate signal_per_c;         ///< d log(signal) per degree: 0.01 is about 1 % more
+  Estimate offset_m_per_c2;      ///< second-order term, beside the line: 0 where it is straight
+  Estimate signal_per_c2;        ///< likewise of log(signal)
+  double interval_factor = 0.0;  ///< 95 % intervals of the slopes are +- so many standard errors
+  double offset_rms_m = 0.0;     ///< of the frames around the line [m]
+  double signal_rms = 0.0;       ///< of the frames' log(signal) around the line
+  std::vector<double> temperature_c;  ///< of each frame [degrees C] (F)
+  std::vector<double> offset_m;       ///< of each frame against the mean of all [m] (F)
+  std::vector<double> log_signal;     ///< of each frame against the mean of all (F)
+  std::int64_t pixels = 0;            ///< that decode in every frame
   std::vector<std::string> notes;
 };
 
@@ -208,12 +209,17 @@ struct TemperatureDrift {
 ///      to frame is in them. Drift with time beside temperature is not told apart.
 /// Notes say where a line is not enough and where temperatures hardly vary.
 /// @param temperature_c  of each frame [degrees C] (F), finite
+/// @param camera         a drift that it has already says nothing
 /// @throws std::invalid_argument if temperatures are not as many as frames, not finite or all the
 ///         same, if there are fewer than 5 frames, or no pixel decodes in all of them
 TemperatureDrift calibrate_temperature(const RawFrames& frames,
                                        const std::vector<double>& temperature_c,
                                        const CodeSet& code, const Camera& camera,
                                        const Progress& progress = {});
+/// The camera that changes so. @param reference_c  where it was calibrated otherwise, so that
+/// nothing changes there [degrees C]; none: the mean of the frames
+Camera with_temperature(Camera camera, const TemperatureDrift& found,
+                        std::optional<double> reference_c = {});
 
 /// Writes a table with its correction, as read_measured_table() reads it.
 /// @throws IoError as below

@@ -331,6 +331,27 @@ struct Playback {
   friend bool operator==(const Playback&, const Playback&) = default;
 };
 
+/// How depth and signal change with the camera's temperature, as a calibration finds it. Measured
+/// tables are those of the reference.
+struct Temperature {
+  double reference_c = 25.0;    ///< where nothing changes [degrees C]
+  double offset_m_per_c = 0.0;  ///< everything looks so much farther per degree [m]
+  double signal_per_c = 0.0;    ///< d log(signal) per degree: 0.01 is about 1 % more
+  std::optional<double> now_c;  ///< that the camera has [degrees C]; none: the reference
+
+  /// Degrees above the reference.
+  double above_reference_c() const { return now_c.value_or(reference_c) - reference_c; }
+  /// How much farther everything looks [m].
+  double offset_m() const { return offset_m_per_c * above_reference_c(); }
+  /// Signal over that at the reference.
+  double signal_gain() const;
+
+  /// @throws std::invalid_argument naming the field as temperature.*, value and rule
+  void validate() const;
+
+  friend bool operator==(const Temperature&, const Temperature&) = default;
+};
+
 /// A continuous-wave time-of-flight camera. Field names are the keys of the TOML file.
 struct Camera {
   std::string name = "camera";
@@ -343,7 +364,8 @@ struct Camera {
   std::optional<LensBlur> blur;  ///< the other keys of [lens]; none: sharp
   std::optional<Optics> optics;  ///< what turns watts and lux into electrons; none: unknown
   OperatingRange operating;
-  std::optional<Playback> playback;  ///< none: as codes say
+  std::optional<Playback> playback;        ///< none: as codes say
+  std::optional<Temperature> temperature;  ///< none: nothing changes with it
 
   /// Time from the beginning of a frame to that of the next [s]: sensor.frame_period_s, or as long
   /// as the exposures take, each with its gap.

@@ -100,6 +100,7 @@ class ForwardModel {
   int taps_ = 1;
   double contrast_ = 1.0;
   Eigen::VectorXd sensitivity_;  // of the tap values; 1 but for tap_mismatch
+  double signal_gain_ = 1.0;     // by the camera's temperature
   double dark_current_e_per_s_ = 0.0;
   double tap_constant_variance_e2_ = 0.0;
   std::vector<CorrelationFunction> functions_;  // of the tap values, before taps mix

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <span>
+#include <string>
 #include <string_view>
 
 #include "tofsmith/core/fields.hpp"
@@ -203,5 +205,31 @@ class TimeFilter {
  private:
   std::unique_ptr<State> state_;
 };
+
+/// Frames of several exposures as one of the shortest.
+struct MergedExposures {
+  RawFrames values;       ///< (1, H, W, K), raw numbers as any decoder takes them
+  Image<float> averaged;  ///< (H, W): of how many of the shortest exposure, in variance
+
+  /// Of both, while this lives.
+  RawView view() const;
+};
+
+/// @param field  what they are called in errors
+/// @throws std::invalid_argument unless there are 2 or more, each from 1 to 1e6, the shortest 1
+void check_exposures(std::span<const double> exposures, const std::string& field);
+
+/// Merges frames of one scene at several exposures (HDR), before anything is decoded. In each pixel
+/// those count in which no measurement is saturated or invalid, each by one over its variance,
+///   sum_f w_f y_f / e_f / sum_f w_f,  w_f = e_f^2 / (e_f shot + constant),
+/// where y_f are electrons and shot those of the shortest exposure, estimated from all that count;
+/// of subtracted buckets, whose light is hidden, that is the least it can be. Pixels that are
+/// saturated in all stay so, pixels that are invalid in all are NaN.
+/// @param frames     of the table's measurements, or means as their `averaged` says
+/// @param exposures  of each, over the shortest: that of the table
+/// @throws std::invalid_argument as check_exposures(), or if sizes differ
+/// @note the same bits for any number of threads
+void merge_exposures(std::span<const RawView> frames, std::span<const double> exposures,
+                     const DecodingTable& table, MergedExposures& merged);
 
 }  // namespace tofsmith

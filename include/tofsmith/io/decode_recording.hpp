@@ -92,6 +92,10 @@ struct DecodeRequest {
   /// smaller; the last one is of those that are left. What is invalid or saturated in one is so in
   /// the mean. `frame` counts means. From 1 to the number of frames.
   int average = 1;
+  /// Exposures of so many consecutive frames, over the shortest, which is the camera's:
+  /// merge_exposures() makes one of them. Empty: none. The recording holds whole groups; `frame`
+  /// counts those. Goes without `average`.
+  std::vector<double> hdr;
   /// Of how many equal measurements each raw number is the mean already, > 0: their noise is so
   /// much smaller. With `average` it multiplies.
   double averaged = 1.0;

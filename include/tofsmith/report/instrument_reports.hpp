@@ -42,6 +42,8 @@ Page correlation_report(const CalibratedCorrelation& found, const std::vector<Id
                         const std::string& source, const std::string& command_line);
 Page depth_report(const CalibratedDepth& found, const std::string& source,
                   const std::string& command_line);
+Page temperature_report(const TemperatureDrift& found, const std::string& source,
+                        const std::string& command_line);
 Page noise_report(const PhotonTransfer& found, const std::string& command_line);
 
 }  // namespace tofsmith

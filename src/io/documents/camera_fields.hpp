@@ -186,6 +186,14 @@ void visit_playback(Table& table, Field<Table, Playback>& playback) {
 }
 
 template <typename Table>
+void visit_temperature(Table& table, Field<Table, Temperature>& temperature) {
+  table.value("reference_c", temperature.reference_c);
+  table.value("offset_m_per_c", temperature.offset_m_per_c);
+  table.value("signal_per_c", temperature.signal_per_c);
+  table.value("now_c", temperature.now_c);
+}
+
+template <typename Table>
 void visit_camera(Table& table, Field<Table, Camera>& camera) {
   table.value("name", camera.name);
   table.required("fundamental_frequency_hz", "15e6")
@@ -198,6 +206,7 @@ void visit_camera(Table& table, Field<Table, Camera>& camera) {
   table.table("optics", camera.optics, visit_optics<Table>);
   table.table("operating", camera.operating, visit_operating<Table>);
   table.table("playback", camera.playback, visit_playback<Table>);
+  table.table("temperature", camera.temperature, visit_temperature<Table>);
 }
 
 }  // namespace tofsmith::camera_fields

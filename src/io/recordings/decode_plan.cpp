@@ -57,6 +57,10 @@ void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
   require(request.memory_mb > 0.0, "memory_mb", request.memory_mb, "must be > 0");
   require(!request.raw.empty(), "raw", "no file", "must name one, or one a measurement");
   require(request.average >= 1, "average", request.average, "must be >= 1");
+  if (!request.hdr.empty()) {
+    check_exposures(request.hdr, "hdr");
+    require(request.average == 1, "average", request.average, "goes without hdr");
+  }
   require(request.averaged > 0.0 && std::isfinite(request.averaged), "averaged", request.averaged,
           "must be > 0");
   if (request.time_filter) request.time_filter->validate();
@@ -107,8 +111,13 @@ std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const An
 }
 
 Preparation preparation_of(const DecodeRequest& request) {
-  Preparation preparation{request.average, request.averaged,          request.time_filter,
-                          request.filter,  request.mixed.has_value(), request.undistort};
+  Preparation preparation{.average = request.average,
+                          .averaged = request.averaged,
+                          .time_filter = request.time_filter,
+                          .filter = request.filter,
+                          .find_mixed = request.mixed.has_value(),
+                          .undistort = request.undistort,
+                          .hdr = request.hdr};
   if (preparation.time_filter && preparation.filter) preparation.time_filter->before_filter = true;
   return preparation;
 }

@@ -40,10 +40,15 @@ DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
   const std::string held = fmt::format("{} holds {} frame{}", request.raw.front().string(),
                                        reader.frames(), reader.frames() == 1 ? "" : "s");
   require(request.average <= reader.frames(), "average", request.average, held);
-  const int frames = Preparation{.average = request.average}.frames_of(reader.frames());
+  const Preparation preparation = preparation_of(request);
+  const int frames = preparation.frames_of(reader.frames());
+  require(request.hdr.empty() || reader.frames() % preparation.group() == 0, "hdr",
+          fmt::format("{} exposures", request.hdr.size()), fmt::format("{}: not a multiple", held));
   require(!request.frame || *request.frame < frames, "frame", request.frame.value_or(0),
           fmt::format("{}{}, counted from 0", held,
-                      request.average > 1 ? fmt::format(", {} means", frames) : ""));
+                      request.average > 1   ? fmt::format(", {} means", frames)
+                      : request.hdr.empty() ? ""
+                                            : fmt::format(", {} of all exposures", frames)));
   const PinholeView view =
       view_of_frames(request, request.raw.front().string(), reader.width(), reader.height());
   const PinholeView written = request.undistort ? view.ideal() : view;

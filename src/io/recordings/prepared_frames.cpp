@@ -17,12 +17,28 @@ namespace {
 
 /// Frames of the recording that frame `index` of what comes out is made of.
 int frames_of_mean(const Preparation& preparation, int recorded, int index) {
-  return std::min(preparation.average, recorded - index * preparation.average);
+  return std::min(preparation.group(), recorded - index * preparation.group());
 }
 
 double added(double sum, double value, double clipped) {
   if (!std::isfinite(value) || std::isnan(sum)) return std::numeric_limits<double>::quiet_NaN();
   return value >= clipped ? std::numeric_limits<double>::infinity() : sum + value;
+}
+
+RawFrames copy_of(const RawView& raw) {
+  RawFrames copy{.frames = 1,
+                 .height = raw.height,
+                 .width = raw.width,
+                 .measurements = raw.measurements,
+                 .values = {}};
+  copy.values.reserve(static_cast<std::size_t>(raw.pixels()) *
+                      static_cast<std::size_t>(raw.measurements));
+  for_each_run(raw, 0, raw.pixels(), [&](const auto* pixel, std::int64_t length, std::int64_t) {
+    for (std::int64_t x = 0; x < length; ++x, pixel += raw.column_stride)
+      for (int k = 0; k < raw.measurements; ++k)
+        copy.values.push_back(static_cast<float>(pixel[k * raw.measurement_stride]));
+  });
+  return copy;
 }
 
 }  // namespace
@@ -36,7 +52,7 @@ std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
   std::vector<Band> all;
   for (const Band& band : needed)
     for (int i = 0; i < frames_of_mean(preparation, recorded, band.frame); ++i)
-      all.push_back({band.frame * preparation.average + i, band.first_row, band.rows});
+      all.push_back({band.frame * preparation.group() + i, band.first_row, band.rows});
   return all;
 }
 
@@ -52,6 +68,9 @@ double Preparation::frame_bytes(int height, int width, int measurements) const {
 }
 
 double Preparation::row_bytes(int width, int measurements) const {
+  if (!hdr.empty())
+    return static_cast<double>(width) * static_cast<double>(sizeof(float)) *
+           ((group() + 1.0) * measurements + 2.0);
   if (average == 1) return averaged == 1.0 ? 0.0 : static_cast<double>(sizeof(float)) * width;
   return static_cast<double>(width) *
          (static_cast<double>(sizeof(double)) * measurements + sizeof(float));
@@ -99,16 +118,39 @@ PreparedFrames::PreparedFrames(Input input, const DecodingTable& table,
   if (preparation.filter) filter_.emplace(table, *preparation.filter);
 }
 
+/// As it is in the recording.
+std::optional<RawView> PreparedFrames::read() {
+  std::optional<RawView> raw = input_();
+  if (!raw || preparation_.averaged == 1.0) return raw;
+  averaged_.assign(static_cast<std::size_t>(raw->pixels()),
+                   static_cast<float>(preparation_.averaged));
+  raw->averaged = averaged_.data();
+  return raw;
+}
+
+/// The next frames of all exposures as one.
+std::optional<RawView> PreparedFrames::bracketed(const Progress& progress) {
+  const std::size_t frames = preparation_.hdr.size();
+  exposed_.resize(frames);
+  std::vector<RawView> views;
+  for (std::size_t i = 0; i < frames; ++i) {
+    report(progress, static_cast<double>(i) / static_cast<double>(frames), "merging exposures");
+    const std::optional<RawView> raw = read();
+    if (!raw) break;
+    exposed_[i] = copy_of(*raw);
+    views.push_back(RawView::interleaved(exposed_[i].values.data(), raw->height, raw->width,
+                                         raw->measurements));
+    views.back().averaged = raw->averaged;
+  }
+  if (views.size() < frames) return std::nullopt;  // a group that is cut short says nothing
+  merge_exposures(views, preparation_.hdr, table_, merged_);
+  return merged_.view();
+}
+
 /// A band of frame `frame` as it is read or, of several, as their mean.
 std::optional<RawView> PreparedFrames::measured(int frame, const Progress& progress) {
-  if (preparation_.average == 1) {
-    std::optional<RawView> raw = input_();
-    if (!raw || preparation_.averaged == 1.0) return raw;
-    averaged_.assign(static_cast<std::size_t>(raw->pixels()),
-                     static_cast<float>(preparation_.averaged));
-    raw->averaged = averaged_.data();
-    return raw;
-  }
+  if (!preparation_.hdr.empty()) return bracketed(progress);
+  if (preparation_.average == 1) return read();
   const int frames = frames_of_mean(preparation_, recorded_, frame);
   for (int i = 0; i < frames; ++i) {
     report(progress, static_cast<double>(i) / frames, "averaging");

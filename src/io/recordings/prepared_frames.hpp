@@ -21,10 +21,13 @@ struct Preparation {
   std::optional<FilterOptions> filter;           ///< of what comes of that
   bool find_mixed = false;                       ///< afterwards, in whole frames
   bool undistort = false;                        ///< last of all, in whole frames
+  std::vector<double> hdr;                       ///< exposures of frames that make one; empty: none
 
   bool needs_frames() const { return time_filter || filter || find_mixed || undistort; }
   /// Frames that come out of so many.
-  int frames_of(int recorded) const { return (recorded + average - 1) / average; }
+  int frames_of(int recorded) const { return (recorded + group() - 1) / group(); }
+  /// Frames that one of those is made of.
+  int group() const { return hdr.empty() ? average : static_cast<int>(hdr.size()); }
   /// What it takes beside the rows that are read [bytes], in all and for each row under way.
   double frame_bytes(int height, int width, int measurements) const;
   double row_bytes(int width, int measurements) const;
@@ -67,7 +70,7 @@ class PreparedFrames {
 
   /// How long next() takes, where decoding takes 1: about.
   double effort() const {
-    return (preparation_.average > 1 ? 1.0 : 0.0) + (time_filter_ ? 1.0 : 0.0) +
+    return (preparation_.group() > 1 ? 1.0 : 0.0) + (time_filter_ ? 1.0 : 0.0) +
            (filter_ ? 8.0 : 0.0);
   }
   /// The raw numbers of the next band, of frame `frame` of those that come out, until the call
@@ -77,6 +80,8 @@ class PreparedFrames {
 
  private:
   std::optional<RawView> measured(int frame, const Progress& progress);
+  std::optional<RawView> read();
+  std::optional<RawView> bracketed(const Progress& progress);
   std::optional<RawView> added_up(int frame, const Progress& progress);
 
   const DecodingTable& table_;
@@ -84,6 +89,8 @@ class PreparedFrames {
   int recorded_;
   Input input_;
   RowSums sums_;
+  std::vector<RawFrames> exposed_;  // of one group, as they were read
+  MergedExposures merged_;
   std::vector<float> averaged_;  // of numbers that are read, unless of one
   std::optional<TimeFilter> time_filter_;
   int frames_added_ = 0;  // to time_filter_
