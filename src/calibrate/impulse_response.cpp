@@ -336,7 +336,10 @@ CalibratedResponse calibrate_impulse_response(ResponseRecord record,
         name_of(result.fits.front().response.kind), 100 * result.fits.front().residual_rms,
         100 * result.noise_rms / result.height));
   const double grid_s = 1.0 / (options.fundamental_frequency_hz * options.samples);
-  if (width_s < 2 * grid_s)
+  // A second peak costs however sharp each of them is.
+  const bool is_short = std::ranges::all_of(
+      result.peaks, [&](const auto& peak) { return std::abs(peak.time_s) < 2 * grid_s; });
+  if (width_s < 2 * grid_s && is_short)
     result.notes.push_back(fmt::format(
         "the response, {:.3g} ns wide, is shorter than two of the camera's time samples of {:.3g} "
         "ns: it hardly changes anything there",

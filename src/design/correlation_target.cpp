@@ -38,12 +38,15 @@ TargetSet targets_from_table(std::string name, const Eigen::MatrixXd& table, int
   require(table.rows() >= 2, "rows of the target", table.rows(), "must be >= 2");
   require(table.cols() >= 1, "columns of the target", table.cols(), "must be >= 1");
   require(samples >= 8, "samples", samples, "must be >= 8");
+  constexpr double largest = 1e100;  // squares of more or of less are no numbers
   TargetSet set{std::move(name), {}};
   for (Eigen::Index k = 0; k < table.cols(); ++k) {
     Eigen::VectorXd column = table.col(k);
     for (Eigen::Index n = 0; n < column.size(); ++n)
-      require(std::isfinite(column[n]), fmt::format("target[{}, {}]", n, k), column[n],
-              "must be finite");
+      require(std::abs(column[n]) <= largest, fmt::format("target[{}, {}]", n, k), column[n],
+              "must be finite and at most 1e100");
+    require(column.cwiseAbs().maxCoeff() >= 1.0 / largest, fmt::format("target column {}", k),
+            column.cwiseAbs().maxCoeff(), "must have values of at least 1e-100");
     if (normalize) {
       const double low = column.minCoeff(), high = column.maxCoeff();
       require(high > low, fmt::format("target column {}", k), low,

@@ -3,8 +3,10 @@
 // Writers of pattern memories.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <iterator>
+#include <string>
 
 #include "io/text/shared/line_cursor.hpp"
 #include "waveforms/pattern_memory.hpp"
@@ -23,7 +25,13 @@ std::string heading(const PatternMemory& memory, std::string_view mark) {
     fmt::format_to(std::back_inserter(text), "{} {}\n", mark, words);
   };
   LineCursor lines(memory.comment, "comment");
-  while (!lines.at_end()) line(lines.next());
+  while (!lines.at_end()) {
+    // Nothing in a code's name may end a comment's line, as CR does in VHDL.
+    std::string words(lines.next());
+    std::ranges::replace_if(
+        words, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+    line(words);
+  }
   for (const PatternField& field : memory.fields)
     line(field.bits == 1 ? fmt::format("bit {}: {}", field.first_bit, field.name)
                          : fmt::format("bits {}..{}: {}", field.first_bit + field.bits - 1,

@@ -257,6 +257,9 @@ TEST(TargetSet, UserTablesAreResampledAndChecked) {
   EXPECT_DOUBLE_EQ(set.measurements[0].samples.maxCoeff(), 1.0);
   table(2, 0) = std::nan("");
   EXPECT_THROW(targets_from_table("mine", table, 8, false), std::invalid_argument);
+  for (const double size : {1e200, 1e-200})
+    EXPECT_THROW(targets_from_table("mine", size * Eigen::MatrixXd::Random(9, 1), 8, false),
+                 std::invalid_argument);
   EXPECT_THROW(targets_from_table("mine", Eigen::MatrixXd::Ones(9, 1), 8, true),
                std::invalid_argument);
 }

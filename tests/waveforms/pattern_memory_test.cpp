@@ -47,6 +47,16 @@ TEST(PatternMemory, IsWrittenAsTheGoldenFiles) {
         << language.file;
 }
 
+TEST(PatternMemory, NothingInANameEndsAComment) {
+  PatternMemory memory = memory_of(4, {1, 2, 3});
+  memory.comment = "a name\rend package;\x1b";
+  for (const Language& language : languages) {
+    const std::string text = language.write(memory);
+    EXPECT_EQ(text.find_first_of("\r\x1b"), std::string::npos) << language.file;
+    EXPECT_NE(text.find("a name end package;"), std::string::npos) << language.file;
+  }
+}
+
 TEST(PatternMemory, ReadsBackExactlyAtEveryWidth) {
   for (int bits = 1; bits <= 64; ++bits) {
     RandomStream random(17, static_cast<std::uint64_t>(bits));

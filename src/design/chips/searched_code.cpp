@@ -20,7 +20,8 @@ SearchRecord record_of(const ChipSearchResult& found) {
       .error_name = "smallest rms error so far, by the Cramer-Rao bound",
       .proved = found.proved,
       .account = fmt::format(
-          "{} Of {:.4g} codes, {:.4g} after symmetry, {} were looked at: {} turn back, {} have too "
+          "{} Of {:.4g} codes, {:.4g} after symmetry, {} were looked at (a few symmetric ones "
+          "twice): {} turn back, {} have too "
           "small a slope, {} are worse by the metric ({} evaluations), {} are ambiguous, {} are "
           "below the margin; {} were the best so far.",
           found.proof, c.raw, c.after_symmetry, c.examined, c.pruned_by_turning, c.pruned_by_bound,
