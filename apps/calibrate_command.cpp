@@ -69,6 +69,7 @@ void add_calibrate_command(CLI::App& app, Session& session) {
   add_calibrate_correlation(*command, session);
   add_calibrate_noise(*command, session);
   add_calibrate_temperature(*command, session);
+  add_calibrate_stray_light(*command, session);
 }
 
 }  // namespace tofsmith::apps

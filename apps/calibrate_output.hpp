@@ -17,6 +17,7 @@ void add_calibrate_response(CLI::App& calibrate, Session& session);
 void add_calibrate_correlation(CLI::App& calibrate, Session& session);
 void add_calibrate_noise(CLI::App& calibrate, Session& session);
 void add_calibrate_temperature(CLI::App& calibrate, Session& session);
+void add_calibrate_stray_light(CLI::App& calibrate, Session& session);
 
 /// What all calibrations write: a camera and a page.
 struct CalibrateOutput {

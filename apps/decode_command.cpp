@@ -32,6 +32,7 @@ struct DecodeArguments {
   MethodArguments method;
   MultipathArguments multipath;
   FilterArguments filter;
+  std::string stray_light, rays;
   std::vector<std::string> planes;
   DecodeOptions options;
   std::string kind = "radial";
@@ -55,6 +56,8 @@ DecodeRequest request_of(const DecodeArguments& arguments, const Camera& camera,
   if (!arguments.mixed.empty()) request.mixed = parse_mixed_pixels(arguments.mixed);
   request.offset_map = arguments.offset_map;
   request.gain_map = arguments.gain_map;
+  request.stray_light = arguments.stray_light;
+  request.rays = arguments.rays;
   request.policy = session.output_policy();
   request.other_inputs = {arguments.code, arguments.camera.name};
   return request;
@@ -137,7 +140,8 @@ void run(const DecodeArguments& arguments, Session& session) {
   if (source.tell_range)
     lines += fmt::format("\nrange {:.4g} m ({})", source.table.range_m, source.range_source);
   for (const std::string& note : notes) lines += "\n" + note;
-  if (!camera.lens && (holds_points(request.output) || request.kind == DepthKind::z))
+  if (!camera.lens && request.rays.empty() &&
+      (holds_points(request.output) || request.kind == DepthKind::z))
     lines += "\nthe camera has no [lens]: its view was taken to be 60 degrees wide";
   session.say(lines);
 }
@@ -202,6 +206,9 @@ void add_decode_command(CLI::App& app, Session& session) {
   command->add_option("--gain-map", arguments->gain_map,
                       "response of each pixel over that of a usual one, taken out of signal and "
                       "ambient; NaN marks a dead pixel");
+  command->add_option("--stray-light", arguments->stray_light,
+                      "light that the lens scatters, of calibrate stray-light (.npy .npz .exr "
+                      ".pfm), taken off the raw numbers before all else");
   arguments->method.add_to(*command);
   arguments->multipath.add_to(*command);
   command
@@ -266,6 +273,9 @@ void add_decode_command(CLI::App& app, Session& session) {
           "writes the --outputs (depth) of each frame to standard output, as they are in "
           ".npy without its header")
       ->required();
+  command->add_option("--rays", arguments->rays,
+                      "rays of points and z as the maker gives them, in place of the camera's "
+                      "[lens] (.npy): (H,W,2) of x/z and y/z, or (H,W,3) of directions");
   command->add_flag("--all-points", arguments->request.all_points,
                     "in .ply and .pcd also points of pixels that are not ok");
   command->add_flag(

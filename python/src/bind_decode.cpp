@@ -127,7 +127,7 @@ void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_p
 DecodeRequest request_of(const std::vector<std::string>& raw, const std::string& output,
                          const py::object& lens, const py::dict& values) {
   DecodeRequest request;
-  std::string raw_format, mixed, offset_map, gain_map;
+  std::string raw_format, mixed, offset_map, gain_map, stray_light, rays;
   std::vector<std::string> outputs;
   bool overwrite = false;
   OptionReader reader(values, "");
@@ -147,6 +147,8 @@ DecodeRequest request_of(const std::vector<std::string>& raw, const std::string&
       .value("offset_map", offset_map)
       .value("offset_m", request.offset_m)
       .value("gain_map", gain_map)
+      .value("stray_light", stray_light)
+      .value("rays", rays)
       .value("memory_mb", request.memory_mb)
       .value("other_inputs", request.other_inputs)
       .value("overwrite", overwrite);
@@ -161,6 +163,8 @@ DecodeRequest request_of(const std::vector<std::string>& raw, const std::string&
   request.raw_format = raw_format;
   request.offset_map = offset_map;
   request.gain_map = gain_map;
+  request.stray_light = stray_light;
+  request.rays = rays;
   request.policy = policy_of(overwrite);
   for (const std::string& plane : outputs) request.outputs.push_back(parse_decoded_plane(plane));
   request.lens = to_optional_lens(lens);

@@ -220,6 +220,29 @@ py::dict drift_dict(const TemperatureDrift& found) {
   return dict;
 }
 
+CalibratedStrayLight calibrate_stray(const py::object& frames, const py::object& dark,
+                                     const Camera& camera, const py::object& callback) {
+  const RawFrames raw = to_raw_frames(frames, "frames");
+  const RawFrames dark_frames = to_raw_frames(dark, "dark");
+  return without_gil(callback, [&](const Progress& progress) {
+    return calibrate_stray_light(raw, dark_frames, camera, progress);
+  });
+}
+
+py::dict stray_dict(const CalibratedStrayLight& found) {
+  py::list shares;
+  for (const Estimate& share : found.share) shares.append(pair_of(share));
+  py::dict dict;
+  dict["kernel"] = adopt(Image<float>(found.kernel));
+  dict["radius_px"] = found.radius_px;
+  dict["share"] = shares;
+  dict["total"] = pair_of(found.total);
+  dict["target_pixels"] = found.target_pixels;
+  dict["pixels"] = found.pixels;
+  dict["notes"] = found.notes;
+  return dict;
+}
+
 }  // namespace
 
 void bind_delay_sweep(py::module_& module) {
@@ -240,6 +263,18 @@ void bind_delay_sweep(py::module_& module) {
       .def("write_report", [](const CalibratedDepth& found, const std::string& path,
                               const std::string& source, bool overwrite) {
         write_file_atomically(path, render(depth_report(found, source, "")), policy_of(overwrite));
+      });
+  module.def("calibrate_stray_light", &calibrate_stray);
+  py::class_<CalibratedStrayLight>(module, "CalibratedStrayLight")
+      .def("fields", &stray_dict)
+      .def("write",
+           [](const CalibratedStrayLight& found, const std::string& path, bool overwrite) {
+             write_float_image(path, found.kernel, "kernel", policy_of(overwrite));
+           })
+      .def("write_report", [](const CalibratedStrayLight& found, const std::string& path,
+                              const std::string& source, bool overwrite) {
+        write_file_atomically(path, render(stray_light_report(found, source, "")),
+                              policy_of(overwrite));
       });
   module.def("calibrate_temperature", &calibrate_drift);
   py::class_<TemperatureDrift>(module, "TemperatureDrift")

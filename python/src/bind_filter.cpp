@@ -93,6 +93,24 @@ py::tuple merge_frames(const DecodingTable& table, const py::array& raw_numbers,
       adopt(std::move(merged.averaged.pixels), {raw.height, raw.width}));
 }
 
+py::array_t<float> without_stray_light(const DecodingTable& table, const py::array& raw_numbers,
+                                       bool is_planar, const py::object& kernel) {
+  const RawArray raw = view_raw(raw_numbers, is_planar, table.measurements());
+  StrayLight stray_light(to_image(kernel, "kernel"));
+  std::vector<float> numbers;
+  {
+    const py::gil_scoped_release release;
+    RawFrames clean;
+    for (const RawView& frame : raw.frames) {
+      stray_light.remove(frame, table, clean);
+      numbers.insert(numbers.end(), clean.values.begin(), clean.values.end());
+    }
+  }
+  std::vector<py::ssize_t> shape = raw.plane_shape();
+  shape.push_back(table.measurements());
+  return adopt(std::move(numbers), std::move(shape));
+}
+
 }  // namespace
 
 void bind_filter(py::module_& module) {
@@ -116,6 +134,7 @@ void bind_filter(py::module_& module) {
       .def("add", &add_to_filter)
       .def("forget", &TimeFilter::forget);
   module.def("merge_exposures", &merge_frames);
+  module.def("without_stray_light", &without_stray_light);
   module.def("filter_strengths", [] {
     std::vector<std::string> names;
     for (const FilterStrength strength : all_filter_strengths)

@@ -143,6 +143,7 @@ from ._scene import (
     radial_from_z,
     z_from_radial,
 )
+from ._stray_light import CalibratedStrayLight, calibrate_stray_light, remove_stray_light
 from ._sweep import SweepResults, read_sweep, read_sweep_export, run_sweep
 from ._temperature import TemperatureDrift, calibrate_temperature
 from ._tofsmith import Interrupted
@@ -176,6 +177,7 @@ __all__ = [
     "CalibratedCorrelation",
     "CalibratedDepth",
     "CalibratedResponse",
+    "CalibratedStrayLight",
     "Camera",
     "Candidate",
     "CheckedStatement",
@@ -255,6 +257,7 @@ __all__ = [
     "built_in_scene_names",
     "calibrate_correlation",
     "calibrate_impulse_response",
+    "calibrate_stray_light",
     "calibrate_temperature",
     "camera_keys",
     "capture",
@@ -291,6 +294,7 @@ __all__ = [
     "read_response_record",
     "read_sweep",
     "read_sweep_export",
+    "remove_stray_light",
     "reproduce",
     "require_fits",
     "robustness",

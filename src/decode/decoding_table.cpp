@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
-#include "decode/saturation_level.hpp"
 #include "decode/search/distinct_directions.hpp"
+#include "decode/shared/saturation_level.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

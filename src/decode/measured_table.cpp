@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/shared/enum_words.hpp"
-#include "decode/saturation_level.hpp"
+#include "decode/shared/saturation_level.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {

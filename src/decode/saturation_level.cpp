@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "decode/saturation_level.hpp"
+#include "decode/shared/saturation_level.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -154,4 +154,34 @@ Page temperature_report(const TemperatureDrift& found, const std::string& source
                                    found.notes, command_line);
 }
 
+Page stray_light_report(const CalibratedStrayLight& found, const std::string& source,
+                        const std::string& command_line) {
+  ColourAssignment colours;
+  Series shares{.name = "share", .mark = Mark::line_and_markers, .style = colours.style("share")};
+  Table table{.caption = "Share of a pixel's light in each pixel so far away, with 95 % intervals.",
+              .columns = {{"distance (px)", true}, {"share (ppm)", true}, {"95 % (ppm)", true}}};
+  for (std::size_t j = 0; j < found.share.size(); ++j) {
+    shares.x.push_back(found.radius_px[j]);
+    shares.y.push_back(1e6 * found.share[j].value);
+    shares.y_error.push_back(1.96e6 * found.share[j].standard_error);
+    table.rows.push_back({fmt::format("{:.1f}", found.radius_px[j]),
+                          fmt::format("{:.3f}", 1e6 * found.share[j].value),
+                          fmt::format("± {:.3f}", 1.96e6 * found.share[j].standard_error)});
+  }
+  Section section{"Stray light", {}};
+  section.blocks.push_back(
+      line_figure({.id = "share-over-distance",
+                   .title = "Share over distance",
+                   .caption = "Of a pixel's light, in each pixel so far away."},
+                  {shares}, {.label = "distance", .unit = "px", .logarithmic = true},
+                  {.label = "share", .unit = "ppm"}));
+  section.blocks.push_back(std::move(table));
+  return finished_calibration_page(
+      {.title = fmt::format("Stray light in {}", source),
+       .subtitle = fmt::format("{:.3f} % ± {:.3f} of all light is scattered",
+                               100.0 * found.total.value, 196.0 * found.total.standard_error),
+       .sections = {std::move(section)}},
+      found.notes, command_line);
+}
+
 }  // namespace tofsmith

@@ -140,6 +140,13 @@ PixelRays::PixelRays(PinholeView view) : view_(std::move(view)) {
   });
 }
 
+PixelRays::PixelRays(PinholeView view, std::vector<Eigen::Vector2d> slopes)
+    : view_(std::move(view)), slopes_(std::move(slopes)) {
+  view_.validate();
+  require(std::ssize(slopes_) == std::int64_t{view_.width} * view_.height, "number of rays",
+          slopes_.size(), "must be one for each pixel");
+}
+
 Eigen::Vector3d PixelRays::at_unit_z(int row, int column) const {
   if (slopes_.empty()) return tofsmith::at_unit_z(view_, row, column);
   const Eigen::Vector2d& slope =

@@ -197,6 +197,53 @@ class Calibrate(BenchRecordsTest):
         self.assertEqual(found["buckets"], 2)
         self.assertIn("black_level_dn = 100", self.bytes_of("noisy.toml").decode())
 
+    def test_a_target_before_black_becomes_a_kernel_that_decode_takes_off(self):
+        self.write("camera.toml", CAMERA)
+        size, reach, black = 40, 39, 100.0
+        v, u = np.mgrid[-reach:reach + 1, -reach:reach + 1]
+        kernel = 1 / np.maximum(np.hypot(v, u), 3) ** 2
+        kernel[reach, reach] = 0
+        kernel *= 0.05 / kernel.sum()
+
+        def seen(light):
+            spread = np.zeros_like(light)
+            for row, column in zip(*np.nonzero(light[..., 0])):
+                part = kernel[reach - row:reach - row + size, reach - column:reach - column + size]
+                spread += part[..., None] * light[row, column]
+            return black + 0.95 * light + spread
+
+        n = np.arange(4) / 4
+        target = np.zeros((size, size, 4))
+        target[18:23, 12:17] = 1500 * (1.2 + np.cos(2 * np.pi * (0.3 - n)))
+        rng = np.random.default_rng(1)
+        np.save(self.path("target.npy"), rng.normal(seen(target), 0.5, (32, size, size, 4)))
+        found = self.do_json("calibrate", "stray-light", "target.npy", "--camera", "camera.toml",
+                             "-o", "kernel.npy", "--report", "stray.html")
+        total = found["total"]
+        share = kernel[np.hypot(v, u) <= found["radius_px"][-1]].sum()
+        self.assertLess(abs(total["value"] - share), 5 * total["standard_error"])
+        self.assertIn("share-over-distance", self.bytes_of("stray.html").decode())
+        # A dark wall beside a bright one.
+        walls = np.empty((size, size, 4))
+        walls[:, :15] = 1000 * (1.2 + np.cos(2 * np.pi * (0.2 - n)))
+        walls[:, 15:] = 20 * (1.2 + np.cos(2 * np.pi * (0.6 - n)))
+        np.save(self.path("walls.npy"), seen(walls).astype(np.float32))
+        decode = ["decode", "walls.npy", "--code", "sinusoid-k4", "--camera", "camera.toml", "-o",
+                  "d.npy", "--force"]
+        errors = []
+        for options in ([], ["--stray-light", "kernel.npy"]):
+            self.do(*decode, *options)
+            wall = np.load(self.path("d.npy"))[5:-5, 22:35]
+            errors.append(abs(wall - 0.6 * RANGE_M).mean())
+        self.assertGreater(errors[0], 0.1)
+        self.assertLess(errors[1], 0.1 * errors[0])
+        np.save(self.path("even.npy"), np.zeros((2, 2), np.float32))
+        self.refuse([*decode, "--stray-light", "even.npy"], "even.npy: kernel size = 2 x 2")
+        self.refuse([*decode, "--stray-light", "none.npy"], "none.npy")
+        np.save(self.path("flat.npy"), np.full((1, 20, 20, 4), 300.0))
+        self.refuse(["calibrate", "stray-light", "flat.npy", "--camera", "camera.toml"],
+                    "at most a quarter")
+
     def test_frames_that_warm_up_become_drift_per_degree(self):
         degrees = np.linspace(20, 47, 10)
         warmer = (degrees - 20)[:, None, None, None]

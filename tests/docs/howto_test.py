@@ -128,6 +128,26 @@ class HowTo(BenchRecordsTest):
     def make_shifts_txt(self, _):
         np.savetxt(self.path("shifts.txt"), np.arange(61) / 60 / 15e6)
 
+    def make_kernel_npy(self, _):
+        kernel = np.full((7, 7), 1e-3)
+        np.save(self.path("kernel.npy"), kernel)
+
+    def make_target_npy(self, _):
+        target = np.full((24, 32, 4), 100.0)
+        target[10:14, 12:16] += 3000 * np.array([1.0, 0.5, 0.2, 0.7])
+        np.save(self.path("target.npy"), np.random.default_rng(1).normal(target, 5.0))
+
+    def make_quads_npy(self, _):
+        camera = "--camera mine.toml --set sensor.taps=2 --set sensor.readout=difference"
+        for name, signal in (("quads", 0), ("quads1", "4e6"), ("quads2", "1e7")):
+            self.shell(f"tofsmith simulate corner {SMALL} --code sinusoid-k4 {camera} --signal "
+                       f"{signal} --ambient 0 --frames 2 -o {name}.npy")
+
+    def make_quads1_npy(self, _):
+        pass  # beside quads.npy
+
+    make_quads2_npy = make_quads1_npy
+
     def make_dark_npy(self, _):
         self.flat_frames()
         os.rename(self.path("0.npy"), self.path("dark.npy"))

@@ -84,25 +84,6 @@ TEST_F(DecodeRecording, TellsHowFarItCameWhenItIsStopped) {
   EXPECT_TRUE(std::filesystem::exists(result.files.front()));
 }
 
-TEST_F(DecodeRecording, MergesExposuresAsFramesInMemoryAre) {
-  DecodeRequest hdr = request("hdr.npy");
-  hdr.hdr = {1.0, 2.0, 4.0};
-  hdr.stack = true;
-  hdr.outputs = {DecodedPlane::depth, DecodedPlane::deviation, DecodedPlane::averaged};
-  EXPECT_EQ(decode_recording(hdr, decoder_).frames.size(), 1u);
-  const Decoder& decoder = std::get<Decoder>(decoder_);
-  std::vector<RawView> frames;
-  for (int f = 0; f < 3; ++f) frames.push_back(RawView::interleaved(raw_.frame(f), 6, 5, 4));
-  MergedExposures merged;
-  merge_exposures(frames, hdr.hdr, decoder.table(), merged);
-  Image<float> depth_m(6, 5), deviation_m(6, 5);
-  decoder.decode(merged.view(), {.depth_m = depth_m.pixels.data(),
-                                 .predicted_standard_deviation_m = deviation_m.pixels.data()});
-  EXPECT_EQ(plane("hdr.npy", 0), depth_m.pixels);
-  EXPECT_EQ(plane("hdr-deviation.npy", 0), deviation_m.pixels);
-  EXPECT_EQ(plane("hdr-averaged.npy", 0), merged.averaged.pixels);
-}
-
 TEST_F(DecodeRecording, FiltersAsTheFilterDoes) {
   const FilterOptions options = FilterOptions::of(FilterStrength::light);
   DecodeRequest filtered = request("f.npy");
@@ -299,17 +280,8 @@ TEST_F(DecodeRecording, RefusesWhatCannotBeBeforeAnythingIsWritten) {
   DecodeRequest wrong = request("d.npz");
   wrong.frame = 3;
   refused(wrong, "frame = 3");
-  wrong = request("d.npz");
   wrong.stack = true;
   refused(wrong, "stack = true");
-  wrong = request("d.npz");
-  wrong.hdr = {1.0, 2.0};
-  refused(wrong, "hdr = 2 exposures");  // of three frames
-  wrong.hdr = {2.0, 4.0, 8.0};
-  refused(wrong, "exposures");
-  wrong.hdr = {1.0, 2.0, 4.0};
-  wrong.average = 3;
-  refused(wrong, "average = 3; goes without hdr");
   wrong = request("d.npz");
   wrong.averaged = 0.0;
   refused(wrong, "averaged = 0");

@@ -205,6 +205,31 @@ def test_drift_is_that_of_the_command(both, cli):
         base.at_temperature(30.0)
 
 
+def test_stray_light_is_that_of_the_command(both, cli):
+    target = np.full((8, 30, 30, 4), 100.0)
+    target[:, 12:16, 12:16] += [900, 500, 200, 700]
+    target += np.random.default_rng(4).normal(0, 3, target.shape)
+    ts.write_raw(both[0] / "target.npy", target)
+    camera = base.replace(sensor=sensor)
+    camera.write(both[0] / "dn.toml")
+    said = printed(cli, both[0], "stray-light", "target.npy", "--camera", "dn.toml", "-o",
+                   "kernel.npy", "--report", "stray.html")
+    found = ts.calibrate_stray_light(target, camera)
+    found.write(both[1] / "kernel.npy")
+    same(both, "kernel.npy")
+    found.write_report(both[1] / "stray.html", source="target.npy")
+    same_page(both, "stray.html")
+    assert found.total == pair(said["total"])
+    kernel = np.full((5, 5), 0.004, np.float32)
+    raw = np.full((9, 9, 4), 200.0, np.float32)
+    clean = ts.remove_stray_light(raw, kernel, "hamiltonian-k4", camera)
+    assert clean.shape == raw.shape
+    assert abs(clean[4, 4] - 200).max() < 1.5  # as much comes as goes, but for the edges'
+    assert clean[0, 0, 0] > 203
+    with pytest.raises(ValueError, match="kernel size"):
+        ts.remove_stray_light(raw, kernel[:4], "hamiltonian-k4", camera)
+
+
 frames = np.ones((4, 2, 2, 4))
 delays = np.arange(4) / 4
 

@@ -221,6 +221,34 @@ TemperatureDrift calibrate_temperature(const RawFrames& frames,
 Camera with_temperature(Camera camera, const TemperatureDrift& found,
                         std::optional<double> reference_c = {});
 
+/// What a lens scatters, as a bright target before black shows it.
+struct CalibratedStrayLight {
+  Image<float> kernel;            ///< as StrayLight takes it
+  std::vector<double> radius_px;  ///< distances from the pixel (J)
+  std::vector<Estimate> share;    ///< of a pixel's light in each pixel so far away (J)
+  Estimate total;                 ///< of all light that is scattered
+  std::int64_t target_pixels = 0;
+  std::int64_t pixels = 0;  ///< around the target
+  std::vector<std::string> notes;
+};
+
+/// Stray light from frames of a small bright target before black.
+///   1. Means over frames, less those of `dark`, or the black level. The target are the pixels of
+///   at
+///      least half the light of the brightest; a pixel's light is that in the target's direction of
+///      the K measurements, in units of the target's mean.
+///   2. Around the target (2 pixels away and more) light is kernel * target. The kernel depends on
+///      distance alone: r^2 times it is a straight line over log r between distances 1.5 times
+///      apart, from 3 pixels on, and constant below. Least squares; errors by what is left over in
+///      each pixel (MacKinnon and White 1985, HC3).
+///   3. The target's own light follows from the kernel, and the fit is made again, three times.
+/// Whatever else is bright around the target counts as stray light, so there should be nothing.
+/// @param dark  the same with the target covered; may have no frames
+/// @throws std::invalid_argument if sizes differ, nothing is bright, the target is saturated, fewer
+///         than 4 pixels or more than a quarter of the image, or the rest is not black
+CalibratedStrayLight calibrate_stray_light(const RawFrames& frames, const RawFrames& dark,
+                                           const Camera& camera, const Progress& progress = {});
+
 /// Writes a table with its correction, as read_measured_table() reads it.
 /// @throws IoError as below
 void write_calibrated_table(const std::filesystem::path& path, const MeasuredTable& table,

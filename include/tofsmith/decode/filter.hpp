@@ -232,4 +232,48 @@ void check_exposures(std::span<const double> exposures, const std::string& field
 void merge_exposures(std::span<const RawView> frames, std::span<const double> exposures,
                      const DecodingTable& table, MergedExposures& merged);
 
+/// Light that a lens scatters from every pixel to others, over the whole image: of light x the
+/// sensor sees (1 - s) x + kernel * x, s the kernel's sum. What is scattered beyond the image is
+/// lost; what comes from there is not known and stays.
+/// Keeps what it made for frames of one size; not for several threads at once.
+class StrayLight {
+ public:
+  /// @param kernel  (2 R + 1, 2 Q + 1): the share of a pixel's light that goes to each other, its
+  ///                middle the pixel itself
+  /// @throws std::invalid_argument unless it is of odd size, each share finite and >= 0, and their
+  ///         sum < 0.5
+  explicit StrayLight(Image<float> kernel);
+  ~StrayLight();
+  StrayLight(StrayLight&&) noexcept;
+  StrayLight& operator=(StrayLight&&) noexcept;
+
+  const Image<float>& kernel() const { return kernel_; }
+  /// s, of all light.
+  double share() const { return share_; }
+  /// Memory that remove() takes for frames of this size [bytes].
+  double memory_bytes(int height, int width, int measurements) const;
+
+  /// What the sensor sees of light (H, W).
+  Image<float> scatter(const Image<float>& light);
+  /// The light of what the sensor sees: scatter() undone, by x <- (y - kernel * x) / (1 - s) until
+  /// it changes by less than 1e-6 of the largest, 60 times at most.
+  Image<float> gather(const Image<float>& seen);
+  /// gather() of each measurement of a frame. Pixels that are saturated or invalid stay as they
+  /// are; saturated ones scatter at least what they say, invalid ones nothing.
+  /// @param table  whose black level and saturation the raw numbers have
+  /// @param clean  (1, H, W, K), of noise about that of the raw numbers
+  /// @throws std::invalid_argument if the measurements differ
+  /// @note the same bits for any number of threads
+  void remove(const RawView& raw, const DecodingTable& table, RawFrames& clean);
+
+ private:
+  struct Plan;
+  const Plan& plan_of(int height, int width);
+  Image<float> gathered(const Plan& plan, const Image<float>& seen) const;
+
+  Image<float> kernel_;
+  double share_ = 0.0;
+  std::unique_ptr<Plan> plan_;
+};
+
 }  // namespace tofsmith

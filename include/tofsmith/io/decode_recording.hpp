@@ -86,6 +86,9 @@ struct DecodeRequest {
   /// values of the nearest one, and its depth along the axis. Pixels that the lens does not see are
   /// invalid. Needs a lens; nothing changes without distortion.
   bool undistort = false;
+  /// Rays of points and z, in place of the lens's, as makers give them: .npy, (H, W, 2) of x/z and
+  /// y/z or (H, W, 3) of directions; pixels of NaN see nothing and are invalid. Empty: none.
+  std::filesystem::path rays;
   std::optional<int> frame;  ///< this one alone, counted from 0; none: all
   bool stack = false;        ///< all frames in one .npy a plane, name-PLANE.npy
   /// Means of so many consecutive frames are decoded, as frames of their own with a noise so much
@@ -96,6 +99,8 @@ struct DecodeRequest {
   /// merge_exposures() makes one of them. Empty: none. The recording holds whole groups; `frame`
   /// counts those. Goes without `average`.
   std::vector<double> hdr;
+  /// Image of shares that StrayLight takes off each frame before all else (.npy, ..); empty: none.
+  std::filesystem::path stray_light;
   /// Of how many equal measurements each raw number is the mean already, > 0: their noise is so
   /// much smaller. With `average` it multiplies.
   double averaged = 1.0;

@@ -44,6 +44,8 @@ Page depth_report(const CalibratedDepth& found, const std::string& source,
                   const std::string& command_line);
 Page temperature_report(const TemperatureDrift& found, const std::string& source,
                         const std::string& command_line);
+Page stray_light_report(const CalibratedStrayLight& found, const std::string& source,
+                        const std::string& command_line);
 Page noise_report(const PhotonTransfer& found, const std::string& command_line);
 
 }  // namespace tofsmith

@@ -73,6 +73,10 @@ class PixelRays {
   PixelRays() = default;
   /// @throws std::invalid_argument as PinholeView::validate()
   explicit PixelRays(PinholeView view);
+  /// Rays as a camera's maker gives them, in place of the view's own.
+  /// @param slopes  x/z and y/z of every pixel, row by row; NaN: of pixels that see nothing
+  /// @throws std::invalid_argument also unless there is one for each pixel
+  PixelRays(PinholeView view, std::vector<Eigen::Vector2d> slopes);
 
   const PinholeView& view() const { return view_; }
   /// As PinholeView::ray().

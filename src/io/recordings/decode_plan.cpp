@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
+#include "io/recordings/ray_map.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/io/image_file.hpp"
@@ -46,6 +48,14 @@ PixelMaps load_maps(const DecodeRequest& request, int height, int width) {
     for (float& offset_m : maps.delay_offset_m.pixels)
       offset_m += static_cast<float>(request.offset_m);
   }
+  if (!request.rays.empty()) {
+    // A pixel that sees nothing is one that is dead.
+    if (maps.delay_offset_m.empty()) maps.delay_offset_m = Image<float>(height, width, 0.0f);
+    const std::vector<Eigen::Vector2d> slopes = read_ray_map(request.rays, height, width);
+    for (std::size_t i = 0; i < slopes.size(); ++i)
+      if (!slopes[i].allFinite())
+        maps.delay_offset_m.pixels[i] = std::numeric_limits<float>::quiet_NaN();
+  }
   load_map(request.gain_map, "gain", height, width, &PixelMaps::gain, maps);
   return maps;
 }
@@ -67,6 +77,8 @@ void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
   if (request.filter) request.filter->validate();
   require(!request.undistort || request.lens, "undistort", "true",
           "needs a camera with [lens], whose distortion is taken out");
+  require(!request.undistort || request.rays.empty(), "undistort", "true",
+          "goes without a map of rays");
   require(request.frame.value_or(0) >= 0, "frame", request.frame.value_or(0), "must be >= 0");
   require(!request.stack || output.extension() == ".npy", "stack", "true",
           fmt::format("goes with a .npy file; the output is {}", output.string()));
@@ -100,6 +112,11 @@ std::optional<Undistortion> undistortion_of(const DecodeRequest& request, const 
   return Undistortion(view);
 }
 
+PixelRays rays_of(const DecodeRequest& request, const PinholeView& view) {
+  if (request.rays.empty()) return PixelRays(view);
+  return {view, read_ray_map(request.rays, view.height, view.width)};
+}
+
 std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const AnyDecoder& decoder) {
   if (request.outputs.empty())
     return holds_depth_only(request.output) ? std::vector{DecodedPlane::depth}
@@ -110,6 +127,21 @@ std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const An
   return planes;
 }
 
+namespace {
+
+Image<float> stray_kernel_of(const DecodeRequest& request) {
+  if (request.stray_light.empty()) return {};
+  Image<float> kernel = read_float_image(request.stray_light, "kernel");
+  try {
+    static_cast<void>(StrayLight(kernel));
+  } catch (const std::invalid_argument& error) {
+    throw IoError(request.stray_light.string(), error.what());
+  }
+  return kernel;
+}
+
+}  // namespace
+
 Preparation preparation_of(const DecodeRequest& request) {
   Preparation preparation{.average = request.average,
                           .averaged = request.averaged,
@@ -117,6 +149,7 @@ Preparation preparation_of(const DecodeRequest& request) {
                           .filter = request.filter,
                           .find_mixed = request.mixed.has_value(),
                           .undistort = request.undistort,
+                          .stray_kernel = stray_kernel_of(request),
                           .hdr = request.hdr};
   if (preparation.time_filter && preparation.filter) preparation.time_filter->before_filter = true;
   return preparation;

@@ -40,7 +40,7 @@ DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
   const std::string held = fmt::format("{} holds {} frame{}", request.raw.front().string(),
                                        reader.frames(), reader.frames() == 1 ? "" : "s");
   require(request.average <= reader.frames(), "average", request.average, held);
-  const Preparation preparation = preparation_of(request);
+  const Preparation preparation{.average = request.average, .hdr = request.hdr};
   const int frames = preparation.frames_of(reader.frames());
   require(request.hdr.empty() || reader.frames() % preparation.group() == 0, "hdr",
           fmt::format("{} exposures", request.hdr.size()), fmt::format("{}: not a multiple", held));
@@ -66,8 +66,8 @@ DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
           .first_frame = request.frame.value_or(0),
           .frames = request.frame ? 1 : frames,
           .view = view,
-          .pixel_rays = as_z                           ? PixelRays(view)
-                        : holds_points(request.output) ? PixelRays(written)
+          .pixel_rays = as_z                           ? rays_of(request, view)
+                        : holds_points(request.output) ? rays_of(request, written)
                                                        : PixelRays(),
           .undistortion = undistortion_of(request, view)};
 }
@@ -75,8 +75,8 @@ DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
 /// Not even OutputPolicy::overwrite may replace what is being read.
 void check_inputs_are_kept(const DecodeRequest& request, const DecodeTarget& target) {
   std::vector<std::string> inputs = request.other_inputs;
-  for (const std::filesystem::path& path :
-       {request.raw_format, request.offset_map, request.gain_map})
+  for (const std::filesystem::path& path : {request.raw_format, request.offset_map,
+                                            request.gain_map, request.stray_light, request.rays})
     inputs.push_back(path.string());
   for (const std::filesystem::path& path : request.raw) inputs.push_back(path.string());
   for (const std::filesystem::path& path : target.paths()) check_not_input(path, inputs);

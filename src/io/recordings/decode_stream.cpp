@@ -112,7 +112,7 @@ void decode_stream(const DecodeRequest& asked, const AnyDecoder& decoder, const 
       .needs_signal = correction && correction->needs_signal(),
       .as_z = request.kind == DepthKind::z,
       .view = view,
-      .pixel_rays = request.kind == DepthKind::z ? PixelRays(view) : PixelRays(),
+      .pixel_rays = request.kind == DepthKind::z ? rays_of(request, view) : PixelRays(),
       .undistortion = undistortion_of(request, view)};
 
   StreamFrames frames(read, format);

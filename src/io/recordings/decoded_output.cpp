@@ -47,10 +47,10 @@ PointCloud cloud(const DecodedPlanes& decoded, const std::vector<DecodedPlane>& 
   for (int row = 0; row < decoded.height(); ++row)
     for (int column = 0; column < decoded.width(); ++column) {
       const float depth_m = decoded.depth_m()(row, column);
-      const bool has_point = std::isfinite(depth_m) &&
-                             (all_points || decoded.statuses()(row, column) == PixelStatus::ok);
-      if (!has_point && !organized) continue;
       const Eigen::Vector3d point = pixel_rays.ray(row, column) * static_cast<double>(depth_m);
+      const bool has_point =
+          point.allFinite() && (all_points || decoded.statuses()(row, column) == PixelStatus::ok);
+      if (!has_point && !organized) continue;
       if (has_point)
         result.points_m.push_back({static_cast<float>(point.x()), static_cast<float>(point.y()),
                                    static_cast<float>(point.z())});

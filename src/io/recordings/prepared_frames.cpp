@@ -63,11 +63,19 @@ double Preparation::frame_bytes(int height, int width, int measurements) const {
   std::size_t bytes = 0;
   if (time_filter) bytes += TimeFilter::memory_bytes(height, width, measurements, threads);
   if (filter) bytes += Filter::memory_bytes(*filter, height, width, measurements, threads);
+  if (!stray_kernel.empty())
+    bytes += static_cast<std::size_t>(
+        StrayLight(stray_kernel).memory_bytes(height, width, measurements));
   const double for_mixed = find_mixed ? bytes_to_find_mixed * height * width : 0.0;
   return for_mixed + static_cast<double>(bytes);
 }
 
 double Preparation::row_bytes(int width, int measurements) const {
+  const double clean = stray_kernel.empty() ? 0.0 : 1.0 * sizeof(float) * width * measurements;
+  return clean + row_bytes_of_sums(width, measurements);
+}
+
+double Preparation::row_bytes_of_sums(int width, int measurements) const {
   if (!hdr.empty())
     return static_cast<double>(width) * static_cast<double>(sizeof(float)) *
            ((group() + 1.0) * measurements + 2.0);
@@ -116,11 +124,16 @@ PreparedFrames::PreparedFrames(Input input, const DecodingTable& table,
     : table_(table), preparation_(preparation), recorded_(recorded), input_(std::move(input)) {
   if (preparation.time_filter) time_filter_.emplace(table, *preparation.time_filter);
   if (preparation.filter) filter_.emplace(table, *preparation.filter);
+  if (!preparation.stray_kernel.empty()) stray_light_.emplace(preparation.stray_kernel);
 }
 
 /// As it is in the recording.
 std::optional<RawView> PreparedFrames::read() {
   std::optional<RawView> raw = input_();
+  if (raw && stray_light_) {
+    stray_light_->remove(*raw, table_, clean_);
+    raw = RawView::interleaved(clean_.values.data(), raw->height, raw->width, raw->measurements);
+  }
   if (!raw || preparation_.averaged == 1.0) return raw;
   averaged_.assign(static_cast<std::size_t>(raw->pixels()),
                    static_cast<float>(preparation_.averaged));
@@ -154,7 +167,7 @@ std::optional<RawView> PreparedFrames::measured(int frame, const Progress& progr
   const int frames = frames_of_mean(preparation_, recorded_, frame);
   for (int i = 0; i < frames; ++i) {
     report(progress, static_cast<double>(i) / frames, "averaging");
-    const std::optional<RawView> raw = input_();
+    std::optional<RawView> raw = read();
     if (!raw && i == 0) return std::nullopt;
     if (!raw) break;
     if (i == 0) sums_.start(*raw, table_.saturation_level);

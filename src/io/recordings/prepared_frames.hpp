@@ -21,9 +21,12 @@ struct Preparation {
   std::optional<FilterOptions> filter;           ///< of what comes of that
   bool find_mixed = false;                       ///< afterwards, in whole frames
   bool undistort = false;                        ///< last of all, in whole frames
+  Image<float> stray_kernel;                     ///< of StrayLight, taken off first; empty: none
   std::vector<double> hdr;                       ///< exposures of frames that make one; empty: none
 
-  bool needs_frames() const { return time_filter || filter || find_mixed || undistort; }
+  bool needs_frames() const {
+    return time_filter || filter || find_mixed || undistort || !stray_kernel.empty();
+  }
   /// Frames that come out of so many.
   int frames_of(int recorded) const { return (recorded + group() - 1) / group(); }
   /// Frames that one of those is made of.
@@ -31,6 +34,9 @@ struct Preparation {
   /// What it takes beside the rows that are read [bytes], in all and for each row under way.
   double frame_bytes(int height, int width, int measurements) const;
   double row_bytes(int width, int measurements) const;
+
+ private:
+  double row_bytes_of_sums(int width, int measurements) const;
 };
 
 /// Sums of the same rows of frames after another.
@@ -91,6 +97,8 @@ class PreparedFrames {
   RowSums sums_;
   std::vector<RawFrames> exposed_;  // of one group, as they were read
   MergedExposures merged_;
+  std::optional<StrayLight> stray_light_;
+  RawFrames clean_;              // of stray light
   std::vector<float> averaged_;  // of numbers that are read, unless of one
   std::optional<TimeFilter> time_filter_;
   int frames_added_ = 0;  // to time_filter_

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "calibrate_output.hpp"
+#include "terminal_progress.hpp"
+#include "tofsmith/calibrate/correlation_calibration.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/image_file.hpp"
+#include "tofsmith/io/raw_frames.hpp"
+#include "tofsmith/report/instrument_reports.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+struct StrayLightArguments {
+  std::string file, dark, kernel, page;
+  CameraArguments camera;
+};
+
+nlohmann::ordered_json document_of(const CalibratedStrayLight& found) {
+  nlohmann::ordered_json shares = nlohmann::ordered_json::array();
+  for (const Estimate& share : found.share) shares.push_back(estimate_json(share));
+  return {{"total", estimate_json(found.total)},
+          {"radius_px", found.radius_px},
+          {"share", shares},
+          {"target_pixels", found.target_pixels},
+          {"pixels", found.pixels},
+          {"notes", found.notes}};
+}
+
+void run(const StrayLightArguments& arguments, const Session& session) {
+  const Camera camera = arguments.camera.load();
+  for (const std::string& path : {arguments.kernel, arguments.page})
+    if (!path.empty()) session.check_output(path);
+  const RawFrames frames = read_raw_frames(arguments.file);
+  RawFrames dark;
+  if (!arguments.dark.empty()) dark = read_raw_frames(arguments.dark);
+  CalibratedStrayLight found;
+  try {
+    found = calibrate_stray_light(frames, dark, camera, terminal_progress("calibrating"));
+  } catch (const std::invalid_argument& error) {
+    throw IoError(arguments.file, error.what());
+  }
+  session.print_json(document_of(found));
+  session.say(fmt::format(
+      "{:.3f} % ± {:.3f} of all light is scattered, up to {:.0f} pixels away, as {} pixels around "
+      "a target of {} say\n{}",
+      100.0 * found.total.value, 196.0 * found.total.standard_error, found.radius_px.back(),
+      found.pixels, found.target_pixels, note_lines(found.notes)));
+  if (!arguments.page.empty())
+    CalibrateOutput{.camera_path = "", .page_path = arguments.page}.write_page(
+        stray_light_report(found, arguments.file, session.command_line), session);
+  if (arguments.kernel.empty()) return;
+  write_float_image(arguments.kernel, found.kernel, "kernel", session.output_policy());
+  session.say(fmt::format("wrote {}\nnext: tofsmith decode RAW --code CODE --stray-light {}",
+                          arguments.kernel, arguments.kernel));
+}
+
+}  // namespace
+
+void add_calibrate_stray_light(CLI::App& calibrate, Session& session) {
+  auto arguments = std::make_shared<StrayLightArguments>();
+  CLI::App* command = calibrate.add_subcommand(
+      "stray-light", "light that the lens scatters, from frames of a small bright target");
+  command
+      ->add_option("RAW", arguments->file,
+                   "raw frames (.npy .npz .h5), (H,W,K) or (F,H,W,K), of a small bright target "
+                   "before black, not saturated")
+      ->required();
+  command->add_option("--dark", arguments->dark, "the same with the target covered");
+  arguments->camera.add_to(*command);
+  command->add_option("-o,--output", arguments->kernel,
+                      "write the shares of a pixel's light that others get (.npy .npz .exr .pfm), "
+                      "for decode --stray-light");
+  command->add_option("--report", arguments->page, "write a page with pictures (.html)");
+  command->callback([arguments, &session] { run(*arguments, session); });
+}
+
+}  // namespace tofsmith::apps

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/shared/periodic.hpp"
+#include "tofsmith/core/image.hpp"
+
+namespace tofsmith {
+
+/// Convolution of images of one size with a kernel, nothing beyond their edges.
+class PaddedConvolution {
+ public:
+  /// @param kernel  (2 R + 1, 2 Q + 1), its middle at no displacement; what is farther than the
+  ///                image is large counts for nothing
+  PaddedConvolution(const Image<float>& kernel, int height, int width);
+
+  /// @param image  of the size given
+  Image<float> apply(const Image<float>& image) const;
+  /// What a convolution takes beside its image [bytes].
+  static double bytes(const Image<float>& kernel, int height, int width);
+
+ private:
+  /// Row transforms of an image: real and imaginary parts, (rows, columns / 2 + 1) each.
+  struct Halves {
+    Eigen::MatrixXd real, imaginary;
+  };
+  Halves of_rows(const Eigen::MatrixXd& padded, int rows) const;
+
+  int height_, width_;
+  PeriodicTransform along_row_, along_column_;
+  Eigen::MatrixXcd real_, imaginary_;  // of the kernel: both halves along their columns
+};
+
+}  // namespace tofsmith
