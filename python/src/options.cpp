@@ -26,6 +26,11 @@ py::dict OptionReader::table(const char* name) {
   return py::dict(given);
 }
 
+py::object whole_number_of(const py::object& given) {
+  if (PyFloat_Check(given.ptr()) == 0 || !py::cast<bool>(given.attr("is_integer")())) return given;
+  return py::reinterpret_steal<py::object>(PyNumber_Long(given.ptr()));
+}
+
 void OptionReader::finish() const {
   for (const auto& entry : values_) {
     const std::string name = py::str(entry.first);

@@ -47,8 +47,8 @@ std::string needed() {
     return "True or False";
   } else if constexpr (std::is_integral_v<Value>) {
     using Limits = std::numeric_limits<Value>;
-    return "a whole number from " + std::to_string(Limits::min()) + " to " +
-           std::to_string(Limits::max());
+    if (std::is_signed_v<Value>) return "a whole number";  // which rules bound further
+    return "a whole number from 0 to " + std::to_string(Limits::max());
   } else if constexpr (std::is_floating_point_v<Value>) {
     return "a number";
   } else if constexpr (std::is_same_v<Value, std::string>) {
@@ -61,6 +61,16 @@ std::string needed() {
     return "a list of numbers";
   }
 }
+
+/// Whether a Python value becomes a whole number.
+template <typename Value>
+constexpr bool is_whole() {
+  if constexpr (is_optional<Value>) return is_whole<typename Value::value_type>();
+  return std::is_integral_v<Value> && !std::is_same_v<Value, bool>;
+}
+
+/// 1e4 as 10000; everything else as it is.
+py::object whole_number_of(const py::object& given);
 
 /// How a refusal shows what was given: "str 'abc'".
 std::string shown(py::handle value);
@@ -76,8 +86,9 @@ class OptionReader {
 
   template <typename Value>
   OptionReader& value(const char* name, Value& field) {
-    const py::object given = take(name);
+    py::object given = take(name);
     if (given.is_none()) return *this;
+    if constexpr (is_whole<Value>()) given = whole_number_of(given);
     // A bool must be one; a text is no list.
     py::detail::make_caster<Value> caster;
     if (!caster.load(given, !std::is_same_v<Value, bool>)) wrong_type(name, given, needed<Value>());

@@ -353,6 +353,10 @@ CameraLike = Union[Camera, Path]
 
 
 def camera_of(camera: CameraLike) -> Camera:
+    if isinstance(camera, str) and any(
+            camera == name for _, name, _ in _tofsmith.list_families()):
+        raise TypeError(f"camera: got {_check.shown(camera)}, a code; needs a camera: does the code "
+                        "come first?")
     if isinstance(camera, (str, os.PathLike)):
         return Camera(camera)
     return _check.instance(camera, Camera, "camera")

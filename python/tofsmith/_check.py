@@ -60,7 +60,9 @@ def text(value: object, name: str) -> str:
 
 
 def whole(value: Any, name: str, least: int, most: int = 2**31 - 1) -> int:
-    """A whole number of a range; numbers of NumPy too."""
+    """A whole number of a range; numbers of NumPy and 1e4 too."""
+    if isinstance(value, (float, np.floating)) and float(value).is_integer():
+        value = int(value)
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
         raise TypeError(f"{name}: got {shown(value)}; needs a whole number")
     if not least <= value <= most:
@@ -82,9 +84,22 @@ def one_of(value: object, name: str, words: tuple[str, ...]) -> str:
     raise ValueError(f"{name}: got {shown(value)}; needs one of {', '.join(words)}")
 
 
+def without_mask(value: Any) -> Any:
+    """Masked numbers as NaN, which is what invalid ones are here; whole numbers become floats
+    then. Anything else as it is."""
+    if not isinstance(value, np.ma.MaskedArray):
+        return value
+    mask = np.broadcast_to(np.asarray(value.mask), value.shape)
+    if not mask.any():
+        return value.data
+    numbers = np.array(value.data, np.result_type(value.dtype, np.float32))
+    numbers[mask] = np.nan
+    return numbers
+
+
 def real_array(value: Any, name: str, axes: str) -> npt.NDArray[Any]:
     """An array of real numbers with as many axes as `axes`, such as "(N, K)", names."""
-    array: npt.NDArray[Any] = np.asanyarray(value)
+    array: npt.NDArray[Any] = np.asanyarray(without_mask(value))
     if array.dtype.kind not in "fiu":
         raise ValueError(f"{name}: got dtype {array.dtype}; needs real numbers, such as float64")
     count = 0 if axes == "()" else axes.rstrip(",)").count(",") + 1
@@ -133,9 +148,7 @@ def raw_array(raw: Any, layout: str) -> tuple[npt.NDArray[Any], bool]:
     is_planar = one_of(layout, "layout", ("interleaved", "planar")) == "planar"
     if isinstance(raw, (list, tuple)):
         raw, is_planar = _together(raw), True
-    if not isinstance(raw, np.ndarray):
-        raise TypeError(f"raw: got {shown(raw)}; needs a numpy.ndarray, or a list of them, one a "
-                        "measurement")
+    raw = _numpy_array(raw, "raw", "a numpy.ndarray, or a list of them, one a measurement")
     if raw.dtype in (np.int8, np.int16):
         raw = raw.astype(np.float32)
     elif raw.dtype.kind in "iu" and raw.dtype.itemsize > 2:
@@ -143,11 +156,20 @@ def raw_array(raw: Any, layout: str) -> tuple[npt.NDArray[Any], bool]:
     return raw, is_planar
 
 
-def _together(arrays: Sequence[Any]) -> npt.NDArray[Any]:
+def _numpy_array(value: Any, name: str, needed: str) -> npt.NDArray[Any]:
+    """What NumPy makes an array of (torch, xarray, ..), masked numbers as NaN."""
+    value = without_mask(value)
+    if not isinstance(value, np.ndarray) and hasattr(value, "__array__"):
+        value = np.asarray(value)
+    if isinstance(value, np.ndarray):
+        return value
+    raise TypeError(f"{name}: got {shown(value)}; needs {needed}")
+
+
+def _together(given: Sequence[Any]) -> npt.NDArray[Any]:
     """(H, W) each to (K, H, W), (F, H, W) each to (F, K, H, W)."""
+    arrays = [_numpy_array(a, f"raw[{k}]", "a numpy.ndarray") for k, a in enumerate(given)]
     for k, array in enumerate(arrays):
-        if not isinstance(array, np.ndarray):
-            raise TypeError(f"raw[{k}]: got {shown(array)}; needs a numpy.ndarray")
         if array.ndim not in (2, 3):
             raise ValueError(f"raw[{k}]: got shape {array.shape}; needs (H, W) or (F, H, W), as "
                              "each holds one measurement")

@@ -11,8 +11,9 @@ from typing import Any, Optional, Union
 import numpy.typing as npt
 
 from . import _check, _tofsmith
-from ._camera import CameraLike, camera_of
+from ._camera import Camera, CameraLike, camera_of
 from ._check import FloatArray, Path
+from ._notebook import code_picture
 from ._waveform import Waveform
 
 
@@ -67,11 +68,17 @@ class CodeSet:
         ValueError
             Naming the array and the rule it breaks.
         """
+        light = _check.finite_array(modulation, "modulation", "(N, E)")
+        sensor = _check.finite_array(demodulation, "demodulation", "(N, K)")
+        for array, what, axes in ((light, "modulation", "(N, E)"), (sensor, "demodulation", "(N, K)")):
+            if array.shape[0] < array.shape[1]:
+                raise ValueError(f"{what}: got shape {array.shape}; needs {axes}, a row for each of N "
+                                 "samples: turn it over (.T)")
         return cls._of(
             _tofsmith.CodeSet.from_arrays(
                 _check.text(name, "name"),
-                _check.finite_array(modulation, "modulation", "(N, E)"),
-                _check.finite_array(demodulation, "demodulation", "(N, K)"),
+                light,
+                sensor,
                 _check.whole(taps, "taps", 1, 64),
             )
         )
@@ -192,12 +199,18 @@ class CodeSet:
             f"K = {self.measurements}, N = {self.samples}>"
         )
 
+    def _repr_html_(self) -> str:
+        return code_picture(self, self.modulation, self.demodulation, self.taps)
+
 
 #: Where a code is asked for, the name of a family or a file will do.
 CodeLike = Union[CodeSet, Path]
 
 
 def code_of(code: CodeLike, camera: CameraLike) -> CodeSet:
+    if isinstance(code, Camera) or code in _tofsmith.built_in_camera_names():
+        raise TypeError(f"code: got {_check.shown(code)}, a camera; needs a code: does the camera "
+                        "come second?")
     if isinstance(code, (str, os.PathLike)):  # as commands do, at the camera's samples
         loaded, samples = load_code(code, camera), camera_of(camera).samples
         return loaded if loaded.samples == samples else loaded.resampled(samples)

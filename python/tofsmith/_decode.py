@@ -94,6 +94,22 @@ class Decoder:
             "multipath": None if multipath is None else dict(multipath),
         }
         self._handle = _tofsmith.Decoder(table._handle, options)
+        self._table = table
+        self._options = options
+
+    def __copy__(self) -> Decoder:
+        return self  # immutable
+
+    def __deepcopy__(self, memo: object) -> Decoder:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _decoder_with_lens, (self._table, self._options, self._lens)
+
+    def __repr__(self) -> str:
+        samples, measurements = self._table.correlation.shape
+        return (f"<Decoder {self._method}: K = {measurements}, N = {samples}, range "
+                f"{self._table.range_m:.4g} m>")
 
     @property
     def method(self) -> str:
@@ -101,7 +117,7 @@ class Decoder:
 
     @property
     def table(self) -> DecodingTable:
-        return DecodingTable._of(self._handle.table())
+        return self._table
 
     def decode(
         self,
@@ -200,6 +216,8 @@ class Decoder:
         offset_map: Optional[Path] = None,
         offset_m: float = 0.0,
         gain_map: Optional[Path] = None,
+        stray_light: Optional[Path] = None,
+        rays: Optional[Path] = None,
         memory_mb: float = 256.0,
         overwrite: bool = False,
         progress: Progress = None,
@@ -259,6 +277,12 @@ class Decoder:
             Finds pixels that see two surfaces, as Decoder.decode() does.
         offset_map, gain_map : str or path, optional
             Files of what Decoder.decode() takes as `delay_offset_m` and `gain`.
+        stray_light : str or path, optional
+            What CalibratedStrayLight.write() wrote: light that the lens scatters, taken off the raw
+            numbers before all else.
+        rays : str or path, optional
+            Rays of points and z as the camera's maker gives them, in place of its lens (.npy): (H,
+            W, 2) of x/z and y/z, or (H, W, 3) of directions; pixels of NaN are invalid.
         offset_m : float
             How much too far every pixel decodes, beside its map [m].
         memory_mb : float
@@ -298,7 +322,8 @@ class Decoder:
         } | frame_options(
             outputs, kind=kind, undistort=undistort, average=average, averaged=averaged,
             hdr=hdr, time_filter=time_filter, filter=filter, mixed=mixed, offset_map=offset_map,
-            offset_m=offset_m, gain_map=gain_map)
+            offset_m=offset_m, gain_map=gain_map, stray_light=stray_light,
+            rays=rays)
         values = self._handle.decode_recording(
             _check.paths(raw, "raw"), _check.path(output, "output"), self._lens, options,
             _check.progress(progress))
@@ -323,6 +348,8 @@ class Decoder:
         offset_map: Optional[Path] = None,
         offset_m: float = 0.0,
         gain_map: Optional[Path] = None,
+        stray_light: Optional[Path] = None,
+        rays: Optional[Path] = None,
         progress: Progress = None,
     ) -> DecodedStream:
         """Decodes frames as they come, each handed on before the next is read, in the memory of a
@@ -341,7 +368,7 @@ class Decoder:
             A .raw.toml file; see docs/raw_formats.md.
         outputs : iterable of str, optional
             As decode_recording() takes it; None: depth alone.
-        kind, undistort, average, averaged, hdr, time_filter, filter, mixed, offset_map, offset_m, gain_map
+        kind, undistort, average, averaged, hdr, time_filter, filter, mixed, offset_map, offset_m, gain_map, stray_light, rays
             As decode_recording() takes them.
         progress : callable, optional
             Called with (fraction, step); False stops.
@@ -379,7 +406,8 @@ class Decoder:
         options = {"raw_format": _check.path(raw_format, "raw_format")} | frame_options(
             outputs, kind=kind, undistort=undistort, average=average, averaged=averaged,
             hdr=hdr, time_filter=time_filter, filter=filter, mixed=mixed, offset_map=offset_map,
-            offset_m=offset_m, gain_map=gain_map)
+            offset_m=offset_m, gain_map=gain_map, stray_light=stray_light,
+            rays=rays)
         return DecodedStream(**self._handle.decode_stream(
             source, take, write, self._lens, options,
             _check.progress(progress)))
@@ -408,6 +436,15 @@ class Decoder:
         shape = raw.shape[:-3] + raw.shape[-2:] if is_planar else raw.shape[:-1]
         made: dict[str, Any] = {name: np.empty(shape, plane_types[name]) for name in names}
         return DepthImage(**made)
+
+
+def _decoder_with_lens(
+    table: DecodingTable, options: dict[str, Any], lens: Optional[dict[str, Any]]
+) -> Decoder:
+    """A pickled decoder."""
+    decoder = Decoder(table, **options)
+    decoder._lens = lens
+    return decoder
 
 
 def decode(

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from typing import Optional
+from typing import Any, Optional
 
 import numpy.typing as npt
 
@@ -28,6 +28,8 @@ class DecodingTable:
     _notes: list[str] = []
     #: Files it was read from, which no output may replace.
     _inputs: list[str] = []
+    #: How it was made, for pickle: a class method's name, its arguments and keywords.
+    _made: Optional[tuple[str, tuple[Any, ...], dict[str, Any]]] = None
 
     def __init__(self) -> None:
         raise TypeError(
@@ -107,6 +109,7 @@ class DecodingTable:
         name = _check.path(code, "code")
         handle, _, notes = _tofsmith.load_decoding_table(name, camera_of(camera)._handle, options)
         table = cls._of(handle)
+        table._made = ("load", (name, camera_of(camera)), options)
         table._notes = notes
         table._inputs = [name]
         if isinstance(camera, (str, os.PathLike)):
@@ -118,7 +121,9 @@ class DecodingTable:
         """The table of a code on a camera."""
         camera = camera_of(camera)
         handle = code_of(code, camera)._handle
-        return cls._of(_tofsmith.DecodingTable.of_code(handle, camera._handle))
+        table = cls._of(_tofsmith.DecodingTable.of_code(handle, camera._handle))
+        table._made = ("of_code", (code_of(code, camera), camera), {})
+        return table
 
     @classmethod
     def of_measured(
@@ -161,12 +166,33 @@ class DecodingTable:
             if ambient is not None or taps != 1:
                 raise ValueError("camera: got None; ambient and taps need the camera")
             metres = _check.number(range_m, "range_m")
-            return cls._of(_tofsmith.DecodingTable.of_correlation(table, metres))
+            plain = cls._of(_tofsmith.DecodingTable.of_correlation(table, metres))
+            plain._made = ("of_measured", (table,), {"range_m": metres})
+            return plain
         options = {"taps": taps, "ambient": ambient}
         made = _tofsmith.DecodingTable.of_measured(table, camera_of(camera)._handle, options)
         if range_m is not None:
             made = made.with_range(_check.number(range_m, "range_m"))
-        return cls._of(made)
+        measured = cls._of(made)
+        measured._made = ("of_measured", (table, camera_of(camera)),
+                          {"range_m": range_m, "taps": taps, "ambient": ambient})
+        return measured
+
+    def __copy__(self) -> DecodingTable:
+        return self  # immutable
+
+    def __deepcopy__(self, memo: object) -> DecodingTable:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        if self._made is None:
+            raise TypeError("a DecodingTable that a calibration made cannot be pickled: write it "
+                            "with write_table(), and load it with DecodingTable.load()")
+        return _remade, self._made
+
+    def __repr__(self) -> str:
+        samples, measurements = self.correlation.shape
+        return f"<DecodingTable: K = {measurements}, N = {samples}, range {self.range_m:.4g} m>"
 
     @property
     def notes(self) -> list[str]:
@@ -197,6 +223,12 @@ class DecodingTable:
     def ambiguous_depths(self) -> FloatArray:
         """Pairs of depths that look the same [m], (pairs, 2); decoders answer with the first."""
         return self._handle.ambiguous_depths()
+
+
+def _remade(name: str, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> DecodingTable:
+    """A pickled table: its file is read again, if it had one."""
+    table: DecodingTable = getattr(DecodingTable, name)(*arguments, **keywords)
+    return table
 
 
 def table_of(code: CodeLike | DecodingTable, camera: Optional[CameraLike]) -> DecodingTable:

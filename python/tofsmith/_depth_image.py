@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _check
+from ._notebook import depth_picture
 
 
 class PixelStatus(IntEnum):
@@ -54,7 +55,17 @@ multipath_planes = ("delay_m", "ratio", "returns")
 usual_planes = tuple(p for p in plane_types if p != "bin" and p not in multipath_planes)
 
 
-@dataclass
+#: Words that recordings and `tofsmith decode --outputs` have for some of them.
+plane_words = {
+    "depth": "depth_m",
+    "signal": "signal_e_per_s",
+    "ambient": "ambient_e_per_s",
+    "deviation": "predicted_standard_deviation_m",
+    "delay": "delay_m",
+}
+
+
+@dataclass(eq=False, repr=False)
 class DepthImage:
     """What a decoder says about every pixel; all planes are (H, W) or (F, H, W), None if not asked
     for. Pixels without depth (invalid, no_return) hold NaN in every plane of floats.
@@ -90,6 +101,31 @@ class DepthImage:
     ratio: Optional[npt.NDArray[np.float32]] = None
     returns: Optional[npt.NDArray[np.uint8]] = None
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, DepthImage):
+            return NotImplemented
+        mine, others = self.planes(), other.planes()
+        return mine.keys() == others.keys() and all(
+            np.array_equal(plane, others[name], equal_nan=plane.dtype.kind == "f")
+            for name, plane in mine.items())
+
+    __hash__ = None  # type: ignore[assignment]  # its planes may be written to
+
+    def __repr__(self) -> str:
+        planes = self.planes()
+        if not planes:
+            return "<DepthImage without planes>"
+        shape = " x ".join(str(n) for n in next(iter(planes.values())).shape)
+        parts = []
+        if self.depth_m is not None and np.isfinite(self.depth_m).any():
+            parts.append(f"{np.nanmin(self.depth_m):.4g} .. {np.nanmax(self.depth_m):.4g} m")
+        if self.status is not None and self.status.size:
+            parts.append(f"{np.mean(self.status == PixelStatus.ok):.1%} ok")
+        return f"<DepthImage {shape}: {', '.join([*parts, *planes])}>"
+
+    def _repr_html_(self) -> str:
+        return depth_picture(self, self.depth_m)
+
     def planes(self) -> dict[str, npt.NDArray[Any]]:
         """The planes there are, by name."""
         named = ((name, getattr(self, name)) for name in plane_types)
@@ -100,7 +136,7 @@ def plane_names(planes: Iterable[str], is_multipath: bool) -> tuple[str, ...]:
     if isinstance(planes, str):
         raise TypeError(f"planes: got the text '{planes}'; needs a list of names")
     known = tuple(p for p in plane_types if is_multipath or p not in multipath_planes)
-    names = tuple(_check.one_of(p, "planes", known) for p in planes)
+    names = tuple(_check.one_of(plane_words.get(p, p), "planes", known) for p in planes)
     if not names:
         raise ValueError("planes: got none; needs at least one of " + ", ".join(known))
     return names

@@ -202,11 +202,17 @@ def suggested_exposures(camera: CameraLike, method: str = "best") -> list[int]:
     return _tofsmith.suggested_exposures(camera_of(camera)._handle, _check.text(method, "method"))
 
 
+def _numbers_of(exposures: Union[int, Sequence[int]]) -> list[int]:
+    """One number, or several."""
+    several = exposures if isinstance(exposures, Sequence) else np.atleast_1d(exposures).tolist()
+    return [_check.whole(number, "exposures", 1) for number in several]
+
+
 def design(
     camera: CameraLike,
     *,
     method: Optional[str] = None,
-    exposures: Optional[Sequence[int]] = None,
+    exposures: Union[int, Sequence[int], None] = None,
     target: Optional[Target] = None,
     normalize: bool = False,
     robust: Optional[bool] = None,
@@ -230,7 +236,7 @@ def design(
         factorize: waveforms whose correlation functions come close to given ones, as in the paper;
         optimize: all waveforms together, by depth error itself; search: all codes on a chip clock,
         with proof where that is possible; best (the default): all that suit the camera.
-    exposures : sequence of int, optional
+    exposures : int, or sequence of int, optional
         Numbers of exposures to design for, 1 .. 8; None: what suits method and camera.
     target : str, path, CodeSet or ndarray (N, K), optional
         Correlation functions to factorize instead of Hamiltonian ones: a family, a code, a file of
@@ -269,7 +275,7 @@ def design(
     camera = camera_of(camera)
     options = {
         "method": method,
-        "exposures": None if exposures is None else list(exposures),
+        "exposures": None if exposures is None else _numbers_of(exposures),
         "robust": robust,
         "baselines": None if baselines is None else list(baselines),
         "best_rotation": best_rotation,

@@ -11,6 +11,7 @@ from typing import Any, Optional
 
 from . import _check, _tofsmith
 from ._check import Path
+from ._depth_image import plane_words
 from ._filter import FilterLike, TimeFilterLike, filter_options, time_filter_options
 
 
@@ -90,12 +91,15 @@ def frame_options(
     offset_map: Optional[Path],
     offset_m: float,
     gain_map: Optional[Path],
+    stray_light: Optional[Path],
+    rays: Optional[Path],
 ) -> dict[str, Any]:
     """What recordings and streams share, as the library takes it."""
     planes = tuple(_tofsmith.decoded_planes())
+    words = {plane: word for word, plane in plane_words.items()}
     return {
         "outputs": [] if outputs is None else [
-            _check.one_of(plane, "outputs", planes) for plane in outputs],
+            _check.one_of(words.get(plane, plane), "outputs", planes) for plane in outputs],
         "kind": kind,
         "undistort": bool(undistort),
         "average": _check.whole(average, "average", 1),
@@ -107,6 +111,8 @@ def frame_options(
         "offset_map": path_or_none(offset_map, "offset_map"),
         "offset_m": _check.number(offset_m, "offset_m"),
         "gain_map": path_or_none(gain_map, "gain_map"),
+        "stray_light": path_or_none(stray_light, "stray_light"),
+        "rays": path_or_none(rays, "rays"),
     }
 
 

@@ -19,11 +19,12 @@ from ._camera_fields import Lens
 from ._check import Path, Progress
 from ._code import CodeLike, code_of
 from ._light import ExponentialTail, MultipathReturns, Transients, light_dict
+from ._notebook import depth_picture
 
 FloatImage = npt.NDArray[np.float32]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Scene:
     """What a camera looks at, pixel by pixel; all planes are (H, W).
 
@@ -47,6 +48,32 @@ class Scene:
     cosine: Optional[npt.NDArray[Any]] = None
     ambient_scale: Optional[npt.NDArray[Any]] = None
     lens: Optional[Lens] = None
+
+    def _planes(self) -> dict[str, npt.NDArray[Any]]:
+        names = ("depth_m", "albedo", "cosine", "ambient_scale")
+        return {name: np.asarray(getattr(self, name)) for name in names
+                if getattr(self, name) is not None}
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scene):
+            return NotImplemented
+        mine, others = self._planes(), other._planes()
+        return self.lens == other.lens and mine.keys() == others.keys() and all(
+            np.array_equal(plane, others[name], equal_nan=plane.dtype.kind == "f")
+            for name, plane in mine.items())
+
+    __hash__ = None  # type: ignore[assignment]  # of arrays, which may be written to
+
+    def __repr__(self) -> str:
+        depth_m = np.asarray(self.depth_m)
+        shape = " x ".join(str(n) for n in depth_m.shape)
+        parts = []
+        if depth_m.dtype.kind == "f" and np.isfinite(depth_m).any():
+            parts.append(f"{np.nanmin(depth_m):.4g} .. {np.nanmax(depth_m):.4g} m")
+        return f"<Scene {shape}: {', '.join([*parts, *self._planes()])}>"
+
+    def _repr_html_(self) -> str:
+        return depth_picture(self, np.asarray(self.depth_m))
 
 
 def built_in_scene_names() -> list[str]:

@@ -193,6 +193,8 @@ void Temperature::validate() const {
 
 void Camera::validate() const {
   require_positive(fundamental_frequency_hz, "fundamental_frequency_hz");
+  require(fundamental_frequency_hz >= 1e3, "fundamental_frequency_hz", fundamental_frequency_hz,
+          "must be >= 1000: it is in Hz, 20 MHz are 20e6");
   require(samples >= 8 && samples <= 65536, "samples", samples, "must be in [8, 65536]");
   if (exposure_s.each_s.empty()) require_positive(exposure_s.total_s, "exposure_s");
   for (const double time_s : exposure_s.each_s) require_positive(time_s, "exposure_s");

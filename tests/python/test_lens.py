@@ -158,3 +158,45 @@ def test_undistorting_needs_a_lens(tmp_path):
     with pytest.raises(ValueError, match=r"undistort = true; needs a camera with \[lens\]"):
         ts.Decoder("hamiltonian-k4", "paper-10f0").decode_recording(
             tmp_path / "raw.npy", tmp_path / "z.npy", undistort=True)
+
+
+def test_rays_of_the_maker_stand_for_the_lens(tmp_path):
+    lens = lens_of(*LENSES[0])
+    raw = np.random.default_rng(3).poisson(500, (240, 320, 4)).astype(np.float32)
+    ts.write_raw(tmp_path / "raw.npy", raw)
+    rays = ts.points_m(np.ones((240, 320)), lens).astype(float)
+    np.save(tmp_path / "slopes.npy", rays[..., :2] / rays[..., 2:])
+    np.save(tmp_path / "directions.npy", 3 * rays)
+    with_lens = ts.Decoder("hamiltonian-k4", ts.Camera("paper-10f0", lens=lens))
+    without = ts.Decoder("hamiltonian-k4", "paper-10f0")
+
+    def z_of(decoder, **options):
+        decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "z.npz", kind="z",
+                                 overwrite=True, **options)
+        return np.load(tmp_path / "z.npz")
+
+    truth = z_of(with_lens)["depth"]
+    for name in ("slopes.npy", "directions.npy"):
+        assert np.allclose(z_of(without, rays=tmp_path / name)["depth"], truth, rtol=1e-6)
+    blind = np.array(rays)
+    blind[7, 9] = np.nan
+    np.save(tmp_path / "blind.npy", blind)
+    seen = z_of(without, rays=tmp_path / "blind.npy")
+    assert seen["status"][7, 9] == ts.PixelStatus.invalid
+    assert np.isnan(seen["depth"]).sum() == 1
+    without.decode_recording(tmp_path / "raw.npy", tmp_path / "p.ply", rays=tmp_path / "blind.npy",
+                             all_points=True)
+    assert b"element vertex %d" % (240 * 320 - 1) in (tmp_path / "p.ply").read_bytes()[:400]
+
+
+@pytest.mark.parametrize("rays, text", [
+    (np.ones((240, 320, 4)), r"found shape \(240, 320, 4\); expected \(240, 320, 2\)"),
+    (np.ones((24, 32, 2)), r"found shape \(24, 32, 2\)"),
+    (-np.ones((240, 320, 3)), r"found the ray .* of pixel \(0, 0\); expected z > 0"),
+])
+def test_rays_that_are_none_are_refused(tmp_path, rays, text):
+    ts.write_raw(tmp_path / "raw.npy", np.ones((240, 320, 4), np.float32))
+    np.save(tmp_path / "rays.npy", rays)
+    with pytest.raises(OSError, match=text):
+        ts.Decoder("hamiltonian-k4", "paper-10f0").decode_recording(
+            tmp_path / "raw.npy", tmp_path / "z.npy", kind="z", rays=tmp_path / "rays.npy")

@@ -195,8 +195,8 @@ def test_decode_refuses_alike(ways, camera):
         assert str(caught.value) in done.stderr
     with pytest.raises(OSError, match="choose another name"):
         decoder.decode_recording("raw.npy", "raw.npy", frame=0, overwrite=True)
-    with pytest.raises(ValueError, match="outputs: got str 'depth_m'; needs one of depth, "):
-        decoder.decode_recording("raw.npy", "d.npz", outputs=["depth_m"])
+    with pytest.raises(ValueError, match="outputs: got str 'deep'; needs one of depth, "):
+        decoder.decode_recording("raw.npy", "d.npz", outputs=["deep"])
     with pytest.raises(ValueError, match="filter strength = weak; must be light, normal or strong"):
         decoder.decode_recording("raw.npy", "d.npz", filter="weak")
     with pytest.raises(ValueError, match="average: got 0"):

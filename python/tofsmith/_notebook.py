@@ -1,0 +1,64 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""What notebooks show of an object: its repr, and a picture where matplotlib is there."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+
+def picture_of(value: object, draw: Callable[[Any], Any]) -> str:
+    """HTML of `value`.
+
+    Parameters
+    ----------
+    value : object
+        Whose repr stands above the picture.
+    draw : callable
+        Gives a matplotlib figure of tofsmith.plot, which it is called with.
+    """
+    text = f"<code>{html.escape(repr(value))}</code>"
+    try:
+        from . import plot
+    except ImportError:  # no matplotlib
+        return text
+    data = io.BytesIO()
+    draw(plot).savefig(data, format="png", dpi=100)
+    encoded = base64.b64encode(data.getvalue()).decode("ascii")
+    name = html.escape(type(value).__name__)
+    return f'{text}<br><img alt="{name}" src="data:image/png;base64,{encoded}">'
+
+
+def depth_picture(value: object, depth_m: Any) -> str:
+    """HTML of what holds depth, (H, W) or (F, H, W): the first frame."""
+    if depth_m is None or not np.isfinite(depth_m).any() or min(np.shape(depth_m)) == 0:
+        return f"<code>{html.escape(repr(value))}</code>"
+    frame = depth_m if np.ndim(depth_m) == 2 else depth_m[0]
+    return picture_of(value, lambda plot: plot.depth_maps(frame))
+
+
+def code_picture(value: object, modulation: Any, demodulation: Any, taps: int) -> str:
+    """HTML of a code: an exposure a row, its modulation and the demodulations of its taps."""
+
+    def draw(plot: Any) -> Any:
+        samples, exposures = modulation.shape
+        figure = plot.new_figure(None, 4.5, 0.4 + 0.8 * exposures)
+        axes = figure.subplots(exposures, 1, sharex=True, squeeze=False)[:, 0]
+        periods = np.arange(samples) / samples
+        for e, axis in enumerate(axes):
+            light = modulation[:, e] / max(float(modulation.max()), 1e-300)
+            axis.step(periods, light, where="post", label="light, of its peak")
+            for tap in range(taps):
+                axis.step(periods, demodulation[:, e * taps + tap], where="post",
+                          label="sensor" if taps == 1 else f"tap {tap + 1}")
+        axes[0].legend(loc="upper right")
+        axes[-1].set_xlabel("period")
+        return figure
+
+    return picture_of(value, draw)

@@ -1,0 +1,126 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Objects behave as users of NumPy and notebooks expect."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+
+import tofsmith as ts
+
+raw = np.random.default_rng(2).poisson(900, (6, 8, 4)).astype(np.uint16)
+
+
+class Tensor:
+    """What torch, xarray and others have in common."""
+
+    def __init__(self, values):
+        self.values = values
+
+    def __array__(self, dtype=None):
+        return self.values if dtype is None else self.values.astype(dtype)
+
+
+@pytest.fixture
+def decoder():
+    return ts.Decoder("hamiltonian-k4", "paper-10f0", min_confidence=0.3)
+
+
+def test_raw_numbers_may_be_what_numpy_makes_an_array_of(decoder):
+    truth = decoder.decode(raw)
+    assert decoder.decode(Tensor(raw)) == truth
+    assert decoder.decode([Tensor(raw[..., k]) for k in range(4)]) == truth
+    assert decoder.decode(np.ma.masked_array(raw)) == truth
+    mask = np.zeros(raw.shape, bool)
+    mask[2, 3, 1] = True
+    masked = decoder.decode(np.ma.masked_array(raw, mask))
+    assert masked.status[2, 3] == ts.PixelStatus.invalid
+    assert (masked.status != ts.PixelStatus.invalid).sum() == 47
+    kept = masked.status != ts.PixelStatus.invalid
+    assert np.array_equal(masked.depth_m[kept], truth.depth_m[kept], equal_nan=True)
+
+
+def test_equal_is_what_holds_the_same(decoder):
+    image, other = decoder.decode(raw), decoder.decode(raw)
+    assert image == other
+    other.depth_m[0, 0] += 1
+    assert image != other
+    assert image != decoder.decode(raw, planes=["depth_m"])
+    assert image != 3
+    scene = ts.load_scene("table-top", width=8, height=6)
+    assert scene == ts.load_scene("table-top", width=8, height=6)
+    assert scene != ts.load_scene("room", width=8, height=6)
+    assert scene != ts.Scene(scene.depth_m, scene.albedo, scene.cosine)
+
+
+def test_reprs_are_short_and_notebooks_get_a_picture(decoder):
+    image = decoder.decode(raw)
+    scene = ts.load_scene("table-top")
+    code = ts.build_family("hamiltonian-k4", "paper-10f0")
+    for value, words in ((image, "<DepthImage 6 x 8: "), (scene, "<Scene 240 x 320: "),
+                         (decoder, "<Decoder zncc: K = 4, N = 240, range 9.993 m>"),
+                         (decoder.table, "<DecodingTable: K = 4, N = 240"), (code, "<CodeSet ")):
+        assert repr(value).startswith(words)
+        assert len(repr(value)) < 200
+    pytest.importorskip("matplotlib")
+    for value in (image, scene, code):
+        page = value._repr_html_()
+        assert "&lt;" in page.split("<img")[0]
+        assert "data:image/png;base64,iVBOR" in page
+    assert "img" not in ts.DepthImage()._repr_html_()
+
+
+def test_decoders_copy_and_pickle(decoder, tmp_path):
+    assert copy.copy(decoder) is decoder
+    assert copy.deepcopy({"decoder": decoder})["decoder"] is decoder
+    camera = ts.Camera("paper-10f0", lens={"fx_px": 9.0, "fy_px": 9.0, "cx_px": 4.0, "cy_px": 3.0})
+    chi = ts.DecodingTable.of_code("hamiltonian-k4", camera).correlation
+    np.savetxt(tmp_path / "table.csv", chi, delimiter=",")
+    for made in (decoder, ts.Decoder("hamiltonian-k4", camera, method="ml"),
+                 ts.Decoder(ts.DecodingTable.of_measured(chi, camera)),
+                 ts.Decoder(ts.DecodingTable.of_measured(chi, range_m=9.0)),
+                 ts.Decoder(ts.DecodingTable.load(tmp_path / "table.csv", camera))):
+        again = pickle.loads(pickle.dumps(made))
+        assert again.method == made.method
+        assert again.decode(raw) == made.decode(raw)
+    ts.write_raw(tmp_path / "raw.npy", raw)
+    for of, name in ((ts.Decoder("hamiltonian-k4", camera), "a.npy"),
+                     (pickle.loads(pickle.dumps(ts.Decoder("hamiltonian-k4", camera))), "b.npy")):
+        of.decode_recording(tmp_path / "raw.npy", tmp_path / name, kind="z")
+    assert (tmp_path / "a.npy").read_bytes() == (tmp_path / "b.npy").read_bytes()
+
+
+def test_planes_have_either_name(decoder, tmp_path):
+    image = decoder.decode(raw, planes=["depth", "deviation"])
+    assert list(image.planes()) == ["depth_m", "predicted_standard_deviation_m"]
+    ts.write_raw(tmp_path / "raw.npy", raw)
+    done = decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "d.npz",
+                                    outputs=["depth_m", "signal"])
+    assert done.outputs == ["depth", "signal"]
+
+
+def test_one_number_will_do_where_a_list_is_asked_for():
+    found = ts.design("paper-10f0", exposures=3, effort=0.01, trials=1000, method="factorize")
+    designed = [c for c in found.candidates if c.method == "factorize"]
+    assert designed and {c.code.exposures for c in designed} == {3}
+    assert ts.evaluate("hamiltonian-k4", "paper-10f0", trials=1e2).trials == 100
+
+
+@pytest.mark.parametrize("call, error, text", [
+    (lambda: ts.evaluate("paper-10f0", "hamiltonian-k4"), TypeError,
+     "camera: got str 'hamiltonian-k4', a code; needs a camera: does the code come first?"),
+    (lambda: ts.Decoder("paper-10f0", ts.Camera("paper-10f0")), OSError, "paper-10f0"),
+    (lambda: ts.evaluate("paper-10f0", ts.Camera("paper-10f0")), TypeError, "a camera; needs a code"),
+    (lambda: ts.evaluate("hamiltonian-k4", "paper-10f0", trials=10.5), TypeError,
+     "trials: got float 10.5; needs a whole number"),
+    (lambda: ts.CodeSet.from_arrays(np.ones((4, 240)), np.ones((4, 240))), ValueError,
+     "turn it over"),
+    (lambda: ts.Camera(fundamental_frequency_hz=20), ValueError, "20 MHz are 20e6"),
+    (lambda: ts.design("paper-10f0", exposures=[2.5]), TypeError, "exposures: got float 2.5"),
+])
+def test_what_is_meant_otherwise_is_told(call, error, text):
+    with pytest.raises(error) as caught:
+        call()
+    assert text in str(caught.value)
