@@ -113,16 +113,16 @@ Scene scene_of(const Eigen::MatrixXd& numbers, const Eigen::MatrixXd& seen, doub
 
 /// Distances up to the farthest of a pixel around the target from its middle.
 std::vector<double> nodes_of(const Scene& scene) {
-  double row = 0.0, column = 0.0, farthest = 0.0;
-  for (const std::size_t p : scene.target) {
-    row += static_cast<double>(static_cast<int>(p) / scene.width);
-    column += static_cast<double>(static_cast<int>(p) % scene.width);
-  }
-  row /= static_cast<double>(scene.target.size());
-  column /= static_cast<double>(scene.target.size());
+  const auto place_of = [&](std::size_t pixel) {
+    const int row = static_cast<int>(pixel) / scene.width;
+    return Eigen::Vector2d(row, static_cast<int>(pixel) % scene.width);
+  };
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const std::size_t p : scene.target)
+    middle += place_of(p) / static_cast<double>(scene.target.size());
+  double farthest = 0.0;
   for (const std::size_t p : scene.around)
-    farthest = std::max(farthest, std::hypot(static_cast<int>(p) / scene.width - row,
-                                             static_cast<int>(p) % scene.width - column));
+    farthest = std::max(farthest, (place_of(p) - middle).norm());
   std::vector<double> nodes;
   for (double r = first_radius_px; nodes.empty() || nodes.back() < farthest; r *= radius_step)
     nodes.push_back(r);

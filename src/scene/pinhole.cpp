@@ -73,12 +73,12 @@ PinholeView PinholeView::centred(int width, int height, double horizontal_angle_
   require(horizontal_angle_rad > 0.0 && horizontal_angle_rad < std::numbers::pi,
           "horizontal_angle_rad", horizontal_angle_rad, "must be in (0, pi)");
   const double focal_px = 0.5 * width / std::tan(0.5 * horizontal_angle_rad);
-  const PinholeView view{.fx_px = focal_px,
-                         .fy_px = focal_px,
-                         .cx_px = 0.5 * (width - 1),
-                         .cy_px = 0.5 * (height - 1),
-                         .width = width,
-                         .height = height};
+  PinholeView view{.fx_px = focal_px,
+                   .fy_px = focal_px,
+                   .cx_px = 0.5 * (width - 1),
+                   .cy_px = 0.5 * (height - 1),
+                   .width = width,
+                   .height = height};
   view.validate();
   return view;
 }

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // Numbers of a dump out of their bytes.
+#include <algorithm>
 #include <array>
 
 #include "core/shared/bits.hpp"

@@ -97,7 +97,7 @@ void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
 PinholeView view_of_frames(const DecodeRequest& request, const std::string& source, int width,
                            int height) {
   try {
-    const PinholeView view = view_of(request.lens, width, height);
+    PinholeView view = view_of(request.lens, width, height);
     if (request.lens) view.validate();
     return view;
   } catch (const InvalidArgument& error) {
