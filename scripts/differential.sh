@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Compares the decoder's bins with brute force in NumPy, on random codes and raw numbers. What was
+# compared is kept in build-dev/differential.json, and the next run goes on behind it.
+#
+#   scripts/differential.sh [--pixels N] [--seed S]     1e7 pixels more of seed 1, about 5 min
+#
+# A wrong bin ends it with its code and pixel: exit code 1.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$root"
+# shellcheck source=scripts/packages.sh
+source scripts/packages.sh
+
+if [[ "${1:-}" == -h || "${1:-}" == --help ]]; then
+  sed -n '/^# Compares/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+  exit 0
+fi
+install_packages test
+cmake --log-level=WARNING --preset dev >/dev/null
+cmake --build --preset dev --target tofsmith_python
+PYTHONPATH=build-dev/python exec /usr/bin/python3 tests/python/decode_bins.py \
+  --tally build-dev/differential.json "$@"

@@ -1,0 +1,150 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Bins of random codes against brute force in NumPy: every score of every pixel, in double.
+
+Run by scripts/differential.sh. Item i of a seed is always the same: a code (K = 3 .. 16 measurements,
+N = 8 .. 5000 bins: smooth, of chips, of noise, or of steps), a type of raw numbers and a noise. What
+was done is kept in a tally, and the next run goes on behind it.
+
+    decode_bins.py --pixels N [--seed S] [--tally FILE]
+"""
+
+import argparse
+import json
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+
+import tofsmith as ts
+
+KINDS = ("smooth", "chips", "noise", "steps")
+TYPES = (np.uint8, np.uint16, np.float32, np.float64)
+SCORES_AT_ONCE = 8_000_000
+
+
+def random_table(rng):
+    """(N, K), and what it is."""
+    measurements = int(rng.integers(3, 17))
+    samples = int(np.exp(rng.uniform(np.log(8), np.log(5000))))
+    kind = KINDS[rng.integers(len(KINDS))]
+    phase = 2 * np.pi * np.arange(samples) / samples
+    if kind == "smooth":
+        table = np.zeros((samples, measurements))
+        for harmonic in range(1, int(rng.integers(2, 7))):
+            swing = rng.normal(size=measurements) / harmonic
+            table += swing * np.cos(harmonic * phase[:, None]
+                                    + rng.uniform(0, 2 * np.pi, measurements))
+    elif kind == "chips":
+        light, sensor = rng.integers(0, 2, (2, samples, measurements))
+        light[0], sensor[0] = 1, 1
+        table = np.fft.irfft(np.fft.rfft(sensor, axis=0) * np.conj(np.fft.rfft(light, axis=0)),
+                             samples, axis=0)
+    elif kind == "noise":
+        table = rng.normal(size=(samples, measurements))
+    else:
+        levels = rng.integers(0, 4, (min(samples, int(rng.integers(4, 40))), measurements))
+        table = levels[np.arange(samples) * len(levels) // samples].astype(float)
+    return kind, table - table.min()
+
+
+def random_frame(rng, table, pixels):
+    """Raw numbers (1, pixels, K) of depths anywhere, with light and noise of all sizes."""
+    samples, measurements = table.shape
+    at = rng.uniform(0, samples, pixels)
+    before = at.astype(int)
+    part = (at - before)[:, None]
+    chi = (1 - part) * table[before] + part * table[(before + 1) % samples]
+    largest = {np.uint8: 255, np.uint16: 65535}.get(kind := TYPES[rng.integers(len(TYPES))], 1e6)
+    signal = largest / max(table.max(), 1e-9) * 10 ** rng.uniform(-3, 0, (pixels, 1))
+    values = signal * chi + 0.2 * largest * rng.uniform(0, 1, (pixels, 1))
+    values += rng.normal(size=values.shape) * largest * 10 ** rng.uniform(-5, 0)
+    if np.issubdtype(kind, np.integer):
+        values = np.clip(np.rint(values), 0, largest)
+    else:
+        broken = rng.uniform(size=values.shape) < 1e-4
+        values[broken] = rng.choice([np.nan, np.inf, -np.inf], broken.sum())
+    return values.astype(kind)[None]
+
+
+def wrong_bins(table, raw, found):
+    """Pixels that did not get the lowest of the best bins."""
+    unit = table - table.mean(axis=1, keepdims=True)
+    size = np.linalg.norm(unit, axis=1, keepdims=True)
+    told = size[:, 0] > 1e-12 * size.max()
+    unit = np.where(told[:, None], unit / np.where(size > 0, size, 1), 0)
+    wrong = []
+    step = max(1, SCORES_AT_ONCE // len(table))
+    numbers = raw[0].astype(float)
+    for first in range(0, len(numbers), step):
+        y = numbers[first:first + step]
+        bins = found[0, first:first + step]
+        valid = np.isfinite(y).all(axis=1)
+        wrong += list(first + np.flatnonzero((bins == -1) == valid))
+        centred = y[valid] - y[valid].mean(axis=1, keepdims=True)
+        scores = centred @ unit.T
+        scores[:, ~told] = -np.inf
+        # The lowest bin within 1e-11 of the best, as docs/decoding.md says; what lies within a tenth
+        # of that border, or as near as numbers far above their differences are rounded, may be on
+        # either side.
+        norm = np.linalg.norm(centred, axis=1, keepdims=True)
+        rounding = 2e-15 * np.abs(y[valid]).max(axis=1, initial=0, keepdims=True)
+        lead = scores.max(axis=1, keepdims=True) - scores
+        at = np.maximum(bins[valid], 0)[:, None]
+        lowest = np.argmax(lead <= 0.9e-11 * norm - rounding, axis=1, keepdims=True)
+        surely_lower = lead.min(axis=1, keepdims=True) <= 0.9e-11 * norm - rounding
+        less = np.take_along_axis(lead, at, axis=1) > 1.1e-11 * norm + rounding
+        less = (less | (surely_lower & (at > lowest)))[:, 0]
+        wrong += list(first + np.flatnonzero(valid)[less])
+    return sorted(set(map(int, wrong)))
+
+
+def check_item(seed, item, pixels):
+    """How many pixels were compared; raises AssertionError at the first that is wrong."""
+    rng = np.random.default_rng([seed, item])
+    kind, table = random_table(rng)
+    raw = random_frame(rng, table, pixels)
+    try:
+        decoder = ts.Decoder(ts.DecodingTable.of_measured(table, range_m=1.0))
+    except ValueError:  # a code that tells no depths
+        return 0
+    found = decoder.decode(raw, planes=["bin"]).bin
+    wrong = wrong_bins(table, raw, found)
+    assert not wrong, (
+        f"seed {seed}, item {item}: {len(wrong)} of {pixels} pixels, the first {wrong[0]}: raw "
+        f"{raw[0, wrong[0]]}, bin {found[0, wrong[0]]}; a {kind} code of N, K = {table.shape}, "
+        f"{raw.dtype}")
+    return pixels
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--pixels", type=float, default=1e7, help="to compare in this run (1e7)")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--tally", type=Path, help="what was done before, and is kept (.json)")
+    arguments = parser.parse_args()
+    tally = {}
+    if arguments.tally and arguments.tally.exists():
+        tally = json.loads(arguments.tally.read_text())
+    state = tally.setdefault(str(arguments.seed), {"items": 0, "pixels": 0})
+    done = 0
+    while done < arguments.pixels:
+        # The same for a seed in every run: no item's size depends on what is asked for.
+        done += (pixels := check_item(arguments.seed, state["items"], 20_000))
+        state["items"] += 1
+        state["pixels"] += pixels
+        if arguments.tally and (state["items"] % 50 == 0 or done >= arguments.pixels):
+            part = arguments.tally.with_suffix(".part")
+            part.write_text(json.dumps(tally, indent=1) + "\n")
+            os.replace(part, arguments.tally)
+        if sys.stderr.isatty():
+            print(f"\r{done:.3g} pixels", end="", file=sys.stderr)
+    everything = sum(each["pixels"] for each in tally.values())
+    print(f"{done:.4g} pixels of {state['items']} random codes so far: no bin is wrong; "
+          f"{everything:.4g} pixels in the tally")
+
+
+if __name__ == "__main__":
+    main()
