@@ -29,11 +29,13 @@ void CalibrateOutput::check(const Session& session) const {
   check_one(page_path, "--report", ".html");
 }
 
-void CalibrateOutput::write_camera(const Camera& camera, const Session& session) const {
+void CalibrateOutput::write_camera(const Camera& camera, const Session& session,
+                                   const std::string& next) const {
   if (camera_path.empty()) return;
   write_camera_toml(camera_path, camera, session.output_policy());
-  session.say(
-      fmt::format("wrote {}\nnext: tofsmith design {} -o designed", camera_path, camera_path));
+  session.say(fmt::format(
+      "wrote {}\nnext: {}", camera_path,
+      next.empty() ? fmt::format("tofsmith design {} -o designed", camera_path) : next));
 }
 
 void CalibrateOutput::write_page(const Page& page, const Session& session) const {

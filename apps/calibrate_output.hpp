@@ -27,7 +27,9 @@ struct CalibrateOutput {
   void add_to(CLI::App& command);
   /// Looks at the outputs before the work. @throws UsageError, IoError
   void check(const Session& session) const;
-  void write_camera(const Camera& camera, const Session& session) const;
+  /// @param next  the command that comes next; "": a design for it
+  void write_camera(const Camera& camera, const Session& session,
+                    const std::string& next = "") const;
   void write_page(const Page& page, const Session& session) const;
 };
 

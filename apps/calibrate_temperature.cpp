@@ -72,10 +72,10 @@ void run(const TemperatureArguments& arguments, const Session& session) {
   session.say(lines_of(found));
   arguments.output.write_page(temperature_report(found, arguments.file, session.command_line),
                               session);
-  arguments.output.write_camera(with_temperature(camera, found, arguments.reference_c), session);
-  if (!arguments.output.camera_path.empty())
-    session.say(fmt::format("next: tofsmith decode RAW --code {} --camera {} --temperature {:.0f}",
-                            arguments.code, arguments.output.camera_path, found.mean_c));
+  arguments.output.write_camera(
+      with_temperature(camera, found, arguments.reference_c), session,
+      fmt::format("tofsmith decode RAW --code {} --camera {} --temperature {:.0f}", arguments.code,
+                  arguments.output.camera_path, found.mean_c));
 }
 
 }  // namespace

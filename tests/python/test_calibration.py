@@ -205,6 +205,21 @@ def test_drift_is_that_of_the_command(both, cli):
         base.at_temperature(30.0)
 
 
+@pytest.mark.parametrize("factor", [0.5, 1.0, 2.0])
+def test_drift_is_taken_off_measured_tables_whatever_their_range(factor, tmp_path):
+    camera = base.replace(temperature={"reference_c": 20.0, "offset_m_per_c": 0.01})
+    warm = camera.at_temperature(30.0)
+    range_m = factor * base.range_m
+    chi = ts.DecodingTable.of_code("sinusoid-k4", base).correlation
+    np.savetxt(tmp_path / "t.csv", chi, delimiter=",")
+    raw = (1e5 * chi[None, 5:55]).astype(np.float32)
+    for table_at in (lambda c: ts.DecodingTable.of_measured(chi, c, range_m=range_m),
+                     lambda c: ts.DecodingTable.load(tmp_path / "t.csv", c, range_m=range_m)):
+        cold, hot = (ts.Decoder(table_at(c)).decode(raw).depth_m for c in (camera, warm))
+        np.testing.assert_allclose((cold - hot + range_m / 2) % range_m - range_m / 2, 0.1,
+                                   atol=2e-3)
+
+
 def test_stray_light_is_that_of_the_command(both, cli):
     target = np.full((8, 30, 30, 4), 100.0)
     target[:, 12:16, 12:16] += [900, 500, 200, 700]

@@ -79,6 +79,18 @@ def test_frames_come_out_before_the_next_is_read(decoder, layout):
     assert done.frames == frames
 
 
+def test_exposures_come_in_whole_groups(decoder, layout):
+    taken = []
+    decoder.decode_stream(io.BytesIO(raw.tobytes()), taken.append, raw_format=layout, hdr=(1, 2, 4))
+    numbers, averaged = ts.merge_exposures(raw, (1, 2, 4), "hamiltonian-k4", "paper-10f0")
+    whole = decoder.decode(numbers, averaged=averaged)
+    assert np.array_equal(taken[0]["depth"], whole.depth_m, equal_nan=True)
+    with pytest.raises(OSError, match="found 1 frame and the end; expected 2"):
+        decoder.decode_stream(io.BytesIO(raw.tobytes()), taken.append, raw_format=layout,
+                              hdr=(1, 2))
+    assert len(taken) == 2
+
+
 def test_false_stops(decoder, layout):
     done = decoder.decode_stream(io.BytesIO(raw.tobytes()), lambda planes: False,
                                  raw_format=layout)

@@ -77,8 +77,12 @@ LoadedDecodingTable load_measured(const std::string& path, const Camera& camera,
   else if (measured.ambient_gain.size() == 0 && camera.sensor.readout == Readout::separate)
     if (const auto note = duty_note(path, measured)) notes.push_back(*note);
   try {
+    Camera taken = camera;
+    // Tables are moved by bins; of another range these are of another size.
+    if (options.range_m && taken.temperature)
+      taken.temperature->offset_m_per_c *= camera.range_m() / *options.range_m;
     LoadedDecodingTable loaded{.name = std::filesystem::path(path).stem().string(),
-                               .table = make_decoding_table(measured, camera),
+                               .table = make_decoding_table(measured, taken),
                                .is_measured = true,
                                .notes = std::move(notes)};
     if (options.range_m) loaded.table.range_m = *options.range_m;

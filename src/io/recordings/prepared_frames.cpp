@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/recordings/prepared_frames.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +11,7 @@
 #include <utility>
 
 #include "core/shared/pixel_runs.hpp"
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
@@ -155,7 +158,12 @@ std::optional<RawView> PreparedFrames::bracketed(const Progress& progress) {
                                          raw->measurements));
     views.back().averaged = raw->averaged;
   }
-  if (views.size() < frames) return std::nullopt;  // a group that is cut short says nothing
+  if (views.empty()) return std::nullopt;
+  if (views.size() < frames)  // of a stream: recordings hold whole groups
+    throw IoError("the stream",
+                  fmt::format("found {} frame{} and the end; expected {}, one of each "
+                              "exposure of --hdr",
+                              views.size(), views.size() == 1 ? "" : "s", frames));
   merge_exposures(views, preparation_.hdr, table_, merged_);
   return merged_.view();
 }
