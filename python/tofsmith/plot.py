@@ -53,6 +53,22 @@ if TYPE_CHECKING:
 else:
     Figure = Any
 
+__all__ = [
+    "coding_curve",
+    "correlation_functions",
+    "depth_error_curves",
+    "depth_error_map",
+    "depth_maps",
+    "point_cloud",
+    "waveforms",
+]
+
+
+def __dir__() -> list[str]:
+    """What there is to draw, and nothing of how."""
+    return list(__all__)
+
+
 @styled
 def waveforms(
     code: CodeLike, camera: CameraLike, *, figure: Optional[Figure] = None

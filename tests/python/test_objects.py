@@ -101,6 +101,15 @@ def test_planes_have_either_name(decoder, tmp_path):
     assert done.outputs == ["depth", "signal"]
 
 
+def test_only_what_draws_is_listed():
+    from tofsmith import plot
+
+    assert dir(plot) == sorted(plot.__all__)
+    drawing = {name for name, value in vars(plot).items()
+               if hasattr(value, "__wrapped__") and value.__module__ == plot.__name__}
+    assert drawing == set(plot.__all__)
+
+
 def test_one_number_will_do_where_a_list_is_asked_for():
     found = ts.design("paper-10f0", exposures=3, effort=0.01, trials=1000, method="factorize")
     designed = [c for c in found.candidates if c.method == "factorize"]
