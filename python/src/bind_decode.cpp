@@ -250,7 +250,7 @@ DecodingTable measured_table(const Doubles& correlation, const Camera& camera,
   measured.correlation = to_matrix(correlation, "correlation");
   std::string ambient;
   OptionReader reader(values, "");
-  reader.value("taps", measured.taps).value("ambient", ambient);
+  reader.value("taps", measured.taps).value("ambient", ambient).value("range_m", measured.range_m);
   reader.finish();
   if (!ambient.empty())
     measured.ambient_gain = ambient_gain_of(measured.correlation, parse_measured_ambient(ambient));
@@ -292,12 +292,6 @@ void bind_table(py::module_& module) {
                     table.validate();
                     return table;
                   })
-      .def("with_range",
-           [](DecodingTable table, double range_m) {
-             table.range_m = range_m;
-             table.validate();
-             return table;
-           })
       .def("correlation",
            [](const DecodingTable& t) { return adopt(Eigen::MatrixXd(t.correlation)); })
       .def("ambient_gain",

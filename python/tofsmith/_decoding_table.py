@@ -169,17 +169,10 @@ class DecodingTable:
             plain = cls._of(_tofsmith.DecodingTable.of_correlation(table, metres))
             plain._made = ("of_measured", (table,), {"range_m": metres})
             return plain
-        options = {"taps": taps, "ambient": ambient}
-        taken = camera = camera_of(camera)
-        if range_m is not None and camera.temperature is not None:
-            # Tables are moved by bins; of another range these are of another size.
-            ratio = camera.range_m / _check.number(range_m, "range_m")
-            taken = camera.replace(temperature={
-                "offset_m_per_c": camera.temperature.offset_m_per_c * ratio})
-        made = _tofsmith.DecodingTable.of_measured(table, taken._handle, options)
-        if range_m is not None:
-            made = made.with_range(_check.number(range_m, "range_m"))
-        measured = cls._of(made)
+        camera = camera_of(camera)
+        metres = None if range_m is None else _check.number(range_m, "range_m")
+        measured = cls._of(_tofsmith.DecodingTable.of_measured(
+            table, camera._handle, {"taps": taps, "ambient": ambient, "range_m": metres}))
         measured._made = ("of_measured", (table, camera),
                           {"range_m": range_m, "taps": taps, "ambient": ambient})
         return measured

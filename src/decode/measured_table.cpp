@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/decode/decoding_table.hpp"
 
+#include <cmath>
 #include <string>
 
 #include "core/shared/enum_words.hpp"
@@ -87,6 +88,9 @@ void MeasuredTable::validate() const {
   require_one_each(black_level, "black_level", columns());
   require_one_each(gain_e_per_raw, "gain_e_per_raw", columns());
   if (correction) correction->validate();
+  if (range_m)
+    require(std::isfinite(*range_m) && *range_m > 0.0, "range_m", *range_m,
+            "must be finite and > 0");
 }
 
 namespace {
@@ -141,8 +145,8 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
                 columns, measured.differences ? 0.0 : sensor.black_level_dn.value_or(0.0));
   const Eigen::VectorXd dark_e = sensor.dark_current_e_per_s * exposure_s;
 
-  DecodingTable table =
-      make_decoding_table(measured.correlation * readout.transpose(), camera.range_m());
+  DecodingTable table = make_decoding_table(measured.correlation * readout.transpose(),
+                                            measured.range_m.value_or(camera.range_m()));
   table.ambient_gain = readout * ambient_gain;
   table.exposure_s = subtracts ? of_pairs(exposure_s, "exposure_s") : exposure_s;
   table.gain_e_per_raw = subtracts ? of_pairs(gain_e_per_raw, "gain_e_per_raw") : gain_e_per_raw;

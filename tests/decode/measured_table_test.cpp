@@ -94,6 +94,26 @@ TEST(MeasuredTable, AmbientLightCancelsInDifferencesAndWhereToldSo) {
             (std::vector<std::int32_t>{15, 30}));
 }
 
+TEST(MeasuredTable, DriftIsInMetresWhateverTheRangeOfTheTable) {
+  Camera camera = camera_with("paper-10f0");
+  MeasuredTable measured =
+      sweep_of(ForwardModel(build_family("hamiltonian-k4", camera), camera), camera);
+  const int samples = measured.samples();
+  camera.temperature = Temperature{.reference_c = 20.0, .now_c = 20.0};
+  for (const double range_m : {2.0, 31.0}) {
+    measured.range_m = range_m;
+    const DecodingTable cold = make_decoding_table(measured, camera);
+    EXPECT_EQ(cold.range_m, range_m);
+    // By three bins in ten degrees.
+    Camera warm = camera;
+    warm.temperature->offset_m_per_c = 0.3 * range_m / samples;
+    warm.temperature->now_c = 30.0;
+    const DecodingTable moved = make_decoding_table(measured, warm);
+    for (int n = 0; n < samples; ++n)
+      EXPECT_TRUE(moved.correlation.row(n).isApprox(cold.correlation.row((n + 3) % samples), 1e-9));
+  }
+}
+
 TEST(MeasuredTable, LightBehindColumnsThatGoBelowZeroIsTheirLargest) {
   Eigen::MatrixXd correlation = Eigen::MatrixXd::Constant(10, 3, 0.25);
   correlation(4, 1) = -2.0;
@@ -121,6 +141,8 @@ TEST(MeasuredTable, NamesWhatIsWrong) {
   EXPECT_EQ(refusal([](MeasuredTable&, Camera&) {}), "accepted");
   EXPECT_EQ(refusal([](MeasuredTable& t, Camera&) { t.taps = 1; }),
             "taps of the measured table = 1; must be 2 where the camera reads differences");
+  EXPECT_EQ(refusal([](MeasuredTable& t, Camera&) { t.range_m = 0.0; }),
+            "range_m = 0; must be finite and > 0");
   EXPECT_EQ(refusal([](MeasuredTable& t, Camera&) { t.taps = 4; }),
             "columns of the measured table = 6; must be a multiple of taps = 4");
   EXPECT_EQ(refusal([](MeasuredTable& t, Camera&) { t.ambient_gain.setOnes(3); }),

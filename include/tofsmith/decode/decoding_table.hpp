@@ -174,6 +174,7 @@ struct MeasuredTable {
   Eigen::VectorXd black_level;     ///< raw number without light (K), or empty: the camera's
   Eigen::VectorXd gain_e_per_raw;  ///< electrons per raw number (K), or empty: the camera's
   std::optional<DepthCorrection> correction = {};  ///< taken off what it decodes; none: nothing
+  std::optional<double> range_m = {};  ///< depth of a whole period [m]; none: the camera's
 
   int samples() const { return static_cast<int>(correlation.rows()); }
   int columns() const { return static_cast<int>(correlation.cols()); }
@@ -182,12 +183,14 @@ struct MeasuredTable {
   /// @param source  which column each is now (K)
   MeasuredTable in_order(const Eigen::VectorXi& source) const;
 
-  /// Whether the sizes agree. @throws std::invalid_argument naming field, value and rule
+  /// Whether the sizes agree and the range is one. @throws std::invalid_argument naming field,
+  /// value and rule
   void validate() const;
 };
 
 /// The table of measured correlation functions on a camera, which gives range, noise, saturation
-/// and read-out: differences of taps where it reads differences. Its samples, waveforms and
+/// and read-out, differences of taps where it reads differences, and how depths drift with its
+/// temperature. Its samples, waveforms and
 /// impulse responses do not count: they are in the measurement.
 ///
 /// Signal is found in multiples of what the table was measured with. Shot noise is that of the

@@ -72,20 +72,16 @@ LoadedDecodingTable load_measured(const std::string& path, const Camera& camera,
              .axes = options.axes,
              .keep_end_point = options.keep_end_point});
   play(options, measured);
+  measured.range_m = options.range_m;
   if (options.ambient)
     measured.ambient_gain = ambient_gain_of(measured.correlation, *options.ambient);
   else if (measured.ambient_gain.size() == 0 && camera.sensor.readout == Readout::separate)
     if (const auto note = duty_note(path, measured)) notes.push_back(*note);
   try {
-    Camera taken = camera;
-    // Tables are moved by bins; of another range these are of another size.
-    if (options.range_m && taken.temperature)
-      taken.temperature->offset_m_per_c *= camera.range_m() / *options.range_m;
     LoadedDecodingTable loaded{.name = std::filesystem::path(path).stem().string(),
-                               .table = make_decoding_table(measured, taken),
+                               .table = make_decoding_table(measured, camera),
                                .is_measured = true,
                                .notes = std::move(notes)};
-    if (options.range_m) loaded.table.range_m = *options.range_m;
     loaded.table.validate();
     return loaded;
   } catch (const std::invalid_argument& error) {
