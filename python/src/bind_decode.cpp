@@ -97,7 +97,8 @@ PixelMaps maps_of(const py::object& delay_offset_m, const py::object& gain, cons
 
 void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_planar,
             const py::dict& arrays, const py::object& averaged, const py::object& delay_offset_m,
-            const py::object& gain, const std::string& mixed, const py::object& callback) {
+            const py::object& gain, const std::string& mixed, const Filter* filter,
+            const py::object& callback) {
   RawArray raw = view_raw(raw_numbers, is_planar, table_of(decoder).measurements());
   const Floats means = averaged.is_none() ? Floats() : Floats::ensure(averaged);
   if (!averaged.is_none()) raw.set_averaged(means);
@@ -109,17 +110,26 @@ void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_p
     const auto pixels = static_cast<std::size_t>(raw.frames.front().pixels());
     const ProgressParts parts(progress, raw.frames.size());
     const DecodingTable& table = table_of(decoder);
+    FilteredFrame filtered;
     std::vector<float> signal;  // where the correction alone needs it
     if (table.correction && table.correction->needs_signal() && !planes.view().signal_e_per_s)
       signal.resize(pixels);
     for (std::size_t f = 0; f < raw.frames.size(); ++f) {
       DecodedView decoded = planes.view().from(f * pixels);
       if (!signal.empty()) decoded.signal_e_per_s = signal.data();
-      std::visit([&](const auto& d) { d.decode(raw.frames[f], decoded, parts[f]); }, decoder.any);
-      if (table.correction)
-        apply(*table.correction, table.range_m, decoded, raw.height, raw.width, 0, pixels);
-      if (!maps.empty()) apply(maps, table.range_m, decoded, 0, pixels);
-      if (marking) mark_mixed_pixels(table_of(decoder), raw.frames[f], *marking, decoded, maps);
+      const auto decode_one = [&](const RawView& numbers, const UnfilteredPixels& unfiltered,
+                                  const Progress& here) {
+        std::visit([&](const auto& d) { d.decode(numbers, decoded, here); }, decoder.any);
+        if (table.correction)
+          apply(*table.correction, table.range_m, decoded, raw.height, raw.width, 0, pixels);
+        if (!maps.empty()) apply(maps, table.range_m, decoded, 0, pixels);
+        if (marking) mark_mixed_pixels(table, numbers, *marking, decoded, maps, {}, unfiltered);
+      };
+      if (filter)
+        decode_filtered(*filter, raw.frames[f], filtered, decode_one,
+                        marking ? decoded.status : nullptr, parts[f]);
+      else
+        decode_one(raw.frames[f], {}, parts[f]);
     }
   });
 }

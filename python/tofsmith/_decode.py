@@ -129,6 +129,7 @@ class Decoder:
         averaged: Optional[npt.ArrayLike] = None,
         delay_offset_m: Optional[npt.ArrayLike] = None,
         gain: Optional[npt.ArrayLike] = None,
+        filter: Optional[FilterLike | Filter] = None,
         mixed: Optional[str] = None,
         progress: Progress = None,
     ) -> DepthImage:
@@ -154,11 +155,15 @@ class Decoder:
         delay_offset_m, gain : array_like, shape (H, W), or float, optional
             By how much each pixel decodes too far [m], and its response over a usual one's; NaN
             marks a dead pixel.
+        filter : {"light", "normal", "strong"}, dict or Filter, optional
+            Pixels of the same depth are added before they are decoded, as by Filter. A dict holds
+            its options, with "strength" among them; a Filter must be of the same code and camera.
         mixed : {"label", "snap", "drop"}, optional
             Finds pixels at edges of depth that see two surfaces and gives them the status mixed:
             label keeps their depth, snap gives them that of the nearest pixel of the surface with
-            more light, drop leaves them none. Needs depth, predicted standard deviation and status
-            among the planes. See docs/filtering.md.
+            more light, drop leaves them none. With `filter`, frames are filtered once more without
+            them. Needs depth, predicted standard deviation and status among the planes. See
+            docs/filtering.md.
         progress : callable, optional
             Called with (fraction, step); False stops.
 
@@ -189,9 +194,16 @@ class Decoder:
             for m, name in ((delay_offset_m, "delay_offset_m"), (gain, "gain"))
         ]
         means = _check.means(averaged, array, is_planar)
+        applied = None if filter is None else self._filter(filter)._handle
         self._handle.decode(array, is_planar, image.planes(), means, maps[0], maps[1],
-                            mixed_word(mixed), callback)
+                            mixed_word(mixed), applied, callback)
         return image
+
+    def _filter(self, filter: FilterLike | Filter) -> Filter:
+        if isinstance(filter, Filter):
+            return filter
+        options = filter_options(filter)
+        return Filter(self.table, strength=options.pop("strength"), options=options)
 
     def decode_recording(
         self,
@@ -459,14 +471,7 @@ def decode(
     mixed: Optional[str] = None,
     progress: Progress = None,
 ) -> DepthImage:
-    """Decoder(code, camera, method=method).decode(raw, ..): keep a Decoder for many frames. With
-    `filter`, a strength or a dict of options with "strength" among them, Filter is applied first;
-    `mixed` as Decoder.decode() takes it."""
+    """Decoder(code, camera, method=method).decode(raw, ..): keep a Decoder for many frames."""
     decoder = Decoder(code, camera, method=method)
-    if filter is None:
-        return decoder.decode(raw, layout=layout, planes=planes, mixed=mixed, progress=progress)
-    options = filter_options(filter)
-    applied = Filter(decoder.table, strength=options.pop("strength"), options=options)
-    numbers, averaged = applied.apply(raw, layout=layout, progress=progress)
-    return decoder.decode(numbers, planes=planes, averaged=averaged, mixed=mixed,
+    return decoder.decode(raw, layout=layout, planes=planes, filter=filter, mixed=mixed,
                           progress=progress)

@@ -142,7 +142,7 @@ class Decoder:
     def decode(
         self, raw: _Any, is_planar: bool, planes: Mapping[str, _Any], averaged: Optional[_Any],
         delay_offset_m: Optional[_Floats], gain: Optional[_Floats], mixed: str,
-        progress: _Progress, /
+        filter: Optional[Filter], progress: _Progress, /
     ) -> None: ...
     def decode_recording(
         self, raw: Sequence[str], output: str, lens: Optional[_Dict], options: _Options,

@@ -274,6 +274,35 @@ TEST(Filter, LeavesInvalidAndSaturatedPixelsAndTakesNothingFromThem) {
   }
 }
 
+TEST(Filter, PixelsLeftOutStayAsTheyAreAndNothingComesFromThem) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  RawFrames raw = frame_seen(table, 48, 48, [](int, int) { return Seen{55.0, 5e4}; });
+  Image<std::uint8_t> left_out(48, 48);
+  for (int y = 4; y < 44; ++y) left_out(y, 20) = 1;
+  const Filter filter(table);
+  FilteredFrame one, other;
+  filter.apply(view_of_frame(raw, 0), one, {}, left_out);
+  RawFrames changed = raw;
+  for (int y = 4; y < 44; ++y)
+    for (int k = 0; k < 4; ++k)
+      changed.values[static_cast<std::size_t>((y * 48 + 20) * 4 + k)] *= 1.1f;
+  filter.apply(view_of_frame(changed, 0), other, {}, left_out);
+  const RawFrames values = one.values(), changed_values = other.values();
+  for (std::size_t at = 0; at < values.values.size(); ++at) {
+    const std::size_t pixel = at / 4;
+    if (left_out.pixels[pixel] == 0) {
+      ASSERT_EQ(values.values[at], changed_values.values[at]) << pixel;
+      ASSERT_GT(one.averaged().pixels[pixel], 2.0f) << pixel;
+    } else {
+      ASSERT_EQ(values.values[at], raw.values[at]) << pixel;
+      ASSERT_EQ(one.averaged().pixels[pixel], 1.0f) << pixel;
+    }
+  }
+  EXPECT_THROW(filter.apply(view_of_frame(raw, 0), one, {}, Image<std::uint8_t>(3, 4)),
+               std::invalid_argument);
+}
+
 TEST(Filter, CountsMeansAsWhatTheyAreTheMeanOf) {
   for (const Readout readout : {Readout::separate, Readout::difference}) {
     Camera camera = camera_with("paper-10f0");

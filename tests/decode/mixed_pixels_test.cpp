@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -143,6 +144,81 @@ TEST(MixedPixels, ObjectsOnePixelWideAreKept) {
   const RawFrames raw = frame_seen(
       setup.decoder.table(), [](int, int x) { return Seen{x == 12 || x == 40 ? 60.0 : 130.0}; });
   EXPECT_EQ(share_marked(marked(setup, raw)), 0.0);
+}
+
+TEST(MixedPixels, EdgesOfASteepFloorAreFound) {
+  const DecodeSetup setup = setup_of();
+  // 1.6 bins a row are 12 cm a pixel: far beyond noise.
+  const auto seen = [](int row, int column) {
+    Seen pixel = edge_between(column);
+    pixel.depth_bin += 1.6 * row;
+    pixel.second_bin = 190.0;
+    if (column > edge) pixel.depth_bin = 190.0;
+    return pixel;
+  };
+  const DepthImage image = marked(setup, frame_seen(setup.decoder.table(), seen));
+  int found = 0, elsewhere = 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      (x == edge ? found : elsewhere) += image.status(y, x) == PixelStatus::mixed ? 1 : 0;
+  EXPECT_GE(found, height * 8 / 10);
+  EXPECT_LE(elsewhere, height * width / 100);
+}
+
+/// A frame in which a filter made single returns from between both surfaces of the mixed pixels.
+RawFrames filtered_frame(const DecodingTable& table) {
+  return frame_seen(table, [](int, int x) { return x == edge ? Seen{95.0} : edge_between(x); });
+}
+
+TEST(MixedPixels, OwnNumbersTellWhatAFilterHid) {
+  const DecodeSetup setup = setup_of();
+  const RawFrames own =
+      frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
+  const RawFrames filtered = filtered_frame(setup.decoder.table());
+  const RawView measured = view_of_frame(own, 0);
+  const auto marked_at_the_edge = [&](const UnfilteredPixels& unfiltered) {
+    DepthImage image = setup.decoder.decode(filtered);
+    mark_mixed_pixels(setup.decoder.table(), view_of_frame(filtered, 0), MixedPixels::label,
+                      DecodedView::of(image), {}, {}, unfiltered);
+    int count = 0;
+    for (int y = 0; y < height; ++y) count += image.status(y, edge) == PixelStatus::mixed ? 1 : 0;
+    return count;
+  };
+  EXPECT_EQ(marked_at_the_edge({}), 0);
+  EXPECT_GE(marked_at_the_edge({.measured = &measured}), height - 2);
+}
+
+TEST(MixedPixels, ThoseFoundBeforeStayAndAreOfNoSurface) {
+  const DecodeSetup setup = setup_of();
+  const RawFrames own =
+      frame_seen(setup.decoder.table(), [](int, int x) { return edge_between(x); });
+  const RawFrames filtered = filtered_frame(setup.decoder.table());
+  const RawView measured = view_of_frame(own, 0);
+  UnfilteredPixels unfiltered{.measured = &measured,
+                              .mixed = Image<std::uint8_t>(height, width, 0)};
+  for (int y = 0; y < height; ++y) unfiltered.mixed(y, edge) = 1;
+  unfiltered.mixed(5, 12) = 1;  // in the middle of the near surface
+  for (const MixedPixels mixed : all_mixed_pixels) {
+    const DepthImage before = setup.decoder.decode(filtered);
+    DepthImage image = before;
+    const std::int64_t count = mark_mixed_pixels(setup.decoder.table(), view_of_frame(filtered, 0),
+                                                 mixed, DecodedView::of(image), {}, {}, unfiltered);
+    EXPECT_EQ(count, std::ranges::count(image.status.pixels, PixelStatus::mixed));
+    EXPECT_EQ(image.status(5, 12), PixelStatus::mixed);
+    for (int y = 0; y < height; ++y) {
+      EXPECT_EQ(image.status(y, edge), PixelStatus::mixed) << y;
+      if (mixed != MixedPixels::snap) continue;
+      EXPECT_NEAR(image.depth_m(y, edge), 70.0 * setup.decoder.table().bin_m(), 0.2) << y;
+    }
+  }
+  unfiltered.mixed = Image<std::uint8_t>(3, 4, 0);
+  DepthImage image = setup.decoder.decode(filtered);
+  EXPECT_THAT(
+      [&] {
+        mark_mixed_pixels(setup.decoder.table(), view_of_frame(filtered, 0), MixedPixels::label,
+                          DecodedView::of(image), {}, {}, unfiltered);
+      },
+      testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("unfiltered.mixed")));
 }
 
 TEST(MixedPixels, ThreeMeasurementsTellNothingAndMarkNothing) {

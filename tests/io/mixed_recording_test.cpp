@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <string>
 
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/io/decode_recording.hpp"
@@ -31,13 +32,9 @@ RawFrames edge_seen(const ForwardModel& model, int height, int width) {
   return raw;
 }
 
-TEST(MixedRecording, FilesHoldWhatMarkingAFrameGivesThoughOnlyDepthIsWritten) {
-  const Camera camera = built_in_camera("paper-10f0");
-  const ForwardModel model(build_family("hamiltonian-k5", camera), camera);
-  const DecodingTable table = make_decoding_table(model, camera);
-  const RawFrames raw = edge_seen(model, 24, 31);
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / "mixed_recording";
+/// A request for depth of frames in a folder of its own.
+DecodeRequest request_of(const RawFrames& raw, const std::string& name) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / name;
   std::filesystem::create_directories(folder);
   DecodeRequest request;
   request.raw = {folder / "raw.npy"};
@@ -49,6 +46,26 @@ TEST(MixedRecording, FilesHoldWhatMarkingAFrameGivesThoughOnlyDepthIsWritten) {
                  static_cast<std::size_t>(raw.measurements)},
                 raw.values),
             OutputPolicy::overwrite);
+  return request;
+}
+
+void expect_decoded(const DecodeRequest& request, const AnyDecoder& decoder,
+                    const Image<float>& expected) {
+  decode_recording(request, decoder);
+  const Image<float> depth = read_float_image(request.output, "depth");
+  ASSERT_EQ(depth.size(), expected.size());
+  for (std::size_t i = 0; i < depth.size(); ++i)
+    EXPECT_TRUE(depth.pixels[i] == expected.pixels[i] ||
+                (std::isnan(depth.pixels[i]) && std::isnan(expected.pixels[i])))
+        << i;
+}
+
+TEST(MixedRecording, FilesHoldWhatMarkingAFrameGivesThoughOnlyDepthIsWritten) {
+  const Camera camera = built_in_camera("paper-10f0");
+  const ForwardModel model(build_family("hamiltonian-k5", camera), camera);
+  const DecodingTable table = make_decoding_table(model, camera);
+  const RawFrames raw = edge_seen(model, 24, 31);
+  DecodeRequest request = request_of(raw, "mixed_recording");
   const Decoder decoder(table);
   const AnyDecoder any = make_decoder(DecodeMethod::zncc, table);
   for (const MixedPixels mixed : all_mixed_pixels) {
@@ -56,12 +73,39 @@ TEST(MixedRecording, FilesHoldWhatMarkingAFrameGivesThoughOnlyDepthIsWritten) {
     EXPECT_GT(mark_mixed_pixels(table, view_of_frame(raw, 0), mixed, DecodedView::of(expected)),
               raw.height - 3);
     request.mixed = mixed;
-    decode_recording(request, any);
-    const Image<float> depth = read_float_image(request.output, "depth");
-    ASSERT_EQ(depth.size(), expected.depth_m.size());
-    for (std::size_t i = 0; i < depth.size(); ++i)
-      EXPECT_TRUE(depth.pixels[i] == expected.depth_m.pixels[i] ||
-                  (std::isnan(depth.pixels[i]) && std::isnan(expected.depth_m.pixels[i])));
+    expect_decoded(request, any, expected.depth_m);
+  }
+}
+
+TEST(MixedRecording, FilteredFramesAreFilteredAgainWithoutMixedPixels) {
+  const Camera camera = built_in_camera("paper-10f0");
+  const ForwardModel model(build_family("hamiltonian-k5", camera), camera);
+  const DecodingTable table = make_decoding_table(model, camera);
+  const RawFrames raw = edge_seen(model, 24, 31);
+  const RawView measured = view_of_frame(raw, 0);
+  const Decoder decoder(table);
+  const Filter filter(table);
+  FilteredFrame filtered;
+  filter.apply(measured, filtered);
+  DepthImage first(raw.height, raw.width);
+  decoder.decode(filtered.view(), DecodedView::of(first));
+  UnfilteredPixels unfiltered{.measured = &measured};
+  EXPECT_GT(mark_mixed_pixels(table, filtered.view(), MixedPixels::label, DecodedView::of(first),
+                              {}, {}, unfiltered),
+            raw.height - 3);
+  unfiltered.mixed = Image<std::uint8_t>(raw.height, raw.width);
+  for (std::size_t i = 0; i < first.status.size(); ++i)
+    unfiltered.mixed.pixels[i] = first.status.pixels[i] == PixelStatus::mixed ? 1 : 0;
+  filter.apply(measured, filtered, {}, unfiltered.mixed);
+
+  DecodeRequest request = request_of(raw, "mixed_and_filtered");
+  request.filter = FilterOptions();
+  for (const MixedPixels mixed : all_mixed_pixels) {
+    DepthImage expected(raw.height, raw.width);
+    decoder.decode(filtered.view(), DecodedView::of(expected));
+    mark_mixed_pixels(table, filtered.view(), mixed, DecodedView::of(expected), {}, {}, unfiltered);
+    request.mixed = mixed;
+    expect_decoded(request, make_decoder(DecodeMethod::zncc, table), expected.depth_m);
   }
 }
 

@@ -45,6 +45,20 @@ def test_they_snap_to_a_surface_or_are_dropped(raw):
     assert np.isfinite(dropped.depth_m[~is_mixed]).all()
 
 
+@pytest.mark.parametrize("mixed", ["label", "snap", "drop", None])
+def test_filtered_frames_are_decoded_as_recordings_are(raw, mixed, tmp_path):
+    decoder = ts.Decoder(code, camera)
+    np.save(tmp_path / "raw.npy", raw)
+    decoder.decode_recording(tmp_path / "raw.npy", tmp_path / "depth.npz", filter="light",
+                             mixed=mixed, outputs=["depth", "status"])
+    expected = np.load(tmp_path / "depth.npz")
+    for filter in ("light", {"strength": "light"}, ts.Filter(code, camera, strength="light")):
+        found = decoder.decode(raw, filter=filter, mixed=mixed)
+        np.testing.assert_array_equal(found.status, expected["status"].squeeze())
+        np.testing.assert_array_equal(found.depth_m, expected["depth"].squeeze())
+    assert (found.status == ts.PixelStatus.mixed).any() == (mixed is not None)
+
+
 def test_another_word_is_refused(raw):
     with pytest.raises(ValueError, match="mixed: .*label"):
         decoded(raw, "near")

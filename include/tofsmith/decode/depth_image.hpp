@@ -135,27 +135,39 @@ std::string_view name_of(MixedPixels mixed);
 /// @throws std::invalid_argument for any other word
 MixedPixels parse_mixed_pixels(std::string_view name);
 
+/// What is known of filtered pixels beside what their filter gave.
+struct UnfilteredPixels {
+  const RawView* measured = nullptr;  ///< their own numbers, (H, W, K)
+  /// (H, W), or empty: where not 0, mark_mixed_pixels() found the pixel mixed before, and the
+  /// filter left it out. It stays mixed.
+  Image<std::uint8_t> mixed = {};
+};
+
 /// Finds pixels of a decoded frame that see two surfaces, as lenses make them at edges of depth.
 ///
-/// In the 7 x 7 pixels around a pixel, those whose depth most of their own neighbours share make
-/// the surfaces. A pixel with none of their depths is mixed where the light of two of them,
+/// In the 7 x 7 pixels around a pixel, those whose depth most of their own neighbours share, along
+/// the slope that they show, make the surfaces. A pixel with none of their depths is mixed where
+/// the light of two of them,
 ///   y = S1 x(z1) + S2 x(z2) + A a,  S1, S2 > 0,
 /// explains its measurements, by weighted least squares, far better than that of either one alone,
-/// within noise, and not much worse than a single return at the depth decoded. With rank 2, as
-/// K = 3, anything is explained by two returns: nothing is marked. Pixels that are invalid,
-/// saturated or have no depth stay as they are.
+/// within noise, and not much worse than a single return at the depth decoded. Of a filtered pixel
+/// its own numbers are asked, too: a filter adds what lies beside it, which hides what it sees.
+/// With rank 2, as K = 3, anything is explained by two returns: nothing is marked. Pixels that are
+/// invalid, saturated or have no depth stay as they are.
 /// @param table    of the decoder
 /// @param raw      what was decoded: filtered numbers with how many measurements they are the mean
 /// of
 /// @param maps     those applied to `decoded`
 /// @param decoded  whole frame, in place: depth_m, predicted_standard_deviation_m and status are
 ///                 needed; snap writes depth_m, the deviation of that depth, and status
-/// @return how many pixels were marked
+/// @param unfiltered  where `raw` is filtered
+/// @return how many pixels are marked
 /// @throws std::invalid_argument if the shapes do not fit or a plane that is needed is null;
 ///         Interrupted if progress says so
 /// @note the same bits for any number of threads
 std::int64_t mark_mixed_pixels(const DecodingTable& table, const RawView& raw, MixedPixels mixed,
                                const DecodedView& decoded, const PixelMaps& maps = {},
-                               const Progress& progress = {});
+                               const Progress& progress = {},
+                               const UnfilteredPixels& unfiltered = {});
 
 }  // namespace tofsmith

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -13,6 +15,7 @@
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
+#include "tofsmith/decode/depth_image.hpp"
 
 namespace tofsmith {
 
@@ -126,9 +129,13 @@ class Filter {
   /// Filters one frame on all threads. Allocates nothing if the frame held one of the same size.
   /// @param raw  electrons or counts, with as many measurements as the table, or means of several
   ///             as its `averaged` says
-  /// @throws std::invalid_argument if the measurements differ; Interrupted if progress says so
+  /// @param left_out  (H, W), or empty: pixels that are not 0 are left as they were measured and
+  ///                  weigh nothing, as those that mark_mixed_pixels() found
+  /// @throws std::invalid_argument if the measurements or sizes differ; Interrupted if progress
+  ///         says so
   /// @note the same bits for any number of threads and any layout of the raw numbers
-  void apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress = {}) const;
+  void apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress = {},
+             const Image<std::uint8_t>& left_out = {}) const;
   /// The same for frame `frame` of several (F, H, W, K).
   FilteredFrame apply(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
@@ -137,6 +144,17 @@ class Filter {
  private:
   std::unique_ptr<const Plan> plan_;
 };
+
+/// Filters a frame and has it decoded; where mixed pixels are found, once more without them, so
+/// that their neighbours take nothing from them.
+/// @param filtered  memory for it
+/// @param decode    called with the filtered numbers and what mark_mixed_pixels() asks beside them
+/// @param statuses  of the frame's pixels, as `decode` writes them; null: none will be mixed
+/// @throws std::invalid_argument as Filter::apply(); what `decode` throws
+void decode_filtered(
+    const Filter& filter, const RawView& raw, FilteredFrame& filtered,
+    const std::function<void(const RawView&, const UnfilteredPixels&, const Progress&)>& decode,
+    const PixelStatus* statuses, const Progress& progress = {});
 
 struct TimeFilterOptions {
   /// The newest frame weighs 1 / max_frames or more: what is older by much more is forgotten. 1: no

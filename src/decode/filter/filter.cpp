@@ -58,11 +58,15 @@ std::size_t Filter::memory_bytes(const FilterOptions& options, int height, int w
           strips * (weights * weight_floats(grid, strip) + scratch_floats(grid, strip)));
 }
 
-void Filter::apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress) const {
+void Filter::apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress,
+                   const Image<std::uint8_t>& left_out) const {
   const Plan& plan = *plan_;
   require_measurements(raw, plan.measurements);
   require(raw.height > 0 && raw.width > 0, "raw height and width", std::min(raw.height, raw.width),
           "must be > 0");
+  require(left_out.empty() || (left_out.height == raw.height && left_out.width == raw.width),
+          "left_out", std::to_string(left_out.height) + " x " + std::to_string(left_out.width),
+          "must be of the size of the frame");
   FilterPlanes& frame = *filtered.planes_;
   const int windows = plan.options.windows;
   frame.resize(raw.height, raw.width, plan.measurements, window_step(windows - 1));
@@ -70,6 +74,7 @@ void Filter::apply(const RawView& raw, FilteredFrame& filtered, const Progress& 
   int done = 0;
   const auto step_done = [&] { report(progress, ++done / steps, "filtering"); };
 
+  frame.left_out = left_out.empty() ? nullptr : left_out.pixels.data();
   plan.read(raw, frame);
   int from = 0, to = 1;
   for (int window = 0; window < windows; ++window) {
@@ -94,6 +99,26 @@ FilteredFrame Filter::apply(const RawFrames& raw, int frame, const Progress& pro
   FilteredFrame filtered;
   apply(view_of_frame(raw, frame), filtered, progress);
   return filtered;
+}
+
+void decode_filtered(
+    const Filter& filter, const RawView& raw, FilteredFrame& filtered,
+    const std::function<void(const RawView&, const UnfilteredPixels&, const Progress&)>& decode,
+    const PixelStatus* statuses, const Progress& progress) {
+  constexpr double effort = 8.0;  // where decoding takes 1: about
+  const double again = statuses ? 1.0 : 0.0;
+  const ProgressParts parts(progress, {effort, 1.0, again * effort, again});
+  UnfilteredPixels unfiltered{.measured = &raw};
+  filter.apply(raw, filtered, parts[0]);
+  decode(filtered.view(), unfiltered, parts[1]);
+  if (!statuses) return;
+  const auto is_mixed = [](PixelStatus status) { return status == PixelStatus::mixed; };
+  const PixelStatus* const end = statuses + raw.pixels();
+  if (std::none_of(statuses, end, is_mixed)) return;
+  unfiltered.mixed = Image<std::uint8_t>(raw.height, raw.width);
+  std::transform(statuses, end, unfiltered.mixed.pixels.begin(), is_mixed);
+  filter.apply(raw, filtered, parts[2], unfiltered.mixed);
+  decode(filtered.view(), unfiltered, parts[3]);
 }
 
 }  // namespace tofsmith

@@ -140,6 +140,11 @@ void Filter::Plan::read_row(const RawView& raw, FilterPlanes& frame, int row, in
                      }
                    }
                  });
+    if (frame.left_out) {
+      const std::uint8_t* const left_out = frame.left_out + std::ptrdiff_t{row} * raw.width + first;
+      for (int i = 0; i < pixels; ++i)
+        if (left_out[i] != 0) usable[i] = 0.0f;
+    }
     for (int i = 0; i < pixels; ++i)
       if (!(usable[i] > 0.0f))
         for (int k = 0; k < measurements; ++k) electrons[k][i] = 0.0f;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -56,8 +57,9 @@ struct FilterPlanes {
   std::ptrdiff_t plane_floats = 0;
   std::vector<float> storage;
   Image<float>
-      averaged;    ///< along slopes: variance of a coordinate that depth was found from [e^2]
-  int result = 0;  ///< the set of `light` that holds raw numbers at the end
+      averaged;  ///< along slopes: variance of a coordinate that depth was found from [e^2]
+  const std::uint8_t* left_out = nullptr;  ///< of the frame under way, (H, W), or null
+  int result = 0;                          ///< the set of `light` that holds raw numbers at the end
   StripBufferPool buffers;
 
   static FilterGrid grid_of(int height, int width, int largest_step);

@@ -115,7 +115,7 @@ MixedPixelFit::Explanation MixedPixelFit::explain(const double* electrons, doubl
   if (!(two.amount[0] > 0.0 && two.amount[1] > 0.0)) return found;
   const double one =
       std::min(fit<1>(electrons, weight, {&near}).chi2, fit<1>(electrons, weight, {&far}).chi2);
-  const Return own = return_at(decoded_m);
+  const Return own = return_at(std::isfinite(decoded_m) ? decoded_m : first.depth_m);
   const double single = fit<1>(electrons, weight, {&own}).chi2;
   found.is_two = two.chi2 + far_better < one && two.chi2 < single + little_worse + may_remain * one;
   return found;

@@ -33,7 +33,7 @@ class MixedPixelFit {
 
   /// @param electrons  without dark ones (K)
   /// @param averaged   of how many measurements they are the mean
-  /// @param decoded_m  depth that a single return would have
+  /// @param decoded_m  depth that a single return would have; NaN: not known
   Explanation explain(const double* electrons, double averaged, double decoded_m,
                       const SurfaceDepth& first, const SurfaceDepth& second) const;
 

@@ -42,9 +42,15 @@ constexpr double slope_share = 0.0025;
 
 struct WindowPixel {
   double depth_m = 0.0, variance_m2 = 0.0;
+  double here_m = 0.0;  ///< its depth, moved along its slope to the window's own pixel
   int dx = 0, dy = 0;
   std::size_t index = 0;
   int distance() const { return dx * dx + dy * dy; }
+};
+
+/// By how much depth rises from one pixel to the next [m].
+struct Slope {
+  float x = 0.0f, y = 0.0f;
 };
 
 /// A surface around a pixel.
@@ -57,7 +63,9 @@ struct Surface {
 /// What is known of a frame before any pixel of it is marked.
 class Surroundings {
  public:
-  Surroundings(const DecodedView& decoded, int height, int width, double range_m)
+  /// @param mixed  (H, W), or empty: pixels that are not 0 are of no surface
+  Surroundings(const DecodedView& decoded, const Image<std::uint8_t>& mixed, int height, int width,
+               double range_m)
       : height_(height),
         width_(width),
         same_m_(same_share * range_m),
@@ -66,7 +74,14 @@ class Surroundings {
         deviation_(decoded.predicted_standard_deviation_m,
                    decoded.predicted_standard_deviation_m + size()),
         status_(decoded.status, decoded.status + size()),
+        slope_(size()),
         is_firm_(size(), 0) {
+    for (std::size_t i = 0; i < mixed.size(); ++i)
+      if (mixed.pixels[i] != 0) status_[i] = PixelStatus::mixed;
+    parallel_for(height_, [&](std::int64_t row) {
+      for (int x = 0; x < width_; ++x)
+        slope_[at(static_cast<int>(row), x)] = slope_at(static_cast<int>(row), x);
+    });
     parallel_for(height_, [&](std::int64_t row) {
       for (int x = 0; x < width_; ++x)
         is_firm_[at(static_cast<int>(row), x)] = has_neighbours(static_cast<int>(row), x);
@@ -82,11 +97,13 @@ class Surroundings {
   }
   float depth_m(std::size_t i) const { return depth_[i]; }
   float deviation_m(std::size_t i) const { return deviation_[i]; }
+  /// Whether it was found before.
+  bool was_mixed(std::size_t i) const { return status_[i] == PixelStatus::mixed; }
   /// Whether it may be mixed at all.
   bool is_decoded(std::size_t i) const {
-    return std::isfinite(depth_[i]) &&
-           (status_[i] == PixelStatus::ok || status_[i] == PixelStatus::low_signal ||
-            status_[i] == PixelStatus::ambiguous);
+    return was_mixed(i) || (std::isfinite(depth_[i]) && (status_[i] == PixelStatus::ok ||
+                                                         status_[i] == PixelStatus::low_signal ||
+                                                         status_[i] == PixelStatus::ambiguous));
   }
 
   /// The surfaces around a pixel, largest first; none if there are not two.
@@ -97,10 +114,10 @@ class Surroundings {
     const auto end = pixels.begin() + static_cast<std::ptrdiff_t>(count);
     if (count < 2 * least_pixels) return;
     const auto [low, high] = std::minmax_element(
-        pixels.begin(), end, [](const auto& a, const auto& b) { return a.depth_m < b.depth_m; });
+        pixels.begin(), end, [](const auto& a, const auto& b) { return a.here_m < b.here_m; });
     if (!parts(*low, *high)) return;
     std::sort(pixels.begin(), end, [](const WindowPixel& a, const WindowPixel& b) {
-      return a.depth_m != b.depth_m ? a.depth_m < b.depth_m : a.index < b.index;
+      return a.here_m != b.here_m ? a.here_m < b.here_m : a.index < b.index;
     });
     for (auto first = pixels.begin(); first != end;) {
       auto last = first + 1;
@@ -125,6 +142,37 @@ class Surroundings {
            std::isfinite(deviation_[i]);
   }
 
+  /// A pixel's slope between its neighbours on both sides: the mean of both steps or, where they
+  /// differ by more than noise, the smaller one, as the other is an edge; less its noise.
+  float slope_along(std::size_t before, std::size_t i, std::size_t after) const {
+    if (!is_usable(before) || !is_usable(after)) return 0.0f;
+    const float down = depth_[i] - depth_[before], up = depth_[after] - depth_[i];
+    const float ends = std::hypot(deviation_[before], deviation_[after]);
+    float step = (up + down) / 2.0f, noise = ends / 2.0f;
+    if (std::abs(up - down) >
+        static_cast<float>(same_sigma) * std::hypot(ends, 2.0f * deviation_[i])) {
+      const bool is_up = std::abs(up) < std::abs(down);
+      step = is_up ? up : down;
+      noise = std::hypot(deviation_[i], deviation_[is_up ? after : before]);
+    }
+    return std::copysign(std::max(0.0f, std::abs(step) - noise), step);
+  }
+  Slope slope_at(int row, int x) const {
+    const std::size_t i = at(row, x);
+    if (!is_usable(i)) return {};
+    const auto below = static_cast<std::size_t>(width_);
+    return {.x = x > 0 && x + 1 < width_ ? slope_along(i - 1, i, i + 1) : 0.0f,
+            .y = row > 0 && row + 1 < height_ ? slope_along(i - below, i, i + below) : 0.0f};
+  }
+  /// The smaller of two slopes; 0 where they do not agree.
+  static double shared(float a, float b) {
+    return a * b > 0.0f ? (std::abs(a) < std::abs(b) ? a : b) : 0.0;
+  }
+  /// How much farther pixel `j`, which lies (dx, dy) from `i`, is on a surface that holds both.
+  double rise_m(std::size_t i, std::size_t j, int dx, int dy) const {
+    return dx * shared(slope_[i].x, slope_[j].x) + dy * shared(slope_[i].y, slope_[j].y);
+  }
+
   bool has_neighbours(int row, int x) const {
     const std::size_t i = at(row, x);
     if (!is_usable(i)) return false;
@@ -135,7 +183,8 @@ class Surroundings {
         if (j == i || !is_usable(j)) continue;
         const double same =
             std::max(same_m_, same_sigma * std::hypot(deviation_[i], deviation_[j]));
-        count += std::abs(depth_[i] - depth_[j]) <= same ? 1 : 0;
+        const double rise = rise_m(i, j, c - x, y - row);
+        count += std::abs(depth_[j] - depth_[i] - rise) <= same ? 1 : 0;
       }
     return count >= least_neighbours;
   }
@@ -146,11 +195,14 @@ class Surroundings {
       for (int c = std::max(0, x - reach); c <= std::min(width_ - 1, x + reach); ++c) {
         const std::size_t j = at(y, c);
         if (!is_firm_[j] || (y == row && c == x)) continue;
+        const int dx = c - x, dy = y - row;
         pixels[static_cast<std::size_t>(count++)] = {
             .depth_m = depth_[j],
             .variance_m2 = static_cast<double>(deviation_[j]) * deviation_[j],
-            .dx = c - x,
-            .dy = y - row,
+            .here_m = depth_[j] - dx * static_cast<double>(slope_[j].x) -
+                      dy * static_cast<double>(slope_[j].y),
+            .dx = dx,
+            .dy = dy,
             .index = j};
       }
     return count;
@@ -158,7 +210,7 @@ class Surroundings {
 
   /// Whether nothing joins two depths, one after the other.
   bool parts(const WindowPixel& a, const WindowPixel& b) const {
-    return b.depth_m - a.depth_m >
+    return b.here_m - a.here_m >
            std::max(2 * same_m_, same_sigma * std::sqrt(a.variance_m2 + b.variance_m2));
   }
 
@@ -198,6 +250,7 @@ class Surroundings {
   double same_m_, slope_m_;
   std::vector<float> depth_, deviation_;
   std::vector<PixelStatus> status_;
+  std::vector<Slope> slope_;
   std::vector<std::uint8_t> is_firm_;
 };
 
@@ -225,32 +278,93 @@ void drop(const DecodedView& decoded, std::size_t i) {
     if (plane) plane[i] = std::numeric_limits<float>::quiet_NaN();
 }
 
-/// The stronger of two surfaces that a pixel sees; none if it does not see two.
-std::optional<Surface> stronger_of_two(const MixedPixelFit& fit, const double* electrons,
-                                       double averaged, double offset_m, double decoded_m,
-                                       const std::vector<Surface>& surfaces) {
-  std::optional<Surface> stronger;
-  double best = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < surfaces.size(); ++i)
-    for (std::size_t j = i + 1; j < surfaces.size(); ++j) {
-      SurfaceDepth first = surfaces[i].here, second = surfaces[j].here;
-      first.depth_m += offset_m, second.depth_m += offset_m;
-      const auto found = fit.explain(electrons, averaged, decoded_m + offset_m, first, second);
-      if (!found.is_two || !(found.chi2 < best)) continue;
-      best = found.chi2;
-      stronger = found.first_e_per_s >= found.second_e_per_s ? surfaces[i] : surfaces[j];
+/// What is known of a pixel that sees two surfaces.
+struct MixedPixel {
+  std::optional<Surface> stronger;  ///< of both; none: no surface is there any more
+};
+
+/// Finds out which pixels see two surfaces.
+class MixedPixelSearch {
+ public:
+  MixedPixelSearch(const DecodingTable& table, const RawView& raw, const Surroundings& around,
+                   const PixelMaps& maps, const UnfilteredPixels& unfiltered)
+      : fit_(table),
+        scale_(table),
+        around_(around),
+        offset_m_(maps.delay_offset_m),
+        decoded_(raw),
+        own_(unfiltered.measured) {}
+
+  /// Nothing can be found with fewer than 3.
+  int rank() const { return fit_.rank(); }
+
+  /// None if the pixel does not see two. @param surfaces  memory that is used again
+  std::optional<MixedPixel> at(int row, int x, std::vector<Surface>& surfaces) const {
+    const std::size_t i = around_.at(row, x);
+    if (!around_.is_decoded(i)) return std::nullopt;
+    around_.find_surfaces(row, x, surfaces);
+    if (around_.was_mixed(i)) {
+      if (surfaces.size() == 1) return MixedPixel{surfaces.front()};
+      return MixedPixel{stronger_of_two(own_ ? *own_ : decoded_, row, x, surfaces)};
     }
-  return stronger;
-}
+    const auto has_its_depth = [&](const Surface& surface) { return around_.lies_on(i, surface); };
+    if (std::any_of(surfaces.begin(), surfaces.end(), has_its_depth)) return std::nullopt;
+    auto stronger = stronger_of_two(decoded_, row, x, surfaces);
+    if (!stronger && own_) stronger = stronger_of_two(*own_, row, x, surfaces);
+    return stronger ? std::optional(MixedPixel{stronger}) : std::nullopt;
+  }
+
+ private:
+  /// The stronger of the two surfaces that explain a pixel best; none if it does not see two.
+  std::optional<Surface> stronger_of_two(const RawView& raw, int row, int x,
+                                         const std::vector<Surface>& surfaces) const {
+    std::array<double, max_measurements> electrons;
+    if (surfaces.size() < 2 || !read_electrons(raw, scale_, row, x, electrons)) return std::nullopt;
+    const std::size_t pixel = around_.at(row, x);
+    const double averaged = raw.averaged ? raw.averaged[pixel] : 1.0;
+    const double offset_m = offset_m_.empty() ? 0.0 : offset_m_.pixels[pixel];
+    std::optional<Surface> stronger;
+    double best = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < surfaces.size(); ++i)
+      for (std::size_t j = i + 1; j < surfaces.size(); ++j) {
+        SurfaceDepth first = surfaces[i].here, second = surfaces[j].here;
+        first.depth_m += offset_m, second.depth_m += offset_m;
+        const auto found = fit_.explain(electrons.data(), averaged,
+                                        around_.depth_m(pixel) + offset_m, first, second);
+        if (!(found.is_two || around_.was_mixed(pixel)) || !(found.chi2 < best)) continue;
+        best = found.chi2;
+        stronger = found.first_e_per_s >= found.second_e_per_s ? surfaces[i] : surfaces[j];
+      }
+    return stronger;
+  }
+
+  MixedPixelFit fit_;
+  RawScale scale_;
+  const Surroundings& around_;
+  const Image<float>& offset_m_;
+  const RawView& decoded_;
+  const RawView* own_;
+};
 
 void check(const DecodingTable& table, const RawView& raw, const DecodedView& decoded,
-           const PixelMaps& maps) {
+           const PixelMaps& maps, const UnfilteredPixels& unfiltered) {
   require_measurements(raw, table.measurements());
   require(raw.height > 0 && raw.width > 0, "raw height and width", std::min(raw.height, raw.width),
           "must be > 0");
   require(decoded.depth_m && decoded.predicted_standard_deviation_m && decoded.status, "decoded",
           "a null plane", "must have depth, predicted standard deviation and status");
   maps.validate(raw.height, raw.width);
+  const auto fits = [&](const char* field, int height, int width) {
+    require(height == raw.height && width == raw.width, field,
+            std::to_string(height) + " x " + std::to_string(width),
+            "must be of the size of the frame");
+  };
+  if (const RawView* own = unfiltered.measured) {
+    require_measurements(*own, table.measurements());
+    fits("unfiltered.measured", own->height, own->width);
+  }
+  if (!unfiltered.mixed.empty())
+    fits("unfiltered.mixed", unfiltered.mixed.height, unfiltered.mixed.width);
 }
 
 }  // namespace
@@ -261,39 +375,27 @@ MixedPixels parse_mixed_pixels(std::string_view name) { return mixed_words.parse
 
 std::int64_t mark_mixed_pixels(const DecodingTable& table, const RawView& raw, MixedPixels mixed,
                                const DecodedView& decoded, const PixelMaps& maps,
-                               const Progress& progress) {
+                               const Progress& progress, const UnfilteredPixels& unfiltered) {
   table.validate();
-  check(table, raw, decoded, maps);
+  check(table, raw, decoded, maps, unfiltered);
   report(progress, 0.0, "looking for mixed pixels");
-  const MixedPixelFit fit(table);
-  if (fit.rank() < 3) return 0;
-  const RawScale scale(table);
-  const Surroundings around(decoded, raw.height, raw.width, table.range_m);
+  const Surroundings around(decoded, unfiltered.mixed, raw.height, raw.width, table.range_m);
+  const MixedPixelSearch search(table, raw, around, maps, unfiltered);
+  if (search.rank() < 3) return 0;
   std::vector<std::int64_t> marked(static_cast<std::size_t>(raw.height), 0);
   parallel_for(raw.height, [&](std::int64_t y) {
     const int row = static_cast<int>(y);
     std::vector<Surface> surfaces;
-    std::array<double, max_measurements> electrons;
     for (int x = 0; x < raw.width; ++x) {
-      const std::size_t i = around.at(row, x);
-      if (!around.is_decoded(i)) continue;
-      around.find_surfaces(row, x, surfaces);
-      if (surfaces.size() < 2 ||
-          std::any_of(surfaces.begin(), surfaces.end(),
-                      [&](const Surface& surface) { return around.lies_on(i, surface); }))
-        continue;
-      if (!read_electrons(raw, scale, row, x, electrons)) continue;
-      const double offset_m = maps.delay_offset_m.empty() ? 0.0 : maps.delay_offset_m.pixels[i];
-      const auto stronger =
-          stronger_of_two(fit, electrons.data(), raw.averaged ? raw.averaged[i] : 1.0, offset_m,
-                          around.depth_m(i), surfaces);
-      if (!stronger) continue;
+      const auto found = search.at(row, x, surfaces);
+      if (!found) continue;
       ++marked[static_cast<std::size_t>(row)];
+      const std::size_t i = around.at(row, x);
       decoded.status[i] = PixelStatus::mixed;
       if (mixed == MixedPixels::drop) drop(decoded, i);
-      if (mixed == MixedPixels::snap) {
-        decoded.depth_m[i] = around.depth_m(stronger->nearest);
-        decoded.predicted_standard_deviation_m[i] = around.deviation_m(stronger->nearest);
+      if (mixed == MixedPixels::snap && found->stronger) {
+        decoded.depth_m[i] = around.depth_m(found->stronger->nearest);
+        decoded.predicted_standard_deviation_m[i] = around.deviation_m(found->stronger->nearest);
       }
     }
   });

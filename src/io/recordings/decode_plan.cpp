@@ -173,7 +173,8 @@ MappedDecoder::MappedDecoder(const DecodeRequest& request, const AnyDecoder& dec
 }
 
 void MappedDecoder::decode(const RawView& raw, const Band& band, const DecodeTarget& target,
-                           const DecodedView& decoded, const Progress& progress) const {
+                           const DecodedView& decoded, const Progress& progress,
+                           const UnfilteredPixels& unfiltered) const {
   const auto pixels = static_cast<std::size_t>(raw.pixels());
   std::visit([&](const auto& d) { d.decode(raw, decoded, progress); }, decoder_);
   const std::size_t first =
@@ -182,9 +183,26 @@ void MappedDecoder::decode(const RawView& raw, const Band& band, const DecodeTar
     apply(*table_.correction, table_.range_m, decoded, target.view.height, target.view.width, first,
           pixels);
   apply(maps_, table_.range_m, decoded, first, pixels);
-  if (mixed_) mark_mixed_pixels(table_, raw, *mixed_, decoded, maps_);
+  if (mixed_) mark_mixed_pixels(table_, raw, *mixed_, decoded, maps_, {}, unfiltered);
   if (target.as_z && decoded.depth_m)
     turn_into_z(decoded.depth_m, band.first_row, band.rows, target.pixel_rays);
+}
+
+bool decode_next(PreparedFrames& input, const MappedDecoder& decoder, const Band& band,
+                 const DecodeTarget& target, DecodedPlanes& planes, const Progress& progress) {
+  const ProgressParts parts(progress, {input.effort(), input.decode_effort()});
+  const std::optional<RawView> raw = input.next(band.frame, parts[0]);
+  if (!raw) return false;
+  const std::size_t first = target.first_pixel(band);
+  const DecodedView decoded = planes.view().from(first);
+  input.decode(
+      *raw, target.find_mixed ? decoded.status : nullptr,
+      [&](const RawView& numbers, const UnfilteredPixels& unfiltered, const Progress& here) {
+        decoder.decode(numbers, band, target, decoded, here, unfiltered);
+        planes.keep_averaged(numbers, first);
+      },
+      parts[1]);
+  return true;
 }
 
 }  // namespace tofsmith

@@ -44,8 +44,10 @@ class MappedDecoder {
   const DecodingTable& table() const { return table_; }
 
   /// Decodes one band to where it belongs in the planes.
+  /// @param unfiltered  where a filter gave `raw` and mixed pixels are looked for
   void decode(const RawView& raw, const Band& band, const DecodeTarget& target,
-              const DecodedView& decoded, const Progress& progress) const;
+              const DecodedView& decoded, const Progress& progress,
+              const UnfilteredPixels& unfiltered = {}) const;
 
  private:
   const AnyDecoder& decoder_;
@@ -53,6 +55,11 @@ class MappedDecoder {
   PixelMaps maps_;
   std::optional<MixedPixels> mixed_;  // in bands that are whole frames
 };
+
+/// Decodes the next band of the frames to where it belongs in the planes; false after the last.
+/// Filtered frames of which mixed pixels are looked for are filtered once more without those.
+bool decode_next(PreparedFrames& input, const MappedDecoder& decoder, const Band& band,
+                 const DecodeTarget& target, DecodedPlanes& planes, const Progress& progress);
 
 /// What every decoder decodes with.
 const DecodingTable& table_of(const AnyDecoder& decoder);

@@ -181,18 +181,14 @@ void decode_frames(const RawFramesReader& reader, const Preparation& preparation
   for (const Band& band : bands) {
     const Progress here = pace.of_band(band, result.pixels);
     report(here, 0.0, "reading");
-    const ProgressParts parts(here, {input.effort(), 1.0});
-    const RawView raw = *input.next(band.frame, parts[0]);
-    const std::size_t first =
-        in_rows ? 0 : static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(width);
-    planes.keep_averaged(raw, first);
-    decoder.decode(raw, band, target, planes.view().from(first), parts[1]);
+    decode_next(input, decoder, band, target, planes, here);
     if (target.undistortion) planes.undistort(*target.undistortion, target.as_z);
+    const std::int64_t pixels = std::int64_t{band.rows} * width;
     if (target.count_statuses)
       statuses.add(std::span(planes.statuses().pixels)
-                       .subspan(first, static_cast<std::size_t>(raw.pixels())));
+                       .subspan(target.first_pixel(band), static_cast<std::size_t>(pixels)));
     output.take(band.frame, band.first_row, band.rows, planes);
-    result.pixels += raw.pixels();
+    result.pixels += pixels;
     result.seconds = pace.seconds();
     if (band.first_row + band.rows < height) continue;
     result.frames.push_back(std::exchange(statuses, {}));

@@ -122,14 +122,11 @@ void decode_stream(const DecodeRequest& asked, const AnyDecoder& decoder, const 
   const auto start = std::chrono::steady_clock::now();
   for (;;) {
     report(progress, 0.0, fmt::format("frame {}", result.frames));
-    const ProgressParts parts(progress, {0.0, 0.0, 1.0});  // how long a stream is nobody knows
+    const ProgressParts parts(progress, {0.0, 1.0});  // how long a stream is nobody knows
     // A filter in time counts its frames up to an int's; nothing else looks at the number.
     const auto frame = static_cast<int>(
         std::min<std::int64_t>(result.frames, std::numeric_limits<int>::max() / 2));
-    const std::optional<RawView> raw = input.next(frame, parts[0]);
-    if (!raw) break;
-    planes.keep_averaged(*raw, 0);
-    mapped.decode(*raw, {0, 0, height}, target, planes.view(), parts[1]);
+    if (!decode_next(input, mapped, {frame, 0, height}, target, planes, parts[0])) break;
     if (target.undistortion) planes.undistort(*target.undistortion, target.as_z);
     if (target.count_statuses) result.statuses.add(planes.statuses().pixels);
     for (const DecodedPlane plane : target.planes) write(planes.items(plane, height));

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/recordings/decoded_planes.hpp"
+#include "io/recordings/read_ahead.hpp"
 #include "io/recordings/undistortion.hpp"
 #include "tofsmith/io/npy.hpp"
 
@@ -55,6 +56,12 @@ struct DecodeTarget {
   std::vector<std::filesystem::path> paths() const;
   /// Rows are written as they come; else a frame's planes stand in memory as a whole.
   bool in_rows() const { return path.extension() == ".npy"; }
+  /// Where the planes of what is decoded hold the first pixel of a band.
+  std::size_t first_pixel(const Band& band) const {
+    return in_rows()
+               ? 0
+               : static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(view.width);
+  }
   /// Planes that must be decoded: those written, what points are made of, what is counted
   /// and what mixed pixels are found by.
   std::vector<DecodedPlane> needed_planes() const;

@@ -61,7 +61,7 @@ std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
 
 double Preparation::frame_bytes(int height, int width, int measurements) const {
   // What is known of the pixels while mixed ones are marked.
-  constexpr double bytes_to_find_mixed = 2 * sizeof(float) + 2;
+  constexpr double bytes_to_find_mixed = 4 * sizeof(float) + 3;
   const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::size_t bytes = 0;
   if (time_filter) bytes += TimeFilter::memory_bytes(height, width, measurements, threads);
@@ -198,11 +198,17 @@ std::optional<RawView> PreparedFrames::added_up(int frame, const Progress& progr
 }
 
 std::optional<RawView> PreparedFrames::next(int frame, const Progress& progress) {
-  const ProgressParts parts(progress, {1.0, filter_ ? 8.0 : 0.0});
-  std::optional<RawView> raw = time_filter_ ? added_up(frame, parts[0]) : measured(frame, parts[0]);
-  if (!raw || !filter_) return raw;
-  filter_->apply(*raw, filtered_, parts[1]);
-  return filtered_.view();
+  return time_filter_ ? added_up(frame, progress) : measured(frame, progress);
+}
+
+void PreparedFrames::decode(
+    const RawView& raw, const PixelStatus* statuses,
+    const std::function<void(const RawView&, const UnfilteredPixels&, const Progress&)>& decode,
+    const Progress& progress) {
+  if (filter_)
+    decode_filtered(*filter_, raw, filtered_, decode, statuses, progress);
+  else
+    decode(raw, {}, progress);
 }
 
 }  // namespace tofsmith

@@ -61,7 +61,8 @@ class RowSums {
 std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
                                 const std::vector<Band>& bands);
 
-/// Gives bands of frames as they are decoded: as they come, as means of several frames, filtered.
+/// Gives bands of frames as they are decoded: as they come, as means of several frames, filtered in
+/// time and, on the way to the decoder, in space.
 class PreparedFrames {
  public:
   /// The raw numbers of the next band, until the call after; none after the last.
@@ -74,15 +75,24 @@ class PreparedFrames {
   PreparedFrames(Input input, const DecodingTable& table, const Preparation& preparation,
                  int recorded);
 
-  /// How long next() takes, where decoding takes 1: about.
+  /// How long next() takes, and decode(), where decoding alone takes 1: about.
   double effort() const {
-    return (preparation_.group() > 1 ? 1.0 : 0.0) + (time_filter_ ? 1.0 : 0.0) +
-           (filter_ ? 8.0 : 0.0);
+    return (preparation_.group() > 1 ? 1.0 : 0.0) + (time_filter_ ? 1.0 : 0.0);
+  }
+  double decode_effort() const {
+    return filter_ ? 9.0 * (preparation_.find_mixed ? 2.0 : 1.0) : 1.0;
   }
   /// The raw numbers of the next band, of frame `frame` of those that come out, until the call
   /// after; none after the last.
   /// @throws IoError as the input; Interrupted if progress says so
   std::optional<RawView> next(int frame, const Progress& progress);
+
+  /// Has numbers that next() gave decoded, filtered in space if there is a filter.
+  /// @param statuses, decode  as decode_filtered() takes them
+  void decode(
+      const RawView& raw, const PixelStatus* statuses,
+      const std::function<void(const RawView&, const UnfilteredPixels&, const Progress&)>& decode,
+      const Progress& progress);
 
  private:
   std::optional<RawView> measured(int frame, const Progress& progress);
