@@ -57,7 +57,7 @@ DecodeRequest request_of(const DecodeArguments& arguments, const Camera& camera,
   request.offset_map = arguments.offset_map;
   request.gain_map = arguments.gain_map;
   request.stray_light = arguments.stray_light;
-  request.rays = arguments.rays;
+  if (!arguments.rays.empty()) request.lens = Lens{.rays = arguments.rays};
   request.policy = session.output_policy();
   request.other_inputs = {arguments.code, arguments.camera.name};
   return request;
@@ -70,7 +70,7 @@ DecodedRecording decode_all(const DecodeRequest& request, const AnyDecoder& deco
   try {
     decode_recording(request, decoder, terminal_progress("decoding"), result);
   } catch (const std::invalid_argument& error) {
-    throw UsageError(fmt::format("--{}", error.what()));
+    throw wrong_option(error);
   } catch (...) {
     session.tells_what_is_kept = result.frame_count > 1;
     if (session.tells_what_is_kept)
@@ -99,8 +99,10 @@ bool reads_pipe(const DecodeArguments& arguments) {
   return from_pipe;
 }
 
-void run(const DecodeArguments& arguments, Session& session) {
+void run(DecodeArguments& arguments, Session& session) {
   reads_pipe(arguments);  // wrong usage comes before what files hold
+  const std::optional<std::string> camera_source =
+      arguments.camera.take_that_of(arguments.raw.front());
   const Camera camera = arguments.camera.load();
   const DecodingSource source =
       arguments.table.load(arguments.code, camera, arguments.camera.is_default(), arguments.taps);
@@ -119,6 +121,7 @@ void run(const DecodeArguments& arguments, Session& session) {
   nlohmann::ordered_json document = {
       {"code", source.name},
       {"camera", camera.name},
+      {"camera_source", camera_source.value_or(arguments.camera.name)},
       {"range_m", source.table.range_m},
       {"range_source", source.range_source},
       {"method", name_of(arguments.method.method())},
@@ -139,9 +142,9 @@ void run(const DecodeArguments& arguments, Session& session) {
   std::string lines = decode_lines(request, result);
   if (source.tell_range)
     lines += fmt::format("\nrange {:.4g} m ({})", source.table.range_m, source.range_source);
+  if (camera_source) lines += "\ncamera " + *camera_source;
   for (const std::string& note : notes) lines += "\n" + note;
-  if (!camera.lens && request.rays.empty() &&
-      (holds_points(request.output) || request.kind == DepthKind::z))
+  if (!request.lens && (holds_points(request.output) || request.kind == DepthKind::z))
     lines += "\nthe camera has no [lens]: its view was taken to be 60 degrees wide";
   session.say(lines);
 }

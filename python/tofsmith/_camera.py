@@ -206,7 +206,7 @@ class Camera:
     def lens(self) -> Optional[Lens]:
         """The pinhole, if the camera has one."""
         lens = self._lens_fields(Lens)
-        return Lens(**_tuples(lens)) if "fx_px" in lens else None
+        return Lens(**_tuples(lens)) if lens else None
 
     @cached_property
     def blur(self) -> Optional[LensBlur]:

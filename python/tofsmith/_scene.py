@@ -206,6 +206,7 @@ def capture(
     falloff: Optional[bool] = None,
     seed: Optional[int] = None,
     frames: Optional[int] = None,
+    stray_light: Optional[npt.ArrayLike] = None,
     returns: Union[MultipathReturns, Sequence[tuple[float, float]], None] = None,
     tail: Optional[ExponentialTail] = None,
     transients: Optional[Transients] = None,
@@ -233,6 +234,9 @@ def capture(
         Of all noise (1); the same bits for any number of threads.
     frames : int, optional
         F, independent noise for each (1).
+    stray_light : array_like, shape (2 R + 1, 2 Q + 1), optional
+        Share of a pixel's light that the lens scatters to each other, the middle being the pixel
+        itself; remove_stray_light() takes it off again.
     returns : MultipathReturns or sequence of (delay_m, ratio), optional
         Light that comes back again: of each pixel, or the same behind all pixels.
     tail : ExponentialTail, optional
@@ -254,6 +258,7 @@ def capture(
         "falloff": falloff,
         "seed": seed,
         "frames": frames,
+        "stray_light": stray_light,
     }
     raw: npt.NDArray[np.float32]
     if isinstance(scene, (str, os.PathLike)):
@@ -329,8 +334,8 @@ def capture_staged(
     returns, tail, transients, progress
         As in capture(); lists are of rays: `lens.pixel_samples` squared for each pixel.
     **options
-        signal_e_per_s, ambient_e_per_s, reference_distance_m, falloff, seed, frames as in
-        capture().
+        signal_e_per_s, ambient_e_per_s, reference_distance_m, falloff, seed, frames, stray_light
+        as in capture().
 
     Examples
     --------

@@ -13,6 +13,7 @@
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
 
 namespace tofsmith {
@@ -226,11 +227,10 @@ void add_notes(const DepthFit& fit, const ReferenceDepth& reference,
 ReferenceDepth along_rays(ReferenceDepth z, const Camera& camera, int height, int width) {
   require(camera.lens.has_value(), "lens", "none",
           "must say where pixels look, so that a reference along the axis can be turned");
-  const PinholeView view = view_of(camera.lens, width, height);
-  view.validate();
+  const PixelRays rays = rays_of(camera.lens, view_of(camera.lens, width, height));
   for (Image<float>& depth_m : z.depth_m) {
     if (depth_m.size() == 1) depth_m = Image<float>(height, width, depth_m.pixels.front());
-    if (depth_m.height == height && depth_m.width == width) depth_m = radial_from_z(depth_m, view);
+    if (depth_m.height == height && depth_m.width == width) depth_m = radial_from_z(depth_m, rays);
   }
   z.is_z = false;
   return z;
