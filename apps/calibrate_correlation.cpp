@@ -162,21 +162,22 @@ void run(const CorrelationArguments& arguments, const Session& session) {
   const Camera base = arguments.camera.load();
   check_outputs(arguments, session);
   if (!arguments.reference.empty()) {
-    calibrate_by_reference(
-        {{arguments.files.begin(), arguments.files.end()},
-         arguments.raw_format,
-         arguments.dataset,
-         parse_depth_kind(arguments.reference_kind) == DepthKind::z,
-         arguments.reference,
-         arguments.table,
-         arguments.output.camera_path,
-         arguments.camera.name,
-         arguments.codes,
-         arguments.taps.file_options(),
-         base,
-         [&](const Camera& camera) { arguments.output.write_camera(camera, session); },
-         [&](const Page& page) { arguments.output.write_page(page, session); }},
-        session);
+    calibrate_by_reference({{arguments.files.begin(), arguments.files.end()},
+                            arguments.raw_format,
+                            arguments.dataset,
+                            parse_depth_kind(arguments.reference_kind) == DepthKind::z,
+                            arguments.reference,
+                            arguments.table,
+                            arguments.output.camera_path,
+                            arguments.camera.name,
+                            arguments.codes,
+                            arguments.taps.file_options(),
+                            base,
+                            [&](const Camera& camera, const std::string& next) {
+                              arguments.output.write_camera(camera, session, next);
+                            },
+                            [&](const Page& page) { arguments.output.write_page(page, session); }},
+                           session);
     return;
   }
   if (arguments.files.size() > 1)

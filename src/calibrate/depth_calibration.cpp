@@ -203,7 +203,22 @@ void add_notes(const DepthFit& fit, const ReferenceDepth& reference,
         "the reference is {:.4g} m everywhere, but depths spread over {:.0f} % of the range: is it "
         "of this scene? A number for each frame is the distance of a flat target",
         nearest, 100.0 * covered));
-  if (covered < 0.05)
+  constexpr double usual_share = 0.03;
+  if (result.rms_before_m > usual_share * fit.range_m)
+    result.notes.push_back(
+        fmt::format("depth is off by {:.2g} % of the range (rms, about its mean), more than "
+                    "cameras wiggle: are "
+                    "frequency, code and order of exposures those of these frames?",
+                    100.0 * result.rms_before_m / fit.range_m));
+  const auto reference_m = each(fit.samples, [](const auto& s) { return s.reference_m; });
+  if (covered < 0.05 &&
+      quantile_of(reference_m, 0.95) - quantile_of(reference_m, 0.05) > 0.05 * fit.range_m)
+    result.notes.push_back(
+        "the decoded depth hardly changes where the reference does: are code and order of "
+        "exposures those of these frames? Only an offset and a field "
+        "over "
+        "the image were looked for");
+  else if (covered < 0.05)
     result.notes.push_back(
         "the reference hardly changes: only an offset and a field over the image were looked for, "
         "at this distance");
