@@ -40,20 +40,19 @@ fi
 install_packages package
 chmod 755 "$place"
 
+# The first as in a clone, which ccache may know; the second elsewhere, and not within the sources.
 first=$place/one second=$place/another/folder/of/a-longer-name
-for folder in "$first" "$second"; do
-  rm -rf "$folder"
-  mkdir -p "$folder/home"
-  git -C "$root" archive --prefix=source/ HEAD | tar -xf - -C "$folder"
-done
+rm -rf "$first" "$second"
+mkdir -p "$first" "$second/source" "$second/home"
+for folder in "$first" "$second/source"; do git -C "$root" archive HEAD | tar -xf - -C "$folder"; done
 find "$second/source" -exec touch --date=2001-02-03 {} +
 
 echo "First build, in $first"
-uncached=(CCACHE_DISABLE=1 HOME="$first/home")
+uncached=(CCACHE_DISABLE=1)
 [[ -z "$quick" ]] || uncached=()
 env "${uncached[@]}" LC_ALL=C.UTF-8 TZ=UTC CMAKE_BUILD_PARALLEL_LEVEL="$(nproc)" \
-  "$first/source/scripts/package.sh" "${what[@]}" "$first/build" >"$first/log" 2>&1 ||
-  tofsmith_die "the first build failed; see $first/log"
+  "$first/scripts/package.sh" "${what[@]}" >"$first/build.log" 2>&1 ||
+  tofsmith_die "the first build failed; see $first/build.log"
 
 echo "Second build, in $second"
 other=()
@@ -67,7 +66,7 @@ fi
   build "$second" "${what[@]}" >"$second/log" 2>&1 || tofsmith_die "the second build failed; see $second/log"
 
 failed=0 count=0
-for package in "$first"/build/*.deb; do
+for package in "$first"/build-package/*.deb; do
   twin=$second/build/$(basename "$package")
   count=$((count + 1))
   cmp -s "$package" "$twin" && continue
