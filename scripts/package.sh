@@ -46,7 +46,8 @@ cmake --log-level=WARNING -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Rel
 cmake --build "$build"
 
 rm -f "$build"/*.deb
-(cd "$build" && cpack --config CPackConfig.cmake)
+# The archive in a package notes the permissions of its parts.
+(umask 022 && cd "$build" && cpack --config CPackConfig.cmake)
 mapfile -t packages < <(compgen -G "$build/*.deb")
 ((${#packages[@]})) || tofsmith_die "cpack made no packages in $build"
 unpacked=$(mktemp -d)
