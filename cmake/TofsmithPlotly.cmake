@@ -30,19 +30,26 @@ add_custom_command(OUTPUT "${plotly_minified}"
 
 # An assembler file takes bytes as they are and at once; a C++ array of 4 MB takes a minute.
 enable_language(ASM)
-set(resources "plotly_js" "${plotly_minified}"
-              "page_css" "${CMAKE_CURRENT_SOURCE_DIR}/report/page.css"
-              "page_js" "${CMAKE_CURRENT_SOURCE_DIR}/report/page.js")
 set(resource_files)
 set(assembler ".section .rodata\n")
-while(resources)
-  list(POP_FRONT resources name file)
-  list(APPEND resource_files "${file}")
+# Of one file or of several, one behind the other.
+function(add_resource name)
   string(APPEND assembler
     ".global tofsmith_resource_${name}\n.hidden tofsmith_resource_${name}\n"
     ".global tofsmith_resource_${name}_end\n.hidden tofsmith_resource_${name}_end\n"
-    "tofsmith_resource_${name}:\n.incbin \"${file}\"\ntofsmith_resource_${name}_end:\n.byte 0\n")
-endwhile()
+    "tofsmith_resource_${name}:\n")
+  foreach(file IN LISTS ARGN)
+    string(APPEND assembler ".incbin \"${file}\"\n")
+  endforeach()
+  string(APPEND assembler "tofsmith_resource_${name}_end:\n.byte 0\n")
+  set(assembler "${assembler}" PARENT_SCOPE)
+  set(resource_files ${resource_files} ${ARGN} PARENT_SCOPE)
+endfunction()
+set(report "${CMAKE_CURRENT_SOURCE_DIR}/report")
+# Every page has the licences of what is in plotly.js.
+add_resource(plotly_js "${report}/plotly_licences.js" "${plotly_minified}")
+add_resource(page_css "${report}/page.css")
+add_resource(page_js "${report}/page.js")
 string(APPEND assembler ".section .note.GNU-stack,\"\",%progbits\n")
 set(resource_assembler "${CMAKE_CURRENT_BINARY_DIR}/report_resources.s")
 file(CONFIGURE OUTPUT "${resource_assembler}" CONTENT "${assembler}" @ONLY)
