@@ -14,7 +14,8 @@ if(NOT TOFSMITH_ESBUILD)
   message(FATAL_ERROR "esbuild is missing: apt-get install esbuild")
 endif()
 
-# The licence comment is the head of the file; the minifier drops it, so it goes in as a banner.
+# The licence comment is the head of the file; the minifier drops it, so it goes in as a banner, and
+# into the page where it can be read.
 file(STRINGS "${TOFSMITH_PLOTLY_JS}" plotly_head LIMIT_COUNT 6)
 list(FILTER plotly_head INCLUDE REGEX "^/?\\*")
 list(JOIN plotly_head " " plotly_licence)  # a command takes no line break
@@ -23,14 +24,20 @@ if(NOT plotly_licence MATCHES "plotly\\.js v.*MIT license")
 endif()
 
 set(plotly_minified "${CMAKE_CURRENT_BINARY_DIR}/plotly.min.js")
-add_custom_command(OUTPUT "${plotly_minified}"
+add_custom_command(OUTPUT "${plotly_minified}.gz"
   COMMAND "${TOFSMITH_ESBUILD}" "${TOFSMITH_PLOTLY_JS}" --minify "--banner:js=${plotly_licence}"
           "--outfile=${plotly_minified}" --log-level=warning
+  COMMAND gzip -9nkf "${plotly_minified}"  # without name and time: the same bytes each time
+  BYPRODUCTS "${plotly_minified}"
   DEPENDS "${TOFSMITH_PLOTLY_JS}" COMMENT "Minifying plotly.js" VERBATIM)
 
 # An assembler file takes bytes as they are and at once; a C++ array of 4 MB takes a minute.
 enable_language(ASM)
-set(resources "plotly_js" "${plotly_minified}"
+set(plotly_licence_file "${CMAKE_CURRENT_BINARY_DIR}/plotly_licence.txt")
+string(REGEX REPLACE "[/ *]*\\*/$|^/\\*[* ]*" "" plotly_licence_text "${plotly_licence}")
+file(CONFIGURE OUTPUT "${plotly_licence_file}" CONTENT "${plotly_licence_text}" @ONLY)
+set(resources "plotly_js" "${plotly_minified}.gz"
+              "plotly_licence" "${plotly_licence_file}"
               "page_css" "${CMAKE_CURRENT_SOURCE_DIR}/report/page.css"
               "page_js" "${CMAKE_CURRENT_SOURCE_DIR}/report/page.js")
 set(resource_files)

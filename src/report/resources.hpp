@@ -6,8 +6,10 @@
 
 namespace tofsmith::resources {
 
-/// plotly.js, minified, its licence first.
+/// plotly.js, minified and packed by gzip.
 std::string_view plotly_js();
+/// Its licence.
+std::string_view plotly_licence();
 /// Style sheet of the page (src/report/page.css).
 std::string_view page_css();
 /// Script of the page (src/report/page.js).
