@@ -130,6 +130,7 @@ void run(DecodeArguments& arguments, Session& session) {
       {"hdr", request.hdr},
       {"time_filter", request.time_filter ? nlohmann::ordered_json(request.time_filter->max_frames)
                                           : nlohmann::ordered_json("off")},
+      {"look_ahead", request.time_filter ? request.time_filter->look_ahead : 0},
       {"filter", arguments.filter.name()},
       {"mixed", request.mixed ? name_of(*request.mixed) : "off"},
       {"undistort", request.undistort},

@@ -104,8 +104,8 @@ struct DecodeRequest {
   /// much smaller. With `average` it multiplies.
   double averaged = 1.0;
   /// Of the frames, or means of frames, one after another: what stays the same is added up. `frame`
-  /// counts all frames before it in. With `filter` it is `before_filter`. None: each frame for
-  /// itself.
+  /// counts all frames before it in, and with `look_ahead` those after it. With `filter` it is
+  /// `before_filter`. None: each frame for itself.
   std::optional<TimeFilterOptions> time_filter;
   std::optional<FilterOptions> filter;  ///< of each frame that comes of that; none: not filtered
   std::optional<MixedPixels> mixed;     ///< mark_mixed_pixels() of each frame; none: not looked for
@@ -181,10 +181,10 @@ struct DecodedStream {
 };
 
 /// Decodes frames as they come, each written before the next is read: in the memory of a few
-/// frames, with nothing held back. What comes out of a frame are its planes, one after another in
-/// the order of the request's `outputs` (depth, if it names none), of H x W items each, row by row,
-/// little end first: float32, status and returns uint8, bin int32. The same numbers as in
-/// decode_recording().
+/// frames, with nothing held back but what a time filter is to look ahead. What comes out of a
+/// frame are its planes, one after another in the order of the request's `outputs` (depth, if it
+/// names none), of H x W items each, row by row, little end first: float32, status and returns
+/// uint8, bin int32. The same numbers as in decode_recording().
 /// @param request  its raw_format describes a stream: its header, then frame after frame; `raw`,
 ///                 `output`, `frame`, `stack`, `memory_mb` and `policy` say nothing
 /// @param result   filled frame by frame, also when it throws

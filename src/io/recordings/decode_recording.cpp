@@ -105,7 +105,7 @@ int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target,
   double whole = static_cast<double>(reader.bytes_in_memory() + target.writing_bytes() +
                                      target.pixel_rays.bytes() +
                                      (target.undistortion ? target.undistortion->bytes() : 0)) +
-                 preparation.frame_bytes(height, width, reader.measurements()) +
+                 preparation.frame_bytes(reader.frames(), height, width, reader.measurements()) +
                  (in_rows ? 0.0 : row_planes * height);
   double row =
       (reader.bytes_in_memory() > 0 ? 0.0 : 2.0 * static_cast<double>(reader.row_bytes())) +
