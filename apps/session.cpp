@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "help_pages.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 
@@ -69,9 +70,11 @@ void CameraArguments::add_positional(CLI::App& command) {
 }
 
 void CameraArguments::add_temperature_to(CLI::App& command) {
-  command.add_option("--temperature", temperature_c,
-                     "of the camera [degrees C]: depth and signal change as its [temperature] "
-                     "says (temperature.now_c, or the reference)");
+  command
+      .add_option("--temperature", temperature_c,
+                  "of the camera [degrees C]: depth and signal change as its [temperature] "
+                  "says (temperature.now_c, or the reference)")
+      ->group(for_experts);
 }
 
 std::filesystem::path camera_beside(const std::filesystem::path& raw) {

@@ -10,6 +10,7 @@
 
 #include "commands.hpp"
 #include "fresh_directory.hpp"
+#include "help_pages.hpp"
 #include "number_checks.hpp"
 #include "scene_source.hpp"
 #include "session.hpp"
@@ -347,19 +348,28 @@ void add_simulate_command(CLI::App& app, Session& session) {
                       "[optics], or the middle of "
                       "its operating points)");
   command->add_option("--ambient", arguments->ambient_e_per_s, "ambient light [e/s] (likewise)");
-  command->add_option("--signal-range", arguments->signal_range,
-                      "a:b, of many scenes: draw --signal of each log-uniformly");
-  command->add_option("--ambient-range", arguments->ambient_range,
-                      "a:b, of many scenes: draw --ambient of each log-uniformly");
-  command->add_option("--shard", arguments->shard,
-                      "i/n, of many scenes: only the i-th of n parts, into the same directory");
+  command
+      ->add_option("--signal-range", arguments->signal_range,
+                   "a:b, of many scenes: draw --signal of each log-uniformly")
+      ->group(for_experts);
+  command
+      ->add_option("--ambient-range", arguments->ambient_range,
+                   "a:b, of many scenes: draw --ambient of each log-uniformly")
+      ->group(for_experts);
+  command
+      ->add_option("--shard", arguments->shard,
+                   "i/n, of many scenes: only the i-th of n parts, into the same directory")
+      ->group(for_experts);
   command
       ->add_option("--reference-distance", arguments->options.reference_distance_m,
                    "where the signal is as given [m]")
       ->check(positive_number())
-      ->capture_default_str();
-  command->add_flag("!--no-falloff", arguments->options.falloff,
-                    "signal depends on albedo only, not on distance and angle");
+      ->capture_default_str()
+      ->group(for_experts);
+  command
+      ->add_flag("!--no-falloff", arguments->options.falloff,
+                 "signal depends on albedo only, not on distance and angle")
+      ->group(for_experts);
   command
       ->add_option("--frames", arguments->options.frames,
                    "frames one after another, each with noise of its own")
@@ -375,10 +385,14 @@ void add_simulate_command(CLI::App& app, Session& session) {
                       "light that the lens scatters, as calibrate stray-light finds it (.npy .npz "
                       ".exr .pfm); decode --stray-light takes it off again");
   command->add_option("--truth", arguments->truth, "also write the true radial distance");
-  command->add_option("--truth-near", arguments->truth_near,
-                      "also write the nearest distance of which a pixel gets light, of shapes");
-  command->add_option("--truth-far", arguments->truth_far,
-                      "also write the farthest; a lens mixes both: see docs/scenes.md");
+  command
+      ->add_option("--truth-near", arguments->truth_near,
+                   "also write the nearest distance of which a pixel gets light, of shapes")
+      ->group(for_experts);
+  command
+      ->add_option("--truth-far", arguments->truth_far,
+                   "also write the farthest; a lens mixes both: see docs/scenes.md")
+      ->group(for_experts);
   arguments->returns.add_to(*command);
   command->callback([arguments, &session] { run(*arguments, session); });
 }

@@ -28,6 +28,7 @@ from ._camera_fields import (
     Temperature,
 )
 from ._check import Path
+from ._notebook import camera_picture
 
 
 def _tuples(values: Mapping[str, Any]) -> dict[str, Any]:
@@ -328,6 +329,9 @@ class Camera:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Camera.from_toml, (self.to_toml(), self.name)
+
+    def _repr_html_(self) -> str:
+        return camera_picture(self, self.fundamental_frequency_hz, self.transfer(12))
 
     def __repr__(self) -> str:
         return (

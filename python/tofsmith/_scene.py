@@ -33,20 +33,20 @@ class Scene:
     depth_m : ndarray
         Radial distance from the camera [m], > 0; NaN = no return. radial_from_z() makes it of
         depth along the axis.
-    albedo : ndarray, optional
-        Share of light that is reflected, [0, 1]; None: 1.
-    cosine : ndarray, optional
+    albedo : ndarray or float, optional
+        Share of light that is reflected, [0, 1]; None: 1. A number is that of all pixels.
+    cosine : ndarray or float, optional
         Of the angle of incidence, [0, 1]; None: 1.
-    ambient_scale : ndarray, optional
+    ambient_scale : ndarray or float, optional
         Ambient light relative to the scene's, >= 0; None: 1.
     lens : Lens, optional
         The pinhole it is seen through, and how it distorts.
     """
 
     depth_m: npt.NDArray[Any]
-    albedo: Optional[npt.NDArray[Any]] = None
-    cosine: Optional[npt.NDArray[Any]] = None
-    ambient_scale: Optional[npt.NDArray[Any]] = None
+    albedo: Union[npt.NDArray[Any], float, None] = None
+    cosine: Union[npt.NDArray[Any], float, None] = None
+    ambient_scale: Union[npt.NDArray[Any], float, None] = None
     lens: Optional[Lens] = None
 
     def _planes(self) -> dict[str, npt.NDArray[Any]]:
@@ -367,6 +367,10 @@ def scene_planes(scene: Scene) -> dict[str, Optional[npt.NDArray[Any]]]:
     """The planes of a scene by name, each (H, W)."""
     names = ("depth_m", "albedo", "cosine", "ambient_scale")
     planes = {name: getattr(scene, name) for name in names}
+    for name in names[1:]:
+        if planes[name] is not None and np.ndim(planes[name]) == 0:
+            number = _check.number(planes[name], name)
+            planes[name] = np.full(np.shape(scene.depth_m), number, np.float32)
     return {
         name: None if plane is None else _check.real_array(plane, name, "(H, W)")
         for name, plane in planes.items()

@@ -96,6 +96,15 @@ class Commands(CommandLineTest):
         self.assertEqual(len(document["per_measurement"]), 4)
         self.assertIn("|###", self.do("codes", "square-k4"))
 
+    def test_codes_counts_the_measurements_that_the_sensor_reads_out(self):
+        pairs = ["hamiltonian-k4", "--set", "sensor.taps=2", "--set", "sensor.readout=difference"]
+        document = self.do_json("codes", *pairs)
+        self.assertEqual((document["taps"], document["measurements"]), (2, 4))
+        self.assertEqual(len(document["per_measurement"]), 8)
+        self.assertIn("4 measurements (differences of 8 tap values), 4 exposures",
+                      self.do("codes", *pairs))
+        self.assertEqual(self.do_json("codes", *pairs[:3])["measurements"], 8)
+
     def test_codes_writes_every_format(self):
         for name in ("c.code.json", "c.npz", "c.csv", "c.html"):
             self.assertEqual(self.do_json("codes", "hamiltonian-k3", "-o", name)["samples"], 240)
