@@ -201,9 +201,12 @@ def capture(
     options: _Options, progress: _Progress, /
 ) -> _Floats: ...
 def capture_staged(
-    scene: str, size: _Options, returns: Mapping[str, Any], code: CodeSet,
+    scene: str, size: _Options, returns: Mapping[str, Any], bounce_rays: int, code: CodeSet,
     camera: Camera, options: _Options, progress: _Progress, /
 ) -> dict[str, _Floats]: ...
+def bounced_light(
+    scene: str, size: _Options, camera: Camera, rays: int, progress: _Progress, /
+) -> tuple[npt.NDArray[np.int64], _Floats, _Floats]: ...
 def evaluate(code: CodeSet, camera: Camera, options: _Options, progress: _Progress, /) -> _Dict: ...
 def best_rotation(
     code: CodeSet, camera: Camera, options: _Options, progress: _Progress, /
