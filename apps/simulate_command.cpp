@@ -381,9 +381,11 @@ void add_simulate_command(CLI::App& app, Session& session) {
       ->add_option("-o,--output", arguments->output,
                    "raw frames (.npy .npz); of many scenes a directory")
       ->required();
-  command->add_option("--stray-light", arguments->stray_light,
-                      "light that the lens scatters, as calibrate stray-light finds it (.npy .npz "
-                      ".exr .pfm); decode --stray-light takes it off again");
+  command
+      ->add_option("--stray-light", arguments->stray_light,
+                   "light that the lens scatters, as calibrate stray-light finds it (.npy .npz "
+                   ".exr .pfm); decode --stray-light takes it off again")
+      ->group(for_experts);
   command->add_option("--truth", arguments->truth, "also write the true radial distance");
   command
       ->add_option("--truth-near", arguments->truth_near,

@@ -124,26 +124,65 @@ py::array_t<float> stacked(const Images& images, const ImageOf& image_of) {
                {static_cast<py::ssize_t>(images.size()), first.height, first.width});
 }
 
+/// A scene by name or file, of a width and height if they are given.
+LoadedScene loaded_scene(const std::string& name, const py::dict& size, const Camera& camera) {
+  SceneSource source{.scene = name};
+  read_options(size, "", source);
+  const py::gil_scoped_release release;
+  return load_scene(source, camera.lens);
+}
+
+/// How light bounces on the way to this camera: what `simulate --bounce-rays` says.
+/// @throws std::invalid_argument if the scene has no surfaces out of view
+BounceOptions bounce_options(const LoadedScene& scene, const Camera& camera, int rays) {
+  if (!scene.staged)
+    refuse("scene", "'" + scene.name + "', a depth image",
+           "surfaces that light can meet out of view: a built-in scene, a scene file (.toml) or a "
+           "mesh");
+  BounceOptions options{.rays = rays};
+  options.range_m = camera.range_m();
+  options.validate();
+  return options;
+}
+
+py::tuple bounced_light_arrays(const std::string& name, const py::dict& size, const Camera& camera,
+                               int rays, const py::object& callback) {
+  const LoadedScene scene = loaded_scene(name, size, camera);
+  const BounceOptions options = bounce_options(scene, camera, rays);
+  MultipathReturns found = without_gil(callback, [&](const Progress& progress) {
+    return bounced_light(*scene.staged, options, progress, embree_search());
+  });
+  std::vector<float> distance_m, ratio;
+  for (const MultipathReturn& each : found.returns) {
+    distance_m.push_back(each.distance_m);
+    ratio.push_back(each.ratio);
+  }
+  return py::make_tuple(adopt(std::move(found.first)), adopt(std::move(distance_m)),
+                        adopt(std::move(ratio)));
+}
+
 /// An image as it is, shapes through the camera's lens.
+/// @param bounce_rays  0: light does not bounce
 py::dict capture_staged(const std::string& name, const py::dict& size, const py::dict& returns,
-                        const CodeSet& code, const Camera& camera, const py::dict& given,
-                        const py::object& callback) {
+                        int bounce_rays, const CodeSet& code, const Camera& camera,
+                        const py::dict& given, const py::object& callback) {
   const py::dict values = given.attr("copy")();
   const Image<float> kernel = taken_image(values, "stray_light");
   const CaptureOptions options = capture_options(camera, values);
-  SceneSource source{.scene = name};
-  read_options(size, "", source);
-  LoadedScene scene;
-  {
-    const py::gil_scoped_release release;
-    scene = load_scene(source, camera.lens);
-  }
+  const LoadedScene scene = loaded_scene(name, size, camera);
+  std::optional<BounceOptions> bounces;
+  if (bounce_rays > 0) bounces = bounce_options(scene, camera, bounce_rays);
   StagedSetup setup{
       .search_of = embree_search(), .light = {}, .ambient_scale = {}, .stray_light = kernel};
-  if (!returns.empty())
-    setup.light = [&](const StagedScene&, const SceneImage& rays) {
-      const py::gil_scoped_acquire acquire;
-      return light_of(returns, rays);
+  if (!returns.empty() || bounces)
+    setup.light = [&](const StagedScene& staged, const SceneImage& rays) {
+      SceneLight light;
+      if (!returns.empty()) {
+        const py::gil_scoped_acquire acquire;
+        light = light_of(returns, rays);
+      }
+      if (bounces) light.returns = bounced_light(staged, *bounces, {}, embree_search());
+      return light;
     };
   SceneLight light =
       scene.staged || returns.empty() ? SceneLight{} : light_of(returns, scene.image);
@@ -170,6 +209,7 @@ py::dict capture_staged(const std::string& name, const py::dict& size, const py:
 void bind_capture(py::module_& module) {
   module.def("capture", &capture_array);
   module.def("capture_staged", &capture_staged);
+  module.def("bounced_light", &bounced_light_arrays);
 }
 
 }  // namespace tofsmith::python

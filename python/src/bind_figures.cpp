@@ -38,12 +38,13 @@ std::string curves(const std::string& title, const std::vector<std::string>& nam
 
 std::string heat_maps(const std::string& title, const std::vector<std::string>& names,
                       const std::vector<Doubles>& values, const std::vector<std::string>& x_ticks,
-                      const std::vector<std::string>& y_ticks) {
+                      const std::vector<std::string>& y_ticks, const std::string& x_label,
+                      const std::string& y_label, const std::string& unit) {
   std::vector<HeatMap> maps;
   for (std::size_t i = 0; i < names.size(); ++i)
     maps.push_back({names[i], to_matrix(values.at(i), "values")});
-  return heat_map_figure(text_of(title), maps, {"ambient", "e/s", x_ticks},
-                         {"signal", "e/s", y_ticks}, depth_colours("mean depth error", true))
+  return heat_map_figure(text_of(title), maps, {x_label, unit, x_ticks}, {y_label, unit, y_ticks},
+                         depth_colours("mean depth error", true))
       .plain_plotly_json();
 }
 

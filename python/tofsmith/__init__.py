@@ -136,6 +136,7 @@ from ._response_calibration import (
 from ._scene import (
     Scene,
     StagedCapture,
+    bounced_light,
     built_in_scene,
     built_in_scene_names,
     capture,
@@ -260,6 +261,7 @@ __all__ = [
     "Waveform",
     "WaveformFormat",
     "best_rotation",
+    "bounced_light",
     "build_family",
     "build_info",
     "built_in_camera_names",

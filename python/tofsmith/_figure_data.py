@@ -17,6 +17,7 @@ from ._code import CodeLike, CodeSet, code_of
 from ._depth_image import DepthImage
 from ._design import Candidate
 from ._reports import DepthErrorReport
+from ._sweep import SweepResults
 
 Reports = Union[DepthErrorReport, Candidate, Sequence[Union[DepthErrorReport, Candidate]]]
 Depth = Union[DepthImage, npt.NDArray[Any]]
@@ -73,6 +74,42 @@ def error_curve(
     )
     picked = [values[kept][order] for values in (x, mde, se, report.receiver_bound_mae_m)]
     return picked[0], picked[1], picked[2], picked[3], float(near)
+
+
+def error_range(maps_mm: Sequence[FloatArray]) -> tuple[float, float]:
+    """Ends of a logarithmic colour scale that holds all finite values."""
+    values = np.concatenate([m[np.isfinite(m)] for m in maps_mm])
+    lowest = max(float(values.min()), 1e-6)
+    return lowest, max(float(values.max()), 1.001 * lowest)
+
+
+def sweep_maps(
+    results: SweepResults, x: str, y: str, kind: str
+) -> tuple[FloatArray, FloatArray, dict[str, FloatArray]]:
+    """Values of two columns of a sweep, (X,) and (Y,), and of every code the geometric mean of its
+    depth errors over all else, (Y, X) [mm]; NaN where fewer rows are finished than elsewhere."""
+    _check.instance(results, SweepResults, "results")
+    _check.one_of(kind, "kind", ("linear", "circular"))
+    if x == y:
+        raise ValueError(f"y: got '{y}' as x; needs another column")
+    numbers = [name for name, column in results.columns.items()
+               if column.dtype.kind in "fi" and len(np.unique(column)) > 1]
+    for argument, name in (("x", x), ("y", y)):
+        if name not in numbers:
+            raise ValueError(f"{argument}: got '{name}'; needs a column of numbers that vary: "
+                             f"{', '.join(numbers)}")
+    across, column = np.unique(results[x], return_inverse=True)
+    up, row = np.unique(results[y], return_inverse=True)
+    errors = np.log(1e3 * np.maximum(results[f"{kind}_mde_m"], 1e-12))
+    maps = {}
+    for code in dict.fromkeys(results["code"].tolist()):
+        kept = results["code"] == code
+        sums, counts = np.zeros((2, len(up), len(across)))
+        np.add.at(sums, (row[kept], column[kept]), errors[kept])
+        np.add.at(counts, (row[kept], column[kept]), 1)
+        whole = counts == counts.max()
+        maps[str(code)] = np.where(whole, np.exp(sums / np.maximum(counts, 1)), np.nan)
+    return across, up, maps
 
 
 def depth_of(depth: Depth, name: str = "depth") -> npt.NDArray[np.float32]:

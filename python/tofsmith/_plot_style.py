@@ -85,6 +85,11 @@ def ten_to(value: float) -> str:
     return f"${power}$" if abs(factor - 1) < 0.005 else rf"${factor:.2g}\cdot{power}$"
 
 
+def ticked(value: float) -> str:
+    """A value of any size as the tick of a map."""
+    return f"{value:.4g}" if 1e-3 <= abs(value) < 1e4 or value == 0 else ten_to(value)
+
+
 def log_ticks_in_plain_numbers(axis: Any) -> None:
     """1, 10, 100 in place of powers; 2 and 5 too where there are few of them."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter

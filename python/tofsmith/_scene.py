@@ -210,6 +210,8 @@ def capture(
     returns: Union[MultipathReturns, Sequence[tuple[float, float]], None] = None,
     tail: Optional[ExponentialTail] = None,
     transients: Optional[Transients] = None,
+    bounces: int = 0,
+    bounce_rays: int = 256,
     progress: Progress = None,
 ) -> npt.NDArray[np.float32]:
     """Raw measurements of a scene.
@@ -244,6 +246,9 @@ def capture(
     transients : Transients, optional
         In place of the direct return: the pixel's signal shared out over a histogram; goes without
         the two above.
+    bounces, bounce_rays : int, optional
+        1: also light that one other surface sends on, gathered by so many rays a pixel, as
+        bounced_light() says; of a name or file. (0)
     progress : callable, optional
 
     Returns
@@ -264,9 +269,12 @@ def capture(
     if isinstance(scene, (str, os.PathLike)):
         raw = capture_staged(
             scene, code, camera, returns=returns, tail=tail, transients=transients,
-            progress=progress, **options
+            bounces=bounces, bounce_rays=bounce_rays, progress=progress, **options
         ).raw
     else:
+        if _bounce_rays(bounces, bounce_rays, returns, transients):
+            raise ValueError("bounces: got 1 beside planes; needs a scene by its name or file, "
+                             "whose surfaces light can meet out of view")
         camera = camera_of(camera)
         seen = scene_named(scene, camera.lens)
         raw = _tofsmith.capture(
@@ -315,6 +323,8 @@ def capture_staged(
     returns: Union[MultipathReturns, Sequence[tuple[float, float]], None] = None,
     tail: Optional[ExponentialTail] = None,
     transients: Optional[Transients] = None,
+    bounces: int = 0,
+    bounce_rays: int = 256,
     progress: Progress = None,
     **options: Any,
 ) -> StagedCapture:
@@ -331,7 +341,7 @@ def capture_staged(
     camera : Camera or its name
     width, height : int, optional
         Of a built-in scene or a mesh [px] (320 x 240).
-    returns, tail, transients, progress
+    returns, tail, transients, bounces, bounce_rays, progress
         As in capture(); lists are of rays: `lens.pixel_samples` squared for each pixel.
     **options
         signal_e_per_s, ambient_e_per_s, reference_distance_m, falloff, seed, frames, stray_light
@@ -348,6 +358,7 @@ def capture_staged(
     """
     camera = camera_of(camera)
     source = _check.path(scene, "scene")
+    rays = _bounce_rays(bounces, bounce_rays, returns, transients)
     light: dict[str, Any] = {}
     if returns is not None or tail is not None or transients is not None:
         light = light_dict(returns, tail, transients, scene_named(source, camera.lens).depth_m)
@@ -355,12 +366,65 @@ def capture_staged(
         source,
         {"width": width, "height": height},
         light,
+        rays,
         code_of(code, camera)._handle,
         camera._handle,
         options,
         _check.progress(progress),
     )
     return StagedCapture(**made)
+
+
+def _bounce_rays(bounces: int, rays: int, returns: Any, transients: Any) -> int:
+    """Rays by which each pixel gathers bounced light; 0: none bounces."""
+    if bounces not in (0, 1):
+        raise ValueError(f"bounces: got {bounces}; needs 0 or 1")
+    if bounces and (returns is not None or transients is not None):
+        raise ValueError("bounces: got 1 beside returns or transients; needs one of them")
+    return _check.whole(rays, "bounce_rays", 1) if bounces else 0
+
+
+def bounced_light(
+    scene: Path,
+    camera: CameraLike,
+    *,
+    width: Optional[int] = None,
+    height: Optional[int] = None,
+    rays: int = 256,
+    progress: Progress = None,
+) -> MultipathReturns:
+    """Light that reaches each pixel over one other surface of the scene, as `simulate --bounces 1`
+    gathers it: surfaces are Lambertian, the source is at the camera's centre.
+
+    Parameters
+    ----------
+    scene : name of a built-in scene, .toml file, or mesh
+    camera : Camera or its name
+        Its lens, and its range, beyond which light is seen whole ranges earlier.
+    width, height : int, optional
+        Of a built-in scene or a mesh [px] (320 x 240).
+    rays : int, optional
+        By which each pixel gathers it, 16 .. 65536.
+    progress : callable, optional
+
+    Examples
+    --------
+    >>> found = bounced_light("corner", "paper-10f0", width=8, height=6, rays=32)
+    >>> raw = capture(load_scene("corner", width=8, height=6), "hamiltonian-k5", "paper-10f0",
+    ...               returns=found)
+    >>> len(found.first), bool((found.ratio > 0).all())
+    (49, True)
+    """
+    camera = camera_of(camera)
+    return MultipathReturns(
+        *_tofsmith.bounced_light(
+            _check.path(scene, "scene"),
+            {"width": width, "height": height},
+            camera._handle,
+            _check.whole(rays, "rays", 1),
+            _check.progress(progress),
+        )
+    )
 
 
 def scene_planes(scene: Scene) -> dict[str, Optional[npt.NDArray[Any]]]:

@@ -33,8 +33,10 @@ from ._figure_data import (
     kind_of,
     named_depths,
     reports_of,
+    sweep_maps,
 )
 from ._scene import points_m
+from ._sweep import SweepResults
 
 Figure = dict[str, Any]
 
@@ -69,7 +71,8 @@ def depth_error_map(reports: Reports, *, kind: Optional[str] = None) -> Figure:
     maps = [error_grid(report, kind)[2] for report in listed]
     names = [report.code for report in listed]
     x_ticks, y_ticks = [f"{a:.3g}" for a in ambient], [f"{s:.3g}" for s in signal]
-    return _figure(_tofsmith.heat_map_figure("Depth error", names, maps, x_ticks, y_ticks))
+    return _figure(_tofsmith.heat_map_figure("Depth error", names, maps, x_ticks, y_ticks, "ambient",
+                                             "signal", "e/s"))
 
 
 def depth_error_curves(
@@ -95,6 +98,16 @@ def depth_error_curves(
             "e/s",
         )
     )
+
+
+def sweep_map(results: SweepResults, x: str, y: str, *, kind: str = "linear") -> Figure:
+    """Mean depth error [mm] over two columns of numbers of a sweep: the geometric mean over all else
+    that varies, a panel per code."""
+    across, up, maps = sweep_maps(results, x, y, kind)
+    x_ticks, y_ticks = [f"{v:.4g}" for v in across], [f"{v:.4g}" for v in up]
+    errors_m = [values_mm / 1e3 for values_mm in maps.values()]
+    return _figure(_tofsmith.heat_map_figure("Depth error", list(maps), errors_m, x_ticks, y_ticks,
+                                             x, y, ""))
 
 
 def depth_maps(depths: Union[Depth, dict[str, Depth]]) -> Figure:

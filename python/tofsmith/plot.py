@@ -32,9 +32,11 @@ from ._figure_data import (
     depth_of,
     error_curve,
     error_grid,
+    error_range,
     kind_of,
     named_depths,
     reports_of,
+    sweep_maps,
 )
 from ._forward_model import ForwardModel, coding_curve_in_space
 from ._plot_style import (
@@ -47,8 +49,10 @@ from ._plot_style import (
     short,
     styled,
     ten_to,
+    ticked,
 )
 from ._scene import points_m
+from ._sweep import SweepResults
 from ._waveform import Waveform
 
 if TYPE_CHECKING:
@@ -63,6 +67,7 @@ __all__ = [
     "depth_error_map",
     "depth_maps",
     "point_cloud",
+    "sweep_map",
     "waveforms",
 ]
 
@@ -262,6 +267,47 @@ def depth_error_curves(
     log_ticks_in_plain_numbers(axis.yaxis)
     axis.grid(True, which="major", lw=0.3, color="0.85")
     axis.legend(loc="upper left", bbox_to_anchor=(1, 1), handlelength=1.6)  # hides nothing
+    return figure
+
+
+@styled
+def sweep_map(
+    results: SweepResults,
+    x: str,
+    y: str,
+    *,
+    kind: str = "linear",
+    figure: Optional[Figure] = None,
+) -> Figure:
+    """Mean depth error [mm] over two columns of numbers of a sweep, such as "light.peak_factor" and
+    "signal_e_per_s": the geometric mean over all else that varies, a panel per code, one colour
+    scale. White: not finished."""
+    from matplotlib.colors import LogNorm
+
+    across, up, maps = sweep_maps(results, x, y, kind)
+    norm = LogNorm(*error_range([m for m in maps.values()]))
+    rows, columns = grid(len(maps))
+    figure = new_figure(figure, 0.9 + 1.9 * columns, 0.5 + 1.7 * rows)
+    axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
+    picture = None
+    for axis, (code, values_mm) in zip(axes.flat, maps.items()):
+        picture = axis.imshow(values_mm, origin="lower", norm=norm, aspect="auto")
+        axis.set_title(code)
+        axis.set_xticks(range(len(across)), [ticked(v) for v in across], rotation=45)
+        axis.set_yticks(range(len(up)), [ticked(v) for v in up])
+        axis.tick_params(length=0)
+        if values_mm.size <= 64:
+            for (row, column), value in np.ndenumerate(values_mm):
+                if np.isfinite(value):
+                    axis.text(column, row, short(float(value)), ha="center", va="center",
+                              fontsize=6, color="white" if norm(value) < 0.6 else "black")
+    for axis in axes.flat[len(maps) :]:
+        axis.axis("off")
+    for axis in axes.flat[len(maps) - columns : len(maps)]:
+        axis.tick_params(labelbottom=True)  # nothing is drawn below
+    figure.supxlabel(x, fontsize=8)
+    figure.supylabel(y, fontsize=8)
+    figure.colorbar(picture, ax=axes, label=f"mean depth error, {kind} (mm)")
     return figure
 
 

@@ -24,28 +24,6 @@
 namespace tofsmith {
 namespace {
 
-/// A digit of an item's index: one axis, or all that are zipped.
-struct Digit {
-  std::vector<std::size_t> axes;
-  std::size_t base;
-};
-
-std::vector<Digit> digits_of(const SweepSpec& spec) {
-  std::vector<Digit> digits;
-  std::ptrdiff_t zipped = -1;
-  for (std::size_t i = 0; i < spec.axes.size(); ++i) {
-    const SweepAxis& axis = spec.axes[i];
-    const bool is_zipped = spec.combine == SweepCombination::zip && !axis.crossed;
-    if (is_zipped && zipped >= 0) {
-      digits[static_cast<std::size_t>(zipped)].axes.push_back(i);
-      continue;
-    }
-    if (is_zipped) zipped = static_cast<std::ptrdiff_t>(digits.size());
-    digits.push_back({{i}, axis.values.size()});
-  }
-  return digits;
-}
-
 /// The items of a run that are not known to be finished: first those that were never asked for,
 /// then those that others had when we asked.
 class OpenItems {
@@ -339,29 +317,6 @@ class Runner {
 };
 
 }  // namespace
-
-std::int64_t SweepSpec::items() const {
-  constexpr std::int64_t max_count = std::int64_t{1} << 62;
-  std::int64_t count = 1;
-  for (const Digit& digit : digits_of(*this)) {
-    const auto base = static_cast<std::int64_t>(digit.base);
-    if (base == 0) return 0;
-    count = count > max_count / base ? max_count : count * base;
-  }
-  return count;
-}
-
-std::vector<std::size_t> SweepSpec::value_indices(std::int64_t item) const {
-  std::vector<std::size_t> indices(axes.size());
-  const std::vector<Digit> digits = digits_of(*this);
-  for (auto digit = digits.rbegin(); digit != digits.rend(); ++digit) {
-    const auto base = static_cast<std::int64_t>(digit->base);
-    for (const std::size_t axis : digit->axes)
-      indices[axis] = static_cast<std::size_t>(item % base);
-    item /= base;
-  }
-  return indices;
-}
 
 bool SweepShard::holds(std::string_view key) const {
   return key_number(key) % static_cast<std::uint64_t>(count) ==

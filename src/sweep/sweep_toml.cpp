@@ -9,6 +9,7 @@
 
 #include "io/shared/read_file.hpp"
 #include "io/text/shared/table_reader.hpp"
+#include "sweep/axis_blocks.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
@@ -24,7 +25,8 @@ constexpr std::array<std::string_view, 9> other_keys = {
     "camera", "code", "exposures",      "method",         "unwrap_weights",
     "trials", "seed", "signal_e_per_s", "ambient_e_per_s"};
 
-void check_key(const TableReader& table, const std::string& key) {
+/// @param field  where it was written
+void check_key(const TableReader& table, const char* field, const std::string& key) {
   std::vector<std::string> known = camera_keys();
   known.insert(known.end(), other_keys.begin(), other_keys.end());
   if (std::ranges::find(known, key) != known.end()) return;
@@ -32,7 +34,7 @@ void check_key(const TableReader& table, const std::string& key) {
   const auto ends_so = [&](const std::string& word) { return word.ends_with("." + key); };
   const auto found = std::ranges::find_if(known, ends_so);
   const std::string near = found != known.end() ? *found : nearest_word(key, known);
-  table.fail("key", fmt::format("found unknown axis \"{}\"; {}", key,
+  table.fail(field, fmt::format("found unknown axis \"{}\"; {}", key,
                                 near.empty() ? "expected a key of the camera such as "
                                                "light.peak_factor, or " +
                                                    fmt::format("{}", fmt::join(other_keys, ", "))
@@ -147,27 +149,56 @@ void check_value(const SweepAxis& axis, const SettingValue& value) {
   }
 }
 
-/// Reads one [[axis]]. @throws IoError naming file:line:column
-SweepAxis read_sweep_axis(TableReader& table) {
-  SweepAxis axis;
-  table.required("key", "\"light.peak_factor\"").value("key", axis.key);
-  axis.place = table.place_of("key");
-  check_key(table, axis.key);
+/// What one [[axis]] sets: its key, or its keys.
+std::vector<std::string> read_axis_keys(TableReader& table) {
+  std::vector<std::string> keys;
+  if (!table.contains("keys")) {
+    table.required("key", "\"light.peak_factor\"").value("key", keys.emplace_back());
+    check_key(table, "key", keys.front());
+    return keys;
+  }
+  table.refuse({"key"}, "no keys beside it");
+  table.value("keys", keys);
+  if (keys.empty()) table.fail("keys", "found an empty list; expected at least one key");
+  for (const std::string& key : keys) check_key(table, "keys", key);
+  return keys;
+}
 
+/// The values that an entry gives the keys of an axis: its elements if it is a list, or else itself
+/// to each. @throws IoError for a list of another length
+std::vector<SettingValue> values_of_keys(const SettingValue& entry,
+                                         const std::vector<std::string>& keys) {
+  if (keys.size() == 1 || !entry.text.starts_with('['))
+    return std::vector<SettingValue>(keys.size(), entry);
+  const TomlDocument document("entry = " + entry.text, entry.place);
+  std::vector<SettingValue> values;
+  for (const toml::node& element : *document.root()["entry"].as_array())
+    values.push_back(toml_value_of(element, entry.place));
+  if (values.size() != keys.size())
+    throw IoError(entry.place,
+                  fmt::format("found {}; expected one value for all of {}, or a list of {}, one "
+                              "for each",
+                              entry.text, fmt::join(keys, ", "), keys.size()));
+  return values;
+}
+
+/// Reads the entries of one [[axis]] of a key. @throws IoError naming file:line:column
+std::vector<SettingValue> read_axis_entries(TableReader& table, const char* key) {
+  std::vector<SettingValue> entries;
   const bool has_values = table.contains("values"), has_file = table.contains("file");
   if (has_values || has_file) {
     table.refuse({"from", "to", "step", "count"}, "no values and no file beside it");
     if (has_values) table.refuse({"file"}, "no values beside it");
-    table.value("values", axis.values);
-    if (has_values && axis.values.empty())
+    table.value("values", entries);
+    if (has_values && entries.empty())
       table.fail("values", "found an empty list; expected at least one value");
     std::string file;
     table.value("file", file);
-    if (has_file) axis.values = file_values(table, file);
-    return axis;
+    if (has_file) entries = file_values(table, file);
+    return entries;
   }
   if (!table.contains("from"))
-    table.fail("key",
+    table.fail(key,
                "found no values; expected values = [..], file = \"..\", or from, to and "
                "step (even) or count (logarithmic)");
   double from = 0.0, to = 0.0, step = 0.0;
@@ -177,12 +208,31 @@ SweepAxis read_sweep_axis(TableReader& table) {
   if (table.contains("count")) {
     table.refuse({"step"}, "no count beside it");
     table.value("count", count);
-    axis.values = logarithmic_values(table, from, to, count);
-  } else {
-    table.required("step", "1").value("step", step);
-    axis.values = range_values(table, from, to, step);
+    return logarithmic_values(table, from, to, count);
   }
-  return axis;
+  table.required("step", "1").value("step", step);
+  return range_values(table, from, to, step);
+}
+
+/// Reads one [[axis]]: an axis for each key, all but the first linked to it.
+std::vector<SweepAxis> read_sweep_axes(TableReader& table) {
+  const std::vector<std::string> keys = read_axis_keys(table);
+  const char* const field = table.contains("keys") ? "keys" : "key";
+  std::string group;
+  table.value("group", group);
+  std::vector<SweepAxis> axes;
+  for (const std::string& key : keys)
+    axes.push_back({.key = key,
+                    .values = {},
+                    .place = table.place_of(field),
+                    .crossed = false,
+                    .linked = !axes.empty(),
+                    .group = group});
+  for (const SettingValue& entry : read_axis_entries(table, field)) {
+    std::vector<SettingValue> values = values_of_keys(entry, keys);
+    for (std::size_t k = 0; k < keys.size(); ++k) axes[k].values.push_back(std::move(values[k]));
+  }
+  return axes;
 }
 
 /// Refuses values that no item could use. @throws IoError naming file:line:column
@@ -229,12 +279,55 @@ bool has_axis(const SweepSpec& spec, std::string_view key) {
   return std::ranges::any_of(spec.axes, [&](const SweepAxis& axis) { return axis.key == key; });
 }
 
+/// Reads one [[group]].
+void read_group(TableReader& table, SweepSpec& spec) {
+  std::string name;
+  SweepCombination combine = SweepCombination::zip;
+  table.required("name", "\"optics\"").value("name", name);
+  table.required("combine", "\"product\"").choice("combine", combine, combinations);
+  std::vector<std::string> names;
+  for (const SweepAxis& axis : spec.axes)
+    if (!axis.group.empty()) names.push_back(axis.group);
+  if (std::ranges::find(names, name) == names.end()) {
+    const std::string near = nearest_word(name, names);
+    table.fail("name", fmt::format("found \"{}\", the group of no axis{}", name,
+                                   near.empty() ? "; expected a group that an axis names"
+                                                : fmt::format("; did you mean \"{}\"?", near)));
+  }
+  if (!spec.groups.emplace(name, combine).second)
+    table.fail("name", fmt::format("found group \"{}\" a second time; expected one", name));
+}
+
+/// Axes and groups that advance together are of one length.
+void check_lengths(const SweepSpec& spec) {
+  const auto refuse = [&](std::size_t axis, const std::string& name, std::int64_t size,
+                          const std::string& first_name, std::int64_t first_size,
+                          const char* where) {
+    throw IoError(spec.axes[axis].place,
+                  fmt::format("{} has {} values and {} has {}; {} expected as many of each", name,
+                              size, first_name, first_size, where));
+  };
+  for (const std::vector<AxisBlock>& together : axis_blocks(spec))
+    for (const AxisBlock& block : together) {
+      const AxisBlock& first = together.front();
+      if (block.size != first.size)
+        refuse(block.digits.front().front(), name_of(spec, block), block.size, name_of(spec, first),
+               first.size, "with combine = \"zip\"");
+      for (const AxisDigit& digit : block.digits)
+        for (const std::size_t a : digit) {
+          const SweepAxis &axis = spec.axes[a], &before = spec.axes[digit.front()];
+          if (axis.values.size() != before.values.size())
+            refuse(a, "axis " + axis.key, static_cast<std::int64_t>(axis.values.size()), before.key,
+                   static_cast<std::int64_t>(before.values.size()), "in a group that is zipped");
+        }
+    }
+}
+
 /// Rules between axes and what stays.
 void check(const SweepSpec& spec) {
   if (spec.code.empty() && !has_axis(spec, "code"))
     throw IoError(spec.source_name,
                   "found no code; expected a line such as `codes = [\"hamiltonian-k4\"]`");
-  const SweepAxis* first_zipped = nullptr;
   for (std::size_t i = 0; i < spec.axes.size(); ++i) {
     const SweepAxis& axis = spec.axes[i];
     check_axis_values(axis);
@@ -244,15 +337,8 @@ void check(const SweepSpec& spec) {
                                               spec.axes[j].place));
     if (axis.key == "code" && !spec.code.empty())
       throw IoError(axis.place, "found both an axis of codes and `code`; expected one of them");
-    if (spec.combine != SweepCombination::zip || axis.crossed) continue;
-    if (first_zipped == nullptr) first_zipped = &axis;
-    if (axis.values.size() != first_zipped->values.size())
-      throw IoError(axis.place,
-                    fmt::format("axis {} has {} values and {} has {}; with combine = \"zip\" "
-                                "expected as many of each",
-                                axis.key, axis.values.size(), first_zipped->key,
-                                first_zipped->values.size()));
   }
+  check_lengths(spec);
   const auto asks_for_exposures = [](const std::string& code) {
     return code.find("{exposures}") != std::string::npos;
   };
@@ -280,7 +366,10 @@ SweepSpec parse_sweep_toml(std::string_view text, std::string_view source_name) 
   table.choice("combine", spec.combine, combinations);
   read_options(table, spec.options);
   read_codes(table, spec);
-  table.tables("axis", [&](TableReader& inner) { spec.axes.push_back(read_sweep_axis(inner)); });
+  table.tables("axis", [&](TableReader& inner) {
+    for (SweepAxis& axis : read_sweep_axes(inner)) spec.axes.push_back(std::move(axis));
+  });
+  table.tables("group", [&](TableReader& inner) { read_group(inner, spec); });
   table.finish();
   check(spec);
   return spec;

@@ -74,6 +74,25 @@ class Sweep(CommandLineTest):
         self.assertEqual(self.sweep("s.sqlite")["computed"], 10)
         self.assertEqual(self.export("s.sqlite"), self.export("new.sqlite"))
 
+    def test_linked_axes_find_what_a_store_has_of_the_same_items(self):
+        head = 'code = "square-k4"\nset = ["samples=60"]\ntrials = 400\n[[axis]]\n'
+        self.write("s.toml", head + 'key = "light.peak_factor"\nvalues = [12, 15]\n[[axis]]\n'
+                   'key = "sensor.read_noise_e"\nvalues = [10, 20]\n')
+        self.assertEqual(self.sweep("s.sqlite", "--report", "s.html")["computed"], 4)
+        self.assertIn(b"Depth error over sensor.read_noise_e and light.peak_factor",
+                      self.bytes_of("s.html"))
+        self.write("s.toml", head + 'keys = ["light.peak_factor", "sensor.read_noise_e"]\n'
+                   'values = [[12, 10], 15, [15, 20]]\n')
+        again = self.sweep("s.sqlite", "--report", "l.html", "--export", "s.csv")
+        self.assertEqual((again["items"], again["computed"]), (3, 1))
+        page = self.bytes_of("l.html")
+        self.assertIn(b"Depth error over light.peak_factor, sensor.read_noise_e", page)
+        self.assertNotIn(b"over two axes", page)
+        rows = np.genfromtxt(io.BytesIO(self.bytes_of("s.csv")), delimiter=",", names=True,
+                             deletechars="", dtype=None, encoding="utf-8")
+        self.assertEqual(sorted({(r["light.peak_factor"], r["sensor.read_noise_e"]) for r in rows}),
+                         [(12, 10), (15, 15), (15, 20)])
+
     def test_evaluate_finds_the_same(self):
         self.sweep("s.sqlite", "--export", "s.json")
         item = json.loads(self.bytes_of("s.json"))["codes"][-1]

@@ -14,7 +14,12 @@ from tofsmith import figures, plot
 def things(camera):
     reports = [ts.evaluate(name, camera, trials=20) for name in ("square-k4", "hamiltonian-k3")]
     scene = ts.built_in_scene("ball", 24, 18)
-    return {"camera": camera, "reports": reports, "scene": scene}
+    peak, signal = (column.ravel() for column in np.meshgrid([5.0, 10.0], [1e3, 1e4, 1e5]))
+    sweep = ts.SweepResults({
+        "code": np.array(codes).repeat(6), "light.peak_factor": np.tile(peak, 2),
+        "signal_e_per_s": np.tile(signal, 2), "linear_mde_m": 1e3 / np.tile(signal * peak, 2),
+        "circular_mde_m": np.ones(12)})
+    return {"camera": camera, "reports": reports, "scene": scene, "sweep": sweep}
 
 
 codes = ["square-k4", "hamiltonian-k3"]
@@ -23,6 +28,7 @@ drawings = {
     "coding_curve": lambda of, t: of.coding_curve(codes, t["camera"]),
     "depth_error_map": lambda of, t: of.depth_error_map(t["reports"]),
     "depth_error_curves": lambda of, t: of.depth_error_curves(t["reports"], kind="circular"),
+    "sweep_map": lambda of, t: of.sweep_map(t["sweep"], "light.peak_factor", "signal_e_per_s"),
     "depth_maps": lambda of, t: of.depth_maps({"a": t["scene"].depth_m, "b": t["scene"].depth_m}),
     "point_cloud": lambda of, t: of.point_cloud(t["scene"].depth_m, t["scene"].lens),
 }
@@ -50,12 +56,29 @@ def test_correlation_functions_draw_on_a_given_figure(things):
     plt.close("all")
 
 
+def test_sweep_maps_hold_means_over_all_else(things):
+    sweep = things["sweep"]
+    twice = ts.SweepResults({name: np.concatenate([column, column[:-1]])
+                             for name, column in sweep.columns.items()})
+    twice.columns["linear_mde_m"][12:] *= 4
+    axis = plot.sweep_map(twice, "light.peak_factor", "signal_e_per_s").axes[1]
+    mean_mm = np.ma.getdata(axis.images[0].get_array())
+    assert mean_mm.shape == (3, 2) and np.isnan(mean_mm[2, 1])  # one of two is not finished
+    assert mean_mm[0, 0] == pytest.approx(1e3 * 2 * 1e3 / 5e3)
+    plt.close("all")
+
+
 def test_figures_refuse_what_they_cannot_draw(things):
     for of in (plot, figures):
         with pytest.raises(ValueError, match="kind: got str 'mean'; needs one of linear, circular"):
             of.depth_error_map(things["reports"], kind="mean")
         with pytest.raises(ValueError, match="reports: got none"):
             of.depth_error_curves([])
+        with pytest.raises(ValueError, match="x: got 'peak'; needs a column of numbers that vary: "
+                                             "light.peak_factor, signal_e_per_s"):
+            of.sweep_map(things["sweep"], "peak", "signal_e_per_s")
+        with pytest.raises(ValueError, match="y: got 'signal_e_per_s' as x"):
+            of.sweep_map(things["sweep"], "signal_e_per_s", "signal_e_per_s")
         with pytest.raises(ValueError, match=r"depth: got shape \(3,\); needs \(H, W\)"):
             of.depth_maps(np.ones(3))
 

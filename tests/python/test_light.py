@@ -69,6 +69,15 @@ def test_captures_of_multipath_are_those_of_the_command_line(cli, tmp_path):
             "--ambient", 1e3, option, *words, "-o", file, "--force")
         raw = ts.capture(scene, code, "paper-10f0", **light, **keywords)
         assert np.array_equal(raw, np.load(file)) and raw.sum() > direct.sum()
+    run(cli, "simulate", "corner", "--width", 8, "--height", 6, "--code", code, "--signal", 1e6,
+        "--ambient", 1e3, "--bounces", 1, "--bounce-rays", 32, "-o", file, "--force")
+    bounced = ts.capture_staged("corner", code, "paper-10f0", width=8, height=6, bounces=1,
+                                bounce_rays=32, **light)
+    assert np.array_equal(bounced.raw[0], np.load(file))
+    gathered = ts.bounced_light("corner", "paper-10f0", width=8, height=6, rays=32)
+    corner = ts.built_in_scene("corner", 8, 6)
+    assert np.array_equal(ts.capture(corner, code, "paper-10f0", **light, returns=gathered),
+                          bounced.raw[0])
     pixels = 48
     listed = ts.MultipathReturns(np.arange(pixels + 1), scene.depth_m.ravel() + np.float32(0.8),
                              np.full(pixels, 0.3))

@@ -94,6 +94,43 @@ TEST(SweepSpec, AProductHasEveryPairAndItsLastAxisIsFastest) {
   EXPECT_THAT(zip.value_indices(4), ElementsAre(2, 0, 0));
 }
 
+TEST(SweepSpec, KeysOfOneAxisTakeTheirValuesTogether) {
+  const SweepSpec spec = parse_sweep_toml(head + R"(
+[[axis]]
+keys = ["light.impulse_response.f_max_hz", "sensor.impulse_response.f_max_hz"]
+values = [1e8, [2e8, 15e7]]
+[[axis]]
+key = "seed"
+values = [1, 2]
+)");
+  ASSERT_EQ(spec.axes.size(), 3);
+  EXPECT_THAT(texts(spec.axes[0]), ElementsAre("100000000", "200000000"));
+  EXPECT_THAT(texts(spec.axes[1]), ElementsAre("100000000", "150000000"));
+  EXPECT_EQ(spec.items(), 4);
+  EXPECT_THAT(spec.value_indices(1), ElementsAre(0, 0, 1));
+  EXPECT_THAT(spec.value_indices(2), ElementsAre(1, 1, 0));
+}
+
+const std::string four_axes =
+    "[[axis]]\nkey = \"samples\"\nvalues = [24, 30, 36]\ngroup = \"a\"\n"
+    "[[axis]]\nkey = \"exposure_s\"\nvalues = [0.1, 0.2, 0.3]\ngroup = \"a\"\n"
+    "[[axis]]\nkey = \"trials\"\nvalues = [10, 20]\ngroup = \"b\"\n"
+    "[[axis]]\nkey = \"seed\"\nvalues = [1, 2, 3]\ngroup = \"b\"\n";
+
+TEST(SweepSpec, AGroupIsCombinedFirstAndGroupsAreThenCombined) {
+  const std::string product_b = "[[group]]\nname = \"b\"\ncombine = \"product\"\n";
+  const SweepSpec product = parse_sweep_toml(head + four_axes + product_b);
+  EXPECT_EQ(product.items(), 3 * 6);
+  EXPECT_THAT(product.value_indices(1), ElementsAre(0, 0, 0, 1));
+  EXPECT_THAT(product.value_indices(17), ElementsAre(2, 2, 1, 2));
+  const SweepSpec zip =
+      parse_sweep_toml("combine = \"zip\"\n" + head +
+                       "[[axis]]\nkey = \"light.peak_factor\"\nvalues = [5, 6, 7, 8, 9, 10]\n" +
+                       four_axes.substr(four_axes.find("[[axis]]\nkey = \"trials\"")) + product_b);
+  EXPECT_EQ(zip.items(), 6);
+  EXPECT_THAT(zip.value_indices(4), ElementsAre(4, 1, 1));
+}
+
 TEST(SweepSpec, WithoutAxesThereIsOneItem) { EXPECT_EQ(parse_sweep_toml(head).items(), 1); }
 
 TEST(SweepSpec, CountsNoFurtherThanItCan) {
@@ -148,8 +185,29 @@ TEST(SweepSpec, RefusesWhatItDoesNotUnderstandAndSaysWhere) {
             "s.toml:6:7: axis seed comes twice; the first is at s.toml:3:7"},
            {"combine = \"zip\"\n" + axis("key = \"seed\"\nvalues = [1]\n[[axis]]\nkey = "
                                          "\"samples\"\nvalues = [24, 30]\n"),
-            "s.toml:7:7: axis samples has 2 values and seed has 1"},
+            "s.toml:7:7: axis samples has 2 values and axis seed has 1"},
            {axis("key = \"exposures\"\nvalues = [3]\n"), "need each other"},
+           {axis("keys = []\nvalues = [1]\n"), "s.toml:3:8: axis[0].keys: found an empty list"},
+           {axis("keys = [\"seed\"]\nkey = \"seed\"\nvalues = [1]\n"),
+            "s.toml:4:7: axis[0].key: has a meaning only with no keys"},
+           {axis("keys = [\"seed\", \"sampels\"]\nvalues = [1]\n"),
+            "axis[0].keys: found unknown axis \"sampels\"; did you mean \"samples\"?"},
+           {axis("keys = [\"seed\", \"seed\"]\nvalues = [1]\n"), "axis seed comes twice"},
+           {axis("keys = [\"seed\", \"samples\"]\nvalues = [1, [1, 2, 3]]\n"),
+            "s.toml:4:14: found [1, 2, 3]; expected one value for all of seed, samples, or a list "
+            "of 2, one for each"},
+           {axis("keys = [\"seed\", \"samples\"]\nvalues = [[1, 24]]\n[[axis]]\nkey = "
+                 "\"samples\"\nvalues = [24]\n"),
+            "axis samples comes twice; the first is at s.toml:3:8"},
+           {head + four_axes.substr(0, four_axes.find("[[axis]]\nkey = \"seed\"")) +
+                "[[axis]]\nkey = \"seed\"\nvalues = [1]\ngroup = \"a\"\n",
+            "axis seed has 1 values and samples has 3; in a group that is zipped"},
+           {"combine = \"zip\"\n" + head + four_axes +
+                "[[group]]\nname = \"b\"\ncombine = \"product\"\n",
+            "group b has 6 values and group a has 3; with combine = \"zip\" expected"},
+           {head + four_axes + "[[group]]\nname = \"aa\"\ncombine = \"zip\"\n",
+            "group[0].name: found \"aa\", the group of no axis"},
+           {head + four_axes + "[[group]]\nname = \"a\"\n", "combine"},
            {"code = \"hamiltonian-k{exposures}\"\n", "need each other"},
        }) {
     SCOPED_TRACE(refusal.text);

@@ -110,6 +110,17 @@ TEST(WorkList, KeysOfAllAreTheKeysOfEach) {
   }
 }
 
+TEST(WorkList, LinkedKeysGiveTheItemsThatEachSetAloneGives) {
+  const std::string band =
+      "[[axis]]\nkeys = [\"light.impulse_response.f_max_hz\", "
+      "\"sensor.impulse_response.f_max_hz\"]\nvalues = [[1e8, 2e8]]\n";
+  EXPECT_EQ(key_of(band), key_of(axis("light.impulse_response.f_max_hz", "1e8") +
+                                 axis("sensor.impulse_response.f_max_hz", "2e8")));
+  EXPECT_EQ(WorkList(parse_sweep_toml(base + "code = \"square-k4\"\n" + band)).settings_json(0),
+            R"({"code":"square-k4","light.impulse_response.f_max_hz":100000000,)"
+            R"("sensor.impulse_response.f_max_hz":200000000})");
+}
+
 TEST(WorkList, ExposuresGoIntoTheNameOfAFamily) {
   const WorkList list(
       parse_sweep_toml(base + "code = \"hamiltonian-k{exposures}\"\n" + axis("exposures", "4, 3")));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,12 +28,14 @@ struct SweepAxis {
   std::vector<SettingValue> values;  ///< at least one
   std::string place;                 ///< where it was written, as errors name it
   bool crossed = false;              ///< with all others, even where those are zipped
+  bool linked = false;               ///< takes its values together with the axis before it
+  std::string group = {};            ///< of axes that are combined first; "" for none
 };
 
-/// How the values of several axes meet.
+/// How the values of several axes, or groups of axes, meet.
 enum class SweepCombination {
   product,  ///< every value of one with every value of the others; the last axis varies fastest
-  zip,      ///< first with first, second with second, ..; all axes are of one length
+  zip,      ///< first with first, second with second, ..; all are of one length
 };
 
 /// A list of depth errors to find: what stays, and what varies. As TOML:
@@ -59,6 +62,19 @@ enum class SweepCombination {
 ///     [[axis]]
 ///     key = "exposure_s"
 ///     file = "times.txt"           # a value a line
+///
+///     [[axis]]                     # one axis that sets several keys
+///     keys = ["light.impulse_response.f_max_hz", "sensor.impulse_response.f_max_hz"]
+///     values = [1e8, [2e8, 1e8]]   # one for all of them, or one for each
+///
+///     [[axis]]
+///     key = "samples"
+///     values = [120, 240]
+///     group = "speed"              # axes of a group are combined first, zipped unless ..
+///
+///     [[group]]                    # .. it says otherwise; then groups and other axes by `combine`
+///     name = "speed"
+///     combine = "product"
 struct SweepSpec {
   std::string source_name;          ///< what errors call it
   std::filesystem::path directory;  ///< where relative names of cameras and codes start
@@ -67,7 +83,8 @@ struct SweepSpec {
   std::string code;                   ///< when there is no axis of that name
   EvaluateOptions options;
   SweepCombination combine = SweepCombination::product;
-  std::vector<SweepAxis> axes;
+  std::vector<SweepAxis> axes;  ///< keys of one [[axis]] follow one another, all but one linked
+  std::map<std::string, SweepCombination> groups = {};  ///< others are zipped
 
   /// How many items there are; at most 2^62, beyond which they are not counted.
   std::int64_t items() const;
@@ -77,7 +94,8 @@ struct SweepSpec {
 
 /// @param source_name  the file's path, or what errors shall call the text
 /// @throws IoError "file:line:column: .." for what is no TOML, unknown keys and axes (with the
-///         nearest known one), empty axes, zipped axes of different lengths, ranges without end
+///         nearest known one), empty axes, keys that come twice, zipped axes of different lengths,
+///         ranges without end
 SweepSpec parse_sweep_toml(std::string_view text, std::string_view source_name = "sweep.toml");
 /// @throws IoError as parse_sweep_toml(), or if the file cannot be read
 SweepSpec read_sweep_toml(const std::filesystem::path& path);
