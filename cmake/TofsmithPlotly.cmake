@@ -23,33 +23,30 @@ if(NOT plotly_licence MATCHES "plotly\\.js v.*MIT license")
 endif()
 
 set(plotly_minified "${CMAKE_CURRENT_BINARY_DIR}/plotly.min.js")
-add_custom_command(OUTPUT "${plotly_minified}"
+add_custom_command(OUTPUT "${plotly_minified}.gz"
   COMMAND "${TOFSMITH_ESBUILD}" "${TOFSMITH_PLOTLY_JS}" --minify "--banner:js=${plotly_licence}"
           "--outfile=${plotly_minified}" --log-level=warning
+  COMMAND gzip -9nkf "${plotly_minified}"  # without name and time: the same bytes each time
+  BYPRODUCTS "${plotly_minified}"
   DEPENDS "${TOFSMITH_PLOTLY_JS}" COMMENT "Minifying plotly.js" VERBATIM)
 
 # An assembler file takes bytes as they are and at once; a C++ array of 4 MB takes a minute.
 enable_language(ASM)
 set(resource_files)
 set(assembler ".section .rodata\n")
-# Of one file or of several, one behind the other.
-function(add_resource name)
+set(report "${CMAKE_CURRENT_SOURCE_DIR}/report")
+set(resources "plotly_js" "${plotly_minified}.gz"
+              "plotly_licences" "${report}/plotly_licences.js"
+              "page_css" "${report}/page.css"
+              "page_js" "${report}/page.js")
+while(resources)
+  list(POP_FRONT resources name file)
+  list(APPEND resource_files "${file}")
   string(APPEND assembler
     ".global tofsmith_resource_${name}\n.hidden tofsmith_resource_${name}\n"
     ".global tofsmith_resource_${name}_end\n.hidden tofsmith_resource_${name}_end\n"
-    "tofsmith_resource_${name}:\n")
-  foreach(file IN LISTS ARGN)
-    string(APPEND assembler ".incbin \"${file}\"\n")
-  endforeach()
-  string(APPEND assembler "tofsmith_resource_${name}_end:\n.byte 0\n")
-  set(assembler "${assembler}" PARENT_SCOPE)
-  set(resource_files ${resource_files} ${ARGN} PARENT_SCOPE)
-endfunction()
-set(report "${CMAKE_CURRENT_SOURCE_DIR}/report")
-# Every page has the licences of what is in plotly.js.
-add_resource(plotly_js "${report}/plotly_licences.js" "${plotly_minified}")
-add_resource(page_css "${report}/page.css")
-add_resource(page_js "${report}/page.js")
+    "tofsmith_resource_${name}:\n.incbin \"${file}\"\ntofsmith_resource_${name}_end:\n.byte 0\n")
+endwhile()
 string(APPEND assembler ".section .note.GNU-stack,\"\",%progbits\n")
 set(resource_assembler "${CMAKE_CURRENT_BINARY_DIR}/report_resources.s")
 file(CONFIGURE OUTPUT "${resource_assembler}" CONTENT "${assembler}" @ONLY)
