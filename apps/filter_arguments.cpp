@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "help_pages.hpp"
 #include "number_checks.hpp"
 #include "session.hpp"
 #include "tap_arguments.hpp"
@@ -54,7 +55,8 @@ void add_settings(CLI::App& command, const char* argument, const char* whose, CL
                   fmt::format("KEY=VALUE of {}, for experts, as often as needed: {}", whose,
                               fmt::join(keys_of<Options>(), ", ")))
       ->allow_extra_args(false)
-      ->needs(with);
+      ->needs(with)
+      ->group(for_experts);
 }
 
 }  // namespace
@@ -77,6 +79,13 @@ void FilterArguments::add_to(CLI::App& command) {
               "add to each pixel's measurements those of the frames before, as long as they "
               "stay the same: as many as this, about (off)")
           ->check(number_that(">= 1", [](double value) { return value >= 1.0; }));
+  command
+      .add_option("--look-ahead", look_ahead_,
+                  "with --time-filter, add so many frames after each, too, as long as they stay "
+                  "the same; each waits for them (0)")
+      ->check(
+          number_that("in [0, 1000]", [](double value) { return value >= 0.0 && value <= 1000.0; }))
+      ->needs(time_filter);
   add_settings<TimeFilterOptions>(command, "--time-filter-set", "the filter in time", time_filter,
                                   time_settings_);
 }
@@ -90,7 +99,7 @@ std::optional<FilterOptions> FilterArguments::options() const {
 
 std::optional<TimeFilterOptions> FilterArguments::time_options() const {
   if (max_frames_ == 0) return std::nullopt;
-  TimeFilterOptions options{.max_frames = max_frames_};
+  TimeFilterOptions options{.max_frames = max_frames_, .look_ahead = look_ahead_};
   for (const std::string& setting : time_settings_)
     set_field("--time-filter-set", setting, options);
   return options;

@@ -12,8 +12,7 @@
 namespace tofsmith::apps {
 
 /// Whether measurements are filtered before they are decoded: `--filter`, `--filter-set`, and in
-/// time
-/// `--time-filter`, `--time-filter-set`.
+/// time `--time-filter`, `--look-ahead`, `--time-filter-set`.
 class FilterArguments {
  public:
   void add_to(CLI::App& command);
@@ -27,7 +26,7 @@ class FilterArguments {
  private:
   std::string strength_;
   std::vector<std::string> settings_;
-  int max_frames_ = 0;
+  int max_frames_ = 0, look_ahead_ = 0;
   std::vector<std::string> time_settings_;
 };
 

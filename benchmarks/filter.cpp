@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Frames filtered per second, VGA with four measurements, beside copying and decoding the same
-// frame.
+// Frames filtered per second in space and in time, VGA with four measurements, beside copying and
+// decoding the same frame.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <limits>
 
@@ -29,6 +30,22 @@ double seconds_of(const Work& work) {
         shortest, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   return shortest;
+}
+
+struct NamedTimeFilter {
+  const char* name;
+  TimeFilterOptions options;
+};
+const std::array time_filters = {
+    NamedTimeFilter{"in time", {}},
+    NamedTimeFilter{"in time, before a filter in space", {.before_filter = true}},
+    NamedTimeFilter{"in time, looking 4 frames ahead", {.look_ahead = 4}},
+    NamedTimeFilter{"in time, looking 16 frames ahead", {.look_ahead = 16}}};
+
+/// Of a filter in time, in frames of K floats a pixel.
+double frames_held(const TimeFilterOptions& options) {
+  return static_cast<double>(TimeFilter::memory_bytes(options, frame_height, frame_width, 4, 1)) /
+         (sizeof(float) * 4.0 * frame_pixels);
 }
 
 void measure(const LightLevel& light, AskedFigures& asked) {
@@ -59,6 +76,13 @@ void measure(const LightLevel& light, AskedFigures& asked) {
         asked.at_least(what, 1 / seconds, threads == 1 ? 15 : 30);
       if (strength == FilterStrength::light && threads == 1) asked.at_least(what, 1 / seconds, 60);
     }
+    for (const auto& [name, options] : time_filters) {
+      TimeFilter filter(table, options);
+      for (int frame = 0; frame < options.look_ahead; ++frame) filter.add(view);  // they wait
+      const double seconds = seconds_of([&] { filter.add(view); });
+      fmt::print("  {:<34}{:>8.1f} frames/s, {:>6.1f} times decoding, {:>7.0f} times copying\n",
+                 name, 1 / seconds, seconds / decoded, seconds / copied);
+    }
   };
   rates(1);
   rates(2);
@@ -76,5 +100,7 @@ int main() {
                 static_cast<double>(Filter::memory_bytes({}, frame_height, frame_width, 4, 1)) /
                     (sizeof(float) * 4.0 * frame_pixels),
                 6);
+  for (const auto& [name, options] : time_filters)
+    fmt::print("memory {}: {:.1f} frames of K floats a pixel\n", name, frames_held(options));
   asked.print();
 }

@@ -54,6 +54,10 @@ if(TOFSMITH_HAS_lab)
   endif()
 endif()
 
+if(TOFSMITH_HAS_report)
+  find_package(ZLIB REQUIRED)
+endif()
+
 set(TOFSMITH_HAS_MPI OFF)
 if(TOFSMITH_HAS_sweep)
   find_package(SQLite3 REQUIRED)

@@ -35,6 +35,7 @@ if(TOFSMITH_IS_STATIC)
     set(finds_lab "find_dependency(PkgConfig)"
         "pkg_check_modules(LIBLXI REQUIRED QUIET IMPORTED_TARGET liblxi)")
   endif()
+  set(finds_report "find_dependency(ZLIB)")
   set(finds_sweep "find_dependency(SQLite3)")
   if(TOFSMITH_HAS_MPI)
     list(APPEND finds_sweep "set(MPI_CXX_SKIP_MPICXX ON)" "find_dependency(MPI COMPONENTS CXX)")

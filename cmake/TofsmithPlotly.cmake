@@ -23,18 +23,22 @@ if(NOT plotly_licence MATCHES "plotly\\.js v.*MIT license")
 endif()
 
 set(plotly_minified "${CMAKE_CURRENT_BINARY_DIR}/plotly.min.js")
-add_custom_command(OUTPUT "${plotly_minified}"
+add_custom_command(OUTPUT "${plotly_minified}.gz"
   COMMAND "${TOFSMITH_ESBUILD}" "${TOFSMITH_PLOTLY_JS}" --minify "--banner:js=${plotly_licence}"
           "--outfile=${plotly_minified}" --log-level=warning
+  COMMAND gzip -9nkf "${plotly_minified}"  # without name and time: the same bytes each time
+  BYPRODUCTS "${plotly_minified}"
   DEPENDS "${TOFSMITH_PLOTLY_JS}" COMMENT "Minifying plotly.js" VERBATIM)
 
 # An assembler file takes bytes as they are and at once; a C++ array of 4 MB takes a minute.
 enable_language(ASM)
-set(resources "plotly_js" "${plotly_minified}"
-              "page_css" "${CMAKE_CURRENT_SOURCE_DIR}/report/page.css"
-              "page_js" "${CMAKE_CURRENT_SOURCE_DIR}/report/page.js")
 set(resource_files)
 set(assembler ".section .rodata\n")
+set(report "${CMAKE_CURRENT_SOURCE_DIR}/report")
+set(resources "plotly_js" "${plotly_minified}.gz"
+              "plotly_licences" "${report}/plotly_licences.js"
+              "page_css" "${report}/page.css"
+              "page_js" "${report}/page.js")
 while(resources)
   list(POP_FRONT resources name file)
   list(APPEND resource_files "${file}")

@@ -31,6 +31,7 @@ packages_build=(
   libboost-dev        # Asio: generators in the network
   python3-plotly      # its plotly.js goes into the reports
   esbuild             # minifies it
+  zlib1g-dev          # packs it and the pictures
 )
 # The Python package, on top of the library.
 packages_python=(

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <optional>
+
 #include "bindings.hpp"
 #include "field_dicts.hpp"
 #include "filter_options.hpp"
@@ -32,37 +34,59 @@ TimeFilterOptions time_filter_options(const py::dict& values) {
 
 namespace {
 
-/// Raw numbers and of how many each is the mean, of frames that `filtered(frame, progress)` gives.
-template <typename Filtered>
+/// Raw numbers and of how many each is the mean, of frames one after another.
+class FilteredFrames {
+ public:
+  explicit FilteredFrames(int measurements) : measurements_(measurements) {}
+
+  void add(const RawView& frame) {
+    height_ = frame.height;
+    width_ = frame.width;
+    const auto pixels = static_cast<std::size_t>(frame.pixels());
+    const std::size_t first = numbers_.size();
+    numbers_.resize(first + pixels * static_cast<std::size_t>(measurements_));
+    copy_pixels(frame, 0, frame.pixels(), numbers_.data() + first);
+    averaged_.insert(averaged_.end(), frame.averaged, frame.averaged + pixels);
+    ++frames_;
+  }
+  /// Arrays of (H, W, K) and (H, W) if there is one frame that comes alone, else (F, H, W, K) and
+  /// (F, H, W).
+  py::tuple arrays(bool alone) {
+    std::vector<py::ssize_t> shape = {frames_, height_, width_};
+    if (alone) shape.erase(shape.begin());
+    const py::array_t<float> planes = adopt(std::move(averaged_), shape);
+    shape.push_back(measurements_);
+    return py::make_tuple(adopt(std::move(numbers_), std::move(shape)), planes);
+  }
+
+ private:
+  py::ssize_t measurements_, frames_ = 0, height_ = 0, width_ = 0;
+  std::vector<float> numbers_, averaged_;
+};
+
+/// Has `filter(frame, progress)` give what comes of each frame, if anything does.
+template <typename FilterFrame>
 py::tuple filter_frames(const py::array& raw_numbers, bool is_planar, int measurement_count,
                         const py::object& averaged_before, const py::object& callback,
-                        const Filtered& filtered) {
+                        bool gives_stacks, const FilterFrame& filter) {
   RawArray raw = view_raw(raw_numbers, is_planar, measurement_count);
   const Floats means = averaged_before.is_none() ? Floats() : Floats::ensure(averaged_before);
   if (!averaged_before.is_none()) raw.set_averaged(means);
-  const auto pixels = static_cast<std::size_t>(raw.frames.front().pixels());
-  const auto measurements = static_cast<std::size_t>(measurement_count);
-  std::vector<float> numbers(raw.frames.size() * pixels * measurements);
-  std::vector<float> averaged(raw.frames.size() * pixels);
+  FilteredFrames filtered(measurement_count);
   without_gil(callback, [&](const Progress& progress) {
     const ProgressParts parts(progress, raw.frames.size());
-    for (std::size_t f = 0; f < raw.frames.size(); ++f) {
-      const RawView view = filtered(raw.frames[f], parts[f]);
-      copy_pixels(view, 0, view.pixels(), numbers.data() + f * pixels * measurements);
-      std::copy_n(view.averaged, pixels, averaged.data() + f * pixels);
-    }
+    for (std::size_t f = 0; f < raw.frames.size(); ++f)
+      if (const std::optional<RawView> frame = filter(raw.frames[f], parts[f]))
+        filtered.add(*frame);
   });
-  std::vector<py::ssize_t> shape = raw.plane_shape();
-  const py::array_t<float> planes = adopt(std::move(averaged), shape);
-  shape.push_back(measurement_count);
-  return py::make_tuple(adopt(std::move(numbers), std::move(shape)), planes);
+  return filtered.arrays(!gives_stacks && raw.plane_shape().size() == 2);
 }
 
 py::tuple apply_filter(const Filter& filter, const py::array& raw_numbers, bool is_planar,
                        const py::object& averaged, const py::object& callback) {
   FilteredFrame filtered;
-  return filter_frames(raw_numbers, is_planar, filter.measurements(), averaged, callback,
-                       [&](const RawView& raw, const Progress& progress) {
+  return filter_frames(raw_numbers, is_planar, filter.measurements(), averaged, callback, false,
+                       [&](const RawView& raw, const Progress& progress) -> std::optional<RawView> {
                          filter.apply(raw, filtered, progress);
                          return filtered.view();
                        });
@@ -71,11 +95,23 @@ py::tuple apply_filter(const Filter& filter, const py::array& raw_numbers, bool 
 py::tuple add_to_filter(TimeFilter& filter, const py::array& raw_numbers, bool is_planar,
                         const py::object& averaged, const py::object& callback) {
   return filter_frames(raw_numbers, is_planar, filter.measurements(), averaged, callback,
+                       filter.options().look_ahead > 0,
                        [&](const RawView& raw, const Progress& progress) {
-                         const RawView added = filter.add(raw);
+                         const std::optional<RawView> added = filter.add(raw);
                          report(progress, 1.0, "filtering");
                          return added;
                        });
+}
+
+py::tuple end_filter(TimeFilter& filter, const py::object& callback) {
+  FilteredFrames filtered(filter.measurements());
+  without_gil(callback, [&](const Progress& progress) {
+    while (const std::optional<RawView> frame = filter.add_end()) {
+      filtered.add(*frame);
+      report(progress, 0.0, "filtering");
+    }
+  });
+  return filtered.arrays(false);
 }
 
 py::tuple merge_frames(const DecodingTable& table, const py::array& raw_numbers, bool is_planar,
@@ -132,6 +168,7 @@ void bind_filter(py::module_& module) {
       .def("table", [](const TimeFilter& filter) { return filter.table(); })
       .def("options", [](const TimeFilter& filter) { return fields_dict(filter.options()); })
       .def("add", &add_to_filter)
+      .def("end", &end_filter)
       .def("forget", &TimeFilter::forget);
   module.def("merge_exposures", &merge_frames);
   module.def("without_stray_light", &without_stray_light);

@@ -172,9 +172,9 @@ class DesignResult:
 Target = Union[CodeSet, Path, npt.NDArray[Any]]
 
 
-def _candidate(values: dict[str, Any]) -> Candidate:
+def _candidate(values: dict[str, Any], camera: Camera) -> Candidate:
     values["code"] = CodeSet._of(values["code"])
-    values["error"] = report_of(values["error"])
+    values["error"] = report_of(values["error"], camera)
     values["per_measurement"] = [MeasurementReport(**m) for m in values["per_measurement"]]
     if values["search"] is not None:
         values["search"] = SearchRecord(**values["search"])
@@ -289,7 +289,7 @@ def design(
     }
     targets = None if target is None else _target(target, camera, normalize)
     result = _tofsmith.design(camera._handle, options, targets, _check.progress(progress))
-    result["candidates"] = [_candidate(c) for c in result["candidates"]]
+    result["candidates"] = [_candidate(c, camera) for c in result["candidates"]]
     return DesignResult(**result)
 
 

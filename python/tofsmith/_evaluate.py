@@ -86,7 +86,7 @@ def evaluate(
     }
     handle = code_of(code, camera)._handle
     callback = _check.progress(progress)
-    return report_of(_tofsmith.evaluate(handle, camera._handle, options, callback))
+    return report_of(_tofsmith.evaluate(handle, camera._handle, options, callback), camera)
 
 
 def best_rotation(
@@ -132,7 +132,7 @@ def generator_loss(
     callback = _check.progress(progress)
     values = _tofsmith.generator_loss(handle, camera._handle, options, callback)
     nominal, actual, uncalibrated = (
-        report_of(values[name]) for name in ("nominal", "actual", "uncalibrated")
+        report_of(values[name], camera) for name in ("nominal", "actual", "uncalibrated")
     )
     return GeneratorLoss(nominal, actual, uncalibrated, values["correlation_change"])
 

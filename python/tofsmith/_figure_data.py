@@ -36,14 +36,22 @@ def reports_of(reports: Reports) -> list[DepthErrorReport]:
     return [_check.instance(r, DepthErrorReport, "reports") for r in errors]
 
 
-def error_grid(report: DepthErrorReport, kind: str) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Signals (S,), ambient lights (A,) and mean depth error (S, A) [m]."""
-    _check.one_of(kind, "kind", ("linear", "circular"))
+def kind_of(reports: list[DepthErrorReport], kind: str | None) -> str:
+    """The kind of error that is asked for, or that the camera of the first report asks for."""
+    return reports[0].kind if kind is None else _check.one_of(kind, "kind", ("linear", "circular"))
+
+
+def error_grid(
+    report: DepthErrorReport, kind: str
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Signals (S,), ambient lights (A,), mean depth error and its standard error (S, A) [m]."""
     signal, row = np.unique(report.signal_e_per_s, return_inverse=True)
     ambient, column = np.unique(report.ambient_e_per_s, return_inverse=True)
-    values = np.full((len(signal), len(ambient)), np.nan)
-    values[row, column] = report.linear_mde_m if kind == "linear" else report.circular_mde_m
-    return signal, ambient, values
+    values, errors = np.full((2, len(signal), len(ambient)), np.nan)
+    linear = kind == "linear"
+    values[row, column] = report.linear_mde_m if linear else report.circular_mde_m
+    errors[row, column] = report.linear_se_m if linear else report.circular_se_m
+    return signal, ambient, values, errors
 
 
 def error_curve(
@@ -51,7 +59,6 @@ def error_curve(
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, float]:
     """Along signal or ambient light, the other at the level nearest `at` (the middle unless
     given): places, errors, standard errors, receiver bounds [m], and that level."""
-    _check.one_of(kind, "kind", ("linear", "circular"))
     _check.one_of(along, "along", ("signal", "ambient"))
     pair = (report.signal_e_per_s, report.ambient_e_per_s)
     x, other = pair if along == "signal" else pair[::-1]

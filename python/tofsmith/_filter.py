@@ -160,8 +160,8 @@ class Filter(_OfTable):
 
 class TimeFilter(_OfTable):
     """Adds the raw measurements of each pixel, frame after frame, as long as they stay the same,
-    before anything is decoded: no frame waits for a later one. What changes starts anew, so that
-    nothing smears. Keeps the frame so far; not for several threads at once.
+    before anything is decoded. What changes starts anew, so that nothing smears. No frame waits for
+    a later one, unless it is to look ahead. Keeps the frame so far; not for several threads at once.
 
     Whether something changed is a test of the pixel, of those around it, and of what they share,
     that knows the noise of each. See docs/filtering.md.
@@ -179,6 +179,9 @@ class TimeFilter(_OfTable):
     before_filter : bool
         A Filter comes next, which leaves so little noise that smaller changes matter: look for
         those that only 24 x 24 pixels together show, too.
+    look_ahead : int
+        So many later frames are added to each, too, as long as they stay the same: each waits for
+        them, and end() gives those that still wait after the last.
 
     Raises
     ------
@@ -204,11 +207,13 @@ class TimeFilter(_OfTable):
         max_frames: int = 64,
         max_difference_sigma: float = 5.0,
         before_filter: bool = False,
+        look_ahead: int = 0,
     ) -> None:
         self._handle: _tofsmith.TimeFilter = _tofsmith.TimeFilter(table_of(code, camera)._handle, {
             "max_frames": _check.whole(max_frames, "max_frames", 1),
             "max_difference_sigma": _check.number(max_difference_sigma, "max_difference_sigma"),
-            "before_filter": bool(before_filter)})
+            "before_filter": bool(before_filter),
+            "look_ahead": _check.whole(look_ahead, "look_ahead", 0)})
 
     def add(
         self,
@@ -235,7 +240,8 @@ class TimeFilter(_OfTable):
         Returns
         -------
         raw : ndarray of float32, shape (H, W, K) or (F, H, W, K)
-            Raw numbers as any decoder takes them.
+            Raw numbers as any decoder takes them. With `look_ahead` always a stack, of those frames
+            for which enough later ones have come: none of the first.
         averaged : ndarray of float32, shape (H, W) or (F, H, W)
             Of how many measurements each is the mean, in variance: Decoder.decode()'s `averaged`.
 
@@ -251,6 +257,14 @@ class TimeFilter(_OfTable):
         The same bits for any number of threads and any layout.
         """
         return self._handle.add(*_frames(raw, averaged, layout), _check.progress(progress))
+
+    def end(
+        self, *, progress: Progress = None
+    ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
+        """After the last frame: stacks of those that still wait for later ones, as add() gives them;
+        none without `look_ahead`. The next frame is the first again, of any size.
+        """
+        return self._handle.end(_check.progress(progress))
 
     def forget(self) -> None:
         """The next frame is the first again, of any size."""

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _check
+from ._camera import Camera
 from ._check import FloatArray
 
 
@@ -59,6 +60,8 @@ class DepthErrorReport:
     cramer_rao_mae_m, receiver_bound_mae_m, direct_tof_bound_mae_m : ndarray
         Bounds of the code, of any code on the camera, of the camera's light [m]; docs/bounds.md.
     linear, circular : DepthErrorMean
+    kind : str
+        Which of the two the camera asks for: linear or circular, its `operating.error`.
     """
 
     code: str
@@ -83,6 +86,7 @@ class DepthErrorReport:
     direct_tof_bound_mae_m: FloatArray
     linear: DepthErrorMean
     circular: DepthErrorMean
+    kind: str
 
     def of(self, kind: str) -> DepthErrorMean:
         """The figure of `kind`, linear or circular."""
@@ -175,12 +179,16 @@ class GeneratorLoss:
         return self.uncalibrated.of(kind).geometric_mean_m / self.nominal.of(kind).geometric_mean_m
 
 
-def report_of(values: dict[str, Any]) -> DepthErrorReport:
+def report_of(values: dict[str, Any], camera: Camera) -> DepthErrorReport:
     linear = DepthErrorMean(**values.pop("linear"))
     circular = DepthErrorMean(**values.pop("circular"))
-    return DepthErrorReport(**values, linear=linear, circular=circular)
+    return DepthErrorReport(
+        **values, linear=linear, circular=circular, kind=camera.operating.error
+    )
 
 
 def fields_of(report: DepthErrorReport) -> dict[str, Any]:
     """What report_of() makes the report of again."""
-    return vars(report) | {"linear": vars(report.linear), "circular": vars(report.circular)}
+    fields = vars(report) | {"linear": vars(report.linear), "circular": vars(report.circular)}
+    del fields["kind"]
+    return fields

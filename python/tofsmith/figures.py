@@ -30,6 +30,7 @@ from ._figure_data import (
     depth_of,
     error_curve,
     error_grid,
+    kind_of,
     named_depths,
     reports_of,
 )
@@ -59,10 +60,12 @@ def coding_curve(codes: Union[CodeLike, Sequence[CodeLike]], camera: CameraLike)
     return _figure(_tofsmith.coding_curve_figure("Coding curve", handles, camera._handle))
 
 
-def depth_error_map(reports: Reports, *, kind: str = "linear") -> Figure:
-    """Mean depth error at every operating point, a panel per code."""
+def depth_error_map(reports: Reports, *, kind: Optional[str] = None) -> Figure:
+    """Mean depth error at every operating point, a panel per code. `kind`: linear or circular;
+    None: as the first report's camera asks."""
     listed = reports_of(reports)
-    signal, ambient, _ = error_grid(listed[0], kind)
+    kind = kind_of(listed, kind)
+    signal, ambient, _, _ = error_grid(listed[0], kind)
     maps = [error_grid(report, kind)[2] for report in listed]
     names = [report.code for report in listed]
     x_ticks, y_ticks = [f"{a:.3g}" for a in ambient], [f"{s:.3g}" for s in signal]
@@ -70,10 +73,17 @@ def depth_error_map(reports: Reports, *, kind: str = "linear") -> Figure:
 
 
 def depth_error_curves(
-    reports: Reports, *, along: str = "signal", at: Optional[float] = None, kind: str = "linear"
+    reports: Reports,
+    *,
+    along: str = "signal",
+    at: Optional[float] = None,
+    kind: Optional[str] = None,
 ) -> Figure:
-    """Mean depth error along signal or ambient light, the other at the level nearest `at`."""
-    curves = [(r.code, *error_curve(r, kind, along, at)) for r in reports_of(reports)]
+    """Mean depth error along signal or ambient light, the other at the level nearest `at`. `kind`:
+    linear or circular; None: as the first report's camera asks."""
+    listed = reports_of(reports)
+    kind = kind_of(listed, kind)
+    curves = [(r.code, *error_curve(r, kind, along, at)) for r in listed]
     return _figure(
         _tofsmith.curve_figure(
             "Depth error",

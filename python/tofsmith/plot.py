@@ -23,6 +23,7 @@ import numpy.typing as npt
 from . import _check
 from ._camera import CameraLike, camera_of
 from ._camera_fields import Lens
+from ._check import FloatArray
 from ._code import CodeLike, code_of
 from ._figure_data import (
     Depth,
@@ -31,6 +32,7 @@ from ._figure_data import (
     depth_of,
     error_curve,
     error_grid,
+    kind_of,
     named_depths,
     reports_of,
 )
@@ -47,6 +49,7 @@ from ._plot_style import (
     ten_to,
 )
 from ._scene import points_m
+from ._waveform import Waveform
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -76,16 +79,15 @@ def waveforms(
     """Modulation, demodulation and correlation function of every measurement, a row each."""
     fitted, camera = code_and_camera(code, camera)
     model = ForwardModel(fitted, camera)
-    modulation, demodulation = fitted.modulation, fitted.demodulation
+    modulation, demodulation = fitted.modulation_waveforms(), fitted.demodulation_waveforms()
     rows = fitted.measurements
     figure = new_figure(figure, page_in, 0.5 + 0.75 * rows)
     axes = figure.subplots(rows, 3, squeeze=False, sharex="col", sharey="col")
-    edges = np.arange(fitted.samples + 1) / fitted.samples
     depth_m = np.arange(fitted.samples) * camera.bin_m
     chi = model.correlation_table() if model.measurements == rows else None
     for i in range(rows):
-        axes[i, 0].stairs(modulation[:, i // fitted.taps], edges, color=colours[0], lw=1.2)
-        axes[i, 1].stairs(demodulation[:, i], edges, color=colours[1], lw=1.2)
+        axes[i, 0].stairs(*_steps(modulation[i // fitted.taps]), color=colours[0], lw=1.2)
+        axes[i, 1].stairs(*_steps(demodulation[i]), color=colours[1], lw=1.2)
         if chi is not None:
             axes[i, 2].plot(depth_m, chi[:, i], color=colours[2])
         axes[i, 0].set_ylabel(f"{i + 1}")
@@ -96,6 +98,21 @@ def waveforms(
     for axis, label in zip(axes[-1], ("time (periods)", "time (periods)", "depth (m)")):
         axis.set_xlabel(label)
     return figure
+
+
+def _steps(waveform: Waveform) -> tuple[FloatArray, FloatArray]:
+    """The values of a waveform and between which times [periods] each holds: of a binary one by its
+    switching times, not by means over cells."""
+    if not waveform.is_binary:
+        samples = waveform.samples
+        return samples, np.arange(len(samples) + 1) / len(samples)
+    on = waveform.on_intervals
+    over = on[on[:, 1] > 1]  # the end of the period
+    wrapped = np.stack([np.zeros(len(over)), over[:, 1] - 1], 1)
+    times = np.concatenate([wrapped, np.minimum(on, 1)]).ravel()
+    values = np.zeros(len(times) + 1)
+    values[1::2] = waveform.level
+    return values, np.concatenate([[0.0], times, [1.0]])
 
 
 def _curves_in_one(column: Any, depth_m: Any, chi: Any) -> None:
@@ -169,12 +186,14 @@ def coding_curve(
 
 @styled
 def depth_error_map(
-    reports: Reports, *, kind: str = "linear", figure: Optional[Figure] = None
+    reports: Reports, *, kind: Optional[str] = None, figure: Optional[Figure] = None
 ) -> Figure:
-    """Mean depth error [mm] at every operating point, a panel per code, one colour scale."""
+    """Mean depth error [mm] at every operating point and its standard error, a panel per code, one
+    colour scale. `kind`: linear or circular; None: as the first report's camera asks."""
     from matplotlib.colors import LogNorm
 
     listed = reports_of(reports)
+    kind = kind_of(listed, kind)
     grids = [error_grid(report, kind) for report in listed]
     values_mm = [1e3 * grid[2] for grid in grids]
     lowest = min(np.nanmin(np.maximum(v, 1e-6)) for v in values_mm)
@@ -184,7 +203,9 @@ def depth_error_map(
     figure = new_figure(figure, 0.9 + 1.9 * columns, 0.5 + 1.7 * rows)
     axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
     picture = None
-    for axis, report, (signal, ambient, _), v in zip(axes.flat, listed, grids, values_mm):
+    for axis, report, (signal, ambient, _, error_m), v in zip(
+        axes.flat, listed, grids, values_mm
+    ):
         picture = axis.imshow(v, origin="lower", norm=norm, aspect="auto")
         axis.set_title(report.code)
         axis.set_xticks(range(len(ambient)), [ten_to(a) for a in ambient], rotation=45)
@@ -192,7 +213,10 @@ def depth_error_map(
         axis.tick_params(length=0)
         for (row, column), value in np.ndenumerate(v):
             dark = norm(value) < 0.6
-            axis.text(column, row, short(float(value)), ha="center", va="center", fontsize=6,
+            shown = short(float(value))
+            if np.isfinite(error_m[row, column]):
+                shown += f"\n± {short(1e3 * float(error_m[row, column]))}"
+            axis.text(column, row, shown, ha="center", va="center", fontsize=5, linespacing=1.0,
                       color="white" if dark else "black")
     for axis in axes.flat[len(listed) :]:
         axis.axis("off")
@@ -210,12 +234,14 @@ def depth_error_curves(
     *,
     along: str = "signal",
     at: Optional[float] = None,
-    kind: str = "linear",
+    kind: Optional[str] = None,
     figure: Optional[Figure] = None,
 ) -> Figure:
     """Mean depth error along signal or ambient light, with standard errors; the other light at the
-    level nearest `at` (the middle unless given). Dotted grey: the bound of any code."""
+    level nearest `at` (the middle unless given). Dotted grey: the bound of any code. `kind`: linear
+    or circular; None: as the first report's camera asks."""
     listed = reports_of(reports)
+    kind = kind_of(listed, kind)
     longest = max(len("bound of any code"), *(len(report.code) for report in listed))
     figure = new_figure(figure, column_in + 0.4 + 0.055 * longest, 2.4)
     axis = figure.subplots()

@@ -73,6 +73,11 @@ double ColourAxis::to_trace(double value) const {
   return value > 0 ? std::log10(value) : std::numeric_limits<double>::quiet_NaN();
 }
 
+double ColourAxis::resolution() const {
+  constexpr double steps = 2 * 256;
+  return (to_trace(range_.high) - to_trace(range_.low)) / steps;
+}
+
 bool ColourAxis::is_dark(double value) const {
   const double low = to_trace(range_.low);
   const double place = (to_trace(value) - low) / (to_trace(range_.high) - low);

@@ -19,6 +19,8 @@ class ColourAxis {
   const ValueRange& range() const { return range_; }
   /// What a trace must hold for a value: its logarithm on a logarithmic scale.
   double to_trace(double value) const;
+  /// What values of traces may be rounded to: half of a colour's width.
+  double resolution() const;
   /// Whether light text reads better than dark text on the colour of `value`.
   bool is_dark(double value) const;
   /// Layout entry "coloraxis".

@@ -24,6 +24,13 @@ int thinning_step(const Image<float>& pixels, int max_side) {
   return (longest + max_side - 1) / max_side;
 }
 
+/// What one trace draws.
+struct Picture {
+  std::vector<float> values;
+  int panel = 0;
+  std::string side, name;  ///< of a slider; empty: none
+};
+
 std::vector<float> every_nth_pixel(const Image<float>& pixels, int step) {
   std::vector<float> kept;
   for (int row = 0; row < pixels.height; row += step)
@@ -40,20 +47,31 @@ Figure image_figure(FigureText text, const std::vector<ValueImage>& images,
   require(options.max_side >= 1, "ImageFigureOptions::max_side", options.max_side, "must be >= 1");
   const Image<float>& first = images.front().pixels;
   require(!first.empty(), "images[0].size", first.size(), "must be >= 1");
-  for (const ValueImage& image : images)
-    require(image.pixels.height == first.height && image.pixels.width == first.width,
-            "ValueImage::pixels", fmt::format("{} x {}", image.pixels.height, image.pixels.width),
+  const auto check_size = [&](const char* name, const Image<float>& pixels) {
+    require(pixels.height == first.height && pixels.width == first.width, name,
+            fmt::format("{} x {}", pixels.height, pixels.width),
             fmt::format("must be {} x {} like the first", first.height, first.width));
+  };
+  for (const ValueImage& image : images) {
+    check_size("ValueImage::pixels", image.pixels);
+    if (!image.before.empty()) check_size("ValueImage::before", image.before);
+  }
 
   const int step = thinning_step(first, options.max_side);
   const auto height = static_cast<std::size_t>((first.height + step - 1) / step);
   const auto width = static_cast<std::size_t>((first.width + step - 1) / step);
-  std::vector<std::vector<float>> kept;
+  std::vector<Picture> pictures;
   std::vector<float> all_values;
-  for (const ValueImage& image : images) {
-    kept.push_back(every_nth_pixel(image.pixels, step));
-    all_values.insert(all_values.end(), kept.back().begin(), kept.back().end());
+  for (int p = 0; p < std::ssize(images); ++p) {
+    const ValueImage& image = images[static_cast<std::size_t>(p)];
+    const bool slides = !image.before.empty();
+    if (slides)
+      pictures.push_back({every_nth_pixel(image.before, step), p, "left", options.before_name});
+    pictures.push_back({every_nth_pixel(image.pixels, step), p, slides ? "right" : "",
+                        slides ? options.after_name : ""});
   }
+  for (const Picture& picture : pictures)
+    all_values.insert(all_values.end(), picture.values.begin(), picture.values.end());
   const plotly::ColourAxis colour_axis(colours, all_values);
   const plotly::PanelLayout panels(static_cast<int>(images.size()), options.columns, 0.02);
   // The height of the pictures follows the width of the page; titles between them do not. Their
@@ -66,22 +84,26 @@ Figure image_figure(FigureText text, const std::vector<ValueImage>& images,
 
   Json data = Json::array();
   Json layout = {{"coloraxis", colour_axis.layout()}, {"annotations", Json::array()}};
-  for (int p = 0; p < std::ssize(images); ++p) {
-    auto& values = kept[static_cast<std::size_t>(p)];
-    for (float& value : values)
+  for (Picture& picture : pictures) {
+    for (float& value : picture.values)
       value = static_cast<float>(colour_axis.to_trace(static_cast<double>(value)));
-    data.push_back({{"type", "heatmap"},
-                    {"z", plotly::typed_array(values, {height, width})},
-                    {"dx", step},
-                    {"dy", step},
-                    {"x0", 0},
-                    {"y0", 0},
-                    {"hoverongaps", false},
-                    {"hovertemplate", fmt::format("column %{{x}}, row %{{y}}: {}<extra></extra>",
-                                                  colour_axis.hover("z"))},
-                    {"coloraxis", "coloraxis"},
-                    {"xaxis", plotly::axis_name("x", p)},
-                    {"yaxis", plotly::axis_name("y", p)}});
+    data.push_back(
+        {{"type", "heatmap"},
+         {"z", plotly::typed_array(picture.values, {height, width}, colour_axis.resolution())},
+         {"dx", step},
+         {"dy", step},
+         {"x0", 0},
+         {"y0", 0},
+         {"hoverongaps", false},
+         {"hovertemplate",
+          fmt::format("column %{{x}}, row %{{y}}: {}<extra></extra>", colour_axis.hover("z"))},
+         {"coloraxis", "coloraxis"},
+         {"xaxis", plotly::axis_name("x", picture.panel)},
+         {"yaxis", plotly::axis_name("y", picture.panel)}});
+    if (!picture.side.empty())
+      data.back()["meta"] = {{"slider", picture.side}, {"name", picture.name}};
+  }
+  for (int p = 0; p < std::ssize(images); ++p) {
     Json x = {{"visible", false}, {"constrain", "domain"}};
     Json y = {{"visible", false},
               {"constrain", "domain"},

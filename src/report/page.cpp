@@ -5,8 +5,11 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cstdint>
+#include <span>
 
 #include "report/html.hpp"
+#include "report/packed_arrays.hpp"
 #include "report/page_blocks.hpp"
 #include "report/resources.hpp"
 
@@ -52,19 +55,31 @@ std::string masthead(const Page& page) {
   return fmt::format("<header>\n<h1>{}</h1>\n{}</header>\n", escape(page.title), subtitle);
 }
 
+std::string data_element(std::string_view id, std::string_view json) {
+  return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id,
+                     html::escape_json_for_script(json));
+}
+
 /// The figures' JSON and the scripts, last: text can be read while they load. A page without
 /// figures needs none.
 std::string scripts(const Page& page) {
   std::string elements;
+  plotly::PackedArrays arrays;
   for (const Section& section : page.sections)
     for (const Block& block : section.blocks)
-      if (const auto* figure = std::get_if<Figure>(&block))
-        elements +=
-            fmt::format("<script type=\"application/json\" id=\"data-{}\">{}</script>\n",
-                        figure->text().id, html::escape_json_for_script(figure->plotly_json()));
+      if (const auto* figure = std::get_if<Figure>(&block)) {
+        auto json = plotly::Json::parse(figure->plotly_json());
+        arrays.take_from(json);
+        elements += data_element("data-" + figure->text().id, json.dump());
+      }
   if (elements.empty()) return "";
-  return fmt::format("{}<script>\n{}\n</script>\n<script>\n{}</script>\n", elements,
-                     resources::plotly_js(), resources::page_js());
+  const std::string_view plotly_js = resources::plotly_js();
+  const std::span packed(reinterpret_cast<const std::uint8_t*>(plotly_js.data()), plotly_js.size());
+  return fmt::format(
+      "{}{}<script type=\"application/gzip\" id=\"plotly-js\">{}</script>\n"
+      "<script>\n{}{}</script>\n",
+      elements, data_element("packed-arrays", arrays.json().dump()), plotly::encode_base64(packed),
+      resources::plotly_licences(), resources::page_js());
 }
 
 }  // namespace

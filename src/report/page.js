@@ -48,22 +48,50 @@
     };
   }
 
-  // {dtype: "f4", bdata: base64, shape: "H, W"} to a Float32Array, or to an array of rows of it.
-  function typedArray(encoded) {
-    const text = atob(encoded.bdata);
-    const bytes = Uint8Array.from(text, (character) => character.charCodeAt(0));
-    const values = new Float32Array(bytes.buffer);
-    const shape = encoded.shape.split(',').map(Number);
-    if (shape.length < 2) return values;
-    const [rows, columns] = shape;
-    return Array.from({length: rows}, (_, r) => values.subarray(r * columns, (r + 1) * columns));
+  const textOf = (id) => document.getElementById(id).textContent;
+
+  async function inflated(base64, format) {
+    const bytes = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream(format));
+    return new Uint8Array(await new Response(stream).arrayBuffer());
   }
 
-  // Decodes typed arrays and turns black, which a dark page would swallow, into its ink.
+  // What src/report/packed_arrays.hpp packs, as a Float32Array or an array of rows of it.
+  async function unpacked(array) {
+    const planes = await inflated(array.data, 'deflate');
+    const count = planes.length / array.bytes;
+    const shape = array.shape.split(',').map(Number);
+    const columns = shape.length < 2 ? count : shape[1];
+    const words = new Uint32Array(count);
+    const mask = 2 ** (8 * array.bytes);
+    for (let i = 0; i < count; ++i) {
+      let word = array.is_difference && i % columns > 0 ? words[i - 1] : 0;
+      for (let b = 0; b < array.bytes; ++b) word += planes[b * count + i] * 2 ** (8 * b);
+      words[i] = word % mask;
+    }
+    const values = array.step === undefined
+      ? new Float32Array(words.buffer)
+      : Float32Array.from(words, (word) => word === 0 ? NaN : (word - 1 + array.low) * array.step);
+    if (shape.length < 2) return values;
+    return Array.from({length: shape[0]}, (_, r) => values.subarray(r * columns, (r + 1) * columns));
+  }
+
+  // plotly.js and the arrays of all figures, before the first is drawn.
+  let arrays = null;
+  async function load() {
+    if (typeof DecompressionStream === 'undefined')
+      throw new Error('This browser cannot unpack the figures; those since 2023 can.');
+    const library = document.createElement('script');
+    library.textContent = new TextDecoder().decode(await inflated(textOf('plotly-js'), 'gzip'));
+    document.head.append(library);
+    arrays = await Promise.all(JSON.parse(textOf('packed-arrays')).map(unpacked));
+  }
+
+  // Puts in the arrays and turns black, which a dark page would swallow, into its ink.
   function decoded(json) {
     if (json === '#000000' && isDark()) return '#f0f3f6';
     if (json === null || typeof json !== 'object') return json;
-    if (json.bdata !== undefined) return typedArray(json);
+    if (json.packed !== undefined) return arrays[json.packed];
     if (Array.isArray(json)) return json.map(decoded);
     return Object.fromEntries(Object.entries(json).map(([key, value]) => [key, decoded(value)]));
   }
@@ -82,10 +110,59 @@
     return undefined;
   }
 
+  // Pictures of which a slider shows one on its left and another on its right: traces whose meta
+  // says {slider: 'left' or 'right', name: what the end of the slider is called}.
+  const sliders = new Map();
+  function slide(plot, data, layout) {
+    const sliding = data.filter((trace) => trace.meta && trace.meta.slider);
+    if (sliding.length === 0) return;
+    if (!sliders.has(plot)) sliders.set(plot, addSlider(plot, sliding));
+    const at = Number(sliders.get(plot).value);
+    layout.shapes = [];
+    for (const trace of sliding) {
+      if (trace.meta.slider === 'left') {
+        const x = trace.x0 + (at - 0.5) * trace.dx;
+        layout.shapes.push({
+          type: 'line', xref: trace.xaxis, yref: trace.yaxis, x0: x, x1: x,
+          y0: trace.y0 - 0.5 * trace.dy, y1: trace.y0 + (trace.z.length - 0.5) * trace.dy,
+          line: {color: '#ffffff', width: 2}});
+        trace.z = trace.z.map((row) => row.subarray(0, at));
+      } else {
+        trace.x0 += at * trace.dx;
+        trace.z = trace.z.map((row) => row.subarray(at));
+      }
+    }
+  }
+  function addSlider(plot, sliding) {
+    const nameOf = (side) => sliding.find((trace) => trace.meta.slider === side).meta.name;
+    const columns = sliding[0].z[0].length;
+    const label = document.createElement('label');
+    const input = document.createElement('input');
+    label.className = 'slider';
+    Object.assign(input, {type: 'range', min: 1, max: columns - 1, value: Math.round(columns / 2)});
+    input.setAttribute('aria-label', `left of this column ${nameOf('left')}, right ${nameOf('right')}`);
+    label.append(nameOf('left'), input, nameOf('right'));
+    plot.parentElement.after(label);
+    let drawing = false;
+    let moved = false;
+    const redraw = () => {
+      moved = drawing;
+      if (drawing) return;
+      drawing = true;
+      draw(plot).then(() => {
+        drawing = false;
+        if (moved) redraw();
+      });
+    };
+    input.addEventListener('input', redraw);
+    return input;
+  }
+
   function draw(plot) {
     const id = plot.dataset.figure;
-    const json = JSON.parse(document.getElementById('data-' + id).textContent);
-    const {data, layout} = decoded(json);
+    const {data, layout} = decoded(JSON.parse(textOf('data-' + id)));
+    slide(plot, data, layout);
+    layout.uirevision = id;  // what is zoomed stays so
     const page = template();
     layout.margin = Object.assign({}, page.layout.margin, layout.margin);
     const config = {
@@ -98,8 +175,13 @@
 
   // Each figure is drawn once, whoever asks first, and one after the other with a breath between,
   // so that the page stays alive.
+  const plots = Array.from(document.querySelectorAll('.plot'));
   const drawings = new Map();
-  let last = Promise.resolve();
+  let last = load().catch((error) => {
+    status.errors.push(String(error));
+    for (const plot of plots) plot.textContent = error.message;
+    throw error;
+  });
   function drawOnce(plot) {
     if (!drawings.has(plot)) {
       last = last.then(() => new Promise((resolve) => { setTimeout(resolve); }))
@@ -111,7 +193,6 @@
     return drawings.get(plot);
   }
 
-  const plots = Array.from(document.querySelectorAll('.plot'));
   status.total = plots.length;
   for (const plot of plots) plot.style.minHeight = size(plot).height + 'px';
   window.tofsmithRenderAll = () => Promise.all(plots.map(drawOnce));
@@ -131,7 +212,7 @@
   darkScheme.addEventListener('change', redraw);
   window.addEventListener('beforeprint', () => {
     printing = true;
-    for (const plot of plots) draw(plot);  // now: the printer does not wait
+    if (arrays) for (const plot of plots) draw(plot);  // now: the printer does not wait
   });
   window.addEventListener('afterprint', () => { printing = false; redraw(); });
 

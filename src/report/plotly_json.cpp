@@ -29,19 +29,6 @@ Series closed(Series series) {
 constexpr std::string_view base64_digits =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-std::string encode_base64(std::span<const std::uint8_t> bytes) {
-  std::string encoded;
-  encoded.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t present = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t triple = 0;
-    for (std::size_t j = 0; j < 3; ++j) triple = triple << 8 | (j < present ? bytes[i + j] : 0u);
-    for (std::size_t j = 0; j < 4; ++j)
-      encoded += j <= present ? base64_digits[triple >> (18 - 6 * j) & 63] : '=';
-  }
-  return encoded;
-}
-
 std::vector<std::uint8_t> decode_base64(const std::string& encoded) {
   std::vector<std::uint8_t> bytes;
   std::uint32_t buffer = 0;
@@ -59,21 +46,18 @@ std::vector<std::uint8_t> decode_base64(const std::string& encoded) {
 }
 
 Json plain_values(const Json& typed) {
-  const auto bytes = decode_base64(typed.at("bdata").get<std::string>());
   const std::string shape = typed.value("shape", "");
   const auto comma = shape.find(',');
   const std::size_t columns = comma == std::string::npos ? 0 : std::stoul(shape.substr(comma + 1));
 
   Json values = Json::array();
-  for (std::size_t i = 0; 4 * i < bytes.size(); ++i) {
-    std::uint32_t word = 0;
-    for (std::size_t b = 0; b < 4; ++b)
-      word |= static_cast<std::uint32_t>(bytes[4 * i + b]) << 8 * b;
-    const Json value = number(static_cast<double>(std::bit_cast<float>(word)));
+  std::size_t i = 0;
+  for (const float single : floats_of(typed)) {
+    const Json value = number(static_cast<double>(single));
     if (columns == 0) {
       values.push_back(value);
     } else {
-      if (i % columns == 0) values.push_back(Json::array());
+      if (i++ % columns == 0) values.push_back(Json::array());
       values.back().push_back(value);
     }
   }
@@ -181,16 +165,44 @@ Json numbers(std::span<const double> values) {
   return list;
 }
 
-Json typed_array(std::span<const float> values, const std::vector<std::size_t>& shape) {
+std::string encode_base64(std::span<const std::uint8_t> bytes) {
+  std::string encoded;
+  encoded.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t present = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t triple = 0;
+    for (std::size_t j = 0; j < 3; ++j) triple = triple << 8 | (j < present ? bytes[i + j] : 0u);
+    for (std::size_t j = 0; j < 4; ++j)
+      encoded += j <= present ? base64_digits[triple >> (18 - 6 * j) & 63] : '=';
+  }
+  return encoded;
+}
+
+std::vector<float> floats_of(const Json& typed) {
+  const auto bytes = decode_base64(typed.at("bdata").get<std::string>());
+  std::vector<float> values;
+  values.reserve(bytes.size() / 4);
+  for (std::size_t i = 0; i + 4 <= bytes.size(); i += 4) {
+    std::uint32_t word = 0;
+    for (std::size_t b = 0; b < 4; ++b) word |= static_cast<std::uint32_t>(bytes[i + b]) << 8 * b;
+    values.push_back(std::bit_cast<float>(word));
+  }
+  return values;
+}
+
+Json typed_array(std::span<const float> values, const std::vector<std::size_t>& shape,
+                 double resolution) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(4 * values.size());
   for (const float value : values) {
     const auto word = std::bit_cast<std::uint32_t>(value);
     for (int b = 0; b < 4; ++b) bytes.push_back(static_cast<std::uint8_t>(word >> 8 * b & 255));
   }
-  return {{"dtype", "f4"},
-          {"bdata", encode_base64(bytes)},
-          {"shape", fmt::format("{}", fmt::join(shape, ", "))}};
+  Json typed = {{"dtype", "f4"},
+                {"bdata", encode_base64(bytes)},
+                {"shape", fmt::format("{}", fmt::join(shape, ", "))}};
+  if (resolution > 0.0) typed["step"] = number(resolution);
+  return typed;
 }
 
 void expand_typed_arrays(Json& json) {

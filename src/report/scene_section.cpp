@@ -172,25 +172,56 @@ Table error_table(const SceneResult& scene) {
   return table;
 }
 
+/// Depth of each pixel alone and filtered, at every light; none where nothing was filtered.
+std::optional<Figure> compared_figure(const SceneResult& scene, const Camera& camera,
+                                      const std::string& best_code) {
+  std::vector<ValueImage> images;
+  for (const SceneCapture& capture : scene.captures)
+    if (const SceneDecoding* const d = decoding_of(capture, best_code); d && d->filtered)
+      images.push_back(
+          {.title = fmt::format("{} light: {:.1f} | {:.1f} mm", capture.light,
+                                1e3 * d->error.mean_m, 1e3 * d->filtered->error.mean_m),
+           .pixels = d->filtered->depth_m,
+           .before = d->depth_m});
+  if (images.empty()) return std::nullopt;
+  return image_figure(
+      {.id = "filtered",
+       .title = fmt::format("Depth of {}, each pixel alone and filtered", best_code),
+       .caption = "Left of the slider each pixel alone, right of it the same raw numbers filtered; "
+                  "mean errors of both above.",
+       .alt_text = "Maps of depth, each pixel alone on the left and filtered on the right"},
+      images, {.label = "depth", .unit = "m", .range = depth_range(scene, camera)},
+      {.before_name = "each pixel alone", .after_name = "filtered"});
+}
+
+ColouredPoints cloud_of(const SceneResult& scene, std::string title, const Image<float>& depth_m) {
+  const auto count = static_cast<Eigen::Index>(depth_m.size());
+  ColouredPoints cloud{.title = std::move(title),
+                       .points = Eigen::MatrixX3f(count, 3),
+                       .values = Eigen::VectorXf(count)};
+  Eigen::Index i = 0;
+  for (int row = 0; row < depth_m.height; ++row)
+    for (int column = 0; column < depth_m.width; ++column, ++i) {
+      const auto depth = static_cast<double>(depth_m(row, column));
+      cloud.points.row(i) = (scene.view.ray(row, column) * depth).cast<float>().transpose();
+      cloud.values[i] = depth_m(row, column);
+    }
+  return cloud;
+}
+
 Figure cloud_figure(const SceneResult& scene, const SceneCapture& capture,
                     const SceneDecoding& decoding, const Camera& camera) {
-  const std::size_t count = decoding.depth_m.size();
-  Eigen::MatrixX3f points(static_cast<Eigen::Index>(count), 3);
-  Eigen::VectorXf values(static_cast<Eigen::Index>(count));
-  Eigen::Index i = 0;
-  for (int row = 0; row < decoding.depth_m.height; ++row)
-    for (int column = 0; column < decoding.depth_m.width; ++column, ++i) {
-      const float depth_m = decoding.depth_m(row, column);
-      points.row(i) =
-          (scene.view.ray(row, column) * static_cast<double>(depth_m)).cast<float>().transpose();
-      values[i] = depth_m;
-    }
+  std::vector<ColouredPoints> clouds;
+  clouds.push_back(cloud_of(scene, decoding.filtered ? "each pixel alone" : "", decoding.depth_m));
+  if (decoding.filtered) clouds.push_back(cloud_of(scene, "filtered", decoding.filtered->depth_m));
   return point_cloud_figure(
       {.id = "point-cloud",
        .title = fmt::format("Point cloud, {}, {} light", decoding.code, capture.light),
        .caption = "Every decoded pixel at its place in front of the camera. Drag to turn.",
-       .alt_text = "Point cloud of the decoded scene"},
-      points, values, {.label = "depth", .unit = "m", .range = depth_range(scene, camera)});
+       .alt_text = decoding.filtered
+                       ? "Point clouds of the decoded scene, each pixel alone and filtered"
+                       : "Point cloud of the decoded scene"},
+      clouds, {.label = "depth", .unit = "m", .range = depth_range(scene, camera)});
 }
 
 }  // namespace
@@ -218,6 +249,8 @@ Section scene_section(const SceneResult& scene, const Camera& camera,
     section.blocks.push_back(decoded_figure(scene, capture, camera, best_code));
     section.blocks.push_back(error_figure(scene, capture, camera, best_code));
   }
+  if (auto compared = compared_figure(scene, camera, best_code))
+    section.blocks.push_back(std::move(*compared));
   if (auto averaged = averaged_figure(scene, best_code))
     section.blocks.push_back(std::move(*averaged));
   if (scene.captures.empty()) return section;

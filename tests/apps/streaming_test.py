@@ -186,6 +186,24 @@ class Streaming(CommandLineTest):
         self.refuse(self.arguments("--time-filter", "8", "--time-filter-set", "max_differnce_sigma=3",
                                    output="x.npy"), "did you mean max_difference_sigma?", code=2)
 
+    def test_looks_ahead(self):
+        self.record(frames=5)
+        planes = ("--stack", "--outputs", "depth,averaged")
+        document = self.decode("--time-filter", "8", "--look-ahead", "4", *planes)
+        self.assertEqual((document["time_filter"], document["look_ahead"]), (8, 4))
+        averaged = np.load(self.path("d-averaged.npy"))
+        for frame in averaged:
+            self.assertGreater(np.median(frame), 4.9)
+        self.decode("--time-filter", "8", "--time-filter-set", "look_ahead=4", *planes,
+                    output="set.npy")
+        self.assertEqual(self.bytes_of("set.npy"), self.bytes_of("d.npy"))
+        self.decode("--time-filter", "8", "--look-ahead", "1", "--frame", "2", *planes,
+                    output="one.npy")
+        self.assertLess(np.load(self.path("one-averaged.npy")).max(), 4.01)
+        self.refuse(self.arguments("--look-ahead", "4", output="x.npy"), "--time-filter", code=2)
+        self.refuse(self.arguments("--time-filter", "8", "--look-ahead", "-1", output="x.npy"),
+                    "found -1; must be in [0, 1000]", code=2)
+
     def test_averages(self):
         raw = self.record(frames=5)
         self.decode("--average", "2", "--stack", "--outputs", "depth,averaged")

@@ -62,7 +62,7 @@ RawView add_static(TimeFilter& filter, int count, double signal, double ambient,
   for (int i = 0; i < count; ++i) {
     const RawFrames raw =
         frame_of(filter.table(), slanted, signal, ambient, seed + static_cast<std::uint64_t>(i));
-    last = filter.add(view_of_frame(raw, 0));
+    last = *filter.add(view_of_frame(raw, 0));
   }
   return last;
 }
@@ -70,19 +70,19 @@ RawView add_static(TimeFilter& filter, int count, double signal, double ambient,
 TEST(TimeFilter, GivesTheFirstFrameAsItCame) {
   TimeFilter filter(table_of());
   const RawFrames raw = frame_of(filter.table(), slanted, 1e5, 1e4, 1);
-  const RawView first = filter.add(view_of_frame(raw, 0));
+  const RawView first = *filter.add(view_of_frame(raw, 0));
   EXPECT_EQ(values_of(first), raw.values);
   EXPECT_EQ(averaged_of(first), std::vector<float>(height * width, 1.0F));
   add_static(filter, 2, 1e5, 1e4, 2);
   filter.forget();
-  EXPECT_EQ(values_of(filter.add(view_of_frame(raw, 0))), raw.values);
+  EXPECT_EQ(values_of(*filter.add(view_of_frame(raw, 0))), raw.values);
 }
 
 TEST(TimeFilter, OneFrameAtMostChangesNothing) {
   TimeFilter filter(table_of(), {.max_frames = 1});
   for (std::uint64_t seed = 1; seed < 4; ++seed) {
     const RawFrames raw = frame_of(filter.table(), slanted, 1e5, 1e4, seed);
-    const RawView same = filter.add(view_of_frame(raw, 0));
+    const RawView same = *filter.add(view_of_frame(raw, 0));
     EXPECT_EQ(values_of(same), raw.values);
     EXPECT_EQ(averaged_of(same), std::vector<float>(height * width, 1.0F));
   }
@@ -174,7 +174,7 @@ TEST(TimeFilter, PixelsThatMovedHoldNothingOfBefore) {
     return slanted(row, column) + (row < 9 && column < 12 ? 40.0 : 0.0);
   };
   const RawFrames raw = frame_of(filter.table(), moved, 1e5, 1e4, 99);
-  const RawView view = filter.add(view_of_frame(raw, 0));
+  const RawView view = *filter.add(view_of_frame(raw, 0));
   const std::vector<float> values = values_of(view), averaged = averaged_of(view);
   std::vector<float> stayed;
   for (int row = 0; row < height; ++row)
@@ -196,7 +196,7 @@ TEST(TimeFilter, APixelThatChangesAloneStartsAnew) {
   RawFrames raw = frame_of(filter.table(), slanted, 1e5, 1e4, 99);
   const std::size_t pixel = 20 * width + 20;
   raw.values[4 * pixel + 1] *= 1.5F;
-  const RawView view = filter.add(view_of_frame(raw, 0));
+  const RawView view = *filter.add(view_of_frame(raw, 0));
   EXPECT_EQ(view.averaged[pixel], 1.0F);
   EXPECT_EQ(values_of(view)[4 * pixel + 1], raw.values[4 * pixel + 1]);
 }
@@ -209,7 +209,7 @@ TEST(TimeFilter, SmallChangesThatNeighboursShareAreFound) {
   RawFrames after = before;
   for (float& value : after.values)
     value += 1.0F * std::sqrt(value + static_cast<float>(table.constant_variance_e2[0]));
-  EXPECT_LT(mean_of(averaged_of(filter.add(view_of_frame(after, 0)))), 2.0);
+  EXPECT_LT(mean_of(averaged_of(*filter.add(view_of_frame(after, 0)))), 2.0);
 }
 
 TEST(TimeFilter, BeforeAFilterSmallerChangesAreFound) {
@@ -222,14 +222,39 @@ TEST(TimeFilter, BeforeAFilterSmallerChangesAreFound) {
       value += changes ? 0.2F * std::sqrt(std::max(value, 0.0F) + floor) : 0.0F;
     add_static(alone, 20, 1e5, 1e4, 1);
     add_static(before, 20, 1e5, 1e4, 1);
-    const double n_alone = mean_of(averaged_of(alone.add(view_of_frame(raw, 0))));
-    const double n_before = mean_of(averaged_of(before.add(view_of_frame(raw, 0))));
+    const double n_alone = mean_of(averaged_of(*alone.add(view_of_frame(raw, 0))));
+    const double n_before = mean_of(averaged_of(*before.add(view_of_frame(raw, 0))));
     EXPECT_GT(n_alone, 15.0);
     if (changes)
       EXPECT_LT(n_before, 3.0);
     else
       EXPECT_GT(n_before, 18.0);
   }
+}
+
+TEST(TimeFilter, BeforeAFilterPixelsKeepNoMoreThanThoseBesideThem) {
+  TimeFilter alone(table_of()), before(table_of(), {.before_filter = true});
+  add_static(alone, 20, 1e5, 1e4, 1);
+  add_static(before, 20, 1e5, 1e4, 1);
+  const auto moved = [](int row, int column) {
+    return slanted(row, column) + (row < 9 && column < 12 ? 40.0 : 0.0);
+  };
+  RawFrames raw = frame_of(alone.table(), moved, 1e5, 1e4, 99);
+  // What is no measurement says nothing about those beside it.
+  const std::size_t invalid = 25 * width + 30;
+  raw.values[4 * invalid] = nan;
+  const RawView far_apart = *alone.add(view_of_frame(raw, 0)),
+                beside = *before.add(view_of_frame(raw, 0));
+  double kept_alone = 0.0;
+  for (const auto& [row, column] : {std::pair{11, 5}, {12, 8}, {4, 14}, {6, 15}, {12, 15}}) {
+    const auto i = static_cast<std::size_t>(row * width + column);
+    EXPECT_EQ(beside.averaged[i], 1.0F) << row << ' ' << column;
+    kept_alone += static_cast<double>(far_apart.averaged[i]);
+  }
+  EXPECT_GT(kept_alone, 5 * 18.0);
+  for (const std::size_t i : {invalid + 1, invalid - width, invalid + 2 * width + 2})
+    EXPECT_GT(beside.averaged[i], 18.0F);
+  EXPECT_EQ(beside.averaged[invalid], 1.0F);
 }
 
 TEST(TimeFilter, PixelsWithoutMeasurementComeOutAsTheyAreAndStartAnew) {
@@ -243,7 +268,7 @@ TEST(TimeFilter, PixelsWithoutMeasurementComeOutAsTheyAreAndStartAnew) {
   raw.values[4 * invalid + 2] = nan;
   raw.values[4 * saturated + 3] = 1e6F;
   for (int time = 0; time < 2; ++time) {
-    const RawView view = filter.add(view_of_frame(raw, 0));
+    const RawView view = *filter.add(view_of_frame(raw, 0));
     const std::vector<float> values = values_of(view);
     for (const std::size_t pixel : {invalid, saturated}) {
       EXPECT_EQ(view.averaged[pixel], 1.0F);
@@ -257,12 +282,12 @@ TEST(TimeFilter, PixelsWithoutMeasurementComeOutAsTheyAreAndStartAnew) {
     EXPECT_GT(view.averaged[invalid + 1], 3.0F);
   }
   const RawFrames next = frame_of(table, slanted, 1e5, 1e4, 100);
-  const RawView view = filter.add(view_of_frame(next, 0));
+  const RawView view = *filter.add(view_of_frame(next, 0));
   EXPECT_EQ(view.averaged[invalid], 1.0F);
   EXPECT_EQ(view.averaged[saturated], 1.0F);
   EXPECT_EQ(values_of(view)[4 * invalid], next.values[4 * invalid]);
   const RawFrames later = frame_of(table, slanted, 1e5, 1e4, 101);
-  EXPECT_GT(filter.add(view_of_frame(later, 0)).averaged[invalid], 1.5F);
+  EXPECT_GT(filter.add(view_of_frame(later, 0))->averaged[invalid], 1.5F);
 }
 
 TEST(TimeFilter, MeansOfSeveralFramesCountAsSuch) {
@@ -272,9 +297,9 @@ TEST(TimeFilter, MeansOfSeveralFramesCountAsSuch) {
   const std::vector<float> three(height * width, 3.0F), two(height * width, 2.0F);
   RawView view = view_of_frame(raw, 0);
   view.averaged = three.data();
-  EXPECT_EQ(averaged_of(filter.add(view)), three);
+  EXPECT_EQ(averaged_of(*filter.add(view)), three);
   view.averaged = two.data();
-  EXPECT_EQ(averaged_of(filter.add(view)), std::vector<float>(height * width, 5.0F));
+  EXPECT_EQ(averaged_of(*filter.add(view)), std::vector<float>(height * width, 5.0F));
 }
 
 TEST(TimeFilter, HasTheSameBitsOnAnyNumberOfThreadsAndInAnyLayout) {
@@ -297,7 +322,7 @@ TEST(TimeFilter, HasTheSameBitsOnAnyNumberOfThreadsAndInAnyLayout) {
           planes[i % 4 * pixels + i / 4] = raw.values[i];
         view = RawView::planar(planes.data(), height, width, 4);
       }
-      const RawView added = filter.add(view);
+      const RawView added = *filter.add(view);
       const std::vector<float> values = values_of(added), averaged = averaged_of(added);
       all.insert(all.end(), values.begin(), values.end());
       all.insert(all.end(), averaged.begin(), averaged.end());
@@ -317,7 +342,7 @@ TEST(TimeFilter, FramesOfOnePixelAddUp) {
   for (int i = 0; i < 8; ++i) {
     raw.values.clear();
     append_noisy_pixel(filter.table(), 1e5, 1e4, 70.0, random, raw.values);
-    last = filter.add(view_of_frame(raw, 0));
+    last = *filter.add(view_of_frame(raw, 0));
   }
   EXPECT_GT(last.averaged[0], 4.0F);
 }
@@ -341,7 +366,7 @@ TEST(TimeFilter, RefusesFramesOfAnotherSizeAndOptionsThatCannotBe) {
   other = view_of_frame(raw, 0);
   other.height = height - 1;
   filter.forget();
-  EXPECT_EQ(filter.add(other).height, height - 1);
+  EXPECT_EQ(filter.add(other)->height, height - 1);
   EXPECT_THROW(TimeFilter(table, {.max_frames = 0}), InvalidArgument);
   EXPECT_THROW(TimeFilter(table, {.max_difference_sigma = 0.0}), InvalidArgument);
 }

@@ -14,7 +14,7 @@
 #include <limits>
 #include <set>
 
-#include "temporary_directory.hpp"
+#include "decode_recording_fixture.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
@@ -27,36 +27,6 @@ namespace {
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;
-
-/// Three frames of 6 x 5 pixels, each pixel with other measurements.
-class DecodeRecording : public testing::Test {
- protected:
-  DecodeRecording() {
-    raw_.frames = 3;
-    raw_.height = 6;
-    raw_.width = 5;
-    raw_.measurements = 4;
-    for (int i = 0; i < 3 * 6 * 5 * 4; ++i)
-      raw_.values.push_back(1000.0F + static_cast<float>(i * 37 % 101));
-    write_raw_frames(path("raw.npy"), raw_, OutputPolicy::refuse_existing);
-  }
-  std::filesystem::path path(const char* name) const { return directory_.path() / name; }
-  DecodeRequest request(const char* output) const {
-    return {.raw = {path("raw.npy")}, .output = path(output)};
-  }
-  /// Of frame number `frame` of a stack.
-  std::vector<float> plane(const char* name, std::size_t frame) const {
-    const NpyArray array = read_npy(path(name));
-    const auto* const first = reinterpret_cast<const float*>(array.bytes().data()) + frame * 6 * 5;
-    return {first, first + 6 * 5};
-  }
-
-  TemporaryDirectory directory_;
-  RawFrames raw_;
-  Camera camera_ = built_in_camera("paper-10f0");
-  AnyDecoder decoder_ =
-      make_decoder(DecodeMethod::zncc, load_decoding_table("hamiltonian-k4", camera_).table);
-};
 
 TEST_F(DecodeRecording, GivesWhatTheDecoderGives) {
   const DecodedRecording result = decode_recording(request("d.npy"), decoder_);
@@ -115,7 +85,7 @@ TEST_F(DecodeRecording, AddsUpFramesAsTheTimeFilterDoes) {
   const Filter in_space(decoder.table(), *added.filter);
   FilteredFrame filtered;
   for (int f = 0; f < 3; ++f) {
-    const RawView sum = in_time.add(view_of_frame(raw_, f));
+    const RawView sum = *in_time.add(view_of_frame(raw_, f));
     EXPECT_EQ(std::ranges::max(std::span(sum.averaged, 6 * 5)) > 1.5F, f > 0);
     in_space.apply(sum, filtered);
     Image<float> depth_m(6, 5);
@@ -145,6 +115,35 @@ TEST_F(DecodeRecording, AFrameHoldsThoseBeforeItWhenTheyAreAddedUp) {
     // Two frames, or a mean of two and the one that is left.
     EXPECT_EQ(plane("all-averaged.npy", 1), std::vector<float>(6 * 5, average == 1 ? 2.0F : 3.0F));
   }
+}
+
+TEST_F(DecodeRecording, AFrameHoldsThoseItLooksAheadToForAnyRange) {
+  TimeFilter both_ways(std::get<Decoder>(decoder_).table(),
+                       {.max_difference_sigma = 20.0, .look_ahead = 1});
+  DecodeRequest all = request("all.npy");
+  all.time_filter = both_ways.options();
+  all.stack = true;
+  all.outputs = {DecodedPlane::depth, DecodedPlane::averaged};
+  EXPECT_EQ(decode_recording(all, decoder_).frames.size(), 3u);
+  EXPECT_FALSE(both_ways.add(view_of_frame(raw_, 0)).has_value());
+  for (int f = 0; f < 3; ++f) {
+    const auto added = f < 2 ? both_ways.add(view_of_frame(raw_, f + 1)) : both_ways.add_end();
+    EXPECT_EQ(plane("all-averaged.npy", static_cast<std::size_t>(f)),
+              std::vector<float>(added->averaged, added->averaged + 6 * 5));
+    EXPECT_FLOAT_EQ(added->averaged[7], f == 0 ? 2.0F : 3.0F);
+    DecodeRequest one = all;
+    one.output = path("one.npy");
+    one.frame = f;
+    one.policy = OutputPolicy::overwrite;
+    decode_recording(one, decoder_);
+    EXPECT_EQ(plane("one.npy", 0), plane("all.npy", static_cast<std::size_t>(f)));
+  }
+  // No more frames wait than there are, and a recording of one frame is what it is.
+  all.time_filter->look_ahead = 1000;
+  all.output = path("farther.npy");
+  all.memory_mb = 0.1;
+  EXPECT_EQ(decode_recording(all, decoder_).frames.size(), 3u);
+  EXPECT_EQ(plane("farther-averaged.npy", 0), std::vector<float>(6 * 5, 3.0F));
 }
 
 TEST_F(DecodeRecording, MeansOfEqualFramesAreTheFrameWithLessNoise) {
@@ -387,99 +386,6 @@ TEST_F(DecodeRecording, CloudsHoldThePointsOfPixelsThatAreOk) {
     EXPECT_EQ(point[3], image.signal_e_per_s.pixels[i]);
   }
   EXPECT_EQ(points, ok);
-}
-
-class DecodeStream : public DecodeRecording {
- protected:
-  DecodeStream() {
-    std::ofstream(path("s.raw.toml")) << "width = 5\nheight = 6\nmeasurements = 4\nbits = 32\n"
-                                         "numbers = \"float\"\nlayout = \"interleaved\"\n"
-                                         "header_bytes = 3\n";
-    const auto bytes = std::as_bytes(std::span(raw_.values));
-    stream_.assign(3, std::byte{7});
-    stream_.insert(stream_.end(), bytes.begin(), bytes.end());
-    std::ofstream(path("dump.bin"), std::ios::binary)
-        .write(reinterpret_cast<const char*>(stream_.data()), std::ssize(stream_));
-  }
-
-  /// What comes out of the first `bytes` of the stream; frames are read only once those before are
-  /// out.
-  DecodedStream run(DecodeRequest request, std::size_t bytes) {
-    request.raw_format = path("s.raw.toml");
-    std::size_t at = 0;
-    written_.clear();
-    DecodedStream result;
-    const ReadStream read = [&](std::span<std::byte> into) {
-      const std::size_t frames = at < 3 ? 0 : (at - 3) / (6 * 5 * 4 * sizeof(float));
-      if (request.average == 1) {
-        EXPECT_EQ(result.frames, static_cast<std::int64_t>(frames));
-      }
-      const std::size_t count = std::min(into.size(), bytes - at);
-      std::copy_n(stream_.begin() + static_cast<std::ptrdiff_t>(at), count, into.begin());
-      at += count;
-      return count;
-    };
-    const WriteStream write = [&](std::span<const std::byte> bytes_of_plane) {
-      written_.insert(written_.end(), bytes_of_plane.begin(), bytes_of_plane.end());
-    };
-    decode_stream(request, decoder_, read, write, {}, result);
-    return result;
-  }
-  /// Planes of a stack as they stand in its files, frame by frame.
-  std::vector<std::byte> of_files(DecodeRequest request) {
-    request.raw = {path("dump.bin")};
-    request.raw_format = path("s.raw.toml");
-    request.output = path("stack.npy");
-    request.stack = true;
-    request.policy = OutputPolicy::overwrite;
-    const DecodedRecording result = decode_recording(request, decoder_);
-    std::vector<std::byte> bytes;
-    for (std::size_t frame = 0; frame < result.frames.size(); ++frame)
-      for (const std::filesystem::path& file : result.files) {
-        const NpyArray array = read_npy(file);
-        const std::size_t size = array.bytes().size() / result.frames.size();
-        const auto part = array.bytes().subspan(frame * size, size);
-        bytes.insert(bytes.end(), part.begin(), part.end());
-      }
-    return bytes;
-  }
-
-  std::vector<std::byte> stream_, written_;
-};
-
-TEST_F(DecodeStream, GivesTheBytesOfFilesFrameByFrame) {
-  DecodeRequest plain, filtered, means;
-  plain.outputs = {DecodedPlane::depth, DecodedPlane::status};
-  filtered.outputs = {DecodedPlane::depth, DecodedPlane::bin};
-  filtered.filter = FilterOptions{};
-  filtered.time_filter = TimeFilterOptions{};
-  filtered.offset_m = 0.5;
-  means.outputs = {DecodedPlane::signal};
-  means.average = 2;
-  for (const DecodeRequest& request : {plain, filtered, means}) {
-    const DecodedStream result = run(request, stream_.size());
-    EXPECT_EQ(result.frames, request.average == 2 ? 2 : 3);
-    EXPECT_EQ(written_, of_files(request));
-  }
-  EXPECT_EQ(run(plain, stream_.size()).statuses.pixels(), 3 * 6 * 5);
-  run({}, stream_.size());
-  DecodeRequest depth;
-  depth.outputs = {DecodedPlane::depth};
-  EXPECT_EQ(written_, of_files(depth)) << "depth, if nothing is asked for";
-}
-
-TEST_F(DecodeStream, KeepsWholeFramesOfOneThatBreaksOff) {
-  const std::size_t frame = 6 * 5 * 4 * sizeof(float);
-  EXPECT_THAT([&] { run({}, 3 + 2 * frame + 7); },
-              ThrowsMessage<IoError>(AllOf(HasSubstr("found 7 bytes and the end"),
-                                           HasSubstr("expected 480 of frame 2"))));
-  EXPECT_EQ(written_.size(), 2 * 6 * 5 * sizeof(float));
-  EXPECT_THAT([&] { run({}, 3); }, ThrowsMessage<IoError>(HasSubstr("frame 0")));
-  EXPECT_THAT([&] { run({}, 2); }, ThrowsMessage<IoError>(HasSubstr("header")));
-  DecodeRequest stack;
-  stack.stack = true;
-  EXPECT_THAT([&] { run(stack, 3); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("files only")));
 }
 
 }  // namespace

@@ -58,3 +58,40 @@ def test_figures_refuse_what_they_cannot_draw(things):
             of.depth_error_curves([])
         with pytest.raises(ValueError, match=r"depth: got shape \(3,\); needs \(H, W\)"):
             of.depth_maps(np.ones(3))
+
+
+def test_maps_of_errors_take_the_kind_that_the_camera_asks_for_and_show_standard_errors(things):
+    report = ts.evaluate("square-k4", things["camera"].replace(operating={"error": "circular"}),
+                         trials=20)
+    for kind, errors_m in (("circular", report.circular_se_m), ("linear", report.linear_se_m)):
+        figure = plot.depth_error_map(report, kind=None if kind == report.kind else kind)
+        assert figure.axes[-1].get_ylabel() == f"mean depth error, {kind} (mm)"
+        cells = figure.axes[0].texts
+        assert len(cells) == len(errors_m)
+        shown = sorted(float(cell.get_text().split("± ")[1]) for cell in cells)
+        np.testing.assert_allclose(shown, np.sort(1e3 * errors_m), rtol=0.06, atol=0.5)
+        plt.close("all")
+    linear = things["reports"][0]
+    assert linear.kind == "linear"
+    assert figures.depth_error_map(report) == figures.depth_error_map(report, kind="circular")
+    assert figures.depth_error_map(linear) == figures.depth_error_map(linear, kind="linear")
+
+
+def test_binary_waveforms_are_drawn_by_their_switching_times(things):
+    # 7 edges per period do not fall onto cells: means over cells would have shoulders.
+    on = [[0.0, 0.123456], [0.2, 0.41], [0.5003, 0.77]]
+    light, gate = ts.Waveform.binary(on, 1.5), ts.Waveform.binary(on)
+    # What goes on beyond the end of the period begins it.
+    late = plot.waveforms("hamiltonian-k3", things["camera"]).axes[7].patches[0].get_data()
+    np.testing.assert_allclose(late.values, [0, 1, 0, 1, 0])
+    np.testing.assert_allclose(late.edges, [0, 0, 1 / 6, 2 / 3, 1, 1], atol=1e-9)
+    code = ts.CodeSet.from_waveforms([light], [gate], samples=things["camera"].samples)
+    figure = plot.waveforms(code, things["camera"])
+    for axis, level in zip(figure.axes, (1.5, 1.0)):
+        values, edges, _ = axis.patches[0].get_data()
+        np.testing.assert_allclose(values, level * np.array([0, 1, 0, 1, 0, 1, 0]))
+        np.testing.assert_allclose(edges, [0, *np.ravel(on), 1])
+    plt.close("all")
+    sampled = plot.waveforms("sinusoid-k3", things["camera"]).axes[0].patches[0].get_data()
+    assert len(sampled.values) == len(sampled.edges) - 1 > 100
+    plt.close("all")

@@ -117,3 +117,31 @@ def test_static_scenes_add_up_over_frames(camera):
     assert np.median(filter.add(raw[1])[1]) == pytest.approx(4)
     with pytest.raises(ValueError, match="raw width = 20; must equal that of the frames before, 40"):
         filter.add(raw[0, :, :20])
+
+
+def test_looking_ahead_adds_later_frames_and_gives_the_last_at_the_end(camera):
+    scene = ts.built_in_scene("table-top", 40, 30)
+    raw = ts.capture(scene, code, camera, signal_e_per_s=1e5, ambient_e_per_s=1e4, seed=5, frames=6)
+    filter = ts.TimeFilter(code, camera, look_ahead=2)
+    first = filter.add(raw[:2])
+    assert (first[0].shape, first[1].shape) == ((0, 0, 0, 4), (0, 0, 0))
+    one = filter.add(raw[2])
+    assert (one[0].shape, one[1].shape) == ((1, 30, 40, 4), (1, 30, 40))
+    assert np.median(one[1]) == pytest.approx(3, abs=0.01)
+    middle, rest = filter.add(raw[3:]), filter.end()
+    assert (len(middle[0]), len(rest[0])) == (3, 2)
+    assert filter.end()[0].shape[0] == 0
+    numbers = np.concatenate([one[0], middle[0], rest[0]])
+    both_ways = ts.TimeFilter(code, camera, look_ahead=9)
+    both_ways.add(raw)
+    forwards = both_ways.end()
+    both_ways.add(raw[::-1])
+    backwards = both_ways.end()
+    for there, back in zip(forwards, backwards):
+        assert there.tobytes() == back[::-1].tobytes()
+    assert np.median(forwards[1]) == pytest.approx(6, abs=0.05)
+    # From frame 3 on two later frames are all that there are.
+    assert numbers[:3].tobytes() != forwards[0][:3].tobytes()
+    assert numbers[3:].tobytes() == forwards[0][3:].tobytes()
+    with pytest.raises(ValueError, match="look_ahead"):
+        ts.TimeFilter(code, camera, look_ahead=-1)

@@ -209,6 +209,39 @@ TEST(PointCloud, KeepsExactlyTheStatedNumberOfFinitePoints) {
             point_cloud_figure(some_text, points, values, {}, {.max_points = 9}).plotly_json());
 }
 
+TEST(PointCloud, DrawsSeveralCloudsInBoxesOfTheirOwn) {
+  const Eigen::MatrixX3f points = Eigen::MatrixX3f::Random(10, 3);
+  const ColouredPoints one{"one", points, Eigen::VectorXf::Zero(10)},
+      two{"two", points, Eigen::VectorXf::Ones(10)};
+  const json figure = json_of(point_cloud_figure(some_text, {one, two}, {}));
+  ASSERT_EQ(figure["data"].size(), 2u);
+  EXPECT_EQ(figure["data"][0]["scene"], "scene");
+  EXPECT_EQ(figure["data"][1]["scene"], "scene2");
+  EXPECT_LE(figure["layout"]["scene"]["domain"]["x"][1],
+            figure["layout"]["scene2"]["domain"]["x"][0]);
+  EXPECT_EQ(figure["layout"]["annotations"][1]["text"], "two");
+  EXPECT_THROW(point_cloud_figure(some_text, std::vector<ColouredPoints>(), {}),
+               std::invalid_argument);
+  ColouredPoints wrong = one;
+  wrong.values.resize(9);
+  EXPECT_THROW(point_cloud_figure(some_text, {one, wrong}, {}), std::invalid_argument);
+}
+
+TEST(ImageFigure, DrawsPicturesBeforeLeftOfASlider) {
+  const Image<float> before(2, 3, 1.0F), after(2, 3, 2.0F);
+  const json figure = json_of(image_figure(some_text, {{"a", after, before}, {"b", after}}, {},
+                                           {.before_name = "raw", .after_name = "better"}));
+  ASSERT_EQ(figure["data"].size(), 3u);
+  EXPECT_EQ(figure["data"][0]["meta"], json::parse(R"({"slider": "left", "name": "raw"})"));
+  EXPECT_EQ(figure["data"][1]["meta"], json::parse(R"({"slider": "right", "name": "better"})"));
+  EXPECT_FALSE(figure["data"][2].contains("meta"));
+  EXPECT_EQ(figure["data"][0]["xaxis"], figure["data"][1]["xaxis"]);
+  EXPECT_NE(figure["data"][1]["xaxis"], figure["data"][2]["xaxis"]);
+  EXPECT_NE(figure["data"][0]["z"]["bdata"], figure["data"][1]["z"]["bdata"]);
+  EXPECT_THROW(image_figure(some_text, {{"a", after, Image<float>(3, 2, 1.0F)}}, {}),
+               std::invalid_argument);
+}
+
 TEST(BarFigure, DrawsDotsWhereABarWouldHaveNoLength) {
   const std::vector<BarSeries> series = {{.name = "a", .values = {1, 2}}};
   EXPECT_EQ(json_of(bar_figure(some_text, {"x", "y"}, series, {}))["data"][0]["type"], "bar");

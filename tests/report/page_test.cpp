@@ -5,9 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <zlib.h>
+
+#include <cstdint>
 #include <set>
 
 #include "report/resources.hpp"
+#include "report/shared/plotly_json.hpp"
 #include "sample_page.hpp"
 #include "tofsmith/report/figure.hpp"
 
@@ -17,12 +21,36 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
+/// plotly.js as it stands in a page.
+std::string packed_plotly() {
+  const std::string_view bytes = resources::plotly_js();
+  return plotly::encode_base64({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+}
+
+std::string without_plotly(std::string page) {
+  const std::string plotly = packed_plotly();
+  const auto at = page.find(plotly);
+  return at == std::string::npos ? page : page.erase(at, plotly.size());
+}
+
 /// A page with these blocks, without the embedded plotly.js.
 std::string render_blocks(std::vector<Block> blocks) {
-  std::string page = render({.title = "Page", .sections = {{"Section", std::move(blocks)}}});
-  const auto plotly = page.find(resources::plotly_js());
-  if (plotly == std::string::npos) return page;
-  return page.erase(plotly, resources::plotly_js().size());
+  return without_plotly(render({.title = "Page", .sections = {{"Section", std::move(blocks)}}}));
+}
+
+/// What zlib makes of bytes, zlib's own or gzip's.
+std::string inflated(std::string_view bytes, std::size_t largest) {
+  std::string out(largest, '\0');
+  z_stream stream{};
+  EXPECT_EQ(inflateInit2(&stream, 15 + 32), Z_OK);  // either header
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  EXPECT_EQ(inflate(&stream, Z_FINISH), Z_STREAM_END);
+  out.resize(stream.total_out);
+  inflateEnd(&stream);
+  return out;
 }
 
 Figure some_figure(const std::string& id, const std::string& name = "series") {
@@ -53,22 +81,28 @@ TEST(Page, ShowsMarkupInTextAsText) {
 
 TEST(Page, KeepsScriptElementsWholeWhateverTheNames) {
   const std::string page = render_blocks({some_figure("id", "</script><script>alert(1)//<!--")});
-  EXPECT_EQ(count(page, "<script"), 3);
-  EXPECT_EQ(count(page, "</script"), 3);
+  EXPECT_EQ(count(page, "<script"), 4);
+  EXPECT_EQ(count(page, "</script"), 4);
   EXPECT_THAT(page, Not(HasSubstr("<!--")));
 }
 
-TEST(Page, EmbedsPlotlyWithItsLicenceAndWithoutEndingItsScript) {
-  const std::string plotly(resources::plotly_js());
-  EXPECT_THAT(plotly.substr(0, 200), HasSubstr("Licensed under the MIT license"));
-  EXPECT_EQ(count(plotly, "</script"), 0);
-  EXPECT_EQ(count(plotly, "<!--"), 0);
-  EXPECT_THAT(render(sample_page()), HasSubstr(plotly));
+TEST(Page, EmbedsPlotlyWithItsLicencesAndWithoutEndingItsScript) {
+  const std::string licences(resources::plotly_licences());
+  for (const char* words : {"Copyright 2012-2021 Plotly, Inc.", "Mike Bostock",
+                            "this permission notice shall be included",
+                            "Redistributions in binary form must reproduce"})
+    EXPECT_THAT(licences, HasSubstr(words));
+  EXPECT_EQ(count(licences, "</script"), 0);
+  EXPECT_EQ(count(licences, "<!--"), 0);
+  EXPECT_THAT(inflated(resources::plotly_js(), 8 << 20),
+              HasSubstr("Licensed under the MIT license"));
+  const std::string page = render(sample_page());
+  EXPECT_THAT(page, HasSubstr(licences));
+  EXPECT_THAT(page, HasSubstr(packed_plotly()));
 }
 
 TEST(Page, NamesNoPlaceOnTheNetwork) {
-  std::string page = render(sample_page());
-  page.erase(page.find(resources::plotly_js()), resources::plotly_js().size());
+  const std::string page = without_plotly(render(sample_page()));
   EXPECT_EQ(count(page, "http://"), 0);
   EXPECT_EQ(count(page, "https://"), 0);
   EXPECT_EQ(count(page, " src="), 0);
@@ -76,9 +110,8 @@ TEST(Page, NamesNoPlaceOnTheNetwork) {
 }
 
 TEST(Page, HasNoIdTwice) {
-  const std::string page = render(sample_page());
+  const std::string body = without_plotly(render(sample_page()));
   std::set<std::string> ids;
-  const std::string body = page.substr(0, page.find(resources::plotly_js()));
   for (auto at = body.find(" id=\""); at != std::string::npos; at = body.find(" id=\"", at + 1)) {
     const std::string id = body.substr(at + 5, body.find('"', at + 5) - at - 5);
     EXPECT_TRUE(ids.insert(id).second) << id;

@@ -223,6 +223,9 @@ std::vector<Block> depth_blocks() {
                {codes[2], error(good)}},
               {.label = "Error", .unit = "m", .map = ColourMap::diverging, .clip_fraction = 0.02},
               {.columns = 2}),
+          image_figure({"compared", "Before and after", "Move the slider.", ""},
+                       {{"medium light", good, poor}, {"high light", depth, good}},
+                       {.label = "Depth", .unit = "m"}, {.before_name = "poor"}),
           point_cloud_figure({"point-cloud", "Point cloud", "Drag to turn.", ""}, points, values,
                              {.label = "Depth", .unit = "m"})};
 }

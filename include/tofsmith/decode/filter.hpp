@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -166,6 +167,9 @@ struct TimeFilterOptions {
   /// Pixels are added in space afterwards, which leaves so little noise that smaller changes
   /// matter: those that only 24 x 24 pixels together show are looked for, too.
   bool before_filter = false;
+  /// So many later frames are added, too, as long as they stay the same; each frame waits for
+  /// them. 0: none does.
+  int look_ahead = 0;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
@@ -174,11 +178,12 @@ struct TimeFilterOptions {
 auto fields_of(ConstOrNot<TimeFilterOptions> auto& o) {
   return std::tuple(Field("max_frames", o.max_frames, ">= 1"),
                     Field("max_difference_sigma", o.max_difference_sigma, "finite and > 0"),
-                    Field("before_filter", o.before_filter));
+                    Field("before_filter", o.before_filter),
+                    Field("look_ahead", o.look_ahead, "in [0, 1000]"));
 }
 
 /// Adds the raw measurements of each pixel, frame after frame, as long as they stay the same,
-/// before anything is decoded: no frame waits for a later one.
+/// before anything is decoded. No frame waits for a later one, unless it is to look ahead.
 ///
 /// Kept is one frame: the mean s of what was added to a pixel, of n measurements in variance. A new
 /// measurement y differs from it, if nothing changed, by noise of variance v (1 + 1 / n) for each
@@ -188,6 +193,12 @@ auto fields_of(ConstOrNot<TimeFilterOptions> auto& o) {
 /// all of them share long before one shows it. Where one says by how much it changed at least, that
 /// is added to the variance of s; from max_difference_sigma on the pixel is that of the new frame
 /// alone.
+///
+/// With `look_ahead` the frames after one are added up from the last of them backwards, just so,
+/// and the frame itself is tested against what came before and against what comes after, each for
+/// itself: s_past and s_future with the weights w that stay give
+///   (w_past s_past + y + w_future s_future) / (w_past + 1 + w_future).
+/// A recording played backwards comes out backwards if it is looked ahead over all of it.
 ///
 /// Pixels that are invalid or saturated come out as they are and start anew after that: a mean of
 /// those frames alone in which they are not clipped would be too low. Light whose power changes is
@@ -205,16 +216,22 @@ class TimeFilter {
   const TimeFilterOptions& options() const;
   int measurements() const { return table().measurements(); }
   /// Memory that frames of this size take [bytes]: K + 2 floats a pixel, and what each thread works
-  /// in.
-  static std::size_t memory_bytes(int height, int width, int measurements, int threads);
+  /// in; with look_ahead 2 (K + 2) + (look_ahead + 1) (K + 1) floats a pixel.
+  static std::size_t memory_bytes(const TimeFilterOptions& options, int height, int width,
+                                  int measurements, int threads);
 
-  /// Adds the next frame, on all threads. Allocates nothing from the second frame on.
+  /// Adds the next frame, on all threads. Allocates nothing from the second frame on; with
+  /// look_ahead, once that many have come.
   /// @param raw  electrons or counts, as large as the frames before, or means of several
   /// @return raw numbers as any decoder and Filter take them, and of how many measurements each is
-  ///         the mean. Valid until the next frame.
+  ///         the mean, of the frame look_ahead before this one; none while there is no such frame.
+  ///         Valid until the next frame.
   /// @throws std::invalid_argument if the size or the measurements differ
   /// @note the same bits for any number of threads and any layout of the raw numbers
-  RawView add(const RawView& raw);
+  std::optional<RawView> add(const RawView& raw);
+  /// After the last frame: the next of those that wait; none after the last of them. After that the
+  /// next frame is the first again.
+  std::optional<RawView> add_end();
   /// The next frame is the first again, of any size.
   void forget();
 

@@ -81,14 +81,13 @@ struct DecodeRequest {
   std::vector<DecodedPlane> outputs;   ///< others are not computed; empty: what `output` holds
   DepthKind kind = DepthKind::radial;  ///< .ply and .pcd hold points either way
   bool all_points = false;             ///< in .ply and .pcd; else those of pixels that are ok
-  std::optional<Lens> lens;            ///< of points and z; none: a view 60 degrees wide
+  /// Of points and z; none: a view 60 degrees wide. Pixels that see nothing, by a map of rays, are
+  /// invalid.
+  std::optional<Lens> lens;
   /// Planes are those of the ideal pinhole, without the lens's distortion: each pixel takes the
   /// values of the nearest one, and its depth along the axis. Pixels that the lens does not see are
   /// invalid. Needs a lens; nothing changes without distortion.
   bool undistort = false;
-  /// Rays of points and z, in place of the lens's, as makers give them: .npy, (H, W, 2) of x/z and
-  /// y/z or (H, W, 3) of directions; pixels of NaN see nothing and are invalid. Empty: none.
-  std::filesystem::path rays;
   std::optional<int> frame;  ///< this one alone, counted from 0; none: all
   bool stack = false;        ///< all frames in one .npy a plane, name-PLANE.npy
   /// Means of so many consecutive frames are decoded, as frames of their own with a noise so much
@@ -105,8 +104,8 @@ struct DecodeRequest {
   /// much smaller. With `average` it multiplies.
   double averaged = 1.0;
   /// Of the frames, or means of frames, one after another: what stays the same is added up. `frame`
-  /// counts all frames before it in. With `filter` it is `before_filter`. None: each frame for
-  /// itself.
+  /// counts all frames before it in, and with `look_ahead` those after it. With `filter` it is
+  /// `before_filter`. None: each frame for itself.
   std::optional<TimeFilterOptions> time_filter;
   std::optional<FilterOptions> filter;  ///< of each frame that comes of that; none: not filtered
   std::optional<MixedPixels> mixed;     ///< mark_mixed_pixels() of each frame; none: not looked for
@@ -182,10 +181,10 @@ struct DecodedStream {
 };
 
 /// Decodes frames as they come, each written before the next is read: in the memory of a few
-/// frames, with nothing held back. What comes out of a frame are its planes, one after another in
-/// the order of the request's `outputs` (depth, if it names none), of H x W items each, row by row,
-/// little end first: float32, status and returns uint8, bin int32. The same numbers as in
-/// decode_recording().
+/// frames, with nothing held back but what a time filter is to look ahead. What comes out of a
+/// frame are its planes, one after another in the order of the request's `outputs` (depth, if it
+/// names none), of H x W items each, row by row, little end first: float32, status and returns
+/// uint8, bin int32. The same numbers as in decode_recording().
 /// @param request  its raw_format describes a stream: its header, then frame after frame; `raw`,
 ///                 `output`, `frame`, `stack`, `memory_mb` and `policy` say nothing
 /// @param result   filled frame by frame, also when it throws

@@ -163,11 +163,14 @@ Figure heat_map_figure(FigureText text, const std::vector<HeatMap>& maps, const 
 struct ValueImage {
   std::string title = {};
   Image<float> pixels = {};
+  Image<float> before = {};  ///< of the same size: a slider shows it to its left; empty: none
 };
 
 struct ImageFigureOptions {
   int columns = 3;     ///< pictures side by side
   int max_side = 320;  ///< longer pictures are shown at every n-th pixel; the caption says so
+  std::string before_name = "before";  ///< what the slider's ends are called
+  std::string after_name = "after";
 };
 
 /// Pictures (H x W) side by side with one colour scale: depth maps, error maps.
@@ -193,12 +196,19 @@ struct PointCloudOptions {
   double point_size_px = 2.2;  ///< diameter
 };
 
-/// Points in the camera's frame (x right, y down, z forward) [m], coloured by a value. Points with
-/// a coordinate or value that is not finite are left out. The same cloud is always thinned to the
-/// same points.
-/// @param points  (P, 3)
-/// @param values  (P)
-/// @throws std::invalid_argument if points and values differ in number
+/// Points in the camera's frame (x right, y down, z forward) [m].
+struct ColouredPoints {
+  std::string title = {};
+  Eigen::MatrixX3f points = {};  ///< (P, 3)
+  Eigen::VectorXf values = {};   ///< (P): what colours them
+};
+
+/// Clouds, each in its own box and all with one colour scale. Points with a coordinate or value
+/// that is not finite are left out. The same cloud is always thinned to the same points.
+/// @throws std::invalid_argument if there is no cloud or points and values differ in number
+Figure point_cloud_figure(FigureText text, const std::vector<ColouredPoints>& clouds,
+                          const ColourScale& colours, const PointCloudOptions& options = {});
+/// The same of one cloud.
 Figure point_cloud_figure(FigureText text, const Eigen::MatrixX3f& points,
                           const Eigen::VectorXf& values, const ColourScale& colours,
                           const PointCloudOptions& options = {});

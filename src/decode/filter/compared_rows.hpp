@@ -37,6 +37,9 @@ struct ChangeTest {
   float certain, most;
 };
 
+/// sums[i] += values[i] (time_kernel.cpp).
+void add_to_sums(const float* values, std::ptrdiff_t count, float* sums);
+
 /// The rows of a strip and of the patches around it, with a margin at both ends. Of each pixel:
 /// chi^2, whether it counts, and its K differences in standard deviations.
 class ComparedRows {
@@ -56,6 +59,8 @@ class ComparedRows {
   /// The first pixel of the image in a row.
   float* chi2(int row) { return plane(row, 0) + patch_reach; }
   float* counts(int row) { return plane(row, 1) + patch_reach; }
+  /// From one measurement to the next.
+  std::ptrdiff_t pitch() const { return pitch_; }
   float* difference(int row, int k) { return plane(row, 2 + k) + patch_reach; }
 
   /// A row that agrees and does not count.
@@ -67,10 +72,8 @@ class ComparedRows {
   int add_rows(int first_row) {
     float* const sums = plane(rows_, 0);
     std::copy_n(plane(first_row, 0), planes_ * pitch_, sums);
-    for (int row = first_row + 1; row < first_row + patch_side; ++row) {
-      const float* const values = plane(row, 0);
-      for (std::ptrdiff_t i = 0; i < planes_ * pitch_; ++i) sums[i] += values[i];
-    }
+    for (int row = first_row + 1; row < first_row + patch_side; ++row)
+      add_to_sums(plane(row, 0), planes_ * pitch_, sums);
     return rows_;
   }
 

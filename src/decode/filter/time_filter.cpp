@@ -23,42 +23,54 @@ TimeFilter& TimeFilter::operator=(TimeFilter&&) noexcept = default;
 const DecodingTable& TimeFilter::table() const { return state_->table; }
 const TimeFilterOptions& TimeFilter::options() const { return state_->options; }
 
-std::size_t TimeFilter::memory_bytes(int height, int width, int measurements, int threads) {
+std::size_t TimeFilter::memory_bytes(const TimeFilterOptions& options, int height, int width,
+                                     int measurements, int threads) {
   const auto strips = static_cast<std::size_t>(
       std::min(threads, (height + compared_strip_rows - 1) / compared_strip_rows));
-  return sizeof(float) * (static_cast<std::size_t>(height) * static_cast<std::size_t>(width) *
-                              static_cast<std::size_t>(measurements + 2) +
-                          State::cell_floats(height, width, measurements) +
+  const auto pixels = static_cast<std::size_t>(height) * static_cast<std::size_t>(width);
+  const auto k_count = static_cast<std::size_t>(measurements);
+  const auto ahead = static_cast<std::size_t>(options.look_ahead);
+  // Both sides, and the frames that wait with how many measurements they are the mean of.
+  const std::size_t frames =
+      (ahead > 0 ? 2 * (k_count + 2) + (ahead + 1) * (k_count + 1) : k_count + 2) +
+      (options.before_filter ? 1 : 0);
+  return sizeof(float) * (pixels * frames + State::cell_floats(height, width, measurements) +
                           strips * ComparedRows::floats(compared_strip_rows + 2 * patch_reach,
                                                         width, measurements));
 }
 
-RawView TimeFilter::add(const RawView& raw) {
+std::optional<RawView> TimeFilter::add(const RawView& raw) {
   State& state = *state_;
   require_measurements(raw, state.measurements);
   require(raw.height > 0 && raw.width > 0, "raw height and width", std::min(raw.height, raw.width),
           "must be > 0");
-  if (state.is_empty) {
+  if (state.is_empty()) {
     state.resize(raw);
   } else {
     require(raw.height == state.height, "raw height", raw.height,
             "must equal that of the frames before, " + std::to_string(state.height));
     require(raw.width == state.width, "raw width", raw.width,
             "must equal that of the frames before, " + std::to_string(state.width));
-    parallel_for_blocks(state.height, compared_strip_rows,
-                        [&](IndexRange rows) { state.compare(raw, rows); });
-    if (state.options.before_filter) state.find_cell_changes();
   }
-  state.is_empty = false;
-  parallel_for_blocks(state.height, compared_strip_rows, [&](IndexRange rows) {
-    for (std::int64_t row = rows.begin; row < rows.end; ++row)
-      state.add_row(raw, static_cast<int>(row));
-  });
-  RawView view = RawView::planar(state.means.data(), state.height, state.width, state.measurements);
-  view.averaged = state.averaged.pixels.data();
-  return view;
+  if (state.options.look_ahead > 0) {
+    state.waiting.push(raw);
+    if (state.waiting.count() <= state.options.look_ahead) return std::nullopt;
+    return state.finish_oldest();
+  }
+  if (!state.past.is_empty) state.weigh(raw, state.past);
+  state.add(raw, state.past);
+  return state.view(state.past);
 }
 
-void TimeFilter::forget() { state_->is_empty = true; }
+std::optional<RawView> TimeFilter::add_end() {
+  if (state_->waiting.count() > 0) return state_->finish_oldest();
+  forget();
+  return std::nullopt;
+}
+
+void TimeFilter::forget() {
+  state_->past.is_empty = true;
+  state_->waiting.clear();
+}
 
 }  // namespace tofsmith

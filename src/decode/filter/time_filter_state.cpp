@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/shared/pixel_runs.hpp"
+#include "decode/filter/time_kernel.hpp"
 #include "decode/raw_scale.hpp"
 
 namespace tofsmith {
@@ -18,16 +19,12 @@ namespace {
 constexpr int cell_side = 8, cell_reach = 1;
 static_assert(compared_strip_rows % cell_side == 0, "a strip is of whole cells");
 
-int cells_of(int pixels) { return (pixels + cell_side - 1) / cell_side; }
+/// The weight of a pixel that is no measurement, before those around it are compared with it.
+constexpr float tells_nothing = -1.0f;
+/// Shares of the past above this are left by chance, and those beside a pixel say nothing about it.
+constexpr float telling_share = 0.5f;
 
-/// Sums over the columns of a patch around `pixels` pixels.
-void add_columns(const float* values, int pixels, float* sums) {
-  for (int i = 0; i < pixels; ++i) {
-    float sum = values[i - patch_reach];
-    for (int x = 1 - patch_reach; x <= patch_reach; ++x) sum += values[i + x];
-    sums[i] = sum;
-  }
-}
+int cells_of(int pixels) { return (pixels + cell_side - 1) / cell_side; }
 
 }  // namespace
 
@@ -64,11 +61,11 @@ std::size_t TimeFilter::State::cell_floats(int height, int width, int measuremen
 void TimeFilter::State::resize(const RawView& raw) {
   height = raw.height;
   width = raw.width;
-  const auto pixels = static_cast<std::size_t>(raw.pixels());
-  means.assign(pixels * static_cast<std::size_t>(measurements), 0.0f);
-  weights.assign(pixels, 0.0f);
-  averaged = Image<float>(height, width, 1.0f);
+  past.resize(raw);
+  if (options.look_ahead > 0) future.resize(raw);
+  waiting.clear();
   if (!options.before_filter) return;
+  shares.assign(static_cast<std::size_t>(raw.pixels()), 0.0f);
   cell_columns = cells_of(width);
   cell_changes.assign(static_cast<std::size_t>(cells_of(height) * cell_columns), 0.0f);
   cells.assign(cell_changes.size() * static_cast<std::size_t>(measurements + 1), 0.0f);
@@ -91,133 +88,62 @@ void TimeFilter::State::read(const RawView& raw, std::ptrdiff_t first, int pixel
     std::fill_n(averaged_now.data(), pixels, 1.0f);
 }
 
-/// 1 where both the mean and what is new are measurements of light, else 0.
-void TimeFilter::State::find_usable(const Numbers& numbers, const BlockOfPixels& averaged_now,
-                                    std::ptrdiff_t first, int pixels, float* usable) {
-  constexpr float lowest = std::numeric_limits<float>::lowest();
-  const float* const past = averaged.pixels.data() + first;
-  for (int i = 0; i < pixels; ++i)
-    usable[i] = averaged_now.data()[i] > 0.0f && past[i] > 0.0f ? 1.0f : 0.0f;
-  for (int k = 0; k < measurements; ++k) {
-    const float* const now = numbers.data() + k * block_pixels;
-    const float* const before = mean(k, first);
-    for (int i = 0; i < pixels; ++i) {
-      const float least = std::min(now[i], before[i]), most = std::max(now[i], before[i]);
-      const bool is_number = now[i] == now[i] && before[i] == before[i];
-      usable[i] = is_number && least >= lowest && most < clipped ? usable[i] : 0.0f;
-    }
-  }
-}
-
-/// Where light cancels in the measurements, their noise is that of the signal seen in both.
-void TimeFilter::State::find_signal(const Numbers& numbers, const BlockOfPixels& averaged_now,
-                                    std::ptrdiff_t first, int pixels, BlockOfPixels& signal) {
-  BlockOfPixels squares{}, along;
-  const float* const past = averaged.pixels.data() + first;
-  for (int j = 0; j < static_cast<int>(hidden.rank); ++j) {
-    along.fill(0.0f);
-    for (int k = 0; k < measurements; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      const float by = to_plane[static_cast<std::size_t>(j * measurements + k)] * gain[at];
-      const float* const now = numbers.data() + k * block_pixels;
-      const float* const before = mean(k, first);
-      for (int i = 0; i < pixels; ++i) {
-        const float n = averaged_now.data()[i];
-        const float both = (before[i] * past[i] + now[i] * n) / (past[i] + n);
-        along.data()[i] += by * (both - dark_raw[at]);
-      }
-    }
-    for (int i = 0; i < pixels; ++i) squares.data()[i] += along.data()[i] * along.data()[i];
-  }
-  for (int i = 0; i < pixels; ++i)
-    signal.data()[i] = hidden.of(squares.data()[i], past[i] + averaged_now.data()[i]);
-}
-
-void TimeFilter::State::compare_row(const RawView& raw, int row, ComparedRows& compared,
-                                    int compared_row) {
+void TimeFilter::State::compare_row(const RawView& raw, const AddedFrames& added, int row,
+                                    ComparedRows& compared, int compared_row) const {
   compared.clear(compared_row, static_cast<float>(measurements));
   if (row < 0 || row >= height) return;
   Numbers numbers;
-  BlockOfPixels averaged_now, signal, chi2;
+  BlockOfPixels averaged_now;
   for (int column = 0; column < width; column += block_pixels) {
     const int pixels = std::min(block_pixels, width - column);
     const std::ptrdiff_t first = pixel(row, column);
     read(raw, first, pixels, numbers, averaged_now);
-    float* const usable = compared.counts(compared_row) + column;
-    find_usable(numbers, averaged_now, first, pixels, usable);
-    if (has_own_shot_noise) find_signal(numbers, averaged_now, first, pixels, signal);
-    const float* const past = averaged.pixels.data() + first;
-    chi2.fill(0.0f);
-    for (int k = 0; k < measurements; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      const float* const now = numbers.data() + k * block_pixels;
-      const float* const before = mean(k, first);
-      float* const difference = compared.difference(compared_row, k) + column;
-      for (int i = 0; i < pixels; ++i) {
-        const float n = averaged_now.data()[i];
-        const float both = (before[i] * past[i] + now[i] * n) / (past[i] + n);
-        const float light = has_own_shot_noise ? signal.data()[i] * shot_per_signal[at]
-                                               : std::max(0.0f, (both - dark_raw[at]) * gain[at]);
-        const float variance = (floor_variance_e2[at] + light) * (1.0f / past[i] + 1.0f / n);
-        const float d = (now[i] - before[i]) * gain[at] / std::sqrt(variance);
-        difference[i] = usable[i] > 0.0f ? d : 0.0f;
-        chi2.data()[i] += difference[i] * difference[i];
-      }
-    }
-    float* const row_chi2 = compared.chi2(compared_row) + column;
-    for (int i = 0; i < pixels; ++i)
-      if (usable[i] > 0.0f) row_chi2[i] = chi2.data()[i];
+    compare_pixels(*this, added,
+                   {.now = numbers.data(),
+                    .averaged_now = averaged_now.data(),
+                    .first = first,
+                    .pixels = pixels,
+                    .usable = compared.counts(compared_row) + column,
+                    .difference = compared.difference(compared_row, 0) + column,
+                    .difference_stride = compared.pitch(),
+                    .chi2 = compared.chi2(compared_row) + column});
   }
 }
 
 /// @param compared_row  of the pixel itself
-void TimeFilter::State::weigh_row(const RawView& raw, int row, ComparedRows& compared,
-                                  int compared_row) {
+void TimeFilter::State::weigh_row(const RawView& raw, AddedFrames& added, int row,
+                                  ComparedRows& compared, int compared_row) {
   const int sums = compared.add_rows(compared_row - patch_reach);
-  const auto freedom = static_cast<float>(measurements);
-  const auto max_weight = static_cast<float>(options.max_frames - 1);
-  BlockOfPixels patch_chi2, counts, sum, shared, unchanged;
+  BlockOfPixels unchanged;
   for (int column = 0; column < width; column += block_pixels) {
     const int pixels = std::min(block_pixels, width - column);
     const std::ptrdiff_t first = pixel(row, column);
-    add_columns(compared.chi2(sums) + column, pixels, patch_chi2.data());
-    add_columns(compared.counts(sums) + column, pixels, counts.data());
-    shared.fill(0.0f);
-    for (int k = 0; k < measurements; ++k) {
-      add_columns(compared.difference(sums, k) + column, pixels, sum.data());
-      for (int i = 0; i < pixels; ++i) shared.data()[i] += sum.data()[i] * sum.data()[i];
-    }
-    const float* const own_chi2 = compared.chi2(compared_row) + column;
-    const float* const usable = compared.counts(compared_row) + column;
-    const float* const past = averaged.pixels.data() + first;
-    float* const weight = weights.data() + first;
-    for (int i = 0; i < pixels; ++i) {
-      const float n = raw.averaged ? raw.averaged[first + i] : 1.0f;
-      const float patch = patch_chi2.data()[i];
-      const float common = shared.data()[i] / std::max(counts.data()[i], 1.0f);
-      const float share = std::min(
-          {pixel_test.share(own_chi2[i]), patch_test.share(patch), shared_test.share(common)});
-      // Of one measurement, relative to its variance.
-      const float changed =
-          (1.0f / past[i] + 1.0f / n) / freedom *
-          std::max({pixel_test.beyond(own_chi2[i]), patch_test.beyond(patch) / patch_pixels,
-                    shared_test.beyond(common) / patch_pixels});
-      const float stays = share * past[i] / (1.0f + past[i] * changed);
-      weight[i] = usable[i] > 0.0f ? std::min(stays, max_weight * n) : 0.0f;
-      unchanged.data()[i] = changed > 0.0f ? 0.0f : usable[i];
-    }
+    weigh_pixels(*this, {.patch_chi2 = compared.chi2(sums) + column,
+                         .counts = compared.counts(sums) + column,
+                         .difference = compared.difference(sums, 0) + column,
+                         .difference_stride = compared.pitch(),
+                         .own_chi2 = compared.chi2(compared_row) + column,
+                         .usable = compared.counts(compared_row) + column,
+                         .past = added.averaged.pixels.data() + first,
+                         .averaged_now = raw.averaged ? raw.averaged + first : nullptr,
+                         .pixels = pixels,
+                         // Without a filter behind it nobody asks.
+                         .none = options.before_filter ? tells_nothing : 0.0f,
+                         .weight = added.weights.data() + first,
+                         .unchanged = unchanged.data()});
     if (options.before_filter) add_to_cells(row, column, pixels, unchanged, compared, compared_row);
   }
 }
 
-void TimeFilter::State::compare(const RawView& raw, IndexRange rows) {
+void TimeFilter::State::compare(const RawView& raw, AddedFrames& added, IndexRange rows) {
   const auto first = static_cast<int>(rows.begin), count = static_cast<int>(rows.end - rows.begin);
   std::unique_ptr<StripBuffers> buffer = buffers.take();
   ComparedRows compared(compared_strip_rows + 2 * patch_reach, width, measurements,
                         buffer->scratch);
   for (int row = 0; row < count + 2 * patch_reach; ++row)
-    compare_row(raw, first + row - patch_reach, compared, row);
-  for (int row = 0; row < count; ++row) weigh_row(raw, first + row, compared, row + patch_reach);
+    compare_row(raw, added, first + row - patch_reach, compared, row);
+  for (int row = 0; row < count; ++row)
+    weigh_row(raw, added, first + row, compared, row + patch_reach);
   buffers.give_back(std::move(buffer));
 }
 
@@ -259,40 +185,90 @@ void TimeFilter::State::find_cell_changes() {
   std::fill(cells.begin(), cells.end(), 0.0f);
 }
 
-void TimeFilter::State::add_row(const RawView& raw, int row) {
+void TimeFilter::State::weigh_row_by_cells(const RawView& raw, AddedFrames& added, int row) const {
+  const float* const changes = cell_changes.data() + row / cell_side * cell_columns;
+  const std::ptrdiff_t first = pixel(row, 0);
+  const float* const past = added.averaged.pixels.data() + first;
+  float* const weight = added.weights.data() + first;
+  for (int i = 0; i < width; ++i) {
+    const float n = raw.averaged ? raw.averaged[first + i] : 1.0f;
+    // What so many pixels share is not less after they are added: their sum's noise counts.
+    const float changed = changes[i / cell_side] * (1.0f / past[i] + 1.0f / n);
+    if (weight[i] > 0.0f) weight[i] /= 1.0f + weight[i] * changed;
+  }
+}
+
+/// The least share of the past that stays in the five pixels of the row around each, over
+/// telling_share.
+void TimeFilter::State::find_shares_of_row(const RawView& raw, const AddedFrames& added, int row) {
+  const std::ptrdiff_t first = pixel(row, 0);
+  const float* const weight = added.weights.data() + first;
+  float* const share = shares.data() + first;
+  std::fill_n(share, width, 1.0f);
+  for (int x = 0; x < width; ++x) {
+    const float most = most_weight(raw, added, first + x);
+    if (weight[x] < 0.0f || most == 0.0f) continue;
+    const float own = weight[x] / (telling_share * most);
+    for (int i = std::max(x - patch_reach, 0); i <= std::min(x + patch_reach, width - 1); ++i)
+      share[i] = std::min(share[i], own);
+  }
+}
+
+/// The same of the rows around it: no pixel keeps much more than those beside it.
+void TimeFilter::State::weigh_row_by_shares(const RawView& raw, AddedFrames& added, int row) const {
+  const std::ptrdiff_t first = pixel(row, 0);
+  float* const weight = added.weights.data() + first;
+  for (int y = std::max(row - patch_reach, 0); y <= std::min(row + patch_reach, height - 1); ++y) {
+    const float* const share = shares.data() + pixel(y, 0);
+    for (int i = 0; i < width; ++i)
+      weight[i] = std::min(weight[i], share[i] * most_weight(raw, added, first + i));
+  }
+  for (int i = 0; i < width; ++i) weight[i] = std::max(weight[i], 0.0f);
+}
+
+void TimeFilter::State::weigh(const RawView& raw, AddedFrames& added) {
+  parallel_for_blocks(height, compared_strip_rows,
+                      [&](IndexRange rows) { compare(raw, added, rows); });
+  if (!options.before_filter) return;
+  find_cell_changes();
+  for_each_row([&](int row) {
+    weigh_row_by_cells(raw, added, row);
+    find_shares_of_row(raw, added, row);
+  });
+  for_each_row([&](int row) { weigh_row_by_shares(raw, added, row); });
+}
+
+void TimeFilter::State::add_row(const RawView& raw, AddedFrames& added, int row) const {
   Numbers numbers;
   BlockOfPixels averaged_now;
   for (int column = 0; column < width; column += block_pixels) {
     const int pixels = std::min(block_pixels, width - column);
     const std::ptrdiff_t first = pixel(row, column);
     read(raw, first, pixels, numbers, averaged_now);
-    float* const weight = weights.data() + first;
-    if (options.before_filter) {
-      const float* const changes = cell_changes.data() + row / cell_side * cell_columns;
-      for (int i = 0; i < pixels; ++i) {
-        // What so many pixels share is not less after they are added: their sum's noise counts.
-        const float changed = changes[(column + i) / cell_side] *
-                              (1.0f / averaged.pixels[static_cast<std::size_t>(first + i)] +
-                               1.0f / averaged_now.data()[i]);
-        weight[i] /= 1.0f + weight[i] * changed;
-      }
-    }
-    for (int k = 0; k < measurements; ++k) {
-      const float* const now = numbers.data() + k * block_pixels;
-      float* const next = mean(k, first);
-      for (int i = 0; i < pixels; ++i) {
-        const float past_share = weight[i] / (weight[i] + averaged_now.data()[i]);
-        const float both = now[i] + (next[i] - now[i]) * past_share;
-        next[i] = weight[i] > 0.0f ? both : now[i];
-      }
-    }
-    float* const past = averaged.pixels.data() + first;
-    for (int i = 0; i < pixels; ++i) {
-      const float w = weight[i], n = averaged_now.data()[i];
-      const float both = (w + n) * (w + n) / (w * w / past[i] + n);
-      past[i] = w > 0.0f ? both : n;
-    }
+    add_pixels(numbers.data(), averaged_now.data(), added.weights.data() + first, measurements,
+               pixels, mean(added, 0, first), std::ptrdiff_t{height} * width,
+               added.averaged.pixels.data() + first);
   }
+}
+
+void TimeFilter::State::add(const RawView& raw, AddedFrames& added) {
+  if (added.is_empty) std::fill(added.weights.begin(), added.weights.end(), 0.0f);
+  added.is_empty = false;
+  for_each_row([&](int row) { add_row(raw, added, row); });
+}
+
+RawView TimeFilter::State::view(const AddedFrames& added) const {
+  RawView view = RawView::planar(added.means.data(), height, width, measurements);
+  view.averaged = added.averaged.pixels.data();
+  return view;
+}
+
+void AddedFrames::resize(const RawView& raw) {
+  const auto pixels = static_cast<std::size_t>(raw.pixels());
+  means.assign(pixels * static_cast<std::size_t>(raw.measurements), 0.0f);
+  weights.assign(pixels, 0.0f);
+  averaged = Image<float>(raw.height, raw.width, 1.0f);
+  is_empty = true;
 }
 
 }  // namespace tofsmith

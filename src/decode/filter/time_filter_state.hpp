@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -15,6 +16,39 @@ namespace tofsmith {
 
 /// Rows of a frame that one thread compares at a time.
 inline constexpr int compared_strip_rows = 32;
+
+/// Frames of one side of another, added up.
+struct AddedFrames {
+  bool is_empty = true;
+  std::vector<float> means;    ///< raw numbers (K, H, W)
+  std::vector<float> weights;  ///< of what was added to a pixel, in the next mean (H, W)
+  Image<float> averaged;       ///< n
+
+  void resize(const RawView& raw);
+};
+
+/// Frames that wait until those after them are known, in the order that they came.
+class WaitingFrames {
+ public:
+  int count() const { return count_; }
+  void push(const RawView& raw);
+  /// The oldest is 0. Valid until the next push() once pop() has taken it.
+  RawView view(int index) const;
+  void pop();
+  void clear() { count_ = 0; }
+
+ private:
+  struct Slot {
+    std::vector<float> values;    // interleaved
+    std::vector<float> averaged;  // empty: 1
+  };
+  std::size_t slot(int index) const;
+
+  std::vector<Slot> slots_;
+  std::size_t first_ = 0;
+  int count_ = 0;
+  int height_ = 0, width_ = 0, measurements_ = 0;
+};
 
 /// What a TimeFilter knows, what it keeps, and its steps over a frame.
 struct TimeFilter::State {
@@ -37,11 +71,10 @@ struct TimeFilter::State {
   std::vector<float> to_plane;           // V^T (rank, K)
   ChangeTest pixel_test, patch_test, shared_test;
 
-  bool is_empty = true;
   int height = 0, width = 0;
-  std::vector<float> means;    // raw numbers (K, H, W)
-  std::vector<float> weights;  // of what was added to a pixel, in the next mean (H, W)
-  Image<float> averaged;       // n
+  AddedFrames past, future;
+  WaitingFrames waiting;
+  std::vector<float> shares;  // of the past that stay, where small changes matter (H, W)
   int cell_columns = 0;
   std::vector<float> cells;         // sums of differences and how many they are of (cell, K + 1)
   std::vector<float> cell_changes;  // how much a cell changed beyond noise, in chi^2 over K
@@ -49,31 +82,58 @@ struct TimeFilter::State {
 
   /// Of `cells` and `cell_changes`.
   static std::size_t cell_floats(int height, int width, int measurements);
+  bool is_empty() const { return past.is_empty && waiting.count() == 0; }
+  /// Empty, for frames of this size.
   void resize(const RawView& raw);
-  /// How much of what was added to the pixels of some rows counts, into `weights`.
-  void compare(const RawView& raw, IndexRange rows);
-  /// What cells share that single patches do not show.
-  void find_cell_changes();
-  /// The next means of a row.
-  void add_row(const RawView& raw, int row);
+  /// How much of what was added to each pixel counts, into its weights.
+  void weigh(const RawView& raw, AddedFrames& added);
+  /// The next means of it.
+  void add(const RawView& raw, AddedFrames& added);
+  /// The frame with what stays of both sides, in place of the future.
+  void join(const RawView& raw);
+  /// The oldest frame that waits, with what stays the same of all that are known around it.
+  RawView finish_oldest();
+  /// Measurement k of the means, from a pixel on.
+  float* mean(AddedFrames& added, int k, std::ptrdiff_t pixel) const {
+    return added.means.data() + std::ptrdiff_t{k} * height * width + pixel;
+  }
+  const float* mean(const AddedFrames& added, int k, std::ptrdiff_t pixel) const {
+    return added.means.data() + std::ptrdiff_t{k} * height * width + pixel;
+  }
+  /// Of the means of past or future.
+  RawView view(const AddedFrames& added) const;
 
  private:
   using Numbers = std::array<float, max_measurements * block_pixels>;
 
   std::ptrdiff_t pixel(int row, int column) const { return std::ptrdiff_t{row} * width + column; }
-  float* mean(int k, std::ptrdiff_t pixel) {
-    return means.data() + std::ptrdiff_t{k} * height * width + pixel;
-  }
   void read(const RawView& raw, std::ptrdiff_t first, int pixels, Numbers& numbers,
             BlockOfPixels& averaged_now) const;
-  void find_usable(const Numbers& numbers, const BlockOfPixels& averaged_now, std::ptrdiff_t first,
-                   int pixels, float* usable);
-  void find_signal(const Numbers& numbers, const BlockOfPixels& averaged_now, std::ptrdiff_t first,
-                   int pixels, BlockOfPixels& signal);
-  void compare_row(const RawView& raw, int row, ComparedRows& compared, int compared_row);
-  void weigh_row(const RawView& raw, int row, ComparedRows& compared, int compared_row);
+  void compare(const RawView& raw, AddedFrames& added, IndexRange rows);
+  void compare_row(const RawView& raw, const AddedFrames& added, int row, ComparedRows& compared,
+                   int compared_row) const;
+  void weigh_row(const RawView& raw, AddedFrames& added, int row, ComparedRows& compared,
+                 int compared_row);
   void add_to_cells(int row, int column, int pixels, const BlockOfPixels& stays,
                     ComparedRows& compared, int compared_row);
+  void find_cell_changes();
+  template <typename Work>
+  void for_each_row(const Work& work) const {
+    parallel_for_blocks(height, compared_strip_rows, [&](IndexRange rows) {
+      for (std::int64_t row = rows.begin; row < rows.end; ++row) work(static_cast<int>(row));
+    });
+  }
+  /// The most that a pixel's past may weigh.
+  float most_weight(const RawView& raw, const AddedFrames& added, std::ptrdiff_t pixel) const {
+    const float n = raw.averaged ? raw.averaged[pixel] : 1.0f;
+    return std::min(added.averaged.pixels[static_cast<std::size_t>(pixel)],
+                    static_cast<float>(options.max_frames - 1) * n);
+  }
+  void find_shares_of_row(const RawView& raw, const AddedFrames& added, int row);
+  void weigh_row_by_shares(const RawView& raw, AddedFrames& added, int row) const;
+  void weigh_row_by_cells(const RawView& raw, AddedFrames& added, int row) const;
+  void add_row(const RawView& raw, AddedFrames& added, int row) const;
+  void join_row(const RawView& raw, int row);
 };
 
 }  // namespace tofsmith

@@ -49,9 +49,14 @@ RawFrames copy_of(const RawView& raw) {
 std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
                                 const std::vector<Band>& bands) {
   std::vector<Band> needed;
-  if (preparation.time_filter && !bands.empty())
-    needed = bands_of(0, bands.front().frame, bands.front().rows, bands.front().rows);
-  needed.insert(needed.end(), bands.begin(), bands.end());
+  if (preparation.time_filter && !bands.empty()) {
+    // Whole frames: all up to the last, and those that it looks ahead to.
+    const int last = std::min(preparation.frames_of(recorded),
+                              bands.back().frame + 1 + preparation.time_filter->look_ahead);
+    needed = bands_of(0, last, bands.front().rows, bands.front().rows);
+  } else {
+    needed = bands;
+  }
   std::vector<Band> all;
   for (const Band& band : needed)
     for (int i = 0; i < frames_of_mean(preparation, recorded, band.frame); ++i)
@@ -59,12 +64,16 @@ std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
   return all;
 }
 
-double Preparation::frame_bytes(int height, int width, int measurements) const {
+double Preparation::frame_bytes(int recorded, int height, int width, int measurements) const {
   // What is known of the pixels while mixed ones are marked.
   constexpr double bytes_to_find_mixed = 4 * sizeof(float) + 3;
   const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::size_t bytes = 0;
-  if (time_filter) bytes += TimeFilter::memory_bytes(height, width, measurements, threads);
+  if (time_filter) {
+    TimeFilterOptions within = *time_filter;  // never more frames wait than there are
+    within.look_ahead = std::min(within.look_ahead, frames_of(recorded) - 1);
+    bytes += TimeFilter::memory_bytes(within, height, width, measurements, threads);
+  }
   if (filter) bytes += Filter::memory_bytes(*filter, height, width, measurements, threads);
   if (!stray_kernel.empty())
     bytes += static_cast<std::size_t>(
@@ -184,17 +193,28 @@ std::optional<RawView> PreparedFrames::measured(int frame, const Progress& progr
   return sums_.means(preparation_.averaged);
 }
 
-/// Frame `frame` with what is the same in those before.
+/// Frame `frame` with what is the same in those around it.
 std::optional<RawView> PreparedFrames::added_up(int frame, const Progress& progress) {
-  const ProgressParts parts(progress, static_cast<std::size_t>(frame + 1 - frames_added_));
-  std::optional<RawView> raw;
-  for (std::size_t part = 0; frames_added_ <= frame; ++frames_added_, ++part) {
-    raw = measured(frames_added_, parts[part]);
-    if (!raw) break;
-    raw = time_filter_->add(*raw);
-    report(parts[part], 1.0, "filtering");
+  const int ahead = preparation_.time_filter->look_ahead;
+  const int coming = std::min(ahead, recorded_ - 1 - frame) + frame + 1 - frames_read_;
+  const auto steps = static_cast<std::size_t>(std::max(coming, 1));
+  const ProgressParts parts(progress, steps);
+  std::optional<RawView> added;
+  for (std::size_t step = 0; frames_added_ <= frame; ++step) {
+    const Progress here = parts[std::min(step, steps - 1)];
+    const std::optional<RawView> raw = has_ended_ ? std::nullopt : measured(frames_read_, here);
+    if (raw) {
+      ++frames_read_;
+      added = time_filter_->add(*raw);
+    } else {
+      has_ended_ = true;
+      added = time_filter_->add_end();
+      if (!added) break;
+    }
+    if (added) ++frames_added_;
+    report(here, 1.0, "filtering");
   }
-  return raw;
+  return added;
 }
 
 std::optional<RawView> PreparedFrames::next(int frame, const Progress& progress) {

@@ -31,8 +31,9 @@ struct Preparation {
   int frames_of(int recorded) const { return (recorded + group() - 1) / group(); }
   /// Frames that one of those is made of.
   int group() const { return hdr.empty() ? average : static_cast<int>(hdr.size()); }
-  /// What it takes beside the rows that are read [bytes], in all and for each row under way.
-  double frame_bytes(int height, int width, int measurements) const;
+  /// What it takes beside the rows that are read [bytes], in all of a recording of so many frames
+  /// and for each row under way.
+  double frame_bytes(int recorded, int height, int width, int measurements) const;
   double row_bytes(int width, int measurements) const;
 
  private:
@@ -69,7 +70,7 @@ class PreparedFrames {
   using Input = std::function<std::optional<RawView>()>;
 
   /// @param input     gives bands_to_read(); whole frames if there is a filter; for one in time all
-  ///                  frames before the first, too
+  ///                  frames before the first, too, and those that the last looks ahead to
   /// @param table     outlives this
   /// @param recorded  frames that there are; of a stream the most an int holds
   PreparedFrames(Input input, const DecodingTable& table, const Preparation& preparation,
@@ -77,7 +78,8 @@ class PreparedFrames {
 
   /// How long next() takes, and decode(), where decoding alone takes 1: about.
   double effort() const {
-    return (preparation_.group() > 1 ? 1.0 : 0.0) + (time_filter_ ? 1.0 : 0.0);
+    const int comparisons = time_filter_ ? 1 + preparation_.time_filter->look_ahead : 0;
+    return (preparation_.group() > 1 ? 1.0 : 0.0) + comparisons;
   }
   double decode_effort() const {
     return filter_ ? 9.0 * (preparation_.find_mixed ? 2.0 : 1.0) : 1.0;
@@ -111,7 +113,8 @@ class PreparedFrames {
   RawFrames clean_;              // of stray light
   std::vector<float> averaged_;  // of numbers that are read, unless of one
   std::optional<TimeFilter> time_filter_;
-  int frames_added_ = 0;  // to time_filter_
+  int frames_read_ = 0, frames_added_ = 0;  // into time_filter_, and that came out of it
+  bool has_ended_ = false;
   std::optional<Filter> filter_;
   FilteredFrame filtered_;
 };

@@ -30,7 +30,8 @@ void ReadAhead::start() {
   });
 }
 
-RawView ReadAhead::next() {
+std::optional<RawView> ReadAhead::next() {
+  if (!coming_.valid()) return std::nullopt;
   const RawView view = coming_.get();
   start();
   return view;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <future>
+#include <optional>
 #include <vector>
 
 #include "tofsmith/io/raw_frames.hpp"
@@ -31,9 +32,9 @@ class ReadAhead {
   ReadAhead& operator=(const ReadAhead&) = delete;
 
   const std::vector<Band>& bands() const { return bands_; }
-  /// The raw numbers of the next band, until the call after.
+  /// The raw numbers of the next band, until the call after; none after the last.
   /// @throws IoError as RawFramesReader::read_rows()
-  RawView next();
+  std::optional<RawView> next();
 
  private:
   void start();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -21,7 +22,13 @@ Json numbers(std::span<const double> values);
 
 /// A large array as Plotly's typed array: little-endian float32 in base64.
 /// @param shape  {count} or {rows, columns}
-Json typed_array(std::span<const float> values, const std::vector<std::size_t>& shape);
+/// @param resolution  finer differences cannot be seen: a page rounds to multiples of it, "step"; 0:
+///                    it keeps all
+Json typed_array(std::span<const float> values, const std::vector<std::size_t>& shape,
+                 double resolution = 0.0);
+/// What a typed array holds.
+std::vector<float> floats_of(const Json& typed);
+std::string encode_base64(std::span<const std::uint8_t> bytes);
 /// Replaces every typed array in `json` by plain nested arrays.
 void expand_typed_arrays(Json& json);
 

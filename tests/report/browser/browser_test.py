@@ -48,6 +48,24 @@ return Array.from(document.querySelectorAll('.plot'), plot => {
 """
 
 
+# Moves every slider and gives the figures whose picture does not follow.
+SLIDE = """
+const done = arguments[0], stuck = [];
+(async () => {
+  for (const input of document.querySelectorAll('.slider input')) {
+    const plot = input.closest('figure').querySelector('.plot');
+    const lines = () => plot.layout.shapes.map(shape => shape.x0).join();
+    const pictures = () => plot.querySelectorAll('.hm image').length;
+    const before = lines(), count = pictures();
+    input.value = Number(input.min) + 1;
+    input.dispatchEvent(new Event('input'));
+    await new Promise(resolve => setTimeout(resolve, 1000));
+    if (lines() === before || pictures() !== count || count < 2) stuck.push(plot.dataset.figure);
+  }
+})().then(() => done(stuck), error => done([String(error)]));
+"""
+
+
 @contextlib.contextmanager
 def browser(width, height, dark):
     """A headless Chromium with a profile of its own."""
@@ -78,9 +96,11 @@ def problems_of(driver, page):
     driver.execute_async_script(
         "const done = arguments[0]; window.tofsmithRenderAll().then(() => done(), () => done());"
     )
+    stuck = driver.execute_async_script(SLIDE)
     time.sleep(1)  # late drawing (3D, automatic margins) and its complaints
     status = driver.execute_script("return window.tofsmithFigures")
     problems = [f"script error: {error}" for error in status["errors"]]
+    problems += [f"the slider of figure {figure} moves nothing" for figure in stuck]
     if status["rendered"] != status["total"]:
         problems.append(f"{status['rendered']} of {status['total']} figures were rendered")
     for figure in driver.execute_script(DRAWN):
