@@ -44,6 +44,13 @@ void CalibrateOutput::write_page(const Page& page, const Session& session) const
   session.say(fmt::format("wrote {}", page_path));
 }
 
+IoError wrong_file(const std::invalid_argument& error, const std::string& file,
+                   const std::map<std::string, std::string>& by_field) {
+  const auto* const broken = dynamic_cast<const InvalidArgument*>(&error);
+  const auto place = broken ? by_field.find(broken->field()) : by_field.end();
+  return {place == by_field.end() ? file : place->second, error.what()};
+}
+
 nlohmann::ordered_json number_json(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }

@@ -8,6 +8,7 @@
 
 #include "calibrate_depth.hpp"
 #include "calibrate_output.hpp"
+#include "help_pages.hpp"
 #include "number_checks.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
@@ -162,21 +163,22 @@ void run(const CorrelationArguments& arguments, const Session& session) {
   const Camera base = arguments.camera.load();
   check_outputs(arguments, session);
   if (!arguments.reference.empty()) {
-    calibrate_by_reference(
-        {{arguments.files.begin(), arguments.files.end()},
-         arguments.raw_format,
-         arguments.dataset,
-         parse_depth_kind(arguments.reference_kind) == DepthKind::z,
-         arguments.reference,
-         arguments.table,
-         arguments.output.camera_path,
-         arguments.camera.name,
-         arguments.codes,
-         arguments.taps.file_options(),
-         base,
-         [&](const Camera& camera) { arguments.output.write_camera(camera, session); },
-         [&](const Page& page) { arguments.output.write_page(page, session); }},
-        session);
+    calibrate_by_reference({{arguments.files.begin(), arguments.files.end()},
+                            arguments.raw_format,
+                            arguments.dataset,
+                            parse_depth_kind(arguments.reference_kind) == DepthKind::z,
+                            arguments.reference,
+                            arguments.table,
+                            arguments.output.camera_path,
+                            arguments.camera.name,
+                            arguments.codes,
+                            arguments.taps.file_options(),
+                            base,
+                            [&](const Camera& camera, const std::string& next) {
+                              arguments.output.write_camera(camera, session, next);
+                            },
+                            [&](const Page& page) { arguments.output.write_page(page, session); }},
+                           session);
     return;
   }
   if (arguments.files.size() > 1)
@@ -272,24 +274,30 @@ void add_calibrate_correlation(CLI::App& calibrate, Session& session) {
   command
       ->add_option("--dataset", arguments->dataset,
                    "which array of an .npz, or data set of an .h5, the frames are")
-      ->needs(reference);
+      ->needs(reference)
+      ->group(for_experts);
   command->add_option("--dark", arguments->dark, "frames with the light off, room as in the sweep");
   command
       ->add_option("--target-distance-m", arguments->target_distance_m,
                    "distance of a flat target square to the axis: its slant is taken out of the "
                    "offset map")
-      ->check(positive_number());
+      ->check(positive_number())
+      ->group(for_experts);
   command
       ->add_option("--code", arguments->codes,
                    "codes to compare with: families or files; default: all built-in ones")
       ->delimiter(',');
   command->add_option("--decimal", arguments->decimal, "decimal mark of a text")
       ->check(one_of({"auto", "point", "comma"}))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->group(for_experts);
   command->add_option("--table-axes", arguments->axes, "axes of an array: nk or kn")
-      ->check(one_of({"nk", "kn"}));
-  command->add_flag("--keep-end-point", arguments->keep_end_point,
-                    "the last row of an array that repeats the first is one of its own");
+      ->check(one_of({"nk", "kn"}))
+      ->group(for_experts);
+  command
+      ->add_flag("--keep-end-point", arguments->keep_end_point,
+                 "the last row of an array that repeats the first is one of its own")
+      ->group(for_experts);
   arguments->camera.add_to(*command);
   arguments->taps.add_to(*command);
   command->add_option("--table", arguments->table,

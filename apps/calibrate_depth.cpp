@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "calibrate_output.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/core/error.hpp"
@@ -48,8 +49,9 @@ std::string lines_of(const CalibratedDepth& found) {
                  : fmt::format("{:<18} {:>10} {} mm\n", rows[i][0], rows[i][1], rows[i][2]);
   lines += fmt::format("known in {:.0f} % of the range", 100.0 * found.known_share);
   if (found.known_share < 0.999)
-    lines += fmt::format("; beyond, by {}: {} on parts of the range held out",
-                         fmt::join(found.far_terms, ", "), length_text(found.far_rms_m));
+    lines += fmt::format("; beyond, by {}", fmt::join(found.far_terms, ", "));
+  if (found.known_share < 0.999 && found.far_rms_m > 0.0)
+    lines += fmt::format(": {} on parts of the range held out", length_text(found.far_rms_m));
   return lines + "\n" + note_lines(found.notes);
 }
 
@@ -70,19 +72,25 @@ void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Se
     found = calibrate_depth(frames, reference, code, arguments.camera,
                             terminal_progress("calibrating"));
   } catch (const std::invalid_argument& error) {
-    throw IoError(arguments.frames.front().string(), error.what());
+    throw wrong_file(error, arguments.frames.front().string(),
+                     {{"reference", arguments.reference}});
   }
   session.print_json(document_of(found));
   session.say(lines_of(found));
-  if (!arguments.camera_path.empty()) arguments.write_camera(with_depth(arguments.camera, found));
   arguments.write_page(
       depth_report(found, arguments.frames.front().string(), session.command_line));
-  if (arguments.table.empty()) return;
-  write_calibrated_table(arguments.table, found.table, session.output_policy());
-  session.say(
-      fmt::format("wrote {}\nnext: tofsmith decode RAW --code {} --camera {} -o depth.npy",
-                  arguments.table, arguments.table,
-                  !arguments.camera_path.empty() ? arguments.camera_path : arguments.camera_name));
+  std::string next;
+  if (!arguments.table.empty()) {
+    write_calibrated_table(arguments.table, found.table, session.output_policy());
+    session.say(fmt::format("wrote {}", arguments.table));
+    next =
+        fmt::format("tofsmith decode RAW --code {} --camera {} -o depth.npy", arguments.table,
+                    !arguments.camera_path.empty() ? arguments.camera_path : arguments.camera_name);
+  }
+  if (!arguments.camera_path.empty())
+    arguments.write_camera(with_depth(arguments.camera, found), next);
+  else if (!next.empty())
+    session.say("next: " + next);
 }
 
 }  // namespace tofsmith::apps

@@ -24,7 +24,7 @@ struct DepthCalibrationArguments {
   std::vector<std::string> codes;
   CodeFileOptions file;
   Camera camera;
-  std::function<void(const Camera&)> write_camera;
+  std::function<void(const Camera&, const std::string& next)> write_camera;
   std::function<void(const Page&)> write_page;
 };
 

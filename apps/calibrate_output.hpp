@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "session.hpp"
+#include "tofsmith/core/error.hpp"
 #include "tofsmith/core/statistics.hpp"
 #include "tofsmith/report/page.hpp"
 
@@ -32,6 +35,12 @@ struct CalibrateOutput {
                     const std::string& next = "") const;
   void write_page(const Page& page, const Session& session) const;
 };
+
+/// What is wrong with the files of a calibration, naming the one that holds the field.
+/// @param file     of all other fields
+/// @param by_field fields and their files
+IoError wrong_file(const std::invalid_argument& error, const std::string& file,
+                   const std::map<std::string, std::string>& by_field);
 
 /// {"value": .., "standard_error": ..}; null where it is no number.
 nlohmann::ordered_json estimate_json(const Estimate& estimate);

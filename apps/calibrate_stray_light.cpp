@@ -41,7 +41,7 @@ void run(const StrayLightArguments& arguments, const Session& session) {
   try {
     found = calibrate_stray_light(frames, dark, camera, terminal_progress("calibrating"));
   } catch (const std::invalid_argument& error) {
-    throw IoError(arguments.file, error.what());
+    throw wrong_file(error, arguments.file, {{"dark size", arguments.dark}});
   }
   session.print_json(document_of(found));
   session.say(fmt::format(

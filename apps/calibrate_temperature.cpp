@@ -8,6 +8,7 @@
 #include "tofsmith/calibrate/correlation_calibration.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/raw_frames.hpp"
 #include "tofsmith/report/instrument_reports.hpp"
 
@@ -66,7 +67,7 @@ void run(const TemperatureArguments& arguments, const Session& session) {
     found = calibrate_temperature(frames, {table.values.col(0).begin(), table.values.col(0).end()},
                                   code, camera, terminal_progress("calibrating"));
   } catch (const std::invalid_argument& error) {
-    throw IoError(arguments.file, error.what());
+    throw wrong_file(error, arguments.file, {{"temperatures", arguments.temperatures}});
   }
   session.print_json(document_of(found));
   session.say(lines_of(found));

@@ -56,17 +56,21 @@ std::string strip(const Waveform& waveform) {
 void show(const Session& session, const CodeSet& code, const Camera& camera) {
   const ForwardModel model(code, camera);
   const Eigen::MatrixXd table = model.correlation_table(8 * code.samples());
+  // What the sensor reads out: as many as the code has tap values, or the differences of pairs.
+  const int measurements = model.measurements();
+  const bool are_differences = measurements < code.measurements();
   nlohmann::ordered_json document = {{"name", code.name()},
                                      {"samples", code.samples()},
                                      {"exposures", code.exposures()},
                                      {"taps", code.taps()},
-                                     {"measurements", code.measurements()},
+                                     {"measurements", measurements},
                                      {"peak", code.peak()},
                                      {"coding_curve_length", coding_curve_length(table)},
                                      {"coding_curve_rank", coding_curve_rank(table)},
                                      {"harmonics_99_percent", harmonics_used(table)}};
-  std::vector<std::vector<std::string>> rows{
-      {"measurement", "mod. duty", "mod. peak", "edges", "dem. duty", "edges"}};
+  std::vector<std::vector<std::string>> rows{{are_differences ? "tap value" : "measurement",
+                                              "mod. duty", "mod. peak", "edges", "dem. duty",
+                                              "edges"}};
   std::string strips;
   for (int i = 0; i < code.measurements(); ++i) {
     const Waveform& m = code.modulation_of(i);
@@ -86,11 +90,12 @@ void show(const Session& session, const CodeSet& code, const Camera& camera) {
     document["generators"] = nlohmann::ordered_json::parse(generators_document(generators));
   session.print_json(document);
   session.say(fmt::format(
-      "{} on {}: {} measurements, {} exposures, N = {}, peak {:.3g}\n"
+      "{} on {}: {} measurements{}, {} exposures, N = {}, peak {:.3g}\n"
       "coding curve: length {:.4g}, rank {}, 99 % of its energy within {} harmonics\n\n{}\n{}",
-      code.name(), camera.name, code.measurements(), code.exposures(), code.samples(), code.peak(),
-      coding_curve_length(table), coding_curve_rank(table), harmonics_used(table), text_table(rows),
-      strips));
+      code.name(), camera.name, measurements,
+      are_differences ? fmt::format(" (differences of {} tap values)", code.measurements()) : "",
+      code.exposures(), code.samples(), code.peak(), coding_curve_length(table),
+      coding_curve_rank(table), harmonics_used(table), text_table(rows), strips));
   if (!generators.empty())
     session.say("Nominal and actual waveforms of the generators, ahead of the arms' responses:\n" +
                 text_table(generator_report_rows(generators)));

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "help_pages.hpp"
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/scene/built_in_scenes.hpp"
@@ -54,6 +55,7 @@ Words names_of(const std::set<CLI::Option*>& options) {
 
 Json argument(const CLI::Option& option) {
   Json item = {{"names", names_of(option)}, {"help", option.get_description()}};
+  if (option.get_group() == for_experts) item["for_experts"] = true;
   if (!option.get_needs().empty()) item["needs"] = names_of(option.get_needs());
   if (!option.get_excludes().empty()) item["excludes"] = names_of(option.get_excludes());
   if (option.get_type_size() != 0) {

@@ -13,6 +13,7 @@ void add_cameras_command(CLI::App& app, Session& session);
 void add_codes_command(CLI::App& app, Session& session);
 void add_design_command(CLI::App& app, Session& session);
 void add_evaluate_command(CLI::App& app, Session& session);
+void add_multipath_command(CLI::App& app, Session& session);
 void add_require_command(CLI::App& app, Session& session);
 void add_export_command(CLI::App& app, Session& session);
 void add_upload_command(CLI::App& app, Session& session);

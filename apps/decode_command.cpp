@@ -10,6 +10,7 @@
 #include "decode_pipe.hpp"
 #include "decode_report.hpp"
 #include "filter_arguments.hpp"
+#include "help_pages.hpp"
 #include "method_arguments.hpp"
 #include "multipath_arguments.hpp"
 #include "number_checks.hpp"
@@ -57,7 +58,7 @@ DecodeRequest request_of(const DecodeArguments& arguments, const Camera& camera,
   request.offset_map = arguments.offset_map;
   request.gain_map = arguments.gain_map;
   request.stray_light = arguments.stray_light;
-  request.rays = arguments.rays;
+  if (!arguments.rays.empty()) request.lens = Lens{.rays = arguments.rays};
   request.policy = session.output_policy();
   request.other_inputs = {arguments.code, arguments.camera.name};
   return request;
@@ -70,7 +71,7 @@ DecodedRecording decode_all(const DecodeRequest& request, const AnyDecoder& deco
   try {
     decode_recording(request, decoder, terminal_progress("decoding"), result);
   } catch (const std::invalid_argument& error) {
-    throw UsageError(fmt::format("--{}", error.what()));
+    throw wrong_option(error);
   } catch (...) {
     session.tells_what_is_kept = result.frame_count > 1;
     if (session.tells_what_is_kept)
@@ -99,8 +100,10 @@ bool reads_pipe(const DecodeArguments& arguments) {
   return from_pipe;
 }
 
-void run(const DecodeArguments& arguments, Session& session) {
+void run(DecodeArguments& arguments, Session& session) {
   reads_pipe(arguments);  // wrong usage comes before what files hold
+  const std::optional<std::string> camera_source =
+      arguments.camera.take_that_of(arguments.raw.front());
   const Camera camera = arguments.camera.load();
   const DecodingSource source =
       arguments.table.load(arguments.code, camera, arguments.camera.is_default(), arguments.taps);
@@ -119,6 +122,7 @@ void run(const DecodeArguments& arguments, Session& session) {
   nlohmann::ordered_json document = {
       {"code", source.name},
       {"camera", camera.name},
+      {"camera_source", camera_source.value_or(arguments.camera.name)},
       {"range_m", source.table.range_m},
       {"range_source", source.range_source},
       {"method", name_of(arguments.method.method())},
@@ -140,9 +144,9 @@ void run(const DecodeArguments& arguments, Session& session) {
   std::string lines = decode_lines(request, result);
   if (source.tell_range)
     lines += fmt::format("\nrange {:.4g} m ({})", source.table.range_m, source.range_source);
+  if (camera_source) lines += "\ncamera " + *camera_source;
   for (const std::string& note : notes) lines += "\n" + note;
-  if (!camera.lens && request.rays.empty() &&
-      (holds_points(request.output) || request.kind == DepthKind::z))
+  if (!request.lens && (holds_points(request.output) || request.kind == DepthKind::z))
     lines += "\nthe camera has no [lens]: its view was taken to be 60 degrees wide";
   session.say(lines);
 }
@@ -179,9 +183,11 @@ void add_decode_command(CLI::App& app, Session& session) {
           ->check(one_of({"interleaved", "planar"}))
           ->capture_default_str();
   CLI::Option* const dataset =
-      command->add_option("--dataset", arguments->request.dataset,
-                          "which array of an .npz, or data set of an .h5, RAW is (the one called "
-                          "raw, or the only one)");
+      command
+          ->add_option("--dataset", arguments->request.dataset,
+                       "which array of an .npz, or data set of an .h5, RAW is (the one called "
+                       "raw, or the only one)")
+          ->group(for_experts);
   command
       ->add_option("--raw-format", arguments->raw_format,
                    "RAW is a sensor's dump without header, as this .raw.toml file describes it "
@@ -203,13 +209,18 @@ void add_decode_command(CLI::App& app, Session& session) {
   command
       ->add_option("--offset-m", arguments->request.offset_m,
                    "how much too far every pixel decodes in metres, taken off its depth")
-      ->capture_default_str();
-  command->add_option("--gain-map", arguments->gain_map,
-                      "response of each pixel over that of a usual one, taken out of signal and "
-                      "ambient; NaN marks a dead pixel");
-  command->add_option("--stray-light", arguments->stray_light,
-                      "light that the lens scatters, of calibrate stray-light (.npy .npz .exr "
-                      ".pfm), taken off the raw numbers before all else");
+      ->capture_default_str()
+      ->group(for_experts);
+  command
+      ->add_option("--gain-map", arguments->gain_map,
+                   "response of each pixel over that of a usual one, taken out of signal and "
+                   "ambient; NaN marks a dead pixel")
+      ->group(for_experts);
+  command
+      ->add_option("--stray-light", arguments->stray_light,
+                   "light that the lens scatters, of calibrate stray-light (.npy .npz .exr "
+                   ".pfm), taken off the raw numbers before all else")
+      ->group(for_experts);
   arguments->method.add_to(*command);
   arguments->multipath.add_to(*command);
   command
@@ -246,27 +257,32 @@ void add_decode_command(CLI::App& app, Session& session) {
                    "camera's, such as 1,4,16: each group is decoded as one frame, of what is not "
                    "saturated, by its noise")
       ->delimiter(',')
-      ->allow_extra_args(false);
+      ->allow_extra_args(false)
+      ->group(for_experts);
   command
       ->add_option("--averaged", arguments->request.averaged,
                    "RAW holds means of so many equal measurements already: their noise is so much "
                    "smaller")
       ->check(positive_number(1e9))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->group(for_experts);
   command
       ->add_option(
           "--frame", arguments->request.frame,
           "decode this frame only, counted from 0; with --average this mean; with --time-filter "
           "frames before it count in")
-      ->check(number_from_0_on());
+      ->check(number_from_0_on())
+      ->group(for_experts);
   command
       ->add_option("--low-signal-sigma", arguments->options.low_signal_sigma,
                    "signals below this many standard deviations are marked low_signal")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->group(for_experts);
   command
       ->add_option("--min-confidence", arguments->options.min_confidence,
                    "pixels below are marked ambiguous")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->group(for_experts);
   command
       ->add_option(
           "-o,--output", arguments->output,
@@ -274,15 +290,20 @@ void add_decode_command(CLI::App& app, Session& session) {
           "writes the --outputs (depth) of each frame to standard output, as they are in "
           ".npy without its header")
       ->required();
-  command->add_option("--rays", arguments->rays,
-                      "rays of points and z as the maker gives them, in place of the camera's "
-                      "[lens] (.npy): (H,W,2) of x/z and y/z, or (H,W,3) of directions");
-  command->add_flag("--all-points", arguments->request.all_points,
-                    "in .ply and .pcd also points of pixels that are not ok");
-  command->add_flag(
-      "--undistort", arguments->request.undistort,
-      "planes without the distortion of the camera's lens: each pixel takes the values "
-      "of the nearest one; those that the lens does not see are invalid");
+  command
+      ->add_option("--rays", arguments->rays,
+                   "rays of points and z as the maker gives them, in place of the camera's "
+                   "[lens] (.npy): (H,W,2) of x/z and y/z, or (H,W,3) of directions")
+      ->group(for_experts);
+  command
+      ->add_flag("--all-points", arguments->request.all_points,
+                 "in .ply and .pcd also points of pixels that are not ok")
+      ->group(for_experts);
+  command
+      ->add_flag("--undistort", arguments->request.undistort,
+                 "planes without the distortion of the camera's lens: each pixel takes the values "
+                 "of the nearest one; those that the lens does not see are invalid")
+      ->group(for_experts);
   command->add_flag("--stack", arguments->request.stack,
                     "all frames in one .npy, (F,H,W), written as they come; with --outputs each "
                     "plane but depth in a file of its own, NAME-PLANE.npy");
@@ -291,7 +312,8 @@ void add_decode_command(CLI::App& app, Session& session) {
                    "memory for frames under way [MB]; larger frames go in bands of rows. The "
                    "program itself takes some 50 MB more")
       ->check(positive_number(1e9))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->group(for_experts);
   command->callback([arguments, &session] { run(*arguments, session); });
 }
 

@@ -72,7 +72,7 @@ void decode_pipe(const DecodeRequest& request, const AnyDecoder& decoder, Sessio
     decode_stream(request, decoder, read_input, write_output, terminal_progress("decoding"),
                   result);
   } catch (const std::invalid_argument& error) {
-    throw UsageError(fmt::format("--{}", error.what()));
+    throw wrong_option(error);
   } catch (...) {
     session.tells_what_is_kept = true;
     tell();

@@ -13,8 +13,8 @@
 #include "commands.hpp"
 #include "distance_arguments.hpp"
 #include "evaluation_table.hpp"
+#include "help_pages.hpp"
 #include "method_arguments.hpp"
-#include "multipath_evaluation.hpp"
 #include "number_checks.hpp"
 #include "session.hpp"
 #include "tap_arguments.hpp"
@@ -103,8 +103,6 @@ struct EvaluateArguments {
   bool on_bins = false;
   bool best_rotation = false;
   bool robustness = false;
-  MultipathEvaluation multipath;
-  const CLI::Option* trials = nullptr;
   std::string perturb;
   bool every_level = false;
   DistanceArguments distance;
@@ -237,10 +235,6 @@ void run(EvaluateArguments& arguments, const Session& session) {
   std::vector<CodeSet> codes;
   for (const std::string& name : arguments.codes)
     codes.push_back(load_camera_code(name, camera, arguments.taps.file_options()));
-  if (arguments.multipath.is_asked())
-    return arguments.multipath.run(codes, camera,
-                                   arguments.trials->count() > 0 ? arguments.options.trials : 0,
-                                   arguments.options.seed, arguments.output, session);
   std::vector<EvaluatedCode> evaluated = evaluate_all(codes, camera, arguments);
   if (perturbed) judge_robustness(evaluated, codes, camera, arguments.options, *perturbed);
   if (!arguments.output.empty())
@@ -261,11 +255,11 @@ void add_evaluate_command(CLI::App& app, Session& session) {
       ->required();
   arguments->camera.add_to(*command);
   const CLI::Range trials(std::int64_t{2}, std::int64_t{4'000'000'000});
-  arguments->trials = command
-                          ->add_option("--trials", arguments->options.trials,
-                                       "trials per operating point; with a target, at first")
-                          ->check(trials)
-                          ->capture_default_str();
+  command
+      ->add_option("--trials", arguments->options.trials,
+                   "trials per operating point; with a target, at first")
+      ->check(trials)
+      ->capture_default_str();
   command
       ->add_option(
           "--target-standard-error", arguments->options.target_standard_error,
@@ -277,7 +271,8 @@ void add_evaluate_command(CLI::App& app, Session& session) {
       ->add_option("--max-trials", arguments->options.max_trials,
                    "with a target, trials per operating point after which to stop short of it")
       ->check(trials)
-      ->capture_default_str();
+      ->capture_default_str()
+      ->group(for_experts);
   command->add_option("--seed", arguments->options.seed, "seed of all trials")
       ->capture_default_str();
   arguments->method.add_to(*command);
@@ -285,18 +280,33 @@ void add_evaluate_command(CLI::App& app, Session& session) {
       ->add_option("--outlier-threshold", arguments->options.outlier_threshold_m,
                    "circular errors beyond this many metres are outliers")
       ->check(number_from_0_on())
-      ->capture_default_str();
-  command->add_flag("--on-bins", arguments->on_bins,
-                    "true depths on bins only (flatters codes; for comparison with others)");
-  command->add_flag("!--no-sub-bin", arguments->options.sub_bin, "decode to the nearest bin only");
-  command->add_flag("--clip-to-open-sensor", arguments->options.clip_to_open_sensor,
-                    "clip electrons to [0, T (S + A)], as the paper's authors' simulator does");
-  command->add_flag("--best-rotation", arguments->best_rotation,
-                    "move each code's origin of depth to where its linear error is least");
+      ->capture_default_str()
+      ->group(for_experts);
+  command
+      ->add_flag("--on-bins", arguments->on_bins,
+                 "true depths on bins only (flatters codes; for comparison with others)")
+      ->group(for_experts);
+  command->add_flag("!--no-sub-bin", arguments->options.sub_bin, "decode to the nearest bin only")
+      ->group(for_experts);
+  command
+      ->add_flag("--clip-to-open-sensor", arguments->options.clip_to_open_sensor,
+                 "clip electrons to [0, T (S + A)], as the paper's authors' simulator does")
+      ->group(for_experts);
+  command
+      ->add_flag("--best-rotation", arguments->best_rotation,
+                 "move each code's origin of depth to where its linear error is least")
+      ->group(for_experts);
   command->add_flag("--robustness", arguments->robustness,
                     "also judge each code on perturbed cameras: bandwidth ±20 %, peak ±10 %, "
                     "50 ps edge jitter, 2 % tap mismatch");
-  arguments->multipath.add_to(*command);
+  command
+      ->add_flag_callback(
+          "--multipath",
+          [] {
+            throw UsageError("--multipath: a command of its own now: tofsmith multipath CODE ..");
+          },
+          "")
+      ->group("");
   command->add_option("--perturb", arguments->perturb,
                       "also judge each code on cameras with each of these changes and with all at "
                       "once: jitter=50ps,clock=5ns,droop=3%,bandwidth=20%,peak=10%,mismatch=2%");

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "help_pages.hpp"
 #include "number_checks.hpp"
 #include "session.hpp"
 #include "tap_arguments.hpp"
@@ -54,7 +55,8 @@ void add_settings(CLI::App& command, const char* argument, const char* whose, CL
                   fmt::format("KEY=VALUE of {}, for experts, as often as needed: {}", whose,
                               fmt::join(keys_of<Options>(), ", ")))
       ->allow_extra_args(false)
-      ->needs(with);
+      ->needs(with)
+      ->group(for_experts);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 
 #include "command_listing.hpp"
 #include "commands.hpp"
+#include "help_pages.hpp"
 #include "interrupt.hpp"
 #include "printed_text.hpp"
 #include "terminal_progress.hpp"
@@ -147,6 +148,9 @@ int run(int argc, char** argv) {
       "tofsmith designs, evaluates, simulates and decodes the coding functions of "
       "continuous-wave time-of-flight cameras."};
   app.name("tofsmith");
+  app.formatter(std::make_shared<HelpPages>());
+  app.set_help_flag("-h,--help", "print the usual options and exit");
+  app.set_help_all_flag("--help-all", "print every option, also those for experts, and exit");
   app.set_version_flag("--version", [] { return to_text(build_info()); });
   bool list_commands = false;
   app.add_flag("--list-commands", list_commands)->group("");  // manual pages are made from it
@@ -167,6 +171,7 @@ int run(int argc, char** argv) {
   add_codes_command(app, session);
   add_design_command(app, session);
   add_evaluate_command(app, session);
+  add_multipath_command(app, session);
   add_require_command(app, session);
   add_export_command(app, session);
   add_upload_command(app, session);

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "help_pages.hpp"
 #include "tap_arguments.hpp"
 #include "tofsmith/decode/decode_method.hpp"
 
@@ -29,7 +30,8 @@ class MethodArguments {
                     "camera, or by f^2, as is classical")
         ->check(one_of({"variance", "frequency"}))
         ->capture_default_str()
-        ->needs(method);
+        ->needs(method)
+        ->group(for_experts);
   }
   DecodeMethod method() const { return parse_decode_method(method_); }
   /// Whether it tells multipath returns from the direct one.

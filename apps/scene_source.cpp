@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "help_pages.hpp"
 #include "number_checks.hpp"
 #include "tap_arguments.hpp"
 #include "tofsmith/core/error.hpp"
@@ -16,9 +17,12 @@ namespace tofsmith::apps {
 
 void add_scene_options(CLI::App& command, SceneSource& source) {
   command.add_option("--image", source.image, "albedo of a depth image (.png .npy .exr .pfm)");
-  command.add_option("--ambient-image", source.ambient_image,
-                     "ambient light of each pixel, relative to --ambient (.png .npy .exr .pfm)");
-  command.add_flag("--linear-image", source.linear_image, "PNG images hold linear light, not sRGB");
+  command
+      .add_option("--ambient-image", source.ambient_image,
+                  "ambient light of each pixel, relative to --ambient (.png .npy .exr .pfm)")
+      ->group(for_experts);
+  command.add_flag("--linear-image", source.linear_image, "PNG images hold linear light, not sRGB")
+      ->group(for_experts);
   command
       .add_option_function<std::string>(
           "--kind", [&source](const std::string& word) { source.kind = parse_depth_kind(word); },
@@ -30,7 +34,8 @@ void add_scene_options(CLI::App& command, SceneSource& source) {
   command.add_option("--height", source.height, "rows of a built-in scene or a mesh (240)")
       ->check(CLI::Range(1, 16384));
   command.add_option("--scale-m", source.scale_m, "metres per unit of a mesh (1)")
-      ->check(positive_number());
+      ->check(positive_number())
+      ->group(for_experts);
 }
 
 std::string lens_setting(const PinholeView& view) {

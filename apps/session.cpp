@@ -10,10 +10,17 @@
 #include <string>
 #include <vector>
 
+#include "help_pages.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 
 namespace tofsmith::apps {
+
+UsageError wrong_option(const std::invalid_argument& error) {
+  std::string text = error.what();
+  std::replace(text.begin(), std::find(text.begin(), text.end(), ' '), '_', '-');
+  return UsageError("--" + text);
+}
 
 void Session::say(std::string_view line) const {
   if (!json) fmt::print("{}\n", line);
@@ -63,9 +70,25 @@ void CameraArguments::add_positional(CLI::App& command) {
 }
 
 void CameraArguments::add_temperature_to(CLI::App& command) {
-  command.add_option("--temperature", temperature_c,
-                     "of the camera [degrees C]: depth and signal change as its [temperature] "
-                     "says (temperature.now_c, or the reference)");
+  command
+      .add_option("--temperature", temperature_c,
+                  "of the camera [degrees C]: depth and signal change as its [temperature] "
+                  "says (temperature.now_c, or the reference)")
+      ->group(for_experts);
+}
+
+std::filesystem::path camera_beside(const std::filesystem::path& raw) {
+  return std::filesystem::path(raw).replace_extension(".camera.toml");
+}
+
+std::optional<std::string> CameraArguments::take_that_of(const std::filesystem::path& raw) {
+  const std::filesystem::path beside = camera_beside(raw);
+  std::error_code ignored;
+  if (option == nullptr || option->count() > 0 || !std::filesystem::exists(beside, ignored))
+    return std::nullopt;
+  name = beside.string();
+  stood_beside_ = true;
+  return fmt::format("{}, which stands beside {}; --camera says otherwise", name, raw.string());
 }
 
 Camera CameraArguments::load() const {

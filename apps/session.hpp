@@ -22,6 +22,9 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What the library refuses by a field's name, by that of its option: "--offset-m = nan; ..".
+UsageError wrong_option(const std::invalid_argument& error);
+
 /// What every subcommand shares: flags, how to print, how to write.
 struct Session {
   bool json = false;                ///< one JSON document on stdout and nothing else there
@@ -58,10 +61,12 @@ struct CameraArguments {
   std::optional<double> temperature_c;
   const CLI::Option* option = nullptr;  ///< `--camera`, if the subcommand has it
 
-  /// Whether nobody named a camera.
+  /// Takes the camera that `simulate` left beside raw frames, if there is one and nobody names
+  /// another. @return what to say of it
+  std::optional<std::string> take_that_of(const std::filesystem::path& raw);
   /// Whether nobody said which camera it is, nor how far it sees.
   bool is_default() const {
-    return option != nullptr && option->count() == 0 &&
+    return option != nullptr && option->count() == 0 && !stood_beside_ &&
            std::ranges::none_of(settings, [](const std::string& setting) {
              return setting.starts_with("fundamental_frequency_hz");
            });
@@ -75,7 +80,13 @@ struct CameraArguments {
   void add_positional(CLI::App& command);
   /// @throws IoError, UsageError for a temperature that the camera says nothing of
   Camera load() const;
+
+ private:
+  bool stood_beside_ = false;
 };
+
+/// Where `simulate` leaves the camera of raw frames: raw.camera.toml beside raw.npy.
+std::filesystem::path camera_beside(const std::filesystem::path& raw);
 
 /// "13.2 ms", "4.1 s".
 std::string time_text(double seconds);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "commands.hpp"
 #include "fresh_directory.hpp"
+#include "help_pages.hpp"
 #include "number_checks.hpp"
 #include "scene_source.hpp"
 #include "session.hpp"
@@ -16,8 +18,10 @@
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
 #include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/depth_file.hpp"
+#include "tofsmith/io/image_file.hpp"
 #include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/io/raw_frames.hpp"
@@ -103,6 +107,7 @@ struct SimulateArguments {
   std::string signal_range, ambient_range, shard;
   CaptureOptions options;
   MultipathLightArguments returns;
+  std::string stray_light;
   std::string output, truth, truth_near, truth_far;
 };
 
@@ -118,15 +123,20 @@ CapturedScene capture_one(const SimulateArguments& arguments, const LoadedScene&
                           const CodeSet& code, const Camera& camera) {
   CapturedScene captured;
   const Progress progress = terminal_progress("capturing");
+  const Image<float> kernel =
+      arguments.stray_light.empty() ? Image<float>() : read_stray_light(arguments.stray_light);
   if (!scene.staged) {
     captured.light = arguments.returns.load(scene, camera);
+    captured.light.stray_light = kernel;
     captured.capture.raw =
         capture(scene.image, captured.light, code, camera, arguments.options, progress);
     captured.capture.truth = {scene.image};
     return captured;
   }
-  StagedSetup setup{
-      .search_of = embree_search(), .light = {}, .ambient_scale = scene.image.ambient_scale};
+  StagedSetup setup{.search_of = embree_search(),
+                    .light = {},
+                    .ambient_scale = scene.image.ambient_scale,
+                    .stray_light = kernel};
   if (arguments.returns.is_used())
     setup.light = [&](const StagedScene& staged, const SceneImage& rays) {
       captured.light = arguments.returns.load({scene.name, rays, staged.view, staged}, camera);
@@ -202,6 +212,8 @@ void simulate_set(const SimulateArguments& arguments, Session& session) {
         "many "
         "scenes; "
         "expected one");
+  if (!arguments.stray_light.empty())
+    throw UsageError("--stray-light: found many scenes; expected one");
   const Camera camera = arguments.camera.load();
   const OperatingPoint usual = capture_light(camera, arguments.options.reference_distance_m);
   make_training_set(
@@ -226,11 +238,45 @@ void check_is_of_one_scene(const SimulateArguments& arguments) {
       throw UsageError(fmt::format("{}: needs a folder, a list (.txt) or several scenes", option));
 }
 
+/// Not where that is the camera that was named.
+bool leaves_camera(const SimulateArguments& arguments) {
+  std::error_code ignored;
+  return !std::filesystem::equivalent(camera_beside(arguments.output), arguments.camera.name,
+                                      ignored);
+}
+
+/// The first line of what is left there, by which it may be replaced.
+std::string camera_heading(const SimulateArguments& arguments) {
+  return fmt::format("# of {}, by tofsmith simulate",
+                     std::filesystem::path(arguments.output).filename().string());
+}
+
+OutputPolicy camera_policy(const SimulateArguments& arguments, const Session& session) {
+  std::ifstream before(camera_beside(arguments.output));
+  std::string heading;
+  std::getline(before, heading);
+  return heading.starts_with(camera_heading(arguments)) ? OutputPolicy::overwrite
+                                                        : session.output_policy();
+}
+
+/// Writes the camera, with the lens through which the scene was seen, for those who decode.
+void leave_camera(const SimulateArguments& arguments, Camera camera, const CodeSet& code,
+                  const PinholeView& view, const Session& session) {
+  if (!leaves_camera(arguments)) return;
+  if (!camera.lens || camera.lens->rays.empty()) camera.lens = lens_of(view);
+  write_file_atomically(camera_beside(arguments.output),
+                        fmt::format("{}, code {}\n{}", camera_heading(arguments), code.name(),
+                                    camera_to_toml(camera)),
+                        camera_policy(arguments, session));
+}
+
 /// Before the work: no output is an input, or there already.
 void check_outputs(const SimulateArguments& arguments, const Session& session) {
   const std::vector<std::string> truths = {arguments.truth, arguments.truth_near,
                                            arguments.truth_far, arguments.returns.truth()};
   session.check_output(arguments.output);
+  if (leaves_camera(arguments))
+    session.check_output(camera_beside(arguments.output), camera_policy(arguments, session));
   for (const std::string& truth : truths)
     if (!truth.empty()) session.check_output(truth);
 }
@@ -250,6 +296,7 @@ void run(SimulateArguments& arguments, Session& session) {
   const CapturedScene captured = capture_one(arguments, scene, code, camera);
   const RawFrames& raw = captured.capture.raw;
   write_raw_frames(arguments.output, raw, session.output_policy());
+  leave_camera(arguments, camera, code, scene.view, session);
   write_truth(arguments, captured, session);
   const SceneExtent extent = scene_extent(scene.image, camera);
   session.print_json({{"scene", scene.name},
@@ -276,8 +323,10 @@ void run(SimulateArguments& arguments, Session& session) {
   if (extent.beyond_range > 0) session.say(beyond_range_remark(extent));
   if (!(lens_setting(scene.view) ==
         lens_setting(view_of(camera.lens, scene.image.width(), scene.image.height()))))
-    session.say(fmt::format("to decode it as points or z-depth, say how it was seen: --set '{}'",
-                            lens_setting(scene.view)));
+    session.say(
+        fmt::format("{} says how it was seen; with another --camera, points and z-depth "
+                    "need --set '{}'",
+                    camera_beside(arguments.output).string(), lens_setting(scene.view)));
 }
 
 }  // namespace
@@ -299,19 +348,28 @@ void add_simulate_command(CLI::App& app, Session& session) {
                       "[optics], or the middle of "
                       "its operating points)");
   command->add_option("--ambient", arguments->ambient_e_per_s, "ambient light [e/s] (likewise)");
-  command->add_option("--signal-range", arguments->signal_range,
-                      "a:b, of many scenes: draw --signal of each log-uniformly");
-  command->add_option("--ambient-range", arguments->ambient_range,
-                      "a:b, of many scenes: draw --ambient of each log-uniformly");
-  command->add_option("--shard", arguments->shard,
-                      "i/n, of many scenes: only the i-th of n parts, into the same directory");
+  command
+      ->add_option("--signal-range", arguments->signal_range,
+                   "a:b, of many scenes: draw --signal of each log-uniformly")
+      ->group(for_experts);
+  command
+      ->add_option("--ambient-range", arguments->ambient_range,
+                   "a:b, of many scenes: draw --ambient of each log-uniformly")
+      ->group(for_experts);
+  command
+      ->add_option("--shard", arguments->shard,
+                   "i/n, of many scenes: only the i-th of n parts, into the same directory")
+      ->group(for_experts);
   command
       ->add_option("--reference-distance", arguments->options.reference_distance_m,
                    "where the signal is as given [m]")
       ->check(positive_number())
-      ->capture_default_str();
-  command->add_flag("!--no-falloff", arguments->options.falloff,
-                    "signal depends on albedo only, not on distance and angle");
+      ->capture_default_str()
+      ->group(for_experts);
+  command
+      ->add_flag("!--no-falloff", arguments->options.falloff,
+                 "signal depends on albedo only, not on distance and angle")
+      ->group(for_experts);
   command
       ->add_option("--frames", arguments->options.frames,
                    "frames one after another, each with noise of its own")
@@ -323,11 +381,18 @@ void add_simulate_command(CLI::App& app, Session& session) {
       ->add_option("-o,--output", arguments->output,
                    "raw frames (.npy .npz); of many scenes a directory")
       ->required();
+  command->add_option("--stray-light", arguments->stray_light,
+                      "light that the lens scatters, as calibrate stray-light finds it (.npy .npz "
+                      ".exr .pfm); decode --stray-light takes it off again");
   command->add_option("--truth", arguments->truth, "also write the true radial distance");
-  command->add_option("--truth-near", arguments->truth_near,
-                      "also write the nearest distance of which a pixel gets light, of shapes");
-  command->add_option("--truth-far", arguments->truth_far,
-                      "also write the farthest; a lens mixes both: see docs/scenes.md");
+  command
+      ->add_option("--truth-near", arguments->truth_near,
+                   "also write the nearest distance of which a pixel gets light, of shapes")
+      ->group(for_experts);
+  command
+      ->add_option("--truth-far", arguments->truth_far,
+                   "also write the farthest; a lens mixes both: see docs/scenes.md")
+      ->group(for_experts);
   arguments->returns.add_to(*command);
   command->callback([arguments, &session] { run(*arguments, session); });
 }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "help_pages.hpp"
 #include "number_checks.hpp"
 #include "tap_arguments.hpp"
 #include "terminal_progress.hpp"
@@ -43,32 +44,41 @@ void MultipathLightArguments::add_to(CLI::App& command) {
       command
           .add_option("--tail", tail_m_,
                       "light that trails off behind every direct return: its mean delay [m]")
-          ->check(positive_number());
+          ->check(positive_number())
+          ->group(for_experts);
   command.add_option("--tail-ratio", tail_ratio_, "all light of the tail over the direct return's")
       ->check(number_from_0_on())
       ->capture_default_str()
-      ->needs(tail);
-  command.add_option("--multipath-file", returns_,
-                     "multipath returns of every pixel (.npz: first, distance_m, ratio)");
-  CLI::Option* transient = command.add_option(
-      "--transient", transient_,
-      "light by time, over which each pixel's signal is spread: a histogram (T,) for all pixels "
-      "or (H,W,T) (.npy)");
+      ->needs(tail)
+      ->group(for_experts);
+  command
+      .add_option("--multipath-file", returns_,
+                  "multipath returns of every pixel (.npz: first, distance_m, ratio)")
+      ->group(for_experts);
+  CLI::Option* transient = command
+                               .add_option("--transient", transient_,
+                                           "light by time, over which each pixel's signal is "
+                                           "spread: a histogram (T,) for all pixels "
+                                           "or (H,W,T) (.npy)")
+                               ->group(for_experts);
   command.add_option("--transient-bin-s", transient_bin_s_, "time that one of its bins takes [s]")
       ->check(positive_number())
-      ->needs(transient);
+      ->needs(transient)
+      ->group(for_experts);
   command
       .add_option("--transient-origin", transient_origin_,
                   "what is at the pixel's depth: the histogram's first bin, or its peak")
       ->check(one_of({"first", "peak"}))
       ->capture_default_str()
-      ->needs(transient);
+      ->needs(transient)
+      ->group(for_experts);
   command
       .add_option("--transient-background", transient_background_,
                   "constant counts to take off each histogram first")
       ->check(one_of({"none", "median"}))
       ->capture_default_str()
-      ->needs(transient);
+      ->needs(transient)
+      ->group(for_experts);
   CLI::Option* bounces =
       command
           .add_option("--bounces", bounces_,
@@ -82,9 +92,12 @@ void MultipathLightArguments::add_to(CLI::App& command) {
                   "square root")
       ->check(CLI::Range(16, 65536))
       ->capture_default_str()
-      ->needs(bounces);
-  command.add_option("--truth-multipath", truth_,
-                     "also write the true distance and signal of every return (.npz)");
+      ->needs(bounces)
+      ->group(for_experts);
+  command
+      .add_option("--truth-multipath", truth_,
+                  "also write the true distance and signal of every return (.npz)")
+      ->group(for_experts);
 }
 
 MultipathReturns MultipathLightArguments::bounced(const LoadedScene& scene,

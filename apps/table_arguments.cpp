@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "help_pages.hpp"
 #include "number_checks.hpp"
 #include "session.hpp"
 #include "tap_arguments.hpp"
@@ -14,24 +15,32 @@ void TableArguments::add_to(CLI::App& command) {
   command
       .add_option("--range-m", range_m_,
                   "depth of the period of a measured table in metres (the camera's)")
-      ->check(positive_number(1e6));
+      ->check(positive_number(1e6))
+      ->group(for_experts);
   command
       .add_option("--ambient", ambient_,
                   "what constant light adds to the columns of a measured table: as much to each "
                   "(unless the file says), as much as their mean, or nothing")
-      ->check(one_of({"equal", "mean", "none"}));
+      ->check(one_of({"equal", "mean", "none"}))
+      ->group(for_experts);
   command
       .add_option("--table-axes", axes_,
                   "axes of a measured table: samples by measurements (nk), or the other way (kn)")
-      ->check(one_of({"nk", "kn"}));
+      ->check(one_of({"nk", "kn"}))
+      ->group(for_experts);
   command
       .add_option("--order", order_,
                   "exposures of the code or table in the order in which frames have them: 0,3,2,1")
-      ->delimiter(',');
-  command.add_flag("--reverse", reversed_,
-                   "delay runs against what code, camera or table say: near is far");
-  command.add_flag("--keep-end-point", keep_end_point_,
-                   "keep a measured table's last sample though it equals the first");
+      ->delimiter(',')
+      ->group(for_experts);
+  command
+      .add_flag("--reverse", reversed_,
+                "delay runs against what code, camera or table say: near is far")
+      ->group(for_experts);
+  command
+      .add_flag("--keep-end-point", keep_end_point_,
+                "keep a measured table's last sample though it equals the first")
+      ->group(for_experts);
 }
 
 DecodingSource TableArguments::load(const std::string& code, const Camera& camera,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "help_pages.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
 
@@ -30,9 +31,10 @@ struct TapArguments {
   std::string order;
 
   void add_to(CLI::App& command) {
-    command.add_option("--taps", taps, "taps of an NPZ code (the camera's)");
+    command.add_option("--taps", taps, "taps of an NPZ code (the camera's)")->group(for_experts);
     command.add_option("--tap-order", order, "how an NPZ code's columns run; never guessed")
-        ->check(one_of({"blocked", "interleaved"}));
+        ->check(one_of({"blocked", "interleaved"}))
+        ->group(for_experts);
   }
   std::optional<TapOrder> tap_order() const {
     return order.empty() ? std::nullopt : std::optional(parse_tap_order(order));

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "help_pages.hpp"
 #include "interrupt.hpp"
 #include "number_checks.hpp"
 #include "tap_arguments.hpp"
@@ -188,8 +189,10 @@ void add_waveform_options(CLI::App& command, UploadArguments& arguments) {
   command
       .add_option("--edge-grid", options.edge_grid_s,
                   "on and off switch at multiples of this time only [s]")
-      ->check(positive_number());
-  command.add_option("--periods", options.periods, "periods in a table (as few as fit)");
+      ->check(positive_number())
+      ->group(for_experts);
+  command.add_option("--periods", options.periods, "periods in a table (as few as fit)")
+      ->group(for_experts);
   command
       .add_option("--volts", arguments.volts,
                   "LOW,HIGH: output at no light and no gain, and at peak light and full gain [V] "
@@ -211,16 +214,20 @@ void add_waveform_options(CLI::App& command, UploadArguments& arguments) {
 }
 
 void add_family_options(CLI::App& command, UploadArguments& arguments) {
-  command.add_flag("--true-arb", arguments.request.true_arb,
-                   "Siglent: play every point instead of skipping some");
+  command
+      .add_flag("--true-arb", arguments.request.true_arb,
+                "Siglent: play every point instead of skipping some")
+      ->group(for_experts);
   command
       .add_option("--wave-header", arguments.header,
                   "Siglent: how a waveform is announced; sources disagree")
       ->check(one_of({"length", "plain", "minimal"}))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->group(for_experts);
   command.add_option("--filter", arguments.filter, "Keysight: of the output")
       ->check(one_of({"step", "normal", "off"}))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->group(for_experts);
 }
 
 }  // namespace
@@ -252,11 +259,16 @@ void add_upload_command(CLI::App& app, Session& session) {
   add_family_options(*command, *arguments);
   command->add_option("--timeout", arguments->timeout_s, "longest wait for an answer [s]")
       ->check(positive_number(3600.0))
-      ->capture_default_str();
-  command->add_flag("--no-read-back", arguments->no_read_back,
-                    "do not compare the points in the instrument: unverified");
-  command->add_flag("--no-reset", arguments->no_reset,
-                    "keep the instrument's other settings, which may change what is played");
+      ->capture_default_str()
+      ->group(for_experts);
+  command
+      ->add_flag("--no-read-back", arguments->no_read_back,
+                 "do not compare the points in the instrument: unverified")
+      ->group(for_experts);
+  command
+      ->add_flag("--no-reset", arguments->no_reset,
+                 "keep the instrument's other settings, which may change what is played")
+      ->group(for_experts);
   command->add_flag("--output-on", arguments->request.output_on,
                     "switch the outputs on when all is verified");
   command->add_flag("--dry-run", arguments->dry_run,

@@ -25,3 +25,21 @@ target_compile_options(tofsmith_build_options INTERFACE
   -ffp-contract=off
   $<$<BOOL:${TOFSMITH_WERROR}>:-Werror>
   $<$<AND:$<BOOL:${TOFSMITH_CCACHE}>,$<CXX_COMPILER_ID:GNU>>:-fpch-preprocess>)
+
+# What makes a flaw in a reader of hostile files harder to use; tests/consumer/hardening_test.py looks
+# for it in what is installed. Sanitizers check more, and do not go together with it.
+option(TOFSMITH_HARDEN "Compile optimized builds with what hardens them against hostile input" ON)
+if(TOFSMITH_HARDEN AND CMAKE_SYSTEM_NAME STREQUAL "Linux" AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang"
+   AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+  set(hardening -fstack-protector-strong)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    list(APPEND hardening -fcf-protection)
+  endif()
+  if(NOT CMAKE_CXX_FLAGS MATCHES "FORTIFY")  # a distribution's own level
+    list(APPEND hardening -D_FORTIFY_SOURCE=2)
+  endif()
+  set(optimized "$<CONFIG:Release,RelWithDebInfo,MinSizeRel>")
+  target_compile_options(tofsmith_build_options INTERFACE "$<${optimized}:${hardening}>")
+  target_link_options(tofsmith_build_options INTERFACE
+    "$<${optimized}:LINKER:-z,relro,-z,now,-z,noexecstack>")
+endif()

@@ -100,11 +100,12 @@ if(TARGET _tofsmith)
       "${about}\n\nThis package is the Python module tofsmith.")
 endif()
 
-# Debian's own files, compression and dates are put in between installing and packing.
+# Debian's own files, compression, the bill of materials and dates are put in between installing and packing.
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   string(TOUPPER "${component}" upper)
   list(APPEND debian_names "${component}" "${CPACK_DEBIAN_${upper}_PACKAGE_NAME}")
 endforeach()
+find_program(TOFSMITH_PACKAGING_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/debian/stage.cmake.in
                ${PROJECT_BINARY_DIR}/stage_debian.cmake @ONLY)
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_BINARY_DIR}/stage_debian.cmake)

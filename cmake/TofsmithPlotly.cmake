@@ -14,8 +14,7 @@ if(NOT TOFSMITH_ESBUILD)
   message(FATAL_ERROR "esbuild is missing: apt-get install esbuild")
 endif()
 
-# The licence comment is the head of the file; the minifier drops it, so it goes in as a banner, and
-# into the page where it can be read.
+# The licence comment is the head of the file; the minifier drops it, so it goes in as a banner.
 file(STRINGS "${TOFSMITH_PLOTLY_JS}" plotly_head LIMIT_COUNT 6)
 list(FILTER plotly_head INCLUDE REGEX "^/?\\*")
 list(JOIN plotly_head " " plotly_licence)  # a command takes no line break
@@ -33,15 +32,13 @@ add_custom_command(OUTPUT "${plotly_minified}.gz"
 
 # An assembler file takes bytes as they are and at once; a C++ array of 4 MB takes a minute.
 enable_language(ASM)
-set(plotly_licence_file "${CMAKE_CURRENT_BINARY_DIR}/plotly_licence.txt")
-string(REGEX REPLACE "[/ *]*\\*/$|^/\\*[* ]*" "" plotly_licence_text "${plotly_licence}")
-file(CONFIGURE OUTPUT "${plotly_licence_file}" CONTENT "${plotly_licence_text}" @ONLY)
-set(resources "plotly_js" "${plotly_minified}.gz"
-              "plotly_licence" "${plotly_licence_file}"
-              "page_css" "${CMAKE_CURRENT_SOURCE_DIR}/report/page.css"
-              "page_js" "${CMAKE_CURRENT_SOURCE_DIR}/report/page.js")
 set(resource_files)
 set(assembler ".section .rodata\n")
+set(report "${CMAKE_CURRENT_SOURCE_DIR}/report")
+set(resources "plotly_js" "${plotly_minified}.gz"
+              "plotly_licences" "${report}/plotly_licences.js"
+              "page_css" "${report}/page.css"
+              "page_js" "${report}/page.js")
 while(resources)
   list(POP_FRONT resources name file)
   list(APPEND resource_files "${file}")

@@ -18,6 +18,9 @@ HEAD = "# {shell} completion of tofsmith {version}, made by cmake/make_completio
 NAMED = {"--camera": "camera", "CAMERA": "camera", "--code": "code", "CODE": "code",
          "--target": "code", "--depth": "scene", "--scene": "scene", "SCENE": "scene"}
 
+# Options that mean something else for each command.
+OWN = {"--help", "--help-all", "--version"}
+
 
 def words_for(command, argument, names):
     """What can be typed for the argument; files may be meant too."""
@@ -57,7 +60,7 @@ def bash(listing):
             if words:
                 values.append(f'    {pattern}) names="{" ".join(words)}" ;;')
     program = listing["commands"][0]["options"]
-    general = spelled(o for o in program if not {"--help", "--version"} & set(o["names"]))
+    general = spelled(o for o in program if not OWN & set(o["names"]))
     general_takes = "|".join(f'*" {name}"' for o in valued(program) for name in o["names"])
     return HEAD.format(shell="bash", version=listing["version"]) + f"""
 # Whether the option $2 of command $1 takes a value.
@@ -140,7 +143,7 @@ def fish(listing):
                              f"-d {quoted(summaries[(*words, sub)])}")
         when = f" -n {quoted('; and '.join(here))}" if here else ""
         for option in command["options"]:
-            if words and "--help" in option["names"]:
+            if words and OWN & set(option["names"]):
                 continue
             spelling = "".join(f" -l {n[2:]}" if n.startswith("--") else f" -s {n[1:]}"
                                for n in option["names"])
@@ -191,7 +194,7 @@ def zsh(listing):
         options = [specification(command, o) for o in command["options"]]
         if words:
             options += [specification(program, o) for o in program["options"]
-                        if not {"--help", "--version"} & set(o["names"])]
+                        if not OWN & set(o["names"])]
         lines.append(f"{function(words)}() {{")
         if command["subcommands"]:
             lines += ["  local context state line", "  _arguments -C \\"]

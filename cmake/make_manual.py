@@ -14,6 +14,9 @@ EXIT_STATUS = (("0", "done"), ("1", "failed; the message says of what"),
 ENVIRONMENT = (("TOFSMITH_TARGET", "instruction set to use, such as AVX2, so that machines that "
                                    "differ give equal bits"),)
 
+# Options that mean something else for each command.
+OWN = {"--help", "--help-all", "--version"}
+
 
 def escaped(text):
     """Text that groff prints as it is."""
@@ -99,7 +102,7 @@ def manual_page(command, listing):
         section("OPTIONS", [term(option_head(o), sentences(o)) for o in command["options"]]),
         section("OPTIONS OF EVERY COMMAND", [
             term(option_head(o), sentences(o)) for o in program["options"]
-            if words and not {"--help", "--version"} & set(o["names"])]),
+            if words and not OWN & set(o["names"])]),
         section("NOTES", [f".nf\n{escaped(example)}\n.fi\n"] if example else []),
         section("EXIT STATUS", [term(bold(code), text + ".") for code, text in EXIT_STATUS]),
         section("ENVIRONMENT", [term(bold(name), text + ".") for name, text in ENVIRONMENT]),

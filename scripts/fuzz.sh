@@ -4,13 +4,16 @@
 #
 # Runs libFuzzer (clang, with address and undefined-behaviour sanitizers) on the readers of files.
 # Seeds are made by the library; what is found new stays in build-fuzz/corpus and is where the next
-# run goes on.
+# run goes on. Executions are added up in build-fuzz/tally.
 #
 #   scripts/fuzz.sh [--seconds N] [READER ..]     10 s of each reader, unless named
-#   scripts/fuzz.sh --list                        their names
+#   scripts/fuzz.sh --total 1e8                   in rounds, until all runs together have so many
+#                                                 executions; stopped and started again, it goes on
+#   scripts/fuzz.sh --list                        the readers' names
+#   scripts/fuzz.sh --tally                       what was done so far
 #
-# It ends with a table of executions and coverage. An input that crashes, hangs (10 s) or takes more
-# than 1 GB is kept in build-fuzz/found: exit code 1.
+# It ends with a table of this run, or of all. An input that crashes, hangs (10 s) or takes more than
+# 1 GB is kept in build-fuzz/found: exit code 1.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -18,7 +21,21 @@ cd "$root"
 # shellcheck source=scripts/packages.sh
 source scripts/packages.sh
 
-seconds=10
+tally=build-fuzz/tally # a line for each run of a reader: name, executions, seconds, coverage
+
+# The lines of standard input, added up by reader in the order in which they come first.
+table() {
+  awk '{ if (!($1 in runs)) names[++count] = $1; ++runs[$1]; done[$1] += $2; took[$1] += $3; all += $2; time += $3
+         if ($4 > coverage[$1]) coverage[$1] = $4 }
+       END { printf "%-17s %12s %10s %9s\n", "reader", "executions", "per-second", "coverage"
+             for (i = 1; i <= count; ++i) { n = names[i]
+               printf "%-17s %12d %10d %9d\n", n, done[n], done[n] / (took[n] > 0 ? took[n] : 1), coverage[n] }
+             printf "%-17s %12d %10d\n", "all", all, all / (time > 0 ? time : 1) }'
+}
+
+executions_so_far() { awk '{ all += $2 } END { printf "%d\n", all }' "$tally"; }
+
+seconds=10 total=0
 readers=()
 while (($#)); do
   case "$1" in
@@ -27,7 +44,14 @@ while (($#)); do
       exit 0
       ;;
     --seconds) seconds=${2:?--seconds needs a number} && shift ;;
+    --total) total=$(printf '%.0f' "${2:?--total needs a number}") && shift ;;
+    --tally)
+      [[ -s "$tally" ]] || tofsmith_die "nothing was run yet; see --help"
+      table <"$tally"
+      exit
+      ;;
     --list) readers=(list) ;;
+    -*) tofsmith_die "unknown option $1; see --help" ;;
     *) readers+=("$1") ;;
   esac
   shift
@@ -40,25 +64,42 @@ fuzzer=build-fuzz/tests/fuzz/readers
 if [[ "${readers[*]:-}" == list ]]; then exec "$fuzzer" --reader=list; fi
 if ((${#readers[@]} == 0)); then mapfile -t readers < <("$fuzzer" --reader=list); fi
 
-export ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0
+# Readers that take files have them in memory, not on a disk. Backtraces of allocations cost a third
+# of the time: an input that fails is run again by hand.
+scratch=$(mktemp -d "$([[ -w /dev/shm ]] && echo /dev/shm || echo /tmp)/tofsmith-fuzz-XXXXXX")
+trap 'rm -rf "$scratch"' EXIT
+export TMPDIR=$scratch
+export ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=0:malloc_context_size=0:quarantine_size_mb=32
 mkdir -p build-fuzz/found
-failed=0
-table=$(printf '%-12s %12s %10s %9s' reader executions per-second coverage)
-for reader in "${readers[@]}"; do
-  corpus=build-fuzz/corpus/$reader log=build-fuzz/$reader.log
+touch "$tally"
+
+# One reader for some seconds, on what is known of it; a line for the tally.
+run_reader() {
+  local reader=$1 corpus=build-fuzz/corpus/$1 log=build-fuzz/$1.log status=0
   mkdir -p "$corpus"
   "$fuzzer" "--reader=$reader" "--seeds=$corpus"
-  if ! "$fuzzer" "--reader=$reader" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1500 \
+  "$fuzzer" "--reader=$reader" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1500 \
     -malloc_limit_mb=1000 -max_len=65536 -use_value_profile=1 -print_final_stats=1 \
     -dict=tests/fuzz/words.dict -artifact_prefix="build-fuzz/found/$reader-" "$corpus" \
-    >"$log" 2>&1; then
-    failed=1
-    echo "$reader: an input fails; see $log and build-fuzz/found" >&2
-  fi
-  executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
-  rate=$(sed -n 's/^stat::average_exec_per_sec: *//p' "$log")
-  coverage=$(sed -n 's/.* cov: \([0-9]*\) .*/\1/p' "$log" | tail -1)
-  table+=$(printf '\n%-12s %12s %10s %9s' "$reader" "${executions:-?}" "${rate:-?}" "${coverage:-?}")
+    >"$log" 2>&1 || status=$?
+  ((status == 0)) || echo "$reader: an input fails; see $log and build-fuzz/found" >&2
+  awk -v reader="$reader" '
+    /^stat::number_of_executed_units/ { executions = $2 }
+    /^Done .* runs in .* second/ { seconds = $5 }
+    { for (i = 1; i < NF; ++i) if ($i == "cov:") coverage = $(i + 1) }
+    END { print reader, executions + 0, seconds + 0, coverage + 0 }' "$log" | tee -a "$tally"
+  return "$status"
+}
+
+failed=0
+while :; do
+  lines=
+  for reader in "${readers[@]}"; do
+    line=$(run_reader "$reader") || failed=1
+    lines+=$line$'\n'
+    ((total == 0 || $(executions_so_far) < total)) || break
+  done
+  ((failed == 0 && total > 0 && $(executions_so_far) < total)) || break
 done
-echo "$table"
+if ((total > 0)); then table <"$tally"; else table < <(printf '%s' "$lines"); fi
 exit "$failed"

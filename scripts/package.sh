@@ -5,23 +5,34 @@
 # Installs what is missing, builds tofsmith as shared libraries and makes Debian packages of it:
 # libtofsmith-core0.1 and libtofsmith-core-dev, so for design, io, lab, report and sweep;
 # libtofsmith-dev for all of them, tofsmith and python3-tofsmith. The same commit makes the same bytes,
-# in whatever directory it is built.
+# in whatever directory it is built (scripts/reproduce_build.sh). What is packed must be hardened
+# (scripts/check_elf.py).
 #
-#   scripts/package.sh [DIR]      build there instead of in build-package
+#   scripts/package.sh [--component NAME] [DIR]     build there instead of in build-package
+#
+#   --component NAME   only this one and what it stands on: no command line, no Python
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # shellcheck source=scripts/packages.sh
 source "$root/scripts/packages.sh"
 
-case "${1:-}" in
-  -h | --help)
-    sed -n '/^# Installs/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
-    exit 0
-    ;;
-  -*) tofsmith_die "unknown option $1; see --help" ;;
-esac
-build=$(realpath -m "${1:-$root/build-package}")
+component='' directory=''
+while (($#)); do
+  case "$1" in
+    -h | --help)
+      sed -n '/^# Installs/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+      exit 0
+      ;;
+    --component) component=${2:?--component needs a name} && shift ;;
+    -*) tofsmith_die "unknown option $1; see --help" ;;
+    *) directory=$1 ;;
+  esac
+  shift
+done
+build=$(realpath -m "${directory:-$root/build-package}")
+programs=(-DTOFSMITH_BUILD_APPS=ON -DTOFSMITH_BUILD_PYTHON=REQUIRED)
+[[ -z "$component" ]] || programs=(-DTOFSMITH_BUILD_APPS=OFF -DTOFSMITH_BUILD_PYTHON=OFF)
 
 install_packages package
 use_debian_tools
@@ -31,14 +42,19 @@ echo "Building tofsmith in $build"
 rm -f "$build/CMakeCache.txt"
 cmake --log-level=WARNING -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_INSTALL_PREFIX=/usr -DCMAKE_SKIP_INSTALL_RPATH=ON -DBUILD_SHARED_LIBS=ON \
-  -DTOFSMITH_BUILD_APPS=ON -DTOFSMITH_BUILD_PYTHON=REQUIRED -DTOFSMITH_BUILD_TESTS=OFF \
-  -DTOFSMITH_UNITY=ON -DTOFSMITH_COMPONENTS=
+  "${programs[@]}" -DTOFSMITH_BUILD_TESTS=OFF -DTOFSMITH_UNITY=ON -DTOFSMITH_COMPONENTS="$component"
 cmake --build "$build"
 
 rm -f "$build"/*.deb
-(cd "$build" && cpack --config CPackConfig.cmake)
+# The archive in a package notes the permissions of its parts.
+(umask 022 && cd "$build" && cpack --config CPackConfig.cmake)
 mapfile -t packages < <(compgen -G "$build/*.deb")
 ((${#packages[@]})) || tofsmith_die "cpack made no packages in $build"
+unpacked=$(mktemp -d)
+trap 'rm -rf "$unpacked"' EXIT
+for package in "${packages[@]}"; do dpkg-deb -x "$package" "$unpacked"; done
+mapfile -t elf_files < <(find "$unpacked" -type f \( -name '*.so' -o -name '*.so.*' -o -path '*/usr/bin/*' \) | sort)
+"$root/scripts/check_elf.py" "${elf_files[@]}" || tofsmith_die "what is packed is not hardened"
 printf 'Done. The packages, with their SHA-256 sums, are\n'
 sha256sum "${packages[@]}"
 printf 'Install them with\napt install %s/*.deb\n' "$build"

@@ -23,6 +23,7 @@ class Entry:
     required: bool = False
     needs: list[str] = field(default_factory=list)
     excludes: list[str] = field(default_factory=list)
+    for_experts: bool = False
 
 
 @dataclass
@@ -50,7 +51,7 @@ def entry_of(argument: dict) -> Entry:
     return Entry(argument["names"], argument["help"], value, rule.removeprefix(value + " "),
                  argument.get("default"), argument.get("many", False),
                  argument.get("required", False), argument.get("needs", []),
-                 argument.get("excludes", []))
+                 argument.get("excludes", []), argument.get("for_experts", False))
 
 
 def all_commands(tool: str) -> list[Command]:
@@ -59,6 +60,8 @@ def all_commands(tool: str) -> list[Command]:
                           timeout=60).stdout
     return [Command(command["words"], command["summary"], command["subcommands"],
                     {"Positionals": [entry_of(p) for p in command["positionals"]],
-                     "Options": [entry_of(o) for o in command["options"]]},
+                     "Options": [e for e in options if not e.for_experts],
+                     "For experts": [e for e in options if e.for_experts]},
                     command.get("example", ""))
-            for command in json.loads(text)["commands"]]
+            for command in json.loads(text)["commands"]
+            for options in [[entry_of(o) for o in command["options"]]]]

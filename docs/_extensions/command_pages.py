@@ -62,7 +62,8 @@ def section_of(command: Command, level: int) -> str:
     text = [f"{'#' * level} {command.name}\n", plain(command.description) + "\n",
             f"```text\n{command.usage}\n```\n", f"```{{program}} {command.name}\n```\n"]
     for title, entries in command.sections.items():
-        shown = [option_of(entry) for entry in entries if "--help" not in entry.names]
+        shown = [option_of(entry) for entry in entries
+                 if not {"--help", "--help-all"} & set(entry.names)]
         if shown:
             text += [f"**{title}**\n", *shown]
     if command.footer and command.words:
@@ -76,7 +77,8 @@ def front_page(tool: Command, pages: list[Command]) -> str:
     names = "\n".join(page.words[0] for page in pages)
     return f"""# Commands
 
-{plain(tool.description)} These pages are made from what `tofsmith COMMAND --help` says.
+{plain(tool.description)} These pages are made from what `tofsmith COMMAND --help-all` says; `--help`
+shows the options of every day.
 
 | command | does |
 |---|---|

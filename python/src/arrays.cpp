@@ -62,6 +62,10 @@ Image<float> to_image(const py::object& values, const char* argument) {
   return image;
 }
 
+Image<float> taken_image(const py::dict& options, const char* name) {
+  return to_image(options.attr("pop")(name, py::none()), name);
+}
+
 RawFrames to_raw_frames(const py::object& values, const char* argument) {
   RawFrames raw;
   if (values.is_none()) return raw;

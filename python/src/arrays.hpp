@@ -44,6 +44,8 @@ Eigen::MatrixXd to_matrix(const Doubles& values, const char* argument);
 /// An image of shape (H, W); None is an empty one.
 /// @throws std::invalid_argument naming the argument unless it has two axes
 Image<float> to_image(const py::object& values, const char* argument);
+/// The same out of a dict of options, where it stands no more; empty if it does not.
+Image<float> taken_image(const py::dict& options, const char* name);
 
 /// Frames of shape (F, H, W, K); None is none of them.
 /// @throws std::invalid_argument naming the argument unless it has four axes

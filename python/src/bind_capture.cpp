@@ -100,11 +100,14 @@ CaptureOptions capture_options(const Camera& camera, const py::dict& values) {
 }
 
 py::array_t<float> capture_array(const py::dict& planes, const py::dict& returns,
-                                 const CodeSet& code, const Camera& camera, const py::dict& values,
+                                 const CodeSet& code, const Camera& camera, const py::dict& given,
                                  const py::object& callback) {
+  const py::dict values = given.attr("copy")();
+  const Image<float> kernel = taken_image(values, "stray_light");
   const CaptureOptions options = capture_options(camera, values);
   const SceneImage scene = scene_of(planes);
-  const SceneLight light = light_of(returns, scene);
+  SceneLight light = light_of(returns, scene);
+  light.stray_light = kernel;
   return adopt(without_gil(callback, [&](const Progress& progress) {
     return capture(scene, light, code, camera, options, progress);
   }));
@@ -123,8 +126,10 @@ py::array_t<float> stacked(const Images& images, const ImageOf& image_of) {
 
 /// An image as it is, shapes through the camera's lens.
 py::dict capture_staged(const std::string& name, const py::dict& size, const py::dict& returns,
-                        const CodeSet& code, const Camera& camera, const py::dict& values,
+                        const CodeSet& code, const Camera& camera, const py::dict& given,
                         const py::object& callback) {
+  const py::dict values = given.attr("copy")();
+  const Image<float> kernel = taken_image(values, "stray_light");
   const CaptureOptions options = capture_options(camera, values);
   SceneSource source{.scene = name};
   read_options(size, "", source);
@@ -133,14 +138,16 @@ py::dict capture_staged(const std::string& name, const py::dict& size, const py:
     const py::gil_scoped_release release;
     scene = load_scene(source, camera.lens);
   }
-  StagedSetup setup{.search_of = embree_search(), .light = {}, .ambient_scale = {}};
+  StagedSetup setup{
+      .search_of = embree_search(), .light = {}, .ambient_scale = {}, .stray_light = kernel};
   if (!returns.empty())
     setup.light = [&](const StagedScene&, const SceneImage& rays) {
       const py::gil_scoped_acquire acquire;
       return light_of(returns, rays);
     };
-  const SceneLight light =
+  SceneLight light =
       scene.staged || returns.empty() ? SceneLight{} : light_of(returns, scene.image);
+  light.stray_light = kernel;
   StagedCapture made = without_gil(callback, [&](const Progress& progress) {
     if (scene.staged) return capture(*scene.staged, code, camera, options, setup, progress);
     return StagedCapture{.raw = capture(scene.image, light, code, camera, options, progress),

@@ -174,10 +174,9 @@ DecodeRequest request_of(const std::vector<std::string>& raw, const std::string&
   request.offset_map = offset_map;
   request.gain_map = gain_map;
   request.stray_light = stray_light;
-  request.rays = rays;
   request.policy = policy_of(overwrite);
   for (const std::string& plane : outputs) request.outputs.push_back(parse_decoded_plane(plane));
-  request.lens = to_optional_lens(lens);
+  request.lens = rays.empty() ? to_optional_lens(lens) : std::optional(Lens{.rays = rays});
   return request;
 }
 

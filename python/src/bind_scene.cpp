@@ -37,15 +37,15 @@ py::dict load(const std::string& name, const py::object& lens, const py::dict& v
 }
 
 py::array_t<float> convert(const py::object& depth_m, const py::dict& lens,
-                           Image<float> (*how)(const Image<float>&, const PinholeView&)) {
+                           Image<float> (*how)(const Image<float>&, const PixelRays&)) {
   const Image<float> image = to_image(depth_m, "depth_m");
-  return adopt(how(image, checked_view(lens, image.width, image.height)));
+  return adopt(how(image, pixel_rays(lens, image.width, image.height)));
 }
 
 /// (H, W, 3), NaN without depth.
 py::array_t<float> points(const py::object& radial_m, const py::dict& lens) {
   const Image<float> radial = to_image(radial_m, "radial_m");
-  const PixelRays rays(checked_view(lens, radial.width, radial.height));
+  const PixelRays rays = pixel_rays(lens, radial.width, radial.height);
   std::vector<float> points_m;
   points_m.reserve(3 * radial.size());
   for (int row = 0; row < radial.height; ++row)

@@ -11,6 +11,7 @@
 namespace tofsmith::python {
 
 Lens to_lens(const py::dict& lens) {
+  if (lens.contains("rays")) return {.rays = py::cast<std::string>(lens["rays"])};
   const auto number = [&](const char* key) { return py::cast<double>(lens[key]); };
   Lens result{.fx_px = number("fx_px"),
               .fy_px = number("fy_px"),
@@ -39,6 +40,10 @@ PinholeView checked_view(const py::dict& lens, int width, int height) {
   const PinholeView view = view_of(to_lens(lens), width, height);
   view.validate();
   return view;
+}
+
+PixelRays pixel_rays(const py::dict& lens, int width, int height) {
+  return rays_of(to_lens(lens), checked_view(lens, width, height));
 }
 
 }  // namespace tofsmith::python

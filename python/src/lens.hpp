@@ -21,5 +21,7 @@ std::optional<Lens> to_optional_lens(const py::object& lens);
 py::dict lens_dict(const PinholeView& view);
 /// What an image of this size is seen through. @throws std::invalid_argument as its validate()
 PinholeView checked_view(const py::dict& lens, int width, int height);
+/// Its rays. @throws IoError also for a file of rays that does not fit
+PixelRays pixel_rays(const py::dict& lens, int width, int height);
 
 }  // namespace tofsmith::python

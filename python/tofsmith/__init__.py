@@ -15,6 +15,9 @@ Examples
 >>> report = tofsmith.evaluate(code, camera, trials=1000)
 """
 
+from importlib import import_module as _import_module
+from types import ModuleType as _ModuleType
+
 from . import _components  # isort: skip
 from . import _check, _tofsmith
 from ._bounds import CramerRaoBound, DirectTofBound, ReceiverBound
@@ -151,6 +154,13 @@ from ._training_set import TrainingSetRun, write_training_set
 from ._waveform import Waveform
 
 __version__: str = _tofsmith.version
+
+
+def __getattr__(name: str) -> _ModuleType:
+    """tofsmith.plot and tofsmith.figures, when they are first asked for."""
+    if name in ("figures", "plot"):
+        return _import_module(f"{__name__}.{name}")
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
 
 
 def build_info() -> dict[str, str | list[str]]:

@@ -28,6 +28,7 @@ from ._camera_fields import (
     Temperature,
 )
 from ._check import Path
+from ._notebook import camera_picture
 
 
 def _tuples(values: Mapping[str, Any]) -> dict[str, Any]:
@@ -206,7 +207,7 @@ class Camera:
     def lens(self) -> Optional[Lens]:
         """The pinhole, if the camera has one."""
         lens = self._lens_fields(Lens)
-        return Lens(**_tuples(lens)) if "fx_px" in lens else None
+        return Lens(**_tuples(lens)) if lens else None
 
     @cached_property
     def blur(self) -> Optional[LensBlur]:
@@ -328,6 +329,9 @@ class Camera:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Camera.from_toml, (self.to_toml(), self.name)
+
+    def _repr_html_(self) -> str:
+        return camera_picture(self, self.fundamental_frequency_hz, self.transfer(12))
 
     def __repr__(self) -> str:
         return (

@@ -129,7 +129,7 @@ class Sensor:
 
 @dataclass(frozen=True)
 class Lens:
-    """A pinhole, ideal unless the lens distorts; pixel centres are whole numbers.
+    """A pinhole, ideal unless the lens distorts, or a map of rays; pixel centres are whole numbers.
 
     Attributes
     ----------
@@ -141,16 +141,20 @@ class Lens:
         OpenCV's coefficients: k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4]]]; of a fisheye k1 k2 k3 k4.
     width_px, height_px : int, optional
         Of the images that all this is of; None: of any.
+    rays : str, optional
+        In place of all these, a file of each pixel's ray (.npy): (H, W, 2) of x/z and y/z, or
+        (H, W, 3) of directions.
     """
 
-    fx_px: float
-    fy_px: float
-    cx_px: float
-    cy_px: float
+    fx_px: float = 0.0
+    fy_px: float = 0.0
+    cx_px: float = 0.0
+    cy_px: float = 0.0
     distortion_model: Optional[str] = None
     distortion: Optional[tuple[float, ...]] = None
     width_px: Optional[int] = None
     height_px: Optional[int] = None
+    rays: Optional[str] = None
 
 
 @dataclass(frozen=True)

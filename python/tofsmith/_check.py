@@ -78,6 +78,14 @@ def number(value: Any, name: str) -> float:
     return float(value)
 
 
+def numbers(value: Any, name: str) -> Optional[list[float]]:
+    """A list of numbers; one number is a list of it, None stays."""
+    if value is None:
+        return None
+    several = [value] if np.ndim(value) == 0 else list(value)
+    return [number(each, name) for each in several]
+
+
 def one_of(value: object, name: str, words: tuple[str, ...]) -> str:
     if isinstance(value, str) and value in words:
         return value
@@ -99,6 +107,9 @@ def without_mask(value: Any) -> Any:
 
 def real_array(value: Any, name: str, axes: str) -> npt.NDArray[Any]:
     """An array of real numbers with as many axes as `axes`, such as "(N, K)", names."""
+    if isinstance(value, (str, os.PathLike)):
+        raise TypeError(f"{name}: got {shown(value)}; needs real numbers, {axes}, not the "
+                        "name of a file (read_depth(), read_raw() and numpy.load() read them)")
     array: npt.NDArray[Any] = np.asanyarray(without_mask(value))
     if array.dtype.kind not in "fiu":
         raise ValueError(f"{name}: got dtype {array.dtype}; needs real numbers, such as float64")
@@ -144,12 +155,12 @@ def progress(value: Progress) -> Progress:
 
 def raw_array(raw: Any, layout: str) -> tuple[npt.NDArray[Any], bool]:
     """Raw numbers where they are, and whether they are planar; a list of arrays, one a measurement,
-    is put together. int8 and int16 come as float32, larger whole numbers as float64."""
+    is put together. int8, int16 and float16 come as float32, larger whole numbers as float64."""
     is_planar = one_of(layout, "layout", ("interleaved", "planar")) == "planar"
     if isinstance(raw, (list, tuple)):
         raw, is_planar = _together(raw), True
     raw = _numpy_array(raw, "raw", "a numpy.ndarray, or a list of them, one a measurement")
-    if raw.dtype in (np.int8, np.int16):
+    if raw.dtype in (np.int8, np.int16, np.float16):
         raw = raw.astype(np.float32)
     elif raw.dtype.kind in "iu" and raw.dtype.itemsize > 2:
         raw = raw.astype(np.float64)
@@ -163,6 +174,8 @@ def _numpy_array(value: Any, name: str, needed: str) -> npt.NDArray[Any]:
         value = np.asarray(value)
     if isinstance(value, np.ndarray):
         return value
+    if isinstance(value, (str, os.PathLike)):
+        needed += f"; read_raw({os.fspath(value)!r}) reads one"
     raise TypeError(f"{name}: got {shown(value)}; needs {needed}")
 
 

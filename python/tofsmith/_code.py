@@ -30,7 +30,7 @@ class CodeSet:
 
     _handle: _tofsmith.CodeSet
 
-    def __init__(self) -> None:
+    def __init__(self, *_: object, **__: object) -> None:
         raise TypeError(
             "CodeSet: use build_family(name, camera), load_code(name_or_path, camera), "
             "CodeSet.from_arrays(modulation, demodulation) or CodeSet.from_waveforms(..)"

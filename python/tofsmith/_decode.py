@@ -25,6 +25,7 @@ from ._depth_image import (
     usual_planes,
 )
 from ._filter import Filter, FilterLike, TimeFilterLike, filter_options
+from ._notebook import table_picture
 from ._recordings import (
     DecodedRecording,
     DecodedStream,
@@ -110,6 +111,9 @@ class Decoder:
         samples, measurements = self._table.correlation.shape
         return (f"<Decoder {self._method}: K = {measurements}, N = {samples}, range "
                 f"{self._table.range_m:.4g} m>")
+
+    def _repr_html_(self) -> str:
+        return table_picture(self, self._table.correlation, self._table.range_m)
 
     @property
     def method(self) -> str:

@@ -14,6 +14,7 @@ from . import _check, _tofsmith
 from ._camera import CameraLike, camera_of
 from ._check import FloatArray, Path
 from ._code import CodeLike, code_of
+from ._notebook import table_picture
 
 
 class DecodingTable:
@@ -170,9 +171,9 @@ class DecodingTable:
             plain._made = ("of_measured", (table,), {"range_m": metres})
             return plain
         camera = camera_of(camera)
-        metres = None if range_m is None else _check.number(range_m, "range_m")
+        depth_m = None if range_m is None else _check.number(range_m, "range_m")
         measured = cls._of(_tofsmith.DecodingTable.of_measured(
-            table, camera._handle, {"taps": taps, "ambient": ambient, "range_m": metres}))
+            table, camera._handle, {"taps": taps, "ambient": ambient, "range_m": depth_m}))
         measured._made = ("of_measured", (table, camera),
                           {"range_m": range_m, "taps": taps, "ambient": ambient})
         return measured
@@ -192,6 +193,9 @@ class DecodingTable:
     def __repr__(self) -> str:
         samples, measurements = self.correlation.shape
         return f"<DecodingTable: K = {measurements}, N = {samples}, range {self.range_m:.4g} m>"
+
+    def _repr_html_(self) -> str:
+        return table_picture(self, self.correlation, self.range_m)
 
     @property
     def notes(self) -> list[str]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -122,10 +122,10 @@ def multipath_error(
     code: CodeLike,
     camera: CameraLike,
     *,
-    delay_m: Optional[Sequence[float]] = None,
-    ratio: Optional[Sequence[float]] = None,
-    tail_m: Optional[Sequence[float]] = None,
-    signal_e_per_s: Optional[Sequence[float]] = None,
+    delay_m: Union[float, Sequence[float], None] = None,
+    ratio: Union[float, Sequence[float], None] = None,
+    tail_m: Union[float, Sequence[float], None] = None,
+    signal_e_per_s: Union[float, Sequence[float], None] = None,
     ambient_e_per_s: Optional[float] = None,
     trials: Optional[int] = None,
     seed: Optional[int] = None,
@@ -138,13 +138,13 @@ def multipath_error(
     ----------
     code : CodeSet, name of a family or file
     camera : Camera or its name
-    delay_m : sequence of float, optional
+    delay_m : float or sequence of float, optional
         Of a second return behind the direct one [m].
-    ratio : sequence of float, optional
+    ratio : float or sequence of float, optional
         S2 / S1, in [0, 1].
-    tail_m : sequence of float, optional
+    tail_m : float or sequence of float, optional
         Mean delays of tails [m].
-    signal_e_per_s : sequence of float, optional
+    signal_e_per_s : float or sequence of float, optional
         S1 [e/s].
     ambient_e_per_s : float, optional
     trials : int, optional
@@ -156,10 +156,10 @@ def multipath_error(
     """
     camera = camera_of(camera)
     options = {
-        "delay_m": None if delay_m is None else list(delay_m),
-        "ratio": None if ratio is None else list(ratio),
-        "tail_m": None if tail_m is None else list(tail_m),
-        "signal_e_per_s": None if signal_e_per_s is None else list(signal_e_per_s),
+        "delay_m": _check.numbers(delay_m, "delay_m"),
+        "ratio": _check.numbers(ratio, "ratio"),
+        "tail_m": _check.numbers(tail_m, "tail_m"),
+        "signal_e_per_s": _check.numbers(signal_e_per_s, "signal_e_per_s"),
         "ambient_e_per_s": ambient_e_per_s,
         "trials": trials,
         "seed": seed,

@@ -43,6 +43,35 @@ def depth_picture(value: object, depth_m: Any) -> str:
     return picture_of(value, lambda plot: plot.depth_maps(frame))
 
 
+def table_picture(value: object, correlation: Any, range_m: float) -> str:
+    """HTML of what measurements are over depth: correlation functions, (N, K)."""
+
+    def draw(plot: Any) -> Any:
+        figure = plot.new_figure(None, 4.5, 2.2)
+        axis = figure.subplots()
+        depth_m = (np.arange(len(correlation)) + 0.5) * range_m / len(correlation)
+        axis.plot(depth_m, correlation)
+        axis.set(xlabel="depth (m)", ylabel="correlation function")
+        return figure
+
+    return picture_of(value, draw)
+
+
+def camera_picture(value: object, frequency_hz: float, transfer: Any) -> str:
+    """HTML of a camera: how much of each harmonic light and sensor let through together."""
+
+    def draw(plot: Any) -> Any:
+        figure = plot.new_figure(None, 4.5, 2.0)
+        axis = figure.subplots()
+        axis.bar(1e-6 * frequency_hz * np.arange(len(transfer)), np.abs(transfer),
+                 0.5e-6 * frequency_hz)
+        axis.set(xlabel="harmonics of the fundamental frequency (MHz)", ylabel="let through",
+                 ylim=(0, 1.05))
+        return figure
+
+    return picture_of(value, draw)
+
+
 def code_picture(value: object, modulation: Any, demodulation: Any, taps: int) -> str:
     """HTML of a code: an exposure a row, its modulation and the demodulations of its taps."""
 

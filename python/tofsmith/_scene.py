@@ -33,20 +33,20 @@ class Scene:
     depth_m : ndarray
         Radial distance from the camera [m], > 0; NaN = no return. radial_from_z() makes it of
         depth along the axis.
-    albedo : ndarray, optional
-        Share of light that is reflected, [0, 1]; None: 1.
-    cosine : ndarray, optional
+    albedo : ndarray or float, optional
+        Share of light that is reflected, [0, 1]; None: 1. A number is that of all pixels.
+    cosine : ndarray or float, optional
         Of the angle of incidence, [0, 1]; None: 1.
-    ambient_scale : ndarray, optional
+    ambient_scale : ndarray or float, optional
         Ambient light relative to the scene's, >= 0; None: 1.
     lens : Lens, optional
         The pinhole it is seen through, and how it distorts.
     """
 
     depth_m: npt.NDArray[Any]
-    albedo: Optional[npt.NDArray[Any]] = None
-    cosine: Optional[npt.NDArray[Any]] = None
-    ambient_scale: Optional[npt.NDArray[Any]] = None
+    albedo: Union[npt.NDArray[Any], float, None] = None
+    cosine: Union[npt.NDArray[Any], float, None] = None
+    ambient_scale: Union[npt.NDArray[Any], float, None] = None
     lens: Optional[Lens] = None
 
     def _planes(self) -> dict[str, npt.NDArray[Any]]:
@@ -206,6 +206,7 @@ def capture(
     falloff: Optional[bool] = None,
     seed: Optional[int] = None,
     frames: Optional[int] = None,
+    stray_light: Optional[npt.ArrayLike] = None,
     returns: Union[MultipathReturns, Sequence[tuple[float, float]], None] = None,
     tail: Optional[ExponentialTail] = None,
     transients: Optional[Transients] = None,
@@ -233,6 +234,9 @@ def capture(
         Of all noise (1); the same bits for any number of threads.
     frames : int, optional
         F, independent noise for each (1).
+    stray_light : array_like, shape (2 R + 1, 2 Q + 1), optional
+        Share of a pixel's light that the lens scatters to each other, the middle being the pixel
+        itself; remove_stray_light() takes it off again.
     returns : MultipathReturns or sequence of (delay_m, ratio), optional
         Light that comes back again: of each pixel, or the same behind all pixels.
     tail : ExponentialTail, optional
@@ -254,6 +258,7 @@ def capture(
         "falloff": falloff,
         "seed": seed,
         "frames": frames,
+        "stray_light": stray_light,
     }
     raw: npt.NDArray[np.float32]
     if isinstance(scene, (str, os.PathLike)):
@@ -329,8 +334,8 @@ def capture_staged(
     returns, tail, transients, progress
         As in capture(); lists are of rays: `lens.pixel_samples` squared for each pixel.
     **options
-        signal_e_per_s, ambient_e_per_s, reference_distance_m, falloff, seed, frames as in
-        capture().
+        signal_e_per_s, ambient_e_per_s, reference_distance_m, falloff, seed, frames, stray_light
+        as in capture().
 
     Examples
     --------
@@ -362,6 +367,10 @@ def scene_planes(scene: Scene) -> dict[str, Optional[npt.NDArray[Any]]]:
     """The planes of a scene by name, each (H, W)."""
     names = ("depth_m", "albedo", "cosine", "ambient_scale")
     planes = {name: getattr(scene, name) for name in names}
+    for name in names[1:]:
+        if planes[name] is not None and np.ndim(planes[name]) == 0:
+            number = _check.number(planes[name], name)
+            planes[name] = np.full(np.shape(scene.depth_m), number, np.float32)
     return {
         name: None if plane is None else _check.real_array(plane, name, "(H, W)")
         for name, plane in planes.items()

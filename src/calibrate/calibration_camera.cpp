@@ -6,6 +6,7 @@
 
 #include "core/shared/enum_words.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/measured_table_file.hpp"
 #include "tofsmith/scene/scene_image.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
@@ -47,7 +48,7 @@ Image<float> flat_target_geometry_m(double distance_m, const Camera& camera, int
   if (!camera.lens)
     throw std::invalid_argument(
         "target_distance_m needs the camera's [lens], which says where pixels look");
-  const PixelRays rays(view_of(camera.lens, width, height));
+  const PixelRays rays = rays_of(camera.lens, view_of(camera.lens, width, height));
   Image<float> geometry_m(height, width);
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column)

@@ -13,6 +13,7 @@
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
 
 namespace tofsmith {
@@ -202,7 +203,22 @@ void add_notes(const DepthFit& fit, const ReferenceDepth& reference,
         "the reference is {:.4g} m everywhere, but depths spread over {:.0f} % of the range: is it "
         "of this scene? A number for each frame is the distance of a flat target",
         nearest, 100.0 * covered));
-  if (covered < 0.05)
+  constexpr double usual_share = 0.03;
+  if (result.rms_before_m > usual_share * fit.range_m)
+    result.notes.push_back(
+        fmt::format("depth is off by {:.2g} % of the range (rms, about its mean), more than "
+                    "cameras wiggle: are "
+                    "frequency, code and order of exposures those of these frames?",
+                    100.0 * result.rms_before_m / fit.range_m));
+  const auto reference_m = each(fit.samples, [](const auto& s) { return s.reference_m; });
+  if (covered < 0.05 &&
+      quantile_of(reference_m, 0.95) - quantile_of(reference_m, 0.05) > 0.05 * fit.range_m)
+    result.notes.push_back(
+        "the decoded depth hardly changes where the reference does: are code and order of "
+        "exposures those of these frames? Only an offset and a field "
+        "over "
+        "the image were looked for");
+  else if (covered < 0.05)
     result.notes.push_back(
         "the reference hardly changes: only an offset and a field over the image were looked for, "
         "at this distance");
@@ -226,11 +242,10 @@ void add_notes(const DepthFit& fit, const ReferenceDepth& reference,
 ReferenceDepth along_rays(ReferenceDepth z, const Camera& camera, int height, int width) {
   require(camera.lens.has_value(), "lens", "none",
           "must say where pixels look, so that a reference along the axis can be turned");
-  const PinholeView view = view_of(camera.lens, width, height);
-  view.validate();
+  const PixelRays rays = rays_of(camera.lens, view_of(camera.lens, width, height));
   for (Image<float>& depth_m : z.depth_m) {
     if (depth_m.size() == 1) depth_m = Image<float>(height, width, depth_m.pixels.front());
-    if (depth_m.height == height && depth_m.width == width) depth_m = radial_from_z(depth_m, view);
+    if (depth_m.height == height && depth_m.width == width) depth_m = radial_from_z(depth_m, rays);
   }
   z.is_z = false;
   return z;

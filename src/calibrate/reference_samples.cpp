@@ -122,22 +122,31 @@ bool runs_backwards(const std::vector<ReferenceSample>& samples, const Reference
   const bool reversed = backwards > forwards + 0.05 && 1.0 - backwards < 0.5 * (1.0 - forwards);
   const double found = std::max(forwards, backwards), sign = reversed ? -1.0 : 1.0;
 
-  constexpr double agrees = 0.8, differs = 0.6, far_ranges = 20.0, far_m = 100.0;
+  constexpr double differs = 0.6, far_ranges = 20.0, far_m = 100.0;
   std::vector<double> reference_m;
   for (const ReferenceSample& s : samples) reference_m.push_back(s.reference_m);
   std::ranges::nth_element(reference_m, reference_m.begin() + reference_m.size() / 2);
   const double middle_m = reference_m[reference_m.size() / 2];
   require(middle_m < std::max(far_m, far_ranges * range_m), "reference",
-          fmt::format("median {:.4g}", middle_m), "must be in metres; this looks like millimetres");
-  if (found < differs)
+          fmt::format("median {:.4g}", middle_m),
+          "must be in metres; this looks like millimetres or centimetres");
+  if (found < differs) {
+    // By how much better than by a constant: a scene of few depths agrees with any.
+    double best_m =
+        0.5 * scatter_of(samples, range_m, 1.0, [](const ReferenceSample&) { return 0.0; });
+    std::string best_unit;
     for (const auto& [scale, unit] :
          {std::pair{1e-3, "millimetres"}, std::pair{1e-2, "centimetres"}})
-      for (const double direction : {1.0, -1.0})
-        require(coherence(samples, range_m, direction,
-                          [in_m = scale](const ReferenceSample& s) {
-                            return in_m * s.reference_m;
-                          }) < agrees,
-                "reference", unit, "must be in metres");
+      for (const double direction : {1.0, -1.0}) {
+        const double scaled_m =
+            scatter_of(samples, range_m, direction,
+                       [in_m = scale](const ReferenceSample& s) { return in_m * s.reference_m; });
+        if (scaled_m >= best_m) continue;
+        best_m = scaled_m;
+        best_unit = unit;
+      }
+    require(best_unit.empty(), "reference", best_unit, "must be in metres");
+  }
   const double scatter_m = scatter_of(samples, range_m, sign, plain);
   struct Flip {
     bool rows, columns;
@@ -156,7 +165,7 @@ bool runs_backwards(const std::vector<ReferenceSample>& samples, const Reference
     }
   require(found >= differs, "reference", fmt::format("agreement {:.2f}", found),
           "must agree with the decoded depth but for an offset, >= 0.6: is it of this scene, along "
-          "the ray, in metres, and is --code what the camera plays?");
+          "the ray, in metres, and is --code what the camera plays, in this order?");
   return sign < 0.0;
 }
 

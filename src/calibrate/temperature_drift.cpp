@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -122,8 +123,8 @@ TemperatureDrift calibrate_temperature(const RawFrames& frames,
       signals[f].push_back({std::log(signal) - mean_log, 1.0 / variance});
     }
   }
-  require(result.pixels > 0, "frames", result.pixels,
-          "must have pixels that decode with status ok in every frame");
+  require(result.pixels > 0, "pixels", result.pixels,
+          "there must be some that decode with status ok in every frame");
   for (std::size_t f = 0; f < count; ++f) {
     result.offset_m.push_back(weighted_median(std::move(offsets[f])));
     result.log_signal.push_back(weighted_median(std::move(signals[f])));
@@ -153,6 +154,13 @@ TemperatureDrift calibrate_temperature(const RawFrames& frames,
   const auto [least, most] = std::ranges::minmax_element(temperature_c);
   if (*most - *least < narrow_c)
     result.notes.push_back(fmt::format("temperatures vary by {:.2g} degrees only", *most - *least));
+  constexpr double hottest_c = 200.0;
+  if (*least > hottest_c)
+    result.notes.push_back(
+        fmt::format("temperatures from {:.4g} on are hotter than cameras get: are they in kelvin? "
+                    "--temperature "
+                    "is in degrees C",
+                    *least));
   return result;
 }
 

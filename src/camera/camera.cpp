@@ -202,7 +202,10 @@ void Camera::validate() const {
   validate_sensor(sensor);
   if (light.generator) light.generator->validate("light.generator", fundamental_frequency_hz);
   if (sensor.generator) sensor.generator->validate("sensor.generator", fundamental_frequency_hz);
-  if (lens) {
+  if (lens && !lens->rays.empty()) {
+    require(*lens == Lens{.rays = lens->rays}, "lens.rays", lens->rays,
+            "must stand without a pinhole, which it takes the place of");
+  } else if (lens) {
     require_positive(lens->fx_px, "lens.fx_px");
     require_positive(lens->fy_px, "lens.fy_px");
     require(std::isfinite(lens->cx_px), "lens.cx_px", lens->cx_px, "must be finite");

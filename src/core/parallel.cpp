@@ -4,25 +4,112 @@
 
 #include <algorithm>
 #include <functional>
+#include <utility>
 
 #include "tofsmith/core/error.hpp"
 
-#ifdef TOFSMITH_HAS_TBB
+// The thread sanitizer does not see how Debian's TBB hands work over, and takes all of it for
+// races: it gets threads of our own, and sees those in our work.
+#if defined(__SANITIZE_THREAD__)
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+#elif defined(TOFSMITH_HAS_TBB)
 #include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <atomic>
+#include <optional>
 #endif
 
 namespace tofsmith {
 
-#ifdef TOFSMITH_HAS_TBB
+#if defined(__SANITIZE_THREAD__)
+namespace {
+
+std::atomic<int> allowed_threads = 4;
+thread_local bool is_at_work = false;  // what is split further within is done by the same thread
+
+class Team {
+ public:
+  Team(std::int64_t count, const std::function<void(std::int64_t)>& work)
+      : count_(count), work_(work) {}
+  void run() {
+    std::vector<std::thread> others;
+    const auto threads = std::min<std::int64_t>(is_at_work ? 1 : allowed_threads.load(), count_);
+    for (std::int64_t i = 1; i < threads; ++i) others.emplace_back([this] { take_part(); });
+    take_part();
+    for (std::thread& other : others) other.join();
+    if (problem_) std::rethrow_exception(problem_);
+  }
+
+ private:
+  void take_part() {
+    const bool was_at_work = std::exchange(is_at_work, true);
+    try {
+      for (std::int64_t i; (i = next_++) < count_;) work_(i);
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      problem_ = std::current_exception();
+      next_ = count_;
+    }
+    is_at_work = was_at_work;
+  }
+
+  std::int64_t count_;
+  const std::function<void(std::int64_t)>& work_;
+  std::atomic<std::int64_t> next_ = 0;
+  std::mutex mutex_;
+  std::exception_ptr problem_;
+};
+
+}  // namespace
+
 void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& work) {
-  tbb::parallel_for(std::int64_t{0}, count, [&](std::int64_t i) { work(i); });
+  Team(count, work).run();
 }
 
 struct ThreadLimit::Control {
-  explicit Control(std::size_t threads)
-      : control(tbb::global_control::max_allowed_parallelism, threads) {}
+  explicit Control(int threads) : around(allowed_threads.exchange(threads)) {}
+  ~Control() { allowed_threads = around; }
+  int around;  ///< of the limit outside of this one
+};
+#elif defined(TOFSMITH_HAS_TBB)
+namespace {
+
+/// Where work is done that more threads were asked for than there are cores; null: TBB's own
+/// choice, which is never more.
+std::atomic<tbb::task_arena*> wide_arena = nullptr;
+
+}  // namespace
+
+void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& work) {
+  const auto run = [&] {
+    tbb::parallel_for(std::int64_t{0}, count, [&](std::int64_t i) { work(i); });
+  };
+  if (tbb::task_arena* const arena = wide_arena.load())
+    arena->execute(run);
+  else
+    run();
+}
+
+struct ThreadLimit::Control {
+  explicit Control(int threads)
+      : control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)) {
+    const auto allowed = static_cast<int>(
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    if (allowed > tbb::info::default_concurrency()) arena.emplace(allowed);
+    around = wide_arena.exchange(arena ? &*arena : nullptr);
+  }
+  ~Control() { wide_arena = around; }
+
   tbb::global_control control;
+  std::optional<tbb::task_arena> arena;
+  tbb::task_arena* around = nullptr;  ///< of the limit outside of this one
 };
 #else  // in the thread that asks, in order
 void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& work) {
@@ -30,7 +117,7 @@ void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& w
 }
 
 struct ThreadLimit::Control {
-  explicit Control(std::size_t) {}
+  explicit Control(int) {}
 };
 #endif
 
@@ -44,7 +131,7 @@ void parallel_for_blocks(std::int64_t count, std::int64_t block,
 
 ThreadLimit::ThreadLimit(int threads) {
   require(threads >= 0, "threads", threads, "must be >= 0 (0 uses every core)");
-  if (threads > 0) control_ = std::make_unique<Control>(static_cast<std::size_t>(threads));
+  if (threads > 0) control_ = std::make_unique<Control>(threads);
 }
 ThreadLimit::~ThreadLimit() = default;
 

@@ -46,9 +46,11 @@ class CodePool {
 
   /// Designs codes for a camera, whose winner joins.
   /// @param exposures  to try; empty: what suits the camera
-  void design_for(const Camera& camera, const std::vector<int>& exposures,
-                  const Progress& progress) {
+  /// @param again      how many designs for much the same camera came before: each draws anew
+  void design_for(const Camera& camera, const std::vector<int>& exposures, const Progress& progress,
+                  int again = 0) {
     design_.exposures = exposures;
+    design_.seed = options_.seed + static_cast<std::uint64_t>(again);
     codes_.push_back(design(camera, design_, progress).winner().code);
   }
 
@@ -177,6 +179,8 @@ double excluded_below(const Camera& camera, CameraQuantity quantity,
 }
 
 constexpr double stride = 4.0;  ///< of the walk
+/// Most designs where it ends: chance decides a few percent of each one's error.
+constexpr int end_designs = 3;
 
 /// Walks from the camera as it is in strides to where the error is met, or is not any more,
 /// designing on the way, and halves what lies in between.
@@ -186,14 +190,12 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
   std::optional<double> least;
   const int most_steps =
       static_cast<int>(std::ceil(std::log(options.max_factor) / std::log(stride)));
-  const ProgressParts parts(progress, static_cast<std::size_t>(most_steps) + 2);
+  const ProgressParts parts(progress, static_cast<std::size_t>(most_steps + end_designs));
   const auto on = [&](double factor) { return with_scaled(camera, quantity, factor); };
   const auto suffices = [&](double factor) { return pool.suffice_on(on(factor), pool.all()); };
-  // Which numbers of exposures are best depends on the band, hardly on light.
-  const auto design_at = [&](double factor, std::size_t part) {
+  const auto design_at = [&](double factor, int beside, std::size_t part, int again = 0) {
     const Camera there = on(factor);
-    const int beside = quantity == CameraQuantity::bandwidth ? 1 : 0;
-    pool.design_for(there, pool.exposures_near(there, beside), parts[part]);
+    pool.design_for(there, pool.exposures_near(there, beside), parts[part], again);
   };
   const auto least_within = [&](double low, double high) {
     const Codes codes = pool.contenders(on(low), on(high));
@@ -209,7 +211,8 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
   for (int step = 1; step <= most_steps && !bracketed; ++step) {
     const double factor = std::clamp(upwards ? high * stride : low / stride,
                                      1.0 / options.max_factor, options.max_factor);
-    design_at(factor, part++);
+    // Which numbers of exposures are best depends on the band, less on light.
+    design_at(factor, quantity == CameraQuantity::bandwidth ? 1 : 0, part++);
     const bool met = suffices(factor);
     if (upwards) {
       if (!met) low = factor;
@@ -238,12 +241,12 @@ Sufficiency sufficiency_of(CameraQuantity quantity, const Camera& camera,
 
   // 2. In between, with codes designed where the search ended, until they lower it no more.
   least = least_within(low, high);
-  for (int round = 0; round < 2; ++round) {
-    design_at(*least, part++);
+  for (int round = 0; round < end_designs; ++round) {
+    design_at(*least, 1, part++, round);
     const double before = *least;
     if (suffices(before / stride)) break;
     least = least_within(before / stride, before);
-    if (before / *least < 1.0 + 2.0 * relative_step) break;
+    if (round > 0 && before / *least < 1.0 + 2.0 * relative_step) break;
   }
   return finish(*least);
 }

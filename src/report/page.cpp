@@ -76,11 +76,10 @@ std::string scripts(const Page& page) {
   const std::string_view plotly_js = resources::plotly_js();
   const std::span packed(reinterpret_cast<const std::uint8_t*>(plotly_js.data()), plotly_js.size());
   return fmt::format(
-      "{}{}<!-- {} -->\n"
-      "<script type=\"application/gzip\" id=\"plotly-js\">{}</script>\n"
-      "<script>\n{}</script>\n",
-      elements, data_element("packed-arrays", arrays.json().dump()), resources::plotly_licence(),
-      plotly::encode_base64(packed), resources::page_js());
+      "{}{}<script type=\"application/gzip\" id=\"plotly-js\">{}</script>\n"
+      "<script>\n{}{}</script>\n",
+      elements, data_element("packed-arrays", arrays.json().dump()), plotly::encode_base64(packed),
+      resources::plotly_licences(), resources::page_js());
 }
 
 }  // namespace

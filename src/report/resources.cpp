@@ -6,8 +6,8 @@
 extern "C" {
 extern const char tofsmith_resource_plotly_js[];
 extern const char tofsmith_resource_plotly_js_end[];
-extern const char tofsmith_resource_plotly_licence[];
-extern const char tofsmith_resource_plotly_licence_end[];
+extern const char tofsmith_resource_plotly_licences[];
+extern const char tofsmith_resource_plotly_licences_end[];
 extern const char tofsmith_resource_page_css[];
 extern const char tofsmith_resource_page_css_end[];
 extern const char tofsmith_resource_page_js[];
@@ -27,8 +27,8 @@ std::string_view plotly_js() {
   return between(tofsmith_resource_plotly_js, tofsmith_resource_plotly_js_end);
 }
 
-std::string_view plotly_licence() {
-  return between(tofsmith_resource_plotly_licence, tofsmith_resource_plotly_licence_end);
+std::string_view plotly_licences() {
+  return between(tofsmith_resource_plotly_licences, tofsmith_resource_plotly_licences_end);
 }
 
 std::string_view page_css() {

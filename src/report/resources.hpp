@@ -8,8 +8,8 @@ namespace tofsmith::resources {
 
 /// plotly.js, minified and packed by gzip.
 std::string_view plotly_js();
-/// Its licence.
-std::string_view plotly_licence();
+/// Its licences and those of what is in it, as a comment of a script.
+std::string_view plotly_licences();
 /// Style sheet of the page (src/report/page.css).
 std::string_view page_css();
 /// Script of the page (src/report/page.js).

@@ -18,8 +18,8 @@ namespace tofsmith {
 namespace {
 
 template <typename Scale>
-Image<float> scaled(const Image<float>& image, const PinholeView& view, Scale&& scale) {
-  const PixelRays rays(view);
+Image<float> scaled(const Image<float>& image, const PixelRays& rays, Scale&& scale) {
+  const PinholeView& view = rays.view();
   require(image.height == view.height && image.width == view.width, "image size",
           fmt::format("{} x {}", image.height, image.width),
           fmt::format("must equal the view's, {} x {}", view.height, view.width));
@@ -162,11 +162,19 @@ Eigen::Vector3d PixelRays::ray(int row, int column) const {
 double PixelRays::radial_per_z(int row, int column) const { return at_unit_z(row, column).norm(); }
 
 Image<float> radial_from_z(const Image<float>& z_m, const PinholeView& view) {
-  return scaled(z_m, view, [](double radial_per_z) { return radial_per_z; });
+  return radial_from_z(z_m, PixelRays(view));
+}
+
+Image<float> radial_from_z(const Image<float>& z_m, const PixelRays& rays) {
+  return scaled(z_m, rays, [](double radial_per_z) { return radial_per_z; });
 }
 
 Image<float> z_from_radial(const Image<float>& radial_m, const PinholeView& view) {
-  return scaled(radial_m, view, [](double radial_per_z) { return 1.0 / radial_per_z; });
+  return z_from_radial(radial_m, PixelRays(view));
+}
+
+Image<float> z_from_radial(const Image<float>& radial_m, const PixelRays& rays) {
+  return scaled(radial_m, rays, [](double radial_per_z) { return 1.0 / radial_per_z; });
 }
 
 }  // namespace tofsmith

@@ -30,11 +30,13 @@ RawFrames capture(const SceneImage& scene, const SceneLight& light, const CodeSe
                   const Camera& camera, const CaptureOptions& options, const Progress& progress) {
   light.validate(scene, camera);
   const RowCapture source(scene, light, ForwardModel(code, camera), camera, options);
-  if (!camera.blur || camera.blur->kind == LensBlur::Kind::none)
+  const LensBlur blur = camera.blur.value_or(LensBlur());
+  if (blur.kind == LensBlur::Kind::none && light.stray_light.empty())
     return captured_rows(source, scene.height(), scene.width(), options.frames, progress);
   // An image has one ray a pixel, whatever the lens would like.
   PixelLight blurred(scene.height(), scene.width(), source.tap_values());
-  add_light(source, *camera.blur, 1, {0, source.tap_values()}, blurred);
+  add_light(source, blur, 1, {0, source.tap_values()}, blurred);
+  scatter_light(light.stray_light, options.ambient_e_per_s, blurred);
   return captured_frames(source, blurred, options.frames, progress);
 }
 

@@ -11,6 +11,7 @@
 #include "simulate/lens_kernels.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/decode/filter.hpp"
 
 namespace tofsmith {
 
@@ -238,6 +239,24 @@ void add_light(const RowCapture& rays, const LensBlur& blur, int samples, TapRan
   const AxisKernel kernel(blur.kind == LensBlur::Kind::gaussian ? blur.blur_sigma_px : 0.0,
                           samples);
   add_by(kernel, kernel.reach, rays, samples, range, light);
+}
+
+void scatter_light(const Image<float>& kernel, double ambient_e_per_s, PixelLight& light) {
+  if (kernel.empty()) return;
+  if (light.ambient.empty()) light.ambient.assign(light.near_m.size(), ambient_e_per_s);
+  StrayLight stray(kernel);
+  Image<float> plane(light.height, light.width);
+  const auto scatter = [&](double* values, std::size_t stride) {
+    for (std::size_t i = 0; i < plane.size(); ++i)
+      plane.pixels[i] = static_cast<float>(values[i * stride]);
+    const Image<float> seen = stray.scatter(plane);
+    // Transforms round; light does not fall below none.
+    for (std::size_t i = 0; i < plane.size(); ++i)
+      values[i * stride] = std::max(0.0, static_cast<double>(seen.pixels[i]));
+  };
+  for (int t = 0; t < light.tap_values; ++t)
+    scatter(light.taps.data() + t, static_cast<std::size_t>(light.tap_values));
+  scatter(light.ambient.data(), 1);
 }
 
 void expose_pixels(const RowCapture& source, const PixelLight& light, int frame, float* raw) {

@@ -34,6 +34,13 @@ struct TapRange {
 void add_light(const RowCapture& rays, const LensBlur& blur, int samples, TapRange range,
                PixelLight& light);
 
+/// Lets the lens scatter all light over the image: StrayLight::scatter() of each tap value and of
+/// ambient light.
+/// @param kernel             of StrayLight; empty: nothing changes
+/// @param ambient_e_per_s  where `light` has none of its own
+/// @throws std::invalid_argument as StrayLight
+void scatter_light(const Image<float>& kernel, double ambient_e_per_s, PixelLight& light);
+
 /// Raw frames of that size, all 0.
 RawFrames empty_frames(int frames, int height, int width, int measurements);
 

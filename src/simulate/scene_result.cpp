@@ -24,7 +24,8 @@ double share(std::int64_t part, std::int64_t whole) {
 }  // namespace
 
 PinholeView view_of(const std::optional<Lens>& lens, int width, int height) {
-  if (!lens) return PinholeView::centred(width, height, std::numbers::pi / 3);
+  if (!lens || !lens->rays.empty())
+    return PinholeView::centred(width, height, std::numbers::pi / 3);
   if (lens->width_px && lens->height_px)
     require(*lens->width_px == width && *lens->height_px == height, "image size",
             fmt::format("{} x {}", height, width),

@@ -101,6 +101,7 @@ StagedCapture capture_moving(const StagedScene& scene, const CodeSet& code, cons
       source.see(rays, light, model, camera);
       add_light(source, blur, samples, {exposure * code.taps(), code.taps()}, pixels);
     }
+    scatter_light(setup.stray_light, options.ambient_e_per_s, pixels);
     expose_pixels(source, pixels, frame, result.raw.frame(frame));
     result.truth.push_back(view.centres_at(view.at(camera.frame_middle_s(frame, exposures))));
     result.near_m.push_back(std::move(pixels.near_m));
@@ -129,7 +130,9 @@ StagedCapture capture(const StagedScene& scene, const CodeSet& code, const Camer
   const SceneImage& truth = result.truth.front();
   const LensBlur blur = camera.blur.value_or(LensBlur());
   if (blur.is_sharp()) {
-    result.raw = capture(truth, light_of(scene, truth, setup, 1), code, camera, options, progress);
+    SceneLight light = light_of(scene, truth, setup, 1);
+    light.stray_light = setup.stray_light;
+    result.raw = capture(truth, light, code, camera, options, progress);
     result.near_m = result.far_m = {truth.depth_m};
     return result;
   }
@@ -140,6 +143,7 @@ StagedCapture capture(const StagedScene& scene, const CodeSet& code, const Camer
   const RowCapture source(rays, light, ForwardModel(code, camera), camera, options);
   PixelLight pixels(truth.height(), truth.width(), source.tap_values());
   add_light(source, blur, blur.pixel_samples, {0, source.tap_values()}, pixels);
+  scatter_light(setup.stray_light, options.ambient_e_per_s, pixels);
   result.raw = captured_frames(source, pixels, options.frames, progress);
   result.near_m = {std::move(pixels.near_m)};
   result.far_m = {std::move(pixels.far_m)};

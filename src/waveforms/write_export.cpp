@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
@@ -30,6 +31,52 @@ std::vector<std::string> rate_notes(const WaveformExport& exported, const Camera
       "the sample rate is {} MHz, and the fastest generator known here that could play these files "
       "has {} MHz; say how fast yours is with --rate, such as --rate {:g}",
       plain_number(1e-6 * rate_hz, 4), plain_number(1e-6 * max_hz, 4), max_hz)};
+}
+
+constexpr double max_duty_change = 0.01;  // of a duty; more is noted
+constexpr int max_points_away = 128;      // how far other tables are looked for
+
+double duty_change(const GeneratorReport& played) {
+  return played.duty_nominal > 0.0 ? std::abs(played.duty_actual / played.duty_nominal - 1.0) : 0.0;
+}
+
+/// The waveform whose duty the hardware changes most.
+const GeneratorReport& most_changed(const std::vector<GeneratorReport>& played) {
+  return *std::ranges::max_element(played, {}, duty_change);
+}
+
+/// Whether tables of so many points a period can be played, and keep all duties.
+bool keeps_duties(const CodeSet& code, const Camera& camera, ExportOptions options, int points) {
+  options.samples = points;
+  try {
+    const Camera actual = exporting_camera(code, camera, options);
+    export_waveforms(code, actual, options);
+    return duty_change(most_changed(generator_report(code, actual))) <= max_duty_change;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
+/// Where the points of a table shorten or lengthen pulses: how much, and which tables would not.
+std::vector<std::string> duty_notes(const ExportedCode& exported, const Camera& camera,
+                                    const ExportOptions& options) {
+  if (exported.generators.empty()) return {};
+  const GeneratorReport& worst = most_changed(exported.generators);
+  if (duty_change(worst) <= max_duty_change) return {};
+  const int points = worst.points_per_period;
+  std::vector<std::string> others;
+  for (const int step : {-1, 1})
+    for (int away = 1; away <= max_points_away && points + step * away >= 2; ++away)
+      if (keeps_duties(exported.code, camera, options, points + step * away)) {
+        others.push_back(fmt::format("--samples {}", points + step * away));
+        break;
+      }
+  return {fmt::format(
+      "on {} points a period the duty of {} {} is {:.4g} in place of {:.4g}; {}", points,
+      worst.arm == Arm::light ? "modulation" : "demodulation", worst.index + 1, worst.duty_actual,
+      worst.duty_nominal,
+      others.empty() ? fmt::format("no --samples up to {} away keeps all duties", max_points_away)
+                     : fmt::format("{} would keep all duties", fmt::join(others, " or ")))};
 }
 
 /// A file, and what goes into it.
@@ -80,6 +127,8 @@ ExportedCode write_export(const CodeSet& code, const Camera& camera, const Expor
   if (request.loss) exported.loss = generator_loss(resampled, actual, *request.loss, progress);
   exported.generators = generator_report(resampled, actual);
   exported.notes = rate_notes(exported.waveforms, camera, request.options);
+  for (std::string& note : duty_notes(exported, camera, request.options))
+    exported.notes.push_back(std::move(note));
 
   std::string page;
   std::vector<Product> products;

@@ -237,6 +237,23 @@ class Calibrate(BenchRecordsTest):
             errors.append(abs(wall - 0.6 * RANGE_M).mean())
         self.assertGreater(errors[0], 0.1)
         self.assertLess(errors[1], 0.1 * errors[0])
+        # A capture through such a lens is put right by the same kernel.
+        np.save(self.path("scene.npy"), np.where(np.arange(40) < 20, 1.0, 4.0)[None].repeat(30, 0))
+        frames = {}
+        for name, options in (("plain", []), ("stray", ["--stray-light", "kernel.npy"])):
+            self.do("simulate", "scene.npy", "--kind", "radial", "--code", "sinusoid-k4", "--camera",
+                    "camera.toml", "--signal", "2e7", "-o", f"{name}.npy", *options)
+            frames[name] = np.load(self.path(f"{name}.npy"))
+        self.assertGreater(np.abs(frames["stray"] - frames["plain"]).max(), 20)
+        errors = []
+        for name, options in (("plain", []), ("stray", []),
+                              ("stray", ["--stray-light", "kernel.npy"])):
+            self.do("decode", f"{name}.npy", "--code", "sinusoid-k4", "-o", "d.npy", "--force",
+                    *options)
+            errors.append(abs(np.load(self.path("d.npy"))[:, 22:].mean() - 4.0))
+        self.assertGreater(errors[1], 5 * max(errors[0], errors[2]))
+        self.refuse(["simulate", "ball", "corner", "--code", "sinusoid-k4", "--stray-light",
+                     "kernel.npy", "-o", "set"], "--stray-light", code=2)
         np.save(self.path("even.npy"), np.zeros((2, 2), np.float32))
         self.refuse([*decode, "--stray-light", "even.npy"], "even.npy: kernel size = 2 x 2")
         self.refuse([*decode, "--stray-light", "none.npy"], "none.npy")

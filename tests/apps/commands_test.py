@@ -57,6 +57,34 @@ class Commands(CommandLineTest):
         self.refuse(["cameras", "kinect-v2", "--raw-format"], "interleaved", "arducam-tof")
         self.refuse(["cameras", "--raw-format"], "needs the NAME", code=2)
 
+    def test_a_simulated_frame_has_its_camera_beside_it(self):
+        truth = self.small_scene()
+        far = ("--set", "fundamental_frequency_hz=7.5e6")
+        self.simulate(*far)
+        found = self.decode()
+        self.assertEqual(found["camera_source"],
+                         "raw.camera.toml, which stands beside raw.npy; --camera says otherwise")
+        self.assertLess(np.abs(np.load(self.path("depth.npy")) - truth).max(), 0.05)
+        self.decode(*far, "--camera", "paper-10f0", output="same.npy")
+        self.assertEqual(self.bytes_of("depth.npy"), self.bytes_of("same.npy"))
+        self.assertEqual(self.decode("--camera", "paper-10f0", output="near.npy")["camera_source"],
+                         "paper-10f0")
+        # What the frames were seen through comes along.
+        self.do("simulate", "ball", "--width", "32", "--height", "24", "--code", "hamiltonian-k3",
+                "--signal", "1e7", "-o", "ball.npy", "--truth", "ball-z.npy")
+        self.decode("--kind", "z", raw="ball.npy", output="z.npy")
+        self.assertIn("fx_px", self.bytes_of("ball.camera.toml").decode())
+        # Our own is replaced, that of others never.
+        os.remove(self.path("raw.npy"))
+        self.simulate()
+        self.assertIn("15000000", self.bytes_of("raw.camera.toml").decode())
+        os.remove(self.path("raw.npy"))
+        self.write("raw.camera.toml", "fundamental_frequency_hz = 15e6\n")
+        again = ["simulate", SMALL, "--code", "hamiltonian-k3", "-o", "raw.npy"]
+        self.refuse(again, "raw.camera.toml: the file exists already")
+        self.do(*again, "--camera", "raw.camera.toml")
+        self.assertEqual(self.bytes_of("raw.camera.toml"), b"fundamental_frequency_hz = 15e6\n")
+
     def test_codes_lists_families(self):
         names = [family["name"] for family in self.do_json("codes")]
         self.assertIn("hamiltonian-kK", names)
@@ -67,6 +95,15 @@ class Commands(CommandLineTest):
         self.assertEqual((document["measurements"], document["samples"]), (4, 240))
         self.assertEqual(len(document["per_measurement"]), 4)
         self.assertIn("|###", self.do("codes", "square-k4"))
+
+    def test_codes_counts_the_measurements_that_the_sensor_reads_out(self):
+        pairs = ["hamiltonian-k4", "--set", "sensor.taps=2", "--set", "sensor.readout=difference"]
+        document = self.do_json("codes", *pairs)
+        self.assertEqual((document["taps"], document["measurements"]), (2, 4))
+        self.assertEqual(len(document["per_measurement"]), 8)
+        self.assertIn("4 measurements (differences of 8 tap values), 4 exposures",
+                      self.do("codes", *pairs))
+        self.assertEqual(self.do_json("codes", *pairs[:3])["measurements"], 8)
 
     def test_codes_writes_every_format(self):
         for name in ("c.code.json", "c.npz", "c.csv", "c.html"):

@@ -65,9 +65,20 @@ class Export(CommandLineTest):
         self.assertIn("1000 MHz", notes("keysight-arb")[0])
         self.assertEqual(notes("csv", "--rate", "3.6e9"), [])  # whoever says so has one
         self.assertEqual(notes("csv", "--samples", "120"), [])
-        self.assertEqual(notes("csv", "--camera", "prototype"), [])
+        (duty,) = notes("csv", "--camera", "prototype")  # nothing of its rate
+        self.assertNotIn("sample rate", duty)
         self.assertIn("note: " + note, self.do("export", "hamiltonian-k3", "--format", "csv", "-o",
                                                "d", "--force", "--no-loss"))
+
+    def test_a_grid_that_changes_a_duty_is_reported_with_those_that_do_not(self):
+        def notes(*more):
+            return self.do_json("export", "hamiltonian-k4", "--format", "keysight-arb", "-o", "d",
+                                "--force", "--no-loss", *more)["notes"]
+        (note,) = notes("--samples", "64")
+        self.assertEqual(note, "on 64 points a period the duty of modulation 1 is 0.07812 in place "
+                               "of 0.08333; --samples 60 or --samples 72 would keep all duties")
+        self.assertEqual(notes("--samples", "60"), [])
+        self.assertEqual(notes("--samples", "72", "--rate", "1.08e9"), [])
 
     def test_wrong_usage(self):
         for arguments, code, words in (

@@ -36,13 +36,25 @@ class Manual(CommandLineTest):
 
     def test_the_listing_is_what_help_says(self):
         for command in self.commands():
-            text = self.do(*command["words"], "--help")
+            text = self.do(*command["words"], "--help-all")
             for argument in command["options"] + command["positionals"]:
                 for name in argument["names"]:
                     self.assertIn(name, text, command["words"])
             for option in re.findall(r"^  (?:-\w,)?(--[\w-]+)", text, re.MULTILINE):
                 known = [name for o in command["options"] for name in o["names"]]
                 self.assertIn(option, known, command["words"])
+
+    def test_help_shows_few_options_and_says_that_there_are_more(self):
+        for command in self.commands():
+            text = self.do(*command["words"], "--help")
+            shown = set(re.findall(r"^  (?:-\w,)?(--[\w-]+)", text, re.MULTILINE))
+            usual = [o for o in command["options"] if not o.get("for_experts")]
+            experts = [o for o in command["options"] if o.get("for_experts")]
+            self.assertEqual(shown, {o["names"][-1] for o in usual}, command["words"])
+            self.assertLessEqual(len(shown - {"--help", "--help-all"}), 15, command["words"])
+            if experts:
+                self.assertIn(f"{len(experts)} more options: " +
+                              " ".join(["tofsmith", *command["words"], "--help-all"]), text)
 
     def test_the_listing_is_hidden(self):
         self.assertNotIn("--list-commands", self.do("--help"))

@@ -31,7 +31,7 @@ class Multipath(CommandLineTest):
 
     def test_a_scene_beside_the_maps(self):
         document = self.do_json(
-            "evaluate", "hamiltonian-k5", "--set", "sensor.taps=2", "--multipath", "--trials", "50",
+            "multipath", "hamiltonian-k5", "--set", "sensor.taps=2", "--trials", "50",
             "--delays", "1", "--ratios", ".3", "--tails", ".5", "--signals", "1e5", "--scene",
             "corner", *SMALL, "--bounce-rays", "32", "-o", "page.html")
         self.assertEqual(document["scene"]["all"]["pixels"], 8 * 6)
@@ -70,7 +70,12 @@ class Multipath(CommandLineTest):
         np.save(self.path("z.npy"), np.ones((6, 8)))
         self.refuse(["simulate", "z.npy", *TWO_BUCKETS, "-o", "r.npy", "--bounces", "1"],
                     "a depth image; expected surfaces", code=2)
-        self.refuse(["evaluate", "hamiltonian-k5", "--scene", "corner"], "--multipath", code=2)
+        self.refuse(["multipath", "hamiltonian-k5", "--width", "8"], "--width", "--scene", code=2)
+        self.refuse(["multipath", "hamiltonian-k5", "-o", "m.csv"],
+                    "-o m.csv: unknown extension; expected .json or .html", code=2)
+        for rest in ([], ["--delays", "1"], ["--scene", "corner", "-o", "page.html"]):
+            self.refuse(["evaluate", "hamiltonian-k5", "--multipath", *rest],
+                        "a command of its own now: tofsmith multipath CODE", code=2)
         for value, words in (
                 ("ratio=.1:.5:.9", "found 'ratio=.1:.5:.9'; expected ratio=a:b,delta=a:b"),
                 ("ratio=.1,delay=1", "found 'delay=1'; expected ratio=a:b,delta=a:b"),

@@ -240,6 +240,40 @@ TEST(DepthCalibration, RefusesReferencesThatAreOfSomethingElse) {
   refuses(few, "one for each of the 6 frames");
 }
 
+TEST(DepthCalibration, AFewDepthsDoNotPassForAnotherUnit) {
+  Bench bench{.first_share = 0.1, .last_share = 0.2, .truth = wiggle()};
+  bench.truth.offset_m = 0.1;
+  bench.run();
+  const auto refuses = [&](const auto& change, const char* why) {
+    Bench changed = bench;
+    for (Image<float>& image : changed.reference.depth_m)
+      for (float& depth_m : image.pixels) depth_m = change(depth_m);
+    EXPECT_THAT([&] { changed.calibrate(); }, ThrowsMessage<std::invalid_argument>(HasSubstr(why)));
+  };
+  RandomStream random(3, 1, 0);
+  refuses([](float depth_m) { return 1e2f * depth_m; }, "reference = centimetres");
+  refuses([](float depth_m) { return 1e3f * depth_m; }, "millimetres");
+  refuses([&](float) { return static_cast<float>(bench.range_m * random.uniform()); }, "agreement");
+}
+
+TEST(DepthCalibration, ExposuresInAnotherOrderAreAskedFor) {
+  Bench bench{.first_share = 0.4, .last_share = 0.5, .truth = wiggle()};
+  bench.run();
+  EXPECT_THAT(bench.calibrate().notes, Not(Contains(HasSubstr("order of exposures"))));
+  for (std::size_t i = 0; i < bench.raw.values.size(); i += 4)
+    std::swap(bench.raw.values[i + 1], bench.raw.values[i + 2]);
+  EXPECT_THAT(bench.calibrate().notes, Contains(HasSubstr("order of exposures")));
+}
+
+TEST(DepthCalibration, ErrorsThatNoCameraMakesAreTold) {
+  Bench bench{.first_share = 0.3, .last_share = 0.6};
+  bench.run();
+  EXPECT_THAT(bench.calibrate().notes, Not(Contains(HasSubstr("more than cameras wiggle"))));
+  for (Image<float>& image : bench.reference.depth_m)
+    for (float& depth_m : image.pixels) depth_m *= 0.5F;
+  EXPECT_THAT(bench.calibrate().notes, Contains(HasSubstr("more than cameras wiggle")));
+}
+
 TEST(DepthCalibration, AConstantReferenceGivesAnOffsetAndAField) {
   Bench bench{.frames = 1, .first_share = 0.5, .last_share = 0.5, .truth = wiggle()};
   bench.run();

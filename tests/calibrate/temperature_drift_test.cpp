@@ -87,6 +87,13 @@ TEST(TemperatureDrift, IntervalsHoldTheTruthIn200Cameras) {
   RecordProperty("signals", signals);
 }
 
+TEST(TemperatureDrift, KelvinAreTold) {
+  std::vector<double> kelvin = Warming{}.temperature_c();
+  EXPECT_THAT(Warming{}.calibrate(kelvin).notes, Not(Contains(HasSubstr("kelvin"))));
+  for (double& t : kelvin) t += 273.15;
+  EXPECT_THAT(Warming{}.calibrate(kelvin).notes, Contains(HasSubstr("kelvin")));
+}
+
 TEST(TemperatureDrift, ACameraThatKnowsItReadsDepthAsAtTheReference) {
   const Warming bench{.offset_m_per_c = 2e-3, .signal_per_c = -5e-3};
   const CodeSet code = build_family("sinusoid-k4", phase_camera());

@@ -3,7 +3,7 @@
 # Installs a build into an empty prefix, then builds and runs the consumer against it alone: by the
 # CMake package, and by pkg-config.
 #   cmake -D build=DIR -D work=DIR -D compiler=CXX -D flags=FLAGS -D type=TYPE
-#         -D "components=core;design;.." -P install_and_use.cmake
+#         -D "components=core;design;.." -D harden=ON|OFF -P install_and_use.cmake
 
 cmake_policy(SET CMP0057 NEW)  # IN_LIST
 
@@ -32,6 +32,12 @@ if("design" IN_LIST components)
   run(${work}/consumer/consumer)
 endif()
 run(${configure} -B ${work}/all)  # whatever is installed
+if(harden AND type STREQUAL "Release" AND NOT flags MATCHES "-fsanitize")
+  file(GLOB_RECURSE elf_files ${work}/moved/*.so ${work}/moved/bin/*)
+  if(elf_files)
+    run(${CMAKE_CURRENT_LIST_DIR}/../../scripts/check_elf.py ${elf_files})
+  endif()
+endif()
 if(EXISTS ${work}/moved/bin/tofsmith)
   run(${work}/moved/bin/tofsmith --version)
 endif()

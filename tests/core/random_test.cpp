@@ -4,8 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
 
+#include "tofsmith/core/build_info.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/statistics.hpp"
 
@@ -78,6 +84,23 @@ TEST(Parallel, BlocksCoverEveryIndexOnceOnAnyThreadCount) {
     });
     for (const int count : seen) EXPECT_EQ(count, 1);
   }
+}
+
+TEST(Parallel, UsesMoreThreadsThanCoresIfAskedTo) {
+  const std::vector<std::string> features = build_info().features;
+  if (std::ranges::find(features, "TBB") == features.end())
+    GTEST_SKIP() << "all work is done in one thread";
+  const int threads = static_cast<int>(std::thread::hardware_concurrency()) + 3;
+  const ThreadLimit limit(threads);
+  std::mutex mutex;
+  std::condition_variable all_there;
+  int there = 0;
+  parallel_for(threads, [&](std::int64_t) {  // each waits for all: one thread takes one only
+    std::unique_lock lock(mutex);
+    if (++there == threads) all_there.notify_all();
+    all_there.wait_for(lock, std::chrono::seconds(20), [&] { return there == threads; });
+    EXPECT_EQ(there, threads);
+  });
 }
 
 TEST(Statistics, MergeEqualsOneStream) {

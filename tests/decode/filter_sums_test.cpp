@@ -20,7 +20,7 @@ struct Sums {
   static constexpr int height = 9, width = 21, planes = 4, rank = 3;
   FilterGrid grid{.height = height, .width = width, .stride = 64, .margin = 16};
   static constexpr std::ptrdiff_t rows_above = 8, plane_floats = 64 * (height + 2 * rows_above);
-  std::vector<float> storage = std::vector<float>((2 * planes + 4) * plane_floats, 0.0f);
+  std::vector<float> storage = std::vector<float>((2 * planes + 5) * plane_floats, 0.0f);
 
   float* plane(int index) {
     return storage.data() + index * plane_floats + rows_above * grid.stride + grid.margin;
@@ -53,7 +53,8 @@ struct Sums {
                     .usable = usable(),
                     .near_variance = near_variance(),
                     .far_variance = far_variance(),
-                    .difference = plane(2 * planes + 3)};
+                    .difference = plane(2 * planes + 3),
+                    .kept = plane(2 * planes + 4)};
     for (std::size_t k = 0; k < planes; ++k)
       sums.near[k] = near(static_cast<int>(k)), sums.far[k] = far(static_cast<int>(k));
     for (int y = 0; y < height; ++y) compare_sums(sums, grid, y);
@@ -89,13 +90,14 @@ TEST(FilterSums, NearSumsAreKeptAsTheReferenceSays) {
         const double kept = std::max(0.0, 1.0 - 1.6 * (Sums::rank - 1) * count / chi2);
         (kept > 0.0 ? some : none) = true;
         const std::ptrdiff_t at = y * before.grid.stride + x;
+        ASSERT_NEAR(after.plane(2 * Sums::planes + 4)[at], kept, 1e-3) << y << ' ' << x;
         for (int k = 0; k < Sums::planes; ++k)
           ASSERT_NEAR(after.far(k)[at],
                       before.far(k)[at] + kept * (before.near(k)[at] - before.far(k)[at]), 0.2)
               << y << ' ' << x;
         ASSERT_NEAR(after.far_variance()[at],
                     before.far_variance()[at] +
-                        kept * kept *
+                        1.6 * kept * kept *
                             std::max(0.0f, before.near_variance()[at] - before.far_variance()[at]),
                     2e-3);
       }

@@ -49,7 +49,7 @@ class Pages(unittest.TestCase):
         self.assertIn(("sweep", "merge"), commands)
         self.assertIn(("decode",), commands)
         for words, command in commands.items():
-            text = subprocess.run([TOOL, *words, "--help"], capture_output=True, text=True).stdout
+            text = subprocess.run([TOOL, *words, "--help-all"], capture_output=True, text=True).stdout
             shown = set(re.findall(r"^  (?:-\w,)?(--[\w-]+)", text, re.M))
             found = {name for entries in command.sections.values() for entry in entries
                      for name in entry.names if name.startswith("--")}

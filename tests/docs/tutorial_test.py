@@ -57,7 +57,8 @@ class Tutorial(unittest.TestCase):
         self.assertLess(2 * errors[0], errors[1], "the designed code is not twice as good")
 
     def test_a_camera_is_calibrated_as_its_page_says(self):
-        printed = self.run_page("your_camera.md", ("first.png", "table.npz", "depth.npz", "cloud.ply"))
+        printed = self.run_page("your_camera.md", ("first.png", "table.npz", "reference.html", "depth.npz",
+                                                   "cloud.ply", "errors.png", "cloud.png"))
         off_m, rms_mm = re.search(r"depth is ([+-][\d.]+) m off in the mean, ([\d.]+) mm", printed).groups()
         self.assertAlmostEqual(float(off_m), 0.31, delta=0.01)
         error_mm = float(re.search(r"median error ([\d.]+) mm", printed)[1])

@@ -38,6 +38,17 @@ TEST(CameraLens, DistortionIsWrittenAsItIsRead) {
   EXPECT_EQ(parse_camera_toml(camera_to_toml(camera), camera.name), camera);
 }
 
+TEST(CameraLens, AFileOfRaysStandsForThePinhole) {
+  const Camera camera = parse_camera_toml(
+      std::string(shortest) + "[lens]\nrays = \"maker/rays.npy\"\nblur = \"none\"\n",
+      "/cameras/mine.toml");
+  EXPECT_EQ(camera.lens, (Lens{.rays = "/cameras/maker/rays.npy"}));
+  EXPECT_EQ(parse_camera_toml(camera_to_toml(camera), camera.name), camera);
+  Camera both = camera;
+  both.lens->fx_px = 60.0;
+  EXPECT_THROW(both.validate(), std::invalid_argument);
+}
+
 struct BadLine {
   const char* line;
   const char* message;
@@ -66,6 +77,8 @@ TEST(CameraLens, IsRefusedWithThePlaceAndTheRule) {
                 "c.toml:2:1: found no lens.fx_px; expected a line such as `fx_px = 525.0`"},
         BadLine{"lens = { fx_px = 1, fy_px = 1, cx_px = 1, cy_px = 1, width_px = 4 }",
                 "c.toml:2:65: lens.width_px = 4; goes with lens.height_px: both or neither"},
+        BadLine{"lens = { rays = \"r.npy\", calibration = \"lens.yml\" }",
+                "c.toml:2:40: lens.calibration: has a meaning only with no rays beside it"},
         BadLine{"lens.pixel_samples = 17",
                 "c.toml:2:22: lens.pixel_samples = 17; must be in [1, 16]"}})
     EXPECT_EQ(

@@ -47,15 +47,17 @@ TEST(Exr, TheSamePlanesGiveTheSameBytes) {
   EXPECT_EQ(serialize_exr(test_planes()), serialize_exr(test_planes()));
 }
 
+std::string attribute(std::string name, std::string kind, const std::string& value) {
+  std::string size(4, '\0');
+  size[0] = static_cast<char>(value.size());
+  return name + '\0' + kind + '\0' + size + value;
+}
+
 /// A file of one line of two half-float pixels, 1.0 and -2.0, uncompressed; `type` is the pixel
-/// type and `flags` the second byte of the version.
+/// type, `flags` the second byte of the version, and `more` stands behind the attributes.
 FileBytes small_file(char type = 1, char flags = 0,
-                     const std::string& window_corner = std::string("\1\0\0\0\0\0\0\0", 8)) {
-  const auto attribute = [](std::string name, std::string kind, const std::string& value) {
-    std::string size(4, '\0');
-    size[0] = static_cast<char>(value.size());
-    return name + '\0' + kind + '\0' + size + value;
-  };
+                     const std::string& window_corner = std::string("\1\0\0\0\0\0\0\0", 8),
+                     const std::string& more = "") {
   const std::string window = std::string(8, '\0') + window_corner;
   std::string file = std::string("\x76\x2f\x31\x01\x02", 5) + flags + std::string(2, '\0');
   file +=
@@ -68,7 +70,7 @@ FileBytes small_file(char type = 1, char flags = 0,
   file += attribute("pixelAspectRatio", "float", std::string("\0\0\x80\x3f", 4));
   file += attribute("screenWindowCenter", "v2f", std::string(8, '\0'));
   file += attribute("screenWindowWidth", "float", std::string("\0\0\x80\x3f", 4));
-  file += '\0';
+  file += more + '\0';
   const std::size_t offset = file.size() + 8;
   file += static_cast<char>(offset & 0xff);
   file += static_cast<char>(offset >> 8);
@@ -98,6 +100,25 @@ TEST(Exr, RefusesWhatItDoesNotRead) {
               HasSubstr("can unpack to"));
   EXPECT_THAT(refusal(small_file(1, 0, "\xf0\xff\xff\xff\xff\xff\xff\xff")),
               HasSubstr("found an image"));
+}
+
+// The OpenEXR library reads attributes as long as their types are: sizes that differ made it take
+// what follows for sizes, and gigabytes for a file of 600 bytes.
+TEST(Exr, RefusesAttributesThatAreNotAsLongAsTheirTypes) {
+  const auto refusal = [](const std::string& type, const std::string& value) {
+    const FileBytes file =
+        small_file(1, 0, std::string("\1\0\0\0\0\0\0\0", 8), attribute("a", type, value));
+    return io_error_of([&] { parse_exr(file, "a.exr"); });
+  };
+  EXPECT_THAT(refusal("v3f", std::string(8, '\0')), HasSubstr("found 8 bytes of type 'v3f'"));
+  EXPECT_THAT(refusal("box2i", std::string(20, '\0')), HasSubstr("expected 16"));
+  EXPECT_THAT(refusal("preview", std::string("\1\0\0\0\xff\xff\xff\xff", 8)),
+              HasSubstr("type 'preview'"));
+  EXPECT_THAT(refusal("chlist", std::string(3, '\0')), HasSubstr("expected 1"));
+  for (const char* any : {"string", "ours"})
+    EXPECT_NO_THROW(parse_exr(
+        small_file(1, 0, std::string("\1\0\0\0\0\0\0\0", 8), attribute("a", any, "some words")),
+        "a.exr"));
 }
 
 TEST(Exr, RefusesEveryTruncation) {

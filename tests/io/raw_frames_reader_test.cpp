@@ -219,6 +219,7 @@ TEST(RawFramesReader, TakesOneFilePerMeasurementAndNamesTheOneThatDiffers) {
   EXPECT_THAT(message_of({a, floats}), HasSubstr("floats.npy: found numbers"));
   const auto flat = write("flat.npy", NpyArray(NpyType::int32, {6}));
   EXPECT_THAT(message_of({a, flat}), HasSubstr("flat.npy: found an array of shape (6,)"));
+  EXPECT_THAT(message_of({a, a}), HasSubstr("a.npy: is named twice"));
 }
 
 template <typename Number>

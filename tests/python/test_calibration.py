@@ -243,6 +243,13 @@ def test_stray_light_is_that_of_the_command(both, cli):
     assert clean[0, 0, 0] > 203
     with pytest.raises(ValueError, match="kernel size"):
         ts.remove_stray_light(raw, kernel[:4], "hamiltonian-k4", camera)
+    # What a capture scatters comes off again.
+    walls = np.where(np.arange(40) < 20, 1.0, 4.0)[None].repeat(30, axis=0).astype(np.float32)
+    quiet = {"signal_e_per_s": 1e9, "ambient_e_per_s": 1e8}
+    plain = ts.capture(walls, "hamiltonian-k4", "paper-10f0", **quiet)
+    seen = ts.capture(walls, "hamiltonian-k4", "paper-10f0", stray_light=kernel, **quiet)
+    clean = ts.remove_stray_light(seen, kernel, "hamiltonian-k4", "paper-10f0")
+    assert np.abs(clean - plain).max() < 1e-3 * plain.max() < np.abs(seen - plain).max()
 
 
 frames = np.ones((4, 2, 2, 4))

@@ -178,6 +178,10 @@ def test_rays_of_the_maker_stand_for_the_lens(tmp_path):
     truth = z_of(with_lens)["depth"]
     for name in ("slopes.npy", "directions.npy"):
         assert np.allclose(z_of(without, rays=tmp_path / name)["depth"], truth, rtol=1e-6)
+        assert ts.Lens(rays=str(tmp_path / name)) == (
+            seen_by := ts.Camera("paper-10f0", lens={"rays": str(tmp_path / name)})).lens
+        assert np.allclose(z_of(ts.Decoder("hamiltonian-k4", seen_by))["depth"], truth, rtol=1e-6)
+        assert np.allclose(ts.points_m(np.ones((240, 320)), seen_by.lens), rays, atol=1e-6)
     blind = np.array(rays)
     blind[7, 9] = np.nan
     np.save(tmp_path / "blind.npy", blind)

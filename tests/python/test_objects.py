@@ -4,6 +4,8 @@
 
 import copy
 import pickle
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -42,6 +44,25 @@ def test_raw_numbers_may_be_what_numpy_makes_an_array_of(decoder):
     assert np.array_equal(masked.depth_m[kept], truth.depth_m[kept], equal_nan=True)
 
 
+def test_numbers_of_any_size_are_those_of_float32(decoder):
+    truth = decoder.decode(raw)
+    for kind in (np.int16, np.int32, np.int64, np.uint32, np.float16, np.float32):
+        assert decoder.decode(raw.astype(kind)) == truth, kind
+    with pytest.raises(ValueError, match="raw: got dtype bool"):
+        decoder.decode(raw > 900)
+
+
+def test_a_number_will_do_for_a_map_that_is_the_same_everywhere():
+    depth_m = np.full((6, 8), 2.0, np.float32)
+    maps = {name: np.full((6, 8), 0.5, np.float32) for name in ("albedo", "cosine", "ambient_scale")}
+    numbers = ts.Scene(depth_m, albedo=0.5, cosine=0.5, ambient_scale=0.5)
+    captured = [ts.capture(scene, "hamiltonian-k4", "paper-10f0")
+                for scene in (numbers, ts.Scene(depth_m, **maps))]
+    assert np.array_equal(*captured)
+    with pytest.raises(TypeError, match="albedo: got str 'half'; needs a number"):
+        ts.capture(ts.Scene(depth_m, albedo="half"), "hamiltonian-k4", "paper-10f0")
+
+
 def test_equal_is_what_holds_the_same(decoder):
     image, other = decoder.decode(raw), decoder.decode(raw)
     assert image == other
@@ -65,7 +86,7 @@ def test_reprs_are_short_and_notebooks_get_a_picture(decoder):
         assert repr(value).startswith(words)
         assert len(repr(value)) < 200
     pytest.importorskip("matplotlib")
-    for value in (image, scene, code):
+    for value in (image, scene, code, decoder, decoder.table, ts.Camera("paper-10f0")):
         page = value._repr_html_()
         assert "&lt;" in page.split("<img")[0]
         assert "data:image/png;base64,iVBOR" in page
@@ -101,6 +122,12 @@ def test_planes_have_either_name(decoder, tmp_path):
     assert done.outputs == ["depth", "signal"]
 
 
+def test_figures_are_there_without_an_import_of_their_own():
+    lines = "import tofsmith; tofsmith.plot.waveforms; tofsmith.figures.waveforms; tofsmith.plots"
+    done = subprocess.run([sys.executable, "-c", lines], capture_output=True, text=True)
+    assert "module 'tofsmith' has no attribute 'plots'" in done.stderr.splitlines()[-1]
+
+
 def test_only_what_draws_is_listed():
     from tofsmith import plot
 
@@ -115,6 +142,10 @@ def test_one_number_will_do_where_a_list_is_asked_for():
     designed = [c for c in found.candidates if c.method == "factorize"]
     assert designed and {c.code.exposures for c in designed} == {3}
     assert ts.evaluate("hamiltonian-k4", "paper-10f0", trials=1e2).trials == 100
+    light = {"delay_m": 1, "ratio": 0.3, "tail_m": 0.5, "signal_e_per_s": 1e5}
+    one, lists = (ts.multipath_error("sinusoid-k4", "paper-10f0", trials=10, **given).maps[0]
+                  for given in (light, {key: [value] for key, value in light.items()}))
+    assert one.points.single_bias_m == lists.points.single_bias_m
 
 
 @pytest.mark.parametrize("call, error, text", [
@@ -126,6 +157,12 @@ def test_one_number_will_do_where_a_list_is_asked_for():
      "trials: got float 10.5; needs a whole number"),
     (lambda: ts.CodeSet.from_arrays(np.ones((4, 240)), np.ones((4, 240))), ValueError,
      "turn it over"),
+    (lambda: ts.decode("raw.npy", "hamiltonian-k4", "paper-10f0"), TypeError,
+     "a measurement; read_raw('raw.npy') reads one"),
+    (lambda: ts.plot.depth_maps("depth.npy"), TypeError, "not the name of a file (read_depth()"),
+    (lambda: ts.multipath_error("hamiltonian-k5", "paper-10f0", delay_m="1 m"), TypeError,
+     "delay_m: got str '1 m'; needs a number"),
+    (lambda: ts.CodeSet("hamiltonian-k4"), TypeError, "use build_family(name, camera)"),
     (lambda: ts.Camera(fundamental_frequency_hz=20), ValueError, "20 MHz are 20e6"),
     (lambda: ts.design("paper-10f0", exposures=[2.5]), TypeError, "exposures: got float 2.5"),
 ])

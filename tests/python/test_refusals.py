@@ -117,7 +117,7 @@ refusals = [
     (lambda: ts.generator_loss("square-k4", "prototype", trails=9), ValueError, "did you mean trials?"),
     (lambda: ts.table_depth_error_m("square-k4", 1, 1), TypeError, "table: got str 'square-k4'; needs a tofsmith.DecodingTable"),
     (lambda: ts.multipath_error("square-k4", "paper-10f0", ratio=[2]), ValueError, "ratio"),
-    (lambda: ts.multipath_error("square-k4", "paper-10f0", delay_m=["far"]), TypeError, "delay_m: got list ['far']; needs a list of numbers"),
+    (lambda: ts.multipath_error("square-k4", "paper-10f0", delay_m=["far"]), TypeError, "delay_m: got str 'far'; needs a number"),
     (lambda: ts.multipath_error("square-k4", "paper-10f0", decoding={"treshold": 9}), ValueError, "did you mean threshold?"),
     (lambda: ts.MultipathBound("square-k4", "paper-10f0").sigma_m(1e4, -1, 0.1, 1), ValueError, "ambient_e_per_s: got -1; needs a number >= 0"),
     (lambda: ts.MultipathBound("square-k4", "paper-10f0").tail_sigma_m(1e4, 0, 0.5), TypeError, "tail: got float 0.5; needs a tofsmith.ExponentialTail"),

@@ -11,6 +11,7 @@
 #include "simulate/lens_kernels.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/decode/filter.hpp"
 #include "tofsmith/simulate/staged_capture.hpp"
 
 namespace tofsmith {
@@ -283,6 +284,38 @@ TEST(Lens, AmbientLightThatVariesIsBlurredToo) {
   const double total = raw.values[4 * 4] + 2.0 * raw.values[3 * 4] + 2.0 * raw.values[2 * 4];
   EXPECT_GT(raw.values[3 * 4] / total, 0.05);
   EXPECT_NEAR(raw.values[3 * 4] / raw.values[5 * 4], 1.0, 1e-5);
+}
+
+TEST(Lens, StrayLightIsTheScatteredImageOfEachMeasurement) {
+  Image<float> kernel(5, 7, 0.004f);
+  kernel(2, 5) = 0.02f;  // to one side
+  StagedScene moving = edge_scene(16, 6);
+  moving.shape_motions = {Motion{.velocity_m_per_s = {0.1, 0, 0}}, Motion{}};
+  for (const LensBlur& blur : {LensBlur{}, gaussian, disc})
+    for (const bool moves : {false, true}) {
+      Camera camera = quiet_camera(blur);
+      if (moves) camera.exposure_s.total_s = 1.0;
+      const auto seen_with = [&](const Image<float>& stray_light) {
+        return capture(moves ? moving : edge_scene(16, 6), code_of(camera), camera,
+                       {.signal_e_per_s = 1e12, .ambient_e_per_s = 1e11, .falloff = false},
+                       {.stray_light = stray_light})
+            .raw;
+      };
+      RawFrames expected = seen_with({});
+      StrayLight stray(kernel);
+      for (std::size_t k = 0; k < 4; ++k) {
+        Image<float> plane(6, 16);
+        for (std::size_t i = 0; i < plane.size(); ++i) plane.pixels[i] = expected.values[4 * i + k];
+        const Image<float> scattered = stray.scatter(plane);
+        for (std::size_t i = 0; i < plane.size(); ++i)
+          expected.values[4 * i + k] = scattered.pixels[i];
+      }
+      EXPECT_LT(largest_relative_difference(seen_with(kernel), expected), 1e-5) << moves;
+    }
+  const SceneImage wall = image_of(4, 4, [](int, int) { return 1.0f; });
+  const Camera camera = quiet_camera({});
+  EXPECT_THROW(capture(wall, {.stray_light = Image<float>(2, 2)}, code_of(camera), camera),
+               std::invalid_argument);
 }
 
 TEST(Lens, RefusesDiscsThatCoverTheImageAndPicturesOfAnotherSize) {

@@ -204,6 +204,9 @@ struct Lens {
   std::optional<LensDistortion> distortion = {};  ///< none: an ideal pinhole
   /// Of the images that all this is of [px], > 0, both or neither; none: of any.
   std::optional<int> width_px = {}, height_px = {};
+  /// In place of all these, rays as makers give them: .npy, (H, W, 2) of x/z and y/z of each pixel,
+  /// or (H, W, 3) of directions; pixels of NaN see nothing. Empty: the above.
+  std::string rays = {};
 
   friend bool operator==(const Lens&, const Lens&) = default;
 };

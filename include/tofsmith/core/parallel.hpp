@@ -23,7 +23,7 @@ void parallel_for_blocks(std::int64_t count, std::int64_t block,
 /// Calls `work(i)` for every i in [0, count), on all threads; on one in a build without TBB.
 void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& work);
 
-/// While it lives, at most `threads` threads work (0 = as many as there are cores).
+/// While it lives, `threads` threads work at most (0 = all cores); they may be more than cores.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);

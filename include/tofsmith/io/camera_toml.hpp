@@ -11,6 +11,7 @@
 
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/scene/scene_image.hpp"
 
 namespace tofsmith {
 
@@ -54,6 +55,10 @@ std::vector<std::string> camera_keys();
 std::string camera_to_toml(const Camera& camera);
 /// A lens under the keys of a camera file, as JSON on one line.
 std::string lens_to_json(const Lens& lens);
+/// The rays of a lens's map (Lens::rays), or of the view where it has none.
+/// @throws IoError if the map cannot be read, is of another shape or type, or holds a ray that does
+///         not go forward
+PixelRays rays_of(const std::optional<Lens>& lens, const PinholeView& view);
 /// A built-in camera as such TOML, with the source of every value as a comment beside it, or
 /// "assumed": parse_camera_toml(built_in_camera_toml(n)) == built_in_camera(n).
 /// @throws std::invalid_argument for an unknown name, with the nearest known one

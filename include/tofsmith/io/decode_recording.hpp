@@ -81,14 +81,13 @@ struct DecodeRequest {
   std::vector<DecodedPlane> outputs;   ///< others are not computed; empty: what `output` holds
   DepthKind kind = DepthKind::radial;  ///< .ply and .pcd hold points either way
   bool all_points = false;             ///< in .ply and .pcd; else those of pixels that are ok
-  std::optional<Lens> lens;            ///< of points and z; none: a view 60 degrees wide
+  /// Of points and z; none: a view 60 degrees wide. Pixels that see nothing, by a map of rays, are
+  /// invalid.
+  std::optional<Lens> lens;
   /// Planes are those of the ideal pinhole, without the lens's distortion: each pixel takes the
   /// values of the nearest one, and its depth along the axis. Pixels that the lens does not see are
   /// invalid. Needs a lens; nothing changes without distortion.
   bool undistort = false;
-  /// Rays of points and z, in place of the lens's, as makers give them: .npy, (H, W, 2) of x/z and
-  /// y/z or (H, W, 3) of directions; pixels of NaN see nothing and are invalid. Empty: none.
-  std::filesystem::path rays;
   std::optional<int> frame;  ///< this one alone, counted from 0; none: all
   bool stack = false;        ///< all frames in one .npy a plane, name-PLANE.npy
   /// Means of so many consecutive frames are decoded, as frames of their own with a noise so much

@@ -32,6 +32,8 @@ constexpr double luminance_rec709(double red, double green, double blue) {
 /// @param name  what the image shows, such as "depth" or "offset"
 /// @throws IoError if the extension is another, or the file is not such an image
 Image<float> read_float_image(const std::filesystem::path& path, std::string_view name);
+/// Such an image called "kernel", of which a StrayLight can be made. @throws IoError also if not
+Image<float> read_stray_light(const std::filesystem::path& path);
 
 /// Writes float32; in .npz the array is called `name`, in .exr the channel is "Z" for depth and
 /// `name` otherwise.

@@ -44,7 +44,7 @@ std::string design_document(const Camera& camera, const DesignResult& result,
 std::string requirements_document(const Camera& camera, const Requirements& found,
                                   const RequirementOptions& options);
 
-/// What `evaluate --multipath` found, as JSON: per code, per signal, every cell; what a code cannot
+/// What `tofsmith multipath` found, as JSON: per code, per signal, every cell; what a code cannot
 /// do is null.
 /// @param scene  what became of a scene, by mean delay of its multipath light; null: none
 std::string multipath_document(const Camera& camera, const std::vector<MultipathErrorReport>& codes,

@@ -96,7 +96,9 @@ class PixelRays {
 /// Radial distance of every pixel from its z-depth; NaN stays NaN.
 /// @throws std::invalid_argument if the image is not of the view's size
 Image<float> radial_from_z(const Image<float>& z_m, const PinholeView& view);
+Image<float> radial_from_z(const Image<float>& z_m, const PixelRays& rays);
 /// z-depth of every pixel from its radial distance; NaN stays NaN.
 Image<float> z_from_radial(const Image<float>& radial_m, const PinholeView& view);
+Image<float> z_from_radial(const Image<float>& radial_m, const PixelRays& rays);
 
 }  // namespace tofsmith

@@ -51,7 +51,7 @@ double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,
 RawFrames capture(const SceneImage& scene, const CodeSet& code, const Camera& camera,
                   const CaptureOptions& options = {}, const Progress& progress = {});
 
-/// How light comes back to the pixels of a scene, beside its one direct way. Multipath returns and
+/// How light comes to the pixels of a scene, beside its one direct way. Multipath returns and
 /// a tail add to the direct return; a transient takes its place: the pixel's signal is shared out
 /// over the histogram.
 struct SceneLight {
@@ -59,6 +59,9 @@ struct SceneLight {
   std::optional<ExponentialTail> tail;  ///< behind every direct return
   /// One for all pixels, or one for each, row by row; empty: none.
   std::vector<Transient> transients;
+  /// What the lens then scatters over the image, ambient light too: the kernel of StrayLight
+  /// (decode/filter.hpp); empty: nothing.
+  Image<float> stray_light;
 
   bool is_direct_only() const { return returns.empty() && !tail && transients.empty(); }
 

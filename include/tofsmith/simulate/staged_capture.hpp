@@ -18,6 +18,8 @@ struct StagedSetup {
   /// view has the rays as pixels, and with what they see.
   std::function<SceneLight(const StagedScene& scene, const SceneImage& rays)> light;
   Image<float> ambient_scale;  ///< of the pixels, as in SceneImage; empty: 1
+  Image<float> stray_light =
+      {};  ///< over the pixels, as in SceneLight; that of `light` is not used
 };
 
 /// Raw measurements of a scene of shapes, with what is true of them.

@@ -90,6 +90,7 @@ void Filter::apply(const RawView& raw, FilteredFrame& filtered, const Progress& 
       plan.add_along_slopes(frame, window == 0 ? to : from, to, from, window);
       step_done();
     }
+    plan.add_slope_noise(frame, round);
   }
   frame.result = from;
   plan.finish(raw, frame, from, to);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "decode/filter/compared_rows.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/filter/filter_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -46,27 +48,34 @@ HWY_INLINE void test_row(const SimilarityTest& test, std::ptrdiff_t at, std::ptr
   }
 }
 
+/// A pair's own difference of more standard deviations is not of noise.
+constexpr double own_difference_sigma = 3.0;
+
 void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const FilterStrip& strip,
                    const PairWeights& weights) {
   const int reach = test.patch_reach, side = 2 * reach + 1;
-  const auto patch = static_cast<float>(side * side), freedom = static_cast<float>(test.rank - 1);
-  const float deviations = std::sqrt(patch / (2 * freedom));
-  const Vector by = all(deviations / patch), expected = all(freedom * deviations);
+  const auto others = static_cast<float>(side * side - 1);
+  const auto freedom = static_cast<float>(test.rank - 1);
+  const float deviations = std::sqrt(others / (2 * freedom));
+  const Vector by = all(deviations / others), expected = all(freedom * deviations);
   const Vector inverse_max = all(1.0f / test.max_difference_sigma);
+  const Vector noise_limit = all(chi2_limit(test.rank - 1, own_difference_sigma));
   const int rows = strip.rows + strip.rows_above();
+  const int scratch_rows = rows + 2 * patch_reach;
   float* const lambda = weights.scratch;
-  float* const sums = weights.scratch + weights.stride;
+  float* const sums = lambda + scratch_rows * weights.stride;
   for (std::size_t i = 0; i < half_window.size(); ++i) {
     const int down = half_window[i].rows * strip.step, right = half_window[i].columns * strip.step;
     const std::ptrdiff_t away = down * grid.stride + right;
     const int top = strip.first_row - down;  // the first row whose weights are used
     const int test_rows = strip.rows + down + 2 * reach;
     for (int r = 0; r < test_rows; ++r) {
-      test_row(test, (top - reach + r) * grid.stride - reach, away, grid.width + 2 * reach, lambda);
+      float* const row = lambda + r * weights.stride;
+      test_row(test, (top - reach + r) * grid.stride - reach, away, grid.width + 2 * reach, row);
       float* const sum = sums + r * weights.stride;
       for (int x = 0; x < grid.width; x += lanes_of()) {
-        Vector s = load(lambda + x);
-        for (int n = 1; n < side; ++n) s = hn::Add(s, load(lambda + x + n));
+        Vector s = load(row + x);
+        for (int n = 1; n < side; ++n) s = hn::Add(s, load(row + x + n));
         store(s, sum + x);
       }
     }
@@ -79,6 +88,9 @@ void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const Fil
       for (int x = 0; x < grid.width; x += lanes_of()) {
         Vector s = load(sums + r * weights.stride + x);
         for (int n = 1; n < side; ++n) s = hn::Add(s, load(sums + (r + n) * weights.stride + x));
+        // What noise the pair itself has must not choose it: it tells what noise cannot be.
+        const Vector own = load(lambda + (r + reach) * weights.stride + x + reach);
+        s = hn::Sub(s, hn::Min(own, noise_limit));
         const Vector w = weight_of(hn::MulSub(s, by, expected), inverse_max);
         const Vector both = hn::Mul(load(test.usable + at + x), load(test.usable + at + x + away));
         store(hn::Mul(w, both), row + grid.margin + x);
@@ -189,6 +201,33 @@ void add_weighted(const WeightedSums& sums, const FilterGrid& grid, const Filter
   }
 }
 
+void find_offsets(const float* plane, const FilterGrid& grid, const FilterStrip& strip,
+                  const PairWeights& weights, float* offset2) {
+  constexpr float farthest2 = window_reach * window_reach;
+  for (int r = 0; r < strip.rows; ++r) {
+    const std::ptrdiff_t row = (strip.first_row + r) * grid.stride;
+    const RowPairs pairs = pairs_of_row(grid, strip, weights.weight, weights.stride, r);
+    for (int x = 0; x < grid.width; x += lanes_of()) {
+      const float* const at = plane + row + x;
+      Vector sum = load(at), across = hn::Zero(Floats()), along = across;
+      for (std::size_t i = 0; i < half_window.size(); ++i) {
+        const WindowStep& step = half_window.data()[i];
+        const std::ptrdiff_t away = pairs.away.data()[i];
+        const Vector ahead = hn::Mul(load(pairs.ahead.data()[i] + x), load(at + away));
+        const Vector behind = hn::Mul(load(pairs.behind.data()[i] + x), load(at - away));
+        const Vector apart = hn::Sub(ahead, behind);
+        sum = hn::Add(sum, hn::Add(ahead, behind));
+        across = hn::MulAdd(apart, all(static_cast<float>(step.columns)), across);
+        along = hn::MulAdd(apart, all(static_cast<float>(step.rows)), along);
+      }
+      const Vector squares = hn::MulAdd(across, across, hn::Mul(along, along));
+      const Vector most = hn::Mul(hn::Mul(sum, sum), all(farthest2));
+      const Vector least = hn::Max(hn::Mul(sum, sum), all(1e-30f));
+      store(hn::Div(hn::Min(squares, most), least), offset2 + row + x);
+    }
+  }
+}
+
 /// Light of a single pixel of so many standard deviations needs no other proof.
 constexpr float evident_sigma = 3.0f;
 constexpr int own_light_reach = 3, own_light_side = 2 * own_light_reach + 1;
@@ -283,6 +322,7 @@ namespace tofsmith {
 
 HWY_EXPORT(weigh_similar);
 HWY_EXPORT(add_weighted);
+HWY_EXPORT(find_offsets);
 HWY_EXPORT(find_energy);
 HWY_EXPORT(find_own_light);
 
@@ -296,7 +336,7 @@ std::size_t weight_floats(const FilterGrid& grid, const FilterStrip& strip) {
 }
 
 std::size_t scratch_floats(const FilterGrid& grid, const FilterStrip& strip) {
-  return static_cast<std::size_t>(strip.rows + strip.rows_above() + 2 * patch_reach + 1) *
+  return static_cast<std::size_t>(2 * (strip.rows + strip.rows_above() + 2 * patch_reach)) *
          row_floats(grid);
 }
 
@@ -308,6 +348,11 @@ void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const Fil
 void add_weighted(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,
                   const PairWeights& weights) {
   HWY_DYNAMIC_DISPATCH(add_weighted)(sums, grid, strip, weights);
+}
+
+void find_offsets(const float* plane, const FilterGrid& grid, const FilterStrip& strip,
+                  const PairWeights& weights, float* offset2) {
+  HWY_DYNAMIC_DISPATCH(find_offsets)(plane, grid, strip, weights, offset2);
 }
 
 void find_energy(const std::array<const float*, max_measurements>& u, int rank,

@@ -100,6 +100,11 @@ struct WeightedSums {
 void add_weighted(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,
                   const PairWeights& weights);
 
+/// The square of how far the middle of what is added of a plane lies from the pixel, in steps of
+/// the window: 0 where as much comes from either side.
+void find_offsets(const float* plane, const FilterGrid& grid, const FilterStrip& strip,
+                  const PairWeights& weights, float* offset2);
+
 /// energy and inverse_sigma of a SimilarityTest: variances below `floor` count as that.
 void find_energy(const std::array<const float*, max_measurements>& u, int rank,
                  const float* variance, const float* floor, float floor_share,

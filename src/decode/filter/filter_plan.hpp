@@ -57,6 +57,8 @@ struct Filter::Plan {
   /// One window of a round that adds neighbours of the same surface: `light` is split into signal
   /// along the depth and the rest, in `rest`; the sum goes to `to`.
   void add_along_slopes(FilterPlanes& frame, int light, int rest, int to, int window) const;
+  /// What the noise of slopes adds to the variance of the sums of a round.
+  void add_slope_noise(FilterPlanes& frame, int round) const;
   /// Turns a set of light into raw numbers, as measured where nothing was to be added; the other
   /// set is needed for that.
   void finish(const RawView& raw, FilterPlanes& frame, int set, int other) const;

@@ -111,8 +111,11 @@ struct SlopeSums {
   }
 };
 
+/// From this neighbour of ring_places on pixels are so far apart that they share few measurements.
+constexpr std::size_t first_far = 16;
+
 void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, int rows,
-                 float* slope_x, float* slope_y) {
+                 float* slope_x, float* slope_y, float* excess) {
   const auto places = ring_places(grid.stride);
   const Vector samples = all(test.samples), per_sample = all(1.0f / test.samples);
   const Vector tiny = all(min_depth_variance), zero = hn::Zero(Floats());
@@ -144,7 +147,9 @@ void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, i
       pairs.solve(across, along);
       // .. then every neighbour that the plane so found explains.
       SlopeSums singles;
-      for (const RingPlace& place : places) {
+      Vector chi2 = zero, count = zero;
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const RingPlace& place = places.data()[i];
         Vector difference, noise;
         const Vector usable = neighbour(place.away, difference, noise);
         const Vector expected = hn::MulAdd(across, all(place.x), hn::Mul(along, all(place.y)));
@@ -152,8 +157,13 @@ void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, i
         const Vector squares = hn::Div(hn::Mul(beyond, beyond), hn::Add(noise, variance));
         const Vector w = hn::Div(hn::Mul(weight_of(squares, inverse_max), usable), noise);
         singles.add(w, place, difference);
+        if (i < first_far) continue;
+        const Vector told = hn::Mul(weight_of(squares, hn::Mul(inverse_max, all(0.25f))), usable);
+        chi2 = hn::MulAdd(told, squares, chi2);
+        count = hn::Add(count, told);
       }
       singles.solve(across, along);
+      store(hn::Max(hn::Div(chi2, hn::Max(count, all(1e-6f))), all(1.0f)), excess + p);
       const Mask usable = hn::Gt(load(test.usable + p), zero);
       store(hn::IfThenElseZero(usable, across), slope_x + p);
       store(hn::IfThenElseZero(usable, along), slope_y + p);
@@ -277,16 +287,19 @@ void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row) {
       }
     const Vector kept =
         hn::Max(hn::NegMulAdd(noise, hn::Div(count, hn::Max(chi2, all(1e-30f))), one), zero);
+    store(kept, sums.kept + at);
     if (hn::AllTrue(Floats(), hn::Le(kept, zero))) continue;
     for (int k = 0; k < sums.planes; ++k) {
       float* const light = sums.far.data()[k] + at;
       const Vector far = load(light);
       store(hn::MulAdd(kept, hn::Sub(load(sums.near.data()[k] + at), far), far), light);
     }
-    // The far sum is a mean of all: its covariance with the near one is its own variance.
+    // The far sum is a mean of all: its covariance with the near one is its own variance. Where
+    // noise alone has some of the near sum kept, it was so much larger than usual.
     const Vector far = load(sums.far_variance + at);
     const Vector beyond = hn::Max(hn::Sub(load(sums.near_variance + at), far), zero);
-    store(hn::MulAdd(hn::Mul(kept, kept), beyond, far), sums.far_variance + at);
+    const Vector share2 = hn::Mul(hn::Mul(kept, kept), all(explained_by_noise));
+    store(hn::MulAdd(share2, beyond, far), sums.far_variance + at);
   }
 }
 
@@ -311,8 +324,8 @@ void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const Fil
 }
 
 void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, int rows,
-                 float* slope_x, float* slope_y) {
-  HWY_DYNAMIC_DISPATCH(find_slopes)(test, grid, first_row, rows, slope_x, slope_y);
+                 float* slope_x, float* slope_y, float* excess) {
+  HWY_DYNAMIC_DISPATCH(find_slopes)(test, grid, first_row, rows, slope_x, slope_y, excess);
 }
 
 void split_row(const CurvePoints& curve, const SplitRow& row, int width) {

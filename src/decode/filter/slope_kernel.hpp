@@ -22,8 +22,10 @@ void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const Fil
 
 /// Slopes of the plane through the depths of pixels 2 and 4 away that are of the same surface; 0
 /// where there are too few.
+/// @param excess  of depth's variance, >= 1: how much more the depths of far pixels of the surface
+///                scatter about the plane
 void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, int rows,
-                 float* slope_x, float* slope_y);
+                 float* slope_x, float* slope_y, float* excess);
 
 /// x = T o chi in coordinates of which the first `rank` are those of the decoding plane.
 struct CurvePoints {
@@ -63,6 +65,7 @@ struct NearAndFar {
   const float* near_variance = nullptr;
   float* far_variance = nullptr;  ///< and then that of what is kept
   float* difference = nullptr;    ///< chi^2 of the two directions
+  float* kept = nullptr;          ///< and the share of the near sum that is kept
 };
 /// `difference` of a row.
 void compare_sums(const NearAndFar& sums, const FilterGrid& grid, int row);

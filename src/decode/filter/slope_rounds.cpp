@@ -13,9 +13,22 @@
 namespace tofsmith {
 
 namespace {
-/// Slopes are noisy: of the variance of the depths that they were taken from, so much comes along.
-/// Measured on repeated captures of the table-top scene at two levels of light.
-constexpr float slope_noise_share = 0.16f;
+
+/// What the noise of slopes adds to the variance of a sum along them,
+///   v (sum + sum_offset d^2) + v' (before + before_offset d^2),
+/// where v is the variance of the sum without it, v' that of the depth that slopes were taken from,
+/// and d how far the middle of what was added lies from the pixel, in steps of the last window.
+struct SlopeNoise {
+  float sum, sum_offset, before, before_offset;
+};
+/// For one window and more. All steps are linear in the noise of depth: this is the energy of their
+/// impulse response, on a plane where all neighbours weigh alike and beside its border.
+constexpr SlopeNoise first_slope_noise[] = {
+    {0.005f, 0.1f, 0.003f, 0.065f}, {0.27f, 0.3f, 0.03f, 0.085f}, {0.44f, 0.65f, 0.05f, 0.19f}};
+/// The same of later rounds, whose slopes were taken from sums along slopes.
+constexpr SlopeNoise later_slope_noise[] = {
+    {0.005f, 0.1f, 0.003f, 0.065f}, {0.31f, 0.45f, 0.03f, 0.085f}, {0.62f, 1.48f, 0.05f, 0.19f}};
+
 }  // namespace
 
 void Filter::Plan::find_depth(const RawView& raw, FilterPlanes& frame, int from, int into) const {
@@ -85,7 +98,8 @@ void Filter::Plan::keep_near_sums(FilterPlanes& frame, int rest, int to, int win
                   .usable = frame.scalar(FilterPlanes::usable),
                   .near_variance = frame.scalar(variances.in),
                   .far_variance = frame.scalar(variances.out),
-                  .difference = frame.scalar(FilterPlanes::shift)};
+                  .difference = frame.scalar(FilterPlanes::shift),
+                  .kept = frame.scalar(FilterPlanes::signal)};
   for (int k = 0; k < measurements; ++k) {
     sums.near[static_cast<std::size_t>(k)] = frame.light(rest, k);
     sums.far[static_cast<std::size_t>(k)] = frame.light(to, k);
@@ -103,6 +117,29 @@ void Filter::Plan::keep_near_sums(FilterPlanes& frame, int rest, int to, int win
   for_each_row(frame, [&](int row) { keep_near(sums, frame.grid, row); });
 }
 
+void Filter::Plan::add_slope_noise(FilterPlanes& frame, int round) const {
+  const int window = options.windows - 1;
+  const SlopeNoise& noise = (round == 0 ? first_slope_noise : later_slope_noise)[window];
+  // Later rounds test depths by their noise alone.
+  const bool is_last = round + 1 == options.slope_rounds;
+  for_each_row(frame, [&](int row) {
+    const std::ptrdiff_t at = row * frame.grid.stride;
+    const float* const guided = frame.scalar(FilterPlanes::usable) + at;
+    const float* const offset2 = frame.scalar(FilterPlanes::signal_next) + at;
+    const float* const near_share = frame.scalar(FilterPlanes::signal) + at;
+    const float* const before = &frame.averaged(row, 0);
+    float* const variance = frame.scalar(last_variance()) + at;
+    for (int x = 0; x < frame.grid.width; ++x) {
+      if (!(guided[x] > 0.0f)) continue;
+      const float far_share = window > 0 ? 1.0f - near_share[x] : 1.0f;
+      const float d2 = is_last ? offset2[x] : 0.0f;
+      const float of_sum = noise.sum + noise.sum_offset * d2;
+      const float of_before = is_last ? noise.before + noise.before_offset * d2 : 0.0f;
+      variance[x] += far_share * far_share * (of_sum * variance[x] + of_before * before[x]);
+    }
+  });
+}
+
 void Filter::Plan::add_along_slopes(FilterPlanes& frame, int light, int rest, int to,
                                     int window) const {
   const SlopeTest test{
@@ -115,9 +152,12 @@ void Filter::Plan::add_along_slopes(FilterPlanes& frame, int light, int rest, in
       .same_depth_sigma2 = static_cast<float>(options.same_depth_sigma * options.same_depth_sigma),
       .max_difference_sigma = static_cast<float>(options.max_difference_sigma)};
   for_each_row(frame, [&](int row) {
-    if (window == 0)
+    if (window == 0) {
       find_slopes(test, frame.grid, row, 1, frame.scalar(FilterPlanes::energy),
-                  frame.scalar(FilterPlanes::inverse_sigma));
+                  frame.scalar(FilterPlanes::inverse_sigma), frame.scalar(FilterPlanes::shift));
+      const float* const excess = frame.scalar(FilterPlanes::shift) + row * frame.grid.stride;
+      for (int x = 0; x < frame.grid.width; ++x) frame.averaged(row, x) *= excess[x];
+    }
     split(frame, light, rest, row);
   });
   WeightedSums sums = sums_of(frame, rest, to, window);
@@ -130,15 +170,11 @@ void Filter::Plan::add_along_slopes(FilterPlanes& frame, int light, int rest, in
                    weigh_along_slopes(test, frame.grid, strip, weights);
                    add_weighted(sums, frame.grid, strip, weights);
                    for (int r = 0; r < strip.rows; ++r) join(frame, to, strip.first_row + r);
+                   if (window + 1 == options.windows)
+                     find_offsets(frame.scalar(FilterPlanes::signal), frame.grid, strip, weights,
+                                  frame.scalar(FilterPlanes::signal_next));
                  });
   if (window > 0) keep_near_sums(frame, rest, to, window);
-  if (window + 1 < options.windows) return;
-  for_each_row(frame, [&](int row) {
-    const float* const guided = frame.scalar(FilterPlanes::usable) + row * frame.grid.stride;
-    float* const variance = frame.scalar(last_variance()) + row * frame.grid.stride;
-    for (int x = 0; x < frame.grid.width; ++x)
-      if (guided[x] > 0.0f) variance[x] += slope_noise_share * frame.averaged(row, x);
-  });
 }
 
 }  // namespace tofsmith

@@ -174,8 +174,8 @@ std::string chosen_name(const std::vector<Listed>& list, const std::string& aske
   throw IoError(file, asked.empty() ? fmt::format("found {}; expected one called raw, or only one "
                                                   "(--dataset names it)",
                                                   describe(list))
-                                    : fmt::format("there is no data set {}; found {}", asked,
-                                                  describe(list)));
+                                    : fmt::format("there is no data set {} of frames; found {}",
+                                                  asked, describe(list)));
 }
 
 /// An open data set and what is known of it.

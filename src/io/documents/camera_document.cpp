@@ -25,6 +25,12 @@ void visit_measured_response(TableWriter& table, const ImpulseResponse& response
   table.value("time_step_s", response.time_step_s);
 }
 
+bool visit_ray_map(TableWriter& table, const Lens& lens) {
+  if (lens.rays.empty()) return false;
+  table.value("rays", lens.rays);
+  return true;
+}
+
 /// A calibration's numbers are written, whatever file they came from.
 bool visit_lens_calibration(TableWriter& /*table*/, const Lens& /*lens*/) { return false; }
 
@@ -37,6 +43,7 @@ nlohmann::ordered_json lens_document(const Lens& lens) {
 std::string lens_to_json(const Lens& lens) { return lens_document(lens).dump(); }
 
 Lens lens_from_json(const JsonReader& json) {
+  if (const auto rays = json.optional_member("rays")) return {.rays = rays->text()};
   Lens lens{.fx_px = json.member("fx_px").number(),
             .fy_px = json.member("fy_px").number(),
             .cx_px = json.member("cx_px").number(),

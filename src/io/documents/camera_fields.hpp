@@ -10,9 +10,9 @@
 #include "tofsmith/camera/camera.hpp"
 
 // The tables and keys of a camera file, described once for reading and for writing: `Table` is a
-// TableReader or a TableWriter, which sees const fields. Only a measured response and a calibrated
-// lens are read and written differently: visit_measured_response() and visit_lens_calibration() are
-// overloaded for both.
+// TableReader or a TableWriter, which sees const fields. Only a measured response, a map of
+// rays and a calibrated lens are read and written differently: visit_measured_response(),
+// visit_ray_map() and visit_lens_calibration() are overloaded for both.
 namespace tofsmith::camera_fields {
 
 inline constexpr EnumWords<NoiseModel, 2> noise_models("NoiseModel", "noise", "poisson",
@@ -93,9 +93,15 @@ void visit_distortion(Table& table, Field<Table, LensDistortion>& distortion) {
       .value("distortion", distortion.coefficients);
 }
 
-/// The pinhole as numbers, or all of it in a calibration file.
+/// The pinhole as numbers, or all of it in a calibration file; or a map of rays in its place.
 template <typename Table>
 void visit_pinhole(Table& table, Field<Table, Lens>& lens) {
+  if (visit_ray_map(table, lens)) {
+    table.refuse({"fx_px", "fy_px", "cx_px", "cy_px", "distortion_model", "distortion", "width_px",
+                  "height_px", "calibration"},
+                 "no rays beside it");
+    return;
+  }
   if (visit_lens_calibration(table, lens)) {
     table.refuse({"fx_px", "fy_px", "cx_px", "cy_px", "distortion", "width_px", "height_px"},
                  "no calibration beside it");
@@ -135,7 +141,7 @@ template <typename Table>
 void visit_lens(Table& table, Field<Table, Camera>& camera) {
   table.part(camera.lens,
              {"fx_px", "fy_px", "cx_px", "cy_px", "distortion_model", "distortion", "width_px",
-              "height_px", "calibration"},
+              "height_px", "calibration", "rays"},
              visit_pinhole<Table>);
   table.part(camera.blur,
              {"blur", "blur_sigma_px", "focal_length_m", "f_number", "focus_distance_m",

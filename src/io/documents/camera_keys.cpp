@@ -64,6 +64,11 @@ class KeyCollector {
 /// Never called: the response of a new camera is of no kind, so that all its keys are "refused".
 void visit_measured_response(KeyCollector& /*table*/, ImpulseResponse& /*response*/) {}
 
+bool visit_ray_map(KeyCollector& table, Lens& lens) {
+  table.value("rays", lens);
+  return false;
+}
+
 bool visit_lens_calibration(KeyCollector& table, Lens& lens) {
   table.value("calibration", lens);
   return false;

@@ -36,6 +36,16 @@ void visit_measured_response(TableReader& table, ImpulseResponse& response) {
   response = read_impulse_response(path.lexically_normal(), time_step_s);
 }
 
+/// A file of rays, if the table names one.
+bool visit_ray_map(TableReader& table, Lens& lens) {
+  if (!table.contains("rays")) return false;
+  table.value("rays", lens.rays);
+  // Absolute, so that the camera can be written elsewhere and read back.
+  const auto path = std::filesystem::absolute(table.resolve("rays", lens.rays));
+  lens.rays = path.lexically_normal().string();
+  return true;
+}
+
 /// The lens of a calibration file, if the table names one.
 bool visit_lens_calibration(TableReader& table, Lens& lens) {
   if (!table.contains("calibration")) return false;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/depth_file.hpp"
 #include "tofsmith/io/image_file.hpp"
 #include "tofsmith/io/mesh_file.hpp"
@@ -82,7 +83,8 @@ LoadedScene depth_image(const SceneSource& source, const std::optional<Lens>& le
                     SceneImage(depth_m.height, depth_m.width),
                     view_of(lens, depth_m.width, depth_m.height),
                     {}};
-  scene.image.depth_m = source.kind == DepthKind::z ? radial_from_z(depth_m, scene.view) : depth_m;
+  scene.image.depth_m =
+      source.kind == DepthKind::z ? radial_from_z(depth_m, rays_of(lens, scene.view)) : depth_m;
   if (!source.image.empty()) {
     Image<float> picture = read_albedo(source.image, transfer_of(source));
     require_size(picture, source.image, scene.image, source.scene);

@@ -58,13 +58,15 @@ void note_data_window(ByteCursor value, Layout& layout, std::string_view file) {
   check_image_size(file, layout.height, layout.width);
 }
 
-void note_channels(ByteCursor value, Layout& layout) {
+/// @return how many bytes they take
+std::uint64_t note_channels(ByteCursor value, Layout& layout) {
+  const std::size_t begin = value.position();
   constexpr std::uint32_t half_type = 1, float_type = 2;
   constexpr std::uint64_t max_channels = 32;
   layout.channels = 0;
   for (;;) {
     const std::string_view name = value.take_until('\0', "a channel name");
-    if (name.empty()) break;
+    if (name.empty()) return value.position() - begin;
     if (++layout.channels > max_channels)
       value.fail(fmt::format("found more than {} channels; expected fewer", max_channels));
     const std::uint32_t type = value.take_u32_little("a channel");
@@ -116,6 +118,36 @@ void check_unpacked_size(const Layout& layout, std::size_t file_bytes, const Byt
                     layout.channels, layout.height, layout.width, file_bytes));
 }
 
+/// The library reads an attribute as long as its type is, whatever size stands ahead of it, and
+/// goes on behind that: where the two differ, it takes any bytes for sizes.
+void check_attribute_size(ByteCursor value, std::string_view type, std::uint64_t size) {
+  struct Known {
+    std::string_view type;
+    std::uint64_t bytes;
+  };
+  static constexpr Known known[] = {{"box2i", 16},      {"box2f", 16},   {"chromaticities", 32},
+                                    {"compression", 1}, {"double", 8},   {"envmap", 1},
+                                    {"float", 4},       {"int", 4},      {"keycode", 28},
+                                    {"lineOrder", 1},   {"m33f", 36},    {"m33d", 72},
+                                    {"m44f", 64},       {"m44d", 128},   {"rational", 8},
+                                    {"v2i", 8},         {"v2f", 8},      {"v2d", 16},
+                                    {"v3i", 12},        {"v3f", 12},     {"v3d", 24},
+                                    {"tiledesc", 9},    {"timecode", 8}, {"deepImageState", 1}};
+  std::uint64_t expected = size;
+  for (const Known& each : known)
+    if (each.type == type) expected = each.bytes;
+  if (type == "preview") {
+    const std::uint64_t width = value.take_u32_little("the size of the preview");
+    expected = 8 + 4 * width * value.take_u32_little("the size of the preview");
+  }
+  if (type == "chlist") {
+    Layout ignored;
+    expected = note_channels(value, ignored);
+  }
+  if (size != expected)
+    value.fail(fmt::format("found {} bytes of type '{}'; expected {}", size, type, expected));
+}
+
 /// Walks over the header of an OpenEXR file before the OpenEXR library sees it, because the library
 /// takes memory for whatever sizes a damaged header claims.
 /// @throws IoError at a byte offset if the file is not what parse_exr() reads
@@ -135,6 +167,7 @@ void check_exr_layout(std::span<const std::byte> content, std::string_view file)
     cursor.take(size, "an attribute");
     ByteCursor value(content.first(start + size), file);
     value.take(start, "an attribute");
+    check_attribute_size(value, type, size);
     if (name == "dataWindow" && type == "box2i") note_data_window(value, layout, file);
     if (name == "channels" && type == "chlist") note_channels(value, layout);
     if (name == "tiles" && type == "tiledesc") note_tiles(value, layout);

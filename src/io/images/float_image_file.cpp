@@ -10,6 +10,7 @@
 #include "io/images/array_image.hpp"
 #include "io/shared/file_kind.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/decode/filter.hpp"
 
 namespace tofsmith {
 namespace {
@@ -49,6 +50,16 @@ Image<float> read_float_image(const std::filesystem::path& path, std::string_vie
     return image_from_array(array_called_or_only(NpzReader(path), name, file), file);
   if (extension == ".exr") return only_plane(read_exr(path), name, file);
   return image_from_pfm(read_pfm(path), file);
+}
+
+Image<float> read_stray_light(const std::filesystem::path& path) {
+  Image<float> kernel = read_float_image(path, "kernel");
+  try {
+    static_cast<void>(StrayLight(kernel));
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path.string(), error.what());
+  }
+  return kernel;
 }
 
 void write_float_image(const std::filesystem::path& path, const Image<float>& image,

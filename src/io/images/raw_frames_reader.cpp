@@ -159,6 +159,9 @@ void RawFramesReader::open_parts(const std::vector<std::filesystem::path>& files
   one.measurements = 1;
   one.layout = RawLayout::planar;
   one.max_in_memory = options.max_in_memory / files.size();
+  for (auto file = files.begin(); file != files.end(); ++file)
+    if (std::find(files.begin(), file, *file) != file)
+      throw IoError(file->string(), "is named twice; expected a file for each measurement");
   for (const std::filesystem::path& file : files) {
     parts_.push_back(RawFramesReader(file, one, OneMeasurement{}));
     const RawFramesReader &part = parts_.back(), &model = parts_.front();

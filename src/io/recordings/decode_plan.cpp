@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "io/recordings/ray_map.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/depth_image.hpp"
+#include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/image_file.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
 
@@ -48,13 +48,14 @@ PixelMaps load_maps(const DecodeRequest& request, int height, int width) {
     for (float& offset_m : maps.delay_offset_m.pixels)
       offset_m += static_cast<float>(request.offset_m);
   }
-  if (!request.rays.empty()) {
+  if (request.lens && !request.lens->rays.empty()) {
     // A pixel that sees nothing is one that is dead.
     if (maps.delay_offset_m.empty()) maps.delay_offset_m = Image<float>(height, width, 0.0f);
-    const std::vector<Eigen::Vector2d> slopes = read_ray_map(request.rays, height, width);
-    for (std::size_t i = 0; i < slopes.size(); ++i)
-      if (!slopes[i].allFinite())
-        maps.delay_offset_m.pixels[i] = std::numeric_limits<float>::quiet_NaN();
+    const PixelRays rays = rays_of(request.lens, view_of(request.lens, width, height));
+    for (int row = 0; row < height; ++row)
+      for (int column = 0; column < width; ++column)
+        if (std::isnan(rays.radial_per_z(row, column)))
+          maps.delay_offset_m(row, column) = std::numeric_limits<float>::quiet_NaN();
   }
   load_map(request.gain_map, "gain", height, width, &PixelMaps::gain, maps);
   return maps;
@@ -77,7 +78,7 @@ void check_request(const DecodeRequest& request, const AnyDecoder& decoder) {
   if (request.filter) request.filter->validate();
   require(!request.undistort || request.lens, "undistort", "true",
           "needs a camera with [lens], whose distortion is taken out");
-  require(!request.undistort || request.rays.empty(), "undistort", "true",
+  require(!request.undistort || request.lens->rays.empty(), "undistort", "true",
           "goes without a map of rays");
   require(request.frame.value_or(0) >= 0, "frame", request.frame.value_or(0), "must be >= 0");
   require(!request.stack || output.extension() == ".npy", "stack", "true",
@@ -112,11 +113,6 @@ std::optional<Undistortion> undistortion_of(const DecodeRequest& request, const 
   return Undistortion(view);
 }
 
-PixelRays rays_of(const DecodeRequest& request, const PinholeView& view) {
-  if (request.rays.empty()) return PixelRays(view);
-  return {view, read_ray_map(request.rays, view.height, view.width)};
-}
-
 std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const AnyDecoder& decoder) {
   if (request.outputs.empty())
     return holds_depth_only(request.output) ? std::vector{DecodedPlane::depth}
@@ -127,21 +123,6 @@ std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const An
   return planes;
 }
 
-namespace {
-
-Image<float> stray_kernel_of(const DecodeRequest& request) {
-  if (request.stray_light.empty()) return {};
-  Image<float> kernel = read_float_image(request.stray_light, "kernel");
-  try {
-    static_cast<void>(StrayLight(kernel));
-  } catch (const std::invalid_argument& error) {
-    throw IoError(request.stray_light.string(), error.what());
-  }
-  return kernel;
-}
-
-}  // namespace
-
 Preparation preparation_of(const DecodeRequest& request) {
   Preparation preparation{.average = request.average,
                           .averaged = request.averaged,
@@ -149,8 +130,10 @@ Preparation preparation_of(const DecodeRequest& request) {
                           .filter = request.filter,
                           .find_mixed = request.mixed.has_value(),
                           .undistort = request.undistort,
-                          .stray_kernel = stray_kernel_of(request),
+                          .stray_kernel = {},
                           .hdr = request.hdr};
+  if (!request.stray_light.empty())
+    preparation.stray_kernel = read_stray_light(request.stray_light);
   if (preparation.time_filter && preparation.filter) preparation.time_filter->before_filter = true;
   return preparation;
 }

@@ -24,9 +24,6 @@ PinholeView view_of_frames(const DecodeRequest& request, const std::string& sour
 /// How a lens's distortion is taken out of planes, if that is asked for and there is one.
 std::optional<Undistortion> undistortion_of(const DecodeRequest& request, const PinholeView& view);
 
-/// The rays of a view, or of the request's map in their place. @throws IoError for such a map
-PixelRays rays_of(const DecodeRequest& request, const PinholeView& view);
-
 /// The planes to write; every plane once.
 std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const AnyDecoder& decoder);
 

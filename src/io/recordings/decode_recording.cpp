@@ -18,6 +18,7 @@
 #include "tofsmith/core/units.hpp"
 #include "tofsmith/decode/depth_image.hpp"
 #include "tofsmith/io/atomic_file.hpp"
+#include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/image_file.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
 
@@ -66,8 +67,8 @@ DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
           .first_frame = request.frame.value_or(0),
           .frames = request.frame ? 1 : frames,
           .view = view,
-          .pixel_rays = as_z                           ? rays_of(request, view)
-                        : holds_points(request.output) ? rays_of(request, written)
+          .pixel_rays = as_z                           ? rays_of(request.lens, view)
+                        : holds_points(request.output) ? rays_of(request.lens, written)
                                                        : PixelRays(),
           .undistortion = undistortion_of(request, view)};
 }
@@ -75,9 +76,10 @@ DecodeTarget target_of(const DecodeRequest& request, const AnyDecoder& decoder,
 /// Not even OutputPolicy::overwrite may replace what is being read.
 void check_inputs_are_kept(const DecodeRequest& request, const DecodeTarget& target) {
   std::vector<std::string> inputs = request.other_inputs;
-  for (const std::filesystem::path& path : {request.raw_format, request.offset_map,
-                                            request.gain_map, request.stray_light, request.rays})
+  for (const std::filesystem::path& path :
+       {request.raw_format, request.offset_map, request.gain_map, request.stray_light})
     inputs.push_back(path.string());
+  if (request.lens) inputs.push_back(request.lens->rays);
   for (const std::filesystem::path& path : request.raw) inputs.push_back(path.string());
   for (const std::filesystem::path& path : target.paths()) check_not_input(path, inputs);
 }

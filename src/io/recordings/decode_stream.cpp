@@ -11,6 +11,7 @@
 #include "io/recordings/decode_plan.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
+#include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/simulate/scene_result.hpp"
 
 namespace tofsmith {
@@ -112,7 +113,7 @@ void decode_stream(const DecodeRequest& asked, const AnyDecoder& decoder, const 
       .needs_signal = correction && correction->needs_signal(),
       .as_z = request.kind == DepthKind::z,
       .view = view,
-      .pixel_rays = request.kind == DepthKind::z ? rays_of(request, view) : PixelRays(),
+      .pixel_rays = request.kind == DepthKind::z ? rays_of(request.lens, view) : PixelRays(),
       .undistortion = undistortion_of(request, view)};
 
   StreamFrames frames(read, format);

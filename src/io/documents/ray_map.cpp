@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "io/recordings/ray_map.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,10 +7,14 @@
 #include <limits>
 
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/npy.hpp"
 
 namespace tofsmith {
 
+namespace {
+
+/// x/z and y/z of the rays of all pixels, row by row; NaN of pixels that see nothing.
 std::vector<Eigen::Vector2d> read_ray_map(const std::filesystem::path& path, int height,
                                           int width) {
   if (path.extension() != ".npy")
@@ -41,6 +43,13 @@ std::vector<Eigen::Vector2d> read_ray_map(const std::filesystem::path& path, int
     if (!slopes[i].allFinite()) slopes[i].setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   return slopes;
+}
+
+}  // namespace
+
+PixelRays rays_of(const std::optional<Lens>& lens, const PinholeView& view) {
+  if (!lens || lens->rays.empty()) return PixelRays(view);
+  return {view, read_ray_map(lens->rays, view.height, view.width)};
 }
 
 }  // namespace tofsmith

@@ -1,0 +1,182 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Writes the software bill of materials of a package as SPDX 2.3 (JSON).
+
+What is in it is found, not listed: the headers that its objects were compiled from, as Ninja noted
+them, and the shared libraries that its ELF files name, each with the Debian package it is of.
+Licences of what is compiled in come from the copyright file beside this script; a header of a
+package that it does not name, and that is not only declarations, is an error.
+
+    make_sbom.py --name tofsmith --version 0.1.0-1 --component tool --build BUILD --date SECONDS \
+                 -o sbom.spdx.json [ELF ..]
+"""
+
+import argparse
+import datetime
+import hashlib
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+# Where the objects of a component are. What reproduces the paper is in both programs.
+OBJECTS = {
+    "tool": ["apps/CMakeFiles/tofsmith_cli.dir/", "src/CMakeFiles/tofsmith_paper.dir/"],
+    "python": ["python/CMakeFiles/_tofsmith.dir/", "src/CMakeFiles/tofsmith_paper.dir/"],
+}
+# Headers of C: they declare what shared libraries hold, and nothing of them is compiled in.
+DECLARATIONS = re.compile(
+    r"libc6-dev|linux-libc-dev|libcrypt-dev|libpng-dev|zlib1g-dev|libzip-dev|libhdf5-dev|"
+    r"libsqlite3-dev|liblxi-dev|libtirpc-dev|libopenmpi-dev|libfftw3-dev|libpython3\.\d+-dev|"
+    r"python3-numpy")
+SPDX_NAMES = {"Expat": "MIT", "BSD-2-clause": "BSD-2-Clause", "BSD-3-clause": "BSD-3-Clause"}
+
+
+def run(*command):
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+def spdx_licence(debian):
+    words = re.split(r" (and|or|with) ", debian)
+    return " ".join(SPDX_NAMES.get(word, word) if i % 2 == 0 else word.upper()
+                    for i, word in enumerate(words))
+
+
+def known_licences(copyright_file):
+    """The licence of each thing that a paragraph of the copyright file names."""
+    licences = {}
+    for paragraph in copyright_file.read_text().split("\n\n"):
+        files = re.match(r"Files: (.*)", paragraph)
+        licence = re.search(r"^License: (.*)", paragraph, re.M)
+        for name in files[1].split() if files and licence else []:
+            licences[name] = spdx_licence(licence[1])
+    return licences
+
+
+def headers_of(build, component):
+    """Of the system, that objects of the component were compiled from."""
+    folders = OBJECTS.get(component, [f"src/CMakeFiles/tofsmith_{component}.dir/"])
+    dependencies, entry = {}, None
+    for line in run("ninja", "-C", str(build), "-t", "deps").splitlines():
+        if line.startswith("    "):
+            dependencies[entry].add(line.strip())
+        elif ": #deps" in line:
+            entry = line.split(": #deps")[0]
+            dependencies[entry] = set()
+    found, precompiled = set(), set()
+    for name, files in dependencies.items():
+        if any(name.startswith(folder) for folder in folders):
+            found |= files
+            precompiled |= {str(file) for file in files if file.endswith(".gch")}
+    for name in dependencies:
+        if any(file.endswith(name) for file in precompiled):
+            found |= dependencies[name]
+    return sorted({str(pathlib.Path(file).resolve()) for file in found if file.startswith("/usr/")})
+
+
+def owners(files):
+    """The Debian packages that files are of, and their versions."""
+    names = set()
+    for begin in range(0, len(files), 500):
+        listing = subprocess.run(["dpkg-query", "-S", *files[begin:begin + 500]],
+                                 capture_output=True, text=True).stdout
+        for line in listing.splitlines():
+            if not line.startswith("diversion "):
+                names.add(line.split(": ")[0].split(",")[0].split(":")[0])
+    versions = {}
+    for name in sorted(names):
+        fields = run("dpkg-query", "-W", "-f=${Version}\t${source:Package}\n", name)
+        versions[name] = fields.splitlines()[0].split("\t")
+    return versions
+
+
+def libraries_of(elf_files):
+    """Paths of the shared libraries that ELF files name; ours are not found, and left out."""
+    needed = set()
+    for file in elf_files:
+        if pathlib.Path(file).is_symlink():  # of a library that another package has
+            continue
+        needed |= set(re.findall(r"\(NEEDED\).*\[(.*)\]", run("readelf", "-dW", file)))
+    paths = {}
+    for line in run("/sbin/ldconfig", "-p").splitlines():
+        match = re.match(r"\s*(\S+) \(.*\) => (.*)", line)
+        if match:
+            paths.setdefault(match[1], match[2])
+    # Debian's dpkg knows files below /usr/lib or /lib, as they were packed.
+    found = [paths[name] for name in sorted(needed) if name in paths]
+    return sorted({name for path in found
+                   for name in (path, str(pathlib.Path(path).resolve()),
+                                re.sub("^/usr", "", str(pathlib.Path(path).resolve())))})
+
+
+def package(identifier, name, version, licence, source=None):
+    item = {"SPDXID": f"SPDXRef-{identifier}", "name": name, "versionInfo": version,
+            "downloadLocation": "NOASSERTION", "filesAnalyzed": False,
+            "licenseConcluded": "NOASSERTION", "licenseDeclared": licence,
+            "copyrightText": "NOASSERTION"}
+    if source:
+        item["supplier"] = "Organization: Debian"
+        item["externalRefs"] = [{
+            "referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl",
+            "referenceLocator": f"pkg:deb/debian/{name}@{version.replace('+', '%2B').replace(':', '%3A')}"
+                                f"?distro=bookworm&upstream={source.replace('+', '%2B')}"}]
+    return item
+
+
+def bill_of_materials(arguments):
+    licences = known_licences(pathlib.Path(__file__).with_name("copyright"))
+    compiled_in = owners(headers_of(arguments.build, arguments.component))
+    if arguments.component == "report":
+        version = run("dpkg-query", "-W", "-f=${Version}", "python3-plotly")
+        compiled_in["python3-plotly"] = [version, "python-plotly"]
+        licences["python3-plotly"] = licences["plotly.js"]
+    unknown = [name for name in compiled_in
+               if name not in licences and not DECLARATIONS.fullmatch(name)]
+    if unknown:
+        sys.exit(f"make_sbom.py: {arguments.component} is compiled from headers of "
+                 f"{', '.join(unknown)}; name each in cmake/debian/copyright, with its licence, or "
+                 "among the DECLARATIONS of cmake/debian/make_sbom.py")
+    own = package("Package", arguments.name, arguments.version, "Apache-2.0")
+    packages, relationships = [own], [("SPDXRef-DOCUMENT", "DESCRIBES", own)]
+    for relation, found in (("CONTAINS", compiled_in), ("DEPENDS_ON", owners(libraries_of(arguments.elf)))):
+        for name, (version, source) in found.items():
+            if relation == "CONTAINS" and name not in licences:
+                continue
+            identifier = f"{relation.lower().replace('_', '-')}-{name.replace('+', 'p')}"
+            packages.append(package(identifier, name, version,
+                                    licences.get(name, "NOASSERTION"), source))
+            relationships.append(("SPDXRef-Package", relation, packages[-1]))
+    document = {
+        "spdxVersion": "SPDX-2.3", "dataLicense": "CC0-1.0", "SPDXID": "SPDXRef-DOCUMENT",
+        "name": f"{arguments.name}-{arguments.version}",
+        "creationInfo": {
+            "created": datetime.datetime.fromtimestamp(arguments.date, datetime.timezone.utc)
+            .strftime("%Y-%m-%dT%H:%M:%SZ"),
+            "creators": ["Organization: The tofsmith authors", "Tool: make_sbom.py"]},
+        "packages": packages,
+        "relationships": [{"spdxElementId": of, "relationshipType": relation,
+                           "relatedSpdxElement": item["SPDXID"]}
+                          for of, relation, item in relationships]}
+    content = hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()
+    document["documentNamespace"] = f"https://tofsmith.invalid/spdx/{document['name']}-{content[:32]}"
+    return document
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--name", required=True, help="of the package")
+    parser.add_argument("--version", required=True)
+    parser.add_argument("--component", required=True, help="core, design, .., tool or python")
+    parser.add_argument("--build", required=True, type=pathlib.Path, help="directory, of Ninja")
+    parser.add_argument("--date", required=True, type=int, help="seconds since 1970")
+    parser.add_argument("-o", "--output", required=True, type=pathlib.Path)
+    parser.add_argument("elf", nargs="*", help="what the package ships")
+    arguments = parser.parse_args()
+    text = json.dumps(bill_of_materials(arguments), indent=1) + "\n"
+    arguments.output.write_text(text)
+
+
+main()

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// The deviation predicted after a filter beside the spread of repeated captures.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "decode_setup.hpp"
+#include "tofsmith/decode/filter.hpp"
+
+namespace tofsmith {
+namespace {
+
+constexpr int height = 64, width = 96, captures = 32;
+
+struct Seen {
+  double depth_bin, signal_e_per_s;
+};
+using SceneOfPixels = std::function<Seen(int row, int column)>;
+using Part = std::function<bool(int row, int column)>;
+
+int from_border(int row, int column) {
+  return std::min({row, column, height - 1 - row, width - 1 - column});
+}
+bool is_inside(int row, int column) { return from_border(row, column) >= 13; }
+bool is_at_border(int row, int column) { return from_border(row, column) < 3; }
+
+/// Depths and predicted deviations of all captures, in bins.
+struct Repeats {
+  std::vector<std::vector<double>> depth, deviation;
+
+  Repeats(const DecodeSetup& setup, FilterStrength strength, const SceneOfPixels& scene) {
+    const DecodingTable& table = setup.decoder.table();
+    const Filter filter(table, FilterOptions::of(strength));
+    FilteredFrame filtered;
+    DepthImage image(height, width);
+    for (unsigned capture = 1; capture <= captures; ++capture) {
+      const RawFrames raw = frame_by_pixel(
+          table.measurements(), height, width, capture,
+          [&](int y, int x, RandomStream& random, std::vector<float>& values) {
+            const Seen seen = scene(y, x);
+            append_noisy_pixel(table, seen.signal_e_per_s, 1e4, seen.depth_bin, random, values);
+          });
+      filter.apply(view_of_frame(raw, 0), filtered);
+      setup.decoder.decode(filtered.view(), DecodedView::of(image));
+      depth.emplace_back(), deviation.emplace_back();
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+          depth.back().push_back(std::remainder(
+              image.depth_m(y, x) / table.bin_m() - scene(y, x).depth_bin, table.samples()));
+          deviation.back().push_back(image.predicted_standard_deviation_m(y, x) / table.bin_m());
+        }
+    }
+  }
+
+  /// Spread of the captures over the deviation predicted, over a part of the pixels.
+  double ratio(const Part& part) const {
+    double squares = 0.0, count = 0.0;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        if (!part(y, x)) continue;
+        const auto at = static_cast<std::size_t>(y * width + x);
+        double mean = 0.0;
+        for (const auto& capture : depth) mean += capture[at] / captures;
+        for (std::size_t i = 0; i < captures; ++i)
+          squares += std::pow((depth[i][at] - mean) / deviation[i][at], 2);
+        count += captures - 1;
+      }
+    return std::sqrt(squares / count);
+  }
+};
+
+class FilterDeviation : public testing::TestWithParam<FilterStrength> {
+ protected:
+  DecodeSetup setup{"hamiltonian-k5", camera_with("paper-10f0")};
+};
+
+// Few windows are independent: of so many captures the spread is known to about 3 %.
+TEST_P(FilterDeviation, IsTheSpreadOfRepeatedCapturesOnAFlatPlane) {
+  for (const double signal : {3e3, 3e4}) {
+    const Repeats repeats(setup, GetParam(), [&](int, int) { return Seen{61.3, signal}; });
+    EXPECT_NEAR(repeats.ratio(is_inside), 1.0, 0.06) << signal;
+    EXPECT_NEAR(repeats.ratio(is_at_border), 1.0, 0.08) << signal;
+  }
+}
+
+TEST_P(FilterDeviation, IsTheSpreadOfRepeatedCapturesOnASlantedPlane) {
+  const Repeats repeats(setup, GetParam(), [](int row, int column) {
+    return Seen{60.0 + 0.1 * column + 0.04 * row, 1.5e4};
+  });
+  EXPECT_NEAR(repeats.ratio(is_inside), 1.0, 0.1);
+}
+
+TEST_P(FilterDeviation, IsTheSpreadOfRepeatedCapturesOfAnyAlbedo) {
+  const Repeats repeats(setup, GetParam(), [](int row, int column) {
+    const bool is_dark = (row / 3 * 7 + column / 3 * 5) % 4 == 0;
+    return Seen{61.3, is_dark ? 8e3 : 4e4};
+  });
+  EXPECT_NEAR(repeats.ratio(is_inside), 1.0, 0.07);
+}
+
+TEST_P(FilterDeviation, IsAtMostAThirdTooSmallBesideAnEdge) {
+  const Repeats repeats(setup, GetParam(), [](int, int column) {
+    return Seen{column < 48 ? 60.0 : 75.0, 2e4};
+  });
+  const auto beside_edge = [](int row, int column) {
+    return from_border(row, column) >= 8 && (column == 47 || column == 48);
+  };
+  EXPECT_LT(repeats.ratio(beside_edge), 1.3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Strengths, FilterDeviation, testing::ValuesIn(all_filter_strengths),
+                         [](const auto& strength) { return std::string(name_of(strength.param)); });
+
+}  // namespace
+}  // namespace tofsmith

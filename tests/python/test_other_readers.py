@@ -1,0 +1,188 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Files of OpenCV, Pillow and NumPy are read as these read them themselves, and they read ours."""
+
+import io
+import itertools
+import os
+
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # before cv2 is loaded
+
+import numpy as np
+import pytest
+
+import tofsmith as ts
+
+cv2 = pytest.importorskip("cv2")
+pillow = pytest.importorskip("PIL.Image")
+
+RANDOM = np.random.default_rng(7)
+REC709 = np.array([0.2126, 0.7152, 0.0722])
+
+
+def albedo_of(tmp_path, image):
+    """What an image says, 0 .. 1, as albedo of a scene that is a plane."""
+    height, width = cv2.imread(str(image), cv2.IMREAD_UNCHANGED).shape[:2]
+    np.save(tmp_path / "depth.npy", np.ones((height, width), np.float32))
+    return ts.load_scene(tmp_path / "depth.npy", image=image, linear_image=True).albedo
+
+
+def luminance(rgb, full):
+    """Of grey values, or of red, green and blue; alpha is left out."""
+    share = np.asarray(rgb, np.float64) / full
+    return share if share.ndim == 2 else share[..., :3] @ REC709
+
+
+@pytest.mark.parametrize("mode, channels", [("1", 0), ("L", 0), ("LA", 2), ("RGB", 3), ("RGBA", 4)])
+def test_png_of_8_bits_is_what_pillow_reads(tmp_path, mode, channels):
+    values = RANDOM.integers(0, 256, (5, 7, channels) if channels else (5, 7), np.uint8)
+    image = pillow.fromarray(values) if mode != "1" else pillow.fromarray(values > 127)
+    image.save(tmp_path / "a.png")
+    again = pillow.open(tmp_path / "a.png")
+    assert again.mode == mode
+    expected = np.asarray(again.convert("L" if channels < 3 else "RGB"))
+    np.testing.assert_allclose(albedo_of(tmp_path, tmp_path / "a.png"), luminance(expected, 255),
+                               atol=2e-7)
+
+
+@pytest.mark.parametrize("colours, transparent", [(2, None), (16, None), (256, 3)])
+def test_png_with_a_palette_is_what_pillow_reads(tmp_path, colours, transparent):
+    image = pillow.fromarray(RANDOM.integers(0, colours, (5, 7), np.uint8), "P")
+    image.putpalette(RANDOM.integers(0, 256, 3 * colours, np.uint8).tobytes())
+    options = {} if transparent is None else {"transparency": transparent}
+    image.save(tmp_path / "a.png", **options)
+    expected = np.asarray(pillow.open(tmp_path / "a.png").convert("RGB"))
+    np.testing.assert_allclose(albedo_of(tmp_path, tmp_path / "a.png"), luminance(expected, 255),
+                               atol=2e-7)
+
+
+@pytest.mark.parametrize("channels", [1, 3, 4])
+def test_png_of_16_bits_is_what_opencv_writes(tmp_path, channels):
+    values = RANDOM.integers(0, 65536, (5, 7, channels), np.uint16).squeeze()
+    assert cv2.imwrite(str(tmp_path / "a.png"), values)
+    rgb = values if channels == 1 else values[..., 2::-1]
+    np.testing.assert_allclose(albedo_of(tmp_path, tmp_path / "a.png"), luminance(rgb, 65535),
+                               atol=2e-7)
+
+
+def test_depth_in_png_is_the_same_for_opencv_both_ways(tmp_path):
+    values = RANDOM.integers(1, 65536, (5, 7), np.uint16)
+    assert cv2.imwrite(str(tmp_path / "a.png"), values)
+    depth = ts.read_depth(tmp_path / "a.png")
+    np.testing.assert_array_equal(depth, (values / 1000).astype(np.float32))
+    ts.write_depth(tmp_path / "b.png", depth)
+    np.testing.assert_array_equal(cv2.imread(str(tmp_path / "b.png"), cv2.IMREAD_UNCHANGED), values)
+
+
+def test_opencv_reads_the_floats_we_write(tmp_path):
+    depth = RANDOM.normal(3, 1, (5, 7)).astype(np.float32)
+    for name in ("a.pfm", "a.exr"):
+        ts.write_depth(tmp_path / name, depth)
+    content = (tmp_path / "a.exr").read_bytes()
+    at = content.index(b"chlist\0") + 11
+    assert content[at:at + 2] == b"Z\0"  # for distance; OpenCV looks for Y and colours alone
+    (tmp_path / "a.exr").write_bytes(content[:at] + b"Y" + content[at + 1:])
+    for name in ("a.pfm", "a.exr"):
+        found = cv2.imread(str(tmp_path / name), cv2.IMREAD_UNCHANGED)
+        np.testing.assert_array_equal(found, depth)
+
+
+@pytest.mark.parametrize("kind, compression", itertools.product(
+    ["half", "float"], ["no", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"]))
+def test_exr_of_every_kind_is_what_opencv_reads(tmp_path, kind, compression):
+    values = RANDOM.uniform(0.1, 1, (37, 41)).astype(np.float32)
+    path = str(tmp_path / "a.exr")
+    assert cv2.imwrite(path, values, [
+        cv2.IMWRITE_EXR_TYPE, getattr(cv2, f"IMWRITE_EXR_TYPE_{kind.upper()}"),
+        cv2.IMWRITE_EXR_COMPRESSION, getattr(cv2, f"IMWRITE_EXR_COMPRESSION_{compression.upper()}")])
+    expected = cv2.imread(path, cv2.IMREAD_UNCHANGED)
+    np.testing.assert_array_equal(ts.read_depth(path), expected)
+    np.testing.assert_allclose(expected, values, rtol=0.1)
+    colours = RANDOM.uniform(0, 1, (6, 5, 3)).astype(np.float32)
+    assert cv2.imwrite(path, colours)
+    np.testing.assert_allclose(albedo_of(tmp_path, path), luminance(colours[..., ::-1], 1),
+                               rtol=1e-6)
+
+
+@pytest.mark.parametrize("order", "<>")
+def test_pfm_of_either_byte_order_is_read(tmp_path, order):
+    values = RANDOM.uniform(0, 1, (5, 7, 3)).astype(np.float32)
+    for name, kind, image in (("grey", "Pf", values[..., 0]), ("colour", "PF", values)):
+        with open(tmp_path / f"{name}.pfm", "wb") as file:
+            file.write(f"{kind}\n7 5\n{'-' if order == '<' else ''}1.0\n".encode())
+            file.write(image[::-1].astype(order + "f4").tobytes())
+        read = cv2.imread(str(tmp_path / f"{name}.pfm"), cv2.IMREAD_UNCHANGED)
+        np.testing.assert_array_equal(read if name == "grey" else read[..., ::-1], image)
+    np.testing.assert_array_equal(ts.read_depth(tmp_path / "grey.pfm"), values[..., 0])
+    np.testing.assert_allclose(albedo_of(tmp_path, tmp_path / "colour.pfm"), luminance(values, 1),
+                               rtol=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["i1", "i2", "i4", "i8", "u1", "u2", "u4", "u8", "f4", "f8"])
+def test_frames_of_every_type_and_order_are_those_numpy_reads(tmp_path, kind):
+    raw = RANDOM.integers(0, 100, (2, 3, 4, 5)).astype(kind)
+    for order, memory in itertools.product("<>", "CF"):
+        array = np.asarray(raw.astype(order + kind), order=memory)
+        np.save(tmp_path / "a.npy", array)
+        np.savez(tmp_path / "a.npz", raw=array)
+        np.savez_compressed(tmp_path / "b.npz", raw=array)
+        for name in ("a.npy", "a.npz", "b.npz"):
+            np.testing.assert_array_equal(ts.read_raw(tmp_path / name), raw.astype(np.float32))
+
+
+@pytest.mark.parametrize("array", [
+    np.zeros((2, 3, 4), np.float16), np.zeros((2, 3, 4), bool), np.zeros((2, 3, 4), complex),
+    np.zeros((2, 3, 4), "U3"), np.zeros((2, 3, 4), "M8[s]"), np.zeros((2, 3, 4), [("a", "f4")]),
+    np.full((2, 3, 4), None)], ids=lambda array: str(array.dtype))
+def test_frames_of_other_types_are_refused_by_their_name(tmp_path, array):
+    np.save(tmp_path / "a.npy", array, allow_pickle=True)
+    with pytest.raises(OSError, match="a.npy"):
+        ts.read_raw(tmp_path / "a.npy")
+
+
+def ply_of(vertices, triangles, form, number, count):
+    """A mesh as NumPy's records lay it out."""
+    order = ">" if form == "binary_big_endian" else "<"
+    names = {"f4": "float", "f8": "double", "u1": "uchar", "i4": "int", "u2": "ushort"}
+    file = io.BytesIO()
+    file.write((f"ply\nformat {form} 1.0\ncomment by NumPy\nelement vertex {len(vertices)}\n"
+                + "".join(f"property {names[number]} {axis}\n" for axis in "xyz")
+                + f"element face {len(triangles)}\n"
+                f"property list {names[count]} int vertex_indices\nend_header\n").encode())
+    if form == "ascii":
+        np.savetxt(file, vertices, fmt="%.17g")
+        np.savetxt(file, np.insert(triangles, 0, 3, axis=1), fmt="%d")
+    else:
+        file.write(vertices.astype(order + number).tobytes())
+        faces = np.zeros(len(triangles), [("n", order + count), ("corners", order + "i4", 3)])
+        faces["n"], faces["corners"] = 3, triangles
+        file.write(faces.tobytes())
+    return file.getvalue()
+
+
+def test_ply_of_every_form_is_the_same_mesh(tmp_path):
+    vertices = np.array([[-1, -1, 2], [1, -1, 2], [0, 1, 3], [0, 0, 1.5]], np.float32)
+    triangles = np.array([[0, 1, 2], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    seen = []
+    for form, number, count in itertools.product(
+            ["ascii", "binary_little_endian", "binary_big_endian"], ["f4", "f8"], ["u1", "u2", "i4"]):
+        (tmp_path / "a.ply").write_bytes(ply_of(vertices, triangles, form, number, count))
+        seen.append(ts.load_scene(tmp_path / "a.ply", width=16, height=12).depth_m)
+    assert np.isfinite(seen[0]).any()
+    for depth in seen[1:]:
+        np.testing.assert_array_equal(depth, seen[0])
+
+
+def test_numpy_reads_the_points_we_write(tmp_path):
+    points = RANDOM.normal(0, 1, (9, 3)).astype(np.float32)
+    points[4] = np.nan
+    signal = np.arange(9, dtype=np.float32)
+    ts.write_points(tmp_path / "a.ply", points, {"signal": signal})
+    header, _, data = (tmp_path / "a.ply").read_bytes().partition(b"end_header\n")
+    lines = header.decode().splitlines()
+    assert lines[:2] == ["ply", "format binary_little_endian 1.0"] and "element vertex 8" in lines
+    names = [line.split()[2] for line in lines if line.startswith("property float ")]
+    found = np.frombuffer(data, [(name, "<f4") for name in names])
+    kept = np.arange(9) != 4
+    np.testing.assert_array_equal(np.stack([found[axis] for axis in "xyz"], 1), points[kept])
+    np.testing.assert_array_equal(found["signal"], signal[kept])
