@@ -67,7 +67,8 @@ void TimeFilter::State::resize(const RawView& raw) {
   if (!options.before_filter) return;
   shares.assign(static_cast<std::size_t>(raw.pixels()), 0.0f);
   cell_columns = cells_of(width);
-  cell_changes.assign(static_cast<std::size_t>(cells_of(height) * cell_columns), 0.0f);
+  cell_changes.assign(
+      static_cast<std::size_t>(cells_of(height)) * static_cast<std::size_t>(cell_columns), 0.0f);
   cells.assign(cell_changes.size() * static_cast<std::size_t>(measurements + 1), 0.0f);
 }
 
@@ -179,7 +180,7 @@ void TimeFilter::State::find_cell_changes() {
       float squares = 0.0f;
       for (int k = 0; k < measurements; ++k) squares += sums.data()[k] * sums.data()[k];
       const float chi2 = squares / std::max(sums.data()[measurements], 1.0f);
-      cell_changes[static_cast<std::size_t>(row * cell_columns + column)] =
+      cell_changes.data()[std::ptrdiff_t{row} * cell_columns + column] =
           shared_test.beyond(chi2) / static_cast<float>(measurements);
     }
   std::fill(cells.begin(), cells.end(), 0.0f);

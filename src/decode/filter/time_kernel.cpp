@@ -56,7 +56,7 @@ void find_signal(const TimeFilter::State& s, const AddedFrames& added, const Com
     along.fill(0.0f);
     for (int k = 0; k < s.measurements; ++k) {
       const auto at = static_cast<std::size_t>(k);
-      const float by = s.to_plane[static_cast<std::size_t>(j * s.measurements + k)] * s.gain[at];
+      const float by = s.to_plane.data()[std::ptrdiff_t{j} * s.measurements + k] * s.gain[at];
       const float dark = s.dark_raw[at];
       const float* const now = c.now + k * block;
       const float* const before = s.mean(added, k, c.first);
