@@ -60,10 +60,55 @@ std::vector<double> corner_positions(const StepFunction& d, const StepFunction& 
   return corners;
 }
 
+/// The number of equal cells of the period at whose borders alone both functions change; 0 where
+/// there are none as large as the closest two of their breakpoints.
+int common_cells(const StepFunction& d, const StepFunction& m) {
+  double closest = 1.0;
+  for (const StepFunction* function : {&d, &m})
+    for (std::size_t i = 1; i < function->breakpoints.size(); ++i)
+      closest = std::min(closest, function->breakpoints[i] - function->breakpoints[i - 1]);
+  const double cells = std::round(1.0 / closest);
+  constexpr double max_cells = 1 << 20;
+  if (!(cells <= max_cells)) return 0;
+  for (const StepFunction* function : {&d, &m})
+    for (const double t : function->breakpoints)
+      if (std::abs(t * cells - std::round(t * cells)) > 1e-6) return 0;
+  return static_cast<int>(cells);
+}
+
+/// The values of a step function in so many equal cells.
+Eigen::VectorXd cell_values(const StepFunction& function, int cells) {
+  Eigen::VectorXd values(cells);
+  for (std::size_t i = 0; i < function.values.size(); ++i) {
+    const bool last = i + 1 == function.values.size();
+    const auto begin = std::lround(function.breakpoints[i] * cells);
+    const auto end = last ? cells : std::lround(function.breakpoints[i + 1] * cells);
+    values.segment(begin, end - begin).setConstant(function.values[i]);
+  }
+  return values;
+}
+
 }  // namespace
 
 CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Waveform& modulation) {
   const StepFunction d = demodulation.steps(), m = modulation.steps();
+  // Every pair of breakpoints is a corner. Where these are too many, they mostly coincide: on a
+  // grid that both share.
+  const double pairs =
+      static_cast<double>(d.breakpoints.size()) * static_cast<double>(m.breakpoints.size());
+  constexpr double many_pairs = 1 << 18, max_pairs = 1 << 27;
+  if (pairs > many_pairs)
+    if (const int cells = common_cells(d, m); cells > 0) {
+      const Eigen::VectorXd of_d = cell_values(d, cells), of_m = cell_values(m, cells);
+      Eigen::VectorXd values = circular_correlation(of_d, of_m) / cells;
+      if (of_d.minCoeff() >= 0.0 && of_m.minCoeff() >= 0.0)
+        values = values.cwiseMax(0.0);  // not below it by rounding
+      for (int i = 0; i < cells; ++i) corners_.push_back(static_cast<double>(i) / cells);
+      values_.assign(values.begin(), values.end());
+      return;
+    }
+  require(pairs <= max_pairs, "switching times", pairs,
+          "must be 2^27 pairs of modulation and demodulation at most, or lie on a common grid");
   const Integral integral(d);
   corners_ = corner_positions(d, m);
   values_.reserve(corners_.size());

@@ -89,7 +89,11 @@ std::atomic<tbb::task_arena*> wide_arena = nullptr;
 
 void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& work) {
   const auto run = [&] {
-    tbb::parallel_for(std::int64_t{0}, count, [&](std::int64_t i) { work(i); });
+    // Not bound to the work that this is a part of: where another part of that fails, TBB would
+    // leave out what is not begun here and return as if all were done.
+    tbb::task_group_context own(tbb::task_group_context::isolated);
+    tbb::parallel_for(
+        std::int64_t{0}, count, [&](std::int64_t i) { work(i); }, own);
   };
   if (tbb::task_arena* const arena = wide_arena.load())
     arena->execute(run);

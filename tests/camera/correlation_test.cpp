@@ -72,6 +72,39 @@ TEST(CorrelationFunction, HarmonicsOfAnOpenCameraGiveTheSame) {
   }
 }
 
+// 2^18 pairs of breakpoints would cost seconds, and 65536 samples 34 GB.
+TEST(CorrelationFunction, OfManySamplesIsThatOfTheirSharedGrid) {
+  RandomStream random(7, 0);
+  const auto sampled = [&](int size) {
+    Eigen::VectorXd samples(size);
+    for (double& sample : samples) sample = random.uniform();
+    return Waveform::sampled(samples);
+  };
+  const Waveform d = sampled(600), m = sampled(600);
+  // Chips of the same grid: few intervals are compared with each other, as pairs of breakpoints.
+  const Waveform chips = Waveform::binary({{0.1, 0.25}, {0.5, 0.505}}, 2.0);
+  const CorrelationFunction grid(d, m), pairs(d, chips);
+  for (const double u : {0.0, 1.0 / 600, 0.37, 0.9999}) {
+    EXPECT_NEAR(grid(u), integrated(d, m, u), 1e-3) << u;
+    EXPECT_NEAR(pairs(u), integrated(d, chips, u), 1e-3) << u;
+  }
+  const double cell = 1.0 / 600;
+  EXPECT_NEAR(grid(0.4 * cell), 0.6 * grid(0.0) + 0.4 * grid(cell), 1e-12) << "straight in a cell";
+  double sum = 0.0;
+  for (int n = 0; n < 600; ++n) sum += d.samples()[(n + 100) % 600] * m.samples()[n];
+  EXPECT_NEAR(grid(100 * cell), sum / 600, 1e-12);
+
+  const Waveform huge = sampled(65536);
+  EXPECT_NEAR(CorrelationFunction(huge, huge)(0.0), huge.samples().squaredNorm() / 65536, 1e-9);
+}
+
+TEST(CorrelationFunction, RefusesSwitchingTimesThatWouldTakeGigabytes) {
+  std::vector<OnInterval> on;
+  for (int i = 0; i < 8000; ++i) on.push_back({(i + 0.3 + 1e-5 * i) / 8000.1, (i + 0.7) / 8000.1});
+  const Waveform many = Waveform::binary(on, 1.0);
+  EXPECT_THROW(CorrelationFunction(many, many.delayed(0.1234567)), std::invalid_argument);
+}
+
 TEST(CodeSet, RotationMovesTheOriginOfEveryCorrelationFunction) {
   for (const char* name : {"paper-30x", "paper-5f0"}) {
     const Camera camera = built_in_camera(name);

@@ -57,6 +57,19 @@ TEST(EvaluationDocument, HasExactlyTheKeysOfTheContract) {
   EXPECT_EQ(code["points"][1]["linear_mde_m"], codes[0].error.points[1].linear_mde_m.value);
 }
 
+TEST(EvaluationDocument, BoundsThatAreNoneAreNull) {
+  Camera camera = small_camera("paper-5f0");
+  camera.light.impulse_response = camera.sensor.impulse_response = ImpulseResponse();
+  const EvaluateOptions options{.trials = 1000};
+  const EvaluatedCode code{evaluate(build_family("sinusoid-k4", camera), camera, options)};
+  ASSERT_EQ(code.error.points[0].receiver_bound_mae_m, 0.0);
+  const json point =
+      json::parse(evaluation_document(camera, {&code, 1}, options))["codes"][0]["points"][0];
+  EXPECT_TRUE(point["receiver_bound_mae_m"].is_null());
+  EXPECT_TRUE(point["direct_tof_bound_mae_m"].is_null());
+  EXPECT_TRUE(point["cramer_rao_mae_m"].is_number());
+}
+
 TEST(EvaluationDocument, NamesTheDecoder) {
   const EvaluateOptions options{.method = DecodeMethod::unwrap,
                                 .unwrap_weights = UnwrapWeights::frequency};

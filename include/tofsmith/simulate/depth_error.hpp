@@ -67,18 +67,20 @@ struct PointDepthError {
   Estimate outlier_rate;                ///< share of circular errors beyond the threshold
   double cramer_rao_mae_m = 0.0;        ///< CramerRaoBound of the code
   double receiver_bound_mae_m = 0.0;    ///< ReceiverBound of the camera, with the code's exposures
-  double direct_tof_bound_mae_m = 0.0;  ///< DirectTofBound of the camera's light
+  double direct_tof_bound_mae_m = 0.0;  ///< DirectTofBound of the camera's light; 0: there is none
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<PointDepthError> auto& p) {
-  return std::tuple(
-      Field("point", p.point, FieldMark::in_place), Field("trials", p.trials, FieldMark::apart),
-      Field("linear_mde_m", p.linear_mde_m, "finite and >= 0"),
-      Field("circular_mde_m", p.circular_mde_m, "finite and >= 0"),
-      Field("outlier_rate", p.outlier_rate, "in [0, 1]", FieldMark::without_error),
-      Field("cramer_rao_mae_m", p.cramer_rao_mae_m, ">= 0", FieldMark::bound),
-      Field("receiver_bound_mae_m", p.receiver_bound_mae_m, ">= 0", FieldMark::bound),
-      Field("direct_tof_bound_mae_m", p.direct_tof_bound_mae_m, ">= 0", FieldMark::bound));
+  return std::tuple(Field("point", p.point, FieldMark::in_place),
+                    Field("trials", p.trials, FieldMark::apart),
+                    Field("linear_mde_m", p.linear_mde_m, "finite and >= 0"),
+                    Field("circular_mde_m", p.circular_mde_m, "finite and >= 0"),
+                    Field("outlier_rate", p.outlier_rate, "in [0, 1]", FieldMark::without_error),
+                    Field("cramer_rao_mae_m", p.cramer_rao_mae_m, ">= 0", FieldMark::bound),
+                    Field("receiver_bound_mae_m", p.receiver_bound_mae_m, ">= 0", FieldMark::bound,
+                          FieldMark::may_be_null),
+                    Field("direct_tof_bound_mae_m", p.direct_tof_bound_mae_m, ">= 0",
+                          FieldMark::bound, FieldMark::may_be_null));
 }
 
 /// One figure for all operating points.

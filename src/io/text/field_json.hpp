@@ -164,6 +164,12 @@ void write_field(nlohmann::ordered_json& object, const Field<Value>& field) {
         object[name].push_back(fields_json(item));
   } else if constexpr (std::is_enum_v<Type>) {
     object[name] = name_of(field.value);
+  } else if constexpr (std::is_same_v<Type, double>) {
+    // A bound of 0 bounds nothing.
+    if (field.is(FieldMark::bound) && field.is(FieldMark::may_be_null) && field.value == 0.0)
+      object[name] = nullptr;
+    else
+      object[name] = field.value;
   } else {
     object[name] = field.value;
   }
