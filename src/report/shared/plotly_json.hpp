@@ -22,8 +22,8 @@ Json numbers(std::span<const double> values);
 
 /// A large array as Plotly's typed array: little-endian float32 in base64.
 /// @param shape  {count} or {rows, columns}
-/// @param resolution  finer differences cannot be seen: a page rounds to multiples of it, "step"; 0:
-///                    it keeps all
+/// @param resolution  finer differences cannot be seen: a page rounds to multiples of it, "step".
+///                    0: it keeps all
 Json typed_array(std::span<const float> values, const std::vector<std::size_t>& shape,
                  double resolution = 0.0);
 /// What a typed array holds.
