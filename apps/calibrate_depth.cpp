@@ -78,7 +78,7 @@ void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Se
   arguments.write_page(
       depth_report(found, arguments.frames.front().string(), session.command_line));
   if (arguments.table.empty()) return;
-  write_calibrated_table(arguments.table, found.table, session.output_policy());
+  write_calibrated_table(arguments.table, found.table, arguments.policy);
   session.say(
       fmt::format("wrote {}\nnext: tofsmith decode RAW --code {} --camera {} -o depth.npy",
                   arguments.table, arguments.table,

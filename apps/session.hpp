@@ -36,7 +36,7 @@ struct Session {
   OutputPolicy output_policy() const {
     return force ? OutputPolicy::overwrite : OutputPolicy::refuse_existing;
   }
-  /// Prints a line for people; nothing with --json.
+  /// Prints lines for people, as printed() shows them; nothing with --json.
   void say(std::string_view line) const;
   /// Prints the document with --json. Text that is not UTF-8 (a file's name) is made so.
   void print_json(const nlohmann::ordered_json& document) const;
@@ -49,6 +49,9 @@ struct Session {
   /// @param policy  other than that of the session
   void check_output(const std::filesystem::path& path,
                     std::optional<OutputPolicy> policy = std::nullopt) const;
+  /// The same for outputs that one run writes one after the other.
+  /// @return how each is to be written: see policy_to_go_on()
+  OutputPolicy check_outputs(const std::vector<std::filesystem::path>& paths) const;
 };
 
 /// The options that name a camera: a positional or `--camera` name or file, and `--set key=value`.
@@ -58,7 +61,6 @@ struct CameraArguments {
   std::optional<double> temperature_c;
   const CLI::Option* option = nullptr;  ///< `--camera`, if the subcommand has it
 
-  /// Whether nobody named a camera.
   /// Whether nobody said which camera it is, nor how far it sees.
   bool is_default() const {
     return option != nullptr && option->count() == 0 &&
