@@ -17,22 +17,26 @@ void CalibrateOutput::add_to(CLI::App& command) {
   command.add_option("--report", page_path, "write a page with pictures (.html)");
 }
 
-void CalibrateOutput::check(const Session& session) const {
-  const auto check_one = [&](const std::string& path, const char* option, const char* extension) {
+void CalibrateOutput::check(const Session& session, const std::vector<std::string>& others) {
+  std::vector<std::filesystem::path> outputs;
+  const auto add = [&](const std::string& path, const char* option, const char* extension) {
     if (path.empty()) return;
     if (std::filesystem::path(path).extension() != extension)
       throw UsageError(
           fmt::format("{} {}: unknown extension; expected {}", option, path, extension));
-    session.check_output(path);
+    outputs.push_back(path);
   };
-  check_one(camera_path, "-o", ".toml");
-  check_one(page_path, "--report", ".html");
+  add(camera_path, "-o", ".toml");
+  add(page_path, "--report", ".html");
+  for (const std::string& path : others)
+    if (!path.empty()) outputs.push_back(path);
+  policy = session.check_outputs(outputs);
 }
 
 void CalibrateOutput::write_camera(const Camera& camera, const Session& session,
                                    const std::string& next) const {
   if (camera_path.empty()) return;
-  write_camera_toml(camera_path, camera, session.output_policy());
+  write_camera_toml(camera_path, camera, policy);
   session.say(fmt::format(
       "wrote {}\nnext: {}", camera_path,
       next.empty() ? fmt::format("tofsmith design {} -o designed", camera_path) : next));
@@ -40,7 +44,7 @@ void CalibrateOutput::write_camera(const Camera& camera, const Session& session,
 
 void CalibrateOutput::write_page(const Page& page, const Session& session) const {
   if (page_path.empty()) return;
-  write_file_atomically(page_path, render(page), session.output_policy());
+  write_file_atomically(page_path, render(page), policy);
   session.say(fmt::format("wrote {}", page_path));
 }
 

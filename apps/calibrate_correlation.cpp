@@ -137,10 +137,8 @@ nlohmann::ordered_json document_of(const CalibratedCorrelation& found,
   return document;
 }
 
-void check_outputs(const CorrelationArguments& arguments, const Session& session) {
-  arguments.output.check(session);
-  for (const std::string& path : {arguments.table, arguments.offset_map, arguments.gain_map})
-    if (!path.empty()) session.check_output(path);
+void check_outputs(CorrelationArguments& arguments, const Session& session) {
+  arguments.output.check(session, {arguments.table, arguments.offset_map, arguments.gain_map});
   if (!arguments.table.empty() && std::filesystem::path(arguments.table).extension() != ".npz")
     throw UsageError(fmt::format("--table {}: unknown extension; expected .npz", arguments.table));
 }
@@ -152,14 +150,14 @@ void write_maps(const CorrelationArguments& arguments, const CalibratedCorrelati
     if (map.empty())
       throw UsageError(
           fmt::format("{}: a table of means has no pixels; expected a stack of frames", path));
-    write_float_image(path, map, name, session.output_policy());
+    write_float_image(path, map, name, arguments.output.policy);
     session.say(fmt::format("wrote {}", path));
   };
   write(arguments.offset_map, found.maps.delay_offset_m, "offset");
   write(arguments.gain_map, found.maps.gain, "gain");
 }
 
-void run(const CorrelationArguments& arguments, const Session& session) {
+void run(CorrelationArguments& arguments, const Session& session) {
   const Camera base = arguments.camera.load();
   check_outputs(arguments, session);
   if (!arguments.reference.empty()) {
@@ -171,6 +169,7 @@ void run(const CorrelationArguments& arguments, const Session& session) {
                             arguments.table,
                             arguments.output.camera_path,
                             arguments.camera.name,
+                            arguments.output.policy,
                             arguments.codes,
                             arguments.taps.file_options(),
                             base,
@@ -220,7 +219,7 @@ void run(const CorrelationArguments& arguments, const Session& session) {
   for (const IdealCodeFit& fit : fits) session.say(brief(fit));
   session.say(note_lines(found.notes));
   if (!arguments.table.empty()) {
-    write_calibrated_table(arguments.table, found, session.output_policy());
+    write_calibrated_table(arguments.table, found, arguments.output.policy);
     session.say(fmt::format(
         "wrote {}\nnext: tofsmith decode RAW --code {} --camera {} -o depth.npy", arguments.table,
         arguments.table,

@@ -81,7 +81,7 @@ void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Se
       depth_report(found, arguments.frames.front().string(), session.command_line));
   std::string next;
   if (!arguments.table.empty()) {
-    write_calibrated_table(arguments.table, found.table, session.output_policy());
+    write_calibrated_table(arguments.table, found.table, arguments.policy);
     session.say(fmt::format("wrote {}", arguments.table));
     next =
         fmt::format("tofsmith decode RAW --code {} --camera {} -o depth.npy", arguments.table,

@@ -21,6 +21,7 @@ struct DepthCalibrationArguments {
   std::string dataset;     ///< of .npz and .h5; empty: the one called raw, or the only one
   bool reference_is_z = false;
   std::string reference, table, camera_path, camera_name;
+  OutputPolicy policy;
   std::vector<std::string> codes;
   CodeFileOptions file;
   Camera camera;

@@ -45,7 +45,7 @@ nlohmann::ordered_json document_of(const PhotonTransfer& found) {
   return document;
 }
 
-void run(const NoiseArguments& arguments, const Session& session) {
+void run(NoiseArguments& arguments, const Session& session) {
   const Camera base = arguments.camera.load();
   arguments.output.check(session);
   const bool reads_differences = base.sensor.readout == Readout::difference;

@@ -24,12 +24,13 @@ void add_calibrate_stray_light(CLI::App& calibrate, Session& session);
 
 /// What all calibrations write: a camera and a page.
 struct CalibrateOutput {
-  std::string camera_path;  ///< .toml, or ""
-  std::string page_path;    ///< .html, or ""
+  std::string camera_path;                              ///< .toml, or ""
+  std::string page_path;                                ///< .html, or ""
+  OutputPolicy policy = OutputPolicy::refuse_existing;  ///< of all outputs, once they are checked
 
   void add_to(CLI::App& command);
-  /// Looks at the outputs before the work. @throws UsageError, IoError
-  void check(const Session& session) const;
+  /// Looks at the outputs before the work, these and others ("": none). @throws UsageError, IoError
+  void check(const Session& session, const std::vector<std::string>& others = {});
   /// @param next  the command that comes next; "": a design for it
   void write_camera(const Camera& camera, const Session& session,
                     const std::string& next = "") const;

@@ -51,14 +51,12 @@ nlohmann::ordered_json document_of(const CalibratedResponse& result) {
 
 void run(ResponseArguments& arguments, const Session& session) {
   const Camera base = arguments.camera.load();
-  arguments.output.check(session);
   const ImpulseResponse::Kind kind = parse_response_kind(arguments.as);
   const bool measured = kind == ImpulseResponse::Kind::file;
   const bool writes_camera = !arguments.output.camera_path.empty();
-  if (measured && writes_camera) {
-    const std::filesystem::path path = response_path(arguments.output.camera_path);
-    session.check_output(path);
-  }
+  arguments.output.check(
+      session,
+      {measured && writes_camera ? response_path(arguments.output.camera_path).string() : ""});
   arguments.record.decimal = parse_decimal_mark(arguments.decimal);
   if (!arguments.time_unit.empty())
     arguments.record.time_unit_s = seconds_per_unit(arguments.time_unit);
@@ -81,7 +79,7 @@ void run(ResponseArguments& arguments, const Session& session) {
   ImpulseResponse response = response_of(result, kind);
   if (writes_camera)
     response = write_response_beside(arguments.output.camera_path, std::move(response),
-                                     session.output_policy());
+                                     arguments.output.policy);
   session.print_json(document_of(result));
   session.say(fmt::format("{}: a {}{}, {:.1f} dB above its noise\n\n{}", arguments.file,
                           result.falling ? "falling " : "", name_of(result.excitation),

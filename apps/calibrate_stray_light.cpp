@@ -32,8 +32,8 @@ nlohmann::ordered_json document_of(const CalibratedStrayLight& found) {
 
 void run(const StrayLightArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
-  for (const std::string& path : {arguments.kernel, arguments.page})
-    if (!path.empty()) session.check_output(path);
+  CalibrateOutput output{.camera_path = "", .page_path = arguments.page};
+  output.check(session, {arguments.kernel});
   const RawFrames frames = read_raw_frames(arguments.file);
   RawFrames dark;
   if (!arguments.dark.empty()) dark = read_raw_frames(arguments.dark);
@@ -49,11 +49,9 @@ void run(const StrayLightArguments& arguments, const Session& session) {
       "a target of {} say\n{}",
       100.0 * found.total.value, 196.0 * found.total.standard_error, found.radius_px.back(),
       found.pixels, found.target_pixels, note_lines(found.notes)));
-  if (!arguments.page.empty())
-    CalibrateOutput{.camera_path = "", .page_path = arguments.page}.write_page(
-        stray_light_report(found, arguments.file, session.command_line), session);
+  output.write_page(stray_light_report(found, arguments.file, session.command_line), session);
   if (arguments.kernel.empty()) return;
-  write_float_image(arguments.kernel, found.kernel, "kernel", session.output_policy());
+  write_float_image(arguments.kernel, found.kernel, "kernel", output.policy);
   session.say(fmt::format("wrote {}\nnext: tofsmith decode RAW --code CODE --stray-light {}",
                           arguments.kernel, arguments.kernel));
 }

@@ -51,7 +51,7 @@ std::string lines_of(const TemperatureDrift& found) {
          line("signal", found.signal_per_c, 1e2, "%") + note_lines(found.notes);
 }
 
-void run(const TemperatureArguments& arguments, const Session& session) {
+void run(TemperatureArguments& arguments, const Session& session) {
   const Camera camera = arguments.camera.load();
   arguments.output.check(session);
   const CodeSet code = load_camera_code(arguments.code, camera, arguments.taps.file_options());

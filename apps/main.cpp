@@ -3,12 +3,16 @@
 // The command line: tofsmith COMMAND. Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted.
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <pthread.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "command_listing.hpp"
@@ -51,8 +55,9 @@ std::string words_of(const CLI::App& command) {
 
 /// The empty name of an output would pass for one that was not given.
 void refuse_outputs_without_name(int argc, char** argv) {
-  constexpr std::string_view outputs[] = {"-o",      "--output",     "--store",   "--report",
-                                          "--table", "--offset-map", "--gain-map"};
+  constexpr std::string_view outputs[] = {
+      "-o",           "--output",   "--store", "--export",     "--report",    "--table",
+      "--offset-map", "--gain-map", "--truth", "--truth-near", "--truth-far", "--truth-multipath"};
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
     for (const std::string_view output : outputs)
@@ -202,10 +207,21 @@ int run(int argc, char** argv) {
   }
 }
 
-}  // namespace
+/// Destructors of JSON take memory; where there is none, no exception leaves them.
+[[noreturn]] void stop_without_memory() {
+  try {
+    if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
+  } catch (const std::bad_alloc&) {
+    constexpr std::string_view message = "tofsmith: out of memory\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, message.data(), message.size());
+    ::_exit(exit_failed);
+  } catch (...) {
+    // An error of ours.
+  }
+  std::abort();
+}
 
-int main(int argc, char** argv) {
-  catch_interrupts();
+int run_and_tell(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const UsageError& error) {
@@ -217,4 +233,43 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "tofsmith: {}\n", printed(error.what()));
   }
   return interrupted() ? exit_interrupted : exit_failed;
+}
+
+/// Tiles of pixels stand on the stack. Where that is small (`ulimit -s`), a thread has one as large
+/// as usual.
+int run_on_enough_stack(int argc, char** argv) {
+  constexpr std::size_t enough_bytes = std::size_t{1} << 21, usual_bytes = std::size_t{1} << 23;
+  struct rlimit limit {};
+  if (::getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= enough_bytes)
+    return run_and_tell(argc, argv);
+  struct Work {
+    int argc;
+    char** argv;
+    int code;
+  } work{argc, argv, exit_failed};
+  const auto start = [](void* given) -> void* {
+    auto* const its = static_cast<Work*>(given);
+    its->code = run_and_tell(its->argc, its->argv);
+    return nullptr;
+  };
+  pthread_attr_t attributes;
+  pthread_t thread;
+  ::pthread_attr_init(&attributes);
+  ::pthread_attr_setstacksize(&attributes, usual_bytes);
+#ifdef __GLIBC__
+  ::pthread_setattr_default_np(&attributes);  // and so have those that it starts
+#endif
+  const bool started = ::pthread_create(&thread, &attributes, start, &work) == 0;
+  ::pthread_attr_destroy(&attributes);
+  if (!started) return run_and_tell(argc, argv);
+  ::pthread_join(thread, nullptr);
+  return work.code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  catch_interrupts();
+  std::set_terminate(stop_without_memory);
+  return run_on_enough_stack(argc, argv);
 }

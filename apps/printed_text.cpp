@@ -37,8 +37,7 @@ bool is_control(std::string_view character) {
 
 }  // namespace
 
-std::string printed(std::string_view message) {
-  constexpr std::size_t longest = 4000;
+std::string printed(std::string_view message, std::size_t longest) {
   std::string text;
   for (std::size_t at = 0; at < message.size();) {
     if (text.size() > longest) return text + fmt::format(" .. ({} bytes)", message.size());

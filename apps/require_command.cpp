@@ -61,28 +61,28 @@ OutputKind kind_of(const std::string& output) {
 }
 
 /// Before the work: nothing that stands is replaced without --force.
-void check_outputs(const std::string& output, OutputKind kind, const Session& session) {
-  if (kind == OutputKind::numbers || kind == OutputKind::page) session.check_output(output);
-  if (kind != OutputKind::directory) return;
+OutputPolicy check_outputs(const std::string& output, OutputKind kind, const Session& session) {
+  if (kind == OutputKind::none) return session.output_policy();
+  if (kind != OutputKind::directory) return session.check_outputs({std::filesystem::path(output)});
   const std::filesystem::path directory(output);
   make_output_directory(directory);
-  for (const char* name : {"requirements.json", "report.html"})
-    session.check_output((directory / name).string());
+  // In the order in which they are written; the codes that suffice come between.
+  return session.check_outputs({directory / "as_it_is.code.json", directory / "requirements.json",
+                                directory / "report.html"});
 }
 
 void write(const std::string& output, OutputKind kind, const Camera& camera,
-           const Requirements& found, const RequirementOptions& options, const Session& session) {
+           const Requirements& found, const RequirementOptions& options, OutputPolicy policy,
+           const Session& session) {
   const auto page = [&](const std::filesystem::path& path) {
-    write_file_atomically(path,
-                          render(requirements_report(camera, found, options, session.command_line)),
-                          session.output_policy());
+    write_file_atomically(
+        path, render(requirements_report(camera, found, options, session.command_line)), policy);
   };
   if (kind == OutputKind::numbers)
-    write_file_atomically(output, requirements_document(camera, found, options) + "\n",
-                          session.output_policy());
+    write_file_atomically(output, requirements_document(camera, found, options) + "\n", policy);
   if (kind == OutputKind::page) page(output);
   if (kind == OutputKind::directory) {
-    write_requirements(output, camera, found, options, session.output_policy());
+    write_requirements(output, camera, found, options, policy);
     page(std::filesystem::path(output) / "report.html");
   }
 }
@@ -106,10 +106,10 @@ void run(RequireArguments& arguments, const Session& session) {
   const OutputKind kind = kind_of(arguments.output);
   std::optional<FreshDirectory> directory;
   if (kind == OutputKind::directory) directory.emplace(arguments.output);
-  check_outputs(arguments.output, kind, session);
+  const OutputPolicy policy = check_outputs(arguments.output, kind, session);
   const Camera camera = arguments.distance.at(arguments.camera.load(), session);
   const Requirements found = find_requirements(camera, options, terminal_progress("designing"));
-  write(arguments.output, kind, camera, found, options, session);
+  write(arguments.output, kind, camera, found, options, policy, session);
   if (session.json) return session.print_document(requirements_document(camera, found, options));
   session.say(fmt::format("asked for {}; as it is, {} errs {}{}", length_text(options.error_m),
                           found.code.name(), length_text(found.error_m),

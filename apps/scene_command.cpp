@@ -66,12 +66,13 @@ void list_scenes(const Session& session) {
 
 void write_directory(const fs::path& directory, const LoadedScene& scene, const Camera& camera,
                      const Session& session) {
-  const OutputPolicy policy = session.output_policy();
   const FreshDirectory cleanup(directory);
   make_output_directory(directory);
+  std::vector<fs::path> outputs;
   for (const char* name :
        {"depth.npy", "z.npy", "albedo.npy", "cosine.npy", "beyond_range.npy", "preview.png"})
-    session.check_output(directory / name);
+    outputs.push_back(directory / name);
+  const OutputPolicy policy = session.check_outputs(outputs);
   const SceneImage& image = scene.image;
   write_float_image(directory / "depth.npy", image.depth_m, "depth", policy);
   write_float_image(directory / "z.npy", z_from_radial(image.depth_m, scene.view), "z", policy);
@@ -111,6 +112,7 @@ void print(const LoadedScene& scene, const Camera& camera, const std::string& ou
                             length_text(extent.farthest_m)));
   if (extent.beyond_range > 0)
     session.say(fmt::format("{}: {}", camera.name, beyond_range_remark(extent)));
+  if (const std::string remark = albedo_remark(scene); !remark.empty()) session.say(remark);
   if (!output.empty()) session.say(fmt::format("wrote {}", output));
 }
 

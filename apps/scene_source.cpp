@@ -58,6 +58,14 @@ LoadedScene scene_of(const SceneSource& source, const Camera& camera) {
   }
 }
 
+std::string albedo_remark(const LoadedScene& scene) {
+  if (scene.brightest_albedo <= 1.0f) return "";
+  return fmt::format(
+      "note: the brightest albedo of the picture is {:.4g}, more than all light; all of it was "
+      "divided by that",
+      scene.brightest_albedo);
+}
+
 MultipathReturns bounced_light_of(const LoadedScene& scene, const Camera& camera,
                                   BounceOptions options, const Progress& progress) {
   if (!scene.staged)

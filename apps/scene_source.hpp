@@ -23,6 +23,9 @@ std::string lens_setting(const PinholeView& view);
 /// As load_scene(). @throws UsageError for options that do not go with the scene
 LoadedScene scene_of(const SceneSource& source, const Camera& camera);
 
+/// That the picture of a scene's albedo was scaled down; "" if it was not.
+std::string albedo_remark(const LoadedScene& scene);
+
 /// Light that bounces once between the scene's surfaces, within the camera's range.
 /// @throws UsageError for a depth image, which has no surfaces; as bounced_light()
 MultipathReturns bounced_light_of(const LoadedScene& scene, const Camera& camera,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "help_pages.hpp"
+#include "printed_text.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 
@@ -23,7 +24,7 @@ UsageError wrong_option(const std::invalid_argument& error) {
 }
 
 void Session::say(std::string_view line) const {
-  if (!json) fmt::print("{}\n", line);
+  if (!json) fmt::print("{}\n", printed(line, line.size()));
 }
 
 void Session::print_json(const nlohmann::ordered_json& document) const {
@@ -53,6 +54,12 @@ void Session::check_output(const std::filesystem::path& path,
   }
   check_not_input(path, inputs);
   const AtomicFile probe(path, policy.value_or(output_policy()));  // never committed
+}
+
+OutputPolicy Session::check_outputs(const std::vector<std::filesystem::path>& paths) const {
+  const OutputPolicy policy = policy_to_go_on(paths, output_policy());
+  for (const std::filesystem::path& path : paths) check_output(path, policy);
+  return policy;
 }
 
 void CameraArguments::add_to(CLI::App& command) {

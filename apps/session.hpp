@@ -39,7 +39,7 @@ struct Session {
   OutputPolicy output_policy() const {
     return force ? OutputPolicy::overwrite : OutputPolicy::refuse_existing;
   }
-  /// Prints a line for people; nothing with --json.
+  /// Prints lines for people, as printed() shows them; nothing with --json.
   void say(std::string_view line) const;
   /// Prints the document with --json. Text that is not UTF-8 (a file's name) is made so.
   void print_json(const nlohmann::ordered_json& document) const;
@@ -52,6 +52,9 @@ struct Session {
   /// @param policy  other than that of the session
   void check_output(const std::filesystem::path& path,
                     std::optional<OutputPolicy> policy = std::nullopt) const;
+  /// The same for outputs that one run writes one after the other.
+  /// @return how each is to be written: see policy_to_go_on()
+  OutputPolicy check_outputs(const std::vector<std::filesystem::path>& paths) const;
 };
 
 /// The options that name a camera: a positional or `--camera` name or file, and `--set key=value`.

@@ -149,12 +149,12 @@ CapturedScene capture_one(const SimulateArguments& arguments, const LoadedScene&
 
 /// Depths that are true, where they were asked for.
 void write_truth(const SimulateArguments& arguments, const CapturedScene& captured,
-                 const Session& session) {
+                 OutputPolicy policy) {
   const StagedCapture& made = captured.capture;
   const auto write = [&](const std::string& path, const auto& frames, const auto& depth_of) {
     if (path.empty()) return;
     if (frames.size() == 1 && captured.is_still)
-      return write_depth(path, depth_of(frames.front()), session.output_policy());
+      return write_depth(path, depth_of(frames.front()), policy);
     const Image<float>& first = depth_of(frames.front());
     std::vector<float> all;
     for (const auto& frame : frames)
@@ -163,7 +163,7 @@ void write_truth(const SimulateArguments& arguments, const CapturedScene& captur
               NpyArray::of<float>({frames.size(), static_cast<std::size_t>(first.height),
                                    static_cast<std::size_t>(first.width)},
                                   all),
-              session.output_policy());
+              policy);
   };
   const auto own = [](const Image<float>& depth_m) -> const Image<float>& { return depth_m; };
   write(arguments.truth, made.truth,
@@ -173,7 +173,7 @@ void write_truth(const SimulateArguments& arguments, const CapturedScene& captur
   if (!arguments.returns.truth().empty())
     write_multipath_truth(arguments.returns.truth(),
                           multipath_truth(made.truth.front(), captured.light, arguments.options),
-                          captured.light, session.output_policy());
+                          captured.light, policy);
 }
 
 /// What a scene or a lens cannot give.
@@ -271,14 +271,14 @@ void leave_camera(const SimulateArguments& arguments, Camera camera, const CodeS
 }
 
 /// Before the work: no output is an input, or there already.
-void check_outputs(const SimulateArguments& arguments, const Session& session) {
-  const std::vector<std::string> truths = {arguments.truth, arguments.truth_near,
-                                           arguments.truth_far, arguments.returns.truth()};
-  session.check_output(arguments.output);
+OutputPolicy check_outputs(const SimulateArguments& arguments, const Session& session) {
+  std::vector<std::filesystem::path> outputs{arguments.output};
+  for (const std::string& truth :
+       {arguments.truth, arguments.truth_near, arguments.truth_far, arguments.returns.truth()})
+    if (!truth.empty()) outputs.emplace_back(truth);
   if (leaves_camera(arguments))
     session.check_output(camera_beside(arguments.output), camera_policy(arguments, session));
-  for (const std::string& truth : truths)
-    if (!truth.empty()) session.check_output(truth);
+  return session.check_outputs(outputs);
 }
 
 void run(SimulateArguments& arguments, Session& session) {
@@ -287,7 +287,7 @@ void run(SimulateArguments& arguments, Session& session) {
   arguments.scene.scene = arguments.scenes.front();
   const Camera camera = arguments.camera.load();
   const CodeSet code = load_camera_code(arguments.code, camera, arguments.taps.file_options());
-  check_outputs(arguments, session);
+  const OutputPolicy policy = check_outputs(arguments, session);
   const LoadedScene scene = scene_of(arguments.scene, camera);
   check_truth(arguments, scene, camera);
   const OperatingPoint usual = capture_light(camera, arguments.options.reference_distance_m);
@@ -295,9 +295,9 @@ void run(SimulateArguments& arguments, Session& session) {
   arguments.options.ambient_e_per_s = arguments.ambient_e_per_s.value_or(usual.ambient_e_per_s);
   const CapturedScene captured = capture_one(arguments, scene, code, camera);
   const RawFrames& raw = captured.capture.raw;
-  write_raw_frames(arguments.output, raw, session.output_policy());
+  write_raw_frames(arguments.output, raw, policy);
   leave_camera(arguments, camera, code, scene.view, session);
-  write_truth(arguments, captured, session);
+  write_truth(arguments, captured, policy);
   const SceneExtent extent = scene_extent(scene.image, camera);
   session.print_json({{"scene", scene.name},
                       {"code", code.name()},
@@ -321,6 +321,7 @@ void run(SimulateArguments& arguments, Session& session) {
       arguments.options.reference_distance_m, arguments.options.ambient_e_per_s,
       arguments.options.seed));
   if (extent.beyond_range > 0) session.say(beyond_range_remark(extent));
+  if (const std::string remark = albedo_remark(scene); !remark.empty()) session.say(remark);
   if (!(lens_setting(scene.view) ==
         lens_setting(view_of(camera.lens, scene.image.width(), scene.image.height()))))
     session.say(

@@ -36,7 +36,8 @@ struct MergeArguments {
 };
 
 /// Outputs are looked at before the long work.
-void check_outputs(const SweepArguments& arguments, const Session& session) {
+/// @return how they are to be written
+OutputPolicy check_outputs(const SweepArguments& arguments, const Session& session) {
   std::vector<std::filesystem::path> outputs(arguments.exports.begin(), arguments.exports.end());
   for (const auto& path : outputs)
     if (const auto kind = path.extension(); kind != ".csv" && kind != ".json" && kind != ".npz")
@@ -47,7 +48,7 @@ void check_outputs(const SweepArguments& arguments, const Session& session) {
     if (outputs.back().extension() != ".html")
       throw UsageError(fmt::format("--report {}: expected .html", arguments.report));
   }
-  for (const auto& path : outputs) session.check_output(path);
+  return session.check_outputs(outputs);
 }
 
 WorkList read_list(const SweepArguments& arguments) {
@@ -72,15 +73,14 @@ void write_export(const std::filesystem::path& path, const WorkList& list,
 
 void write_outputs(const SweepArguments& arguments, const WorkList& list,
                    std::span<const std::string> keys, SweepStore& store, const SweepCounts& counts,
-                   const Session& session) {
+                   OutputPolicy policy, const Session& session) {
   if (arguments.exports.empty() && arguments.report.empty()) return;
   const std::vector<SweepResult> results = sweep_results(list, keys, store);
   for (const std::string& path : arguments.exports)
-    write_export(path, list, results, store, session.output_policy());
+    write_export(path, list, results, store, policy);
   if (!arguments.report.empty())
     write_file_atomically(arguments.report,
-                          render(sweep_page(list, results, counts, session.command_line)),
-                          session.output_policy());
+                          render(sweep_page(list, results, counts, session.command_line)), policy);
 }
 
 void print(const SweepArguments& arguments, std::int64_t items, const SweepCounts& counts,
@@ -113,7 +113,7 @@ void lead(const SweepArguments& arguments, Session& session, SweepRanks& ranks) 
   if (arguments.store.empty()) throw UsageError("--store is required");
   SweepRunOptions options{.shard = parse_shard(arguments.shard),
                           .lease_s = arguments.store_options.lease_s};
-  check_outputs(arguments, session);
+  const OutputPolicy policy = check_outputs(arguments, session);
   const WorkList list = read_list(arguments);
   const Progress progress = terminal_progress("sweep");
   const std::vector<std::string> keys = list.keys(progress);
@@ -126,7 +126,7 @@ void lead(const SweepArguments& arguments, Session& session, SweepRanks& ranks) 
   }
   report(progress, 1.0, "done");
   const SweepCounts counts = store.count(keys);
-  write_outputs(arguments, list, keys, store, counts, session);
+  write_outputs(arguments, list, keys, store, counts, policy, session);
   print(arguments, list.size(), counts, done, session);
   if (!done.failures.empty())
     throw std::runtime_error(fmt::format("{} of {} items failed; the first: {}",
@@ -152,7 +152,12 @@ void merge(const MergeArguments& arguments, Session& session) {
   if (ranks.rank() != 0) return follow("", session, ranks);  // there is no work to share
   session.check_output(arguments.output);
   AtomicFile file(arguments.output, session.output_policy());
-  SweepStore::merge(file.temporary_path(), arguments.parts);
+  try {
+    SweepStore::merge(file.temporary_path(), arguments.parts);
+  } catch (const IoError& error) {
+    if (error.place() != file.temporary_path()) throw;
+    throw IoError(arguments.output, error.problem());
+  }
   file.commit();
   session.print_json({{"tofsmith", TOFSMITH_VERSION},
                       {"store", arguments.output},

@@ -89,11 +89,12 @@ std::atomic<tbb::task_arena*> wide_arena = nullptr;
 
 void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& work) {
   const auto run = [&] {
-    // Not bound to the work that this is a part of: where another part of that fails, TBB would
-    // leave out what is not begun here and return as if all were done.
-    tbb::task_group_context own(tbb::task_group_context::isolated);
+    // Where another part of the work that this belongs to fails, TBB leaves out what is not begun
+    // here and returns as if all were done.
+    tbb::task_group_context own;
     tbb::parallel_for(
         std::int64_t{0}, count, [&](std::int64_t i) { work(i); }, own);
+    if (own.is_group_execution_cancelled()) throw Interrupted();
   };
   if (tbb::task_arena* const arena = wide_arena.load())
     arena->execute(run);

@@ -7,11 +7,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <charconv>
 #include <csignal>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <mutex>
 #include <set>
 #include <system_error>
@@ -65,10 +68,14 @@ void remove_leftovers(const fs::path& directory) {
     const std::lock_guard lock(mutex);
     if (!seen.insert(fs::absolute(directory, ignored)).second) return;
   }
-  for (fs::directory_iterator it(directory, ignored), end; it != end; it.increment(ignored)) {
-    if (ignored) return;
-    const pid_t owner = owner_of(it->path().filename().string());
-    if (owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH) fs::remove(it->path(), ignored);
+  try {
+    // Not it.increment(error), which ends the process where memory is short.
+    for (fs::directory_iterator it(directory), end; it != end; ++it) {
+      const pid_t owner = owner_of(it->path().filename().string());
+      if (owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH) fs::remove(it->path(), ignored);
+    }
+  } catch (const fs::filesystem_error&) {
+    // What cannot be listed keeps what is left in it.
   }
 }
 
@@ -173,17 +180,29 @@ void AtomicFile::commit() {
   }
 }
 
+bool AtomicFile::target_holds_the_same() const {
+  std::ifstream found(target_, std::ios::binary), expected(temporary_, std::ios::binary);
+  using Bytes = std::istreambuf_iterator<char>;
+  return found && expected && std::equal(Bytes(found), Bytes(), Bytes(expected), Bytes());
+}
+
 void AtomicFile::rename_to_target() {
+  const bool replaces = policy_ == OutputPolicy::overwrite;
+  const auto keep_or_refuse = [&] {
+    if (policy_ != OutputPolicy::refuse_other || !target_holds_the_same())
+      refuse_existing_file(target_);
+    std::error_code ignored;
+    fs::remove(temporary_, ignored);
+  };
 #ifdef RENAME_NOREPLACE
-  if (policy_ == OutputPolicy::refuse_existing) {
+  if (!replaces) {
     if (::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0)
       return;
-    if (errno == EEXIST) refuse_existing_file(target_);
+    if (errno == EEXIST) return keep_or_refuse();
     // Some file systems lack the flag: look, then rename.
   }
 #endif
-  if (policy_ == OutputPolicy::refuse_existing && ::access(target_.c_str(), F_OK) == 0)
-    refuse_existing_file(target_);
+  if (!replaces && ::access(target_.c_str(), F_OK) == 0) return keep_or_refuse();
   if (::rename(temporary_.c_str(), target_.c_str()) != 0)
     throw IoError(target_.string(), fmt::format("cannot write: {}", system_message(errno)));
 }

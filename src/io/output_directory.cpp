@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -27,6 +30,17 @@ void check_not_input(const std::filesystem::path& output, const std::vector<std:
                     fmt::format("is the input {} of this command; choose another name, which "
                                 "--force does not replace",
                                 input));
+}
+
+OutputPolicy policy_to_go_on(const std::vector<std::filesystem::path>& outputs,
+                             OutputPolicy policy) {
+  const auto is_there = [](const std::filesystem::path& path) {
+    std::error_code ignored;
+    return std::filesystem::exists(path, ignored);
+  };
+  const auto there = std::count_if(outputs.begin(), outputs.end(), is_there);
+  const bool stopped = there > 0 && there < std::ssize(outputs);
+  return stopped && policy == OutputPolicy::refuse_existing ? OutputPolicy::refuse_other : policy;
 }
 
 }  // namespace tofsmith

@@ -219,6 +219,18 @@ class Commands(CommandLineTest):
         raw = np.load(self.path("raw.npy"))
         self.assertAlmostEqual(raw[:, 4:].mean() / raw[:, :4].mean(), 3, 1)
 
+    def test_albedo_above_all_light_is_told(self):
+        np.save(self.path("flat.npy"), np.full((4, 5), 2.0, np.float32))
+        picture = np.full((4, 5), 0.5, np.float32)
+        np.save(self.path("picture.npy"), picture)
+        look = ("scene", "flat.npy", "--image", "picture.npy")
+        self.assertNotIn("note", self.do(*look))
+        picture[1, 2] = 2706
+        np.save(self.path("picture.npy"), picture)
+        told = "note: the brightest albedo of the picture is 2706"
+        self.assertIn(told, self.do(*look))
+        self.assertIn(told, self.do("simulate", *look[1:], "--code", "sinusoid-k4", "-o", "r.npy"))
+
     def test_decode_tells_when_no_pixel_has_a_depth(self):
         adc = ("--set", "sensor.adc_bits=12", "--set", "sensor.gain_e_per_dn=1")
         for value, more, words in ((np.nan, (), ("20 invalid", "NaN")),

@@ -35,12 +35,16 @@ class Refusals(CommandLineTest):
             self.assertEqual(process.returncode, 1)
             self.assertIn(shown, error.decode())  # which is UTF-8
             self.assertNotIn(b"\x1b", error)
+        self.write("c.toml", 'name = "\\u001b[31mred"\nfundamental_frequency_hz = 15e6\n')
+        self.assertIn("sinusoid-k4 on \\x1b[31mred: ",
+                      self.do("codes", "sinusoid-k4", "--camera", "c.toml"))
         process = self.start("evaluate", "x" * 100_000)
         self.assertLess(len(process.communicate()[1]), 6000)
 
     def test_an_output_has_a_name(self):
         for words in (["codes", "sinusoid-k4", "-o", ""], ["codes", "sinusoid-k4", "--output="],
-                      ["sweep", "s.toml", "--store", ""]):
+                      ["sweep", "s.toml", "--store", ""], ["sweep", "s.toml", "--export", ""],
+                      ["simulate", "room", "--code", "sinusoid-k4", "-o", "a", "--truth="]):
             self.refuse(words, "found an empty file name")
 
     def test_usage(self):

@@ -65,6 +65,30 @@ TEST(AtomicFile, RefusesAFileThatAppearsWhileItIsWritten) {
   EXPECT_EQ(directory.files(), 1);
 }
 
+TEST(AtomicFile, GoesOnOverItsOwnBytesButNotOverOthers) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "a.txt";
+  write_file_atomically(path, std::string_view("same"), refuse);
+  write_file_atomically(path, std::string_view("same"), OutputPolicy::refuse_other);
+  for (const std::string_view other : {"sam", "same!", "SAME"})
+    EXPECT_THAT(
+        io_error_of([&] { write_file_atomically(path, other, OutputPolicy::refuse_other); }),
+        HasSubstr("exists already"));
+  EXPECT_EQ(read_text_file(path), "same");
+  EXPECT_EQ(directory.files(), 1);
+}
+
+TEST(AtomicFile, SomeOfTheOutputsMeanThatARunWasStopped) {
+  const TemporaryDirectory directory;
+  const std::vector<std::filesystem::path> outputs{directory / "a.txt", directory / "b.txt"};
+  EXPECT_EQ(policy_to_go_on(outputs, refuse), refuse);
+  write_file_atomically(outputs[0], std::string_view("a"), refuse);
+  EXPECT_EQ(policy_to_go_on(outputs, refuse), OutputPolicy::refuse_other);
+  EXPECT_EQ(policy_to_go_on(outputs, overwrite), overwrite);
+  write_file_atomically(outputs[1], std::string_view("b"), refuse);
+  EXPECT_EQ(policy_to_go_on(outputs, refuse), refuse);
+}
+
 TEST(AtomicFile, AnExceptionHalfwayLeavesTheOldFileAndNothingElse) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "a.txt", std::string_view("old"), refuse);

@@ -26,8 +26,15 @@ void make_output_directory(const std::filesystem::path& directory);
 /// @throws IoError naming the output
 void check_not_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
-/// What happens when the output file is already there.
-enum class OutputPolicy { refuse_existing, overwrite };
+/// What happens when the output file is already there. refuse_other leaves a file that holds the
+/// same bytes as it is, as a run that was stopped has written it, and refuses any other.
+enum class OutputPolicy { refuse_existing, refuse_other, overwrite };
+
+/// The policy for outputs that one run writes one after the other. Where some of them are there
+/// but not all, a run was stopped, and the same work may go on: refuse_existing becomes
+/// refuse_other.
+OutputPolicy policy_to_go_on(const std::vector<std::filesystem::path>& outputs,
+                             OutputPolicy policy);
 
 /// An output file that appears whole or not at all: everything goes to a hidden file in the same
 /// directory, and commit() renames it. Without commit(), the destructor removes the hidden file
@@ -53,12 +60,13 @@ class AtomicFile {
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
 
   /// Flushes to disk and gives the file its name. Call it once, last.
-  /// @throws IoError if that fails, or if under refuse_existing the target has appeared meanwhile
+  /// @throws IoError if that fails, or if the target has appeared meanwhile and may not be replaced
   void commit();
 
  private:
   void create_temporary();
   void rename_to_target();
+  bool target_holds_the_same() const;
 
   std::filesystem::path target_;
   std::filesystem::path temporary_;

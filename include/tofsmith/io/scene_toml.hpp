@@ -80,6 +80,7 @@ struct LoadedScene {
   SceneImage image;
   PinholeView view;
   std::optional<StagedScene> staged;  ///< its surfaces at time 0; none: a depth image has none
+  float brightest_albedo = 1.0f;      ///< above 1: a picture's, by which all of it was divided
 };
 
 /// Reads a depth image with its albedo, or casts the rays of a scene. z-depth becomes radial

@@ -88,6 +88,8 @@ LoadedScene depth_image(const SceneSource& source, const std::optional<Lens>& le
   if (!source.image.empty()) {
     Image<float> picture = read_albedo(source.image, transfer_of(source));
     require_size(picture, source.image, scene.image, source.scene);
+    for (const float value : picture.pixels)
+      if (value > scene.brightest_albedo) scene.brightest_albedo = value;
     scene.image.albedo = albedo_of_picture(std::move(picture), source.image, scene.image.depth_m);
   }
   return scene;

@@ -192,8 +192,9 @@ std::size_t DecodeTarget::writing_bytes() const {
 }
 
 DecodeOutput::DecodeOutput(DecodeTarget target) : target_(std::move(target)) {
-  for (const std::filesystem::path& path : target_.paths())
-    check_decoded_output(path, target_.policy);
+  const std::vector<std::filesystem::path> paths = target_.paths();
+  target_.policy = policy_to_go_on(paths, target_.policy);
+  for (const std::filesystem::path& path : paths) check_decoded_output(path, target_.policy);
 }
 
 void DecodeOutput::take(int frame, int first_row, int rows, const DecodedPlanes& planes) {

@@ -1,0 +1,135 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Every command that writes works with little memory, few files, a small stack, and without home,
+temporary folder, locale and a writable root.
+
+    limits_test.py TOFSMITH --figures     peaks of memory on inputs of usual size, under these limits
+"""
+
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+from command_line import TOOL
+from writing_commands import COMMANDS, make_inputs
+
+MB = 2**20
+LIMITS = {
+    resource.RLIMIT_DATA: 300 * MB,  # what is taken, not addresses that are kept free
+    resource.RLIMIT_NOFILE: 32,
+    resource.RLIMIT_STACK: 256 * 1024,
+    resource.RLIMIT_CORE: 0,
+}
+BARE = {"PATH": "/usr/bin:/bin", "TMPDIR": "/nonexistent", "LANG": "xx_XX.UTF-8", "LC_ALL": "xx"}
+# On inputs as users have them; each may use the outputs of those before.
+USUAL = """codes hamiltonian-k4 -o c.html
+evaluate hamiltonian-k4 sinusoid-k4 -o e.html
+scene table-top --width 640 --height 480 -o look
+simulate table-top --width 640 --height 480 --code hamiltonian-k4 --frames 8 --signal 1e5 -o raw.npy
+decode raw.npy --code hamiltonian-k4 --frame 0 -o d.npz
+decode raw.npy --code hamiltonian-k4 --stack -o d.npy
+decode raw.npy --code hamiltonian-k4 --frame 0 --filter normal --mixed label -o f.ply
+decode raw.npy --code hamiltonian-k4 --frame 0 --method ml -o ml.exr
+simulate table-top --code hamiltonian-k4 --bounces 1 -o bounced.npy
+export hamiltonian-k5 --format keysight-arb --rate 660e6 -o bench
+design --effort 0.1 -o designed
+report designed -o page.html
+demo --effort 0.1 -o demo
+require --error 20mm --vary power --no-map -o need
+reproduce table1 --fast -o paper"""
+QUICK = [command for command in COMMANDS if not command.is_slow]
+
+
+def limited(limits):
+    def limit():
+        for kind, value in limits.items():
+            resource.setrlimit(kind, (value, value))
+    return limit
+
+
+class Limits(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.work = tempfile.mkdtemp(prefix="tofsmith-test-")
+        cls.addClassCleanup(shutil.rmtree, cls.work)
+        cls.inputs = os.path.join(cls.work, "inputs")
+        os.mkdir(cls.inputs)
+        make_inputs(TOOL, cls.inputs)
+
+    def setUp(self):
+        self.directory = os.path.join(self.work, self.id())
+        shutil.copytree(self.inputs, self.directory)
+
+    def run_bare(self, arguments, limits, before=()):
+        return subprocess.run([*before, TOOL, "--quiet", *arguments], cwd=self.directory, env=BARE,
+                              preexec_fn=limited(limits), capture_output=True, text=True,
+                              errors="replace", timeout=60, check=False)
+
+    def test_all_limits_at_once(self):
+        for command in QUICK:
+            with self.subTest(command=command.name):
+                done = self.run_bare([*command.arguments, "--force"], LIMITS)
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                for name in command.outputs:
+                    self.assertTrue(os.path.exists(os.path.join(self.directory, name)), name)
+
+    def test_a_root_that_cannot_be_written(self):
+        mounts = ["unshare", "--mount", "sh", "-c",
+                  'mount --bind "$PWD" "$PWD" && mount -o remount,bind,ro / && cd "$PWD" && exec "$@"',
+                  "sh"]
+        if subprocess.run([*mounts, "true"], cwd=self.directory, capture_output=True,
+                          check=False).returncode != 0:
+            self.skipTest("needs root, to mount the root read-only")
+        probe = subprocess.run([*mounts, "touch", "/tmp/.written"], cwd=self.directory,
+                               capture_output=True, check=False)
+        self.assertNotEqual(probe.returncode, 0)
+        for command in QUICK:
+            with self.subTest(command=command.name):
+                done = self.run_bare([*command.arguments, "--force"], {}, mounts)
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+        away = self.run_bare(["codes", "sinusoid-k4", "-o", "/c.npz"], {}, mounts)
+        self.assertEqual(away.returncode, 1)
+        self.assertRegex(away.stderr, r"^tofsmith: /c.npz: .*Read-only file system\n$")
+
+    def test_too_little_memory_is_told(self):
+        for megabytes in (8, 16, 24):
+            done = self.run_bare(["simulate", "table-top", "--code", "sinusoid-k4", "--width",
+                                  "1600", "--height", "1200", "-o", "raw.npy"],
+                                 {resource.RLIMIT_DATA: megabytes * MB, resource.RLIMIT_CORE: 0})
+            self.assertEqual((done.returncode, done.stderr), (1, "tofsmith: out of memory\n"))
+            self.assertFalse(os.path.exists(os.path.join(self.directory, "raw.npy")))
+
+    def test_a_file_that_may_not_grow_is_told(self):
+        done = self.run_bare(["codes", "sinusoid-k4", "-o", "c.html"],
+                             {resource.RLIMIT_FSIZE: 100_000})
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("c.html: cannot write: File too large", done.stderr)
+        self.assertNotEqual(done.returncode, -signal.SIGXFSZ)
+        self.assertEqual(set(os.listdir(self.directory)), set(os.listdir(self.inputs)))
+
+
+def print_figures():
+    print(f"{'seconds':>8} {'peak MB':>8}  command")
+    with tempfile.TemporaryDirectory(prefix="tofsmith-test-") as work:
+        for line in USUAL.splitlines():
+            begin = time.monotonic()
+            process = subprocess.Popen([TOOL, "--quiet", *line.split()], cwd=work, env=BARE,
+                                       preexec_fn=limited(LIMITS), stdout=subprocess.DEVNULL)
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            failed = f"  exit code {process.returncode}" if process.returncode else ""
+            print(f"{time.monotonic() - begin:8.1f} {usage.ru_maxrss / 1024:8.0f}  {line}{failed}",
+                  flush=True)
+
+
+if __name__ == "__main__":
+    if "--figures" in sys.argv:
+        print_figures()
+        sys.exit()
+    unittest.main()
