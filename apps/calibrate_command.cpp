@@ -26,10 +26,11 @@ void CalibrateOutput::check(const Session& session, const std::vector<std::strin
           fmt::format("{} {}: unknown extension; expected {}", option, path, extension));
     outputs.push_back(path);
   };
-  add(camera_path, "-o", ".toml");
-  add(page_path, "--report", ".html");
+  // In the order in which they are written.
   for (const std::string& path : others)
     if (!path.empty()) outputs.push_back(path);
+  add(page_path, "--report", ".html");
+  add(camera_path, "-o", ".toml");
   policy = session.check_outputs(outputs);
 }
 

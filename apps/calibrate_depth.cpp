@@ -77,8 +77,6 @@ void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Se
   }
   session.print_json(document_of(found));
   session.say(lines_of(found));
-  arguments.write_page(
-      depth_report(found, arguments.frames.front().string(), session.command_line));
   std::string next;
   if (!arguments.table.empty()) {
     write_calibrated_table(arguments.table, found.table, arguments.policy);
@@ -87,6 +85,8 @@ void calibrate_by_reference(const DepthCalibrationArguments& arguments, const Se
         fmt::format("tofsmith decode RAW --code {} --camera {} -o depth.npy", arguments.table,
                     !arguments.camera_path.empty() ? arguments.camera_path : arguments.camera_name);
   }
+  arguments.write_page(
+      depth_report(found, arguments.frames.front().string(), session.command_line));
   if (!arguments.camera_path.empty())
     arguments.write_camera(with_depth(arguments.camera, found), next);
   else if (!next.empty())

@@ -49,11 +49,12 @@ void run(const StrayLightArguments& arguments, const Session& session) {
       "a target of {} say\n{}",
       100.0 * found.total.value, 196.0 * found.total.standard_error, found.radius_px.back(),
       found.pixels, found.target_pixels, note_lines(found.notes)));
+  if (!arguments.kernel.empty()) {
+    write_float_image(arguments.kernel, found.kernel, "kernel", output.policy);
+    session.say(fmt::format("wrote {}\nnext: tofsmith decode RAW --code CODE --stray-light {}",
+                            arguments.kernel, arguments.kernel));
+  }
   output.write_page(stray_light_report(found, arguments.file, session.command_line), session);
-  if (arguments.kernel.empty()) return;
-  write_float_image(arguments.kernel, found.kernel, "kernel", output.policy);
-  session.say(fmt::format("wrote {}\nnext: tofsmith decode RAW --code CODE --stray-light {}",
-                          arguments.kernel, arguments.kernel));
 }
 
 }  // namespace

@@ -85,7 +85,8 @@ void FilterArguments::add_to(CLI::App& command) {
                   "the same; each waits for them (0)")
       ->check(
           number_that("in [0, 1000]", [](double value) { return value >= 0.0 && value <= 1000.0; }))
-      ->needs(time_filter);
+      ->needs(time_filter)
+      ->group(for_experts);
   add_settings<TimeFilterOptions>(command, "--time-filter-set", "the filter in time", time_filter,
                                   time_settings_);
 }

@@ -38,8 +38,9 @@ OutputPolicy policy_to_go_on(const std::vector<std::filesystem::path>& outputs,
     std::error_code ignored;
     return std::filesystem::exists(path, ignored);
   };
-  const auto there = std::count_if(outputs.begin(), outputs.end(), is_there);
-  const bool stopped = there > 0 && there < std::ssize(outputs);
+  const auto missing = std::find_if_not(outputs.begin(), outputs.end(), is_there);
+  const bool stopped = missing != outputs.begin() && missing != outputs.end() &&
+                       std::none_of(missing, outputs.end(), is_there);
   return stopped && policy == OutputPolicy::refuse_existing ? OutputPolicy::refuse_other : policy;
 }
 

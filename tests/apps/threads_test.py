@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""Every command that computes writes and prints the same bytes with 1, 2, 3 and 8 threads, of which
+"""Commands that compute write and print the same bytes with 1, 2, 3 and 8 threads, of which
 there may be more than cores."""
 
 import os
@@ -48,8 +48,8 @@ COMMANDS = {
     "evaluate": ("evaluate", "sinusoid-k4", "hamiltonian-k3", *CAMERA, *TRIALS, "--best-rotation",
                  "--robustness"),
     "evaluate, likelihood": ("evaluate", "sinusoid-k4", *CAMERA, "--trials", "300", "--method", "ml"),
-    "evaluate, two returns": ("evaluate", "multifrequency-k5", *CAMERA, "--trials", "200",
-                              "--multipath", "--delays", "1", "--ratios", ".3", "--tails", ".5"),
+    "multipath": ("multipath", "multifrequency-k5", *CAMERA, "--trials", "200", "--delays", "1",
+                  "--ratios", ".3", "--tails", ".5"),
     "require": ("require", "--error", "30mm", *SMALL, "--vary", "power", "--max-factor", "1.5",
                 "--effort", ".01", *TRIALS, "--no-map", "-o", "require.json"),
     "design": ("design", *SMALL, "--method", "optimize", "--exposures", "3", "--effort", ".01",

@@ -78,13 +78,15 @@ TEST(AtomicFile, GoesOnOverItsOwnBytesButNotOverOthers) {
   EXPECT_EQ(directory.files(), 1);
 }
 
-TEST(AtomicFile, SomeOfTheOutputsMeanThatARunWasStopped) {
+TEST(AtomicFile, TheFirstOfTheOutputsMeanThatARunWasStopped) {
   const TemporaryDirectory directory;
   const std::vector<std::filesystem::path> outputs{directory / "a.txt", directory / "b.txt"};
   EXPECT_EQ(policy_to_go_on(outputs, refuse), refuse);
   write_file_atomically(outputs[0], std::string_view("a"), refuse);
   EXPECT_EQ(policy_to_go_on(outputs, refuse), OutputPolicy::refuse_other);
   EXPECT_EQ(policy_to_go_on(outputs, overwrite), overwrite);
+  const std::vector<std::filesystem::path> last_there{directory / "b.txt", directory / "a.txt"};
+  EXPECT_EQ(policy_to_go_on(last_there, refuse), refuse) << "of another run";
   write_file_atomically(outputs[1], std::string_view("b"), refuse);
   EXPECT_EQ(policy_to_go_on(outputs, refuse), refuse);
 }

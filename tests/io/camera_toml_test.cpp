@@ -182,7 +182,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"[lihgt]", "c.toml:2:2: unknown key lihgt; did you mean light?"},
         BadLine{"[lens]\nzzzzzz = 1\nfx_px=1\nfy_px=1\ncx_px=1\ncy_px=1",
                 "c.toml:3:1: unknown key lens.zzzzzz; expected fx_px, fy_px, cx_px, cy_px, "
-                "distortion_model, distortion, width_px, height_px, calibration, blur, "
+                "distortion_model, distortion, width_px, height_px, calibration, rays, blur, "
                 "blur_sigma_px, focal_length_m, f_number, focus_distance_m, pixel_pitch_m, "
                 "pixel_samples"},
         BadLine{"sensor.readout_gap_s = -1e-3",
