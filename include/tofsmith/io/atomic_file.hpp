@@ -30,9 +30,9 @@ void check_not_input(const std::filesystem::path& output, const std::vector<std:
 /// same bytes as it is, as a run that was stopped has written it, and refuses any other.
 enum class OutputPolicy { refuse_existing, refuse_other, overwrite };
 
-/// The policy for outputs that one run writes one after the other. Where the first of them are there
-/// and the others are not, a run was stopped, and the same work may go on: refuse_existing becomes
-/// refuse_other.
+/// The policy for outputs that one run writes one after the other. Where the first of them are
+/// there and the others are not, a run was stopped, and the same work may go on: refuse_existing
+/// becomes refuse_other.
 /// @param outputs  in the order in which they are written
 OutputPolicy policy_to_go_on(const std::vector<std::filesystem::path>& outputs,
                              OutputPolicy policy);
