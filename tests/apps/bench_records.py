@@ -5,23 +5,9 @@
 import numpy as np
 
 from command_line import CommandLineTest
+from writing_commands import CAMERA
 
 RANGE_M = 299792458 / 2 / 15e6
-CAMERA = """fundamental_frequency_hz = 15e6
-exposure_s = 0.004
-samples = 60
-[light]
-impulse_response = { kind = "hann", f_max_hz = 75e6 }
-[sensor]
-impulse_response = { kind = "hann", f_max_hz = 75e6 }
-read_noise_e = 30
-adc_bits = 12
-gain_e_per_dn = 8
-black_level_dn = 100
-[operating]
-signal_e_per_s = [1e6]
-ambient_e_per_s = [1e5]
-"""
 
 
 class BenchRecordsTest(CommandLineTest):
