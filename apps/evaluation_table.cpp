@@ -16,6 +16,11 @@ namespace tofsmith::apps {
 namespace {
 
 /// "61.2 (1.08x)"; "none" where nothing bounds the error from below.
+/// A bound in a CSV file: an empty field where it bounds nothing.
+std::string bound_field(double bound_m) {
+  return std::isnan(bound_or_nan(bound_m)) ? "" : fmt::format("{:.9g}", bound_m);
+}
+
 std::string bound_text(double bound_m, const Estimate& error_m) {
   if (bound_m == 0.0) return "none";
   if (!std::isfinite(bound_m)) return "inf";
@@ -86,11 +91,11 @@ std::string evaluation_csv(const std::vector<EvaluatedCode>& codes) {
     for (std::size_t i = 0; i < code.error.points.size(); ++i) {
       const PointDepthError& p = code.error.points[i];
       text +=
-          fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}",
+          fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{}",
                       csv_field(code.error.code), p.point.signal_e_per_s, p.point.ambient_e_per_s,
                       p.linear_mde_m.value, p.linear_mde_m.standard_error, p.circular_mde_m.value,
                       p.circular_mde_m.standard_error, p.outlier_rate.value, p.cramer_rao_mae_m,
-                      p.receiver_bound_mae_m, p.direct_tof_bound_mae_m);
+                      bound_field(p.receiver_bound_mae_m), bound_field(p.direct_tof_bound_mae_m));
       if (compared)
         text += fmt::format(",{:.9g},{:.9g}", code.zncc_error->points[i].linear_mde_m.value,
                             code.zncc_error->points[i].circular_mde_m.value);

@@ -59,6 +59,7 @@ class DepthErrorReport:
         Share of circular errors beyond the threshold.
     cramer_rao_mae_m, receiver_bound_mae_m, direct_tof_bound_mae_m : ndarray
         Bounds of the code, of any code on the camera, of the camera's light [m]; docs/bounds.md.
+        0 where there is none, as without impulse responses.
     linear, circular : DepthErrorMean
     kind : str
         Which of the two the camera asks for: linear or circular, its `operating.error`.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -36,8 +37,8 @@ constexpr std::array<PointColumn, 10> point_columns = {{
     {"circular_se_m", [](const PointDepthError& p) { return p.circular_mde_m.standard_error; }},
     {"outlier_rate", [](const PointDepthError& p) { return p.outlier_rate.value; }},
     {"cramer_rao_mae_m", [](const PointDepthError& p) { return p.cramer_rao_mae_m; }},
-    {"receiver_bound_mae_m", [](const PointDepthError& p) { return p.receiver_bound_mae_m; }},
-    {"direct_tof_bound_mae_m", [](const PointDepthError& p) { return p.direct_tof_bound_mae_m; }},
+    {"receiver_bound_mae_m", [](const PointDepthError& p) { return bound_or_nan(p.receiver_bound_mae_m); }},
+    {"direct_tof_bound_mae_m", [](const PointDepthError& p) { return bound_or_nan(p.direct_tof_bound_mae_m); }},
 }};
 
 /// Axes with a column of their own: not those that every point tells, nor the code, which is named
@@ -124,7 +125,10 @@ std::string sweep_csv(const WorkList& list, std::span<const SweepResult> results
     const std::vector<std::size_t> indices = spec.value_indices(result.item);
     for (const std::size_t a : axes)
       text += fmt::format(",{}", csv_field(spec.axes[a].values[indices[a]].text));
-    for (const PointColumn& column : point_columns) text += fmt::format(",{}", column.of(point));
+    for (const PointColumn& column : point_columns) {
+      const double value = column.of(point);
+      text += std::isnan(value) ? "," : fmt::format(",{}", value);
+    }
     text += "\n";
   });
   return text;

@@ -93,6 +93,15 @@ class Evaluate(CommandLineTest):
         self.assertEqual(document["camera"]["light"]["edge_jitter_s"], 5e-9)
         self.assertEqual(document["camera"]["sensor"]["tap_mismatch"], 0.1)
 
+    def test_a_bound_that_is_none_is_an_empty_field(self):
+        self.do("evaluate", "sinusoid-k3", *FAST, "--set", 'light.impulse_response={kind="none"}',
+                "--set", 'sensor.impulse_response={kind="none"}', "-o", "none.csv")
+        names, row, *_ = self.bytes_of("none.csv").decode().splitlines()
+        fields = dict(zip(names.split(","), row.split(",")))
+        self.assertEqual(fields["receiver_bound_mae_m"], "")
+        self.assertEqual(fields["direct_tof_bound_mae_m"], "")
+        self.assertGreater(float(fields["cramer_rao_mae_m"]), 0)
+
     def test_an_infinite_bound_is_null(self):
         document = self.do_json("evaluate", "sinusoid-k3", *FAST, "--set",
                                 "operating.signal_e_per_s=[1e-200]")

@@ -56,6 +56,8 @@ class Sweep(CommandLineTest):
                               deletechars="", dtype=None, encoding="utf-8")
         exported = json.loads(self.bytes_of("s.json"))["codes"]
         arrays = np.load(self.path("s.npz"))
+        np.testing.assert_array_equal(arrays["receiver_bound_mae_m"],
+                                      table["receiver_bound_mae_m"])
         names = arrays["code_names"]
         codes = names.view(f"S{names.shape[1]}").ravel()[arrays["code_index"]]
         self.assertEqual([c.decode() for c in codes], list(table["code"]))

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -69,6 +70,10 @@ struct PointDepthError {
   double receiver_bound_mae_m = 0.0;    ///< ReceiverBound of the camera, with the code's exposures
   double direct_tof_bound_mae_m = 0.0;  ///< DirectTofBound of the camera's light; 0: there is none
 };
+/// A bound as tables of numbers hold it: not a number where it bounds nothing, which is 0.
+inline double bound_or_nan(double bound_m) {
+  return bound_m == 0.0 ? std::numeric_limits<double>::quiet_NaN() : bound_m;
+}
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<PointDepthError> auto& p) {
   return std::tuple(Field("point", p.point, FieldMark::in_place),
