@@ -6,6 +6,7 @@
 #include <functional>
 #include <utility>
 
+#include "core/shared/working_threads.hpp"
 #include "tofsmith/core/error.hpp"
 
 // The thread sanitizer does not see how Debian's TBB hands work over, and takes all of it for
@@ -78,6 +79,8 @@ struct ThreadLimit::Control {
   ~Control() { allowed_threads = around; }
   int around;  ///< of the limit outside of this one
 };
+
+int working_threads() { return allowed_threads; }
 #elif defined(TOFSMITH_HAS_TBB)
 namespace {
 
@@ -85,7 +88,18 @@ namespace {
 /// choice, which is never more.
 std::atomic<tbb::task_arena*> wide_arena = nullptr;
 
+int allowed_parallelism() {
+  return static_cast<int>(
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
 }  // namespace
+
+int working_threads() {
+  return wide_arena.load() != nullptr
+             ? allowed_parallelism()
+             : std::min(allowed_parallelism(), tbb::info::default_concurrency());
+}
 
 void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& work) {
   const auto run = [&] {
@@ -105,8 +119,7 @@ void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& w
 struct ThreadLimit::Control {
   explicit Control(int threads)
       : control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)) {
-    const auto allowed = static_cast<int>(
-        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    const int allowed = allowed_parallelism();
     if (allowed > tbb::info::default_concurrency()) arena.emplace(allowed);
     around = wide_arena.exchange(arena ? &*arena : nullptr);
   }
@@ -124,6 +137,8 @@ void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& w
 struct ThreadLimit::Control {
   explicit Control(int) {}
 };
+
+int working_threads() { return 1; }
 #endif
 
 void parallel_for_blocks(std::int64_t count, std::int64_t block,

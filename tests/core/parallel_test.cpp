@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "core/shared/working_threads.hpp"
+
 namespace tofsmith {
 namespace {
 
@@ -30,6 +32,15 @@ TEST(ParallelFor, InnerWorkIsWholeThoughOuterWorkBesideItFails) {
   };
   EXPECT_THROW(parallel_for(2, work), std::runtime_error);
   EXPECT_TRUE(done == -1 || done == inner) << done;  // one thread alone never begins the second
+}
+
+TEST(ThreadLimit, IsWhatMemoryIsCountedFor) {
+  const int all = working_threads();
+  {
+    const ThreadLimit one(1);
+    EXPECT_EQ(working_threads(), 1);
+  }
+  EXPECT_EQ(working_threads(), all);
 }
 
 TEST(ParallelFor, InnerErrorsReachTheCaller) {

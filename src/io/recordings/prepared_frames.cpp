@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <thread>
 #include <utility>
 
 #include "core/shared/pixel_runs.hpp"
+#include "core/shared/working_threads.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 
@@ -67,7 +67,7 @@ std::vector<Band> bands_to_read(const Preparation& preparation, int recorded,
 double Preparation::frame_bytes(int recorded, int height, int width, int measurements) const {
   // What is known of the pixels while mixed ones are marked.
   constexpr double bytes_to_find_mixed = 4 * sizeof(float) + 3;
-  const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int threads = working_threads();
   std::size_t bytes = 0;
   if (time_filter) {
     TimeFilterOptions within = *time_filter;  // never more frames wait than there are
