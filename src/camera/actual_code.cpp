@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/shared/periodic.hpp"
 #include "tofsmith/core/error.hpp"
@@ -40,10 +41,14 @@ std::optional<BrokenRule> lost_pulse(const CodeSet& code, int e, const Waveform&
                                      const Generator& generator, double frequency_hz) {
   const Waveform& nominal = code.modulation(e);
   if (points.mean() > 0.0 || nominal.mean() == 0.0) return std::nullopt;
+  // A point for every pulse as wide as the mean one.
+  const double pulses = std::max(1.0, 0.5 * nominal.edges());
+  const double needed = std::ceil(pulses / nominal.duty() * (1.0 - 1e-9));
   return broken(fmt::format("code {} modulation {} duty", code.name(), e), nominal.duty(),
                 fmt::format("has no pulse that light.generator can play: its points are 1/{} of a "
-                            "period",
-                            generator.points_per_period(frequency_hz)));
+                            "period; {:.0f} points or more, {:.4g} MHz, can",
+                            generator.points_per_period(frequency_hz), needed,
+                            1e-6 * needed * frequency_hz));
 }
 
 }  // namespace

@@ -105,6 +105,24 @@ class Commands(CommandLineTest):
                       self.do("codes", *pairs))
         self.assertEqual(self.do_json("codes", *pairs[:3])["measurements"], 8)
 
+    def test_codes_read_back_from_a_table_of_waveforms(self):
+        for code, settings in (("hamiltonian-k4", []), ("sinusoid-k4", []),
+                               ("hamiltonian-k4", ["--set", "sensor.taps=2"])):
+            self.do("codes", code, *settings, "-o", "w.csv", "--force")
+            figures = [self.do_json("codes", name, *settings) for name in (code, "w.csv")]
+            for key in ("exposures", "taps", "measurements", "coding_curve_rank"):
+                self.assertEqual(figures[0][key], figures[1][key], (code, key))
+            self.assertAlmostEqual(figures[0]["coding_curve_length"],
+                                   figures[1]["coding_curve_length"], 6)
+        self.write("odd.csv", "modulation_1,modulation_2,demodulation_1\n1,1,1\n1,1,0\n")
+        self.refuse(["evaluate", "odd.csv"], "odd.csv", "found 2 columns modulation_1 .. and 1 demod")
+        self.write("odd.csv", "modulation_1,light\n1,1\n1,1\n")
+        self.refuse(["evaluate", "odd.csv"], "odd.csv: found the column 'light'; expected time_s")
+        self.write("odd.csv", "modulation_1,demodulation_1\n1,2\n1,0\n")
+        self.refuse(["evaluate", "odd.csv"], "found 2; expected a gain in [0, 1]")
+        self.write("odd.csv", "a,b\n1,2\n1,0\n")
+        self.refuse(["evaluate", "odd.csv"], "measured table", ".csv with columns modulation_1")
+
     def test_codes_writes_every_format(self):
         for name in ("c.code.json", "c.npz", "c.csv", "c.html"):
             self.assertEqual(self.do_json("codes", "hamiltonian-k3", "-o", name)["samples"], 240)

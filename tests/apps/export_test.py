@@ -77,6 +77,8 @@ class Export(CommandLineTest):
         (note,) = notes("--samples", "64")
         self.assertEqual(note, "on 64 points a period the duty of modulation 1 is 0.07812 in place "
                                "of 0.08333; --samples 60 or --samples 72 would keep all duties")
+        self.refuse(["export", "hamiltonian-k4", "--format", "keysight-arb", "--rate", "100e6", "-o",
+                     "e"], "points are 1/6 of a period; 12 points or more, 180 MHz, can")
         self.assertEqual(notes("--samples", "60"), [])
         self.assertEqual(notes("--samples", "72", "--rate", "1.08e9"), [])
 

@@ -111,6 +111,8 @@ class Refusals(CommandLineTest):
         self.refuse(["evaluate", "hamiltonian-k40"], "hamiltonian-k40", "must be in [3, 10]",
                     "`tofsmith codes`", "hamiltonian-k4")
         self.refuse(["codes", "gray-k99"], "gray-k99", "`tofsmith codes`")
+        self.refuse(["decode", "dump.bin", "--code", "sinusoid-k4", "-o", "d.npy"],
+                    "found the extension '.bin'", "a sensor's dump", "--raw-format")
         self.refuse(["evaluate", "nothing-like-it"], "no such file", "codes")
         self.refuse(["evaluate", ""], "empty name")
         self.refuse(["evaluate", "sinusoid-k4", "--camera", "paper-10"], "did you mean paper-10f0?")

@@ -204,6 +204,18 @@ TEST(TwoReturnDecoder, RefusesCodesThatCannotTellReturns) {
   refused("multifrequency-k5", 1, "two frequencies only");
 }
 
+TEST(TwoReturnDecoder, DoesNotRecommendTheCodeThatTheBandwidthSpoils) {
+  Camera camera = camera_with("paper-10f0", 2);
+  camera.light.impulse_response.f_max_hz = camera.sensor.impulse_response.f_max_hz = 2.5e7;
+  const DecodingTable table =
+      make_decoding_table(ForwardModel(build_family("hamiltonian-k5", camera), camera), camera);
+  const auto problem = TwoReturnDecoder::why_not_decodable(table);
+  ASSERT_TRUE(problem);
+  EXPECT_THAT(*problem, testing::AllOf(HasSubstr("its 10 measurements are enough"),
+                                       HasSubstr("higher bandwidth"),
+                                       testing::Not(HasSubstr("hamiltonian-k5"))));
+}
+
 TEST(TwoReturnDecoder, RefusesOptionsThatMakeNoSense) {
   const TwoBucket setup;
   const auto refused = [&](const MultipathOptions& options, const char* field) {

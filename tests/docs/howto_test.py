@@ -128,6 +128,9 @@ class HowTo(BenchRecordsTest):
     def make_shifts_txt(self, _):
         np.savetxt(self.path("shifts.txt"), np.arange(61) / 60 / 15e6)
 
+    def make_mine_csv(self, _):
+        self.shell("tofsmith codes hamiltonian-k4 -o mine.csv")
+
     def make_depth_npy(self, _):
         np.save(self.path("depth.npy"), np.full((24, 32), 2.0, np.float32))
 

@@ -42,9 +42,17 @@ std::optional<BrokenRule> missing_support(const AmbientProjection& projection,
                 ? "; the code holds one frequency only, in which any returns add up to one"
                 : "; the code holds two frequencies only, in which pairs of returns look "
                   "alike";
-  rule +=
-      "; decode it with zncc or ml, or play a code with more means: hamiltonian-k5 on a sensor of "
-      "two taps (--set sensor.taps=2), which gives 10 measurements in 5 exposures";
+  rule += "; decode it with zncc or ml, or ";
+  const Eigen::Index measurements = projection.gated.cols();
+  if (measurements >= needed)  // as many as it takes, so that it is not them that lack
+    rule += "let more harmonics through: its " + std::to_string(measurements) +
+            " measurements are enough, but hold too few; a higher bandwidth of light and sensor "
+            "(light.impulse_response, sensor.impulse_response) keeps more of the code's, and some "
+            "codes have more";
+  else
+    rule +=
+        "play a code with more means: hamiltonian-k5 on a sensor of two taps (--set "
+        "sensor.taps=2), which gives 10 measurements in 5 exposures";
   return broken("independent means", means, rule);
 }
 

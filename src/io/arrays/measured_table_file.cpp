@@ -179,6 +179,7 @@ TableAxes parse_table_axes(std::string_view word) { return axes_words.parse(word
 
 bool is_measured_table(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
+  if (extension == ".csv" && holds_code_columns(path)) return false;
   if (extension != ".npz") return extension == ".csv" || extension == ".txt" || extension == ".npy";
   const NpzReader archive(path);
   return archive.contains("corrfs") && !archive.contains("modfs") && !archive.contains("demodfs");

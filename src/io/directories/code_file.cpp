@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/shared/enum_words.hpp"
+#include "io/arrays/shared/array_matrix.hpp"
 #include "io/shared/file_kind.hpp"
 #include "io/shared/read_file.hpp"
 #include "tofsmith/code/families.hpp"
@@ -33,8 +34,9 @@ constexpr EnumWords<TapOrder, 2> tap_order_words("TapOrder", "tap order", "block
 }  // namespace
 
 CodeSet read_code(const std::filesystem::path& path, const TapLayout& layout) {
-  if (known_extension(path, {".json", ".npz"}) == ".json")
-    return parse_code_json(read_text_file(path), path.string());
+  const std::string extension = known_extension(path, {".json", ".npz", ".csv"});
+  if (extension == ".json") return parse_code_json(read_text_file(path), path.string());
+  if (extension == ".csv") return parse_code_csv(read_text_file(path), path.string());
   return parse_code_npz(read_binary_file(path), path.string(), layout);
 }
 

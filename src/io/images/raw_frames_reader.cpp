@@ -122,7 +122,13 @@ RawFramesReader::RawFramesReader(RawFramesReader&&) noexcept = default;
 
 void RawFramesReader::open_array(const std::filesystem::path& path, const RawReadOptions& options,
                                  bool is_one_measurement) {
-  const std::string extension = known_extension(path, {".npy", ".npz", ".h5", ".hdf5"});
+  const std::string extension = lower_extension(path);
+  if (extension != ".npy" && extension != ".npz" && extension != ".h5" && extension != ".hdf5")
+    throw IoError(path.string(),
+                  fmt::format("found {}; expected .npy, .npz or .h5, or for a sensor's dump its "
+                              "description (--raw-format, docs/raw_formats.md)",
+                              extension.empty() ? "no extension"
+                                                : fmt::format("the extension '{}'", extension)));
   if (extension == ".npz") {
     whole_ = read_npz_array(path, options);
   } else if (extension != ".npy") {

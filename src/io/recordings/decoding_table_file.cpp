@@ -142,7 +142,8 @@ void require_no_measured_table(const std::string& code) {
   if (names_measured_table(code))
     throw IoError(code,
                   "this is a measured table (corrfs only), and only decode takes those; expected "
-                  "one of .json, .npz with modfs and demodfs");
+                  "one of .json, .npz with modfs and demodfs, or .csv with columns modulation_1 .. "
+                  "and demodulation_1 ..");
 }
 
 CodeSet load_camera_code(const std::string& code, const Camera& camera,

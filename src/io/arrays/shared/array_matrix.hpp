@@ -20,6 +20,17 @@ Eigen::Index column_of(int exposure, int tap, int exposures, int taps,
 /// given
 int exposures_of(Eigen::Index columns, const TapLayout& layout, std::string_view file);
 
+/// Whether a text has columns of waveforms in its first row, as `tofsmith codes -o NAME.csv`
+/// writes them.
+bool holds_code_columns(const std::filesystem::path& path);
+
+/// A code from such a text: a row for every time sample, columns modulation_1 .. modulation_E and
+/// demodulation_1 .. demodulation_K, all taps of an exposure one after another. Columns of two
+/// levels become binary, as in parse_code_npz().
+/// @throws IoError naming the file for columns of other names or numbers, and values that no code
+///         can have
+CodeSet parse_code_csv(std::string_view text, std::string_view file);
+
 /// Fewest samples of a period, as of a camera.
 inline constexpr Eigen::Index min_samples = 8;
 

@@ -8,11 +8,16 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "core/shared/periodic.hpp"
 #include "io/arrays/shared/array_matrix.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/io/csv.hpp"
 #include "tofsmith/io/npy.hpp"
 
 namespace tofsmith {
@@ -68,6 +73,22 @@ Waveform waveform_of(const Eigen::VectorXd& samples) {
   return two_levels ? Waveform::binary_from_samples(samples, peak) : Waveform::sampled(samples);
 }
 
+constexpr std::string_view modulation_rule = "power over average power, >= 0";
+constexpr std::string_view demodulation_rule = "a gain in [0, 1]";
+
+/// A code called like its file. @throws IoError for what no code can be
+CodeSet created(std::string_view file, Eigen::Index samples, int taps,
+                std::vector<Waveform> modulation, std::vector<Waveform> demodulation) {
+  if (samples < 2 || samples > max_rows)
+    throw IoError(file, fmt::format("found {} samples; expected 2 .. {}", samples, max_rows));
+  try {
+    return CodeSet::create(std::filesystem::path(file).stem().string(), static_cast<int>(samples),
+                           taps, std::move(modulation), std::move(demodulation));
+  } catch (const std::invalid_argument& error) {
+    throw IoError(file, error.what());
+  }
+}
+
 /// All taps of an exposure see the same light.
 void require_same_light(const NamedMatrix& modulation, Eigen::Index column, Eigen::Index first) {
   for (Eigen::Index n = 0; n < modulation.values.rows(); ++n) {
@@ -81,6 +102,53 @@ void require_same_light(const NamedMatrix& modulation, Eigen::Index column, Eige
 
 }  // namespace
 
+bool holds_code_columns(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::string head(std::size_t{1} << 16, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  std::istringstream lines(head);
+  std::string line;
+  while (std::getline(lines, line) && (line.empty() || line.front() == '#')) {
+  }
+  return line.find("modulation_") != std::string::npos;
+}
+
+CodeSet parse_code_csv(std::string_view text, std::string_view file) {
+  const CsvTable table = parse_csv(text, file);
+  std::vector<Eigen::Index> modulations, demodulations;
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    const std::string& name = table.names[i];
+    if (name.starts_with("modulation_"))
+      modulations.push_back(static_cast<Eigen::Index>(i));
+    else if (name.starts_with("demodulation_"))
+      demodulations.push_back(static_cast<Eigen::Index>(i));
+    else if (name != "time_s")
+      throw IoError(file, fmt::format("found the column '{}'; expected time_s, modulation_1 .., "
+                                      "demodulation_1 ..",
+                                      name));
+  }
+  if (modulations.empty() || demodulations.empty() ||
+      demodulations.size() % modulations.size() != 0)
+    throw IoError(file, fmt::format("found {} columns modulation_1 .. and {} demodulation_1 ..; "
+                                    "expected one or more of each, as many demodulations as taps "
+                                    "for each modulation",
+                                    modulations.size(), demodulations.size()));
+  const auto waveforms = [&](const std::vector<Eigen::Index>& columns, double highest,
+                             std::string_view expected) {
+    NamedMatrix matrix{fmt::format("{}: values", file), table.values(Eigen::all, columns)};
+    limit(matrix, highest, expected);
+    std::vector<Waveform> list;
+    for (Eigen::Index i = 0; i < matrix.values.cols(); ++i)
+      list.push_back(waveform_of(matrix.values.col(i)));
+    return list;
+  };
+  return created(file, table.values.rows(),
+                 static_cast<int>(demodulations.size() / modulations.size()),
+                 waveforms(modulations, std::numeric_limits<double>::infinity(), modulation_rule),
+                 waveforms(demodulations, 1.0, demodulation_rule));
+}
+
 CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file,
                        const TapLayout& layout) {
   const NpzReader reader(content, file);
@@ -93,8 +161,8 @@ CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file
   require_same_shape(demodulation, modulation);
   if (reader.contains("corrfs"))
     require_same_shape(read_matrix(reader, file, "corrfs"), modulation);
-  limit(modulation, std::numeric_limits<double>::infinity(), "power over average power, >= 0");
-  limit(demodulation, 1.0, "a gain in [0, 1]");
+  limit(modulation, std::numeric_limits<double>::infinity(), modulation_rule);
+  limit(demodulation, 1.0, demodulation_rule);
 
   const int exposures = exposures_of(modulation.values.cols(), layout, file);
   std::vector<Waveform> light, gains;
@@ -107,13 +175,7 @@ CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file
       gains.push_back(waveform_of(demodulation.values.col(column)));
     }
   }
-  try {
-    return CodeSet::create(std::filesystem::path(file).stem().string(),
-                           static_cast<int>(modulation.values.rows()), layout.taps,
-                           std::move(light), std::move(gains));
-  } catch (const std::invalid_argument& error) {
-    throw IoError(file, error.what());
-  }
+  return created(file, modulation.values.rows(), layout.taps, std::move(light), std::move(gains));
 }
 
 std::vector<std::byte> serialize_code_npz(const CodeSet& code, std::optional<TapOrder> order) {
