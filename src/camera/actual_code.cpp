@@ -44,11 +44,11 @@ std::optional<BrokenRule> lost_pulse(const CodeSet& code, int e, const Waveform&
   // A point for every pulse as wide as the mean one.
   const double pulses = std::max(1.0, 0.5 * nominal.edges());
   const double needed = std::ceil(pulses / nominal.duty() * (1.0 - 1e-9));
-  return broken(fmt::format("code {} modulation {} duty", code.name(), e), nominal.duty(),
-                fmt::format("has no pulse that light.generator can play: its points are 1/{} of a "
-                            "period; {:.0f} points or more, {:.4g} MHz, can",
-                            generator.points_per_period(frequency_hz), needed,
-                            1e-6 * needed * frequency_hz));
+  return broken(
+      fmt::format("code {} modulation {} duty", code.name(), e), nominal.duty(),
+      fmt::format("has no pulse that light.generator can play: its points are 1/{} of a "
+                  "period; {:.0f} points or more, {:.4g} MHz, can",
+                  generator.points_per_period(frequency_hz), needed, 1e-6 * needed * frequency_hz));
 }
 
 }  // namespace

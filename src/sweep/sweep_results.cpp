@@ -37,8 +37,10 @@ constexpr std::array<PointColumn, 10> point_columns = {{
     {"circular_se_m", [](const PointDepthError& p) { return p.circular_mde_m.standard_error; }},
     {"outlier_rate", [](const PointDepthError& p) { return p.outlier_rate.value; }},
     {"cramer_rao_mae_m", [](const PointDepthError& p) { return p.cramer_rao_mae_m; }},
-    {"receiver_bound_mae_m", [](const PointDepthError& p) { return bound_or_nan(p.receiver_bound_mae_m); }},
-    {"direct_tof_bound_mae_m", [](const PointDepthError& p) { return bound_or_nan(p.direct_tof_bound_mae_m); }},
+    {"receiver_bound_mae_m",
+     [](const PointDepthError& p) { return bound_or_nan(p.receiver_bound_mae_m); }},
+    {"direct_tof_bound_mae_m",
+     [](const PointDepthError& p) { return bound_or_nan(p.direct_tof_bound_mae_m); }},
 }};
 
 /// Axes with a column of their own: not those that every point tells, nor the code, which is named
