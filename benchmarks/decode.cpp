@@ -49,6 +49,23 @@ void print_throughput(const Options& options, AskedFigures& asked) {
     }
 }
 
+/// What is larger than the last cache of most processors.
+void print_from_memory(const Options& options) {
+  fmt::print(
+      "\nOne core, bins of 32 frames at medium noise, from memory to memory, Mpixel/s. share: of "
+      "the\n"
+      "speed at which the same numbers are read and as many bytes written, fastest against "
+      "fastest\n"
+      "and the median; / one: against one frame, which caches may hold.\n\n"
+      "{:<11}{:>2}{:>5}{:>7} {:<7} {:>8} |{:>8} {:>6} {:>6} | {:>5}\n",
+      "code", "K", "rank", "N", "scene", "size", "bin", "share", "median", "/ one");
+  for (const std::string& code : options.codes) {
+    const DecodeThroughput throughput(decode_code(code), 1000);
+    for (const Scene scene : {Scene::planes, Scene::random})
+      throughput.print_from_memory(scene, std::max(3, options.rounds / 5));
+  }
+}
+
 /// One frame on one thread and on more, by the clock on the wall; beside them what the machine
 /// gives two threads at most: two halves of the pixels that know nothing of each other.
 void print_cores(const std::string& code, int rounds, AskedFigures& asked) {
@@ -149,6 +166,7 @@ void print_depth_error(const std::string& code, AskedFigures& asked) {
 int run(const Options& options) {
   AskedFigures asked;
   print_throughput(options, asked);
+  print_from_memory(options);
   fmt::print("\nBy the clock on the wall, N = 1000, planes, medium noise:\n");
   for (const std::string& code : options.codes) print_cores(code, 8 * options.rounds, asked);
   fmt::print("\nDepth between bins, in single precision, without noise:\n");

@@ -127,8 +127,8 @@ bool Comparison::is_tie(std::size_t pixel, std::int32_t found) const {
   // The lower one is right if it ties with the best, the higher one if it does not.
   const std::int32_t lower = std::min(found, expected), higher = std::max(found, expected);
   const double behind = best - curve_.score(reference, lower);
-  return std::abs(behind - reference_tie) <= reference.rounding &&
-         best - curve_.score(reference, higher) <= reference_tie + reference.rounding;
+  return std::abs(behind - reference.tie) <= reference.rounding &&
+         best - curve_.score(reference, higher) <= reference.tie + reference.rounding;
 }
 
 Counts Comparison::compare() const {

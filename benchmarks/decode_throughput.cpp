@@ -114,4 +114,32 @@ void DecodeThroughput::print(Scene scene, const LightLevel& light, int rounds,
     asked.at_least(what + ": bins, speed over brute force", turns.speed_over(bin, brute), 10.0);
 }
 
+void DecodeThroughput::print_from_memory(Scene scene, int rounds) const {
+  constexpr int frames = 32;
+  const int k_count = table_.measurements();
+  const std::vector<float> one = noisy_frame(table_, scene, light_levels[1]);
+  std::vector<float> raw;
+  for (int i = 0; i < frames; ++i) raw.insert(raw.end(), one.begin(), one.end());
+  const int height = frames * frame_height, pixels = frames * frame_pixels;
+  std::vector<std::int32_t> bin(static_cast<std::size_t>(pixels));
+  std::vector<std::int32_t> bin_of_one(frame_pixels);
+  const DecodedView wanted{.bin = bin.data()}, wanted_of_one{.bin = bin_of_one.data()};
+  const RawView view = RawView::interleaved(raw.data(), height, frame_width, k_count);
+  const RawView view_of_one = RawView::interleaved(one.data(), frame_height, frame_width, k_count);
+  const ThreadLimit one_core(1);
+  const Turns turns(
+      {
+          {static_cast<double>(pixels), [&] { decoder_.decode(view, wanted); }},
+          {static_cast<double>(pixels), [&] { read_and_write(raw, k_count, wanted); }},
+          {frame_pixels, [&] { decoder_.decode(view_of_one, wanted_of_one); }},
+      },
+      rounds);
+  fmt::print("{:<11}{:>2}{:>5}{:>7} {:<7} {:>5} MB |{:>8.1f} {:>6.3f} {:>6.3f} | {:>5.2f}\n",
+             code_.name, k_count, curve_.rank(), table_.samples(),
+             scene == Scene::planes ? "planes" : "random",
+             (raw.size() + bin.size()) * sizeof(float) / 1'000'000, 1e-6 * turns.pixels_per_s(0),
+             turns.speed_over(0, 1), turns.median_speed_over(0, 1), turns.speed_over(0, 2));
+  std::fflush(stdout);
+}
+
 }  // namespace tofsmith::benchmarks

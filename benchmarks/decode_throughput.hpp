@@ -20,6 +20,9 @@ class DecodeThroughput {
   void print(Scene scene, const LightLevel& light, int rounds, AskedFigures& asked) const;
   static void print_heading();
 
+  /// Prints one line for bins of frames that no cache holds, read from memory and written to it.
+  void print_from_memory(Scene scene, int rounds) const;
+
  private:
   const DecodeCode& code_;
   DecodingTable table_;

@@ -16,8 +16,9 @@ namespace tofsmith::benchmarks {
 inline void read_and_write(const std::vector<float>& raw, int measurements,
                            const DecodedView& planes) {
   constexpr int block = 4096;
-  for (int first = 0; first < frame_pixels; first += block) {
-    const int count = std::min(block, frame_pixels - first);
+  const int pixels = static_cast<int>(raw.size()) / measurements;
+  for (int first = 0; first < pixels; first += block) {
+    const int count = std::min(block, pixels - first);
     const float* numbers = raw.data() + static_cast<std::ptrdiff_t>(first) * measurements;
     std::uint32_t seen = 0;
     for (int i = 0; i < count * measurements; ++i) {

@@ -83,7 +83,7 @@ void brute_force(const double* rows, int blocks, const ReferencePixel* pixels, i
     Vector most = hn::Set(d, -2.0);
     for (int group = 0; group < groups; ++group)
       most = hn::Max(most, hn::Load(d, of_group[p][group]));
-    const double least = largest(most) - reference_tie;
+    const double least = largest(most) - pixels[p].tie;
     int group = 0;
     while (largest(hn::Load(d, of_group[p][group])) < least) ++group;
     int row = -1;
@@ -95,9 +95,10 @@ void brute_force(const double* rows, int blocks, const ReferencePixel* pixels, i
 }
 
 template <int Rank>
-std::int32_t branch_and_bound(const BranchAndBound::View& view, const double* unit) {
+std::int32_t branch_and_bound(const BranchAndBound::View& view, const ReferencePixel& pixel) {
   const Doubles d;
   constexpr int stride = Rank * reference_block;
+  const double* const unit = pixel.unit.data();
   // A sine from a cosine near 1 has lost half of its digits; the slacks cover it.
   const Vector one = hn::Set(d, 1.0), lost = hn::Set(d, 1e-14), slack = hn::Set(d, 1e-9);
   HWY_ALIGN double highest[max_run_blocks * reference_block];
@@ -126,7 +127,7 @@ std::int32_t branch_and_bound(const BranchAndBound::View& view, const double* un
   best = largest(reached);
   for (int k = 0; k < count; ++k)
     for (int block = candidates[k] * run_blocks; block < end_of(candidates[k]); ++block) {
-      const int row = first_row<Rank>(unit, view.row + block * stride, best - reference_tie);
+      const int row = first_row<Rank>(unit, view.row + block * stride, best - pixel.tie);
       if (row >= 0) return block * reference_block + row;
     }
   return -1;
@@ -152,22 +153,23 @@ void brute_force_of_rank(int rank, const double* rows, int blocks, const Referen
   }
 }
 
-std::int32_t branch_and_bound_of_rank(const BranchAndBound::View& view, const double* unit) {
+std::int32_t branch_and_bound_of_rank(const BranchAndBound::View& view,
+                                      const ReferencePixel& pixel) {
   switch (view.rank) {
     case 2:
-      return branch_and_bound<2>(view, unit);
+      return branch_and_bound<2>(view, pixel);
     case 3:
-      return branch_and_bound<3>(view, unit);
+      return branch_and_bound<3>(view, pixel);
     case 4:
-      return branch_and_bound<4>(view, unit);
+      return branch_and_bound<4>(view, pixel);
     case 5:
-      return branch_and_bound<5>(view, unit);
+      return branch_and_bound<5>(view, pixel);
     case 6:
-      return branch_and_bound<6>(view, unit);
+      return branch_and_bound<6>(view, pixel);
     case 7:
-      return branch_and_bound<7>(view, unit);
+      return branch_and_bound<7>(view, pixel);
     default:
-      return branch_and_bound<8>(view, unit);
+      return branch_and_bound<8>(view, pixel);
   }
 }
 
@@ -221,7 +223,7 @@ BranchAndBound::BranchAndBound(const ReferenceCurve& curve) {
 }
 
 std::int32_t BranchAndBound::bin(const ReferencePixel& pixel) const {
-  return HWY_DYNAMIC_DISPATCH(branch_and_bound_of_rank)(view_, pixel.unit.data());
+  return HWY_DYNAMIC_DISPATCH(branch_and_bound_of_rank)(view_, pixel);
 }
 
 }  // namespace tofsmith::benchmarks

@@ -68,9 +68,15 @@ ReferencePixel ReferenceCurve::project(const float* raw) const {
     pixel.unit[static_cast<std::size_t>(j)] = sum;
     square += sum * sum;
   }
+  double residual2 = 0.0;
+  for (int k = 0; k < measurements(); ++k) {
+    const double left = electrons[static_cast<std::size_t>(k)] - along * ambient_[k];
+    residual2 += left * left;
+  }
   const double length = std::sqrt(square);
   const bool is_seen = pixel.is_number && length > 1e-12 * size;
   for (double& unit : pixel.unit) unit = is_seen ? unit / length : 0.0;
+  if (is_seen) pixel.tie = reference_tie * std::max(1.0, std::sqrt(residual2) / length);
   pixel.rounding = is_seen ? 1e-15 * (4.0 + size / length) : 0.0;
   return pixel;
 }

@@ -13,11 +13,12 @@ namespace tofsmith::benchmarks {
 
 inline constexpr int reference_block = 8;  ///< rows whose components stand side by side
 inline constexpr int max_rank = 8;
-inline constexpr double reference_tie = 1e-11;  ///< scores of unit vectors this close tie
+inline constexpr double reference_tie = 1e-11;  ///< scores this close tie, in units of |P y'|
 
 /// What ambient light does not explain of a pixel.
 struct ReferencePixel {
   std::array<double, max_rank> unit{};  ///< of length 1; zero if nothing is left
+  double tie = reference_tie;           ///< scores of `unit` this close tie
   double rounding = 0.0;                ///< by how much rounding may move a score of `unit`
   bool is_number = false;               ///< all raw numbers are finite
 };

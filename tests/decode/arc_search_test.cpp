@@ -124,7 +124,7 @@ double expect_agreement(const DirectionTable& directions, const ArcSearch& searc
     for (std::size_t i = 0; i < rows.size(); ++i) {
       proven += rows[i] >= 0;
       wrong += rows[i] >= 0 && rows[i] != expected[i];
-      wrongly_chosen += search.choose(directions, units[i].data(), 1) != chosen[i];
+      wrongly_chosen += search.choose(directions, units[i].data(), 1, tie_tolerance) != chosen[i];
     }
     EXPECT_EQ(wrong, 0u);
     EXPECT_EQ(wrongly_chosen, 0u);
@@ -281,7 +281,7 @@ TEST(ArcSearch, ProvesNothingOfWhatIsUnknown) {
     expect_none(vectors);
   }
   const std::vector<double> zero(5, 0.0);
-  EXPECT_EQ(search.choose(directions, zero.data(), 1), 0);
+  EXPECT_EQ(search.choose(directions, zero.data(), 1, tie_tolerance), 0);
 }
 
 TEST(ArcSearch, LeavesOtherRowsAloneAndTakesAnyStride) {

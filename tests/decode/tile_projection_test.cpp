@@ -52,7 +52,7 @@ std::vector<Number> random_raw(const DecodingTable& table, int pixels, RandomStr
 template <typename Number>
 void expect_bounds(const DecodingTable& table, RandomStream& random) {
   const AmbientProjection ambient(table);
-  const TileProjection projection(table, ambient);
+  const TileProjection projection(table, ambient, 1.0);
   const ExactProjection exact(table, ambient);
   constexpr int pixels = 200;
   const std::vector<Number> raw = random_raw<Number>(table, pixels, random);
@@ -93,7 +93,7 @@ TEST(TileProjection, BoundsItsRounding) {
 TEST(TileProjection, LosesLittleToEqualAmbientLight) {
   RandomStream random(2, 0);
   const DecodingTable table = random_table(4, true, random);
-  const TileProjection projection(table, AmbientProjection(table));
+  const TileProjection projection(table, AmbientProjection(table), 1.0);
   // A signal of 100 under ambient light of 1e6: single precision alone would leave .1 of it.
   const std::vector<float> raw = {1e6f + 100, 1e6f, 1e6f, 1e6f};
   const auto tile = std::make_unique<PixelTile>();

@@ -230,19 +230,20 @@ struct MeetLowest {
 };
 
 std::int32_t choose_row(const ArcTable& table, const DirectionTable& directions, const double* unit,
-                        int stride) {
+                        int stride, double tie) {
   float components[max_measurements];
   for (int j = 0; j < table.rank(); ++j) components[j] = static_cast<float>(unit[j * stride]);
   const Query q{components, 1, table.rank(), 1.0f};
   const Margins margins = margins_of(q.rank);
+  const float slack = margins.prune + margins.lead + 1.01f * static_cast<float>(tie);
   Walk walk;
-  start_walk<0>(table, q, margins.prune + margins.lead, Anywhere(), walk);
-  refine_walk<0>(table, q, margins.prune + margins.lead, Anywhere(), walk);
+  start_walk<0>(table, q, slack, Anywhere(), walk);
+  refine_walk<0>(table, q, slack, Anywhere(), walk);
 
   DoubleScores scores{directions, unit, stride, {}};
   MeetBest best{scores, -2.0};
   for_each_near_rows<0>(table, q, walk, best);
-  MeetLowest lowest{scores, best.best - tie_tolerance, table.samples()};
+  MeetLowest lowest{scores, best.best - tie, table.samples()};
   for_each_near_rows<0>(table, q, walk, lowest);
   return lowest.row;
 }
@@ -269,11 +270,11 @@ std::int32_t ArcSearch::best_bin_within(const float* components, std::int32_t be
   return HWY_DYNAMIC_DISPATCH(best_position)(table_, components, begin, end) % table_.samples();
 }
 
-std::int32_t ArcSearch::choose(const DirectionTable& directions, const double* unit,
-                               int stride) const {
+std::int32_t ArcSearch::choose(const DirectionTable& directions, const double* unit, int stride,
+                               double tie) const {
   bool is_zero = true;
   for (int j = 0; j < directions.rank(); ++j) is_zero = is_zero && unit[j * stride] == 0.0;
-  return is_zero ? 0 : HWY_DYNAMIC_DISPATCH(choose_row)(table_, directions, unit, stride);
+  return is_zero ? 0 : HWY_DYNAMIC_DISPATCH(choose_row)(table_, directions, unit, stride, tie);
 }
 
 }  // namespace tofsmith

@@ -181,7 +181,7 @@ void ArcTable::fill_windows(const DirectionTable& directions, const std::vector<
     const std::int32_t first = w * rows_between_windows;
     const Eigen::VectorXd middle =
         direction_of(directions, std::min(first + rows_between_windows, samples_ - 1));
-    double radius = 0.0;
+    double radius = min_window_radius;
     for (int i = 0; i < block_lanes; ++i) {
       const std::int32_t n = first + i;
       lanes[0].lane[i] = n < samples_ ? offset[static_cast<std::size_t>(n)] : -infinity;

@@ -49,6 +49,8 @@ class KnotLevel {
 /// Unit directions of a code's curve, laid out for branch and bound over its arcs.
 class ArcTable {
  public:
+  static constexpr double min_window_radius = 1e-3;
+
   /// @param blocks_per_arc  of 16 rows, at least; more where the curve is very long
   ArcTable(const DirectionTable& directions, std::int32_t blocks_per_arc);
 
@@ -72,7 +74,7 @@ class ArcTable {
   const float* window(std::int32_t w) const {
     return windows_[static_cast<std::size_t>(w) * lanes_per_block_].lane;
   }
-  /// Length of the longest such remainder.
+  /// Length of the longest such remainder, or min_window_radius if that is more.
   float window_radius(std::int32_t w) const { return window_radius_[static_cast<std::size_t>(w)]; }
   std::int32_t windows() const { return static_cast<std::int32_t>(window_radius_.size()); }
 

@@ -36,12 +36,23 @@ BinMatcher::BinMatcher(const DecodingTable& table, const AmbientProjection& proj
       arcs_(directions_),
       second_peaks_(directions_, arcs_),
       distinct_(directions_),
-      projection_(table, projection),
-      exact_(table, projection) {
+      search_(make_search(for_few)),
+      projection_(table, projection, min_distance()),
+      exact_(table, projection) {}
+
+BinMatcher::Search BinMatcher::make_search(bool for_few) const {
   if (CircleSearch::serves(distinct_))
-    search_.emplace<CircleSearch>(distinct_, second_peaks_);
-  else if (!for_few && CellTable::serves(distinct_))
-    search_.emplace<CellSearch>(distinct_, second_peaks_);
+    return Search(std::in_place_type<CircleSearch>, distinct_, second_peaks_);
+  if (!for_few && CellTable::serves(distinct_))
+    return Search(std::in_place_type<CellSearch>, distinct_, second_peaks_);
+  return {};
+}
+
+/// Between directions that the search tells apart by differences of scores.
+double BinMatcher::min_distance() const {
+  if (const auto* circle = std::get_if<CircleSearch>(&search_)) return circle->min_gap();
+  return std::holds_alternative<CellSearch>(search_) ? distinct_.shortest_step
+                                                     : ArcSearch::min_distance;
 }
 
 void BinMatcher::match(const RawView& view, std::int64_t first, int pixels, bool for_outputs,
@@ -60,7 +71,7 @@ void BinMatcher::match_plane(PixelTile& tile) const {
     std::array<double, max_measurements> unit;
     const double length2 = normalized(tile, i, exact_.rank(), unit);
     if (!std::isfinite(length2)) continue;
-    tile.bin[i] = length2 > 0.0 ? choose(unit.data()) : distinct_.bin.front();
+    tile.bin[i] = length2 > 0.0 ? choose(unit.data(), tie_tolerance) : distinct_.bin.front();
   }
 }
 
@@ -127,14 +138,19 @@ void BinMatcher::decide(const RawView& view, std::int64_t first, int pixel, Pixe
       tile.plane[j * pixels_per_tile + pixel] =
           static_cast<float>(vector.unit[static_cast<std::size_t>(j)] * vector.length);
   if (!std::isfinite(vector.length)) return;  // bin is -1
-  tile.bin[pixel] = vector.length > 0.0 ? choose(vector.unit.data()) : distinct_.bin.front();
+  tile.bin[pixel] = vector.length > 0.0
+                        ? choose(vector.unit.data(), tie_tolerance * vector.residual)
+                        : distinct_.bin.front();
 }
 
 /// The lowest bin whose score ties with the best.
-std::int32_t BinMatcher::choose(const double* unit) const {
-  if (const auto* circle = std::get_if<CircleSearch>(&search_)) return circle->choose(unit);
-  if (const auto* cells = std::get_if<CellSearch>(&search_)) return cells->choose(unit);
-  return directions_.bin_of_row(arcs_.choose(directions_, unit, 1));
+std::int32_t BinMatcher::choose(const double* unit, double tie) const {
+  if (const auto* circle = std::get_if<CircleSearch>(&search_)) return circle->choose(unit, tie);
+  // What ties by more may stand in no run of the cell.
+  if (const auto* cells = std::get_if<CellSearch>(&search_);
+      cells && tie <= max_proven_residual * tie_tolerance)
+    return cells->choose(unit, tie);
+  return directions_.bin_of_row(arcs_.choose(directions_, unit, 1, tie));
 }
 
 }  // namespace tofsmith

@@ -42,16 +42,20 @@ class BinMatcher {
   bool search(bool wants_second_peaks, PixelTile& tile) const;
   bool is_precise(const PixelTile& tile, int pixel) const;
   void decide(const RawView& view, std::int64_t first, int pixel, PixelTile& tile) const;
-  std::int32_t choose(const double* unit) const;
+  std::int32_t choose(const double* unit, double tie) const;
   std::int32_t second_peak_of(const PixelTile& tile, int pixel) const;
+
+  using Search = std::variant<std::monostate, CircleSearch, CellSearch>;
+  Search make_search(bool for_few) const;
+  double min_distance() const;
 
   DirectionTable directions_;
   ArcSearch arcs_;
   SecondPeakSearch second_peaks_;
   DistinctDirections distinct_;
+  Search search_;
   TileProjection projection_;
   ExactProjection exact_;
-  std::variant<std::monostate, CircleSearch, CellSearch> search_;
 };
 
 }  // namespace tofsmith

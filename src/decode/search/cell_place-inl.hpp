@@ -72,7 +72,8 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
   const auto infinite = hn::Set(d, std::numeric_limits<float>::infinity());
   const auto rounding_of_place = hn::Set(d, 1e-6f * (sides + 2));
   constexpr float farthest = 1e30f;  // beyond, reciprocals are lost
-  constexpr float reach = 8e-6f;     // twice this and rounding is less than CellRecord::overlap
+  // Twice this and rounding is less than CellRecord::overlap.
+  constexpr auto reach = static_cast<float>(max_proven_error);
   for (int i = 0; i < padded; i += lanes) {
     Vector q[Rank];
     for (int j = 0; j < Rank; ++j) q[j] = hn::Load(d, pixels.plane + j * tile + i);

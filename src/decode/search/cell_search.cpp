@@ -210,7 +210,7 @@ CellSearch::CellSearch(const DistinctDirections& directions, const SecondPeakSea
            .rounding = static_cast<float>((directions.rank() + 2) * unit_roundoff * safety + tie)};
 }
 
-std::int32_t CellSearch::choose(const double* unit) const {
+std::int32_t CellSearch::choose(const double* unit, double tie) const {
   const std::span<const CellRecord> runs = table_.runs(unit);
   const auto for_each_score = [&](const auto& use) {
     for (const CellRecord& run : runs)
@@ -225,7 +225,7 @@ std::int32_t CellSearch::choose(const double* unit) const {
   for_each_score([&](std::int32_t, double score) { best = std::max(best, score); });
   std::int32_t lowest = view_.count;
   for_each_score([&](std::int32_t n, double score) {
-    if (score >= best - tie_tolerance) lowest = std::min(lowest, n);
+    if (score >= best - tie) lowest = std::min(lowest, n);
   });
   return bin_[static_cast<std::size_t>(lowest)];
 }

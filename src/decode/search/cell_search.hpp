@@ -38,14 +38,15 @@ class CellSearch {
   const CellTable& table() const { return table_; }
 
   /// Fills bin of a tile from plane and error: -1 where single precision does not prove that it
-  /// beats all others by more than tie_tolerance.
+  /// beats all others by more than ties need (see TileProjection).
   /// @param wants_second_peaks  whether `second_peak` is filled too, with what
   /// CellRecord::second_peak_in() reads
   /// @returns whether all are proven
   bool search(bool wants_second_peaks, PixelTile& tile) const;
   /// The lowest bin whose score ties with the best, in double arithmetic.
   /// @param unit  (rank) of length 1
-  std::int32_t choose(const double* unit) const;
+  /// @param tie   by how much scores may differ: up to max_proven_residual tie_tolerance
+  std::int32_t choose(const double* unit, double tie) const;
 
  private:
   CellTable table_;

@@ -109,7 +109,7 @@ CircleSearch::CircleSearch(const DistinctDirections& directions,
   std::sort(order.begin(), order.end(),
             [&](std::int32_t a, std::int32_t b) { return angle_of(a) < angle_of(b); });
   unit_ = directions.unit(order, Eigen::all);
-  double min_gap = 2 * pi;
+  min_gap_ = 2 * pi;
   for (std::size_t i = 0; i < order.size(); ++i) {
     angle_.push_back(angle_of(order[i]));
     bin_.push_back(directions.bin[static_cast<std::size_t>(order[i])]);
@@ -117,10 +117,10 @@ CircleSearch::CircleSearch(const DistinctDirections& directions,
   for (std::size_t i = 0; i < angle_.size(); ++i) {
     const double next = i + 1 < angle_.size() ? angle_[i + 1] : angle_[0] + 2 * pi;
     border_.push_back(0.5 * (angle_[i] + next));
-    min_gap = std::min(min_gap, next - angle_[i]);
+    min_gap_ = std::min(min_gap_, next - angle_[i]);
   }
   // Scores that tie are closer to a border than this; c moves by no more than twice the angle.
-  margin_ = static_cast<float>(rounding + 20 * tie_tolerance / min_gap);
+  margin_ = static_cast<float>(rounding + 20 * tie_tolerance / min_gap_);
   cut_into_pieces();
   second_peak_of_bin_.assign(static_cast<std::size_t>(directions.bin.back()) + 1, -1);
   for (std::size_t i = 0; i < bin_.size(); ++i) {
@@ -183,7 +183,7 @@ double CircleSearch::score(const double* unit, std::size_t i) const {
   return unit[0] * unit_(row, 0) + unit[1] * unit_(row, 1);
 }
 
-std::int32_t CircleSearch::choose(const double* unit) const {
+std::int32_t CircleSearch::choose(const double* unit, double tie) const {
   const std::size_t count = angle_.size(), nearest = owner(std::atan2(unit[1], unit[0]));
   // Rounded borders may be off by one place; scores fall on either side of the best.
   const std::size_t before = (nearest + count - 1) % count, after = (nearest + 1) % count;
@@ -192,14 +192,13 @@ std::int32_t CircleSearch::choose(const double* unit) const {
   const auto walk = [&](std::size_t step) {
     std::size_t i = (nearest + step) % count;
     for (std::size_t k = 1; k < count; ++k, i = (i + step) % count) {
-      if (score(unit, i) >= best - tie_tolerance)
+      if (score(unit, i) >= best - tie)
         lowest = std::min(lowest, bin_[i]);
       else if (k > 1)
         break;
     }
   };
-  if (score(unit, nearest) < best - tie_tolerance)
-    lowest = std::numeric_limits<std::int32_t>::max();
+  if (score(unit, nearest) < best - tie) lowest = std::numeric_limits<std::int32_t>::max();
   walk(1);
   walk(count - 1);
   return lowest;

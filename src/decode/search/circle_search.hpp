@@ -34,8 +34,10 @@ class CircleSearch {
   std::int32_t second_peak(std::int32_t bin) const {
     return second_peak_of_bin_[static_cast<std::size_t>(bin)];
   }
-  /// As CellSearch::choose.
-  std::int32_t choose(const double* unit) const;
+  /// As CellSearch::choose, for any `tie`.
+  std::int32_t choose(const double* unit, double tie) const;
+  /// Between neighbours on the circle [rad].
+  double min_gap() const { return min_gap_; }
 
  private:
   void cut_into_pieces();
@@ -50,7 +52,8 @@ class CircleSearch {
   std::vector<double> border_;     // angle half-way to the next one
   std::vector<std::int32_t> bin_;  // of the same
   RowMajorMatrix unit_;            // (M, 2) of the same
-  float margin_ = 0.0f;            // of a comparison of c
+  double min_gap_ = 0.0;
+  float margin_ = 0.0f;  // of a comparison of c
 };
 
 }  // namespace tofsmith

@@ -15,8 +15,14 @@ inline constexpr double parallel_chords = 1e-14;
 /// Rows whose components stand side by side.
 inline constexpr int rows_per_block = 8;
 
-/// Scores of unit vectors this close tie.
+/// Scores tie that are this close, in units of |P y'|: what ambient light does not explain of a
+/// pixel, and of which its vector in the plane may be a small part.
 inline constexpr double tie_tolerance = 1e-11;
+
+/// Cells prove no bin of a pixel whose error is a larger share of its vector q in the plane,
+inline constexpr double max_proven_error = 8e-6;
+/// nor of one with more than this in |P y'| / |q|.
+inline constexpr double max_proven_residual = 32.0;
 
 /// Bins around one bin along which the code's own score falls: [begin, end), begin may be negative
 /// and end past N, modulo N. Longest possible: N.

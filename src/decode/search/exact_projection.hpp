@@ -14,6 +14,7 @@ namespace tofsmith {
 struct PlaneVector {
   double length =
       0.0;  ///< |q| [e]; 0 if the residual is rounding, NaN if a raw number is no number
+  double residual = 0.0;  ///< |P y'| / |q|, >= 1: with what lies outside of the plane
   std::array<double, max_measurements> unit;  ///< (rank)
 };
 
@@ -21,7 +22,7 @@ struct PlaneVector {
 class ExactProjection {
  public:
   ExactProjection(const DecodingTable& table, const AmbientProjection& projection)
-      : scale_(table), basis_(projection.basis) {}
+      : scale_(table), basis_(projection.basis), ambient_(projection.ambient.stableNormalized()) {}
 
   int measurements() const { return static_cast<int>(basis_.rows()); }
   int rank() const { return static_cast<int>(basis_.cols()); }
@@ -33,7 +34,8 @@ class ExactProjection {
 
  private:
   RawScale scale_;
-  RowMajorMatrix basis_;  // V (K, rank)
+  RowMajorMatrix basis_;     // V (K, rank)
+  Eigen::VectorXd ambient_;  // a / |a| (K), or 0
 };
 
 }  // namespace tofsmith

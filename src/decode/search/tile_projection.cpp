@@ -8,6 +8,7 @@
 
 #include "core/shared/pixel_runs.hpp"
 #include "decode/raw_scale.hpp"
+#include "decode/search/direction_table.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "decode/search/tile_projection.cpp"
@@ -262,7 +263,8 @@ void gather_tile(const RawView& view, std::int64_t first, int pixels, PixelTile&
 
 }  // namespace
 
-TileProjection::TileProjection(const DecodingTable& table, const AmbientProjection& projection) {
+TileProjection::TileProjection(const DecodingTable& table, const AmbientProjection& projection,
+                               double min_distance) {
   const int k_count = table.measurements(), rank = projection.rank();
   const RawScale scale(table);
   // In raw numbers: electrons = gain (raw - zero), and ambient light a / gain.
@@ -280,6 +282,18 @@ TileProjection::TileProjection(const DecodingTable& table, const AmbientProjecti
   // Its own difference is nothing.
   if (has_ambient) weight.col(reference).setZero();
 
+  // |P y'| is at most the sum of gain |difference|, and what unequal offsets leave.
+  const double tie = 2 * tie_tolerance / min_distance;
+  constexpr double least = max_proven_error / max_proven_residual;
+  Eigen::VectorXd left = gain.cwiseProduct(zero);
+  if (has_ambient) {
+    const Eigen::VectorXd direction = projection.ambient.normalized();
+    left -= direction.dot(left) * direction;
+  }
+  const auto with_ties = [&](double rounding, double residual) {
+    return static_cast<float>(safety * std::max(rounding + tie * residual, least * residual));
+  };
+
   double error_of_reference = 0.0;
   for (int k = 0; k < k_count; ++k) {
     const double ratio = has_ambient ? ambient[k] / ambient[reference] : 0.0;
@@ -287,8 +301,7 @@ TileProjection::TileProjection(const DecodingTable& table, const AmbientProjecti
     const double length = weight.col(k).norm();
     ratio_.push_back(is_one ? 1.0f : static_cast<float>(ratio));
     // Rounded weights, and K products and sums; the difference is rounded once more.
-    error_of_difference_.push_back(
-        static_cast<float>((k_count + 3) * unit_roundoff * safety * length));
+    error_of_difference_.push_back(with_ties((k_count + 3) * unit_roundoff * length, gain[k]));
     error_per_rounding_.push_back(error_per_raw[k]);
     error_of_reference +=
         safety * length * (is_one ? std::abs(ratio - 1.0) : 2 * unit_roundoff * std::abs(ratio));
@@ -307,8 +320,8 @@ TileProjection::TileProjection(const DecodingTable& table, const AmbientProjecti
            .offset = offset_.data(),
            .error_of_difference = error_of_difference_.data(),
            .error_of_reference = static_cast<float>(error_of_reference),
-           .error_of_offset = static_cast<float>(
-               (k_count + 2) * unit_roundoff * safety * offset.norm() + smallest)};
+           .error_of_offset =
+               with_ties((k_count + 2) * unit_roundoff * offset.norm() + smallest, left.norm())};
 }
 
 void TileProjection::project(const RawView& view, std::int64_t first, int pixels, bool for_outputs,

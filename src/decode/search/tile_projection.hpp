@@ -36,9 +36,14 @@ struct ProjectionView {
 /// From raw numbers to what ambient light does not explain, with a bound on its rounding.
 class TileProjection {
  public:
-  TileProjection(const DecodingTable& table, const AmbientProjection& projection);
+  /// @param min_distance  between directions that the search tells apart by differences of scores
+  TileProjection(const DecodingTable& table, const AmbientProjection& projection,
+                 double min_distance);
 
-  /// Fills plane and error of a tile, up to a multiple of 16 pixels.
+  /// Fills plane and error of a tile, up to a multiple of 16 pixels. The error is a little more
+  /// than rounding needs: if one direction is the best wherever the vector lies within it, its
+  /// score leads by more than tie_tolerance |P y'|; and where it is less than max_proven_error |q|,
+  /// |P y'| is at most max_proven_residual |q|.
   /// @param first        pixel of the view with which the tile begins
   /// @param pixels       1 .. pixels_per_tile
   /// @param for_outputs  whether `raw` of the tile is filled too, and all of it the same on every
