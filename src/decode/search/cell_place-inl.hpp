@@ -8,12 +8,14 @@
 #define TOFSMITH_DECODE_CELL_PLACE_INL_HPP
 #endif
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <limits>
 
 #include "core/shared/vectors-inl.hpp"
 #include "decode/search/cell_search.hpp"
+#include "decode/search/rows-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
@@ -26,8 +28,10 @@ constexpr int tile = pixels_per_tile;
 constexpr int row_floats = 4;  // of a step or a direction
 
 struct Scratch {
-  alignas(64) float place[3][tile];  // t_s in the cell
-  alignas(64) std::int32_t cell[tile];
+  alignas(64) float place[3][tile];     // t_s in the cell
+  alignas(64) std::int32_t cell[tile];  // before enter_roots() of a cell among all there could be
+  alignas(64) std::int32_t cut[tile];   // of rank 4: of the same, among those of its root
+  alignas(64) std::int32_t is_cut[tile];
   alignas(64) std::int32_t first[tile];
   alignas(64) std::int32_t last[tile];
   alignas(64) float slip[tile];
@@ -52,8 +56,8 @@ HWY_INLINE Vector reciprocal_of(Vector v) {
 #endif
 }
 
-/// Cell and place in it of every pixel, and how much the place may be off; infinite where the pixel
-/// is too uncertain for its cell.
+/// Cell and place in it of every pixel (of rank 4: root, cell if it is cut, and place in that), and
+/// how much the place may be off; infinite where the pixel is too uncertain for its cell.
 template <int Rank>
 HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int padded,
                        Scratch& scratch) {
@@ -66,9 +70,6 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
   const auto first_cell = hn::Set(d, to_whole), last_cell = hn::Set(d, to_whole + sides - 1);
   const auto fine_bits = hn::Set(di, (1 << bits) - 1),
              cut_mask = hn::Set(di, (1 << view.cut_bits) - 1);
-  // Of a cell of an uncut root: its place from the place in the fine cell that could be there.
-  const auto shrink = hn::Set(d, 1.0f / static_cast<float>(1 << view.cut_bits));
-  const auto to_centre = hn::Sub(shrink, hn::Set(d, 1.0f));
   const auto infinite = hn::Set(d, std::numeric_limits<float>::infinity());
   const auto rounding_of_place = hn::Set(d, 1e-6f * (sides + 2));
   constexpr float farthest = 1e30f;  // beyond, reciprocals are lost
@@ -97,36 +98,59 @@ HWY_INLINE void locate(const CellSearchView& view, const PixelTile& pixels, int 
 
     const auto is_negative = hn::ShiftRight<31>(hn::BitCast(Words(), signed_largest));
     auto cell = hn::Add(hn::Add(axis, axis), hn::BitCast(di, is_negative)), cut = hn::Zero(di);
-    Vector fine_place[3], wide_place[3];
     for (int s = 0; s + 1 < Rank; ++s) {
       const auto is_before = hn::RebindMask(d, hn::Gt(axis, hn::Set(di, s)));
       const auto c = hn::Mul(hn::IfThenElse(is_before, q[s], q[s + 1]), scale);
       const auto shifted = hn::Sub(c, hn::Set(d, 0.5f));
       const auto index = hn::Min(hn::Max(hn::Add(shifted, middle), first_cell), last_cell);
       const auto within = hn::Sub(shifted, hn::Sub(index, middle));
-      fine_place[s] = hn::Add(within, within);
+      hn::Store(hn::Add(within, within), d, scratch.place[s] + i);
       // Also what is no number lands in a cell.
       const auto fine = hn::And(hn::BitCast(di, index), fine_bits);
       if (Rank == 4) {
-        const auto part = hn::And(fine, cut_mask);
-        wide_place[s] = hn::MulAdd(hn::Add(fine_place[s], hn::ConvertTo(d, hn::Add(part, part))),
-                                   shrink, to_centre);
-        cut = hn::Add(hn::ShiftLeftSame(cut, view.cut_bits), part);
+        cut = hn::Add(hn::ShiftLeftSame(cut, view.cut_bits), hn::And(fine, cut_mask));
         cell = hn::Add(hn::ShiftLeftSame(cell, view.root_bits),
                        hn::ShiftRightSame(fine, view.cut_bits));
       } else {
         cell = hn::Add(hn::ShiftLeftSame(cell, view.root_bits), fine);
       }
     }
-    if (Rank == 4) {
-      const auto root = hn::GatherIndex(di, view.roots, cell);
-      const auto is_cut = hn::Ne(hn::And(root, hn::Set(di, 1)), hn::Zero(di));
-      cell = hn::Add(hn::ShiftRight<1>(root), hn::IfThenElseZero(is_cut, cut));
-      for (int s = 0; s + 1 < Rank; ++s)
-        fine_place[s] = hn::IfThenElse(hn::RebindMask(d, is_cut), fine_place[s], wide_place[s]);
-    }
-    for (int s = 0; s + 1 < Rank; ++s) hn::Store(fine_place[s], d, scratch.place[s] + i);
+    if (Rank == 4) hn::Store(cut, di, scratch.cut + i);
     hn::Store(cell, di, scratch.cell + i);
+  }
+}
+
+/// From the roots of pixels to their cells, which are on their way into the cache when they are
+/// read. Number by number: gathers take longer, and so would vectors of single numbers.
+HWY_INLINE void enter_roots(const CellSearchView& view, int padded, Scratch& scratch) {
+  for (int i = 0; i < padded; ++i) {
+    const std::int32_t root = view.roots[scratch.cell[i]], is_cut = root & 1;
+    const std::int32_t cell = (root >> 1) + (scratch.cut[i] & -is_cut);
+    hwy::Prefetch(view.cells + cell);
+    scratch.cell[i] = cell;
+    scratch.is_cut[i] = is_cut;
+  }
+}
+
+/// Of pixels whose root is not cut: the place in it, from that in the cell of a cut one.
+HWY_INLINE void place_in_roots(const CellSearchView& view, int padded, Scratch& scratch) {
+  constexpr int sides = 3;
+  const Floats d;
+  const Indices di;
+  const auto shrink = hn::Set(d, 1.0f / static_cast<float>(1 << view.cut_bits));
+  const auto to_centre = hn::Sub(shrink, hn::Set(d, 1.0f));
+  const auto cut_mask = hn::Set(di, (1 << view.cut_bits) - 1);
+  for (int i = 0; i < padded; i += lanes_of(d)) {
+    const auto cut = hn::Load(di, scratch.cut + i);
+    const auto is_whole = hn::Eq(hn::Load(di, scratch.is_cut + i), hn::Zero(di));
+    if (hn::AllFalse(di, is_whole)) continue;
+    for (int s = 0; s < sides; ++s) {
+      const auto part = hn::And(hn::ShiftRightSame(cut, view.cut_bits * (sides - 1 - s)), cut_mask);
+      const auto fine = hn::Load(d, scratch.place[s] + i);
+      const auto wide =
+          hn::MulAdd(hn::Add(fine, hn::ConvertTo(d, hn::Add(part, part))), shrink, to_centre);
+      hn::Store(hn::IfThenElse(hn::RebindMask(d, is_whole), wide, fine), d, scratch.place[s] + i);
+    }
   }
 }
 
@@ -138,6 +162,13 @@ HWY_INLINE Vector low_number(IndexVector words) {
 }
 HWY_INLINE Vector high_number(IndexVector words) {
   return hn::ConvertTo(Floats(), hn::ShiftRight<16>(words));
+}
+
+/// Writes the pixels of a mask one behind the other, and up to a vector more; @returns how many.
+/// Some processors take a hundred cycles for a compressing store.
+HWY_INLINE int list(IndexVector pixel, hn::Mask<Indices> mask, std::int32_t* listed) {
+  hn::StoreU(hn::Compress(pixel, mask), Indices(), listed);
+  return static_cast<int>(hn::CountTrue(Indices(), mask));
 }
 
 /// The bins of pixels whose cell proves them, and where to begin in the run of the others, which
@@ -155,17 +186,18 @@ HWY_INLINE void predict(const CellSearchView& view, int padded, bool wants_secon
              steepest = hn::Set(d, view.steepest_fit), no_border = hn::Set(d, 1e30f);
   const auto count = hn::Set(di, view.count), lane = hn::Iota(di, 0);
   for (int i = 0; i < padded; i += lanes) {
-    const auto word = hn::ShiftLeft<2>(hn::Load(di, scratch.cell + i));
-    const auto* words = reinterpret_cast<const std::int32_t*>(view.cells);
-    const auto run = hn::GatherIndex(di, words, word), fit01 = hn::GatherIndex(di, words + 1, word),
-               fit23 = hn::GatherIndex(di, words + 2, word);
+    Vector words[row_length];
+    load_rows(
+        [&](int lane) {
+          return reinterpret_cast<const float*>(view.cells + scratch.cell[i + lane]);
+        },
+        words);
+    const auto run = hn::BitCast(di, words[0]), fit01 = hn::BitCast(di, words[1]),
+               fit23 = hn::BitCast(di, words[2]), beside = hn::BitCast(di, words[3]);
     // Of rank 3 the slack stands in place of the fourth fit.
     auto slack = high_number(fit23);
-    if (Rank == 4 || wants_second_peaks) {
-      const auto beside = hn::GatherIndex(di, words + 3, word);
-      hn::Store(beside, di, pixels.second_peak + i);
-      if (Rank == 4) slack = high_number(beside);
-    }
+    if (wants_second_peaks) hn::Store(beside, di, pixels.second_peak + i);
+    if (Rank == 4) slack = high_number(beside);
     auto x = hn::MulAdd(high_number(fit01), hn::Load(d, scratch.place[0] + i), low_number(fit01));
     x = hn::MulAdd(low_number(fit23), hn::Load(d, scratch.place[1] + i), x);
     if (Rank == 4) x = hn::MulAdd(high_number(fit23), hn::Load(d, scratch.place[2] + i), x);
@@ -195,10 +227,8 @@ HWY_INLINE void predict(const CellSearchView& view, int padded, bool wants_secon
     hn::Store(first, di, scratch.first + i);
     hn::Store(hn::Add(first, length), di, scratch.last + i);
     const auto pixel = hn::Add(lane, hn::Set(di, i));
-    scratch.unproven_count += static_cast<int>(
-        hn::CompressStore(pixel, is_unproven, di, scratch.unproven + scratch.unproven_count));
-    scratch.lists +=
-        static_cast<int>(hn::CompressStore(pixel, is_list, di, scratch.with_list + scratch.lists));
+    scratch.unproven_count += list(pixel, is_unproven, scratch.unproven + scratch.unproven_count);
+    scratch.lists += list(pixel, is_list, scratch.with_list + scratch.lists);
   }
 }
 

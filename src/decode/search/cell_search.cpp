@@ -141,6 +141,10 @@ bool search_tile(const CellSearchView& view, bool wants_second_peaks, PixelTile&
   const int padded = rounded_up(pixels.pixels, lanes);
   Scratch scratch;
   locate<Rank>(view, pixels, padded, scratch);
+  if (Rank == 4) {
+    enter_roots(view, padded, scratch);
+    place_in_roots(view, padded, scratch);
+  }
   predict<Rank>(view, padded, wants_second_peaks, pixels, scratch);
   scratch.all_proven = true;
   if (scratch.unproven_count > 0) search_runs<Rank>(view, pixels, scratch);

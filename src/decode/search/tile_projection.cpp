@@ -17,6 +17,7 @@
 #include <hwy/highway.h>
 
 #include "core/shared/vectors-inl.hpp"
+#include "decode/search/rows-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
@@ -113,22 +114,28 @@ HWY_INLINE void project_interleaved(const ProjectionView& view, const float* raw
   }
 }
 
-/// The same for any K, measurement by measurement.
+/// The same for any K > 4, four measurements at a time; the last ones may be loaded twice.
 template <int Rank, bool ForOutputs, int Count>
 HWY_INLINE void project_strided(const ProjectionView& view, const float* raw, int vectors,
                                 PixelTile& tile) {
   const Floats d;
-  const hn::RebindToSigned<Floats> di;
   const int lanes = lanes_of(d);
-  const auto pixel = hn::Mul(hn::Iota(di, 0), hn::Set(di, view.measurements));
+  const int count = Count > 0 ? Count : view.measurements;
   for (int i = 0; i < vectors * lanes; i += lanes) {
-    const float* const first = raw + static_cast<std::ptrdiff_t>(i) * view.measurements;
-    const auto load = [&](int k) {
-      const auto measured = hn::GatherIndex(d, first + k, pixel);
-      if (ForOutputs) hn::Store(measured, d, tile.raw + k * tile_pixels + i);
-      return measured;
-    };
-    project_vector<Rank, ForOutputs, Count>(view, load, load(view.reference), i, tile);
+    const float* const first = raw + static_cast<std::ptrdiff_t>(i) * count;
+    Vector measured[Count > 0 ? Count : max_measurements];
+    measured[0] = hn::Zero(d);  // compilers cannot know that count > 4
+    for (int k = 0; k < count; k += row_length) {
+      const int from = k + row_length < count ? k : count - row_length;
+      load_rows([&](int lane) { return first + lane * count + from; }, measured + from);
+    }
+    if (ForOutputs)
+      for (int k = 0; k < count; ++k) hn::Store(measured[k], d, tile.raw + k * tile_pixels + i);
+    auto reference = measured[0];
+    for (int k = 1; k < count; ++k)
+      if (view.reference == k) reference = measured[k];
+    project_vector<Rank, ForOutputs, Count>(
+        view, [&](int k) { return measured[k]; }, reference, i, tile);
   }
 }
 
