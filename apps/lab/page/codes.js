@@ -158,13 +158,13 @@ export class CodesView {
   #draw(i) {
     const {code} = this.lab.slots[i], source = this.lab.state.codes[i];
     if (!code || !source) return;
-    const kept = code.variance_kept === undefined ? '' : `${shortText(100 * code.variance_kept, 3)} % of it in three directions`;
+    const kept = code.curve_variance_kept === undefined ? '' : `${shortText(100 * code.curve_variance_kept, 3)} % of its variance`;
     this.waveforms.title(i, code.name, 'light above, gate below');
     this.correlation.title(i, code.name);
     this.curves.title(i, code.name, kept);
     this.waveforms.plots[i].show({
       label: `Waveforms of ${code.name}, ${code.measurements} measurements`, samples: code.light.shape[1],
-      light: code.light, gates: code.gates, lightEdges: code.light_edges, gateEdges: code.gate_edges,
+      light: code.light, gates: code.gates, lightBehind: code.light_behind, gatesBehind: code.gates_behind, lightEdges: code.light_edges, gateEdges: code.gate_edges,
       move: (arm, measurement, edge, position) => {
         this.held ??= this.lab.state.codes[i];  // its edges keep their places in the list while one is held
         this.lab.moveEdge(i, this.held, {arm, measurement, edge, position});

@@ -29,7 +29,7 @@ export class Commands {
   /** Asks for the commands of the present state, when it has stood for a moment. */
   follow() {
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => this.#ask(), 120);
+    this.timer = setTimeout(() => this.#ask(), 60);
   }
 
   async #ask() {

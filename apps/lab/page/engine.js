@@ -90,6 +90,11 @@ export class Engine {
     this.#serve();
   }
 
+  /** Whether nothing runs or waits. */
+  get isIdle() {
+    return !this.#waiting.length && this.#workers.every((worker) => !worker.call);
+  }
+
   /** Stops everything. */
   close() {
     for (const worker of this.#workers) {

@@ -17,6 +17,14 @@ export const errorText = (mean, deviation) =>
   `${fixedText(1e3 * mean, 4)} \u00b1 ${fixedText(1e3 * deviation, 2)}`;
 
 const distinct = (values) => [...new Set(values)];
+const ambientOf = (one) => distinct(one.points.map((p) => p.ambient_e_per_s));
+
+// The points at one ambient level; those of a camera that was just left may have fewer levels.
+function pointsAt(one, level) {
+  const levels = ambientOf(one), ambient = levels[Math.min(level, levels.length - 1)];
+  return one.points.filter((p) => p.ambient_e_per_s === ambient);
+}
+
 const least = (list, key) => list.reduce((best, one) => (one[key] < best[key] ? one : best));
 
 /** The section of depth errors. */
@@ -84,7 +92,7 @@ export class ErrorsView {
     };
     const head = ['code', 'K', 'linear error (mm)', 'circular error (mm)', 'best (mm)', 'at signal, ambient (e/s)', 'most outliers (%)'];
     byId('error-table').replaceChildren(element('table', {},
-      element('caption', {}, `Geometric mean over ${known[0].one.points.length} light levels; \u00b1 is one standard error. The camera is judged by the ${kind} error.`),
+      element('caption', {}, element('span', {}, `Geometric mean over ${known[0].one.points.length} light levels; \u00b1 is one standard error. The camera is judged by the ${kind} error.`)),
       element('thead', {}, element('tr', {}, ...head.map((text) => element('th', {scope: 'col'}, text)))),
       element('tbody', {}, ...known.map(row))));
   }
@@ -93,7 +101,7 @@ export class ErrorsView {
     const range = rangeOf(known.map(({one}) => one.points.map((point) => point[`${kind}_mde_m`])), true);
     const {scene} = this.lab.state;
     for (const {i, one} of known) {
-      const signal = distinct(one.points.map((p) => p.signal_e_per_s)), ambient = distinct(one.points.map((p) => p.ambient_e_per_s));
+      const signal = distinct(one.points.map((p) => p.signal_e_per_s)), ambient = ambientOf(one);
       const at = (c, r) => one.points[c * ambient.length + r];
       const values = ambient.flatMap((_, r) => signal.map((_, c) => at(c, r)?.[`${kind}_mde_m`]));
       this.maps.title(i, one.name, `${kind} depth error (mm)`);
@@ -116,7 +124,7 @@ export class ErrorsView {
   }
 
   #drawCurves(known, kind) {
-    const ambient = distinct(known[0].one.points.map((p) => p.ambient_e_per_s));
+    const ambient = ambientOf(known[0].one);
     const wanted = this.lab.state.curve_ambient ?? Math.floor(ambient.length / 2), level = Math.min(wanted, ambient.length - 1);
     const select = byId('curve-ambient'), texts = ambient.map((a) => `${shortText(a, 4)} e/s`);
     if ([...select.options].map((option) => option.textContent).join() !== texts.join())
@@ -124,13 +132,13 @@ export class ErrorsView {
     select.value = String(level);
     const series = [];
     for (const {i, one} of known) {
-      const points = one.points.filter((p) => p.ambient_e_per_s === ambient[level]), x = points.map((p) => p.signal_e_per_s);
+      const points = pointsAt(one, level), x = points.map((p) => p.signal_e_per_s);
       const mean = points.map((p) => 1e3 * p[`${kind}_mde_m`]), deviation = points.map((p) => 2e3 * p[`${kind}_se_m`]);
       series.push({name: one.name, x, y: mean, colour: seriesColour(i), width: 2.2,
         band: [mean.map((v, n) => v - deviation[n]), mean.map((v, n) => v + deviation[n])]});
     }
     for (const {i, one} of known) {
-      const points = one.points.filter((p) => p.ambient_e_per_s === ambient[level]), x = points.map((p) => p.signal_e_per_s);
+      const points = pointsAt(one, level), x = points.map((p) => p.signal_e_per_s);
       for (const [key, name, dash] of i === known[0].i ? bounds : bounds.slice(0, 1))
         series.push({name: key === 'cramer_rao_mae_m' ? `${name} of ${one.name}` : `${name} bound`, x, y: points.map((p) => 1e3 * p[key]),
           colour: key === 'cramer_rao_mae_m' ? seriesColour(i) : 'var(--line)', width: 1.4, dash});

@@ -7,12 +7,13 @@ import {fieldText} from './numbers.js';
 
 const sectionTitles = {'': 'Camera', light: 'Light', sensor: 'Sensor', operating: 'Light levels', optics: 'Optics', lens: 'Lens',
   playback: 'Playback', temperature: 'Temperature', camera: 'Camera'};
+const groupOf = (section) => (section ?? '').split('.')[0];
 const titleOf = (section) => sectionTitles[section] ?? section.replaceAll('_', ' ').replace(/^./, (c) => c.toUpperCase());
 const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 const steps = 1000;
 
-/** What a control is called: the key without its section. */
-const nameOf = ({key, section, unit}) => (section && key.startsWith(section + '.') ? key.slice(section.length + 1) : key)
+/** What a control is called: the key without its section and unit. */
+const nameOf = ({key, section, unit}) => (section ? key.slice(groupOf(section).length + 1) : key)
   .replace(unit ? /_(e_per_s|m_per_c|hz|s|e|m|px|deg|w|c)$/ : /$^/, '').replaceAll('_', ' ').replaceAll('.', ' ');
 
 /** Place of a slider for a value of a field, and back. */
@@ -145,9 +146,9 @@ export class FieldPanel {
   #build(fields) {
     const focus = document.activeElement?.id, open = new Set([...this.form.querySelectorAll('details[open]')].map((d) => d.dataset.section));
     this.#controls = new Map(fields.map((field) => [field.key, new Field(field, this)]));
-    const sections = [...new Set(fields.map((field) => field.section ?? ''))];
+    const sections = [...new Set(fields.map((field) => groupOf(field.section)))];
     this.form.replaceChildren(...sections.map((section) => {
-      const own = fields.filter((field) => (field.section ?? '') === section);
+      const own = fields.filter((field) => groupOf(field.section) === section);
       const nodes = (isExpert) => own.filter((field) => Boolean(field.expert) === isExpert).map((field) => this.#controls.get(field.key).root);
       const experts = nodes(true), usual = nodes(false);
       const fold = experts.length ? element('details', {class: 'experts', 'data-section': section, open: open.has(section)},

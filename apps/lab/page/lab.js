@@ -114,11 +114,12 @@ export class Lab {
     this.#tell('problem', i);
   }
 
-  async #set(key, value, heard) {
+  async #set(key, text, heard) {
     try {
-      const {camera} = this;
+      const {camera} = this, field = camera.fields.find((one) => one.key === key);
+      const value = text === '' && field?.default === null ? undefined : text;  // leaves the key out
       const answer = await this.engine.call('set', {camera: camera.toml, key, value});
-      const change = answer.change ?? {key, value};
+      const change = answer.change ?? {key, value: value ?? null};
       const first = new Map(this.firstFields.map((field) => [field.key, field.value]));
       const isFirst = answer.fields.every((field) => field.key !== change.key || same(field.value, first.get(field.key)));
       this.store.change((state) => {

@@ -131,7 +131,7 @@ async function begin() {
     if (next.state) store.change((now) => Object.assign(now, next.state));
   });
   await lab.update();
-  window.tofsmithLab = {store, lab};
+  window.tofsmithLab = {store, lab, engine};  // for tests and for a look from the console
 }
 
 begin().catch((error) => stop(`The lab cannot begin: ${error.message}`));

@@ -49,7 +49,7 @@ export class ValueBox {
   }
 }
 
-const margin = {left: 60, right: 12, top: 8, bottom: 40};
+const margin = {left: 66, right: 12, top: 8, bottom: 40};
 
 /** The frame of a plot: grid, ticks and titles of both axes. */
 export function frameOf(x, y, titles, width, height) {

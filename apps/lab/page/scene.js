@@ -10,7 +10,6 @@ import {divergingColour, sequentialColour} from './colours.js';
 import {lengthText, rangeOf, shortText} from './numbers.js';
 
 const widths = [80, 160, 240, 320], quickWidth = 80;
-const filters = ['light', 'normal', 'strong'];
 
 function spread(errors) {
   const sizes = Array.from(errors, Math.abs).filter(Number.isFinite).sort((a, b) => a - b);
@@ -46,7 +45,7 @@ export class SceneView {
     const choice = (id, list, key, read) => element('select', {id, onchange: put(key, read)}, ...list.map((one) => element('option', {value: one}, String(one))));
     this.inputs = {
       name: choice('scene-name', about.scenes, 'name', String),
-      filter: choice('scene-filter', filters, 'filter', String),
+      filter: choice('scene-filter', about.filters.filter((word) => word !== 'off'), 'filter', String),
       width: choice('scene-width', widths, 'width', Number),
       signal: element('input', {id: 'scene-signal', size: 8, placeholder: 'usual', onchange: put('signal', rate)}),
       ambient: element('input', {id: 'scene-ambient', size: 8, placeholder: 'usual', onchange: put('ambient', rate)}),
@@ -80,9 +79,7 @@ export class SceneView {
 
   #draw(alone, filtered, code, scene) {
     const [height, width] = alone.depth_m.shape, truth = alone.true_depth_m.values;
-    const range = alone.range_m, wrapped = (error) => (Number.isFinite(range) && this.lab.errorKind === 'circular' ? error - range * Math.round(error / range) : error);
-    const errorsOf = ({depth_m}) => Float32Array.from(depth_m.values, (v, i) => wrapped(v - truth[i]));
-    const errors = errorsOf(alone), filteredErrors = errorsOf(filtered);
+    const errors = alone.deviation_m.values, filteredErrors = filtered.deviation_m.values;
     const depths = rangeOf([truth]), most = spread(errors), name = code.name;
     const size = {width, height};
     const depthSpec = (values, title, note, label) => ({...size, values, title, note, label, gradient: sequentialColour,
@@ -90,7 +87,7 @@ export class SceneView {
     const errorSpec = (values, title, note, label) => ({...size, values, title, note, label, gradient: divergingColour,
       colour: (v) => divergingColour(0.5 + v / most / 2), ends: [lengthText(-most, 3), lengthText(most, 3)], text: (v) => `${title} ${lengthText(v)}`});
     const mean = (answer) => (answer.mean_error_m === undefined ? '' : `mean ${lengthText(answer.mean_error_m, 3)}`);
-    const {pictures} = this, deviations = alone.deviation_m.values, scale = rangeOf([deviations]);
+    const {pictures} = this, deviations = alone.standard_deviation_m.values, scale = rangeOf([deviations]);
     pictures.truth.show(depthSpec(truth, 'True depth', scene.name, `True depth of the scene ${scene.name}`));
     pictures.depth.show(depthSpec(alone.depth_m.values, 'Depth', 'each pixel alone', `Depth decoded with ${name}, each pixel alone`));
     pictures.error.show(errorSpec(errors, 'Error', mean(alone), `Depth error, each pixel alone, ${mean(alone)}`));

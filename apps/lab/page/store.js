@@ -24,7 +24,7 @@ const isRate = (value) => value === null || (Number.isFinite(value) && value >= 
 export function problemOf(state) {
   const {camera, codes, scene} = state ?? {};
   if (!camera || (isText(camera.built_in) === isText(camera.file)) || !Array.isArray(camera.changes) ||
-      !camera.changes.every((change) => isText(change?.key) && isText(change?.value))) return 'its camera';
+      !camera.changes.every((change) => isText(change?.key) && (change.value === null || isText(change.value)))) return 'its camera';
   if (!Array.isArray(codes) || !isAt(codes.length, 1, maxCodes) ||
       !codes.every((code) => isText(code?.name) && (code.file === undefined || isText(code.file)))) return 'its codes';
   if (!isAt(state.chosen, 0, codes.length - 1)) return 'its chosen code';

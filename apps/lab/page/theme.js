@@ -19,7 +19,7 @@ export function startTheme(button) {
   const show = (theme) => {
     if (theme === 'auto') delete document.documentElement.dataset.theme;
     else document.documentElement.dataset.theme = theme;
-    button.textContent = names[theme];
+    button.textContent = `\u25d0 ${names[theme]}`;
     button.setAttribute('aria-label', `Colours: ${names[theme].toLowerCase()}; change`);
     button.dataset.now = theme;
     dispatchEvent(new Event('themechange'));

@@ -25,20 +25,20 @@ function stepsOf(edges, x, base, top) {
   return path.endsWith(`V${base}`) || path.startsWith('M') && !path.includes('V') ? `${path}H${x(1)}` : path;
 }
 
-function areaOf(values, x, base, y) {
-  let path = `M${x(0)},${base}`;
-  values.forEach((value, n) => {
-    path += `L${x((n + 0.5) / values.length).toFixed(1)},${y(value).toFixed(1)}`;
-  });
-  return `${path}L${x(1)},${base}Z`;
+function lineOf(values, x, y) {
+  const at = (place, value) => `${x(place).toFixed(1)},${y(value).toFixed(1)}`, count = values.length;
+  const edge = (values[0] + values[count - 1]) / 2;
+  return `M${[at(0, edge), ...Array.from(values, (value, n) => at((n + 0.5) / count, value)), at(1, edge)].join('L')}`;
 }
+
+const areaOf = (values, x, base, y) => `${lineOf(values, x, y)}V${base}H${x(0)}Z`;
 
 /** Height of one waveform: less where there are many. */
 const laneHeight = (count) => Math.max(20, Math.min(36, Math.round(330 / (2 * count))));
 
 /**
- * The waveforms of one code. What it shows: {label, samples, light, gates: {values, shape}, lightEdges,
- * gateEdges, move(arm, measurement, edge, position), settle()}.
+ * The waveforms of one code. What it shows: {label, samples, light, gates: {values, shape},
+ * lightBehind, gatesBehind: the same behind the impulse responses, lightEdges, gateEdges, move(arm, measurement, edge, position), settle()}.
  */
 export class WaveformPlot {
   #spec = null;
@@ -70,7 +70,7 @@ export class WaveformPlot {
     const height = count * (2 * lane + gap) + axis, x = (place) => left + place * (width - left - right);
     this.scale = {x, span: width - left - right};
     const picture = drawn('svg', {viewBox: `0 0 ${width} ${height}`, height});
-    for (const place of periods) {
+    for (const place of width < 360 ? [0, 0.5, 1] : periods) {
       picture.append(drawn('line', {class: 'grid', x1: x(place), x2: x(place), y1: 0, y2: height - axis}),
         drawn('text', {class: 'tick', x: x(place), y: height - 6, 'text-anchor': place === 1 ? 'end' : 'middle'}, place === 1 ? '1 period' : String(place)));
     }
@@ -91,18 +91,19 @@ export class WaveformPlot {
   }
 
   #lane(picture, handles, arm, k, base, room) {
-    const {light, gates, lightEdges, gateEdges} = this.#spec;
-    const plane = arm === 'light' ? light : gates, samples = plane.shape[1];
+    const {light, gates, lightBehind, gatesBehind, lightEdges, gateEdges} = this.#spec;
+    const [plane, behind] = arm === 'light' ? [light, lightBehind] : [gates, gatesBehind], samples = plane.shape[1];
     const edges = (arm === 'light' ? lightEdges : gateEdges)?.[k] ?? [];
-    const values = plane.values.subarray(k * samples, (k + 1) * samples);
+    const rowOf = ({values: all}) => all.subarray(k * samples, (k + 1) * samples);
+    const values = rowOf(plane), seen = rowOf(behind ?? plane);
     const on = onParts(edges).reduce((sum, [from, to]) => sum + to - from, 0);
     const mean = values.reduce((sum, value) => sum + value, 0) / samples;
     const level = on > 0 ? mean / on : 0;
-    const top = Math.max(level, arm === 'gate' ? 1 : 0, ...values) || 1;
+    const top = Math.max(level, arm === 'gate' ? 1 : 0, ...values, ...seen) || 1;
     const colour = `var(--s${arm === 'light' ? 0 : 1})`, y = (value) => base - room * value / top, {x} = this.scale;
     picture.append(drawn('line', {class: 'lane-base', x1: x(0), x2: x(1), y1: base, y2: base}),
-      drawn('path', {d: areaOf(values, x, base, y), style: `fill:${colour}`, opacity: edges.length ? 0.22 : 0.3}),
-      drawn('path', {class: 'curve', d: edges.length ? stepsOf(edges, x, base, y(level)) : areaOf(values, x, base, y).slice(0, -1), 'stroke-width': 1.5, style: `stroke:${colour}`}));
+      drawn('path', {d: areaOf(seen, x, base, y), style: `fill:${colour}`, opacity: edges.length ? 0.22 : 0.3}),
+      drawn('path', {class: 'curve', d: edges.length ? stepsOf(edges, x, base, y(level)) : lineOf(values, x, y), 'stroke-width': 1.5, style: `stroke:${colour}`}));
     edges.forEach((place, edge) => {
       const what = `${arm === 'light' ? 'Light' : 'Gate'} of measurement ${k + 1} ${edge % 2 ? 'falls' : 'rises'}`;
       handles.append(drawn('g', {class: `edge${this.#isHeld(arm, k, edge) ? ' held' : ''}`, tabindex: -1, role: 'slider', 'aria-label': what,

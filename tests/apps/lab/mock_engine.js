@@ -20,10 +20,10 @@ function mockFields(c) {
     numberField('exposure_s', '', 's', 'of all exposures together', c.exposure, 0, [1e-3, 1], {log: true}),
     {...numberField('samples', '', '', 'samples per period', c.samples, 8, [60, 720]), type: 'integer'},
     numberField('light.peak_factor', 'light', '', 'peak over average power', c.peak, 1, [1, 30]),
-    {key: 'light.binary', section: 'light', unit: '', doc: 'switches on and off only', type: 'boolean', value: true, default: true, expert: false},
-    {key: 'light.impulse_response.kind', section: 'light', unit: '', doc: 'of the light source', type: 'choice',
+    {key: 'light.binary', section: 'light', unit: '', doc: 'switches on and off only', type: 'boolean', value: c.binary, default: true, expert: false},
+    {key: 'light.impulse_response.kind', section: 'light.impulse_response', unit: '', doc: 'of the light source', type: 'choice',
       choices: ['none', 'hann', 'gaussian', 'lowpass'], value: c.kind, default: 'none', expert: false},
-    ...(c.kind === 'none' ? [] : [numberField('light.impulse_response.f_max_hz', 'light', 'Hz', 'nothing above it', c.fmax, 1e6, [1e7, 1e9], {log: true})]),
+    ...(c.kind === 'none' ? [] : [numberField('light.impulse_response.f_max_hz', 'light.impulse_response', 'Hz', 'nothing above it', c.fmax, 1e6, [1e7, 1e9], {log: true})]),
     numberField('light.edge_jitter_s', 'light', 's', 'rms, of the edges', 0, 0, [0, 1e-9], {expert: true}),
     {...numberField('sensor.taps', 'sensor', '', 'buckets of a pixel', c.taps, 1, [1, 4]), type: 'integer', high: 8},
     numberField('sensor.read_noise_e', 'sensor', 'e', 'rms, per reading', c.read, 0, [0, 100]),
@@ -36,7 +36,7 @@ function mockFields(c) {
   ];
 }
 const mockMembers = {fundamental_frequency_hz: 'f0', exposure_s: 'exposure', samples: 'samples', name: 'name',
-  'light.peak_factor': 'peak', 'light.impulse_response.kind': 'kind', 'light.impulse_response.f_max_hz': 'fmax',
+  'light.peak_factor': 'peak', 'light.binary': 'binary', 'light.impulse_response.kind': 'kind', 'light.impulse_response.f_max_hz': 'fmax',
   'sensor.taps': 'taps', 'sensor.read_noise_e': 'read', 'sensor.noise': 'noise', 'sensor.modulation_contrast': 'contrast',
   'operating.signal_e_per_s': 'signal', 'operating.ambient_e_per_s': 'ambient', 'operating.error': 'error'};
 
@@ -46,7 +46,7 @@ function builtIn(name) {
   const known = mockCameras[name];
   if (!known) throw new MockError(`no built-in camera is called '${name}'`);
   return {name, exposure: 0.3, samples: 240, fmax: 10 * known.f0, read: 20, noise: 'gaussian', contrast: 1,
-    signal: [1e3, 3162.27766, 1e4, 31622.7766, 1e5], ambient: [1e2, 1e3, 1e4, 31622.7766, 1e5], error: 'linear', ...known};
+    signal: [1e3, 3162.27766, 1e4, 31622.7766, 1e5], ambient: [1e2, 1e3, 1e4, 31622.7766, 1e5], error: 'linear', binary: true, ...known};
 }
 
 function parsed(toml) {
@@ -71,6 +71,7 @@ function changed(c, key, value) {
   } else if (field.type === 'list') {
     try { found = JSON.parse(value); } catch { throw new MockError(`setting '${key}=${value}': ${key}: expected a list of numbers`, key); }
   }
+  if (field.type === 'boolean') found = value === 'true';
   return {...c, [mockMembers[key] ?? 'other']: found};
 }
 
@@ -109,10 +110,12 @@ function waveOf(edges, N, phase, level, smooth) {
 
 function codeAnswer(file, c) {
   const N = c.samples, K = file.K, smooth = c.kind === 'none' ? 0 : 6;
-  const light = new Float64Array(K * N), gates = new Float64Array(K * N), correlation = new Float64Array(K * N), curve = new Float64Array(3 * N);
+  const light = new Float64Array(K * N), lightBehind = new Float64Array(K * N), gates = new Float64Array(K * N), correlation = new Float64Array(K * N), curve = new Float64Array(3 * N);
   for (let k = 0; k < K; ++k) {
-    const m = waveOf(file.light[k], N, 0, file.light[k].length ? c.peak * 0.8 : 2, smooth), d = waveOf(file.gate[k], N, k / K, 1, smooth);
-    light.set(m, k * N); gates.set(d, k * N);
+    const level = file.light[k].length ? c.peak * 0.8 : 2, m = waveOf(file.light[k], N, 0, level, smooth), d = waveOf(file.gate[k], N, k / K, 1, smooth);
+    light.set(waveOf(file.light[k], N, 0, level, 0), k * N);
+    lightBehind.set(m, k * N);
+    gates.set(d, k * N);
     for (let z = 0; z < N; ++z) {
       let sum = 0;
       for (let n = 0; n < N; ++n) sum += m[n] * d[(n + z) % N];
@@ -121,9 +124,9 @@ function codeAnswer(file, c) {
     }
   }
   return {answer: {name: file.name, measurements: K, exposures: K, taps: 1, range_m: 299792458 / 2 / c.f0,
-    light: {array: 'light', shape: [K, N]}, gates: {array: 'gates', shape: [K, N]}, correlation: {array: 'correlation', shape: [K, N]},
-    curve: {array: 'curve', shape: [N, 3]}, variance_kept: K > 3 ? 0.93 : 1, light_edges: file.light, gate_edges: file.gate, notes: []},
-  arrays: {light, gates, correlation, curve}};
+    light: {array: 'light', shape: [K, N]}, light_behind: {array: 'light_behind', shape: [K, N]}, gates: {array: 'gates', shape: [K, N]}, correlation: {array: 'correlation', shape: [K, N]},
+    curve: {array: 'curve', shape: [N, 3]}, curve_variance_kept: K > 3 ? 0.93 : 1, light_edges: file.light, gate_edges: file.gate, notes: []},
+  arrays: {light, light_behind: lightBehind, gates, correlation, curve}};
 }
 
 function evaluated(request, c) {
@@ -143,7 +146,7 @@ function evaluated(request, c) {
 function sceneAnswer(request, c) {
   const W = request.width, H = Math.round(W * 0.75), range = 299792458 / 2 / c.f0;
   if (!(W >= 8 && W <= 640)) throw new MockError('width: expected 8 to 640', 'width');
-  const truth = new Float32Array(W * H), depth = new Float32Array(W * H), deviation = new Float32Array(W * H), status = new Uint8Array(W * H);
+  const truth = new Float32Array(W * H), depth = new Float32Array(W * H), deviation = new Float32Array(W * H), spread = new Float32Array(W * H), status = new Uint8Array(W * H);
   let seed = request.seed;
   const random = () => { seed = (seed * 1103515245 + 12345) % 2147483648; return seed / 2147483648 - 0.5; };
   const sigma = (request.filter === 'off' ? 0.2 : 0.05) * Math.sqrt(15 / c.peak);
@@ -151,14 +154,15 @@ function sceneAnswer(request, c) {
     const x = i % W / W - 0.5, y = Math.floor(i / W) / H - 0.5, ball = 0.09 - x * x - y * y;
     truth[i] = range * (ball > 0 ? 0.4 - Math.sqrt(ball) * 0.5 : 0.6 - 0.3 * y);
     depth[i] = truth[i] + sigma * (random() + random() + random());
-    deviation[i] = sigma / 2;
+    spread[i] = sigma / 2 + x * x;
     status[i] = Math.abs(x) > 0.48 ? 3 : 0;
     if (status[i]) depth[i] = NaN;
+    deviation[i] = depth[i] - truth[i];
   }
   const plane = (array) => ({array, shape: [H, W]});
-  return {answer: {depth_m: plane('depth_m'), true_depth_m: plane('true_depth_m'), status: plane('status'), deviation_m: plane('deviation_m'),
+  return {answer: {depth_m: plane('depth_m'), true_depth_m: plane('true_depth_m'), status: plane('status'), deviation_m: plane('deviation_m'), standard_deviation_m: plane('standard_deviation_m'),
     width: W, height: H, range_m: range, signal_e_per_s: request.signal ?? 1e4, ambient_e_per_s: request.ambient ?? 1e4,
-    mean_error_m: sigma / 3, median_error_m: sigma / 4, ok_share: 0.96}, arrays: {depth_m: depth, true_depth_m: truth, status, deviation_m: deviation}};
+    mean_error_m: sigma / 3, median_error_m: sigma / 4, ok_share: 0.96}, arrays: {depth_m: depth, true_depth_m: truth, status, deviation_m: deviation, standard_deviation_m: spread}};
 }
 
 async function design(request, c) {
@@ -171,7 +175,7 @@ async function design(request, c) {
 }
 
 const mockAnswers = {
-  about: () => ({answer: {version: '0.0.0-mock', families: mockFamilies.map((name) => ({name, title: name})), cameras: Object.keys(mockCameras), scenes: ['table-top', 'ball', 'wall'], pattern: ['hamiltonian-kK']}}),
+  about: () => ({answer: {version: '0.0.0-mock', families: mockFamilies.map((name) => ({name, title: name})), cameras: Object.keys(mockCameras), scenes: ['table-top', 'ball', 'wall'], filters: ['off', 'light', 'normal', 'strong'], pattern: ['hamiltonian-kK']}}),
   camera: (r) => cameraAnswer((r.changes ?? []).reduce((c, {key, value}) => changed(c, key, value), r.built_in ? builtIn(r.built_in) : parsed(r.camera))),
   set: (r, c) => { const reply = cameraAnswer(changed(c, r.key, r.value)); reply.answer.change = {key: r.key, value: r.value}; return reply; },
   code: (r, c) => codeAnswer(edgesOf(r.code, c), c),
