@@ -41,7 +41,7 @@ export class Commands {
         width: scene.width, signal: scene.signal, ambient: scene.ambient, effort: Number(this.effort.value)};
       try {
         const each = what === 'codes' ? asked.codes.map((code) => ({...asked, codes: [code]})) : [asked];
-        const answers = await Promise.all(each.map((one, i) => this.lab.engine.call('command', one, {lane: `command ${what} ${i}`, rank: 1})));
+        const answers = await Promise.all(each.map((one, i) => this.lab.engine.call('command', one, {lane: `command ${what} ${i}`, rank: 6})));
         text.textContent = answers.map((answer) => answer.command).join('\n');
         const needed = [...(own.camera_file ? [own.camera_file] : []), ...played.filter((code) => code.file !== undefined).map(codeWord)];
         files.textContent = needed.length ? `It reads ${needed.join(', ')}: save ${needed.length > 1 ? 'these' : 'it'} from this page first.` : '';

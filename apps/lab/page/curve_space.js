@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A curve in space on a canvas, turned by pointer and keys; all of them turn together.
 
-import {colourOf, element, onWidth} from './dom.js';
+import {colourOf, drawSoon, element, forgetColours, onWidth, widthOf} from './dom.js';
 import {cssColour, sequentialColour} from './colours.js';
 
 const view = {yaw: 0.6, pitch: 0.45, zoom: 1};
@@ -11,7 +11,7 @@ const shown = new Set();
 function turn(yaw, pitch) {
   view.yaw += yaw;
   view.pitch = Math.max(-1.55, Math.min(1.55, view.pitch + pitch));
-  redrawAll();
+  for (const space of shown) drawSoon(space, () => space.draw());
 }
 
 function projection(width, height, radius) {
@@ -24,6 +24,7 @@ function projection(width, height, radius) {
 }
 
 function redrawAll() {
+  forgetColours();
   for (const space of shown) space.draw();
 }
 addEventListener('themechange', redrawAll);
@@ -49,7 +50,7 @@ export class CurveSpace {
     if (!spec) return void shown.delete(this);
     shown.add(this);
     this.canvas.setAttribute('aria-label', `${spec.label}. Arrow keys turn it, plus and minus change its size, 0 turns it back.`);
-    this.draw();
+    drawSoon(this, () => this.draw());
   }
 
   #key(event) {
@@ -75,7 +76,7 @@ export class CurveSpace {
 
   /** Draws it as it stands. */
   draw() {
-    const width = this.node.clientWidth, spec = this.#spec;
+    const width = widthOf(this.node), spec = this.#spec;
     if (!spec || width < 20) return;
     const height = Math.min(width, 320), ratio = window.devicePixelRatio || 1;
     if (this.canvas.width !== Math.round(width * ratio) || this.canvas.height !== Math.round(height * ratio)) {

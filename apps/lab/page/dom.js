@@ -45,23 +45,47 @@ export function showProblem(place, text) {
   if (place.textContent !== (text ?? '')) place.textContent = text ?? '';
 }
 
-/** Calls `redraw(width)` when the element's width changes, once at first. */
+const widths = new WeakMap();
+
+/** Calls `redraw()` when the element's width changes, once at first. */
 export function onWidth(node, redraw) {
-  let last = 0;
-  new ResizeObserver(() => {
-    const width = Math.floor(node.clientWidth);
-    if (width > 0 && width !== last) redraw(last = width);
+  new ResizeObserver(([entry]) => {
+    const width = Math.floor(entry.contentRect.width);
+    if (width === widthOf(node)) return;
+    widths.set(node, width);
+    if (width > 0) redraw();
   }).observe(node);
 }
 
-const probe = element('span', {hidden: true});
+/** The width of such an element in pixels, without the layout that asking the browser costs. */
+export const widthOf = (node) => widths.get(node) ?? 0;
+
+const drawings = new Map();
+
+/** Draws before the next frame, once however often it is asked for. */
+export function drawSoon(owner, draw) {
+  if (!drawings.size) requestAnimationFrame(() => {
+    const now = [...drawings.values()];
+    drawings.clear();
+    for (const one of now) one();
+  });
+  drawings.set(owner, draw);
+}
+
+const probe = element('span', {hidden: true}), colours = new Map();
 
 /** What a colour of the style sheets is at present, for canvases. */
 export function colourOf(name) {
   if (!probe.isConnected) document.body.append(probe);
-  probe.style.color = `var(${name})`;
-  return getComputedStyle(probe).color;
+  if (!colours.has(name)) {
+    probe.style.color = `var(${name})`;
+    colours.set(name, getComputedStyle(probe).color);
+  }
+  return colours.get(name);
 }
+
+/** Colours are others from now on. */
+export const forgetColours = () => colours.clear();
 
 /** Lets a person save a text as a file. */
 export function saveText(text, name, type) {

@@ -63,8 +63,8 @@ export class Engine {
 
   /**
    * Asks for an answer; a newer call of the same lane makes this one outdated.
-   * @param options  lane; isLong: may take more than a moment, is stopped when outdated and leaves one
-   *                 worker free; rank: lower ones go first; onProgress
+   * @param options  lane; isSlow: may take more than a moment, and leaves one worker free; isLong: is
+   *                 stopped when outdated, too; rank: lower ones go first; onProgress
    * @returns {Promise<object>} the answer, with typed arrays in place of their descriptions
    */
   call(name, values, options = {}) {
@@ -156,7 +156,7 @@ export class Engine {
         return;
       }
       if (worker.call || !worker.isReady) continue;
-      const place = this.#waiting.findIndex((call) => !(call.isLong && worker.isSwift));
+      const place = this.#waiting.findIndex((call) => !((call.isSlow || call.isLong) && worker.isSwift));
       if (place < 0) continue;
       worker.call = this.#waiting.splice(place, 1)[0];
       worker.thread.postMessage(worker.call.message);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Depth error over light: a table as the command prints it, a map of each code, curves with bounds.
 
-import {byId, element, showProblem} from './dom.js';
+import {byId, drawSoon, element, showProblem} from './dom.js';
 import {Columns} from './codes.js';
 import {HeatMap} from './heat_map.js';
 import {LinePlot, paddedRange} from './plot.js';
@@ -42,7 +42,7 @@ export class ErrorsView {
       store.change((state) => { state.curve_ambient = Number(event.target.value); }));
     lab.listen((what) => {
       if (what === 'state') this.#arrange();
-      if (what === 'state' || what === 'evaluation' || what === 'code') this.#draw();
+      if (what === 'state' || what === 'evaluation') drawSoon(this, () => this.#draw());
     });
   }
 
@@ -90,7 +90,7 @@ export class ErrorsView {
         ...['linear', 'circular'].map((which) => cell(errorText(one[which].geometric_mean_m, one[which].geometric_mean_se_m))),
         cell(errorText(best.circular_mde_m, best.circular_se_m)), cell(light), cell(fixedText(100 * Math.max(...one.points.map((p) => p.outlier_rate)), 3)));
     };
-    const head = ['code', 'K', 'linear error (mm)', 'circular error (mm)', 'best (mm)', 'at signal, ambient (e/s)', 'most outliers (%)'];
+    const head = ['code', 'K', 'linear (mm)', 'circular (mm)', 'best circular (mm)', 'at signal, ambient (e/s)', 'outliers up to (%)'];
     byId('error-table').replaceChildren(element('table', {},
       element('caption', {}, element('span', {}, `Geometric mean over ${known[0].one.points.length} light levels; \u00b1 is one standard error. The camera is judged by the ${kind} error.`)),
       element('thead', {}, element('tr', {}, ...head.map((text) => element('th', {scope: 'col'}, text)))),

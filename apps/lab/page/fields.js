@@ -37,7 +37,8 @@ class Field {
     const id = `field-${field.key.replaceAll('.', '-')}`;
     this.problem = element('p', {class: 'problem', id: `${id}-problem`, role: 'alert', hidden: true});
     this.back = element('button', {type: 'button', class: 'back', hidden: true, 'aria-label': `Set ${nameOf(field)} back`, title: 'Set back', onclick: () => panel.reset(this.key)}, '\u21ba');
-    this.doc = element('p', {class: 'doc', id: `${id}-doc`}, field.doc ?? '');
+    const doc = (field.doc ?? '').split(' @see')[0];
+    this.doc = element('p', {class: 'doc', id: `${id}-doc`, title: doc}, doc);
     const described = `${id}-doc ${id}-problem`;
     this.inputs = this.#inputs(field, id, described);
     const label = field.type === 'boolean' ? element('span', {style: 'flex:1'}) : element('label', {for: id}, nameOf(field));

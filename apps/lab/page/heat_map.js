@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A map of values over two lists of levels: one rectangle a pair, its value in it.
 
-import {announce, drawn, element, onWidth} from './dom.js';
+import {announce, drawSoon, drawn, element, onWidth, widthOf} from './dom.js';
 import {cssColour, isDark, scaleGradient, sequentialColour} from './colours.js';
 import {rateText} from './numbers.js';
 import {ValueBox, axisOf, frameOf, innerOf} from './plot.js';
@@ -42,11 +42,11 @@ export class HeatMap {
     this.node.setAttribute('aria-label', `${spec.label}. Arrow keys read cells, Enter takes a cell's light for the scene.`);
     const ends = spec.range.map(spec.text);
     this.scale.replaceChildren(colourBar(ends[0], ends[1], sequentialColour, 'depth error'));
-    this.#draw();
+    drawSoon(this, () => this.#draw());
   }
 
   #draw() {
-    const spec = this.#spec, width = this.node.clientWidth;
+    const spec = this.#spec, width = widthOf(this.node);
     if (!spec || width < 20) return;
     const {columns, rows} = spec, height = Math.max(180, Math.min(300, 56 + 40 * rows.length)), inner = innerOf(width, height);
     const levels = (list) => ({range: [-0.5, list.length - 0.5], ticks: thinned(list)});

@@ -51,16 +51,19 @@ export class Lab {
   }
 
   #tell(what, i) {
+    if (what === 'code') performance.mark('tofsmith picture');  // how soon pictures come, for measurements
     for (const listener of this.#listeners) listener(what, i);
   }
 
   async #cameraOf(camera) {
-    const request = cameraRequest(camera), key = JSON.stringify(request);
-    if (!this.#answers.has(key)) {
-      if (this.#answers.size > 60) this.#answers.delete(this.#answers.keys().next().value);
-      this.#answers.set(key, await this.engine.call('camera', request));
-    }
-    return this.#answers.get(key);
+    const request = cameraRequest(camera), known = this.#answers.get(JSON.stringify(request));
+    return known ?? this.#remember(camera, await this.engine.call('camera', request));
+  }
+
+  #remember(camera, answer) {
+    if (this.#answers.size > 60) this.#answers.delete(this.#answers.keys().next().value);
+    this.#answers.set(JSON.stringify(cameraRequest(camera)), answer);
+    return answer;
   }
 
   async #update() {
@@ -90,8 +93,8 @@ export class Lab {
     }
     const source = JSON.stringify([camera, code]), lane = `code-${i}`, asked = {camera, code: askedCode(code)};
     const evaluate = (count, rank) => async () => {
-      const isLong = count > middleTrials;
-      const {document} = await this.engine.call('evaluate', {...asked, trials: count, seed}, {lane, isLong, rank});
+      const isLong = count > middleTrials, isSlow = count > quickTrials;
+      const {document} = await this.engine.call('evaluate', {...asked, trials: count, seed}, {lane, isSlow, isLong, rank});
       if (slot.key !== key && isLong) return;
       slot.evaluation = document;
       this.#tell('evaluation', i);
@@ -121,11 +124,11 @@ export class Lab {
       const answer = await this.engine.call('set', {camera: camera.toml, key, value});
       const change = answer.change ?? {key, value: value ?? null};
       const first = new Map(this.firstFields.map((field) => [field.key, field.value]));
-      const isFirst = answer.fields.every((field) => field.key !== change.key || same(field.value, first.get(field.key)));
-      this.store.change((state) => {
-        const kept = state.camera.changes.filter((old) => old.key !== change.key && !old.key.startsWith(change.key + '.'));
-        state.camera.changes = isFirst && first.has(change.key) ? kept : [...kept, change];
-      }, `set ${key}`);
+      const isFirst = answer.fields.every((one) => one.key !== change.key || same(one.value, first.get(one.key)));
+      const kept = this.state.camera.changes.filter((old) => old.key !== change.key && !old.key.startsWith(change.key + '.'));
+      const changes = isFirst && first.has(change.key) ? kept : [...kept, change];
+      this.#remember({...this.state.camera, changes}, answer);
+      this.store.change((state) => { state.camera.changes = changes; }, `set ${key}`);
       heard(null);
       await this.update();
     } catch (error) {

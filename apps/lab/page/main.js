@@ -17,6 +17,8 @@ import {linkOf, stateOf} from './link.js';
 import {shortText} from './numbers.js';
 import {startTheme} from './theme.js';
 
+const patienceSeconds = 60;
+
 function stop(text) {
   byId('bench').replaceChildren(element('p', {class: 'stop', role: 'alert'}, text));
   byId('bench').style.display = 'block';
@@ -111,7 +113,8 @@ async function begin() {
   const startWorker = await packedEngine();
   const cores = navigator.hardwareConcurrency || 2;
   const engine = new Engine(startWorker, Math.max(2, Math.min(4, cores)));
-  const about = await engine.call('about', {});
+  const about = await Promise.race([engine.call('about', {}), new Promise((_, reject) =>
+    setTimeout(() => reject(new Error('its engine does not answer')), 1000 * patienceSeconds))]);
   const store = new Store(state ?? firstState()), lab = new Lab(store, engine);
   startCamera(lab, about);
   new CodesView(lab, about);

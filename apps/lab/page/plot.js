@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines over axes, with legend and values under the pointer or the arrow keys.
 
-import {announce, drawn, element, onWidth} from './dom.js';
+import {announce, drawSoon, drawn, element, onWidth, widthOf} from './dom.js';
 import {linearTicks, logarithmicTicks, shortText} from './numbers.js';
 
 /** One axis: from values to pixels, and its ticks. */
@@ -129,12 +129,14 @@ export class LinePlot {
   show(spec) {
     this.#spec = spec;
     this.node.setAttribute('aria-label', `${spec.label}. Arrow keys read values.`);
-    this.legend.replaceChildren(...(spec.legend === false ? [] : [legendOf(spec.series)]));
-    this.#draw();
+    const names = JSON.stringify(spec.series.map((one) => [one.name, one.colour, one.dash]));
+    if (names !== this.names) this.legend.replaceChildren(legendOf(spec.series));
+    this.names = names;
+    drawSoon(this, () => this.#draw());
   }
 
   #draw() {
-    const spec = this.#spec, width = this.node.clientWidth;
+    const spec = this.#spec, width = widthOf(this.node);
     if (!spec || width < 20) return;
     const height = spec.height ?? 260, inner = innerOf(width, height);
     this.x = axisOf(spec.x, inner.x, Math.max(2, Math.floor(width / 90)));

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light and gate of every measurement over one period; edges of two-level ones can be moved.
 
-import {announce, drawn, element, onWidth} from './dom.js';
+import {announce, drawSoon, drawn, element, onWidth, widthOf} from './dom.js';
 
 const left = 30, right = 10, axis = 22;
+const reach = matchMedia('(pointer: coarse)').matches ? 15 : 9;  // pixels to either side of an edge
 const periods = [0, 0.25, 0.5, 0.75, 1];
 
 /** The parts of the period in which a two-level waveform is on: [rise0, fall0, ..] as [from, to] in [0, 1]. */
@@ -60,11 +61,11 @@ export class WaveformPlot {
   show(spec) {
     this.#spec = spec;
     this.node.setAttribute('aria-label', spec.label);
-    this.#draw();
+    drawSoon(this, () => this.#draw());
   }
 
   #draw() {
-    const spec = this.#spec, width = this.node.clientWidth;
+    const spec = this.#spec, width = widthOf(this.node);
     if (!spec || width < 20) return;
     const count = spec.light.shape[0], lane = laneHeight(count), gap = 8;
     const height = count * (2 * lane + gap) + axis, x = (place) => left + place * (width - left - right);
@@ -110,7 +111,7 @@ export class WaveformPlot {
         'aria-valuemin': 0, 'aria-valuemax': 1, 'aria-valuenow': place.toFixed(4), 'aria-valuetext': `at ${place.toFixed(4)} of the period`,
         'data-arm': arm, 'data-k': k, 'data-edge': edge, 'data-place': place, style: `color:${colour};stroke:${colour}`},
         drawn('title', {}, `${what} at ${place.toFixed(4)} of the period`),
-        drawn('rect', {class: 'reach', stroke: 'none', x: x(place) - 9, y: base - room - 2, width: 18, height: room + 4}),
+        drawn('rect', {class: 'reach', stroke: 'none', x: x(place) - reach, y: base - room - 2, width: 2 * reach, height: room + 4}),
         drawn('circle', {class: 'grip', cx: x(place), cy: base - room / 2, r: 3.6})));
     });
   }

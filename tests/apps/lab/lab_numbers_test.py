@@ -58,7 +58,9 @@ class Numbers(LabTest):
         found, expected = numbers_of(document["codes"]), numbers_of(theirs["codes"])
         self.assertEqual(found.keys(), expected.keys())
         for place, value in expected.items():
-            self.assertLessEqual(abs(found[place] - value), 1e-6 * abs(value) + 1e-15, place)
+            # Decoded in float; single light levels differ by the order in which it is added.
+            limit = 1e-5 if ".points" in place else 1e-6
+            self.assertLessEqual(abs(found[place] - value), limit * abs(value) + 1e-15, place)
         for cell, kind in zip(cells[1:3], ("linear", "circular")):
             mean, deviation = (1e3 * theirs["codes"][0][kind][f"geometric_mean_{what}"] for what in ("m", "se_m"))
             self.assertEqual(cell, f"{row_text(mean, 4)} \u00b1 {row_text(deviation, 2)}")
@@ -71,7 +73,7 @@ class Numbers(LabTest):
         return json.loads(subprocess.run(["sh", "-c", words], capture_output=True, text=True, check=True).stdout)
 
     def test_the_table_and_the_command_shown_give_what_the_command_gives(self):
-        self.compare("paper-10f0", [{"key": "light.peak_factor", "value": "6"}], "hamiltonian-k4")
+        self.compare("paper-10f0", [{"key": "exposure_s", "value": "0.2"}], "hamiltonian-k4")
 
     def test_cameras_of_the_trade_too(self):
         self.compare("kinect-v2", [], "multifrequency-2x3-10x3-15x3")

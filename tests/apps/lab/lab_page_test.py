@@ -305,6 +305,7 @@ class Readers(LabTest):
             const canvas = document.querySelector('[data-part=curve] canvas'), before = canvas.toDataURL();
             const heard = [press(document.querySelector('[data-part=correlation] .plot'), 'ArrowRight'), press(document.querySelector('[data-part=map] .plot'), 'ArrowRight'), press(document.querySelector('#error-curves .plot'), 'End')];
             press(canvas, 'ArrowLeft');
+            await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
             return [...heard, canvas.toDataURL() !== before];""")
         self.assertRegex(said[0], r" m, 1: ")
         self.assertIn("error", said[1])
