@@ -43,20 +43,21 @@ window.dropped = (...files) => {
 
 
 class LabTest(unittest.TestCase):
-    """One Chromium for all tests of a class; each begins with a fresh page and ends without errors."""
+    """Tests in one Chromium a window's size; each begins with a fresh page and ends without errors."""
 
     page = None
     width, height, dark = 1200, 900, False
+    drivers = {}
 
     @classmethod
     def setUpClass(cls):
-        cls.context = browser_test.browser(cls.width, cls.height, cls.dark)
-        cls.driver = cls.context.__enter__()
+        window = (cls.width, cls.height, cls.dark)
+        if window not in cls.drivers:
+            context = browser_test.browser(*window)
+            cls.drivers[window] = context.__enter__()
+            unittest.addModuleCleanup(context.__exit__, None, None, None)
+        cls.driver = cls.drivers[window]
         cls.driver.set_script_timeout(120)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.context.__exit__(None, None, None)
 
     def setUp(self):
         self.open()

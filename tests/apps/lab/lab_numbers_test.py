@@ -73,7 +73,7 @@ class Numbers(LabTest):
         return json.loads(subprocess.run(["sh", "-c", words], capture_output=True, text=True, check=True).stdout)
 
     def test_the_table_and_the_command_shown_give_what_the_command_gives(self):
-        self.compare("paper-10f0", [{"key": "exposure_s", "value": "0.2"}], "hamiltonian-k4")
+        self.compare("paper-10f0", [{"key": "exposure_s", "value": "0.25"}], "hamiltonian-k4")
 
     def test_cameras_of_the_trade_too(self):
         self.compare("kinect-v2", [], "multifrequency-2x3-10x3-15x3")

@@ -251,7 +251,8 @@ class Links(LabTest):
         for fragment, word in (("#0.abc", "version 0"), ("#99.abc", "version 99"), ("#nonsense", "not one"), ("#1.%00", "not one"), ("#1.AAAA", "damaged"),
                                (packed({}), "damaged"), (packed({**first, "codes": []}), "its codes"), (packed({**first, "seed": None}), "its trials or seed"),
                                (packed({**first, "camera": {"built_in": "paper-10f0", "changes": "x" * 3000000}}), "damaged")):
-            self.open(fragment)
+            self.open(fragment, settle=False)
+            self.wait("window.tofsmithLab && !document.getElementById('notice').hidden")
             self.assertIn(word, self.text("#notice"), fragment[:40])
             self.assertEqual(self.state(), first)
 
