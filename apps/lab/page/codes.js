@@ -5,7 +5,7 @@
 import {announce, byId, element, saveText, showProblem} from './dom.js';
 import {CurveSpace} from './curve_space.js';
 import {LinePlot, paddedRange} from './plot.js';
-import {rangeOf, shortText} from './numbers.js';
+import {rangeOf, shortText, thinned} from './numbers.js';
 import {seriesColour, seriesDash} from './colours.js';
 import {WaveformPlot} from './waveform_plot.js';
 import {askedCode, codeWord} from './lab.js';
@@ -30,27 +30,35 @@ export class Columns {
     if (wanted.length !== this.place.children.length) this.place.replaceChildren(...wanted);
   }
 
+  /** Shows a figure as one of before, if there is a problem. */
+  pale(i, problem) {
+    this.figures[i].root.classList.toggle('pale', Boolean(problem));
+  }
+
   /** Writes the caption of a figure. */
   title(i, name, note = '') {
     this.figures[i].caption.replaceChildren(element('span', {class: 'dot'}), element('span', {}, name), element('small', {}, note));
   }
 }
 
+const mostPoints = 2048;  // of a line in a picture
+
 const rowOf = ({values, shape}, k) => values.subarray(k * shape[1], (k + 1) * shape[1]);
 
 function correlationSpec(code) {
   const [count, samples] = code.correlation.shape;
-  const depth = Array.from({length: samples}, (_, n) => n / samples * code.range_m);
+  const depth = thinned(Array.from({length: samples}, (_, n) => n / samples * code.range_m), mostPoints);
   return {
     label: `Correlation functions of ${code.name} over depth`, height: 210,
     x: {title: 'depth (m)', range: [0, code.range_m], unit: 'm'},
     y: {title: 'correlation', range: paddedRange(rangeOf([code.correlation.values]))},
-    series: Array.from({length: count}, (_, k) => ({name: String(k + 1), x: depth, y: rowOf(code.correlation, k), colour: seriesColour(k), dash: seriesDash(k)})),
+    series: Array.from({length: count}, (_, k) => ({name: String(k + 1), x: depth, y: thinned(rowOf(code.correlation, k), mostPoints), colour: seriesColour(k), dash: seriesDash(k)})),
   };
 }
 
 function centred({values}) {
-  const points = Float64Array.from(values), count = points.length / 3;
+  const step = Math.ceil(values.length / 3 / mostPoints);
+  const points = Float64Array.from(values).filter((_, i) => Math.floor(i / 3) % step === 0), count = points.length / 3;
   for (let axis = 0; axis < 3; ++axis) {
     let mean = 0;
     for (let i = axis; i < points.length; i += 3) mean += points[i] / count;
@@ -77,8 +85,14 @@ export class CodesView {
       if (what === 'state') this.#arrange();
       if (what === 'code') this.#draw(i);
       if (what === 'code' || what === 'problem') this.#describe(i);
+      if (what === 'code' || what === 'problem') this.#mark(i);
       if (what === 'edge problem') announce(i);
     });
+  }
+
+  // What was computed before something went wrong stays, but pale.
+  #mark(i) {
+    for (const columns of [this.waveforms, this.correlation, this.curves]) columns.pale(i, this.lab.slots[i].problem);
   }
 
   #arrange() {

@@ -18,6 +18,8 @@ export class DesignView {
     this.bar = element('progress', {max: 1, value: 0, hidden: true, 'aria-label': 'Progress of the design'});
     this.text = element('span', {class: 'progress', id: 'design-text'});
     this.problem = element('p', {class: 'problem', role: 'alert', hidden: true});
+    this.explanation = element('div', {class: 'figures', id: 'design-explanation'});
+    byId('design-controls').after(this.explanation);
     byId('design-controls').append(element('label', {}, 'Effort', this.effort), this.start, this.cancel, this.bar, this.text, this.problem);
   }
 
@@ -34,6 +36,7 @@ export class DesignView {
     if (this.engine || !this.lab.camera) return;
     showProblem(this.problem, '');
     this.text.textContent = 'begins';
+    this.explanation.replaceChildren();
     this.bar.removeAttribute('value');
     this.engine = new Engine(this.startWorker, 1);
     this.#busy(true);
@@ -43,9 +46,10 @@ export class DesignView {
       const answer = await this.engine.call('design', asked, {onProgress: (progress) => this.#follow(progress)});
       const name = answer.name ?? JSON.parse(answer.file).name ?? 'designed';
       this.lab.addCode({name, file: answer.file});
-      const error = Number.isFinite(answer.error_m) ? `Depth error ${lengthText(answer.error_m)}. ` : '';
-      this.text.textContent = `${error}${answer.explanation ?? ''}`;
-      announce(`The design is ready: ${name}. ${error}`);
+      const error = Number.isFinite(answer.error_m) ? `depth error ${lengthText(answer.error_m)}` : '';
+      this.text.textContent = `${name}: ${error}`;
+      this.explanation.replaceChildren(...[answer.explanation ?? []].flat().map((text) => element('p', {}, text)));
+      announce(`The design is ready: ${name}, ${error}.`);
     } catch (error) {
       this.text.textContent = error instanceof Outdated ? 'cancelled; nothing is changed' : '';
       if (error instanceof Outdated) announce('The design is cancelled; nothing is changed.');

@@ -23,7 +23,7 @@ export function missingFeature() {
   if (!WebAssembly.validate(simdModule))
     return 'This browser has WebAssembly without SIMD, which the lab needs. Browsers since 2023 have it: Chromium 91, Firefox 89, Safari 16.4.';
   if (typeof DecompressionStream !== 'function' || typeof Worker !== 'function')
-    return 'This browser is too old for the lab: browsers since 2023 will do (Chromium 91, Firefox 113, Safari 16.4).';
+    return 'This browser is too old for the lab: Chromium 123, Firefox 120 and Safari 17.5, of 2024, will do.';
   return null;
 }
 

@@ -40,9 +40,10 @@ export class ErrorsView {
     seed.addEventListener('change', () => this.#setSeed(seed));
     byId('curve-ambient').addEventListener('change', (event) =>
       store.change((state) => { state.curve_ambient = Number(event.target.value); }));
-    lab.listen((what) => {
+    lab.listen((what, i) => {
       if (what === 'state') this.#arrange();
-      if (what === 'state' || what === 'evaluation') drawSoon(this, () => this.#draw());
+      if (what === 'code' || what === 'problem') this.maps.pale(i, lab.slots[i].problem);
+      if (what === 'state' || what === 'evaluation' || what === 'problem') drawSoon(this, () => this.#draw());
     });
   }
 
@@ -83,9 +84,9 @@ export class ErrorsView {
     const row = ({i, document, one}) => {
       const best = least(one.points, 'circular_mde_m');
       const light = `${rateText(best.signal_e_per_s)}, ${rateText(best.ambient_e_per_s)}`;
-      const cell = (text) => element('td', document.trials < trials ? {class: 'estimate'} : {}, text);
+      const {problem} = this.lab.slots[i], cell = (text) => element('td', problem || document.trials < trials ? {class: 'estimate'} : {}, text);
       return element('tr', {'data-code': i},
-        element('th', {scope: 'row'}, element('span', {class: 'dot', style: `display:inline-block;width:.6rem;height:.6rem;border-radius:50%;margin-right:.4rem;background:${seriesColour(i)}`}), one.name),
+        element('th', {scope: 'row'}, element('span', {class: 'dot', style: `display:inline-block;width:.6rem;height:.6rem;border-radius:50%;margin-right:.4rem;background:${seriesColour(i)}`}), problem ? `${one.name}, before the problem` : one.name),
         cell(String(one.measurements)),
         ...['linear', 'circular'].map((which) => cell(errorText(one[which].geometric_mean_m, one[which].geometric_mean_se_m))),
         cell(errorText(best.circular_mde_m, best.circular_se_m)), cell(light), cell(fixedText(100 * Math.max(...one.points.map((p) => p.outlier_rate)), 3)));

@@ -49,7 +49,7 @@ export class HeatMap {
     const spec = this.#spec, width = widthOf(this.node);
     if (!spec || width < 20) return;
     const {columns, rows} = spec, height = Math.max(180, Math.min(300, 56 + 40 * rows.length)), inner = innerOf(width, height);
-    const levels = (list) => ({range: [-0.5, list.length - 0.5], ticks: thinned(list)});
+    const levels = (list) => ({range: [-0.5, list.length - 0.5], ticks: levelTicks(list)});
     const x = axisOf(levels(columns), inner.x, 0), y = axisOf(levels(rows), inner.y, 0);
     const cells = drawn('g', {});
     const [w, h] = [x.at(1) - x.at(0), y.at(0) - y.at(1)];
@@ -93,7 +93,7 @@ export class HeatMap {
   }
 }
 
-function thinned(levels) {
+function levelTicks(levels) {
   const step = Math.ceil(levels.length / 8);
   return levels.map((level, value) => ({value, text: value % step === 0 ? rateText(level) : ''}));
 }

@@ -70,6 +70,12 @@ export function logarithmicTicks(low, high) {
   return few ? ticks : ticks.filter((_, i) => i % step === 0);
 }
 
+/** Every so many-th number of a row, so that no more are left than a picture can show. */
+export function thinned(values, most) {
+  const step = Math.ceil(values.length / most);
+  return step < 2 ? values : values.filter((_, i) => i % step === 0);
+}
+
 /** The least and the greatest finite value. */
 export function rangeOf(arrays, positive = false) {
   let low = Infinity, high = -Infinity;

@@ -3,6 +3,7 @@
 // Light and gate of every measurement over one period; edges of two-level ones can be moved.
 
 import {announce, drawSoon, drawn, element, onWidth, widthOf} from './dom.js';
+import {rangeOf, thinned} from './numbers.js';
 
 const left = 30, right = 10, axis = 22;
 const reach = matchMedia('(pointer: coarse)').matches ? 15 : 9;  // pixels to either side of an edge
@@ -26,7 +27,8 @@ function stepsOf(edges, x, base, top) {
   return path.endsWith(`V${base}`) || path.startsWith('M') && !path.includes('V') ? `${path}H${x(1)}` : path;
 }
 
-function lineOf(values, x, y) {
+function lineOf(all, x, y) {
+  const values = thinned(all, 2048);
   const at = (place, value) => `${x(place).toFixed(1)},${y(value).toFixed(1)}`, count = values.length;
   const edge = (values[0] + values[count - 1]) / 2;
   return `M${[at(0, edge), ...Array.from(values, (value, n) => at((n + 0.5) / count, value)), at(1, edge)].join('L')}`;
@@ -100,7 +102,7 @@ export class WaveformPlot {
     const on = onParts(edges).reduce((sum, [from, to]) => sum + to - from, 0);
     const mean = values.reduce((sum, value) => sum + value, 0) / samples;
     const level = on > 0 ? mean / on : 0;
-    const top = Math.max(level, arm === 'gate' ? 1 : 0, ...values, ...seen) || 1;
+    const top = Math.max(level, arm === 'gate' ? 1 : 0, rangeOf([values, seen])[1]) || 1;
     const colour = `var(--s${arm === 'light' ? 0 : 1})`, y = (value) => base - room * value / top, {x} = this.scale;
     picture.append(drawn('line', {class: 'lane-base', x1: x(0), x2: x(1), y1: base, y2: base}),
       drawn('path', {d: areaOf(seen, x, base, y), style: `fill:${colour}`, opacity: edges.length ? 0.22 : 0.3}),
