@@ -45,11 +45,13 @@ void list(const Session& session) {
 std::string strip(const Waveform& waveform) {
   constexpr int cells = 60;
   const Eigen::VectorXd values = waveform.cell_averages(cells);
-  const double peak = std::max(values.maxCoeff(), 1e-12);
+  const double least = std::min(values.minCoeff(), 0.0);  // weights of rows have any sign
+  const double span = std::max(values.maxCoeff() - least, 1e-12);
   constexpr std::string_view shades = " .:-=+*#";
   std::string text;
   for (int n = 0; n < cells; ++n)
-    text += shades[static_cast<std::size_t>(std::min(7.0, std::floor(7.999 * values[n] / peak)))];
+    text += shades[static_cast<std::size_t>(
+        std::min(7.0, std::floor(7.999 * (values[n] - least) / span)))];
   return text;
 }
 

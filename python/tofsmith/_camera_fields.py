@@ -96,7 +96,8 @@ class Sensor:
     drain : bool
         Charge may be thrown away; else the taps add to 1.
     readout : str
-        separate, or difference of two taps.
+        separate; difference of two taps; or rows: weighted sums of the light in N time bins of
+        one exposure.
     generator : Generator, optional
         Plays the demodulation; None: any waveform, exactly.
     full_well_e, adc_bits, gain_e_per_dn, black_level_dn, shortest_pulse_s : optional

@@ -45,6 +45,20 @@ void validate_adc(const Sensor& sensor) {
   }
 }
 
+/// Rows are sums of counts: nothing of what taps can do.
+void validate_rows(const Sensor& sensor) {
+  const auto require_none = [](bool none, const char* field, const char* value) {
+    require(none, field, value, "does not go with sensor.readout = \"rows\"");
+  };
+  require(sensor.taps == 1, "sensor.taps", sensor.taps,
+          "must be 1 with sensor.readout = \"rows\": a code has as many rows as it has");
+  require(sensor.tap_mismatch == 0.0, "sensor.tap_mismatch", sensor.tap_mismatch,
+          "must be 0 with sensor.readout = \"rows\"");
+  require_none(!sensor.generator, "sensor.generator", "a generator");
+  require_none(!sensor.full_well_e, "sensor.full_well_e", "a limit");
+  require_none(!sensor.adc_bits, "sensor.adc_bits", "a converter");
+}
+
 void validate_sensor(const Sensor& sensor) {
   require(sensor.taps >= 1 && sensor.taps <= 16, "sensor.taps", sensor.taps, "must be in [1, 16]");
   sensor.impulse_response.validate("sensor.impulse_response");
@@ -66,8 +80,9 @@ void validate_sensor(const Sensor& sensor) {
   if (sensor.frame_period_s) require_positive(*sensor.frame_period_s, "sensor.frame_period_s");
   require(sensor.drain || sensor.taps >= 2, "sensor.drain", "false",
           "needs sensor.taps >= 2: one tap that is always open measures nothing");
-  require(sensor.readout == Readout::separate || sensor.taps == 2, "sensor.readout", "difference",
+  require(sensor.readout != Readout::difference || sensor.taps == 2, "sensor.readout", "difference",
           "needs sensor.taps = 2");
+  if (sensor.readout == Readout::rows) validate_rows(sensor);
 }
 
 void validate_operating(const OperatingRange& range, double range_m) {
@@ -150,7 +165,9 @@ bool Camera::band_limited() const {
 }
 
 Eigen::VectorXcd Camera::transfer(int highest) const {
-  return sensor_transfer(highest).cwiseProduct(light_transfer(highest).conjugate());
+  Eigen::VectorXcd of_sensor = sensor_transfer(highest);
+  if (sensor.readout == Readout::rows) of_sensor = of_sensor.conjugate().eval();
+  return of_sensor.cwiseProduct(light_transfer(highest).conjugate());
 }
 
 Eigen::VectorXcd Camera::light_transfer(int highest) const {
@@ -224,6 +241,13 @@ void Camera::validate() const {
   validate_operating(operating, range_m());
   if (playback) playback->validate(sensor.taps);
   if (temperature) temperature->validate();
+  if (sensor.readout != Readout::rows) return;
+  constexpr int max_time_bins = 4096;
+  require(samples <= max_time_bins, "samples", samples,
+          fmt::format("must be <= {} with sensor.readout = \"rows\"", max_time_bins));
+  require(!playback || !(playback->inverted || playback->reversed), "playback",
+          playback && playback->inverted ? "inverted" : "reversed",
+          "does not go with sensor.readout = \"rows\"");
 }
 
 namespace {
@@ -242,7 +266,15 @@ std::optional<BrokenRule> unfilled_taps(const CodeSet& code, const std::string& 
 
 std::optional<BrokenRule> what_does_not_fit(const CodeSet& code, const Camera& camera) {
   const std::string what = "code " + code.name();
-  if (code.taps() != camera.sensor.taps)
+  const bool is_of_rows = camera.sensor.readout == Readout::rows;
+  if (code.is_rows() && !is_of_rows)
+    return broken(what + " receiver", "rows of one exposure",
+                  "needs a camera with sensor.readout = \"rows\"");
+  if (!code.is_rows() && is_of_rows)
+    return broken(what + " receiver", "taps of exposures",
+                  "is not for a camera with sensor.readout = \"rows\", which needs rows of one "
+                  "exposure");
+  if (!is_of_rows && code.taps() != camera.sensor.taps)
     return broken(what + " taps", code.taps(),
                   fmt::format("must equal the camera's sensor.taps = {}", camera.sensor.taps));
   if (code.samples() != camera.samples)
@@ -282,6 +314,13 @@ FamilyOptions family_options(const Camera& camera) {
   return {.samples = camera.samples, .peak_factor = camera.light.peak_factor};
 }
 
+/// Rows where the camera reads rows, and only there.
+std::optional<std::string> why_other_receiver(const CodeSet& code, const Camera& camera) {
+  if (camera.sensor.readout == Readout::rows) return why_no_rows(code);
+  if (!code.is_rows()) return std::nullopt;
+  return what_does_not_fit(code, camera)->text();
+}
+
 std::optional<BrokenRule> taps_beyond_families(const Camera& camera) {
   if (camera.sensor.taps <= 2) return std::nullopt;
   return broken("sensor.taps", camera.sensor.taps,
@@ -292,12 +331,16 @@ std::optional<BrokenRule> taps_beyond_families(const Camera& camera) {
 
 std::optional<std::string> why_no_family(std::string_view name, const Camera& camera) {
   if (auto none = why_no_family(name, family_options(camera))) return none;
+  if (auto other = why_other_receiver(make_family(name, family_options(camera)), camera))
+    return other;
   return text_of(taps_beyond_families(camera));
 }
 
 CodeSet build_family(std::string_view name, const Camera& camera) {
   CodeSet code = make_family(name, family_options(camera));
   require(taps_beyond_families(camera));
+  if (camera.sensor.readout == Readout::rows) code = rows_of(code);
+  if (code.is_rows()) require_fits(code, camera);
   if (camera.sensor.taps == 2) code = code.with_two_buckets();
   code.provenance.camera = camera.name;
   return code;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "camera/shared/actual_code.hpp"
+#include "core/shared/periodic.hpp"
 
 namespace tofsmith {
 
@@ -41,7 +42,7 @@ Eigen::VectorXd sensitivities(const CodeSet& code, const Sensor& sensor) {
 int harmonics_kept(int samples) { return std::max(2048, 8 * samples); }
 
 Eigen::MatrixXd readout_matrix(int tap_values, Readout readout) {
-  if (readout == Readout::separate) return Eigen::MatrixXd::Identity(tap_values, tap_values);
+  if (readout != Readout::difference) return Eigen::MatrixXd::Identity(tap_values, tap_values);
   Eigen::MatrixXd differences = Eigen::MatrixXd::Zero(tap_values / 2, tap_values);
   for (Eigen::Index i = 0; i < differences.rows(); ++i) {
     differences(i, 2 * i) = 1.0;
@@ -60,18 +61,18 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
       taps_(code.taps()),
       contrast_(camera.sensor.modulation_contrast),
       sensitivity_(sensitivities(code, camera.sensor)),
-      dark_current_e_per_s_(camera.sensor.dark_current_e_per_s),
-      tap_constant_variance_e2_(constant_variance_e2_of(camera.sensor)) {
+      tap_dark_e_per_s_(camera.sensor.dark_current_e_per_s),
+      readout_variance_e2_(constant_variance_e2_of(camera.sensor)) {
   camera.validate();
   require_fits(code, camera);
   const int tap_values = code.measurements();
-  readout_ = readout_matrix(tap_values, camera.sensor.readout);
 
   const Eigen::VectorXcd transfer =
       camera.band_limited() ? camera.transfer(harmonics_kept(code.samples())) : Eigen::VectorXcd();
   const ActualCode actual = actual_code(code, camera);
   const double offset_m = (camera.playback ? camera.playback->offset_m : 0.0) +
                           (camera.temperature ? camera.temperature->offset_m() : 0.0);
+  const double moved = -offset_m / camera.range_m();
   const bool reversed = camera.playback && camera.playback->reversed;
   if (camera.temperature) signal_gain_ = camera.temperature->signal_gain();
   Eigen::RowVectorXd gain(tap_values);
@@ -81,11 +82,15 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
     const Waveform& m = actual.modulation[static_cast<std::size_t>(code.exposure_of(i))];
     functions_.push_back(camera.band_limited() ? CorrelationFunction(d, m, transfer)
                                                : CorrelationFunction(d, m));
-    if (offset_m != 0.0 || reversed)
-      functions_.back() = functions_.back().moved(-offset_m / camera.range_m(), reversed);
+    if (offset_m != 0.0 || reversed) functions_.back() = functions_.back().moved(moved, reversed);
     gain[i] = d.mean();
     tap_exposure_s_[i] = camera.exposure_s.of(code.exposure_of(i), code.exposures());
   }
+  if (code.is_rows()) {
+    read_rows(code, actual.modulation.front(), transfer, moved);
+    return;
+  }
+  readout_ = readout_matrix(tap_values, camera.sensor.readout);
   mix_taps(gain, taps_, contrast_);
   tap_ambient_gain_ = gain.transpose().cwiseProduct(sensitivity_);
   ambient_gain_ = readout_ * tap_ambient_gain_;
@@ -94,7 +99,29 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
     exposure_s_[i] = tap_exposure_s_[i * tap_values / measurements()];
 }
 
+/// The taps become time bins, which share the light of the exposure.
+void ForwardModel::read_rows(const CodeSet& code, const Waveform& light,
+                             const Eigen::VectorXcd& transfer, double moved) {
+  const double share = 1.0 / samples_;
+  const Waveform bin = Waveform::binary({{0.0, share}});
+  time_bin_ = transfer.size() > 0 ? CorrelationFunction(bin, light, transfer)
+                                  : CorrelationFunction(bin, light);
+  if (moved != 0.0) time_bin_ = time_bin_->moved(moved, false);
+  readout_ = code.demodulation_samples().transpose();
+  tap_dark_e_per_s_ *= share;
+  tap_ambient_gain_ = Eigen::VectorXd::Constant(samples_, share);
+  ambient_gain_ = readout_ * tap_ambient_gain_;
+  const double exposure_s = tap_exposure_s_[0];
+  tap_exposure_s_ = Eigen::VectorXd::Constant(samples_, exposure_s);
+  exposure_s_ = Eigen::VectorXd::Constant(measurements(), exposure_s);
+}
+
 Eigen::VectorXd ForwardModel::tap_correlation(double depth_bin) const {
+  if (time_bin_) {
+    Eigen::VectorXd light(samples_);
+    for (int n = 0; n < samples_; ++n) light[n] = (*time_bin_)((depth_bin - n) / samples_);
+    return signal_gain_ * light;
+  }
   Eigen::RowVectorXd values(tap_values());
   for (int i = 0; i < tap_values(); ++i)
     values[i] = functions_[static_cast<std::size_t>(i)](depth_bin / samples_);
@@ -103,10 +130,31 @@ Eigen::VectorXd ForwardModel::tap_correlation(double depth_bin) const {
 }
 
 Eigen::VectorXd ForwardModel::correlation(double depth_bin) const {
-  return readout_ * tap_correlation(depth_bin);
+  if (!time_bin_) return readout_ * tap_correlation(depth_bin);
+  Eigen::VectorXd values(measurements());
+  for (int i = 0; i < measurements(); ++i)
+    values[i] = signal_gain_ * functions_[static_cast<std::size_t>(i)](depth_bin / samples_);
+  return values;
+}
+
+Eigen::VectorXd ForwardModel::time_bin_table(int points) const {
+  require(has_rows(), "sensor.readout", "exposures", "must be \"rows\" for light in time bins");
+  return signal_gain_ * time_bin_->table(points);
 }
 
 Eigen::MatrixXd ForwardModel::tap_correlation_table(int points) const {
+  if (time_bin_) {
+    Eigen::MatrixXd table(points, samples_);
+    if (points % samples_ == 0) {
+      const Eigen::VectorXd bin = time_bin_table(points);
+      const int step = points / samples_;
+      for (int n = 0; n < samples_; ++n) table.col(n) = circular_shift(bin, n * step);
+      return table;
+    }
+    for (int j = 0; j < points; ++j)
+      table.row(j) = tap_correlation(static_cast<double>(j) * samples_ / points);
+    return table;
+  }
   Eigen::MatrixXd table(points, tap_values());
   for (int i = 0; i < tap_values(); ++i)
     table.col(i) = functions_[static_cast<std::size_t>(i)].table(points);
@@ -115,20 +163,25 @@ Eigen::MatrixXd ForwardModel::tap_correlation_table(int points) const {
 }
 
 Eigen::MatrixXd ForwardModel::correlation_table(int points) const {
-  return tap_correlation_table(points) * readout_.transpose();
+  if (!time_bin_) return tap_correlation_table(points) * readout_.transpose();
+  Eigen::MatrixXd table(points, measurements());
+  for (int i = 0; i < measurements(); ++i)
+    table.col(i) = signal_gain_ * functions_[static_cast<std::size_t>(i)].table(points);
+  return table;
 }
 
 Eigen::VectorXd ForwardModel::dark_electrons() const {
-  return readout_ * (dark_current_e_per_s_ * tap_exposure_s_);
+  return readout_ * (tap_dark_e_per_s_ * tap_exposure_s_);
 }
 
 Eigen::VectorXd ForwardModel::constant_variance_e2() const {
-  return tap_constant_variance_e2_ * readout_.cwiseAbs().rowwise().sum();
+  if (time_bin_) return Eigen::VectorXd::Constant(measurements(), readout_variance_e2_);
+  return readout_variance_e2_ * readout_.cwiseAbs2().rowwise().sum();
 }
 
 Eigen::VectorXd ForwardModel::expected_tap_electrons(std::span<const Return> returns,
                                                      double ambient_e_per_s) const {
-  Eigen::VectorXd rate = (ambient_e_per_s * tap_ambient_gain_).array() + dark_current_e_per_s_;
+  Eigen::VectorXd rate = (ambient_e_per_s * tap_ambient_gain_).array() + tap_dark_e_per_s_;
   for (const Return& r : returns) rate += r.signal_e_per_s * tap_correlation(r.depth_bin);
   return tap_exposure_s_.cwiseProduct(rate);
 }
@@ -140,8 +193,58 @@ Eigen::VectorXd ForwardModel::expected_electrons(std::span<const Return> returns
 
 Eigen::VectorXd ForwardModel::variance_e2(std::span<const Return> returns,
                                           double ambient_e_per_s) const {
-  return readout_.cwiseAbs() * expected_tap_electrons(returns, ambient_e_per_s) +
+  return readout_.cwiseAbs2() * expected_tap_electrons(returns, ambient_e_per_s) +
          constant_variance_e2();
+}
+
+Eigen::MatrixXd ForwardModel::covariance_e2(std::span<const Return> returns,
+                                            double ambient_e_per_s) const {
+  Eigen::MatrixXd covariance = readout_ *
+                               expected_tap_electrons(returns, ambient_e_per_s).asDiagonal() *
+                               readout_.transpose();
+  covariance.diagonal() += constant_variance_e2();
+  return covariance;
+}
+
+Eigen::MatrixXd RowCovariance::at(Eigen::Index row, double signal_e_per_s,
+                                  double ambient_e_per_s) const {
+  Eigen::Index measurements = 0;
+  while (pairs_of(static_cast<int>(measurements)) < ambient.size()) ++measurements;
+  Eigen::MatrixXd covariance(measurements, measurements);
+  for (Eigen::Index i = 0, pair = 0; i < measurements; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j, ++pair)
+      covariance(i, j) = covariance(j, i) =
+          signal_e_per_s * signal(row, pair) + ambient_e_per_s * ambient[pair] + floor[pair];
+  return covariance;
+}
+
+RowCovariance row_covariance(const ForwardModel& model, int points) {
+  const int samples = model.samples(), step = points / samples;
+  require(points > 0 && points % samples == 0, "points", points,
+          "must be a multiple of the samples");
+  // Light in time bin 0 at depths that are a whole number of bins and the same part of one.
+  const Eigen::VectorXd bin = model.tap_exposure_s()[0] * model.time_bin_table(points);
+  Eigen::MatrixXd phases(samples, step);
+  for (int j = 0; j < points; ++j) phases(j / step, j % step) = bin[j];
+
+  const Eigen::MatrixXd& rows = model.readout();
+  const Eigen::VectorXd dark_e = model.expected_tap_electrons({}, 0.0);
+  const Eigen::VectorXd ambient_e = model.expected_tap_electrons({}, 1.0) - dark_e;
+  const Eigen::VectorXd constant_e2 = model.constant_variance_e2();
+  const int pairs = pairs_of(model.measurements());
+  RowCovariance covariance{Eigen::MatrixXd(points, pairs), Eigen::VectorXd(pairs),
+                           Eigen::VectorXd(pairs)};
+  for (Eigen::Index i = 0, pair = 0; i < rows.rows(); ++i)
+    for (Eigen::Index j = 0; j <= i; ++j, ++pair) {
+      const Eigen::VectorXd product = rows.row(i).cwiseProduct(rows.row(j)).transpose();
+      for (int phase = 0; phase < step; ++phase) {
+        const Eigen::VectorXd of_phase = circular_convolution(product, phases.col(phase));
+        for (int n = 0; n < samples; ++n) covariance.signal(n * step + phase, pair) = of_phase[n];
+      }
+      covariance.ambient[pair] = product.dot(ambient_e);
+      covariance.floor[pair] = product.dot(dark_e) + (i == j ? constant_e2[i] : 0.0);
+    }
+  return covariance;
 }
 
 Eigen::VectorXd unknown_ambient_gain(const ForwardModel& model, const Camera& camera) {
@@ -152,7 +255,7 @@ Eigen::VectorXd unknown_ambient_gain(const ForwardModel& model, const Camera& ca
   const Eigen::VectorXd light_e = max_e_per_s * model.exposure_s();
   const Eigen::ArrayXd leak_e = light_e.cwiseProduct(model.ambient_gain()).array().abs();
   const Eigen::ArrayXd variance_e2 = model.variance_e2({}, max_e_per_s).array();
-  const bool cancels = camera.sensor.readout == Readout::difference && !ambient.empty() &&
+  const bool cancels = camera.sensor.readout != Readout::separate && !ambient.empty() &&
                        (leak_e <= share_of_noise * variance_e2.sqrt()).all();
   if (cancels) return Eigen::VectorXd::Zero(model.measurements());
   return model.ambient_gain();

@@ -67,6 +67,38 @@ CodeSet CodeSet::create(std::string name, int samples, int taps, std::vector<Wav
   return code;
 }
 
+CodeSet CodeSet::create_rows(std::string name, Waveform light, const Eigen::MatrixXd& rows) {
+  const Eigen::Index samples = rows.rows();
+  require(samples >= 2, "time bins of the rows", samples, "must be >= 2");
+  require(rows.cols() >= 2 && rows.cols() <= max_exposure_rows, "number of rows", rows.cols(),
+          fmt::format("must be in [2, {}]", max_exposure_rows));
+  require(light.is_binary() || light.samples().size() == samples, "light length",
+          light.samples().size(), fmt::format("must equal the time bins of the rows, {}", samples));
+  check_modulation(light, 0);
+  require(light.mean() > 0.0, "light mean", light.mean(), "must be > 0");
+  CodeSet code;
+  for (Eigen::Index k = 0; k < rows.cols(); ++k) {
+    require(!rows.col(k).isZero(0.0), fmt::format("row {}", k), "all zero",
+            "must weigh some time bin");
+    code.demodulation_.push_back(Waveform::sampled(rows.col(k)));
+  }
+  code.name_ = std::move(name);
+  code.samples_ = static_cast<int>(samples);
+  code.taps_ = static_cast<int>(rows.cols());
+  code.is_rows_ = true;
+  code.modulation_ = {std::move(light)};
+  return code;
+}
+
+CodeSet CodeSet::create_rows(std::string name, const Eigen::VectorXd& light, Eigen::MatrixXd rows) {
+  require(light.size() > 0 && light.allFinite(), "light", "empty, NaN or infinite",
+          "must hold finite samples");
+  require(light.minCoeff() >= 0.0, "light minimum", light.minCoeff(), "must not be negative");
+  require(light.mean() > 0.0, "light mean", light.mean(), "must be > 0");
+  if (rows.rows() != light.size() && rows.cols() == light.size()) rows.transposeInPlace();
+  return create_rows(std::move(name), Waveform::sampled(light / light.mean()), rows);
+}
+
 double CodeSet::peak() const {
   double peak = 0.0;
   for (const Waveform& m : modulation_) peak = std::max(peak, m.peak());

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 
+#include "code/row_families.hpp"
 #include "code/shared/family_rules.hpp"
 #include "code/shared/hamiltonian.hpp"
 #include "code/shared/ramp.hpp"
@@ -80,6 +81,10 @@ std::optional<Member> member_named(std::string_view name) {
     return numbered(square_misfit, square_code, *k);
   if (const auto k = number_after(name, "hamiltonian-k"))
     return numbered(hamiltonian_misfit, hamiltonian_code, *k);
+  if (const auto k = number_after(name, "fourier-k"))
+    return numbered(fourier_rows_misfit, fourier_rows, *k);
+  if (const auto k = number_after(name, "histogram-k"))
+    return numbered(histogram_rows_misfit, histogram_rows, *k);
   if (const auto k = number_after(name, "gray-k")) return numbered(gray_misfit, gray_code, *k);
   for (const int k : {4, 5}) {
     const std::string pulsed = fmt::format("pulsed-multifrequency-k{}", k);
@@ -181,6 +186,8 @@ std::vector<FamilyDescription> list_families() {
       {"gray-kK", "gray-k4", "binary-reflected Gray code of 2^K cells, K = 3 .. 10"},
       {"single-ramp-k3", "single-ramp-k3", "rising ramp, open gate, background"},
       {"double-ramp-k3", "double-ramp-k3", "rising ramp, falling ramp, background"},
+      {"fourier-kK", "fourier-k8", "rows of one exposure: cosines and sines at f0, 2 f0, .."},
+      {"histogram-kK", "histogram-k8", "rows of one exposure: K time gates, a coarse histogram"},
   };
 }
 

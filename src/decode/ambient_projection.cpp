@@ -19,18 +19,25 @@ AmbientProjection::AmbientProjection(const DecodingTable& table) {
   gated = table.correlation * table.exposure_s.asDiagonal();
 
   Eigen::MatrixXd projected = gated;
+  Eigen::VectorXd direction = ambient;
+  if (table.has_rows()) {
+    projected *= table.whitening.transpose();
+    direction = table.whitening * ambient;
+  }
+  const double whole = projected.norm();
   if (!ambient.isZero(0.0)) {
-    const Eigen::VectorXd direction = ambient.normalized();
+    direction.normalize();
     projected -= (projected * direction) * direction.transpose();
   }
 
   const ThinSvd svd = thin_svd(projected);
-  const double whole = gated.norm();
   Eigen::Index kept = 0;
   while (kept < svd.values.size() && svd.values[kept] > no_dimension * whole) ++kept;
-  basis = svd.v.leftCols(kept);
+  noise_basis = svd.v.leftCols(kept);
+  basis = noise_basis;
+  if (table.has_rows()) basis = table.whitening.transpose() * noise_basis;
 
-  curve = projected * basis;
+  curve = projected * noise_basis;
   const double largest = curve.rows() > 0 && kept > 0 ? curve.rowwise().norm().maxCoeff() : 0.0;
   for (Eigen::Index n = 0; n < curve.rows(); ++n)
     if (curve.row(n).norm() <= no_contrast * largest) curve.row(n).setZero();

@@ -27,6 +27,10 @@ struct AmbientProjection {
   RowMajorMatrix gated;     ///< x = T o chi (N, K)
   Eigen::MatrixXd basis;    ///< V (K, rank): orthonormal columns that span the rows of P x
   RowMajorMatrix curve;     ///< p = V^T P x (N, rank); exactly 0 where there is no contrast
+  /// V itself where the noise of electrons is independent. Of rows the plane is that of whitened
+  /// electrons W y', which have the noise of the table: P takes off W a, noise_basis is V, and
+  /// basis W^T V, so that q = basis^T y' everywhere.
+  Eigen::MatrixXd noise_basis;
 };
 
 }  // namespace tofsmith

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/decode/decoding_table.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -80,12 +81,72 @@ void DecodingTable::validate() const {
   require_list(gain_e_per_raw, "gain_e_per_raw", 0.0, *this);
   require(gain_e_per_raw.minCoeff() > 0.0, "gain_e_per_raw", gain_e_per_raw.minCoeff(),
           "must be > 0");
+  if (has_rows()) {
+    require(whitening.rows() == correlation.cols() && whitening.cols() == correlation.cols(),
+            "whitening", shape_of(whitening), "must be measurements x measurements");
+    require(whitening.allFinite(), "whitening", "NaN or infinite", "must be finite");
+  }
   if (saturation_level)
     require(!std::isnan(*saturation_level), "saturation_level", *saturation_level,
             "must be a number");
   require(std::isfinite(range_m) && range_m > 0.0, "range_m", range_m, "must be finite and > 0");
   require(correlation_not_decodable(*this));
 }
+
+namespace {
+
+/// What makes noise of this covariance white; 0 in directions in which there is none.
+Eigen::MatrixXd whitening_of(const Eigen::MatrixXd& covariance) {
+  constexpr double rounding = 1e-12;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(covariance);
+  const double least = rounding * parts.eigenvalues().maxCoeff();
+  const Eigen::VectorXd weight = (parts.eigenvalues().array() > least)
+                                     .select(parts.eigenvalues().array().max(least).rsqrt(), 0.0);
+  return weight.asDiagonal() * parts.eigenvectors().transpose();
+}
+
+/// The same packed pairs of a covariance on both sides of which `mix` is multiplied.
+template <typename Row>
+void mix_pairs(const Eigen::MatrixXd& mix, Row&& packed) {
+  const RowCovariance one{packed, Eigen::VectorXd::Zero(packed.size()),
+                          Eigen::VectorXd::Zero(packed.size())};
+  const Eigen::MatrixXd mixed = mix * one.at(0, 1.0, 0.0) * mix.transpose();
+  for (Eigen::Index i = 0, pair = 0; i < mixed.rows(); ++i)
+    for (Eigen::Index j = 0; j <= i; ++j, ++pair) packed[pair] = mixed(i, j);
+}
+
+/// The noise of rows: variances and covariance of what is white at the nominal light.
+void whiten_rows(const ForwardModel& model, const Camera& camera, DecodingTable& table) {
+  RowCovariance noise = row_covariance(model, model.samples());
+  const OperatingPoint nominal = camera.operating.middle();
+  const RowCovariance mean{noise.signal.colwise().mean(), noise.ambient, noise.floor};
+  table.whitening = whitening_of(mean.at(0, nominal.signal_e_per_s, nominal.ambient_e_per_s));
+  for (Eigen::Index n = 0; n < noise.signal.rows(); ++n)
+    mix_pairs(table.whitening, noise.signal.row(n));
+  Eigen::RowVectorXd ambient = noise.ambient, floor = noise.floor;
+  mix_pairs(table.whitening, ambient);
+  mix_pairs(table.whitening, floor);
+  noise.ambient = ambient, noise.floor = floor;
+  // Of ambient light that cancels nothing is seen but its noise: the nominal one is taken for it.
+  if (table.ambient_gain.isZero(0.0)) {
+    noise.floor += nominal.ambient_e_per_s * noise.ambient;
+    noise.ambient.setZero();
+  }
+
+  const int count = model.measurements();
+  table.shot_correlation.resize(model.samples(), count);
+  table.shot_ambient_gain.resize(count);
+  table.shot_dark_electrons = Eigen::VectorXd::Zero(count);
+  for (int k = 0; k < count; ++k) {
+    const int own = pairs_of(k + 1) - 1;
+    table.shot_correlation.col(k) = noise.signal.col(own) / table.exposure_s[k];
+    table.shot_ambient_gain[k] = noise.ambient[own] / table.exposure_s[k];
+    table.constant_variance_e2[k] = noise.floor[own];
+  }
+  table.covariance = std::move(noise);
+}
+
+}  // namespace
 
 DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camera) {
   require(model.samples() == camera.samples, "samples of the code", model.samples(),
@@ -98,6 +159,7 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
   table.constant_variance_e2 = model.constant_variance_e2();
   table.range_m = camera.range_m();
 
+  if (model.has_rows()) whiten_rows(model, camera, table);
   const Sensor& sensor = camera.sensor;
   const double gain_e_per_raw = sensor.gain_e_per_dn.value_or(1.0);
   table.gain_e_per_raw = Eigen::VectorXd::Constant(table.measurements(), gain_e_per_raw);
@@ -126,6 +188,24 @@ DecodingTable make_decoding_table(const Eigen::MatrixXd& correlation, double ran
   table.gain_e_per_raw = Eigen::VectorXd::Ones(measurements);
   table.range_m = range_m;
   return table;
+}
+
+DecodingTable whitened(const DecodingTable& table) {
+  if (!table.has_rows()) return table;
+  DecodingTable white = table;
+  white.whitening.resize(0, 0);
+  white.correlation = table.correlation * table.whitening.transpose();
+  white.ambient_gain = table.whitening * table.ambient_gain;
+  white.dark_electrons.setZero();
+  white.black_level.setZero();
+  white.gain_e_per_raw.setOnes();
+  white.saturation_level.reset();
+  return white;
+}
+
+void require_exposures(const DecodingTable& table, std::string_view what) {
+  require(!table.has_rows(), "sensor.readout", "rows",
+          std::string(what) + " takes independent measurements; rows are decoded by zncc or ml");
 }
 
 std::vector<AmbiguousDepths> ambiguous_depths(const DecodingTable& table) {

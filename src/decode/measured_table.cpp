@@ -116,6 +116,8 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   measured.validate();
   const Sensor& sensor = camera.sensor;
   const int columns = measured.columns();
+  require(sensor.readout != Readout::rows, "sensor.readout", "rows",
+          "must be separate or difference: what a measured table says of noise is that of taps");
   const bool differs = sensor.readout == Readout::difference;
   require(!measured.differences || differs, "readout", "separate",
           "must be difference: the measured table is one of differences of taps");

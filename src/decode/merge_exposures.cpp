@@ -126,6 +126,7 @@ void check_exposures(std::span<const double> exposures, const std::string& field
 void merge_exposures(std::span<const RawView> frames, std::span<const double> exposures,
                      const DecodingTable& table, MergedExposures& merged) {
   check_exposures(exposures, "exposures");
+  require_exposures(table, "what merges exposures");
   require(frames.size() == exposures.size(), "frames", frames.size(),
           fmt::format("must be {}, one for each exposure", exposures.size()));
   const RawView& first = frames.front();

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/simulate/bounds.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -19,6 +21,10 @@ double total_exposure_s(const ExposureTime& exposure) {
   if (exposure.each_s.empty()) return exposure.total_s;
   return std::accumulate(exposure.each_s.begin(), exposure.each_s.end(), 0.0);
 }
+
+/// Depths of a Cramer-Rao bound in a bin.
+constexpr int cells_per_bin = 4;
+constexpr double min_e2 = 1e-9;  // a measurement without any light or noise tells nothing
 
 /// Values at the middle of every second cell of a table of twice as many points, and the slope over
 /// the cell around them.
@@ -47,6 +53,22 @@ void normalize_or_drop(Vector& vector, double original_norm) {
     vector /= norm;
   else
     vector.setZero();
+}
+
+/// Of columns of a whitened Jacobian. [F^-1]_zz = 1 / |part of the depth column across the other
+/// two|^2: well defined even where ambient light and signal cannot be separated, and the matrix has
+/// no inverse.
+double deviation_of_depth_m(Eigen::VectorXd by_depth, Eigen::VectorXd by_signal,
+                            Eigen::VectorXd by_ambient, double range_m) {
+  const double depth_norm = by_depth.norm();
+  normalize_or_drop(by_ambient, by_ambient.norm());
+  const double signal_norm = by_signal.norm();
+  take_out(by_signal, by_ambient);
+  normalize_or_drop(by_signal, signal_norm);
+  take_out(by_depth, by_ambient);
+  take_out(by_depth, by_signal);
+  const double left = by_depth.norm();
+  return left > 1e-10 * depth_norm ? range_m / left : infinity;
 }
 
 /// Largest kappa (1 - kappa) / (b kappa + c) a tap can reach. The duties of an exposure's taps add
@@ -102,7 +124,16 @@ CramerRaoBound::CramerRaoBound(const ForwardModel& model, const Camera& camera,
     : range_m_(camera.range_m()),
       information_(information),
       constant_variance_e2_(model.constant_variance_e2()) {
-  constexpr int cells_per_bin = 4;
+  if (model.has_rows()) {
+    const int points = 2 * cells_per_bin * model.samples();
+    middles_and_slopes(model.correlation_table(points) * model.exposure_s().asDiagonal(), signal_,
+                       signal_slope_);
+    covariance_ = row_covariance(model, points);
+    const Eigen::MatrixXd fine = covariance_->signal;
+    middles_and_slopes(fine, covariance_->signal, covariance_slope_);
+    ambient_ = model.exposure_s().cwiseProduct(unknown_ambient_gain(model, camera));
+    return;
+  }
   const Eigen::MatrixXd tap_table =
       model.tap_correlation_table(2 * cells_per_bin * model.samples()) *
       model.tap_exposure_s().asDiagonal();
@@ -118,40 +149,102 @@ CramerRaoBound::CramerRaoBound(const ForwardModel& model, const Camera& camera,
   constant_variance_e2_ += sums * (camera.sensor.dark_current_e_per_s * model.tap_exposure_s());
 }
 
-Eigen::VectorXd CramerRaoBound::sigma_m(const OperatingPoint& point) const {
+HistogramBound::HistogramBound(const ForwardModel& model, const Camera& camera)
+    : range_m_(camera.range_m()) {
+  const int samples = model.samples(), step = 2 * cells_per_bin;
+  const Eigen::VectorXd bin = model.time_bin_table(step * samples) * model.tap_exposure_s()[0];
+  Eigen::MatrixXd middle, slope;
+  middles_and_slopes(bin, middle, slope);
+  // Bin n sees of a depth what bin 0 sees n bins nearer: all bins together are bin 0 at all depths.
+  light_.resize(samples, cells_per_bin);
+  slope_.resize(samples, cells_per_bin);
+  for (int j = 0; j < samples * cells_per_bin; ++j) {
+    light_(j / cells_per_bin, j % cells_per_bin) = middle(j, 0);
+    slope_(j / cells_per_bin, j % cells_per_bin) = slope(j, 0);
+  }
+  dark_e_ = model.expected_tap_electrons({}, 0.0)[0];
+  ambient_e_ = model.expected_tap_electrons({}, 1.0)[0] - dark_e_;
+}
+
+double HistogramBound::mae_m(const OperatingPoint& point) const {
+  constexpr double min_e = 1e-9;  // a bin without any light tells nothing
+  double sum_m = 0.0;
+  for (Eigen::Index j = 0; j < light_.cols(); ++j) {
+    const Eigen::ArrayXd weight = (point.signal_e_per_s * light_.col(j).array() +
+                                   point.ambient_e_per_s * ambient_e_ + dark_e_)
+                                      .max(min_e)
+                                      .rsqrt();
+    sum_m += deviation_of_depth_m(point.signal_e_per_s * slope_.col(j).array() * weight,
+                                  light_.col(j).array() * weight, ambient_e_ * weight, range_m_);
+  }
+  return mae_per_sigma() * sum_m / static_cast<double>(light_.cols());
+}
+
+double HistogramBound::mae_uniform_albedo_m(const OperatingPoint& point) const {
+  return mean_over_albedo(0.25 * range_m_,
+                          [&](double albedo) { return mae_m(dimmed(point, albedo)); });
+}
+
+/// The same of rows, with L^-1 of their covariance L L^T.
+Eigen::Matrix<double, Eigen::Dynamic, 3> CramerRaoBound::whitened_jacobian_of_rows(
+    Eigen::Index depth, const OperatingPoint& point) const {
+  const Eigen::Index K = ambient_.size();
+  Eigen::MatrixXd covariance = covariance_->at(depth, point.signal_e_per_s, point.ambient_e_per_s);
+  // Rows may depend on each other: what then has no noise has no mean either.
+  constexpr double rounding = 1e-12;
+  covariance.diagonal().array() += std::max(min_e2, rounding * covariance.diagonal().maxCoeff());
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+  const auto lower = factor.matrixL();
+  Eigen::Matrix<double, Eigen::Dynamic, 3> by(K, 3);
+  by << point.signal_e_per_s * signal_slope_.row(depth).transpose(), signal_.row(depth).transpose(),
+      ambient_;
+  lower.solveInPlace(by);
+  if (information_ != NoiseInformation::mean_and_variance) return by;
+  const RowCovariance slopes{covariance_slope_, covariance_->ambient,
+                             Eigen::VectorXd::Zero(covariance_->floor.size())};
+  const RowCovariance values{covariance_->signal, covariance_->ambient, slopes.floor};
+  std::array changes{slopes.at(depth, point.signal_e_per_s, 0.0), values.at(depth, 1.0, 0.0),
+                     values.at(depth, 0.0, 1.0)};
+  by.conservativeResize(K + K * K, 3);
+  for (int c = 0; c < 3; ++c) {
+    Eigen::MatrixXd& change = changes[static_cast<std::size_t>(c)];
+    lower.solveInPlace(change);
+    change.transposeInPlace();
+    lower.solveInPlace(change);
+    by.col(c).tail(K * K) = std::numbers::sqrt2 / 2.0 * change.reshaped();
+  }
+  return by;
+}
+
+/// Columns for depth, signal and ambient light; the Fisher matrix is their Gram matrix.
+Eigen::Matrix<double, Eigen::Dynamic, 3> CramerRaoBound::whitened_jacobian(
+    Eigen::Index depth, const OperatingPoint& point) const {
+  if (covariance_) return whitened_jacobian_of_rows(depth, point);
   const Eigen::Index K = ambient_.size();
   const bool with_variance = information_ == NoiseInformation::mean_and_variance;
-  const Eigen::Index rows = with_variance ? 2 * K : K;
-  // Columns of the whitened Jacobian; the Fisher matrix is their Gram matrix.
-  Eigen::VectorXd by_depth(rows), by_signal(rows), by_ambient(rows);
+  Eigen::Matrix<double, Eigen::Dynamic, 3> by(with_variance ? 2 * K : K, 3);
+  for (Eigen::Index i = 0; i < K; ++i) {
+    const double variance =
+        std::max(min_e2, point.signal_e_per_s * shot_signal_(depth, i) +
+                             point.ambient_e_per_s * shot_ambient_[i] + constant_variance_e2_[i]);
+    const double weight = 1.0 / std::sqrt(variance);
+    by(i, 0) = weight * point.signal_e_per_s * signal_slope_(depth, i);
+    by(i, 1) = weight * signal_(depth, i);
+    by(i, 2) = weight * ambient_[i];
+    if (!with_variance) continue;
+    const double variance_weight = std::numbers::sqrt2 / 2.0 / variance;
+    by(K + i, 0) = variance_weight * point.signal_e_per_s * shot_signal_slope_(depth, i);
+    by(K + i, 1) = variance_weight * shot_signal_(depth, i);
+    by(K + i, 2) = variance_weight * shot_ambient_[i];
+  }
+  return by;
+}
+
+Eigen::VectorXd CramerRaoBound::sigma_m(const OperatingPoint& point) const {
   Eigen::VectorXd sigma(signal_.rows());
   for (Eigen::Index j = 0; j < sigma.size(); ++j) {
-    for (Eigen::Index i = 0; i < K; ++i) {
-      constexpr double min_e2 = 1e-9;  // a measurement without any light or noise tells nothing
-      const double variance =
-          std::max(min_e2, point.signal_e_per_s * shot_signal_(j, i) +
-                               point.ambient_e_per_s * shot_ambient_[i] + constant_variance_e2_[i]);
-      const double weight = 1.0 / std::sqrt(variance);
-      by_depth[i] = weight * point.signal_e_per_s * signal_slope_(j, i);
-      by_signal[i] = weight * signal_(j, i);
-      by_ambient[i] = weight * ambient_[i];
-      if (!with_variance) continue;
-      const double variance_weight = std::numbers::sqrt2 / 2.0 / variance;
-      by_depth[K + i] = variance_weight * point.signal_e_per_s * shot_signal_slope_(j, i);
-      by_signal[K + i] = variance_weight * shot_signal_(j, i);
-      by_ambient[K + i] = variance_weight * shot_ambient_[i];
-    }
-    // [F^-1]_zz = 1 / |part of the depth column across the other two|^2: well defined even where
-    // ambient light and signal cannot be separated, and the matrix has no inverse.
-    const double depth_norm = by_depth.norm();
-    normalize_or_drop(by_ambient, by_ambient.norm());
-    const double signal_norm = by_signal.norm();
-    take_out(by_signal, by_ambient);
-    normalize_or_drop(by_signal, signal_norm);
-    take_out(by_depth, by_ambient);
-    take_out(by_depth, by_signal);
-    const double left = by_depth.norm();
-    sigma[j] = left > 1e-10 * depth_norm ? range_m_ / left : infinity;
+    const Eigen::Matrix<double, Eigen::Dynamic, 3> by = whitened_jacobian(j, point);
+    sigma[j] = deviation_of_depth_m(by.col(0), by.col(1), by.col(2), range_m_);
   }
   return sigma;
 }
@@ -168,11 +261,12 @@ double CramerRaoBound::mae_uniform_albedo_m(const OperatingPoint& point) const {
 ReceiverBound::ReceiverBound(const Camera& camera, int exposures)
     : range_m_(camera.range_m()),
       taps_(camera.sensor.taps),
+      has_rows_(camera.sensor.readout == Readout::rows),
       drain_(camera.sensor.drain),
       peak_factor_(camera.light.peak_factor),
       sensitivity_(1.0 + 0.5 * std::abs(camera.sensor.tap_mismatch)),
       dark_e_per_s_(camera.sensor.dark_current_e_per_s),
-      constant_variance_e2_(constant_variance_e2_of(camera.sensor)) {
+      constant_variance_e2_(has_rows_ ? 0.0 : constant_variance_e2_of(camera.sensor)) {
   camera.validate();
   require(exposures >= 1, "exposures", exposures, "must be >= 1");
   require(camera.exposure_s.each_s.empty() ||
@@ -187,7 +281,7 @@ ReceiverBound::ReceiverBound(const Camera& camera, int exposures)
 }
 
 double ReceiverBound::tap_information(const OperatingPoint& point) const {
-  if (!photons_) return infinity;
+  if (!photons_ || has_rows_) return infinity;
   const double p = peak_factor_;
   const double largest_harmonic =
       p / std::numbers::pi * std::sin(std::numbers::pi * std::min(1.0 / p, 0.5));

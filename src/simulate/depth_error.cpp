@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/simulate/depth_error.hpp"
 
+#include <optional>
+
 #include "simulate/trial_errors.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/simulate/bounds.hpp"
@@ -40,9 +42,12 @@ DepthErrorReport evaluate(const CodeSet& code, const Camera& on, const EvaluateO
   const CramerRaoBound cramer_rao(model, camera);
   const ReceiverBound receiver(camera, code.exposures());
   const DirectTofBound direct_tof(camera);
+  std::optional<HistogramBound> histogram;
+  if (model.has_rows()) histogram.emplace(model, camera);
   for (PointDepthError& error : result.points) {
     error.cramer_rao_mae_m = bound_mae_m(cramer_rao, camera, error.point);
-    error.receiver_bound_mae_m = bound_mae_m(receiver, camera, error.point);
+    error.receiver_bound_mae_m = histogram ? bound_mae_m(*histogram, camera, error.point)
+                                           : bound_mae_m(receiver, camera, error.point);
     error.direct_tof_bound_mae_m = bound_mae_m(direct_tof, camera, error.point);
   }
   report(progress, 1.0, "depth error");

@@ -41,9 +41,15 @@ DepthTrials::DepthTrials(const ForwardModel& model, const Camera& camera,
       uniform_albedo_(camera.operating.uniform_albedo),
       albedo_(camera.operating.albedo),
       points_(camera.operating.points()),
-      model_(model, camera),
+      model_(model.has_rows() ? TrialModel(model) : TrialModel(model, camera)),
       decoder_(options.method, std::move(believed), options.unwrap_weights,
                all_trials(options_, points_.size())) {
+  if (model.has_rows()) {
+    require(!options_.clip_to_open_sensor, "clip_to_open_sensor", "true",
+            "does not go with sensor.readout = \"rows\"");
+    rows_.emplace(model, camera);
+    return;
+  }
   const PlaneMap* map = decoder_.plane_map();
   const bool in_plane = map != nullptr && model_.is_linear() && !options_.clip_to_open_sensor &&
                         !options_.draw_every_measurement;
@@ -94,7 +100,7 @@ TrialBlock DepthTrials::run(const TrialRound& round, IndexRange trials, TrialTil
     draw_plane(model_, noise, drawn, tile);
     decoder_.decode_plane(options_.sub_bin, tile.pixels, tile.decoded_bin);
   } else {
-    draw_normals(streams, model_.taps(), drawn, tile);
+    draw_normals(streams, rows_ ? rows_->measurements() : model_.taps(), drawn, tile);
     draw_signal(streams, round.point, drawn, tile);
     draw_measurements(streams, round.point, drawn, tile);
     decoder_.decode_raw(tile.taps, options_.sub_bin, tile.pixels, tile.decoded_bin);
@@ -129,6 +135,7 @@ void DepthTrials::draw_signal(const TrialStreams& streams, std::size_t point, in
 
 void DepthTrials::draw_measurements(const TrialStreams& streams, std::size_t point, int trials,
                                     TrialTile& tile) const {
+  if (rows_) return rows_->draw(streams, points_[point].ambient_e_per_s, trials, tile);
   expect_electrons(model_, mean_floor_e_[point], trials, tile);
   if (model_.conversion().is_poisson)
     for (int k = 0; k < model_.taps(); ++k) {

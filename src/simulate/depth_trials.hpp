@@ -3,11 +3,13 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/shared/shared_progress.hpp"
 #include "decode/output/shared/trial_decoder.hpp"
+#include "simulate/row_trials.hpp"
 #include "simulate/trial_kernel.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
@@ -75,6 +77,7 @@ class DepthTrials {
   double albedo_ = 1.0;
   std::vector<OperatingPoint> points_;
   TrialModel model_;
+  std::optional<RowTrials> rows_;  // where they are read out
   TrialDecoder decoder_;
   std::vector<PlaneNoise> plane_noise_;  // of every point; none where it is not exact
   std::vector<std::vector<float>> mean_floor_e_, max_e_;  // of every point: (taps)

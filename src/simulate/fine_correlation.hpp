@@ -34,6 +34,7 @@ class FineCorrelation {
   int tap_values_;
   int points_;
   double points_per_bin_;
+  bool is_time_bin_ = false;   // one column, of time bin 0: bin n sees what is n bins nearer
   std::vector<double> table_;  // (points + 1, tap values), last row = first row
 };
 

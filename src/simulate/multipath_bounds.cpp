@@ -29,7 +29,9 @@ double length_across(Eigen::MatrixXd columns) {
 }  // namespace
 
 MultipathBound::MultipathBound(const ForwardModel& model, const Camera& camera)
-    : samples_(model.samples()),
+    : samples_((require(!model.has_rows(), "sensor.readout", "rows",
+                        "has no bound of two returns, which takes independent measurements"),
+                model.samples())),
       range_m_(camera.range_m()),
       readout_(model.readout()),
       table_(model.tap_correlation_table(points_per_bin * model.samples()) *

@@ -40,6 +40,12 @@ double PixelNoise::draw_electrons(double expected_e, RandomStream& random) const
   return random.poisson(mean) + read_noise_e_ * random.normal();
 }
 
+double PixelNoise::draw_count(double expected_e, RandomStream& random) const {
+  const double mean = std::max(expected_e, 0.0);
+  if (model_ == NoiseModel::gaussian) return mean + std::sqrt(mean) * random.normal();
+  return random.poisson(mean);
+}
+
 double PixelNoise::convert(double electrons) const {
   const double kept = std::min(electrons, full_well_e_);
   if (!has_adc_) return kept;
@@ -47,7 +53,7 @@ double PixelNoise::convert(double electrons) const {
 }
 
 void PixelNoise::read_out(double* raw, int tap_values) const {
-  if (readout_ == Readout::separate) return;
+  if (readout_ != Readout::difference) return;
   for (int i = 0; i < tap_values / 2; ++i) raw[i] = raw[2 * i] - raw[2 * i + 1];
 }
 

@@ -14,6 +14,7 @@ namespace tofsmith {
 ///   3. count  round(electrons / gain_e_per_dn + black_level_dn), held to [0, 2^bits - 1], only if
 ///             adc_bits is set; else the raw number is electrons;
 ///   4. read   every tap by itself, or the difference of each pair of buckets.
+/// Of rows, every time bin is drawn without read noise, which comes to the rows.
 class PixelNoise {
  public:
   /// @throws std::invalid_argument if noise, read noise, full well or ADC settings are invalid
@@ -21,6 +22,9 @@ class PixelNoise {
 
   /// Step 1: electrons with noise, for an expected number >= 0.
   double draw_electrons(double expected_e, RandomStream& random) const;
+  /// The same without read noise.
+  double draw_count(double expected_e, RandomStream& random) const;
+  double read_noise_e() const { return read_noise_e_; }
   /// Steps 2 and 3: the raw number of one tap, [e] or [DN].
   double convert(double electrons) const;
   /// Step 4: raw measurements of a pixel from the raw numbers of its taps.

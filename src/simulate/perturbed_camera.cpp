@@ -71,6 +71,9 @@ PerturbedCamera with_droop(const Camera& camera, double droop) {
   return perturbed;
 }
 
+/// Whether values may differ in sensitivity: rows see all the same.
+bool has_taps(const Camera& camera) { return camera.sensor.readout != Readout::rows; }
+
 /// All at once.
 PerturbedCamera with_everything(const Camera& camera, const RobustnessOptions& options) {
   PerturbedCamera perturbed{"all together", camera};
@@ -82,7 +85,7 @@ PerturbedCamera with_everything(const Camera& camera, const RobustnessOptions& o
     perturbed.peak = dim.peak;
   }
   perturbed.camera = with_jitter(perturbed.camera, options.edge_jitter_s).camera;
-  if (camera.sensor.tap_mismatch + options.tap_mismatch < 1.0)
+  if (has_taps(camera) && camera.sensor.tap_mismatch + options.tap_mismatch < 1.0)
     perturbed.camera.sensor.tap_mismatch += options.tap_mismatch;
   perturbed.clock_s = options.clock_s;
   perturbed.droop = options.droop;
@@ -204,7 +207,8 @@ std::vector<PerturbedCamera> perturbations(const Camera& camera, const Robustnes
     for (const double change : {-options.peak, options.peak})
       cameras.push_back(with_peak(camera, change));
   if (options.edge_jitter_s > 0.0) cameras.push_back(with_jitter(camera, options.edge_jitter_s));
-  if (options.tap_mismatch > 0.0 && camera.sensor.tap_mismatch + options.tap_mismatch < 1.0)
+  if (options.tap_mismatch > 0.0 && has_taps(camera) &&
+      camera.sensor.tap_mismatch + options.tap_mismatch < 1.0)
     cameras.push_back(with_mismatch(camera, options.tap_mismatch));
   if (options.clock_s > 0.0) cameras.push_back(with_clock(camera, options.clock_s));
   if (options.droop > 0.0) cameras.push_back(with_droop(camera, options.droop));
@@ -224,6 +228,9 @@ CodeSet perturbed_code(const CodeSet& code, const PerturbedCamera& perturbed) {
     modulation.push_back(
         on_samples(with_droop(m, perturbed.droop, code.samples()), code.samples()));
   }
+  if (code.is_rows())  // sums of counts, on no clock of the light's
+    return CodeSet::create_rows(code.name(), std::move(modulation.front()),
+                                code.demodulation_samples());
   for (int i = 0; i < code.measurements(); ++i)
     demodulation.push_back(
         on_samples(on_clock(code.demodulation(i), perturbed.clock_s, camera), code.samples()));

@@ -11,11 +11,13 @@ namespace tofsmith {
 PixelCapture::PixelCapture(const ForwardModel& model, const Camera& camera)
     : range_m_(camera.range_m()),
       bin_m_(camera.bin_m()),
-      dark_e_per_s_(camera.sensor.dark_current_e_per_s),
+      dark_e_per_s_(camera.sensor.dark_current_e_per_s / (model.has_rows() ? model.samples() : 1)),
       correlation_(model),
       noise_(camera.sensor),
       exposure_s_(model.tap_exposure_s()),
-      ambient_gain_(model.tap_ambient_gain()) {}
+      ambient_gain_(model.tap_ambient_gain()) {
+  if (model.has_rows()) rows_ = model.readout();
+}
 
 void PixelCapture::add_light(const FineCorrelation& correlation, double depth_m,
                              double signal_e_per_s, std::vector<double>& work,
@@ -31,7 +33,15 @@ void PixelCapture::expose(double ambient_e_per_s, RandomStream& random, std::vec
     const auto i = static_cast<Eigen::Index>(j);
     const double expected_e =
         exposure_s_[i] * (light[j] + ambient_e_per_s * ambient_gain_[i] + dark_e_per_s_);
-    light[j] = noise_.convert(noise_.draw_electrons(expected_e, random));
+    light[j] = rows_ ? noise_.draw_count(expected_e, random)
+                     : noise_.convert(noise_.draw_electrons(expected_e, random));
+  }
+  if (rows_) {
+    const Eigen::Map<const Eigen::VectorXd> counts(light.data(), rows_->cols());
+    for (int i = 0; i < measurements(); ++i)
+      raw[i] =
+          static_cast<float>(rows_->row(i).dot(counts) + noise_.read_noise_e() * random.normal());
+    return;
   }
   noise_.read_out(light.data(), tap_values());
   for (int i = 0; i < measurements(); ++i)

@@ -87,6 +87,7 @@ StagedCapture capture_moving(const StagedScene& scene, const CodeSet& code, cons
   SceneImage rays(samples * height, samples * width);
   SceneLight light;
   RowCapture source(rays, light, model, camera, options);
+  const int taps = source.tap_values() / exposures;
   StagedCapture result;
   result.raw = empty_frames(options.frames, height, width, source.measurements());
   for (int frame = 0; frame < options.frames; ++frame) {
@@ -99,7 +100,7 @@ StagedCapture capture_moving(const StagedScene& scene, const CodeSet& code, cons
       light = light_of(now, rays, setup, samples);
       light.validate(rays, camera);
       source.see(rays, light, model, camera);
-      add_light(source, blur, samples, {exposure * code.taps(), code.taps()}, pixels);
+      add_light(source, blur, samples, {exposure * taps, taps}, pixels);
     }
     scatter_light(setup.stray_light, options.ambient_e_per_s, pixels);
     expose_pixels(source, pixels, frame, result.raw.frame(frame));

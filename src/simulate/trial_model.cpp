@@ -51,6 +51,16 @@ TrialModel::TrialModel(const ForwardModel& model, const Camera& camera)
   fill_records(model.tap_correlation_table(rows()) * exposure_s_.asDiagonal(), {});
 }
 
+TrialModel::TrialModel(const ForwardModel& model)
+    : taps_(0),
+      samples_(model.samples()),
+      rows_per_bin_(rows_per_bin_of_codes),
+      has_own_shot_noise_(false),
+      raw_per_e_(model.measurements(), 0),
+      raw_at_zero_(Eigen::VectorXd::Zero(model.measurements())),
+      conversion_{.is_poisson = true},
+      records_(0, 4) {}
+
 TrialModel::TrialModel(const DecodingTable& table)
     : taps_(table.measurements()),
       samples_(table.samples()),

@@ -32,6 +32,8 @@ class TrialModel {
  public:
   /// Of a code on a camera, 16 rows per bin.
   TrialModel(const ForwardModel& model, const Camera& camera);
+  /// Of rows: where depths lie. RowTrials draws what they measure.
+  explicit TrialModel(const ForwardModel& model);
   /// Of a table, which is taken for the truth: normal noise, chords between its rows.
   explicit TrialModel(const DecodingTable& table);
 

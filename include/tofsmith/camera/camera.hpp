@@ -150,10 +150,13 @@ constexpr std::string_view name_of(DepthErrorKind kind) {
   return kind == DepthErrorKind::linear ? "linear" : "circular";
 }
 
-/// How the values of an exposure's taps leave the sensor.
+/// What leaves the sensor of the light of an exposure.
 enum class Readout {
   separate,    ///< each tap by itself
   difference,  ///< two taps as A - B; their shot and read noise add
+  /// Rows: weighted sums of the light in N time bins of one exposure, the weights of any sign. All
+  /// are of the same light, so that their noise is correlated. Dead time is ignored.
+  rows,
 };
 
 /// The modulated light source.
@@ -174,9 +177,9 @@ struct Sensor {
   ImpulseResponse impulse_response;
   double edge_jitter_s = 0.0;          ///< rms displacement of edges, period to period [s], >= 0
   std::optional<Generator> generator;  ///< plays the demodulation; none: any waveform, exactly
-  double read_noise_e = 20.0;          ///< standard deviation per readout [e], >= 0
+  double read_noise_e = 20.0;  ///< standard deviation per readout, of taps or rows [e], >= 0
   NoiseModel noise = NoiseModel::poisson;  ///< how noise is drawn
-  double dark_current_e_per_s = 0.0;       ///< per tap [e/s], >= 0
+  double dark_current_e_per_s = 0.0;       ///< per tap; of rows, of all time bins [e/s], >= 0
   double modulation_contrast = 1.0;        ///< C in (0, 1]; below 1 the taps mix
   /// Relative difference in sensitivity of neighbouring taps (with one tap: of neighbouring
   /// exposures): 1 + m / 2 for the first, third, .., 1 - m / 2 for the others; in (-1, 1).
@@ -384,7 +387,9 @@ struct Camera {
   double range_m() const;
   /// Depth of one bin [m]: range / N.
   double bin_m() const;
-  /// H_d(n f0) conj(H_m(n f0)) for n = 0 .. highest: transfer function of both arms together.
+  /// H_d(n f0) conj(H_m(n f0)) for n = 0 .. highest: transfer function of both arms together. Where
+  /// rows are read out, the sensor's response delays what it detects, as the light's does:
+  /// conj(H_d H_m).
   Eigen::VectorXcd transfer(int highest) const;
   /// H_m(n f0) of the light alone. The mean of edges that are displaced by normal deviations of
   /// rms s, period by period, is the waveform blurred by that normal density: a factor

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -52,7 +53,9 @@ struct Return {
 /// @see Gutierrez-Barragan et al., CVPR 2019, Eq. (4); several returns add.
 ///
 /// A *tap value* is what one tap collects (E x taps of them); a *measurement* is what leaves the
-/// sensor (the same, or the differences A - B of two-bucket pairs).
+/// sensor (the same, or the differences A - B of two-bucket pairs). Where rows are read out, the
+/// taps are the N time bins of the one exposure, and measurements sums of them with the rows'
+/// weights: y = C^T h, of covariance C^T diag(E h) C and read noise.
 class ForwardModel {
  public:
   /// @throws std::invalid_argument if the camera is invalid or the code does not fit it
@@ -61,6 +64,8 @@ class ForwardModel {
   int measurements() const { return static_cast<int>(readout_.rows()); }
   int tap_values() const { return static_cast<int>(readout_.cols()); }
   int samples() const { return samples_; }
+  /// Whether measurements are rows of one exposure, whose noise is correlated.
+  bool has_rows() const { return time_bin_.has_value(); }
 
   /// chi_i(z) of every measurement (K) at a real depth.
   Eigen::VectorXd correlation(double depth_bin) const;
@@ -68,6 +73,8 @@ class ForwardModel {
   Eigen::MatrixXd correlation_table(int points) const;
   /// The same for the tap values, (points, E x taps).
   Eigen::MatrixXd tap_correlation_table(int points) const;
+  /// Of rows: light in time bin 0, (points). What bin n sees of depth z, bin 0 sees of z - n.
+  Eigen::VectorXd time_bin_table(int points) const;
 
   /// kappa_i (K): mean gain seen by ambient light.
   const Eigen::VectorXd& ambient_gain() const { return ambient_gain_; }
@@ -77,7 +84,8 @@ class ForwardModel {
   const Eigen::VectorXd& exposure_s() const { return exposure_s_; }
   /// T of the tap values [s].
   const Eigen::VectorXd& tap_exposure_s() const { return tap_exposure_s_; }
-  /// Measurements = readout (K, E x taps) times tap values; entries are +1, -1 and 0.
+  /// Measurements = readout (K, E x taps) times tap values; entries are +1, -1 and 0, or the rows'
+  /// weights.
   const Eigen::MatrixXd& readout() const { return readout_; }
   /// Electrons of dark current in every measurement (K).
   Eigen::VectorXd dark_electrons() const;
@@ -92,18 +100,23 @@ class ForwardModel {
   Eigen::VectorXd expected_electrons(std::span<const Return> returns, double ambient_e_per_s) const;
   /// Variance of the measurements [e^2] (K), before any clipping.
   Eigen::VectorXd variance_e2(std::span<const Return> returns, double ambient_e_per_s) const;
+  /// Covariance of the measurements [e^2] (K, K); diagonal but where rows are read out.
+  Eigen::MatrixXd covariance_e2(std::span<const Return> returns, double ambient_e_per_s) const;
 
  private:
   Eigen::VectorXd tap_correlation(double depth_bin) const;
+  void read_rows(const CodeSet& code, const Waveform& light, const Eigen::VectorXcd& transfer,
+                 double moved);
 
   int samples_ = 0;
   int taps_ = 1;
   double contrast_ = 1.0;
   Eigen::VectorXd sensitivity_;  // of the tap values; 1 but for tap_mismatch
   double signal_gain_ = 1.0;     // by the camera's temperature
-  double dark_current_e_per_s_ = 0.0;
-  double tap_constant_variance_e2_ = 0.0;
-  std::vector<CorrelationFunction> functions_;  // of the tap values, before taps mix
+  double tap_dark_e_per_s_ = 0.0;
+  double readout_variance_e2_ = 0.0;             // constant, of a tap value or a row
+  std::vector<CorrelationFunction> functions_;   // of the tap values, before taps mix; of the rows
+  std::optional<CorrelationFunction> time_bin_;  // of light in time bin 0, where rows are read out
   Eigen::VectorXd tap_ambient_gain_, ambient_gain_;
   Eigen::VectorXd tap_exposure_s_, exposure_s_;
   Eigen::MatrixXd readout_;
@@ -113,13 +126,31 @@ class ForwardModel {
 int harmonics_kept(int samples);
 
 /// What leaves the sensor as sums of tap values, (K, tap values): each by itself, or A - B of every
-/// two neighbours.
+/// two neighbours. Rows have weights of their own, ForwardModel::readout().
 Eigen::MatrixXd readout_matrix(int tap_values, Readout readout);
+
+/// Pairs of K measurements, each with itself too: (0, 0), (1, 0), (1, 1), (2, 0), ..
+constexpr int pairs_of(int measurements) { return measurements * (measurements + 1) / 2; }
+
+/// How the covariance of rows depends on light, packed by pairs_of(K) [e^2]:
+///   cov_ij(z) = S signal(z, ij) + A ambient[ij] + floor[ij]
+struct RowCovariance {
+  Eigen::MatrixXd
+      signal;  ///< T sum_n C_ni C_nj chi_n(z) (points, pairs), row j at z = j N / points
+  Eigen::VectorXd ambient;  ///< T sum_n C_ni C_nj / N (pairs)
+  Eigen::VectorXd floor;    ///< of dark current and read noise (pairs)
+
+  /// (K, K) at one row of `signal`.
+  Eigen::MatrixXd at(Eigen::Index row, double signal_e_per_s, double ambient_e_per_s) const;
+};
+/// @param points  a multiple of N
+/// @throws std::invalid_argument unless model.has_rows()
+RowCovariance row_covariance(const ForwardModel& model, int points);
 
 /// Variance of one tap value that does not depend on light [e^2]: read noise and quantization.
 double constant_variance_e2_of(const Sensor& sensor);
 
-/// kappa (K) for an estimator on this camera: 0 for all differences of buckets
+/// kappa (K) for an estimator on this camera: 0 for all differences of buckets, and all rows,
 /// if the brightest operating ambient leaks into none of them by more than 5 % of its noise, as
 /// where a generator rounds duties of 1/2. To estimate such a leak would cost a whole
 /// measurement; to ignore it costs next to nothing. Else ambient_gain().

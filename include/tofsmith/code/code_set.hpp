@@ -89,6 +89,9 @@ Waveform pulse_train(int count, double duty);
 /// On for half the period, from `begin` [periods], `frequency` times per period.
 Waveform square_wave(int frequency, double begin);
 
+/// Most rows of one exposure.
+inline constexpr int max_exposure_rows = 16;
+
 /// Where a code comes from; kept in its file, of no effect on the code.
 struct Provenance {
   std::string method;             ///< family, factorize, ..
@@ -104,6 +107,8 @@ struct Provenance {
 ///
 /// Modulation is emitted over average power: values >= 0, mean at most 1.
 /// Demodulation is sensor gain: values in [0, 1]; the taps of an exposure never add to more than 1.
+/// Or it is the weights of rows of one exposure, K weighted sums of the light in N time bins: any
+/// values, constant over a bin.
 class CodeSet {
  public:
   /// @param samples  N, the number of time samples that stand for one period
@@ -111,9 +116,20 @@ class CodeSet {
   static CodeSet create(std::string name, int samples, int taps, std::vector<Waveform> modulation,
                         std::vector<Waveform> demodulation);
 
+  /// Rows of one exposure: all K measurements are weighted sums of the same light.
+  /// @param rows  (N, K): weights of the time bins, of any sign and scale
+  /// @throws std::invalid_argument naming light or row and the rule it breaks; none of them may be
+  ///         all zero
+  static CodeSet create_rows(std::string name, Waveform light, const Eigen::MatrixXd& rows);
+  /// The same of arrays of others: N samples of light of any scale, made one of mean 1, and rows
+  /// (N, K) or (K, N).
+  static CodeSet create_rows(std::string name, const Eigen::VectorXd& light, Eigen::MatrixXd rows);
+
   const std::string& name() const { return name_; }
   int samples() const { return samples_; }
-  int taps() const { return taps_; }
+  int taps() const { return taps_; }  ///< or rows
+  /// Whether the measurements are rows of one exposure.
+  bool is_rows() const { return is_rows_; }
   int exposures() const { return static_cast<int>(modulation_.size()); }
   int measurements() const { return static_cast<int>(demodulation_.size()); }
   int exposure_of(int measurement) const { return measurement / taps_; }
@@ -155,6 +171,7 @@ class CodeSet {
   std::string name_;
   int samples_ = 0;
   int taps_ = 1;
+  bool is_rows_ = false;
   std::vector<Waveform> modulation_;
   std::vector<Waveform> demodulation_;
 };

@@ -52,12 +52,22 @@ std::optional<std::string> why_no_family(std::string_view name, const FamilyOpti
 /// Builds a family from its name: `sinusoid-k4`, `square-k4`, `hamiltonian-k3` .. `k10`,
 /// `multifrequency-k5` (3 steps at f0 and 2 at 7 f0), `multifrequency-1x3-7x2` (any list of
 /// frequency x steps), `pulsed-multifrequency-k5` and `-k4` (high frequency 3) or `..-q2` ..
-/// `..-q8`, `gray-k3` .. `k10`, `single-ramp-k3`, `double-ramp-k3`.
+/// `..-q8`, `gray-k3` .. `k10`, `single-ramp-k3`, `double-ramp-k3`; as rows of one exposure
+/// `fourier-k2` .. `k16` and `histogram-k3` .. `k16`.
 /// @throws InvalidArgument with the text of why_no_family(), if there is one
 CodeSet make_family(std::string_view name, const FamilyOptions& options);
 
 /// Whether `name` is the name of a family (whatever the options).
 bool is_family(std::string_view name);
+
+/// Rows of one exposure from a code of one tap whose exposures all have the same light: each
+/// demodulation without its mean, so that constant light adds nothing; one that is constant as it
+/// is.
+/// @throws InvalidArgument with the text of why_no_rows(), if there is one
+CodeSet rows_of(const CodeSet& code);
+/// Why a code cannot become rows: several taps, light that differs between exposures, a gate that
+/// never opens, or too many measurements. None: rows_of() makes them.
+std::optional<std::string> why_no_rows(const CodeSet& code);
 
 /// The coding curve is the closed path that the vector of K correlations draws as depth runs
 /// through the range. Tables are (N, K), one row per depth, end point left out.

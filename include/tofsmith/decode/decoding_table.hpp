@@ -85,6 +85,9 @@ auto fields_of(ConstOrNot<DepthCorrection> auto& c) {
 /// The shot terms are those of the light collected; they differ from the expected values where
 /// buckets are subtracted. Left empty they are the same. Duties, exposures, gains and offsets may
 /// differ from measurement to measurement.
+///
+/// The noise of rows is correlated. With `whitening` all shot terms and constant_variance_e2 are
+/// variances of whitening (electrons - dark), whose covariance is diagonal at one nominal light.
 struct DecodingTable : MeasurementTable {
   Eigen::VectorXd exposure_s;      ///< T [s] (K), each > 0
   Eigen::VectorXd dark_electrons;  ///< expected electrons without any light [e] (K)
@@ -96,9 +99,14 @@ struct DecodingTable : MeasurementTable {
   Eigen::VectorXd gain_e_per_raw;         ///< electrons per raw number (K), each > 0
   std::optional<float> saturation_level;  ///< raw numbers from here on are clipped; none: no limit
   double range_m = 0.0;                   ///< depth of a whole period [m], > 0
+  Eigen::MatrixXd whitening;              ///< (K, K), or empty: noise is independent
+  /// Of rows: covariance of whitening (electrons - dark), all of it. Empty without whitening.
+  RowCovariance covariance;
   /// Of frames of one size; apply() takes it off what decoders give. None: nothing.
   std::optional<DepthCorrection> correction = {};
 
+  /// Whether measurements are rows, of correlated noise.
+  bool has_rows() const { return whitening.size() > 0; }
   /// Dark electrons collected [e] (K): shot_dark_electrons, or what stands for them.
   const Eigen::VectorXd& shot_dark() const {
     return shot_dark_electrons.size() > 0 ? shot_dark_electrons : dark_electrons;
@@ -115,8 +123,16 @@ struct DecodingTable : MeasurementTable {
 
 /// The table of a code on a camera. Raw numbers are electrons without ADC, else counts; differences
 /// of buckets are taken from converted values, so that the black level cancels and saturation does
-/// not show in them.
+/// not show in them. Rows are whitened by their mean covariance over depth in the middle of the
+/// camera's operating points.
 DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camera);
+
+/// The table of whitening (electrons - dark) as measurements of their own, which decodes as that of
+/// rows does; the table itself without whitening.
+DecodingTable whitened(const DecodingTable& table);
+
+/// @throws InvalidArgument if measurements are rows, which `what` does not take
+void require_exposures(const DecodingTable& table, std::string_view what);
 
 /// The table of a measured correlation (N, K) that comes without a camera: equal duties and
 /// exposures, so that the mean over measurements is what ambient light explains. Signal and ambient

@@ -53,7 +53,8 @@ CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file
 /// The same layout: modulation and demodulation as cell averages, and
 ///   corrfs[z, i] = (1/N) sum_n modfs[n, i] demodfs[n + z, i],
 /// the correlation without a camera's impulse responses.
-/// @throws std::invalid_argument if the code has several taps and there is no order
+/// @throws std::invalid_argument if the code has several taps, several exposures and there is no
+///         order
 std::vector<std::byte> serialize_code_npz(const CodeSet& code,
                                           std::optional<TapOrder> order = std::nullopt);
 
@@ -72,7 +73,18 @@ CodeSet read_code(const std::filesystem::path& path, const TapLayout& layout = {
 void write_code(const std::filesystem::path& path, const CodeSet& code, OutputPolicy policy,
                 std::optional<TapOrder> order = std::nullopt);
 
-/// A built-in family, built for the camera, or a code from a file as it is there.
+/// Rows of one exposure from the arrays of others: light (N), or columns that are all the same, and
+/// rows (N, K) or (K, N) of any scale and sign, up to 16. Light is scaled to a mean of 1; nothing
+/// else is changed.
+/// @param light, rows  .npy files; the stem of `rows` becomes the code's name
+/// @throws IoError naming file, row and column for shapes that disagree, light that is negative,
+///         differs between columns or is all zero, and rows that are all zero or too many
+CodeSet read_rows(const std::filesystem::path& light, const std::filesystem::path& rows);
+/// The same of the arrays `modfs` and `demodfs` of an .npz file.
+CodeSet read_rows(const std::filesystem::path& archive);
+
+/// A built-in family, built for the camera, or a code from a file as it is there. A camera that
+/// reads rows takes an .npz file as rows; LIGHT.npy,ROWS.npy are rows on any.
 /// @throws IoError as read_code(), or if `name_or_path` is neither;
 ///         std::invalid_argument for a family that the camera cannot play
 CodeSet load_code(const std::string& name_or_path, const Camera& camera,

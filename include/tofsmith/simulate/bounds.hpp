@@ -85,11 +85,39 @@ class CramerRaoBound {
   Eigen::MatrixXd signal_, signal_slope_, shot_signal_, shot_signal_slope_;
   Eigen::VectorXd ambient_, shot_ambient_;
   Eigen::VectorXd constant_variance_e2_;
+  /// Of rows, whose noise is correlated: at the same depths, and its slope.
+  std::optional<RowCovariance> covariance_;
+  Eigen::MatrixXd covariance_slope_;
+
+  Eigen::Matrix<double, Eigen::Dynamic, 3> whitened_jacobian(Eigen::Index depth,
+                                                             const OperatingPoint& point) const;
+  Eigen::Matrix<double, Eigen::Dynamic, 3> whitened_jacobian_of_rows(
+      Eigen::Index depth, const OperatingPoint& point) const;
+};
+
+/// How well any unbiased estimator can measure depth that sees all N time bins of the exposure,
+/// with the light of rows: below the CramerRaoBound of all rows of that light, whatever their
+/// weights. Without read noise; signal and ambient unknown.
+class HistogramBound {
+ public:
+  /// @param camera  the one `model` was made with
+  /// @throws std::invalid_argument unless model.has_rows()
+  HistogramBound(const ForwardModel& model, const Camera& camera);
+
+  /// Mean over depth within a bin of sqrt(2 / pi) sigma [m]; every bin is alike.
+  double mae_m(const OperatingPoint& point) const;
+  /// The same averaged over a signal scaled uniformly in (0, 1), at each albedo held to range / 4.
+  double mae_uniform_albedo_m(const OperatingPoint& point) const;
+
+ private:
+  double range_m_;
+  Eigen::MatrixXd light_, slope_;  // electrons of all bins per unit of S, (N, depths in a bin)
+  double ambient_e_ = 0.0, dark_e_ = 0.0;  // of every bin
 };
 
 /// How well any code at all can do on a camera, in a number of exposures: below every
 /// CramerRaoBound of a code whose harmonics the camera's arms limit, and 0 without impulse
-/// responses.
+/// responses. Of rows, what photons recorded one by one tell, without read noise.
 /// @see docs/bounds.md for derivation and assumptions
 class ReceiverBound {
  public:
@@ -111,6 +139,7 @@ class ReceiverBound {
  private:
   double range_m_;
   int taps_;
+  bool has_rows_;
   bool drain_;
   double peak_factor_;
   double sensitivity_;  // of the most sensitive tap

@@ -62,12 +62,14 @@ auto fields_of(ConstOrNot<EvaluateOptions> auto& o) {
 /// Depth error at one operating point.
 struct PointDepthError {
   OperatingPoint point;
-  std::int64_t trials = 0;              ///< made
-  Estimate linear_mde_m;                ///< mean |decoded - true|
-  Estimate circular_mde_m;              ///< mean of the shorter way round the range
-  Estimate outlier_rate;                ///< share of circular errors beyond the threshold
-  double cramer_rao_mae_m = 0.0;        ///< CramerRaoBound of the code
-  double receiver_bound_mae_m = 0.0;    ///< ReceiverBound of the camera, with the code's exposures
+  std::int64_t trials = 0;        ///< made
+  Estimate linear_mde_m;          ///< mean |decoded - true|
+  Estimate circular_mde_m;        ///< mean of the shorter way round the range
+  Estimate outlier_rate;          ///< share of circular errors beyond the threshold
+  double cramer_rao_mae_m = 0.0;  ///< CramerRaoBound of the code
+  /// ReceiverBound of the camera, with the code's exposures; of rows, HistogramBound of their
+  /// light.
+  double receiver_bound_mae_m = 0.0;
   double direct_tof_bound_mae_m = 0.0;  ///< DirectTofBound of the camera's light; 0: there is none
 };
 /// A bound as tables of numbers hold it: not a number where it bounds nothing, which is 0.
@@ -134,10 +136,11 @@ auto fields_of(ConstOrNot<DepthErrorReport> auto& r) {
 /// Trial t of point p draws from the stream (seed, p, t) alone: its depth, uniform on the t-th of
 /// `trials` equal slices of the range, its albedo if that is uniform, and its noise. Codes are so
 /// compared on the same depths. Noise is normal or Poisson as the sensor says, of the variance of
-/// that depth. Where all that follows is linear and ZNCC decodes, normal noise is drawn in the
-/// plane that ZNCC looks at, with the covariance it has there: the same distribution from fewer
-/// numbers. Standard errors come from the differences of trials in neighbouring slices; they hold
-/// for the sliced depths (and err on the large side).
+/// that depth; of rows it is drawn in every time bin, or normal with their covariance. Where all
+/// that follows is linear and ZNCC decodes, normal noise is drawn in the plane that ZNCC looks at,
+/// with the covariance it has there: the same distribution from fewer numbers. Standard errors come
+/// from the differences of trials in neighbouring slices; they hold for the sliced depths (and err
+/// on the large side).
 ///
 /// With a target, a point gets further rounds of trials, each sliced by itself, at least half as
 /// many again as it has. Where the error is linear, as many are made as the wraps foreseen from the

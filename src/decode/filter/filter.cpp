@@ -34,6 +34,7 @@ void FilterOptions::validate() const { check_fields(*this, "FilterOptions::"); }
 Filter::Filter(DecodingTable table, const FilterOptions& options) {
   options.validate();
   table.validate();
+  require_exposures(table, "a filter");
   const AmbientProjection projection(table);
   plan_ = std::make_unique<const Plan>(std::move(table), options, projection);
 }

@@ -14,6 +14,7 @@ void TimeFilterOptions::validate() const { check_fields(*this, "TimeFilterOption
 TimeFilter::TimeFilter(const DecodingTable& table, const TimeFilterOptions& options) {
   options.validate();
   table.validate();
+  require_exposures(table, "a filter in time");
   state_ = std::make_unique<State>(table, options, AmbientProjection(table));
 }
 TimeFilter::~TimeFilter() = default;

@@ -21,8 +21,10 @@ using PerMeasurement = std::array<double, max_measurements>;
 }  // namespace
 
 struct LikelihoodDecoder::Plan {
-  Plan(DecodingTable table_, const DecodeOptions& options_, const AmbientProjection& projection)
-      : table(std::move(table_)), options(options_), scale(table), search(table, projection) {}
+  /// @param white  whitened(table_)
+  Plan(DecodingTable table_, const DecodeOptions& options_, const DecodingTable& white,
+       const AmbientProjection& projection)
+      : table(std::move(table_)), options(options_), scale(table), search(white, projection) {}
 
   DecodingTable table;
   DecodeOptions options;
@@ -41,8 +43,9 @@ struct LikelihoodDecoder::Plan {
 LikelihoodDecoder::LikelihoodDecoder(DecodingTable table, const DecodeOptions& options) {
   options.validate();
   table.validate();
-  const AmbientProjection projection(table);
-  plan_ = std::make_unique<const Plan>(std::move(table), options, projection);
+  const DecodingTable white = whitened(table);
+  const AmbientProjection projection(white);
+  plan_ = std::make_unique<const Plan>(std::move(table), options, white, projection);
 }
 LikelihoodDecoder::~LikelihoodDecoder() = default;
 LikelihoodDecoder::LikelihoodDecoder(LikelihoodDecoder&&) noexcept = default;
@@ -84,12 +87,19 @@ DepthImage LikelihoodDecoder::decode(const RawFrames& raw, int frame,
   });
 }
 
-/// False where a measurement is NaN or infinite.
+/// Whitened electrons, of rows. False where a measurement is NaN or infinite.
 bool LikelihoodDecoder::Plan::read(const float* raw, PerMeasurement& electrons) const {
   bool finite = true;
   for (int k = 0; k < table.measurements(); ++k) {
     electrons[static_cast<std::size_t>(k)] = scale.electrons(raw[k], k);
     finite = finite && std::isfinite(raw[k]);
+  }
+  if (!table.has_rows()) return finite;
+  const PerMeasurement of_rows = electrons;
+  for (int i = 0; i < table.measurements(); ++i) {
+    double& white = electrons[static_cast<std::size_t>(i)] = 0.0;
+    for (int k = 0; k < table.measurements(); ++k)
+      white += table.whitening(i, k) * of_rows[static_cast<std::size_t>(k)];
   }
   return finite;
 }

@@ -24,7 +24,9 @@ LikelihoodModel::LikelihoodModel(const DecodingTable& table, const AmbientProjec
       unknowns_(projection.ambient.isZero(0.0) ? 2 : 3),
       ambient_(projection.ambient),
       gated_(projection.gated),
-      noise_(table) {}
+      noise_(table) {
+  if (table.covariance.ambient.size() > 0) correlated_.emplace(table.covariance);
+}
 
 LikelihoodPixel LikelihoodModel::pixel(const double* electrons, double variance_share) const {
   double size = 0.0;
@@ -34,6 +36,7 @@ LikelihoodPixel LikelihoodModel::pixel(const double* electrons, double variance_
 
 double LikelihoodModel::cost(const LikelihoodPixel& pixel, std::int32_t bin,
                              const Quadratic::Vector& light) const {
+  if (correlated_) return correlated_cost(pixel, bin, light);
   const std::int32_t to = next(bin);
   const double *x0 = gated_.row(bin).data(), *x1 = gated_.row(to).data();
   const double *s0 = noise_.shot_gated.row(bin).data(), *s1 = noise_.shot_gated.row(to).data();
@@ -74,6 +77,7 @@ BoundedMinimum LikelihoodModel::least_squares(const LikelihoodPixel& pixel, std:
 /// the expected value of its second derivatives.
 Quadratic LikelihoodModel::scoring(const LikelihoodPixel& pixel, std::int32_t bin,
                                    const Quadratic::Vector& light) const {
+  if (correlated_) return correlated_scoring(pixel, bin, light);
   const std::int32_t to = next(bin);
   const double *x0 = gated_.row(bin).data(), *x1 = gated_.row(to).data();
   const double *s0 = noise_.shot_gated.row(bin).data(), *s1 = noise_.shot_gated.row(to).data();
@@ -102,6 +106,60 @@ Quadratic LikelihoodModel::scoring(const LikelihoodPixel& pixel, std::int32_t bi
   }
   q.h[0][1] = q.h[1][0], q.h[0][2] = q.h[2][0], q.h[1][2] = q.h[2][1];
   // From steps to light itself, whose bounds are at 0.
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) q.g[i] += q.h[i][j] * light[j];
+  return q;
+}
+
+double LikelihoodModel::correlated_cost(const LikelihoodPixel& pixel, std::int32_t bin,
+                                        const Quadratic::Vector& light) const {
+  const std::int32_t to = next(bin);
+  CorrelatedNoise::Factor covariance;
+  correlated_->at(bin, to, light, pixel.min_variance_e2, pixel.variance_share, covariance);
+  const double *x0 = gated_.row(bin).data(), *x1 = gated_.row(to).data();
+  CorrelatedNoise::Column residual;
+  for (int k = 0; k < measurements_; ++k)
+    residual[k] = pixel.electrons[k] - light[0] * x0[k] - light[1] * x1[k] - light[2] * ambient_[k];
+  const double log_determinant = covariance.factorize(measurements_);
+  covariance.whiten(measurements_, residual);
+  // As of independent measurements, a smaller share of noise leaves the logarithms as they are.
+  return residual.head(measurements_).squaredNorm() + log_determinant -
+         measurements_ * std::log(pixel.variance_share);
+}
+
+Quadratic LikelihoodModel::correlated_scoring(const LikelihoodPixel& pixel, std::int32_t bin,
+                                              const Quadratic::Vector& light) const {
+  const std::int32_t to = next(bin);
+  CorrelatedNoise::Factor covariance;
+  correlated_->at(bin, to, light, pixel.min_variance_e2, pixel.variance_share, covariance);
+  covariance.factorize(measurements_);
+  // Everything in coordinates in which the covariance is 1.
+  const std::array rows{gated_.row(bin).data(), gated_.row(to).data(), ambient_.data()};
+  std::array<CorrelatedNoise::Column, 3> mean;
+  std::array<CorrelatedNoise::Matrix, 3> slope;
+  CorrelatedNoise::Column residual;
+  for (int k = 0; k < measurements_; ++k) residual[k] = pixel.electrons[k];
+  for (std::size_t i = 0; i < 3; ++i)
+    for (int k = 0; k < measurements_; ++k) {
+      mean[i][k] = rows[i][k];
+      residual[k] -= light[i] * rows[i][k];
+    }
+  covariance.whiten(measurements_, residual);
+  for (std::size_t i = 0; i < 3; ++i) {
+    covariance.whiten(measurements_, mean[i]);
+    slope[i] = correlated_->slope(static_cast<int>(i), i == 0 ? bin : to, pixel.variance_share);
+    covariance.whiten(measurements_, slope[i]);
+  }
+  const auto count = measurements_;
+  const auto r = residual.head(count);
+  Quadratic q;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto by = slope[i].topLeftCorner(count, count);
+    q.g[i] = mean[i].head(count).dot(r) + 0.5 * (r.dot(by * r) - by.trace());
+    for (std::size_t j = 0; j <= i; ++j)
+      q.h[i][j] = q.h[j][i] = mean[i].head(count).dot(mean[j].head(count)) +
+                              0.5 * by.cwiseProduct(slope[j].topLeftCorner(count, count)).sum();
+  }
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) q.g[i] += q.h[i][j] * light[j];
   return q;
@@ -164,17 +222,34 @@ PixelEstimate LikelihoodModel::estimate(const LikelihoodPixel& pixel, const Chor
   const double* before = gated_.row(previous(from)).data();
   const double* after = gated_.row(next(to)).data();
   constexpr int depth = 0, light = 1;
+  // Per bin; at a bin, the mean of both sides.
+  const auto slope_of = [&](int k) {
+    return t <= 0.0   ? 0.5 * (x1[k] - before[k])
+           : t >= 1.0 ? 0.5 * (after[k] - x0[k])
+                      : x1[k] - x0[k];
+  };
   Quadratic information;
-  for (int k = 0; k < measurements_; ++k) {
+  if (correlated_) {
+    CorrelatedNoise::Factor covariance;
+    correlated_->at(from, to, fit.light, pixel.min_variance_e2, pixel.variance_share, covariance);
+    covariance.factorize(measurements_);
+    std::array<CorrelatedNoise::Column, 3> by;
+    for (int k = 0; k < measurements_; ++k) {
+      by[0][k] = signal * slope_of(k);
+      by[1][k] = (1 - t) * x0[k] + t * x1[k];
+      by[2][k] = ambient_[k];
+    }
+    for (auto& column : by) covariance.whiten(measurements_, column);
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        information.h[i][j] = by[i].head(measurements_).dot(by[j].head(measurements_));
+  }
+  for (int k = 0; k < measurements_ && !correlated_; ++k) {
     const double variance =
         std::max(pixel.min_variance_e2, fit.light[0] * s0[k] + fit.light[1] * s1[k] +
                                             fit.light[2] * noise_.shot_ambient[k] +
                                             noise_.floor_variance_e2[k]);
-    // Per bin; at a bin, the mean of both sides.
-    const double slope = t <= 0.0   ? 0.5 * (x1[k] - before[k])
-                         : t >= 1.0 ? 0.5 * (after[k] - x0[k])
-                                    : x1[k] - x0[k];
-    const std::array by{signal * slope, (1 - t) * x0[k] + t * x1[k], ambient_[k]};
+    const std::array by{signal * slope_of(k), (1 - t) * x0[k] + t * x1[k], ambient_[k]};
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j)
         information.h[i][j] += by[i] * by[j] / (pixel.variance_share * variance);

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "decode/expected_noise.hpp"
+#include "decode/likelihood/correlated_noise.hpp"
 #include "decode/multipath/shared/bounded_quadratic.hpp"
 #include "decode/output/pixel_model.hpp"
 
@@ -31,9 +34,13 @@ struct ChordFit {
   bool is_at_next() const { return light[0] == 0.0 && light[1] > 0.0; }
 };
 
-/// The likelihood of depth, signal and ambient light on the chords between bins.
+/// The likelihood of depth, signal and ambient light on the chords between bins. Measurements of
+/// correlated noise come whitened, with the covariance that is left of it: then all of
+///   cost = (y - mu)^T C^-1 (y - mu) + log det C
+/// counts, with C linear in light as the variances are, and held up on its diagonal as they are.
 class LikelihoodModel {
  public:
+  /// @param table  whitened(), where measurements are rows
   LikelihoodModel(const DecodingTable& table, const AmbientProjection& projection);
 
   /// The least variance taken for a pixel: electrons are whole, so that little light seen where
@@ -63,12 +70,17 @@ class LikelihoodModel {
   std::int32_t previous(std::int32_t bin) const { return bin > 0 ? bin - 1 : samples_ - 1; }
   Quadratic scoring(const LikelihoodPixel& pixel, std::int32_t bin,
                     const Quadratic::Vector& light) const;
+  double correlated_cost(const LikelihoodPixel& pixel, std::int32_t bin,
+                         const Quadratic::Vector& light) const;
+  Quadratic correlated_scoring(const LikelihoodPixel& pixel, std::int32_t bin,
+                               const Quadratic::Vector& light) const;
 
   int samples_, measurements_;
   int unknowns_;  // 2 where ambient light cannot be seen, else 3
   Eigen::VectorXd ambient_;
   RowMajorMatrix gated_;  // x = T o chi (N, K)
   ExpectedNoise noise_;
+  std::optional<CorrelatedNoise> correlated_;  // none: measurements are independent
 };
 
 }  // namespace tofsmith

@@ -377,6 +377,7 @@ std::int64_t mark_mixed_pixels(const DecodingTable& table, const RawView& raw, M
                                const DecodedView& decoded, const PixelMaps& maps,
                                const Progress& progress, const UnfilteredPixels& unfiltered) {
   table.validate();
+  require_exposures(table, "a search for mixed pixels");
   check(table, raw, decoded, maps, unfiltered);
   report(progress, 0.0, "looking for mixed pixels");
   const Surroundings around(decoded, unfiltered.mixed, raw.height, raw.width, table.range_m);

@@ -63,6 +63,7 @@ double explained(double along, double own) {
 
 const DecodingTable& checked(const DecodingTable& table, const MultipathOptions& options) {
   table.validate();
+  require_exposures(table, "multipath");
   options.validate(table.range_m);
   return table;
 }

@@ -178,7 +178,7 @@ OutputKernel::OutputKernel(const DecodingTable& table, const AmbientProjection& 
   constants_.range_m = static_cast<float>(table.range_m);
   constants_.sees_ambient = ambient2 > 0.0;
   if (constants_.sees_ambient) constants_.ambient_weight = in_floats(projection.ambient / ambient2);
-  const RowMajorMatrix basis = projection.basis;
+  const RowMajorMatrix basis = projection.noise_basis;
   constants_.basis.assign(basis.data(), basis.data() + basis.size());
   constants_.shot_ambient = in_floats(noise.shot_ambient);
   constants_.floor_noise_e2 = in_floats(noise.floor_variance_e2);

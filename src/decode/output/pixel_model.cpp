@@ -20,7 +20,11 @@ double dot(const double* a, const double* b, int size) {
 }  // namespace
 
 PixelModel::PixelModel(const DecodingTable& table, const AmbientProjection& projection)
-    : samples_(table.samples()), projection_(projection), basis_(projection.basis), noise_(table) {
+    : samples_(table.samples()),
+      projection_(projection),
+      basis_(projection.basis),
+      noise_basis_(projection.noise_basis),
+      noise_(table) {
   own_ = projection.curve.rowwise().squaredNorm();
   with_next_.resize(samples_);
   for (std::int32_t n = 0; n < samples_; ++n)
@@ -125,7 +129,7 @@ PixelEstimate PixelModel::estimate(const double* electrons, const double* plane,
 double PixelModel::deviation_along(const double* difference, const double* variance_e2) const {
   double variance = 0.0;
   for (int k = 0; k < measurements(); ++k) {
-    const double weight = dot(basis_.row(k).data(), difference, rank());
+    const double weight = dot(noise_basis_.row(k).data(), difference, rank());
     variance += weight * weight * variance_e2[k];
   }
   return std::sqrt(variance);

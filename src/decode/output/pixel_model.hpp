@@ -75,7 +75,8 @@ class PixelModel {
 
   int samples_;
   AmbientProjection projection_;
-  RowMajorMatrix basis_;  // V, row by row
+  RowMajorMatrix basis_;        // from electrons, row by row
+  RowMajorMatrix noise_basis_;  // from what has the noise
   ExpectedNoise noise_;
   Eigen::VectorXd own_;        // <p_j, p_j>
   Eigen::VectorXd with_next_;  // <p_j, p_{j+1}>

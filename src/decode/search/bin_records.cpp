@@ -96,7 +96,7 @@ class RecordBuilder {
 
   /// Variance of <weight, q>: per signal, per ambient light, and without light.
   Eigen::Vector3d noise_along(const Eigen::VectorXd& weight, const Eigen::VectorXd& shot) const {
-    const Eigen::VectorXd squares = (projection_.basis * weight).cwiseAbs2();
+    const Eigen::VectorXd squares = (projection_.noise_basis * weight).cwiseAbs2();
     Eigen::Vector3d noise;
     noise << squares.dot(shot), squares.dot(noise_.shot_ambient),
         squares.dot(noise_.floor_variance_e2);

@@ -89,6 +89,7 @@ struct UnwrapDecoder::Plan {
 UnwrapDecoder::UnwrapDecoder(DecodingTable table, const UnwrapOptions& options) {
   options.validate();
   table.validate();
+  require_exposures(table, "unwrap");
   const AmbientProjection projection(table);
   plan_ = std::make_unique<const Plan>(std::move(table), options, projection);
 }

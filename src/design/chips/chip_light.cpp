@@ -19,7 +19,7 @@ std::optional<BrokenRule> why_not_plain(const Camera& camera) {
     return broken("sensor.modulation_contrast", camera.sensor.modulation_contrast,
                   "must be 1 to search codes on a chip clock");
   if (camera.sensor.readout != Readout::separate)
-    return broken("sensor.readout", "difference",
+    return broken("sensor.readout", camera.sensor.readout == Readout::rows ? "rows" : "difference",
                   "must be separate to search codes on a chip clock");
   const auto& times = camera.exposure_s.each_s;
   if (std::any_of(times.begin(), times.end(),

@@ -35,6 +35,9 @@ FamilyOptions ideal_on(const Camera& camera) { return {.samples = camera.samples
 
 /// Why codes for these targets cannot be played at all, before time is spent on them.
 std::optional<BrokenRule> why_not_designable(const TargetSet& targets, const Camera& camera) {
+  if (camera.sensor.readout == Readout::rows)
+    return broken("sensor.readout", "rows",
+                  "must be separate or difference to factorize correlation functions");
   if (camera.sensor.taps > 2)
     return broken("sensor.taps", camera.sensor.taps,
                   "must be 1 or 2 to factorize correlation functions");

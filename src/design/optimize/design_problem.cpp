@@ -107,6 +107,8 @@ std::vector<LightLevel> levels_of(const Camera& camera,
 
 std::optional<BrokenRule> why_not_optimizable(const Camera& camera, int exposures) {
   if (exposures < 1 || exposures > 8) return broken("exposures", exposures, "must be in [1, 8]");
+  if (camera.sensor.readout == Readout::rows)
+    return broken("sensor.readout", "rows", "must be separate or difference to optimize codes");
   const bool difference = camera.sensor.readout == Readout::difference;
   const int measurements = difference ? exposures : exposures * camera.sensor.taps;
   const int fewest = difference ? 2 : 3;

@@ -53,11 +53,17 @@ CodeSet load_code(const std::string& name_or_path, const Camera& camera,
   if (name_or_path.empty())
     throw IoError("code", "found an empty name; expected a built-in family or a file");
   if (is_family(name_or_path)) return build_family(name_or_path, camera);
+  constexpr std::string_view between = ".npy,";
+  if (const std::size_t at = name_or_path.find(between); at != std::string::npos)
+    return read_rows(name_or_path.substr(0, at + between.size() - 1),
+                     name_or_path.substr(at + between.size()));
   std::error_code ignored;
   if (!std::filesystem::exists(name_or_path, ignored))
     throw IoError(name_or_path, fmt::format("there is no such file and no built-in family of that "
                                             "name{}",
                                             near_family(name_or_path)));
+  if (camera.sensor.readout == Readout::rows && lower_extension(name_or_path) == ".npz")
+    return read_rows(name_or_path);
   return read_code(name_or_path, {options.taps.value_or(camera.sensor.taps), options.tap_order});
 }
 

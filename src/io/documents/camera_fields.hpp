@@ -17,7 +17,8 @@ namespace tofsmith::camera_fields {
 
 inline constexpr EnumWords<NoiseModel, 2> noise_models("NoiseModel", "noise", "poisson",
                                                        "gaussian");
-inline constexpr EnumWords<Readout, 2> readouts("Readout", "readout", "separate", "difference");
+inline constexpr EnumWords<Readout, 3> readouts("Readout", "readout", "separate", "difference",
+                                                "rows");
 inline constexpr EnumWords<LensBlur::Kind, 3> blurs("LensBlur::Kind", "blur", "none", "gaussian",
                                                     "disc");
 

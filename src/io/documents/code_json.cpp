@@ -45,13 +45,13 @@ OrderedJson provenance_to_json(const Provenance& provenance) {
           {"residuals", provenance.residuals}, {"depth_error_m", provenance.depth_error_m}};
 }
 
-Waveform read_sampled(const JsonReader& json, int samples, double highest) {
+Waveform read_sampled(const JsonReader& json, int samples, double lowest, double highest) {
   json.only({"kind", "values"});
   const auto values =
       json.member("values").elements(static_cast<std::size_t>(samples), "as many as /samples says");
   Eigen::VectorXd read(samples);
   for (int n = 0; n < samples; ++n)
-    read[n] = values[static_cast<std::size_t>(n)].number(0.0, highest, tolerance);
+    read[n] = values[static_cast<std::size_t>(n)].number(lowest, highest, tolerance);
   return Waveform::sampled(std::move(read));
 }
 
@@ -77,8 +77,22 @@ Waveform read_binary(const JsonReader& json, double highest) {
 Waveform read_waveform(const JsonReader& json, int samples, double highest) {
   const JsonReader kind = json.member("kind");
   if (kind.text() == "binary") return read_binary(json, highest);
-  if (kind.text() == "sampled") return read_sampled(json, samples, highest);
+  if (kind.text() == "sampled") return read_sampled(json, samples, 0.0, highest);
   kind.mistyped("\"binary\" or \"sampled\"");
+}
+
+/// Weights of the rows of one exposure, (N, K).
+Eigen::MatrixXd read_rows(const JsonReader& json, int samples, int count) {
+  constexpr double any = std::numeric_limits<double>::max();
+  const auto list = json.elements(static_cast<std::size_t>(count), "as many as /taps says");
+  Eigen::MatrixXd rows(samples, count);
+  for (int k = 0; k < count; ++k) {
+    const JsonReader& row = list[static_cast<std::size_t>(k)];
+    if (const JsonReader kind = row.member("kind"); kind.text() != "sampled")
+      kind.mistyped("\"sampled\", as of rows");
+    rows.col(k) = read_sampled(row, samples, -any, any).samples();
+  }
+  return rows;
 }
 
 Provenance read_provenance(const JsonReader& json) {
@@ -127,6 +141,7 @@ std::string code_to_json(const CodeSet& code) {
     modulation.push_back(waveform_to_json(code.modulation(e)));
   for (int i = 0; i < code.measurements(); ++i)
     demodulation.push_back(waveform_to_json(code.demodulation(i)));
+  if (code.is_rows()) json["rows"] = true;
   json["modulation"] = std::move(modulation);
   json["demodulation"] = std::move(demodulation);
   json["provenance"] = provenance_to_json(code.provenance);
@@ -137,7 +152,7 @@ CodeSet parse_code_json(std::string_view text, std::string_view file) {
   const nlohmann::json document = parse_json(text, file);
   const JsonReader json(document, file);
   check_format(json);
-  json.only({"format", "version", "name", "samples", "exposures", "taps", "modulation",
+  json.only({"format", "version", "name", "samples", "exposures", "taps", "rows", "modulation",
              "demodulation", "provenance"});
   const std::string name = json.member("name").text();
   const int samples = json.member("samples").integer(2, max_samples);
@@ -153,11 +168,20 @@ CodeSet parse_code_json(std::string_view text, std::string_view file) {
   };
   constexpr double any = std::numeric_limits<double>::infinity();
   auto modulation = read_list("modulation", exposures, "as many as /exposures says", any);
-  auto demodulation =
-      read_list("demodulation", exposures * taps, "/exposures x /taps functions", 1.0);
+  const auto rows = json.optional_member("rows");
+  const bool is_rows = rows && rows->boolean();
+  std::vector<Waveform> demodulation;
+  Eigen::MatrixXd weights;
+  if (is_rows) {
+    if (exposures != 1) json.member("exposures").mistyped("1, as of rows");
+    weights = read_rows(json.member("demodulation"), samples, taps);
+  } else {
+    demodulation = read_list("demodulation", exposures * taps, "/exposures x /taps functions", 1.0);
+  }
   try {
-    CodeSet code =
-        CodeSet::create(name, samples, taps, std::move(modulation), std::move(demodulation));
+    CodeSet code = is_rows ? CodeSet::create_rows(name, std::move(modulation.front()), weights)
+                           : CodeSet::create(name, samples, taps, std::move(modulation),
+                                             std::move(demodulation));
     if (const auto provenance = json.optional_member("provenance"))
       code.provenance = read_provenance(*provenance);
     return code;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/shared/random.hpp"
@@ -16,7 +17,9 @@ class PixelCapture {
  public:
   PixelCapture(const ForwardModel& model, const Camera& camera);
 
-  int measurements() const { return noise_.measurements(correlation_.tap_values()); }
+  int measurements() const {
+    return rows_ ? static_cast<int>(rows_->rows()) : noise_.measurements(correlation_.tap_values());
+  }
   int tap_values() const { return correlation_.tap_values(); }
 
   /// @param depth_m  wraps at the range; NaN = nothing returns, and signal_e_per_s is 0
@@ -43,6 +46,7 @@ class PixelCapture {
   FineCorrelation correlation_;
   PixelNoise noise_;
   Eigen::VectorXd exposure_s_, ambient_gain_;  // of the tap values
+  std::optional<Eigen::MatrixXd> rows_;        // (K, N), where they are read out
 };
 
 }  // namespace tofsmith

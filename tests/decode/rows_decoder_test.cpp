@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "core/shared/random.hpp"
+#include "rows_setup.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/decode/decode_method.hpp"
+
+namespace tofsmith {
+namespace {
+
+constexpr int samples = 60;
+
+/// Rows of a code, and noisy pixels of them: counts of every time bin, weighed.
+struct RowsSetup {
+  explicit RowsSetup(const char* name, double signal_e = 2e3, double ambient_e = 1e3)
+      : camera(rows_camera(samples, signal_e, ambient_e)),
+        model(build_family(name, camera), camera),
+        table(make_decoding_table(model, camera)),
+        weights(model.readout().transpose()),
+        light(samples, samples) {
+    for (int z = 0; z < samples; ++z) light.col(z) = bins_e(model, z, 1.0, 0.0);
+  }
+
+  /// Expected light of every time bin, on the chords between depths.
+  Eigen::VectorXd bins(double depth_bin, double signal, double ambient) const {
+    const int from = static_cast<int>(depth_bin), to = (from + 1) % samples;
+    const double t = depth_bin - from;
+    return (signal * ((1 - t) * light.col(from) + t * light.col(to))).array() + ambient / samples;
+  }
+  /// C^T diag(E h) C.
+  Eigen::MatrixXd covariance(const Eigen::VectorXd& bins_e) const {
+    return weights.transpose() * bins_e.asDiagonal() * weights;
+  }
+  Eigen::VectorXf pixel(double depth_bin, double signal, double ambient, std::uint64_t seed) const {
+    RandomStream random(seed, 0, 0);
+    Eigen::VectorXd counts = bins(depth_bin, signal, ambient);
+    for (double& value : counts) value = random.poisson(value);
+    return (weights.transpose() * counts).cast<float>();
+  }
+
+  Camera camera;
+  ForwardModel model;
+  DecodingTable table;
+  Eigen::MatrixXd weights;  // C (N, K)
+  Eigen::MatrixXd light;    // of bin n from depth z, (N, N)
+};
+
+constexpr const char* names[] = {"fourier-k6", "hamiltonian-k4", "histogram-k5"};
+
+/// Correlations with every depth in the words of the definition: centred by ambient light, and in
+/// coordinates in which the mean covariance at the nominal light is white.
+class CorrelationByDefinition {
+ public:
+  explicit CorrelationByDefinition(const RowsSetup& setup) {
+    const OperatingPoint nominal = setup.camera.operating.middle();
+    Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(setup.weights.cols(), setup.weights.cols());
+    for (int z = 0; z < samples; ++z)
+      mean += setup.covariance(setup.bins(z, nominal.signal_e_per_s, nominal.ambient_e_per_s));
+    const Eigen::MatrixXd inverse = (mean / samples).inverse();
+    const Eigen::VectorXd ambient = setup.weights.transpose() * Eigen::VectorXd::Ones(samples);
+    for (int z = 0; z < samples; ++z) {
+      Eigen::VectorXd x = setup.weights.transpose() * setup.light.col(z);
+      if (ambient.norm() > 1e-6 * setup.weights.norm())
+        x -= x.dot(inverse * ambient) / ambient.dot(inverse * ambient) * ambient;
+      references_.push_back(inverse * x / std::sqrt(x.dot(inverse * x)));
+    }
+  }
+
+  int best(const Eigen::VectorXd& y) const {
+    int best = 0;
+    for (int z = 1; z < samples; ++z)
+      if (references_[static_cast<std::size_t>(z)].dot(y) >
+          references_[static_cast<std::size_t>(best)].dot(y))
+        best = z;
+    return best;
+  }
+
+ private:
+  std::vector<Eigen::VectorXd> references_;
+};
+
+TEST(RowsDecoder, FindsTheBinOfTheDefinition) {
+  for (const char* name : names) {
+    const RowsSetup setup(name);
+    const Decoder decoder(setup.table);
+    const CorrelationByDefinition definition(setup);
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+      const Eigen::VectorXf raw = setup.pixel(static_cast<double>(seed) * 0.97, 100, 300, seed);
+      std::int32_t found = 0;
+      decoder.decode_bins(raw.data(), 1, &found);
+      EXPECT_EQ(found, definition.best(raw.cast<double>())) << name << " " << seed;
+    }
+  }
+}
+
+TEST(RowsDecoder, RecoversEveryDepthWithoutNoise) {
+  for (const char* name : names)
+    for (const DecodeMethod method : {DecodeMethod::zncc, DecodeMethod::ml}) {
+      const RowsSetup setup(name);
+      const AnyDecoder decoder = make_decoder(method, setup.table);
+      for (int depth_bin = 0; depth_bin < samples; ++depth_bin) {
+        const Eigen::VectorXf raw =
+            (setup.weights.transpose() * setup.bins(depth_bin, 800, 400)).cast<float>();
+        double found = 0.0;
+        std::visit([&](const auto& d) { d.decode_depth_bins(raw.data(), 1, &found); }, decoder);
+        EXPECT_LT(std::abs(circular_difference(found, depth_bin, samples)), 2e-2) << name;
+      }
+    }
+}
+
+/// (y - mu)^T Sigma^-1 (y - mu) + log det Sigma.
+double cost_by_definition(const RowsSetup& setup, const Eigen::VectorXd& y, double depth_bin,
+                          double signal, double ambient) {
+  const Eigen::VectorXd bins = setup.bins(depth_bin, signal, ambient);
+  const Eigen::MatrixXd covariance = setup.covariance(bins);
+  const Eigen::VectorXd residual = y - setup.weights.transpose() * bins;
+  return residual.dot(covariance.inverse() * residual) + std::log(covariance.determinant());
+}
+
+TEST(RowsDecoder, NothingIsMoreLikelyThanWhatMlFinds) {
+  for (const char* name : {"fourier-k6", "hamiltonian-k4"}) {
+    const RowsSetup setup(name, 500, 300);
+    const LikelihoodDecoder decoder(setup.table);
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+      const double truth = 9.37 * static_cast<double>(seed);
+      const Eigen::VectorXf raw = setup.pixel(truth, 500, 300, seed);
+      const Eigen::VectorXd y = raw.cast<double>();
+      const DepthImage image =
+          decoder.decode(RawFrames{.frames = 1,
+                                   .height = 1,
+                                   .width = 1,
+                                   .measurements = int(raw.size()),
+                                   .values = std::vector<float>(raw.begin(), raw.end())});
+      // Neither code sees ambient light; the nominal one is taken.
+      ASSERT_TRUE(std::isnan(image.ambient_e_per_s(0, 0)));
+      const double own = cost_by_definition(setup, y, image.depth_m(0, 0) / setup.table.bin_m(),
+                                            image.signal_e_per_s(0, 0), 300);
+      for (double z = 0.0; z < samples; z += 0.25)
+        for (double signal = 100; signal <= 900; signal += 100)
+          EXPECT_GT(cost_by_definition(setup, y, z, signal, 300), own - 1e-2)
+              << name << " " << seed << " " << z << " " << signal;
+    }
+  }
+}
+
+/// Predicted over actual deviation of many pixels of one depth.
+template <typename AnyDecoder>
+double deviation_ratio(const RowsSetup& setup, const AnyDecoder& decoder) {
+  const OperatingPoint light = setup.camera.operating.middle();
+  constexpr int pixels = 400;
+  constexpr double depth_bin = 20.4;
+  RawFrames raw{.frames = 1, .height = 1, .width = pixels, .measurements = 6, .values = {}};
+  for (int i = 0; i < pixels; ++i) {
+    const Eigen::VectorXf y = setup.pixel(depth_bin, light.signal_e_per_s, light.ambient_e_per_s,
+                                          static_cast<std::uint64_t>(i));
+    raw.values.insert(raw.values.end(), y.begin(), y.end());
+  }
+  const DepthImage image = decoder.decode(raw);
+  double square = 0.0, predicted = 0.0;
+  for (int i = 0; i < pixels; ++i) {
+    square += std::pow(image.depth_m(0, i) - depth_bin * setup.table.bin_m(), 2);
+    predicted += std::pow(image.predicted_standard_deviation_m(0, i), 2);
+  }
+  return std::sqrt(predicted / square);
+}
+
+TEST(RowsDecoder, PredictedDeviationsAreThoseOfTheNoise) {
+  // Of 400 pixels a deviation is known to 4 %.
+  const RowsSetup signal("fourier-k6", 5e3, 1e3), ambient("fourier-k6", 2e4, 2e5);
+  EXPECT_NEAR(deviation_ratio(signal, LikelihoodDecoder(signal.table)), 1.0, 0.15);
+  EXPECT_NEAR(deviation_ratio(ambient, LikelihoodDecoder(ambient.table)), 1.0, 0.15);
+  EXPECT_NEAR(deviation_ratio(ambient, Decoder(ambient.table)), 1.0, 0.15);
+  // Where the signal makes the noise, its covariance differs from depth to depth: zncc, which
+  // neglects that, predicts too much.
+  EXPECT_NEAR(deviation_ratio(signal, Decoder(signal.table)), 1.25, 0.25);
+}
+
+TEST(RowsDecoder, OtherMethodsSayThatTheyTakeNoRows) {
+  const RowsSetup setup("fourier-k6");
+  for (const DecodeMethod method :
+       {DecodeMethod::unwrap, DecodeMethod::two_return, DecodeMethod::tail})
+    EXPECT_THROW(make_decoder(method, setup.table), InvalidArgument) << name_of(method);
+}
+
+}  // namespace
+}  // namespace tofsmith
