@@ -42,12 +42,20 @@ fi
 [[ -x "$build/apps/tofsmith" ]] || tofsmith_die "there is no $build/apps/tofsmith"
 [[ -d "$build/python/tofsmith" ]] || tofsmith_die "there is no $build/python/tofsmith"
 
+lab=''
+if [[ -f build-lab/lab.html ]]; then
+  lab="$root/build-lab/lab.html"
+else
+  echo "The site goes without the lab's page: scripts/lab.sh builds it"
+fi
+
 echo "Making the documentation in $output/html"
 rm -rf "$output/html" docs/generated
 mkdir -p "$output/html/cpp"
 TOFSMITH_CPP_PAGES="$output/html/cpp" doxygen docs/Doxyfile
 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$build/python" python3 -m sphinx -b html -n -W --keep-going \
-  -E -q -d "$output/doctrees" -D tofsmith_tool="$build/apps/tofsmith" docs "$output/html"
+  -E -q -d "$output/doctrees" -D tofsmith_tool="$build/apps/tofsmith" -D tofsmith_lab="$lab" \
+  docs "$output/html"
 python3 -B scripts/check_links.py "$output/html"
 
 echo "Done. The first page is $output/html/index.html"
