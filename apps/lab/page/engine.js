@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// Workers that answer calls: a few share the calls of the page, one of its own designs.
+
+/** Why a call has no answer: a newer one of the same lane took its place, or it was cancelled. */
+export class Outdated extends Error {}
+
+/** What the engine says is wrong, as the command would print it; `field` names the key at fault. */
+export class Refused extends Error {
+  constructor({message, field}) {
+    super(message);
+    this.field = field;
+  }
+}
+
+// (module (func (result v128) i32.const 0 i8x16.splat i8x16.popcnt)): valid only where SIMD is known.
+const simdModule = Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0,
+  65, 0, 253, 15, 253, 98, 11);
+
+/** What this browser lacks, as a sentence; null if nothing. */
+export function missingFeature() {
+  if (typeof WebAssembly !== 'object') return 'This browser has no WebAssembly, which the lab computes with.';
+  if (!WebAssembly.validate(simdModule))
+    return 'This browser has WebAssembly without SIMD, which the lab needs. Browsers since 2023 have it: Chromium 91, Firefox 89, Safari 16.4.';
+  if (typeof DecompressionStream !== 'function' || typeof Worker !== 'function')
+    return 'This browser is too old for the lab: Chromium 123, Firefox 120 and Safari 17.5, of 2024, will do.';
+  return null;
+}
+
+const decoded = (base64) => Uint8Array.fromBase64
+  ? Uint8Array.fromBase64(base64) : Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+
+/** Compiles the packed engine once; gives a function that starts a worker with it. */
+export async function packedEngine() {
+  const text = (id) => document.getElementById(id)?.textContent ?? '';
+  const address = URL.createObjectURL(new Blob([text('lab-worker')], {type: 'text/javascript'}));
+  const base64 = text('lab-wasm');
+  let start = null;
+  if (base64) {
+    const stream = new Blob([decoded(base64)]).stream().pipeThrough(new DecompressionStream('gzip'));
+    start = await WebAssembly.compile(await new Response(stream).arrayBuffer());
+    document.getElementById('lab-wasm').textContent = '';
+  }
+  return () => {
+    const worker = new Worker(address);
+    worker.postMessage({start});
+    return worker;
+  };
+}
+
+/** A few workers and the calls that wait for one. */
+export class Engine {
+  #startWorker;
+  #workers = [];
+  #waiting = [];
+  #nextId = 1;
+
+  /** @param startWorker  gives a new worker; @param size  how many there are */
+  constructor(startWorker, size) {
+    this.#startWorker = startWorker;
+    for (let i = 0; i < size; ++i) this.#workers.push(this.#started({isSwift: size > 1 && i === 0}));
+  }
+
+  /**
+   * Asks for an answer; a newer call of the same lane makes this one outdated.
+   * @param options  lane; isSlow: may take more than a moment, and leaves one worker free; isLong: is
+   *                 stopped when outdated, too; rank: lower ones go first; onProgress
+   * @returns {Promise<object>} the answer, with typed arrays in place of their descriptions
+   */
+  call(name, values, options = {}) {
+    const {lane} = options;
+    if (lane) this.cancel(lane);
+    return new Promise((resolve, reject) => {
+      const call = {message: {...values, id: this.#nextId++, call: name}, resolve, reject, rank: 0, ...options};
+      const place = this.#waiting.findIndex((other) => other.rank > call.rank);
+      this.#waiting.splice(place < 0 ? this.#waiting.length : place, 0, call);
+      this.#serve();
+    });
+  }
+
+  /** Drops what waits or runs in a lane; long calls are stopped at once. */
+  cancel(lane) {
+    for (const call of this.#waiting.filter((waiting) => waiting.lane === lane)) call.reject(new Outdated());
+    this.#waiting = this.#waiting.filter((waiting) => waiting.lane !== lane);
+    for (const worker of this.#workers)
+      if (worker.call?.lane === lane) {
+        worker.call.reject(new Outdated());
+        if (worker.call.isLong) this.#restart(worker);
+      }
+    this.#serve();
+  }
+
+  /** Whether nothing runs or waits. */
+  get isIdle() {
+    return !this.#waiting.length && this.#workers.every((worker) => !worker.call);
+  }
+
+  /** Stops everything. */
+  close() {
+    for (const worker of this.#workers) {
+      worker.call?.reject(new Outdated());
+      worker.thread.terminate();
+    }
+    this.#workers = [];
+    for (const call of this.#waiting) call.reject(new Outdated());
+    this.#waiting = [];
+  }
+
+  #started(worker) {
+    worker.call = null;
+    worker.isReady = false;
+    worker.thread = this.#startWorker();
+    worker.thread.onmessage = ({data}) => this.#heard(worker, data);
+    worker.thread.onerror = (event) => {
+      event.preventDefault();
+      this.#failed(worker, event.message || 'the engine stopped');
+    };
+    return worker;
+  }
+
+  #restart(worker) {
+    worker.thread.terminate();
+    this.#started(worker);
+  }
+
+  #failed(worker, message) {
+    const {call} = worker;
+    if (!worker.isReady) {  // it would fail again
+      worker.failure = message;
+      for (const waiting of this.#waiting.splice(0)) waiting.reject(new Error(message));
+      return;
+    }
+    this.#restart(worker);
+    call?.reject(new Error(message));
+    this.#serve();
+  }
+
+  #heard(worker, data) {
+    if (data.ready) worker.isReady = true;
+    const {call} = worker;
+    if (data.error && !worker.isReady) return this.#failed(worker, data.error.message);
+    if (call && data.id === call.message.id) {
+      if (data.progress) return call.onProgress?.(data.progress);
+      worker.call = null;
+      if (data.error?.fatal) this.#restart(worker);  // the engine's own fault: it cannot go on
+      if (data.error) call.reject(new Refused(data.error));
+      else call.resolve(withArrays(data.answer, data.arrays ?? {}));
+    }
+    this.#serve();
+  }
+
+  #serve() {
+    for (const worker of this.#workers) {
+      if (worker.failure && this.#waiting.length) {
+        for (const waiting of this.#waiting.splice(0)) waiting.reject(new Error(worker.failure));
+        return;
+      }
+      if (worker.call || !worker.isReady) continue;
+      const place = this.#waiting.findIndex((call) => !((call.isSlow || call.isLong) && worker.isSwift));
+      if (place < 0) continue;
+      worker.call = this.#waiting.splice(place, 1)[0];
+      worker.thread.postMessage(worker.call.message);
+    }
+  }
+}
+
+function withArrays(answer, arrays) {
+  const filled = {...answer};
+  for (const [key, value] of Object.entries(filled))
+    if (value && typeof value === 'object' && value.array in arrays)
+      filled[key] = {values: arrays[value.array], shape: value.shape};
+  return filled;
+}

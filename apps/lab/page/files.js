@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// Files that are dropped in or chosen: cameras as TOML, codes as JSON.
+
+import {announce, byId, notice} from './dom.js';
+import {askedCode} from './lab.js';
+
+/** Larger files are refused without a look into them. */
+export const maxFileBytes = 64 * 2 ** 20;
+
+const sizeText = (bytes) => (bytes >= 1e9 ? `${(bytes / 1e9).toFixed(1)} GB` : `${(bytes / 1e6).toFixed(1)} MB`);
+
+/** Reads dropped and chosen files into the lab. */
+export class Files {
+  constructor(lab) {
+    this.lab = lab;
+    const input = byId('files'), drop = byId('drop');
+    byId('open').addEventListener('click', () => input.click());
+    input.addEventListener('change', () => {
+      this.take([...input.files]);
+      input.value = '';
+    });
+    const holdsFiles = (event) => [...(event.dataTransfer?.types ?? [])].includes('Files');
+    addEventListener('dragenter', (event) => { if (holdsFiles(event)) drop.hidden = false; });
+    addEventListener('dragover', (event) => { if (holdsFiles(event)) event.preventDefault(); });
+    addEventListener('dragleave', (event) => { if (!event.relatedTarget) drop.hidden = true; });
+    addEventListener('drop', (event) => {
+      drop.hidden = true;
+      if (!holdsFiles(event)) return;
+      event.preventDefault();
+      this.take([...event.dataTransfer.files]);
+    });
+  }
+
+  /** Takes files one after the other; what is wrong with any is said once, together. */
+  async take(files) {
+    const problems = [];
+    for (const file of files) {
+      try {
+        await this.#takeOne(file);
+        announce(`${file.name} is read.`);
+      } catch (error) {
+        problems.push(`${file.name}: ${error.message}`);
+      }
+    }
+    notice(problems.join('\n'));
+  }
+
+  async #takeOne(file) {
+    if (file.size > maxFileBytes) throw new Error(`${sizeText(file.size)} is too large; cameras and codes are at most ${sizeText(maxFileBytes)}`);
+    if (file.size === 0) throw new Error('the file is empty');
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    if (bytes.subarray(0, 4096).includes(0)) throw new Error('neither a camera (TOML) nor a code (JSON): it is binary');
+    let text;
+    try {
+      text = new TextDecoder('utf-8', {fatal: true}).decode(bytes);
+    } catch {
+      throw new Error('neither a camera (TOML) nor a code (JSON): it is not UTF-8 text');
+    }
+    if (/^\s*\{/.test(text)) await this.#takeCode(file, text);
+    else await this.#takeCamera(file, text);
+  }
+
+  async #takeCode(file, text) {
+    const {camera, engine} = this.lab;
+    if (!camera) throw new Error('there is no camera yet to play it');
+    const answer = await engine.call('code', {camera: camera.toml, code: askedCode({file: text})});
+    this.lab.addCode({name: answer.name || file.name.replace(/(\.code)?\.json$/i, ''), file: text});
+  }
+
+  async #takeCamera(file, text) {
+    await this.lab.engine.call('camera', {camera: text, changes: []});
+    this.lab.store.change((state) => { state.camera = {file: text, file_name: file.name, changes: []}; });
+  }
+}

@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// The lab behind the page: its state, the camera and codes that follow from it, and who wants to know.
+
+import {newestOnly, Sharpener} from './pace.js';
+import {Outdated, Refused} from './engine.js';
+import {maxCodes} from './store.js';
+
+const quickTrials = 200, middleTrials = 2000;
+const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+
+/** What is wrong, for people; null where an answer only came too late. */
+export const problemText = (error) => (error instanceof Outdated ? null : error.message);
+
+/** What the engine is asked for a camera of the state. */
+export const cameraRequest = ({built_in, file, changes}) => ({...(file === undefined ? {built_in} : {camera: file}), changes});
+
+/** One of up to four codes: what was computed of it. */
+class Slot {
+  code = null;        // answer of `code`
+  evaluation = null;  // document of `evaluate`
+  problem = null;
+  key = null;
+}
+
+/** The lab. Listeners: camera(), code(i), evaluation(i), scene(), problem(i). */
+export class Lab {
+  slots = Array.from({length: maxCodes}, () => new Slot());
+  camera = null;       // answer of `camera`
+  firstFields = [];    // of the camera that changes are made to
+  #answers = new Map();
+  #listeners = [];
+
+  constructor(store, engine) {
+    this.store = store;
+    this.engine = engine;
+    this.sharpeners = this.slots.map((slot, i) => new Sharpener(2, () => engine.cancel(`code-${i}`), (error) => this.#failed(i, error)));
+    this.update = newestOnly(() => this.#update());
+    this.set = newestOnly((key, value, heard) => this.#set(key, value, heard));
+    this.moveEdge = newestOnly((i, code, edge) => this.#moveEdge(i, code, edge));
+    store.listen(() => this.update());
+  }
+
+  get state() {
+    return this.store.state;
+  }
+
+  /** Calls `listener(what, i)` when something new can be drawn. */
+  listen(listener) {
+    this.#listeners.push(listener);
+  }
+
+  #tell(what, i) {
+    if (what === 'code') performance.mark('tofsmith picture');  // how soon pictures come, for measurements
+    for (const listener of this.#listeners) listener(what, i);
+  }
+
+  async #cameraOf(camera) {
+    const request = cameraRequest(camera), known = this.#answers.get(JSON.stringify(request));
+    return known ?? this.#remember(camera, await this.engine.call('camera', request));
+  }
+
+  #remember(camera, answer) {
+    if (this.#answers.size > 60) this.#answers.delete(this.#answers.keys().next().value);
+    this.#answers.set(JSON.stringify(cameraRequest(camera)), answer);
+    return answer;
+  }
+
+  async #update() {
+    const {state} = this;
+    try {
+      const camera = await this.#cameraOf(state.camera);
+      this.firstFields = (await this.#cameraOf({...state.camera, changes: []})).fields;
+      if (this.camera?.toml !== camera.toml) this.camera = camera;
+      this.#tell('camera');
+    } catch (error) {
+      this.#tell('camera problem', problemText(error));
+      if (!this.camera) return;
+    }
+    this.slots.forEach((slot, i) => this.#follow(slot, i, state));
+    this.#tell('state');
+  }
+
+  #follow(slot, i, {codes, trials, seed}) {
+    const code = codes[i], camera = this.camera.toml;
+    const key = code && JSON.stringify([camera, code, trials, seed]);
+    if (slot.key === key) return;
+    slot.key = key;
+    if (!code) {
+      Object.assign(slot, {code: null, evaluation: null, problem: null, source: null});
+      this.sharpeners[i].request([]);
+      return;
+    }
+    const source = JSON.stringify([camera, code]), lane = `code-${i}`, asked = {camera, code: askedCode(code)};
+    const evaluate = (count, rank) => async () => {
+      const isLong = count > middleTrials, isSlow = count > quickTrials;
+      const {document} = await this.engine.call('evaluate', {...asked, trials: count, seed}, {lane, isSlow, isLong, rank});
+      if (slot.key !== key && isLong) return;
+      slot.evaluation = document;
+      this.#tell('evaluation', i);
+    };
+    const steps = [async () => {
+      if (slot.source === source) return;
+      slot.code = await this.engine.call('code', asked, {lane});
+      Object.assign(slot, {source, problem: null});
+      this.#tell('code', i);
+    }];
+    [quickTrials, middleTrials].filter((count) => count < trials).forEach((count, rank) => steps.push(evaluate(count, rank + 1)));
+    steps.push(evaluate(trials, 3));
+    this.sharpeners[i].request(steps);
+  }
+
+  #failed(i, error) {
+    const slot = this.slots[i];
+    Object.assign(slot, {problem: error.message, source: null});
+    if (slot.code && !this.state.codes[i]) slot.code = null;
+    this.#tell('problem', i);
+  }
+
+  async #set(key, text, heard) {
+    try {
+      const {camera} = this, field = camera.fields.find((one) => one.key === key);
+      const value = text === '' && field?.default === null ? undefined : text;  // leaves the key out
+      const answer = await this.engine.call('set', {camera: camera.toml, key, value});
+      const change = answer.change ?? {key, value: value ?? null};
+      const first = new Map(this.firstFields.map((field) => [field.key, field.value]));
+      const isFirst = answer.fields.every((one) => one.key !== change.key || same(one.value, first.get(one.key)));
+      const kept = this.state.camera.changes.filter((old) => old.key !== change.key && !old.key.startsWith(change.key + '.'));
+      const changes = isFirst && first.has(change.key) ? kept : [...kept, change];
+      this.#remember({...this.state.camera, changes}, answer);
+      this.store.change((state) => { state.camera.changes = changes; }, `set ${key}`);
+      heard(null);
+      await this.update();
+    } catch (error) {
+      if (error instanceof Outdated) return;
+      heard(error instanceof Refused && error.field && error.field !== key ? `${error.field}: ${error.message}` : error.message);
+    }
+  }
+
+  /** Sets a key back to what it was in the camera that this one began as. */
+  reset(key) {
+    this.store.change((state) => {
+      const parts = key.split('.').map((_, i, all) => all.slice(0, i + 1).join('.'));
+      state.camera.changes = state.camera.changes.filter((change) => !parts.includes(change.key));
+    });
+  }
+
+  async #moveEdge(i, code, {arm, measurement, edge, position}) {
+    try {
+      const answer = await this.engine.call('move_edge', {camera: this.camera.toml, code: askedCode(code), arm, measurement, edge, position});
+      this.store.change((state) => {
+        if (state.codes[i]) state.codes[i] = {name: answer.name, file: answer.file};
+      }, `edge ${i} ${arm} ${measurement} ${edge}`);
+      await this.update();
+    } catch (error) {
+      if (!(error instanceof Outdated)) this.#tell('edge problem', error.message);
+    }
+  }
+
+  /** Puts a code beside the others, or in the chosen one's place where there are four. */
+  addCode(code) {
+    this.store.change((state) => {
+      if (state.codes.length < maxCodes) state.codes.push(code);
+      else state.codes[state.chosen] = code;
+      state.chosen = state.codes.length < maxCodes || state.codes.at(-1) === code ? state.codes.indexOf(code) : state.chosen;
+    });
+  }
+
+  /** The kind of error that the camera is judged by: linear or circular. */
+  get errorKind() {
+    return this.camera?.fields.find((field) => field.key === 'operating.error')?.value ?? 'circular';
+  }
+}
+
+/** A code as the engine takes it. */
+export const askedCode = (code) => (code.file === undefined ? {name: code.name} : {file: code.file});
+
+/** What a file of this code would be called; a family's name as it is. */
+export const codeWord = (code) => (code.file === undefined ? code.name : `${fileName(code.name)}.code.json`);
+
+/** A name that can be that of a file. */
+export const fileName = (name) => name.replace(/[^\w.+-]+/g, '-').replace(/^[-.]+/, '').slice(0, 80) || 'unnamed';

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// What the lab shows, and how it came there: one state, its past and what was undone.
+
+/** What a lab begins with. */
+export const firstState = () => ({
+  camera: {built_in: 'paper-10f0', changes: []},  // or {file: TOML text, file_name, changes}
+  codes: [{name: 'hamiltonian-k4'}, {name: 'sinusoid-k4'}],  // or {file: JSON text, name}
+  chosen: 0,
+  trials: 20000,
+  seed: 1,
+  curve_ambient: null,  // index of the ambient level of the curves; null: the middle one
+  scene: {name: 'table-top', filter: 'normal', width: 160, signal: null, ambient: null},
+});
+
+/** How many codes stand side by side. */
+export const maxCodes = 4;
+
+const isText = (value) => typeof value === 'string';
+const isAt = (value, low, high) => Number.isInteger(value) && value >= low && value <= high;
+const isRate = (value) => value === null || (Number.isFinite(value) && value >= 0);
+
+/** What is wrong with a state that came from elsewhere; null if nothing. */
+export function problemOf(state) {
+  const {camera, codes, scene} = state ?? {};
+  if (!camera || (isText(camera.built_in) === isText(camera.file)) || !Array.isArray(camera.changes) ||
+      !camera.changes.every((change) => isText(change?.key) && (change.value === null || isText(change.value)))) return 'its camera';
+  if (!Array.isArray(codes) || !isAt(codes.length, 1, maxCodes) ||
+      !codes.every((code) => isText(code?.name) && (code.file === undefined || isText(code.file)))) return 'its codes';
+  if (!isAt(state.chosen, 0, codes.length - 1)) return 'its chosen code';
+  if (!isAt(state.trials, 2, 4e9) || !isAt(state.seed, 0, Number.MAX_SAFE_INTEGER)) return 'its trials or seed';
+  if (state.curve_ambient !== null && !isAt(state.curve_ambient, 0, 1e6)) return 'its ambient level';
+  if (!isText(scene?.name) || !isText(scene.filter) || !isAt(scene.width, 8, 1000) || !isRate(scene.signal) ||
+      !isRate(scene.ambient)) return 'its scene';
+  return null;
+}
+
+/** One state that changes as a whole; listeners hear every change. */
+export class Store {
+  #past = [];
+  #future = [];
+  #merge = null;
+  #listeners = [];
+
+  constructor(state) {
+    this.state = state;
+  }
+
+  /** Calls `listener(state)` after every change. */
+  listen(listener) {
+    this.#listeners.push(listener);
+  }
+
+  /**
+   * Changes a copy of the state by `change(copy)` and puts it in place.
+   * @param merge  changes with the same word, one right after the other, are undone together
+   */
+  change(change, merge = null) {
+    const next = structuredClone(this.state);
+    change(next);
+    if (JSON.stringify(next) === JSON.stringify(this.state)) return;
+    if (!merge || merge !== this.#merge) this.#past.push(this.state);
+    if (this.#past.length > 300) this.#past.shift();
+    this.#merge = merge;
+    this.#future = [];
+    this.#put(next);
+  }
+
+  /** The next change is undone on its own. */
+  settle() {
+    this.#merge = null;
+  }
+
+  get canUndo() {
+    return this.#past.length > 0;
+  }
+
+  get canRedo() {
+    return this.#future.length > 0;
+  }
+
+  /** Goes back by one change. */
+  undo() {
+    this.#step(this.#past, this.#future);
+  }
+
+  /** Takes an undo back. */
+  redo() {
+    this.#step(this.#future, this.#past);
+  }
+
+  #step(from, to) {
+    if (!from.length) return;
+    to.push(this.state);
+    this.#merge = null;
+    this.#put(from.pop());
+  }
+
+  #put(state) {
+    this.state = state;
+    for (const listener of this.#listeners) listener(state);
+  }
+}

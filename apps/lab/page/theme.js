@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// Light, dark, or as the system has it.
+
+const themes = ['auto', 'light', 'dark'];
+const names = {auto: 'Auto', light: 'Light', dark: 'Dark'};
+const place = 'tofsmith-lab-theme';
+
+function kept() {
+  try {
+    return localStorage.getItem(place);
+  } catch {  // pages from files may have no storage
+    return null;
+  }
+}
+
+/** Lets a button go through the themes, and begins with the one that was chosen last. */
+export function startTheme(button) {
+  const show = (theme) => {
+    if (theme === 'auto') delete document.documentElement.dataset.theme;
+    else document.documentElement.dataset.theme = theme;
+    button.textContent = `\u25d0 ${names[theme]}`;
+    button.setAttribute('aria-label', `Colours: ${names[theme].toLowerCase()}; change`);
+    button.dataset.now = theme;
+    dispatchEvent(new Event('themechange'));
+  };
+  show(themes.includes(kept()) ? kept() : 'auto');
+  button.addEventListener('click', () => {
+    const next = themes[(themes.indexOf(button.dataset.now) + 1) % themes.length];
+    try {
+      localStorage.setItem(place, next);
+    } catch {
+      // it lasts as long as the page
+    }
+    show(next);
+  });
+}

@@ -1,0 +1,112 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""The lab's page in a headless Chromium, as its tests drive it."""
+
+import sys
+import time
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "report" / "browser"))
+import browser_test  # noqa: E402  leaves with 77 where Selenium is missing
+
+HELPERS = """
+window.waitFor = async (test, seconds = 20) => {
+  for (const end = performance.now() + 1000 * seconds; performance.now() < end;) {
+    const found = await test();
+    if (found) return found;
+    await new Promise((resolve) => setTimeout(resolve, 20));
+  }
+  throw new Error('still not: ' + test);
+};
+// Nothing computes any more, and has not for longer than commands wait.
+window.settled = async () => {
+  let since = performance.now();
+  await waitFor(() => {
+    if (!window.tofsmithLab?.engine.isIdle) since = performance.now();
+    return window.tofsmithLab && performance.now() - since > 130;
+  });
+};
+window.enter = (node, value) => {
+  node.focus();
+  node.value = value;
+  node.dispatchEvent(new Event('input', {bubbles: true}));
+  node.dispatchEvent(new Event('change', {bubbles: true}));
+};
+window.byId = (id) => document.getElementById(id);
+window.dropped = (...files) => {
+  const data = new DataTransfer();
+  for (const file of files) data.items.add(file);
+  dispatchEvent(new DragEvent('drop', {dataTransfer: data, bubbles: true, cancelable: true}));
+};
+"""
+
+
+class LabTest(unittest.TestCase):
+    """Tests in one Chromium a window's size; each begins with a fresh page and ends without errors."""
+
+    page = None
+    width, height, dark = 1200, 900, False
+    drivers = {}
+
+    @classmethod
+    def setUpClass(cls):
+        window = (cls.width, cls.height, cls.dark)
+        if window not in cls.drivers:
+            context = browser_test.browser(*window)
+            cls.drivers[window] = context.__enter__()
+            unittest.addModuleCleanup(context.__exit__, None, None, None)
+        cls.driver = cls.drivers[window]
+        cls.driver.set_script_timeout(120)
+
+    def setUp(self):
+        self.open()
+
+    def tearDown(self):
+        log = [e["message"] for e in self.driver.get_log("browser") if e["level"] == "SEVERE"]
+        self.assertEqual(log, [])
+        loads = self.driver.execute_script(
+            "return performance.getEntriesByType('resource').map((entry) => entry.name)")
+        self.assertEqual([n for n in loads if not n.startswith(("data:", "blob:"))], [])
+
+    def open(self, fragment="", settle=True):
+        """A fresh page, with nothing left to compute."""
+        self.driver.get("about:blank")
+        self.driver.get(self.page.resolve().as_uri() + fragment)
+        self.driver.execute_script(HELPERS)
+        if settle:
+            self.run_script("await settled();")
+
+    def run_script(self, body, *arguments):
+        """What an asynchronous function body returns; an exception in it fails the test."""
+        reply = self.driver.execute_async_script(
+            "const given = Array.from(arguments), done = given.pop();"
+            "(async (...args) => {" + body + "})(...given)"
+            ".then((value) => done({value}), (error) => done({error: String(error?.stack ?? error)}));",
+            *arguments)
+        if "error" in reply:
+            self.fail(reply["error"])
+        return reply.get("value")
+
+    def state(self):
+        """The state of the lab."""
+        return self.driver.execute_script("return tofsmithLab.store.state")
+
+    def text(self, selector):
+        """The text of an element."""
+        return self.driver.execute_script(
+            "return document.querySelector(arguments[0])?.textContent", selector)
+
+    def wait(self, script, seconds=20):
+        """Waits until an expression of the page is true."""
+        end = time.monotonic() + seconds
+        while not (found := self.driver.execute_script("return " + script)):
+            if time.monotonic() > end:
+                self.fail(f"still not: {script}")
+            time.sleep(0.02)
+        return found
+
+
+def is_there():
+    """Whether there is a Chromium to test with."""
+    return all(Path(p).exists() for p in (browser_test.CHROMIUM, browser_test.CHROMEDRIVER))

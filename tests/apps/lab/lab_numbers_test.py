@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""The lab as it is given out has the numbers of the command. Exit 77: no page is built, or no browser.
+
+    lab_numbers_test.py TOFSMITH PAGE [OTHER_PAGE ..]: the first that is there
+"""
+
+import json
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+TOOL = sys.argv[1]
+PAGES = [Path(name) for name in sys.argv[2:] if Path(name).is_file()]
+del sys.argv[1:]
+
+from lab_browser import LabTest, browser_test, is_there  # noqa: E402
+
+TRIALS = 1000
+
+
+def command(*words):
+    """The document that a command prints."""
+    done = subprocess.run([TOOL, "--json", *words], capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def numbers_of(document, path=""):
+    """All numbers of a document, by where they stand."""
+    if isinstance(document, dict):
+        return {k: v for key, one in document.items() for k, v in numbers_of(one, f"{path}.{key}").items()}
+    if isinstance(document, list):
+        return {k: v for i, one in enumerate(document) for k, v in numbers_of(one, f"{path}[{i}]").items()}
+    is_number = isinstance(document, (int, float)) and not isinstance(document, bool)
+    return {path: document} if is_number else {}
+
+
+def row_text(value, digits):
+    """A number as the table has it: so many digits that count, none with an exponent."""
+    return f"{value:#.{digits}g}".rstrip(".") if value else "0"
+
+
+class Numbers(LabTest):
+    def compare(self, camera, changes, code):
+        ours = self.run_script("""
+            tofsmithLab.store.change((state) => {
+              Object.assign(state, {camera: {built_in: args[0], changes: args[1]}, codes: [{name: args[2]}], trials: args[3], seed: 3, chosen: 0});
+            });
+            await waitFor(() => !tofsmithLab.engine.isIdle);
+            await settled();
+            return [tofsmithLab.lab.slots[0].evaluation, [...document.querySelectorAll('#error-table tbody td')].map((cell) => cell.textContent)];""",
+            camera, changes, code, TRIALS)
+        sets = [word for change in changes for word in ("--set", f"{change['key']}={change['value']}")]
+        theirs = command("evaluate", code, "--camera", camera, *sets, "--trials", str(TRIALS), "--seed", "3")
+        document, cells = ours
+        found, expected = numbers_of(document["codes"]), numbers_of(theirs["codes"])
+        self.assertEqual(found.keys(), expected.keys())
+        for place, value in expected.items():
+            # Decoded in float; single light levels differ by the order in which it is added.
+            limit = 1e-5 if ".points" in place else 1e-6
+            self.assertLessEqual(abs(found[place] - value), limit * abs(value) + 1e-15, place)
+        for cell, kind in zip(cells[1:3], ("linear", "circular")):
+            mean, deviation = (1e3 * theirs["codes"][0][kind][f"geometric_mean_{what}"] for what in ("m", "se_m"))
+            self.assertEqual(cell, f"{row_text(mean, 4)} \u00b1 {row_text(deviation, 2)}")
+        shown = self.text("[data-command=evaluate] pre")
+        self.assertEqual(self.shell(shown + " --json"), theirs)
+
+    def shell(self, text):
+        """What the command that the page shows gives."""
+        words = text.replace("tofsmith", TOOL, 1)
+        return json.loads(subprocess.run(["sh", "-c", words], capture_output=True, text=True, check=True).stdout)
+
+    def test_the_table_and_the_command_shown_give_what_the_command_gives(self):
+        self.compare("paper-10f0", [{"key": "exposure_s", "value": "0.25"}], "hamiltonian-k4")
+
+    def test_cameras_of_the_trade_too(self):
+        self.compare("kinect-v2", [], "multifrequency-2x3-10x3-15x3")
+
+    def test_what_no_camera_may_be_is_told_as_the_command_tells_it(self):
+        done = subprocess.run([TOOL, "cameras", "paper-10f0"], capture_output=True, text=True, check=True)
+        self.assertIn("fundamental_frequency_hz", done.stdout)
+        told = self.run_script("""
+            enter(byId('field-light-peak_factor'), 'nan');
+            await waitFor(() => !byId('field-light-peak_factor-problem').hidden);
+            return byId('field-light-peak_factor-problem').textContent;""")
+        failed = subprocess.run([TOOL, "codes", "sinusoid-k4", "--set", "light.peak_factor=nan"], capture_output=True, text=True)
+        self.assertIn(told.split(":", 1)[-1].strip(), failed.stderr)
+
+
+if __name__ == "__main__":
+    if not is_there():
+        print(f"skipped: {browser_test.CHROMIUM} or its driver is missing")
+        sys.exit(77)
+    if not PAGES:
+        print("skipped: no lab.html is built (scripts/lab.sh)")
+        sys.exit(77)
+    LabTest.page = PAGES[0]
+    unittest.main()
