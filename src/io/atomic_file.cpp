@@ -151,7 +151,7 @@ void AtomicFile::write(std::span<const std::byte> bytes) {
   }
 }
 
-void AtomicFile::write(std::string_view text) { write(std::as_bytes(std::span(text))); }
+void AtomicFile::write(std::string_view text) { write(std::as_bytes(std::span(text.data(), text.size()))); }
 
 void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
   const off_t end = ::lseek(descriptor_, 0, SEEK_CUR);
@@ -215,7 +215,7 @@ void write_file_atomically(const fs::path& path, std::span<const std::byte> cont
 }
 
 void write_file_atomically(const fs::path& path, std::string_view content, OutputPolicy policy) {
-  write_file_atomically(path, std::as_bytes(std::span(content)), policy);
+  write_file_atomically(path, std::as_bytes(std::span(content.data(), content.size())), policy);
 }
 
 }  // namespace tofsmith

@@ -20,7 +20,7 @@ namespace tofsmith {
 struct ImpulseResponse {
   enum class Kind { none, hann, gaussian, lowpass, file };
 
-  Kind kind = Kind::none;
+  Kind kind = Kind::none;  ///< its shape
   /// Of a Hann window: the frequency at which it attenuates by 5 [Hz], > 0. The window is
   /// 1.444 / f_max_hz wide and its transfer function sinc(x) / (1 - x^2), x = f * width.
   /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 4.2 and Fig. 5
@@ -289,8 +289,8 @@ struct Optics {
 
 /// Where a code is judged: every pair of signal and ambient.
 struct OperatingRange {
-  std::vector<double> signal_e_per_s;
-  std::vector<double> ambient_e_per_s;
+  std::vector<double> signal_e_per_s;   ///< S [e/s], each >= 0
+  std::vector<double> ambient_e_per_s;  ///< A [e/s], each >= 0
   DepthErrorKind error = DepthErrorKind::linear;
   double albedo = 1.0;          ///< scales the signal, (0, 1]
   bool uniform_albedo = false;  ///< instead: a fresh uniform draw in (0, 1) for every trial

@@ -47,7 +47,23 @@ Camera load_camera(const std::string& name_or_path, Settings settings = {});
 /// The camera with some keys replaced. @throws IoError as parse_camera_toml()
 Camera with_settings(const Camera& camera, Settings settings);
 
-/// Every key that a camera file can have, such as "light.impulse_response.f_max_hz".
+/// What the value of a camera's key is.
+enum class CameraKeyType { number, integer, boolean, text, choice, list, table };
+/// The enumerator's name.
+std::string_view name_of(CameraKeyType type);
+
+/// A key that a camera file can have.
+struct CameraKey {
+  std::string key;  ///< such as "light.impulse_response.f_max_hz"
+  CameraKeyType type = CameraKeyType::number;
+  std::vector<std::string> words = {};  ///< that it can be; of a number: instead of one
+  /// Whether it means anything beside the camera's other keys: f_max_hz does with kind = "hann".
+  bool applies = true;
+};
+
+/// Every key that a camera file can have, as it stands beside what the camera says.
+std::vector<CameraKey> describe_camera_keys(const Camera& camera);
+/// The keys alone.
 std::vector<std::string> camera_keys();
 
 /// The camera as TOML, every default filled in: parse_camera_toml(camera_to_toml(c)) == c.

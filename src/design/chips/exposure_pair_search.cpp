@@ -110,7 +110,7 @@ class ExposurePairSearch {
 
   void search_item(std::int64_t item, BestCodes& best, ChipSearchCounts& counts) const {
     const auto begin = static_cast<std::size_t>(item * firsts_at_once);
-    const std::size_t end = std::min(begin + firsts_at_once, firsts_.size());
+    const std::size_t end = std::min<std::size_t>(begin + firsts_at_once, firsts_.size());
     const double share = static_cast<double>(item) / static_cast<double>(items());
     for (std::size_t f = begin; f < end; ++f) search_with(firsts_[f], share, best, counts);
   }

@@ -78,7 +78,8 @@ std::string camera_to_toml(const Camera& camera) { return format_toml(camera_doc
 std::string built_in_camera_toml(const std::string& name) {
   const std::string toml = camera_to_toml(built_in_camera(name));
   const std::vector<BuiltInCamera> all = list_built_in_cameras();
-  const BuiltInCamera& listed = *std::ranges::find(all, name, &BuiltInCamera::name);
+  const BuiltInCamera& listed = *std::find_if(
+      all.begin(), all.end(), [&](const BuiltInCamera& camera) { return camera.name == name; });
   std::string text = fmt::format("# {}\n", listed.description);
   if (!listed.code.empty()) text += fmt::format("# code: {}\n", listed.code);
   std::istringstream lines(toml);

@@ -26,7 +26,7 @@ enum class SceneKind { built_in, scene_file, mesh, depth_image };
 
 SceneKind kind_of(const std::string& scene) {
   const std::vector<std::string> names = built_in_scene_names();
-  if (std::ranges::find(names, scene) != names.end()) return SceneKind::built_in;
+  if (std::find(names.begin(), names.end(), scene) != names.end()) return SceneKind::built_in;
   std::error_code ignored;
   if (!fs::exists(scene, ignored) && !fs::path(scene).has_extension()) {
     const std::string near = nearest_word(scene, names);

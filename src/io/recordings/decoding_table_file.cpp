@@ -123,7 +123,8 @@ std::optional<std::string> ambiguity_note(const DecodingTable& table) {
   const auto distance_bin = [&](const AmbiguousDepths& pair) {
     return std::abs(circular_difference(pair.first_bin, pair.second_bin, table.samples()));
   };
-  std::ranges::stable_sort(pairs, std::ranges::greater(), distance_bin);
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [&](const auto& a, const auto& b) { return distance_bin(a) > distance_bin(b); });
   std::vector<std::string> shown;
   for (std::size_t i = 0; i < std::min(pairs.size(), max_shown); ++i)
     shown.push_back(fmt::format("{:.4g} m as {:.4g} m", pairs[i].second_m, pairs[i].first_m));

@@ -6,7 +6,6 @@
 #include <fmt/ranges.h>
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -120,15 +119,6 @@ SettingValue toml_value_of(const toml::node& node, std::string place) {
 SettingValue toml_value_of(double number, std::string place) {
   const std::string text = fmt::format("{}", number);
   return {text, text, number, std::move(place)};
-}
-
-SettingValue toml_value_of_line(const std::string& line, std::string place) {
-  double number = 0.0;
-  const char* const end = line.data() + line.size();
-  const auto [stopped, error] = std::from_chars(line.data(), end, number);
-  if (error == std::errc() && stopped == end && std::isfinite(number))
-    return {line, line, number, std::move(place)};
-  return {line == "true" || line == "false" ? line : quoted(line), line, {}, std::move(place)};
 }
 
 TomlDocument::TomlDocument(std::string_view text, std::string_view source_name)

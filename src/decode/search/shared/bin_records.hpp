@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <hwy/aligned_allocator.h>
-
 #include <cstdint>
+#include <memory>
+#include <new>
 
 #include "decode/ambient_projection.hpp"
 
@@ -25,8 +25,13 @@ class RecordTable {
   std::size_t offset(std::int32_t n) const {
     return static_cast<std::size_t>(n + 1) * static_cast<std::size_t>(stride_);
   }
+  /// Two lines of a cache, which are fetched together.
+  static constexpr std::align_val_t alignment{128};
+  struct Free {
+    void operator()(float* values) const { ::operator delete[](values, alignment); }
+  };
   int stride_;  // in floats
-  hwy::AlignedFreeUniquePtr<float[]> values_;
+  std::unique_ptr<float[], Free> values_;
 };
 
 /// Where the fields of a bin's record begin: who wants little of a pixel reads only the front. With
