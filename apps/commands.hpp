@@ -22,6 +22,7 @@ void add_simulate_command(CLI::App& app, Session& session);
 void add_calibrate_command(CLI::App& app, Session& session);
 void add_decode_command(CLI::App& app, Session& session);
 void add_report_command(CLI::App& app, Session& session);
+void add_lab_command(CLI::App& app, Session& session);
 void add_sweep_command(CLI::App& app, Session& session);
 void add_reproduce_command(CLI::App& app, Session& session);
 

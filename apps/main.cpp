@@ -184,6 +184,7 @@ int run(int argc, char** argv) {
   add_simulate_command(app, session);
   add_decode_command(app, session);
   add_report_command(app, session);
+  add_lab_command(app, session);
   add_sweep_command(app, session);
   add_calibrate_command(app, session);
   add_reproduce_command(app, session);

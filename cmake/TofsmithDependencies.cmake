@@ -5,6 +5,11 @@
 # What each component uses itself; what its users must find again is in
 # tofsmith<Component>Dependencies.cmake, which cmake/TofsmithInstall.cmake writes.
 
+if(EMSCRIPTEN)
+  include(TofsmithWasm)
+  return()
+endif()
+
 # core
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)

@@ -93,5 +93,15 @@ if(TARGET tofsmith_cli)
        ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
   set_target_properties(tofsmith_cli PROPERTIES INSTALL_RPATH "$ORIGIN/${from_bin_to_lib}")
   install(TARGETS tofsmith_cli COMPONENT tool)
+  # What `tofsmith lab` copies out; apps/lab_command.cpp knows the place.
+  set(TOFSMITH_LAB_PAGE "" CACHE FILEPATH
+      "The page that scripts/lab.sh has made, to be installed; empty: build-lab/lab.html if it is there")
+  set(lab_page "${TOFSMITH_LAB_PAGE}")
+  if(NOT lab_page)
+    set(lab_page "${PROJECT_SOURCE_DIR}/build-lab/lab.html")
+    set(lab_page_can_be_missing OPTIONAL)
+  endif()
+  install(FILES "${lab_page}" DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/tofsmith RENAME lab.html
+          COMPONENT tool ${lab_page_can_be_missing})
   include(TofsmithManual)
 endif()

@@ -23,6 +23,7 @@ extensions = [
     "root_pages",
     "formulas",
     "source_links",
+    "lab_page",
 ]
 exclude_patterns = ["_extensions", "Doxyfile"]
 highlight_language = "none"  # indented blocks are commands and formulas alike

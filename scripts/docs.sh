@@ -5,9 +5,10 @@
 # Installs what is missing, builds tofsmith, makes the documentation and checks its links. Ends with
 # a line that says where the first page is; a warning is a failure.
 #
-#   scripts/docs.sh [--build DIR]
+#   scripts/docs.sh [--build DIR] [--with-lab]
 #
 #   --build DIR   take tofsmith and its Python package from this build instead of build-docs
+#   --with-lab    compile the lab's page, too (scripts/lab.sh), and put it into the site
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -16,12 +17,14 @@ source "$root/scripts/packages.sh"
 
 output="$root/build-docs"
 build=
+lab=''
 while (($#)); do
   case "$1" in
     -h | --help)
       sed -n '/^# Installs/,/^set /s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
       exit 0
       ;;
+    --with-lab) lab="$root/build-lab/lab.html" && shift ;;
     --build) build=$(realpath "${2:?a directory}") && shift 2 ;;
     *) tofsmith_die "unknown option '$1'; see --help" ;;
   esac
@@ -42,12 +45,15 @@ fi
 [[ -x "$build/apps/tofsmith" ]] || tofsmith_die "there is no $build/apps/tofsmith"
 [[ -d "$build/python/tofsmith" ]] || tofsmith_die "there is no $build/python/tofsmith"
 
+[[ -z "$lab" ]] || scripts/lab.sh
+
 echo "Making the documentation in $output/html"
 rm -rf "$output/html" docs/generated
 mkdir -p "$output/html/cpp"
 TOFSMITH_CPP_PAGES="$output/html/cpp" doxygen docs/Doxyfile
 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$build/python" python3 -m sphinx -b html -n -W --keep-going \
-  -E -q -d "$output/doctrees" -D tofsmith_tool="$build/apps/tofsmith" docs "$output/html"
+  -E -q -d "$output/doctrees" -D tofsmith_tool="$build/apps/tofsmith" -D tofsmith_lab="$lab" \
+  docs "$output/html"
 python3 -B scripts/check_links.py "$output/html"
 
 echo "Done. The first page is $output/html/index.html"

@@ -8,16 +8,17 @@
 # in whatever directory it is built (scripts/reproduce_build.sh). What is packed must be hardened
 # (scripts/check_elf.py).
 #
-#   scripts/package.sh [--component NAME] [DIR]     build there instead of in build-package
+#   scripts/package.sh [--component NAME] [--without-lab] [DIR]   build there instead of in build-package
 #
 #   --component NAME   only this one and what it stands on: no command line, no Python
+#   --without-lab      leave out the page of `tofsmith lab`, which needs emscripten
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # shellcheck source=scripts/packages.sh
 source "$root/scripts/packages.sh"
 
-component='' directory=''
+component='' directory='' lab=yes
 while (($#)); do
   case "$1" in
     -h | --help)
@@ -25,6 +26,7 @@ while (($#)); do
       exit 0
       ;;
     --component) component=${2:?--component needs a name} && shift ;;
+    --without-lab) lab='' ;;
     -*) tofsmith_die "unknown option $1; see --help" ;;
     *) directory=$1 ;;
   esac
@@ -32,11 +34,17 @@ while (($#)); do
 done
 build=$(realpath -m "${directory:-$root/build-package}")
 programs=(-DTOFSMITH_BUILD_APPS=ON -DTOFSMITH_BUILD_PYTHON=REQUIRED)
-[[ -z "$component" ]] || programs=(-DTOFSMITH_BUILD_APPS=OFF -DTOFSMITH_BUILD_PYTHON=OFF)
+if [[ -n "$component" ]]; then
+  programs=(-DTOFSMITH_BUILD_APPS=OFF -DTOFSMITH_BUILD_PYTHON=OFF)
+elif [[ -n "$lab" ]]; then
+  programs+=(-DTOFSMITH_LAB_PAGE="$build/lab.html")
+fi
 
 install_packages package
 use_debian_tools
 
+mkdir -p "$build"
+[[ -n "$component" || -z "$lab" ]] || "$root/scripts/lab.sh" -o "$build/lab.html"
 echo "Building tofsmith in $build"
 # From nothing but the sources: settings of an earlier build there do not count.
 rm -f "$build/CMakeCache.txt"

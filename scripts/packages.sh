@@ -5,7 +5,7 @@
 # The Debian packages of the project, in one place. Sourced by the other scripts; run by hand it
 # installs what is missing of the groups named:
 #
-#   scripts/packages.sh core|design|build|python|package|test|docs|benchmark|check|fuzz ..
+#   scripts/packages.sh core|design|build|python|lab|package|test|docs|benchmark|check|fuzz ..
 #                                                     install what is missing
 #   scripts/packages.sh --list GROUP                  print the names, one a line
 
@@ -39,6 +39,12 @@ packages_python=(
   pybind11-dev python3-dev python3-numpy
   python3-matplotlib                          # tofsmith.plot
   python3-setuptools python3-wheel python3-pip python3-venv  # pip install
+)
+# The lab's page: core and design for browsers.
+packages_lab=(
+  cmake ninja-build python3
+  emscripten          # core and design for browsers
+  libeigen3-dev libhwy-dev libfmt-dev librandom123-dev libtomlplusplus-dev nlohmann-json3-dev
 )
 # Debian packages of all of it, with every optional feature.
 packages_package=(
@@ -93,13 +99,14 @@ packages_of() {
     design) printf '%s\n' "${packages_design[@]}" ;;
     build) printf '%s\n' "${packages_build[@]}" ;;
     python) printf '%s\n' "${packages_python[@]}" ;;
+    lab) printf '%s\n' "${packages_lab[@]}" ;;
     package) printf '%s\n' "${packages_package[@]}" ;;
     test) printf '%s\n' "${packages_test[@]}" ;;
     docs) printf '%s\n' "${packages_docs[@]}" ;;
     benchmark) printf '%s\n' "${packages_benchmark[@]}" ;;
     check) printf '%s\n' "${packages_check[@]}" ;;
     fuzz) printf '%s\n' "${packages_fuzz[@]}" ;;
-    *) tofsmith_die "no package group '$1'; there are core, design, build, python, package, test, docs, benchmark, check and fuzz" ;;
+    *) tofsmith_die "no package group '$1'; there are core, design, build, python, lab, package, test, docs, benchmark, check and fuzz" ;;
   esac
 }
 
@@ -152,9 +159,9 @@ use_debian_tools() {
 
 if [[ "${BASH_SOURCE[0]}" == "$0" ]]; then
   set -euo pipefail
-  (($#)) || tofsmith_die "which group? core, design, build, python, package, test, docs, benchmark or check"
+  (($#)) || tofsmith_die "which group? core, design, build, python, lab, package, test, docs, benchmark or check"
   if [[ "$1" == --list ]]; then
-    packages_of "${2:?which group? core, design, build, python, package, test, docs, benchmark or check}"
+    packages_of "${2:?which group? core, design, build, python, lab, package, test, docs, benchmark or check}"
   else
     for group in "$@"; do
       install_packages "$group"

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "answer.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <new>
+#include <stdexcept>
+
+#include "camera_call.hpp"
+#include "code_call.hpp"
+#include "request.hpp"
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/decode/filter.hpp"
+#include "tofsmith/design/design.hpp"
+#include "tofsmith/io/code_file.hpp"
+#include "tofsmith/scene/built_in_scenes.hpp"
+#include "tofsmith/version.hpp"
+#include "work_calls.hpp"
+
+namespace tofsmith::lab {
+
+namespace {
+
+/// Larger than any camera or code that is not a mistake.
+constexpr std::size_t max_request_bytes = std::size_t{32} << 20;
+
+/// Playable names, a usual selection of each family's.
+constexpr std::array shown_families = {
+    "sinusoid-k3",    "sinusoid-k4",       "square-k4",
+    "hamiltonian-k3", "hamiltonian-k4",    "hamiltonian-k5",
+    "hamiltonian-k6", "multifrequency-k5", "pulsed-multifrequency-k4",
+    "single-ramp-k3", "double-ramp-k3",    "pulsed-multifrequency-k5",
+    "gray-k4"};
+
+Answer about() {
+  Answer answer;
+  answer["version"] = TOFSMITH_VERSION;
+  Json families = Json::array(), patterns = Json::array();
+  const std::vector<FamilyDescription> known = list_families();
+  const auto title_of = [&](std::string_view name) -> std::string {
+    // The family whose name begins like this one's longest.
+    std::string title;
+    std::size_t longest = 0;
+    for (const FamilyDescription& family : known) {
+      const auto end =
+          std::mismatch(name.begin(), name.end(), family.name.begin(), family.name.end());
+      const auto common = static_cast<std::size_t>(end.first - name.begin());
+      if (common > longest) {
+        longest = common;
+        title = family.description;
+      }
+    }
+    return title;
+  };
+  for (const char* name : shown_families)
+    families.push_back({{"name", name}, {"title", title_of(name)}});
+  for (const FamilyDescription& family : known)
+    patterns.push_back(fmt::format("{}: {}", family.name, family.description));
+  answer["families"] = std::move(families);
+  answer["pattern"] = std::move(patterns);
+  answer["cameras"] = built_in_camera_names();
+  answer["scenes"] = built_in_scene_names();
+  Json filters = Json::array({"off"}), methods = Json::array();
+  for (const FilterStrength strength : all_filter_strengths) filters.push_back(name_of(strength));
+  for (const DesignMethod method :
+       {DesignMethod::factorize, DesignMethod::optimize, DesignMethod::search, DesignMethod::best})
+    methods.push_back(name_of(method));
+  answer["filters"] = std::move(filters);
+  answer["methods"] = std::move(methods);
+  return answer;
+}
+
+Answer set(const Request& request) {
+  const Change asked{request.text("key"),
+                     request.has("value") ? std::optional(request.text("value")) : std::nullopt};
+  const auto [camera, told] = changed(request.camera(), asked);
+  Answer answer = camera_answer(camera);
+  answer["change"] = {{"key", told.key}, {"value", told.value ? Json(*told.value) : Json()}};
+  return answer;
+}
+
+Answer code(const Request& request) {
+  const Camera camera = request.camera();
+  return code_answer(request.code(camera), camera);
+}
+
+Answer move_edge(const Request& request) {
+  const Camera camera = request.camera();
+  const CodeSet before = request.code(camera);
+  const std::string arm = request.text("arm");
+  require(arm == "light" || arm == "gate", "arm", arm, "expected light or gate");
+  const EdgePlace place{arm == "light",
+                        static_cast<int>(request.integer("measurement", 0, 1'000'000)),
+                        static_cast<std::size_t>(request.integer("edge", 0, 1'000'000))};
+  const CodeSet edited = with_edge_moved(before, camera, place, request.number("position"));
+  Answer answer = code_answer(edited, camera);
+  answer["file"] = code_to_json(edited);
+  return answer;
+}
+
+Answer save_code(const Request& request) {
+  Answer answer;
+  const CodeSet code = request.code(request.camera());
+  answer["name"] = code.name();
+  answer["file"] = code_to_json(code);
+  return answer;
+}
+
+Answer call(std::string_view name, const Request& request, const Progress& progress) {
+  if (name == "about") return about();
+  if (name == "camera") return camera_answer(request.camera());
+  if (name == "set") return set(request);
+  if (name == "code") return code(request);
+  if (name == "move_edge") return move_edge(request);
+  if (name == "save_code") return save_code(request);
+  if (name == "evaluate") return evaluate_answer(request, progress);
+  if (name == "scene") return scene_answer(request, progress);
+  if (name == "design") return design_answer(request, progress);
+  if (name == "command") return command_answer(request);
+  reject("call", name,
+         "expected about, camera, set, code, move_edge, save_code, evaluate, scene, design or "
+         "command");
+}
+
+}  // namespace
+
+Reply answer(std::string_view request, const Progress& progress) {
+  try {
+    if (request.size() > max_request_bytes)
+      return error_reply(
+          fmt::format("found {} bytes; expected at most {}", request.size(), max_request_bytes));
+    const nlohmann::json json = nlohmann::json::parse(request);
+    require(json.is_object(), "request", json.type_name(), "expected an object");
+    const Request arguments(json);
+    return call(arguments.text("call"), arguments, progress).reply();
+  } catch (const InvalidArgument& error) {
+    return error_reply(error.what(), error.field());
+  } catch (const std::bad_alloc&) {
+    return error_reply("this needs more memory than a page has; ask for fewer samples or pixels");
+  } catch (const std::length_error&) {
+    return error_reply("this needs more memory than a page has; ask for fewer samples or pixels");
+  } catch (const std::exception& error) {
+    return error_reply(error.what());
+  }
+}
+
+}  // namespace tofsmith::lab

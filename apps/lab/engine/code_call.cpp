@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "code_call.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/camera/generator_report.hpp"
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/decoding_table_file.hpp"
+
+namespace tofsmith::lab {
+
+namespace {
+
+/// Position on the period, in [0, 1).
+double wrapped(double position) {
+  position -= std::floor(position);
+  return position < 1.0 ? position : 0.0;
+}
+
+/// [rise, fall, rise, ..], each in [0, 1).
+std::vector<double> edges_of(const Waveform& waveform) {
+  std::vector<double> edges;
+  for (const OnInterval& on : waveform.on_intervals())
+    if (on.fall - on.rise < 1.0) {
+      edges.push_back(on.rise);
+      edges.push_back(wrapped(on.fall));
+    }
+  return edges;
+}
+
+bool is_behind_a_response(const ImpulseResponse& response) {
+  return response.kind != ImpulseResponse::Kind::none;
+}
+
+/// Share of a table's variance about its mean that its curve in space keeps.
+double variance_kept(const Eigen::MatrixXd& table, const Eigen::MatrixXd& curve) {
+  const auto about_mean = [](const Eigen::MatrixXd& m) {
+    return (m.rowwise() - m.colwise().mean()).squaredNorm();
+  };
+  const double whole = about_mean(table);
+  return whole > 0.0 ? std::min(about_mean(curve) / whole, 1.0) : 1.0;
+}
+
+Json edges_json(const CodeSet& code, bool is_light) {
+  Json edges = Json::array();
+  for (int i = 0; i < code.measurements(); ++i)
+    edges.push_back(edges_of(is_light ? code.modulation_of(i) : code.demodulation(i)));
+  return edges;
+}
+
+/// The waveform with an edge moved, as far as its neighbours let it.
+/// @param gap  that stays between two edges [periods]
+std::vector<OnInterval> moved_edge(const Waveform& waveform, std::size_t edge, double position,
+                                   double gap) {
+  std::vector<OnInterval> on = waveform.on_intervals();
+  // Edges one after the other, without the jump at the end of the period.
+  std::vector<double> line;
+  for (const OnInterval& interval : on) {
+    line.push_back(interval.rise);
+    line.push_back(interval.fall);
+  }
+  const double before = edge == 0 ? line.back() - 1.0 : line[edge - 1];
+  const double after = edge + 1 == line.size() ? line.front() + 1.0 : line[edge + 1];
+  double shift = wrapped(position - line[edge] + 0.5) - 0.5;
+  shift = std::min(shift, after - gap - line[edge]);
+  shift = std::max(shift, before + gap - line[edge]);
+  line[edge] += shift;
+  for (std::size_t i = 0; i < on.size(); ++i) {
+    const double rise = wrapped(line[2 * i]);
+    on[i] = {rise, rise + (line[2 * i + 1] - line[2 * i])};
+  }
+  std::sort(on.begin(), on.end(),
+            [](const OnInterval& a, const OnInterval& b) { return a.rise < b.rise; });
+  return on;
+}
+
+/// Whether b is 1 - a, up to rounding.
+bool are_complements(const Waveform& a, const Waveform& b, int samples) {
+  const Eigen::VectorXd sum = a.cell_averages(samples) + b.cell_averages(samples);
+  return (sum.array() - 1.0).abs().maxCoeff() < 1e-9;
+}
+
+}  // namespace
+
+Answer code_answer(const CodeSet& code, const Camera& camera) {
+  const ForwardModel model(code, camera);
+  const ActualCode actual = actual_code(code, camera);
+  const int samples = code.samples();
+  const double f0_hz = camera.fundamental_frequency_hz;
+  Eigen::MatrixXd light(samples, code.measurements()), gates = light, light_behind = light,
+                                                       gates_behind = light;
+  for (int i = 0; i < code.measurements(); ++i) {
+    const Waveform& m = actual.modulation[static_cast<std::size_t>(code.exposure_of(i))];
+    const Waveform& d = actual.demodulation[static_cast<std::size_t>(i)];
+    light.col(i) = m.cell_averages(samples);
+    gates.col(i) = d.cell_averages(samples);
+    light_behind.col(i) = arm_output(m, camera.light.impulse_response, f0_hz, samples);
+    gates_behind.col(i) = arm_output(d, camera.sensor.impulse_response, f0_hz, samples);
+  }
+  const Eigen::MatrixXd table = model.correlation_table(samples);
+  const Eigen::MatrixXd fine_table = model.correlation_table(8 * samples);
+  const Eigen::MatrixXd curve = coding_curve_in_space(table);
+
+  Answer answer;
+  answer["name"] = code.name();
+  answer["samples"] = samples;
+  answer["exposures"] = code.exposures();
+  answer["taps"] = code.taps();
+  answer["measurements"] = model.measurements();
+  answer["peak"] = code.peak();
+  answer["range_m"] = camera.range_m();
+  // As `tofsmith codes` has them.
+  answer["coding_curve_length"] = coding_curve_length(fine_table);
+  answer["coding_curve_rank"] = coding_curve_rank(fine_table);
+  answer["harmonics_99_percent"] = harmonics_used(fine_table);
+  answer["curve_variance_kept"] = variance_kept(table, curve);
+  answer["light_edges"] = edges_json(code, true);
+  answer["gate_edges"] = edges_json(code, false);
+  answer.add_columns("light", light);
+  answer.add_columns("gates", gates);
+  if (is_behind_a_response(camera.light.impulse_response))
+    answer.add_columns("light_behind", light_behind);
+  if (is_behind_a_response(camera.sensor.impulse_response))
+    answer.add_columns("gates_behind", gates_behind);
+  answer.add_columns("correlation", table);
+  const Eigen::MatrixXd rows = curve.transpose();
+  answer.add("curve", std::vector<double>(rows.data(), rows.data() + rows.size()),
+             {static_cast<std::size_t>(curve.rows()), static_cast<std::size_t>(curve.cols())});
+  Json& notes = answer["notes"] = Json::array();
+  if (const auto note = ambiguity_note(make_decoding_table(model, camera))) notes.push_back(*note);
+  return answer;
+}
+
+CodeSet with_edge_moved(const CodeSet& code, const Camera& camera, const EdgePlace& place,
+                        double position) {
+  require(place.measurement >= 0 && place.measurement < code.measurements(), "measurement",
+          place.measurement, fmt::format("expected one of 0 to {}", code.measurements() - 1));
+  std::vector<Waveform> light, gates;
+  for (int e = 0; e < code.exposures(); ++e) light.push_back(code.modulation(e));
+  for (int i = 0; i < code.measurements(); ++i) gates.push_back(code.demodulation(i));
+  const auto exposure = static_cast<std::size_t>(code.exposure_of(place.measurement));
+  const auto gate = static_cast<std::size_t>(place.measurement);
+  Waveform& waveform = place.is_light ? light[exposure] : gates[gate];
+  const std::vector<double> edges = edges_of(waveform);
+  require(!edges.empty(), place.is_light ? "light" : "gate", place.measurement,
+          "has no edges: it is no waveform of two levels");
+  require(place.edge < edges.size(), "edge", place.edge,
+          fmt::format("expected one of 0 to {}", edges.size() - 1));
+
+  const double gap = 0.25 / code.samples();
+  const std::vector<OnInterval> on = moved_edge(waveform, place.edge, position, gap);
+  if (place.is_light) {
+    double duty = 0.0;
+    for (const OnInterval& interval : on) duty += interval.fall - interval.rise;
+    waveform = Waveform::binary(on, std::min(1.0 / duty, camera.light.peak_factor));
+  } else {
+    const std::size_t other = gate ^ 1u;
+    const bool mirrors =
+        code.taps() == 2 && are_complements(gates[gate], gates[other], code.samples());
+    waveform = Waveform::binary(on, waveform.level());
+    if (mirrors) gates[other] = waveform.complement();
+  }
+  constexpr std::string_view mark = "-edited";
+  const std::string name =
+      code.name().ends_with(mark) ? code.name() : code.name() + std::string(mark);
+  CodeSet edited = CodeSet::create(name, code.samples(), code.taps(), light, gates);
+  edited.provenance = code.provenance;
+  edited.provenance.method = "edited";
+  edited.provenance.residuals.clear();
+  edited.provenance.depth_error_m = 0.0;
+  require_fits(edited, camera);
+  return edited;
+}
+
+}  // namespace tofsmith::lab

@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "tofsmith/core/error.hpp"
+#include "work_calls.hpp"
+
+namespace tofsmith::lab {
+
+namespace {
+
+/// A word as a POSIX shell takes it whole.
+std::string shell_word(const std::string& word) {
+  const bool is_plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("-_./=:,+@%").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (is_plain) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+/// `--camera X --set ..`, as far as it differs from what a command takes anyway.
+std::string camera_words(const Request& request) {
+  std::string words;
+  const std::string name =
+      request.has("camera_file") ? request.text("camera_file") : request.text("built_in", "");
+  if (!name.empty()) words += " --camera " + shell_word(name);
+  for (const Change& change : request.changes()) {
+    require(change.value.has_value(), "changes", change.key,
+            "no command leaves a key out; save the camera and name its file");
+    words += " --set " + shell_word(change.key + "=" + *change.value);
+  }
+  return words;
+}
+
+std::string option(const Request& request, const char* argument, const char* name) {
+  const std::optional<double> number = request.optional_number(argument);
+  return number ? fmt::format(" {} {}", name, *number) : "";
+}
+
+std::string scene_commands(const Request& request, const std::string& code,
+                           const std::string& camera) {
+  std::string simulate = fmt::format("tofsmith simulate {} --code {}{}",
+                                     shell_word(request.text("scene", "table-top")), code, camera);
+  if (request.has("width")) {
+    const auto width = request.integer("width", 8, 1024);
+    simulate += fmt::format(" --width {} --height {}", width,
+                            request.integer("height", 8, 1024, width * 3 / 4));
+  }
+  simulate += option(request, "signal", "--signal") + option(request, "ambient", "--ambient") +
+              option(request, "seed", "--seed") + " -o raw.npy";
+  std::string decode = fmt::format("tofsmith decode raw.npy --code {}{}", code, camera);
+  if (const std::string filter = request.text("filter", "off"); filter != "off")
+    decode += " --filter " + shell_word(filter);
+  return simulate + "\n" + decode + " -o depth.npy";
+}
+
+}  // namespace
+
+Answer command_answer(const Request& request) {
+  const std::string what = request.text("what");
+  const std::string camera = camera_words(request);
+  std::vector<std::string> codes = request.texts("codes");
+  for (std::string& code : codes) code = shell_word(code);
+  const auto first_code = [&] {
+    require(!codes.empty(), "codes", "[]", "expected a code");
+    return codes.front();
+  };
+  std::string command;
+  if (what == "camera") {
+    const std::string name =
+        request.has("camera_file") ? request.text("camera_file") : request.text("built_in", "");
+    command = "tofsmith cameras " + shell_word(name.empty() ? "paper-10f0" : name);
+  } else if (what == "codes") {
+    command = "tofsmith codes " + first_code() + camera;
+  } else if (what == "evaluate") {
+    first_code();
+    command = fmt::format("tofsmith evaluate {}{}", fmt::join(codes, " "), camera) +
+              option(request, "trials", "--trials") + option(request, "seed", "--seed");
+  } else if (what == "scene") {
+    command = scene_commands(request, first_code(), camera);
+  } else if (what == "design") {
+    command = "tofsmith design" + camera;
+    if (request.has("method")) command += " --method " + shell_word(request.text("method"));
+    command += option(request, "exposures", "--exposures") + option(request, "effort", "--effort") +
+               option(request, "trials", "--trials") + option(request, "seed", "--seed") +
+               " -o design";
+  } else if (what == "export") {
+    command = fmt::format("tofsmith export {}{} -o waveforms.csv", first_code(), camera);
+  } else {
+    reject("what", what, "expected camera, codes, evaluate, scene, design or export");
+  }
+  Answer answer;
+  answer["command"] = command;
+  return answer;
+}
+
+}  // namespace tofsmith::lab

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "tofsmith/core/image.hpp"
+
+namespace tofsmith::lab {
+
+using Json = nlohmann::ordered_json;
+
+/// Numbers that leave the engine as they are, not as text.
+struct NamedArray {
+  std::string name;
+  std::variant<std::vector<float>, std::vector<double>, std::vector<std::int32_t>,
+               std::vector<std::uint8_t>>
+      values;
+  std::vector<std::size_t> shape;
+};
+
+/// What the engine says to a request.
+struct Reply {
+  std::string json;
+  std::vector<NamedArray> arrays;
+};
+
+/// An answer under way: a JSON object, and the arrays that it names.
+class Answer {
+ public:
+  Json& operator[](const char* key) { return json_[key]; }
+  void set(Json json) { json_ = std::move(json); }
+
+  /// Adds an array: {"array": name, "shape": [..]} under that name.
+  template <typename Number>
+  void add(std::string_view name, std::vector<Number> values, std::vector<std::size_t> shape) {
+    json_[std::string(name)] = {{"array", name}, {"shape", shape}};
+    arrays_.push_back({std::string(name), std::move(values), std::move(shape)});
+  }
+  /// A matrix as (columns, rows): one row of numbers for each of its columns.
+  void add_columns(std::string_view name, const Eigen::MatrixXd& matrix) {
+    add(name, std::vector<double>(matrix.data(), matrix.data() + matrix.size()),
+        {static_cast<std::size_t>(matrix.cols()), static_cast<std::size_t>(matrix.rows())});
+  }
+  template <typename Number>
+  void add(std::string_view name, const Image<Number>& image) {
+    add(name, image.pixels,
+        {static_cast<std::size_t>(image.height), static_cast<std::size_t>(image.width)});
+  }
+
+  Reply reply() &&;
+
+ private:
+  Json json_ = Json::object();
+  std::vector<NamedArray> arrays_;
+};
+
+/// {"error": {"message": .., "field": ..}}. @param field  empty: none is known
+Reply error_reply(std::string_view message, std::string_view field = "");
+
+}  // namespace tofsmith::lab

@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "work_calls.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/decode/filter.hpp"
+#include "tofsmith/design/design.hpp"
+#include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/decoding_table_file.hpp"
+#include "tofsmith/io/result_document.hpp"
+#include "tofsmith/scene/built_in_scenes.hpp"
+#include "tofsmith/simulate/scene_result.hpp"
+#include "tofsmith/simulate/staged_capture.hpp"
+
+namespace tofsmith::lab {
+
+namespace {
+
+constexpr std::int64_t max_seed = std::int64_t{1} << 53;  // beyond, JSON numbers are not exact
+
+std::uint64_t seed_of(const Request& request) {
+  return static_cast<std::uint64_t>(request.integer("seed", 0, max_seed, 1));
+}
+
+/// One number of every operating point, signal by signal.
+template <typename Number>
+void add_map(Answer& answer, std::string_view name, const DepthErrorReport& report,
+             const OperatingRange& range, Number&& number) {
+  std::vector<double> values;
+  for (const PointDepthError& point : report.points) values.push_back(number(point));
+  answer.add(name, std::move(values), {range.signal_e_per_s.size(), range.ambient_e_per_s.size()});
+}
+
+}  // namespace
+
+Answer evaluate_answer(const Request& request, const Progress& progress) {
+  const Camera camera = request.camera();
+  const CodeSet code = request.code(camera);
+  EvaluateOptions options;
+  options.trials = request.integer("trials", 2, 1'000'000'000, options.trials);
+  options.seed = seed_of(request);
+  options.validate();
+  const std::array evaluated = {
+      EvaluatedCode{evaluate(code, camera, options, progress), 0, {}, {}}};
+  const DepthErrorReport& report = evaluated.front().error;
+
+  Answer answer;
+  answer["document"] = Json::parse(evaluation_document(camera, evaluated, options));
+  const OperatingRange& range = camera.operating;
+  answer.add("signal_e_per_s", range.signal_e_per_s, {range.signal_e_per_s.size()});
+  answer.add("ambient_e_per_s", range.ambient_e_per_s, {range.ambient_e_per_s.size()});
+  const bool is_linear = range.error == DepthErrorKind::linear;
+  const auto error_of = [&](const PointDepthError& p) -> const Estimate& {
+    return is_linear ? p.linear_mde_m : p.circular_mde_m;
+  };
+  add_map(answer, "error_m", report, range, [&](const auto& p) { return error_of(p).value; });
+  add_map(answer, "standard_error_m", report, range,
+          [&](const auto& p) { return error_of(p).standard_error; });
+  add_map(answer, "cramer_rao_mae_m", report, range,
+          [](const auto& p) { return p.cramer_rao_mae_m; });
+  add_map(answer, "receiver_bound_mae_m", report, range,
+          [](const auto& p) { return p.receiver_bound_mae_m; });
+  Json& notes = answer["notes"] = Json::array();
+  if (const auto note = ambiguity_note(make_decoding_table(ForwardModel(code, camera), camera)))
+    notes.push_back(*note);
+  return answer;
+}
+
+Answer scene_answer(const Request& request, const Progress& progress) {
+  const Camera camera = request.camera();
+  const CodeSet code = request.code(camera);
+  const std::string name = request.text("scene", built_in_scene_names().front());
+  const int width = static_cast<int>(request.integer("width", 8, 1024, 160));
+  const int height = static_cast<int>(request.integer("height", 8, 1024, width * 3 / 4));
+  const std::string filter_word = request.text("filter", "off");
+  std::optional<FilterOptions> filter_options;
+  if (filter_word != "off") filter_options = FilterOptions::of(parse_filter_strength(filter_word));
+  CaptureOptions options;
+  const OperatingPoint usual = capture_light(camera, options.reference_distance_m);
+  options.signal_e_per_s = request.optional_number("signal").value_or(usual.signal_e_per_s);
+  options.ambient_e_per_s = request.optional_number("ambient").value_or(usual.ambient_e_per_s);
+  options.seed = seed_of(request);
+  options.validate();
+
+  const ProgressParts parts(progress, {30.0, filter_options ? 60.0 : 0.0, 10.0});
+  const StagedScene scene = built_in_scene(name, width, height);
+  const StagedCapture captured = capture(scene, code, camera, options, {}, parts[0]);
+  const Decoder decoder(make_decoding_table(ForwardModel(code, camera), camera));
+  DepthImage decoded(height, width);
+  if (filter_options) {
+    const Filter filter(decoder.table(), *filter_options);
+    const FilteredFrame filtered = filter.apply(captured.raw, 0, parts[1]);
+    decoder.decode(filtered.view(), DecodedView::of(decoded), parts[2]);
+  } else {
+    decoded = decoder.decode(captured.raw, 0, parts[2]);
+  }
+  const SceneImage& truth = captured.truth.front();
+  const SceneError error = scene_error(decoded.depth_m, truth, camera, DepthErrorKind::circular);
+
+  Answer answer;
+  answer["scene"] = name;
+  answer["width"] = width;
+  answer["height"] = height;
+  answer["signal_e_per_s"] = options.signal_e_per_s;
+  answer["ambient_e_per_s"] = options.ambient_e_per_s;
+  answer["range_m"] = camera.range_m();
+  answer["mean_error_m"] = error.mean_m;
+  answer["median_error_m"] = error.median_m;
+  answer["outlier_rate"] = error.outlier_rate;
+  answer["outlier_threshold_m"] = error.outlier_threshold_m;
+  answer["decoded_share"] = error.decoded_share;
+  std::vector<std::uint8_t> status;
+  double ok = 0.0;
+  for (const PixelStatus s : decoded.status.pixels) {
+    status.push_back(static_cast<std::uint8_t>(s));
+    ok += s == PixelStatus::ok ? 1.0 : 0.0;
+  }
+  answer["ok_share"] = ok / static_cast<double>(status.size());
+  Json& words = answer["status_words"] = Json::array();
+  for (const PixelStatus s : all_pixel_statuses) words.push_back(name_of(s));
+  const std::vector<std::size_t> shape = {static_cast<std::size_t>(height),
+                                          static_cast<std::size_t>(width)};
+  answer.add("status", std::move(status), shape);
+  answer.add("depth_m", decoded.depth_m);
+  answer.add("true_depth_m", wrapped_depth_m(truth, camera));
+  answer.add("deviation_m",
+             depth_difference_m(decoded.depth_m, truth, camera, DepthErrorKind::circular));
+  answer.add("standard_deviation_m", decoded.predicted_standard_deviation_m);
+  return answer;
+}
+
+Answer design_answer(const Request& request, const Progress& progress) {
+  const Camera camera = request.camera();
+  DesignOptions options;
+  options.method = parse_design_method(request.text("method", "best"));
+  const double effort = request.optional_number("effort").value_or(0.1);
+  options = with_effort(std::move(options), effort);
+  if (request.has("exposures"))
+    options.exposures = {static_cast<int>(request.integer("exposures", 1, 8))};
+  options.trials = static_cast<int>(request.integer("trials", 1000, 1'000'000, options.trials));
+  options.seed = seed_of(request);
+  options.validate();
+  const DesignResult result = design(camera, options, progress);
+  const Candidate& winner = result.winner();
+
+  Answer answer;
+  answer["document"] = Json::parse(design_document(camera, result, options));
+  answer["name"] = winner.code.name();
+  answer["method"] = winner.method;
+  answer["file"] = code_to_json(winner.code);
+  answer["error_m"] = geometric_mean_error_m(winner.error, camera.operating.error);
+  answer["explanation"] = result.explanation;
+  answer["left_out"] = result.left_out;
+  return answer;
+}
+
+}  // namespace tofsmith::lab

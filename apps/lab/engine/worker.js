@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// A worker of the lab's page, behind the engine's script (tofsmithEngine). It is started by
+// {start: WebAssembly.Module} and says {ready: true}; then it answers {id, call, ..}, one after the
+// other, by {id, answer, arrays} or {id, error}, and while it computes by {id, progress}.
+"use strict";
+
+const numberTypes = {Float32Array, Float64Array, Int32Array, Uint8Array};
+let engine = null;
+let currentId = null;
+let toldAt = 0;
+
+/** Tells of progress ten times a second. */
+function tellProgress(fraction, text) {
+  const now = Date.now();
+  if (currentId === null || (now - toldAt < 100 && fraction < 1)) return;
+  toldAt = now;
+  self.postMessage({id: currentId, progress: {done: fraction, total: 1, text}});
+}
+
+function start(module) {
+  return tofsmithEngine({
+    onProgress: tellProgress,
+    print: () => {},
+    printErr: () => {},
+    instantiateWasm(imports, done) {
+      WebAssembly.instantiate(module, imports).then((instance) => done(instance, module));
+      return {};
+    },
+  });
+}
+
+/** The reply to a request: {answer, arrays} or {error}. */
+function answer(request) {
+  const text = JSON.stringify(request);
+  const bytes = engine.lengthBytesUTF8(text) + 1;
+  const place = engine._malloc(bytes);
+  if (place === 0) return {error: {message: "this needs more memory than a page has"}};
+  engine.stringToUTF8(text, place, bytes);
+  let reply;
+  try {
+    reply = JSON.parse(engine.UTF8ToString(engine._tofsmith_lab_answer(place)));
+  } finally {
+    engine._free(place);
+  }
+  if (reply.error) return {error: reply.error};
+  const arrays = {};
+  for (const {name, type, pointer, length} of reply.arrays ?? []) {
+    const Numbers = numberTypes[type];
+    arrays[name] = new Numbers(engine.HEAPU8.buffer, pointer, length).slice();
+  }
+  return {answer: reply.answer, arrays};
+}
+
+self.onmessage = async ({data}) => {
+  if (data.start) {
+    try {
+      engine = await start(data.start);
+      self.postMessage({ready: true});
+    } catch (error) {
+      self.postMessage({error: {message: `the engine does not start: ${error.message}`}});
+    }
+    return;
+  }
+  const {id, ...request} = data;
+  currentId = id;
+  let reply;
+  try {
+    reply = answer(request);
+  } catch (error) {
+    // The engine's own error: it may be in no state to go on, and the page starts another worker.
+    reply = {error: {message: `the engine failed: ${error.message ?? error}`, fatal: true}};
+  }
+  currentId = null;
+  self.postMessage({id, ...reply}, Object.values(reply.arrays ?? {}).map((array) => array.buffer));
+};

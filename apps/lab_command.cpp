@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith::apps {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where this program stands; empty where the system does not say.
+fs::path program_directory() {
+  std::error_code ignored;
+  return fs::read_symlink("/proc/self/exe", ignored).parent_path();
+}
+
+/// The page of an installation or, of a build, the one that scripts/lab.sh made.
+/// @throws IoError that says how to make it
+fs::path lab_page() {
+  const fs::path here = program_directory();
+  const std::array places = {here / "../share/tofsmith/lab.html",
+                             here / "../../build-lab/lab.html"};
+  for (const fs::path& place : places) {
+    std::error_code ignored;
+    if (fs::is_regular_file(place, ignored)) return place;
+  }
+  throw IoError(places.front().lexically_normal().string(),
+                "there is no page: this tofsmith was built without it; scripts/lab.sh of its "
+                "sources makes one (scripts/lab.sh -o lab.html)");
+}
+
+std::string content_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string content{std::istreambuf_iterator<char>(file), {}};
+  if (!file || content.empty()) throw IoError(path.string(), "cannot be read");
+  return content;
+}
+
+void run(const std::string& output, const Session& session) {
+  session.check_output(output);
+  const std::string content = content_of(lab_page());
+  write_file_atomically(output, content, session.output_policy());
+  session.print_json({{"output", output}, {"bytes", content.size()}});
+  session.say(fmt::format("wrote {}; open it in a browser, it needs no network", output));
+}
+
+}  // namespace
+
+void add_lab_command(CLI::App& app, Session& session) {
+  auto output = std::make_shared<std::string>("lab.html");
+  CLI::App* command = app.add_subcommand(
+      "lab", "write the lab: one page for a browser, to try cameras and codes in");
+  command->add_option("-o,--output", *output, "HTML file")->capture_default_str();
+  command->callback([output, &session] { run(*output, session); });
+}
+
+}  // namespace tofsmith::apps

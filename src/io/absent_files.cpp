@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// In a page (apps/lab) there are no files beside a camera or a code: what would read them says so,
+// in place of the rooms that are not compiled for it.
+#ifdef __EMSCRIPTEN__
+
+#include <string>
+
+#include "io/documents/lens_calibration.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/io/code_file.hpp"
+#include "tofsmith/io/measured_table_file.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+[[noreturn]] void refuse_file(const std::string& file, const char* expected) {
+  throw IoError(file,
+                std::string("the page reads no file that another one names; expected ") + expected);
+}
+
+}  // namespace
+
+ImpulseResponse read_impulse_response(const std::filesystem::path& path,
+                                      std::optional<double> /*time_step_s*/) {
+  refuse_file(path.string(), "samples = [..] with time_step_s in its place");
+}
+
+Lens read_lens_calibration(const std::filesystem::path& path,
+                           std::optional<DistortionModel> /*model*/) {
+  refuse_file(path.string(), "fx_px, fy_px, cx_px and cy_px in its place");
+}
+
+CodeSet parse_code_npz(std::span<const std::byte> /*content*/, std::string_view file,
+                       const TapLayout& /*layout*/) {
+  refuse_file(std::string(file), "the text of a .json file");
+}
+
+std::vector<std::byte> serialize_code_npz(const CodeSet& /*code*/,
+                                          std::optional<TapOrder> /*order*/) {
+  refuse_file("code.npz", "the text of a .json file");
+}
+
+}  // namespace tofsmith
+
+#endif
