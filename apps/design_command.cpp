@@ -200,10 +200,11 @@ void add_design_command(CLI::App& app, Session& session) {
   command->add_flag("--normalize", arguments->normalize,
                     "rescale a table's columns to [0, 1] before use");
   command
-      ->add_option("--exposures", arguments->exposures,
-                   "numbers of exposures to try (3,4,5); default: what suits the camera")
+      ->add_option(
+          "--exposures", arguments->exposures,
+          "numbers of exposures to try (3,4,5), or of rows; default: what suits the camera")
       ->delimiter(',')
-      ->check(CLI::Range(1, 8));
+      ->check(CLI::Range(1, 16));
   add_effort(*command, arguments->effort);
   command->add_flag("--robust", arguments->robust,
                     "optimize for the worst of ±20 % bandwidth, ±10 % peak, 50 ps edge jitter "

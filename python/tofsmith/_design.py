@@ -237,7 +237,8 @@ def design(
         optimize: all waveforms together, by depth error itself; search: all codes on a chip clock,
         with proof where that is possible; best (the default): all that suit the camera.
     exposures : int, or sequence of int, optional
-        Numbers of exposures to design for, 1 .. 8; None: what suits method and camera.
+        Numbers of exposures to design for, 1 .. 8, or of rows, 3 .. 16; None: what suits
+        method and camera.
     target : str, path, CodeSet or ndarray (N, K), optional
         Correlation functions to factorize instead of Hamiltonian ones: a family, a code, a file of
         either kind (.code.json; .csv, .txt, .npy or .npz with `corrfs`), or values at equal steps of

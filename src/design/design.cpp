@@ -13,6 +13,7 @@
 #include "design/judge.hpp"
 #include "design/optimize/design_problem.hpp"
 #include "design/optimize/optimized_code.hpp"
+#include "design/rows/tone_rows.hpp"
 #include "design/shortest_run.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -106,6 +107,18 @@ std::vector<Task> tasks_for(const Camera& camera, const DesignOptions& options,
                      [&](const Progress& part) -> std::vector<Candidate> {
                        return {factorized_candidate(target, camera, options, part)};
                      }});
+  if (camera.sensor.readout == Readout::rows) {
+    if (includes(options.method, DesignMethod::optimize))
+      for (const int rows : designable_rows(options))
+        tasks.push_back({DesignMethod::optimize, rows_name(rows), 3.0,
+                         why_no_row_design(camera, rows), [&, rows](const Progress& part) {
+                           return row_candidates(camera, rows, options, part);
+                         }});
+    std::erase_if(tasks, [&](const Task& task) {
+      return !serves(task.method, task.why_not, options, result);
+    });
+    return tasks;
+  }
   // Of all methods, the search is for cameras that say what their chips are.
   const bool searches = options.method == DesignMethod::search ||
                         (options.method == DesignMethod::best && camera.sensor.shortest_pulse_s);
@@ -168,6 +181,14 @@ Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErro
 }
 
 std::vector<std::string> suggested_baselines(const Camera& camera, const DesignOptions& options) {
+  if (camera.sensor.readout == Readout::rows) {
+    std::vector<std::string> names{"hamiltonian-k4", "hamiltonian-k5", "gray-k5", "gray-k6"};
+    for (const int rows : designable_rows(options)) {
+      names.push_back(fmt::format("fourier-k{}", rows));
+      names.push_back(fmt::format("histogram-k{}", rows));
+    }
+    return names;
+  }
   if (options.method != DesignMethod::factorize)
     return {"sinusoid-k3",    "sinusoid-k4",    "square-k4",      "multifrequency-k5",
             "hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5", "pulsed-multifrequency-k5"};
@@ -179,9 +200,24 @@ std::vector<std::string> suggested_baselines(const Camera& camera, const DesignO
   return names;
 }
 
+namespace {
+
+/// More are rows.
+void require_exposures(const Camera& camera, const DesignOptions& options) {
+  constexpr int max_exposures = 8;
+  if (camera.sensor.readout == Readout::rows) return;
+  for (const int exposures : options.exposures)
+    require(exposures <= max_exposures, "DesignOptions::exposures", exposures,
+            fmt::format("must be in [1, {}]; up to {} are rows of one exposure", max_exposures,
+                        max_exposure_rows));
+}
+
+}  // namespace
+
 DesignResult design(const Camera& camera, const DesignOptions& options, const Progress& progress,
                     const DesignStore& store) {
   require_judgeable(camera, options);
+  require_exposures(camera, options);
   DesignResult result;
 
   // 1. What there is to factorize; baselines compete as they are.

@@ -76,14 +76,16 @@ std::string what_limits_it(const DesignResult& result) {
     return a.circular_mde_m.value < b.circular_mde_m.value;
   };
   const auto [min, max] = std::minmax_element(points.begin(), points.end(), by_error);
-  const auto describe = [](const PointDepthError& p) {
+  const bool is_rows = result.winner().code.is_rows();
+  const auto describe = [is_rows](const PointDepthError& p) {
     std::string text = plain_number(1e3 * p.circular_mde_m.value, 3) + " mm";
     if (p.cramer_rao_mae_m > 0.0)
       text += fmt::format(", {:.2f} times its Cramer-Rao bound",
                           p.circular_mde_m.value / p.cramer_rao_mae_m);
     if (p.receiver_bound_mae_m > 0.0)
-      text += fmt::format(" and {:.2f} times what any code could reach",
-                          p.circular_mde_m.value / p.receiver_bound_mae_m);
+      text += fmt::format(
+          " and {:.2f} times {}", p.circular_mde_m.value / p.receiver_bound_mae_m,
+          is_rows ? "that of the full histogram of its light" : "what any code could reach");
     return text;
   };
   if (points.size() == 1) return fmt::format("Its circular error is {}.", describe(*min));
@@ -118,9 +120,10 @@ std::string behind_multipath(const OperatingMultipath& returns, const DesignResu
 
 std::vector<std::string> explain(const Camera& camera, const DesignResult& result) {
   const DepthErrorKind kind = camera.operating.error;
-  std::vector<std::string> sentences{what_it_beats(camera, result, kind),
-                                     why_so_many_exposures(camera, result, kind),
-                                     what_limits_it(result)};
+  std::vector<std::string> sentences{what_it_beats(camera, result, kind)};
+  if (!result.winner().code.is_rows())
+    sentences.push_back(why_so_many_exposures(camera, result, kind));
+  sentences.push_back(what_limits_it(result));
   if (camera.operating.multipath)
     sentences.push_back(behind_multipath(*camera.operating.multipath, result, kind));
   return sentences;

@@ -81,7 +81,7 @@ class Refusals(CommandLineTest):
                  ["near", "label", "snap", "drop"]),
                 (["decode", "r.npy", "--code", "c", "--average", "0", "-o", "d.npy"],
                  ["--average: found 0; must be >= 1"]),
-                (["design", "--exposures", "9"], ["9"]),
+                (["design", "--exposures", "17"], ["17"]),
                 (["codes", "-o", "x.npz"], ["NAME"]),
                 (["simulate", "table-top", "--code", "sinusoid-k4"], ["--output"]),
                 (["simulate", "table-top", "--image", "a.png", "--code", "sinusoid-k4", "-o",

@@ -42,7 +42,8 @@ DesignMethod parse_design_method(std::string_view name);
 struct DesignOptions {
   DesignMethod method = DesignMethod::best;
   /// Numbers of exposures to design for, 1 .. 8, each once; none: what suits method and camera
-  /// (suggested_exposures). Factorization aims at Hamiltonian codes, which have 3 .. 6.
+  /// (suggested_exposures). Factorization aims at Hamiltonian codes, which have 3 .. 6. On cameras
+  /// that read rows of one exposure: numbers of rows, 3 .. 16; none: 8.
   std::vector<int> exposures;
   /// A target of the user's, factorized instead of the Hamiltonian ones.
   std::optional<TargetSet> target;
@@ -66,7 +67,7 @@ struct DesignOptions {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<DesignOptions> auto& o) {
-  return std::tuple(Field("method", o.method), Field("exposures", o.exposures, "in [1, 8]"),
+  return std::tuple(Field("method", o.method), Field("exposures", o.exposures, "in [1, 16]"),
                     Field("target", o.target, FieldMark::apart), Field("factorize", o.factorize),
                     Field("optimize", o.optimize), Field("search", o.search),
                     Field("robust", o.robust), Field("baselines", o.baselines),

@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Designs rows of one exposure for the cameras on which learned codes were published, and says how
+they compare: N = 1024 time bins at 5 MHz, a photon total of 1000, a response exp(-(t / sigma)^2),
+no limit on the light or a peak of P of all photons in a bin (the response then twice).
+
+    benchmarks/rows.py [--tofsmith build/apps/tofsmith] [--rows 8] [--trials 4000] [--cells 0,1,..]
+                       [--codes FOLDER ..]
+
+Mean absolute circular errors [mm] by zero-mean normalized cross-correlation. `learned` and `gates`
+are what others measured of learned codes and of codes of separate exposures turned into rows;
+`histogram` is the bound of all 1024 bins with our light. With --codes, codes of yours are judged on
+the same trials: FOLDER/SIGMA-P-RATIO/light.npy and rows.npy, as in 10-none-1 or 5-.015-.1.
+"""
+
+import argparse
+import json
+import math
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+SAMPLES, FREQUENCY_HZ = 1024, 5e6
+RATIOS = (1, .1)  # of signal to background
+# sigma [bins], P, then learned and gates at both ratios
+CELLS = [
+    (10, None, (6.8, 14.5), (7.3, 16.8)),
+    (20, None, (13.9, 31.0), (13.6, 27.7)),
+    (30, None, (19.6, 40.2), (21.2, 42.4)),
+    (1, .005, (30.8, 77.9), (19.9, 50.2)),
+    (1, .015, (24.3, 65.8), (10.7, 23.2)),
+    (1, .030, (17.4, 49.0), (11.1, 23.4)),
+    (5, .005, (15.7, 36.9), (18.8, 41.5)),
+    (5, .015, (10.7, 26.8), (11.2, 24.3)),
+    (5, .030, (10.4, 25.1), (10.7, 22.1)),
+    (10, .005, (25.3, 61.3), (21.1, 50.8)),
+    (10, .015, (11.5, 24.2), (12.4, 28.9)),
+    (10, .030, (10.6, 22.1), (12.7, 26.0)),
+]
+ASKED = .93  # of the better of learned and gates
+
+
+def camera_toml(sigma_bins, peak, signal_to_background, photons):
+    """The response exp(-(t / sigma)^2) is a Gaussian that falls by 3 dB at its cut-off."""
+    sigma_s = sigma_bins / (SAMPLES * FREQUENCY_HZ)
+    cutoff_hz = math.sqrt(.5 * math.log(2)) / (math.pi * sigma_s)
+    response = f'{{ kind = "gaussian", cutoff_hz = {cutoff_hz!r} }}'
+    peak_factor = SAMPLES if peak is None else peak * SAMPLES
+    again = "" if peak is None else f"impulse_response = {response}\n"
+    return (f"fundamental_frequency_hz = {FREQUENCY_HZ}\nexposure_s = 1\nsamples = {SAMPLES}\n"
+            f"[light]\npeak_factor = {peak_factor}\nimpulse_response = {response}\n"
+            f'[sensor]\nreadout = "rows"\nread_noise_e = 0\n{again}'
+            f"[operating]\nsignal_e_per_s = [{photons}]\n"
+            f"ambient_e_per_s = [{photons / signal_to_background}]\nerror = \"circular\"\n")
+
+
+def run(tool, *arguments):
+    done = subprocess.run([tool, *arguments, "--json"], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise SystemExit(f"{' '.join([tool, *arguments])}\n{done.stderr}")
+    return json.loads(done.stdout)
+
+
+def errors_mm(tool, codes, camera, arguments):
+    """Circular error and bound of the full histogram of each code, on the same trials."""
+    found = run(tool, "evaluate", *codes, "--camera", str(camera), "--trials",
+                str(arguments.trials), "--seed", "11", "--method", arguments.method)
+    return [(1e3 * report["circular"]["geometric_mean_m"],
+             1e3 * report["points"][0]["receiver_bound_mae_m"]) for report in found["codes"]]
+
+
+def codes_of(folders, name):
+    """NPY pairs for one camera."""
+    pairs = []
+    for folder in folders:
+        light, rows = (Path(folder) / name / f"{part}.npy" for part in ("light", "rows"))
+        if rows.exists():
+            pairs.append(f"{light},{rows}")
+    return pairs
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--tofsmith", default="build/apps/tofsmith")
+    parser.add_argument("--rows", type=int, default=8)
+    parser.add_argument("--photons", type=float, default=1000)
+    parser.add_argument("--trials", type=int, default=4000)
+    parser.add_argument("--effort", default="1")
+    parser.add_argument("--method", default="zncc", choices=["zncc", "ml"])
+    parser.add_argument("--cells", default="", help="numbers of cells, from 0; all")
+    parser.add_argument("--codes", nargs="*", default=[], help="folders of codes of yours")
+    arguments = parser.parse_args()
+    tool = arguments.tofsmith
+    chosen = [int(c) for c in arguments.cells.split(",") if c] or range(len(CELLS))
+
+    print("sigma  P      S/B  asked    ours  of asked  learned gates  histogram  seconds  yours")
+    met = count = 0
+    with tempfile.TemporaryDirectory() as folder:
+        for cell in chosen:
+            sigma, peak, learned, gates = CELLS[cell]
+            for i, ratio in enumerate(RATIOS):
+                camera = Path(folder) / f"{cell}-{i}.toml"
+                camera.write_text(camera_toml(sigma, peak, ratio, arguments.photons))
+                out = Path(folder) / f"{cell}-{i}"
+                begin = time.monotonic()
+                run(tool, "design", str(camera), "--method", "optimize", "--exposures",
+                    str(arguments.rows), "--effort", arguments.effort, "--trials", "1000", "-o",
+                    str(out))
+                seconds = time.monotonic() - begin
+                name = f"{sigma}-{peak or 'none'}-{ratio}".replace("0.", ".")
+                yours = codes_of(arguments.codes, name)
+                code = out / "codes" / f"tones-k{arguments.rows}.code.json"
+                (ours, histogram), *others = errors_mm(tool, [str(code), *yours], camera, arguments)
+                asked = ASKED * min(learned[i], gates[i])
+                met, count = met + (ours <= asked), count + 1
+                print(f"{sigma:5} {peak or 'none':>5} {ratio:5} {asked:6.1f} {ours:7.2f}  "
+                      f"{ours / asked:8.2f}   {learned[i]:6.1f} {gates[i]:6.1f} "
+                      f"{histogram:9.2f}  {seconds:8.1f}  "
+                      + " ".join(f"{error:.2f}" for error, _ in others), flush=True)
+    print(f"{met} of {count} cells as asked")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,376 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/rows/tone_rows.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <set>
+
+#include "core/shared/periodic.hpp"
+#include "core/shared/random.hpp"
+#include "design/judge.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+using std::numbers::pi;
+
+/// Bins per period of a tone, at least: depths between bins lie on chords.
+constexpr int min_bins_per_period = 6;
+constexpr int drawn_sets = 400, bettered_sets = 12, steps_per_set = 60, judged_sets = 8;
+constexpr int rounds_of_light = 12;
+
+/// Harmonics of the period, in rising order, each once.
+using Tones = std::vector<int>;
+
+/// A set of tones with its light.
+struct ToneCode {
+  Tones tones;
+  Eigen::VectorXd light;  // (N)
+  double foreseen_m = infinity;
+};
+
+/// What is foreseen of tones at the camera's operating points, and the light for them.
+class ToneSearch {
+ public:
+  ToneSearch(const Camera& camera, int rows)
+      : camera_(camera),
+        rows_(rows),
+        samples_(camera.samples),
+        highest_(std::max(1, samples_ / min_bins_per_period)),
+        transform_(samples_),
+        response_(camera.band_limited()
+                      ? camera.transfer(transform_.coefficients() - 1).conjugate().eval()
+                      : Eigen::VectorXcd::Ones(transform_.coefficients()).eval()),
+        cosine_(samples_),
+        sine_(samples_) {
+    for (int n = 0; n < samples_; ++n) {
+      cosine_[n] = std::cos(2 * pi * n / samples_);
+      sine_[n] = std::sin(2 * pi * n / samples_);
+    }
+    for (Eigen::Index n = 1; n < response_.size(); ++n) {
+      const double x = pi * static_cast<double>(n) / samples_;
+      response_[n] *= std::pow(std::sin(x) / x, 2);  // light is held over a bin, and counted in one
+    }
+    transfer_ = response_.head(highest_ + 1).cwiseAbs();
+    for (int n = 1; n <= highest_; ++n)
+      if (n * transfer_[n] > best_ * transfer_[best_]) best_ = n;
+    const double duty = std::max(1.0 / camera.light.peak_factor, 1.0 / samples_);
+    on_bins_ = std::clamp(static_cast<int>(std::ceil(duty * samples_ - 1e-9)), 1, samples_ - 1);
+  }
+
+  int tones() const { return (rows_ + 1) / 2; }
+
+  /// Tones about the best one, or below it, closer together or less so.
+  Tones draw(RandomStream& random) const {
+    const double centre = -1.0 + 1.1 * random.uniform(), spread = 0.1 + 0.7 * random.uniform();
+    std::set<int> drawn;
+    while (static_cast<int>(drawn.size()) < std::min(tones(), highest_)) {
+      const double tone = best_ * std::exp(centre + spread * random.normal());
+      drawn.insert(std::clamp(static_cast<int>(std::lround(tone)), 1, highest_));
+      if (random.uniform() < 0.1) drawn.insert(any_tone(random));
+    }
+    Tones tones_drawn(drawn.begin(), drawn.end());
+    tones_drawn.resize(static_cast<std::size_t>(tones()));
+    return tones_drawn;
+  }
+
+  /// One tone moved a little, or to anywhere; the same set where that one is taken.
+  Tones stepped(const Tones& from, RandomStream& random) const {
+    Tones tones = from;
+    const auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(tones.size()));
+    int& tone = tones[std::min(at, tones.size() - 1)];
+    if (random.uniform() < 0.5) {
+      tone = any_tone(random);
+    } else {
+      const int step = 1 + static_cast<int>(random.uniform() * std::max(3, best_ / 12));
+      tone = std::clamp(tone + (random.uniform() < 0.5 ? -step : step), 1, highest_);
+    }
+    std::sort(tones.begin(), tones.end());
+    return std::adjacent_find(tones.begin(), tones.end()) == tones.end() ? tones : from;
+  }
+
+  ToneCode code_of(Tones tones, RandomStream& random) const {
+    ToneCode code{std::move(tones), {}, infinity};
+    find_light(code, random);
+    code.foreseen_m = foreseen_m(code);
+    return code;
+  }
+
+  CodeSet code_set(const ToneCode& code) const {
+    const Waveform light = Waveform::binary_from_samples(code.light, code.light.maxCoeff());
+    return CodeSet::create_rows(rows_name(rows_), light, weights_of(code.tones));
+  }
+
+ private:
+  int any_tone(RandomStream& random) const {
+    const double highest = std::log(std::min(highest_, 2 * best_));
+    return std::clamp(static_cast<int>(std::lround(std::exp(random.uniform() * highest))), 1,
+                      highest_);
+  }
+
+  Eigen::MatrixXd weights_of(const Tones& tones) const {
+    Eigen::MatrixXd weights(samples_, rows_);
+    for (int k = 0; k < rows_; ++k) {
+      const std::int64_t tone = tones[static_cast<std::size_t>(k / 2)];
+      for (int n = 0; n < samples_; ++n) {
+        // In the middle of the bin: half steps of the period.
+        const int at = static_cast<int>(tone * (2 * n + 1) % (2 * samples_));
+        weights(n, k) = k % 2 == 0 ? std::cos(pi * at / samples_) : std::sin(pi * at / samples_);
+      }
+    }
+    return weights;
+  }
+
+  void find_light(ToneCode& code, RandomStream& random) const {
+    const auto count = static_cast<Eigen::Index>(code.tones.size());
+    Eigen::VectorXd phase(count), amplitude = Eigen::VectorXd::Ones(count), weight(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const int tone = code.tones[static_cast<std::size_t>(i)];
+      weight[i] = std::pow(tone * transfer_[tone], 2);
+      phase[i] = 2 * pi * random.uniform();
+    }
+    std::vector<int> order(static_cast<std::size_t>(samples_));
+    Eigen::VectorXd sum(samples_);
+    std::vector<char> was_on, is_on(static_cast<std::size_t>(samples_));
+    for (int round = 0; round < rounds_of_light; ++round) {
+      sum.setZero();
+      for (Eigen::Index i = 0; i < count; ++i) {
+        const int tone = code.tones[static_cast<std::size_t>(i)];
+        const double c = weight[i] * amplitude[i] * std::cos(phase[i]);
+        const double s = weight[i] * amplitude[i] * std::sin(phase[i]);
+        for (int n = 0; n < samples_; ++n) {
+          const int at = static_cast<int>(std::int64_t{tone} * n % samples_);
+          sum[n] += c * cosine_[at] - s * sine_[at];
+        }
+      }
+      std::iota(order.begin(), order.end(), 0);
+      std::nth_element(order.begin(), order.begin() + on_bins_ - 1, order.end(),
+                       [&](int a, int b) { return sum[a] != sum[b] ? sum[a] > sum[b] : a < b; });
+      std::fill(is_on.begin(), is_on.end(), char{0});
+      for (int i = 0; i < on_bins_; ++i)
+        is_on[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])] = 1;
+      for (Eigen::Index i = 0; i < count; ++i) {
+        const int tone = code.tones[static_cast<std::size_t>(i)];
+        double c = 0.0, s = 0.0;
+        for (int j = 0; j < on_bins_; ++j) {
+          const std::int64_t n = order[static_cast<std::size_t>(j)];
+          const int at = static_cast<int>(tone * n % samples_);
+          c += cosine_[at], s -= sine_[at];
+        }
+        amplitude[i] = std::hypot(c, s) / on_bins_;
+        phase[i] = std::atan2(s, c);
+      }
+      if (is_on == was_on) break;
+      was_on = is_on;
+    }
+    code.light.resize(samples_);
+    for (int n = 0; n < samples_; ++n)
+      code.light[n] =
+          is_on[static_cast<std::size_t>(n)] != 0 ? static_cast<double>(samples_) / on_bins_ : 0.0;
+  }
+
+  /// Geometric mean over the operating points.
+  double foreseen_m(const ToneCode& code) const {
+    const double exposure_s = camera_.exposure_s.of(0, 1), range_m = camera_.range_m();
+    const Sensor& sensor = camera_.sensor;
+    // A photon's share of every bin, behind the arms.
+    Eigen::VectorXcd spectrum(transform_.coefficients());
+    transform_.forward(code.light / code.light.sum(), spectrum);
+    spectrum.array() *= response_.array();
+    Eigen::VectorXd share;
+    transform_.inverse(spectrum, share);
+    share = share.cwiseMax(0.0);
+    const Eigen::MatrixXd weights = weights_of(code.tones);
+    const Eigen::MatrixXd weighed = weights.transpose() * share.asDiagonal() * weights;
+    const Eigen::MatrixXd constant = weights.transpose() * weights / samples_;
+    const Eigen::VectorXd mean = weights.transpose() * share;
+    const Eigen::VectorXd slope = slope_of(code.tones, mean);
+
+    double logarithms = 0.0;
+    const std::vector<OperatingPoint> points = camera_.operating.points();
+    for (const OperatingPoint& point : points) {
+      const double signal_e = exposure_s * camera_.operating.albedo * point.signal_e_per_s;
+      const double other_e = exposure_s * (point.ambient_e_per_s + sensor.dark_current_e_per_s);
+      const double read_e2 = sensor.read_noise_e * sensor.read_noise_e;
+      Eigen::MatrixXd covariance = signal_e * weighed + other_e * constant;
+      covariance.diagonal().array() += read_e2 + 1e-9 * (signal_e + other_e);
+      const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+      Eigen::VectorXd by_depth = signal_e * slope, by_signal = mean;
+      factor.matrixL().solveInPlace(by_depth);
+      factor.matrixL().solveInPlace(by_signal);
+      by_signal.normalize();
+      by_depth -= by_depth.dot(by_signal) * by_signal;
+      const double local_m = range_m * std::sqrt(2 / pi) / by_depth.norm();
+      const double variance_e2 = 0.5 * (signal_e + other_e) + read_e2;
+      Eigen::VectorXd power(static_cast<Eigen::Index>(code.tones.size()));
+      for (Eigen::Index i = 0; i < power.size(); ++i)
+        power[i] = mean.segment(2 * i, std::min<Eigen::Index>(2, rows_ - 2 * i)).squaredNorm() *
+                   signal_e * signal_e / variance_e2;
+      logarithms += std::log(std::min(local_m + lobes_m(code.tones, power), 0.25 * range_m));
+    }
+    return std::exp(logarithms / static_cast<double>(points.size()));
+  }
+
+  /// Change of the rows per period of depth; mean (K) at depth 0.
+  Eigen::VectorXd slope_of(const Tones& tones, const Eigen::VectorXd& mean) const {
+    Eigen::VectorXd slope = Eigen::VectorXd::Zero(rows_);
+    for (int k = 0; k < rows_; ++k) {
+      const int other = k % 2 == 0 ? k + 1 : k - 1;
+      if (other >= rows_) continue;  // a cosine alone: at depth 0 its sine is not known
+      slope[k] = (k % 2 == 0 ? -2 : 2) * pi * tones[static_cast<std::size_t>(k / 2)] * mean[other];
+    }
+    return slope;
+  }
+
+  /// Error by lobes taken for the right one: at every depth where the score has one.
+  double lobes_m(const Tones& tones, const Eigen::VectorXd& power) const {
+    // At u = j / points, 8 for a period of the highest tone; least values by parabolas.
+    const int points = std::min(samples_, 8 * tones.back());
+    const int half = points / 2;
+    std::vector<double> apart(static_cast<std::size_t>(half) + 2, 0.0);
+    for (Eigen::Index i = 0; i < power.size(); ++i)
+      for (int j = 0; j <= half + 1; ++j)
+        apart[static_cast<std::size_t>(j)] +=
+            power[i] *
+            (1.0 - cosine_of(static_cast<double>(tones[static_cast<std::size_t>(i)]) * j / points));
+    double error = 0.0;
+    for (int j = 1; j <= half; ++j) {
+      const double here = apart[static_cast<std::size_t>(j)];
+      const double before = apart[static_cast<std::size_t>(j) - 1];
+      const double after = apart[static_cast<std::size_t>(j) + 1];
+      if (here > before || here > after) continue;
+      const double bend = before + after - 2 * here, tilt = after - before;
+      const double least = bend > 0.0 ? std::max(0.0, here - tilt * tilt / (8 * bend)) : here;
+      // On both sides; Q(x) = erfc(x / sqrt 2) / 2.
+      error += static_cast<double>(j) / points * std::erfc(0.5 * std::sqrt(least));
+    }
+    return camera_.range_m() * error;
+  }
+
+  double cosine_of(double turns) const {
+    const double part = turns - std::floor(turns);
+    return cosine_[std::min(static_cast<int>(part * samples_ + 0.5), samples_ - 1)];
+  }
+
+  const Camera& camera_;
+  int rows_, samples_, highest_;
+  PeriodicTransform transform_;
+  Eigen::VectorXcd response_;  // H_n of arms, of all harmonics of the bins
+  Eigen::VectorXd transfer_;   // |H_n| of arms and bins
+  Eigen::VectorXd cosine_, sine_;
+  int best_ = 1, on_bins_ = 1;
+};
+
+void keep_best(std::vector<ToneCode>& codes, int count) {
+  std::stable_sort(codes.begin(), codes.end(), [](const ToneCode& a, const ToneCode& b) {
+    return a.foreseen_m < b.foreseen_m;
+  });
+  // Sets of the same tones differ by where their light came to rest: the best stands for all.
+  std::vector<ToneCode> kept;
+  for (ToneCode& code : codes) {
+    if (static_cast<int>(kept.size()) == count) break;
+    if (std::none_of(kept.begin(), kept.end(),
+                     [&](const ToneCode& other) { return other.tones == code.tones; }))
+      kept.push_back(std::move(code));
+  }
+  codes = std::move(kept);
+}
+
+int by_effort(int count, const DesignOptions& options) {
+  // The starts of a search say how long it may take.
+  const double effort =
+      static_cast<double>(options.optimize.starts) / static_cast<double>(OptimizeOptions().starts);
+  return std::max(1, static_cast<int>(std::lround(count * effort)));
+}
+
+}  // namespace
+
+std::vector<int> designable_rows(const DesignOptions& options) {
+  return options.exposures.empty() ? std::vector<int>{8} : options.exposures;
+}
+
+std::string rows_name(int rows) { return fmt::format("tones-k{}", rows); }
+
+std::optional<BrokenRule> why_no_row_design(const Camera& camera, int rows) {
+  if (rows < 3 || rows > max_exposure_rows)
+    return broken("rows", rows,
+                  fmt::format("must be in [3, {}] to design them", max_exposure_rows));
+  if (camera.light.peak_factor <= 1.0)
+    return broken("light.peak_factor", camera.light.peak_factor,
+                  "must be > 1 to design rows: light that never changes carries no depth");
+  if (const int highest = camera.samples / min_bins_per_period; highest < (rows + 1) / 2)
+    return broken(
+        "samples", camera.samples,
+        fmt::format("must be >= {} to design {} rows", min_bins_per_period * (rows + 1) / 2, rows));
+  return std::nullopt;
+}
+
+std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOptions& options,
+                                      const Progress& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  const Camera camera = judged_camera(on);
+  require(why_no_row_design(camera, rows));
+  const ToneSearch search(camera, rows);
+  const ProgressParts parts(progress, {20, 40, 40});
+  const std::uint64_t seed = search_seed(options);
+
+  // 1. Sets of tones at random, each with its light.
+  std::vector<ToneCode> codes;
+  const int drawn = by_effort(drawn_sets, options), bettered = by_effort(bettered_sets, options);
+  for (int i = 0; i < drawn; ++i) {
+    RandomStream random(seed, static_cast<std::uint64_t>(i), 0);
+    codes.push_back(search.code_of(search.draw(random), random));
+    report(parts[0], static_cast<double>(i + 1) / drawn, "rows");
+  }
+  keep_best(codes, bettered);
+
+  // 2. The best of them, bettered tone by tone.
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    RandomStream random(seed, i, 1);
+    for (int step = 0; step < steps_per_set; ++step) {
+      ToneCode tried = search.code_of(search.stepped(codes[i].tones, random), random);
+      if (tried.foreseen_m < codes[i].foreseen_m) codes[i] = std::move(tried);
+    }
+    report(parts[1], static_cast<double>(i + 1) / static_cast<double>(codes.size()), "rows");
+  }
+  keep_best(codes, judged_sets);
+
+  // 3. The judge takes those that err least with other random numbers than its own.
+  const EvaluateOptions evaluation{.trials = options.search_trials, .seed = seed, .bounds = false};
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    const DepthErrorReport error = evaluate(search.code_set(codes[i]), camera, evaluation);
+    order.emplace_back(geometric_mean_error_m(error, camera.operating.error), i);
+    report(parts[2], static_cast<double>(i + 1) / static_cast<double>(codes.size()), "rows");
+  }
+  std::sort(order.begin(), order.end());
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, order.size()); ++i) {
+    const ToneCode& tones = codes[order[i].second];
+    CodeSet code = search.code_set(tones);
+    code.provenance.method = "optimize";
+    code.provenance.camera = on.name;
+    code.provenance.seed = options.seed;
+    Candidate candidate{.code = std::move(code), .method = "optimize"};
+    candidate.seconds = taken.count();
+    candidate.iterations = drawn + bettered * steps_per_set;
+    candidate.message = fmt::format("tones {}", fmt::join(tones.tones, ", "));
+    candidate.per_measurement.resize(static_cast<std::size_t>(rows));
+    candidates.push_back(std::move(candidate));
+  }
+  return candidates;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/design/design.hpp"
+
+namespace tofsmith {
+
+/// Numbers of rows to design for: DesignOptions::exposures, or 8.
+std::vector<int> designable_rows(const DesignOptions& options);
+std::string rows_name(int rows);
+
+/// Why rows cannot be designed for a camera that reads rows; none: row_candidates() does.
+std::optional<BrokenRule> why_no_row_design(const Camera& camera, int rows);
+
+/// Rows and light together, of a camera that reads rows: attempts at one code, for the judge.
+///
+/// Rows are cosines and sines at a few tones, which any number of shifts leaves alike, so that no
+/// depth is worse than another; light is what is strongest at these tones within its peak. Sets of
+/// tones are drawn around the one that carries most information (largest n |H_n|), and bettered by
+/// single steps, by the error foreseen at the operating points: the Cramer-Rao bound at one depth,
+/// with the covariance of the rows, and beside it
+///   sum_lobes 2 |u| R Q(sqrt(g(u) / 2)), g(u) = sum_n q_n (1 - cos 2 pi n u),
+///   q_n = (S |M_n|)^2 / variance of a row in constant light.
+/// The light of a set is the fixed point of: on where the sum of its tones, in the phases it has
+/// now and weighed by their share in the information, is largest.
+std::vector<Candidate> row_candidates(const Camera& camera, int rows, const DesignOptions& options,
+                                      const Progress& progress);
+
+}  // namespace tofsmith

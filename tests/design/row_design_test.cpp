@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "design/rows/tone_rows.hpp"
+#include "rows_setup.hpp"
+#include "same_code.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+namespace {
+
+Camera small_camera() {
+  Camera camera = rows_camera(120, 1000, 3000);
+  camera.light.peak_factor = 12;
+  camera.light.impulse_response.cutoff_hz = 60e6;
+  camera.operating.error = DepthErrorKind::circular;
+  return camera;
+}
+
+DesignOptions quick(int rows) {
+  DesignOptions options = with_effort({}, 0.1);
+  options.method = DesignMethod::optimize;
+  options.exposures = {rows};
+  options.search_trials = 200;
+  options.trials = 2000;
+  return options;
+}
+
+TEST(RowDesign, BeatsEveryFamilyOfItsRows) {
+  const DesignResult result = design(small_camera(), quick(6));
+  ASSERT_TRUE(result.find("fourier-k6"));
+  ASSERT_TRUE(result.find("histogram-k6"));
+  ASSERT_TRUE(result.find("hamiltonian-k5"));
+  EXPECT_EQ(result.winner().code.name(), "tones-k6");
+  EXPECT_TRUE(result.winner().is_designed());
+  for (const Candidate& candidate : result.candidates) {
+    if (candidate.is_designed()) continue;
+    EXPECT_GT(gain_over(result, candidate, DepthErrorKind::circular).value, 1.1)
+        << candidate.code.name();
+  }
+}
+
+TEST(RowDesign, LightKeepsToItsPeakAndMean) {
+  const Camera camera = small_camera();
+  for (const Candidate& candidate : row_candidates(camera, 8, quick(8), {})) {
+    EXPECT_LE(candidate.code.peak(), 12 * (1 + 1e-9));
+    EXPECT_NEAR(candidate.code.modulation(0).mean(), 1.0, 1e-9);
+    EXPECT_TRUE(candidate.code.modulation(0).is_binary());
+    EXPECT_FALSE(why_not_playable(candidate.code, camera));
+  }
+}
+
+TEST(RowDesign, MoreRowsAreNoWorse) {
+  const Camera camera = small_camera();
+  DesignOptions options = quick(4);
+  options.exposures = {4, 8};
+  const DesignResult result = design(camera, options);
+  EXPECT_LT(result.find("tones-k8")->error.circular.geometric_mean_m.value,
+            result.find("tones-k4")->error.circular.geometric_mean_m.value);
+}
+
+TEST(RowDesign, TheSameSeedFindsTheSameRows) {
+  const Camera camera = small_camera();
+  const auto first = row_candidates(camera, 5, quick(5), {});
+  const auto again = row_candidates(camera, 5, quick(5), {});
+  ASSERT_EQ(first.size(), again.size());
+  expect_same_code(first.front().code, again.front().code);
+}
+
+TEST(RowDesign, SaysWhatCannotBeDesigned) {
+  Camera camera = small_camera();
+  EXPECT_EQ(why_no_row_design(camera, 2)->field, "rows");
+  EXPECT_EQ(why_no_row_design(camera, 17)->field, "rows");
+  camera.light.peak_factor = 1.0;
+  EXPECT_EQ(why_no_row_design(camera, 6)->field, "light.peak_factor");
+  camera = small_camera();
+  camera.samples = 12;
+  EXPECT_EQ(why_no_row_design(camera, 8)->field, "samples");
+  // Of exposures there are 8 at most.
+  DesignOptions many = quick(9);
+  EXPECT_THROW(design(built_in_camera("paper-10f0"), many), InvalidArgument);
+  // Methods of waveforms of taps say that rows are not theirs.
+  DesignOptions options = quick(4);
+  options.method = DesignMethod::factorize;
+  EXPECT_THROW(design(small_camera(), options), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace tofsmith
