@@ -235,6 +235,8 @@ TEST(LabEngine, ADesignIsACodeOfTheCameraAndTellsHowFarItIs) {
 
 TEST(LabEngine, WhateverIsAskedThereIsAReply) {
   const std::string deep(100000, '[');
+  std::string dotted = "a";
+  for (int i = 0; i < 100000; ++i) dotted += ".a";
   const std::string code_of = R"("built_in": "paper-10f0", "code": )";
   const std::vector<std::string> requests = {
       "",
@@ -248,6 +250,7 @@ TEST(LabEngine, WhateverIsAskedThereIsAReply) {
       R"({"call": "camera", "camera": "fundamental_frequency_hz = nan"})",
       R"({"call": "camera", "camera": "fundamental_frequency_hz = 15e6\nsamples = 99999999"})",
       R"({"call": "camera", "camera": ")" + std::string(5000, '[') + "\"}",
+      R"({"call": "camera", "camera": ")" + dotted + R"( = 1"})",
       R"({"call": "camera", "built_in": "no-such-camera"})",
       R"({"call": "camera", "built_in": "../../etc/passwd"})",
       R"({"call": "set", "built_in": "paper-10f0", "key": "light.peak_factor", "value": "nan"})",

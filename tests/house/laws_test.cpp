@@ -124,6 +124,9 @@ TEST(House, CoreAndDesignCompileWithDebiansEmscripten) {
                                           std::string("src/") + floor}),
                             algorithms_of_ranges),
               "");
+  EXPECT_EQ(violations_in(read_sources({"src/io/text", "src/io/documents", "apps/lab"}),
+                          algorithms_of_ranges),
+            "");
 }
 
 TEST(House, EveryFileNamesItsLicence) {

@@ -272,6 +272,21 @@ TEST(CameraToml, SaysWhereTextThatIsNoTomlBreaksOff) {
   EXPECT_THAT(refusal("a = 1\na = 2\n"), HasSubstr("c.toml:2:"));
 }
 
+TEST(CameraToml, KeysOfVeryManyPartsAreRefused) {
+  std::string key = "a";
+  for (int i = 0; i < 200000; ++i) key += ".a";
+  for (const std::string& text : {key + " = 1", "[" + key + "]", "x = { " + key + " = 1 }",
+                                  "# a comment\n\"a.b\"." + key + " = 1"})
+    EXPECT_THAT(refusal(text), HasSubstr("parts between dots"));
+  EXPECT_THAT(refusal("", {key + "=1"}), HasSubstr("parts between dots"));
+  const std::string dots(300, '.');
+  EXPECT_EQ(parse_camera_toml("fundamental_frequency_hz = 15e6  # " + dots + "\nname = \"" + dots +
+                                  "\"\n[light]\npeak_factor = 5.0",
+                              "c.toml")
+                .name,
+            dots);
+}
+
 TEST(CameraToml, AMissingFileIsNamed) {
   EXPECT_THAT(io_error_of([] { read_camera_toml("no/such.toml"); }), HasSubstr("no/such.toml"));
 }

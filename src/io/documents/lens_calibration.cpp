@@ -132,7 +132,7 @@ void read_distortion(const CalibrationFile& file, std::optional<DistortionModel>
                                   c[12], c[13]));
     c.resize(12);
   }
-  const bool is_none = std::ranges::all_of(c, [](double number) { return number == 0.0; });
+  const bool is_none = std::all_of(c.begin(), c.end(), [](double number) { return number == 0.0; });
   if (is_none && distortion.model == DistortionModel::opencv) return;
   try {
     distortion.validate("distortion_coefficients");

@@ -80,7 +80,35 @@ std::optional<std::string> with_quotes(const std::string& setting) {
   return fmt::format("{}\"{}\"", setting.substr(0, begin), word);
 }
 
+/// Every part of a dotted key is a table in a table, and what follows them down calls itself: keys
+/// of so many parts are no key of ours.
+void refuse_long_keys(std::string_view text, std::string_view source_name) {
+  constexpr int max_parts = 32;
+  int line = 1, parts = 1;
+  char quote = '\0';  // in a string or, as '#', in a comment
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n') {
+      ++line;
+      parts = 1;
+      quote = '\0';
+    } else if (quote != '\0') {
+      if (c == '\\' && quote == '"') ++i;
+      if (c == quote && quote != '#') quote = '\0';
+    } else if (c == '"' || c == '\'' || c == '#') {
+      quote = c;
+    } else if (c == '.' && ++parts > max_parts) {
+      throw IoError(
+          fmt::format("{}:{}", source_name, line),
+          fmt::format("found a key of more than {} parts between dots; expected a few", max_parts));
+    } else if (std::string_view(",=[]{}").find(c) != std::string_view::npos) {
+      parts = 1;
+    }
+  }
+}
+
 toml::table parse_setting(const std::string& setting) {
+  refuse_long_keys(setting, describe_setting(setting));
   try {
     return toml::parse(setting, describe_setting(setting));
   } catch (const toml::parse_error& error) {
@@ -123,6 +151,7 @@ SettingValue toml_value_of(double number, std::string place) {
 
 TomlDocument::TomlDocument(std::string_view text, std::string_view source_name)
     : source_name_(source_name) {
+  refuse_long_keys(text, source_name);
   try {
     root_ = toml::parse(text, source_name);
   } catch (const toml::parse_error& error) {
