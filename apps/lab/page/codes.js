@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The codes side by side: which they are, and their waveforms, correlation functions and curves.
 
-import {announce, byId, element, saveText, showProblem} from './dom.js';
-import {CurveSpace} from './curve_space.js';
-import {LinePlot, paddedRange} from './plot.js';
-import {rangeOf, shortText, thinned} from './numbers.js';
 import {seriesColour, seriesDash} from './colours.js';
-import {WaveformPlot} from './waveform_plot.js';
+import {CurveSpace} from './curve_space.js';
+import {announce, byId, element, saveText, showProblem} from './dom.js';
 import {askedCode, codeWord} from './lab.js';
+import {rangeOf, shortText, thinned} from './numbers.js';
+import {LinePlot, paddedRange} from './plot.js';
 import {maxCodes} from './store.js';
+import {WaveformPlot} from './waveform_plot.js';
 
 /** A figure for each code in one of the page's rows; `make()` gives its plot. */
 export class Columns {
@@ -19,7 +19,10 @@ export class Columns {
     this.figures = Array.from({length: maxCodes}, (_, i) => {
       const plot = make(i), caption = element('figcaption');
       this.plots.push(plot);
-      return {root: element('figure', {style: `--colour:${seriesColour(i)}`}, caption, plot.root), caption};
+      return {
+        root: element('figure', {style: `--colour:${seriesColour(i)}`}, caption, plot.root),
+        caption
+      };
     });
   }
 
@@ -37,7 +40,8 @@ export class Columns {
 
   /** Writes the caption of a figure. */
   title(i, name, note = '') {
-    this.figures[i].caption.replaceChildren(element('span', {class: 'dot'}), element('span', {}, name), element('small', {}, note));
+    this.figures[i].caption.replaceChildren(
+        element('span', {class: 'dot'}), element('span', {}, name), element('small', {}, note));
   }
 }
 
@@ -47,18 +51,27 @@ const rowOf = ({values, shape}, k) => values.subarray(k * shape[1], (k + 1) * sh
 
 function correlationSpec(code) {
   const [count, samples] = code.correlation.shape;
-  const depth = thinned(Array.from({length: samples}, (_, n) => n / samples * code.range_m), mostPoints);
+  const depth =
+      thinned(Array.from({length: samples}, (_, n) => n / samples * code.range_m), mostPoints);
   return {
-    label: `Correlation functions of ${code.name} over depth`, height: 210,
+    label: `Correlation functions of ${code.name} over depth`,
+    height: 210,
     x: {title: 'depth (m)', range: [0, code.range_m], unit: 'm'},
     y: {title: 'correlation', range: paddedRange(rangeOf([code.correlation.values]))},
-    series: Array.from({length: count}, (_, k) => ({name: String(k + 1), x: depth, y: thinned(rowOf(code.correlation, k), mostPoints), colour: seriesColour(k), dash: seriesDash(k)})),
+    series: Array.from({length: count}, (_, k) => ({
+                                          name: String(k + 1),
+                                          x: depth,
+                                          y: thinned(rowOf(code.correlation, k), mostPoints),
+                                          colour: seriesColour(k),
+                                          dash: seriesDash(k)
+                                        })),
   };
 }
 
 function centred({values}) {
   const step = Math.ceil(values.length / 3 / mostPoints);
-  const points = Float64Array.from(values).filter((_, i) => Math.floor(i / 3) % step === 0), count = points.length / 3;
+  const points = Float64Array.from(values).filter((_, i) => Math.floor(i / 3) % step === 0),
+        count = points.length / 3;
   for (let axis = 0; axis < 3; ++axis) {
     let mean = 0;
     for (let i = axis; i < points.length; i += 3) mean += points[i] / count;
@@ -69,7 +82,8 @@ function centred({values}) {
 
 function radiusOf(points) {
   let radius = 0;
-  for (let i = 0; i < points.length; i += 3) radius = Math.max(radius, Math.hypot(points[i], points[i + 1], points[i + 2]));
+  for (let i = 0; i < points.length; i += 3)
+    radius = Math.max(radius, Math.hypot(points[i], points[i + 1], points[i + 2]));
   return radius;
 }
 
@@ -92,67 +106,133 @@ export class CodesView {
 
   // What was computed before something went wrong stays, but pale.
   #mark(i) {
-    for (const columns of [this.waveforms, this.correlation, this.curves]) columns.pale(i, this.lab.slots[i].problem);
+    for (const columns of [this.waveforms, this.correlation, this.curves])
+      columns.pale(i, this.lab.slots[i].problem);
   }
 
   #arrange() {
     const {codes, chosen} = this.lab.state;
-    for (const columns of [this.waveforms, this.correlation, this.curves]) columns.fit(codes.length);
+    for (const columns of [this.waveforms, this.correlation, this.curves])
+      columns.fit(codes.length);
     for (let i = codes.length; i < maxCodes; ++i) this.curves.plots[i].show(null);
-    const shape = JSON.stringify([codes.map((code) => [code.name, code.file === undefined]), chosen]);
+    const shape =
+        JSON.stringify([codes.map((code) => [code.name, code.file === undefined]), chosen]);
     if (shape === this.shape) return;
     this.shape = shape;
     const focus = document.activeElement?.id;
     this.cards = codes.map((code, i) => this.#card(code, i, i === chosen, codes.length));
-    byId('code-slots').replaceChildren(...this.cards.map((card) => card.root), ...(codes.length < maxCodes ? [this.#adder()] : []));
+    byId('code-slots')
+        .replaceChildren(
+            ...this.cards.map((card) => card.root),
+            ...(codes.length < maxCodes ? [this.#adder()] : []));
     if (focus) byId(focus)?.focus({preventScroll: true});
     codes.forEach((_, i) => this.#describe(i));
     this.#drawCurves();
   }
 
   #adder() {
-    return element('button', {type: 'button', class: 'add', id: 'add-code', onclick: () => {
-      const used = new Set(this.lab.state.codes.map((code) => code.name));
-      const next = this.about.families.find(({name}) => !used.has(name)) ?? this.about.families[0];
-      this.lab.addCode({name: next.name});
-    }}, '+ Code');
+    return element(
+        'button', {
+          type: 'button',
+          class: 'add',
+          id: 'add-code',
+          onclick: () => {
+            const used = new Set(this.lab.state.codes.map((code) => code.name));
+            const next =
+                this.about.families.find(({name}) => !used.has(name)) ?? this.about.families[0];
+            this.lab.addCode({name: next.name});
+          }
+        },
+        '+ Code');
   }
 
   #card(code, i, isChosen, count) {
     const {store} = this.lab;
-    const put = (next) => store.change((state) => { state.codes[i] = next; });
+    const put = (next) => store.change((state) => {
+      state.codes[i] = next;
+    });
     const names = this.about.families.map(({name}) => name);
     const own = code.file !== undefined || !names.includes(code.name);
-    const other = element('input', {class: 'other', id: `other-${i}`, hidden: true, 'aria-label': `Name of the family of code ${i + 1}`, placeholder: 'hamiltonian-k7', spellcheck: 'false',
-      onchange: () => other.value.trim() && put({name: other.value.trim()})});
-    const select = element('select', {id: `family-${i}`, 'aria-label': `Code ${i + 1}`, 'aria-describedby': `facts-${i}`, onchange: () => {
-      if (select.value === '?') {
-        other.hidden = false;
-        other.focus();
-      } else if (select.value !== '!') put({name: select.value});
-    }}, ...(own ? [element('option', {value: '!'}, code.name)] : []), ...names.map((name) => element('option', {value: name}, name)), element('option', {value: '?'}, 'another family\u2026'));
+    const other = element('input', {
+      class: 'other',
+      id: `other-${i}`,
+      hidden: true,
+      'aria-label': `Name of the family of code ${i + 1}`,
+      placeholder: 'hamiltonian-k7',
+      spellcheck: 'false',
+      onchange: () => other.value.trim() && put({name: other.value.trim()})
+    });
+    const select = element(
+        'select', {
+          id: `family-${i}`,
+          'aria-label': `Code ${i + 1}`,
+          'aria-describedby': `facts-${i}`,
+          onchange: () => {
+            if (select.value === '?') {
+              other.hidden = false;
+              other.focus();
+            } else if (select.value !== '!')
+              put({name: select.value});
+          }
+        },
+        ...(own ? [element('option', {value: '!'}, code.name)] : []),
+        ...names.map((name) => element('option', {value: name}, name)),
+        element('option', {value: '?'}, 'another family\u2026'));
     select.value = own ? '!' : code.name;
-    const facts = element('p', {class: 'facts', id: `facts-${i}`}), problem = element('p', {class: 'problem', role: 'alert', hidden: true});
-    const pick = element('input', {type: 'radio', name: 'chosen', id: `chosen-${i}`, onchange: () => store.change((state) => { state.chosen = i; })});
+    const facts = element('p', {class: 'facts', id: `facts-${i}`}),
+          problem = element('p', {class: 'problem', role: 'alert', hidden: true});
+    const pick = element('input', {
+      type: 'radio',
+      name: 'chosen',
+      id: `chosen-${i}`,
+      onchange: () => store.change((state) => {
+        state.chosen = i;
+      })
+    });
     pick.checked = isChosen;
-    const root = element('div', {class: `slot${isChosen ? ' chosen' : ''}`, role: 'group', 'aria-label': `Code ${i + 1}`, style: `--colour:${seriesColour(i)}`},
-      element('label', {class: 'pick', title: 'The scene shows this code, and files and designs take its place when there are four'}, pick, `Code ${i + 1}${isChosen ? ', in the scene' : ''}`),
-      element('div', {class: 'row'}, select, other),
-      element('div', {class: 'row'},
-        element('button', {type: 'button', id: `save-${i}`, onclick: () => this.#save(i)}, 'Save'),
-        element('button', {type: 'button', id: `remove-${i}`, disabled: count === 1, 'aria-label': `Remove code ${i + 1}`, onclick: () => store.change((state) => {
-          state.codes.splice(i, 1);
-          state.chosen = Math.min(state.chosen > i ? state.chosen - 1 : state.chosen, state.codes.length - 1);
-        })}, 'Remove')),
-      facts, problem);
+    const root = element(
+        'div', {
+          class: `slot${isChosen ? ' chosen' : ''}`,
+          role: 'group',
+          'aria-label': `Code ${i + 1}`,
+          style: `--colour:${seriesColour(i)}`
+        },
+        element(
+            'label', {
+              class: 'pick',
+              title: 'The scene shows this code; new ones take its place when there are four'
+            },
+            pick, `Code ${i + 1}${isChosen ? ', in the scene' : ''}`),
+        element('div', {class: 'row'}, select, other),
+        element(
+            'div', {class: 'row'},
+            element(
+                'button', {type: 'button', id: `save-${i}`, onclick: () => this.#save(i)}, 'Save'),
+            element(
+                'button', {
+                  type: 'button',
+                  id: `remove-${i}`,
+                  disabled: count === 1,
+                  'aria-label': `Remove code ${i + 1}`,
+                  onclick: () => store.change((state) => {
+                    state.codes.splice(i, 1);
+                    state.chosen = Math.min(
+                        state.chosen > i ? state.chosen - 1 : state.chosen, state.codes.length - 1);
+                  })
+                },
+                'Remove')),
+        facts, problem);
     return {root, facts, problem, select};
   }
 
   async #save(i) {
     const code = this.lab.state.codes[i];
     try {
-      const {file} = await this.lab.engine.call('save_code', {camera: this.lab.camera.toml, code: askedCode(code)});
-      saveText(file, code.file === undefined ? `${code.name}.code.json` : codeWord(code), 'application/json');
+      const {file} = await this.lab.engine.call(
+          'save_code', {camera: this.lab.camera.toml, code: askedCode(code)});
+      saveText(
+          file, code.file === undefined ? `${code.name}.code.json` : codeWord(code),
+          'application/json');
     } catch (error) {
       showProblem(this.cards[i].problem, error.message);
     }
@@ -165,22 +245,33 @@ export class CodesView {
     card.select.toggleAttribute('aria-invalid', false);
     if (slot.problem) card.select.setAttribute('aria-invalid', 'true');
     const {code} = slot;
-    card.facts.textContent = !code || slot.problem ? '' : [`${code.measurements} measurements`,
-      code.exposures === undefined ? '' : `${code.exposures} exposures`, ...(code.notes ?? [])].filter(Boolean).join(', ');
+    card.facts.textContent = !code || slot.problem ? '' : [
+      `${code.measurements} measurements`,
+      code.exposures === undefined ? '' : `${code.exposures} exposures`, ...(code.notes ?? [])
+    ].filter(Boolean).join(', ');
   }
 
   #draw(i) {
     const {code} = this.lab.slots[i], source = this.lab.state.codes[i];
     if (!code || !source) return;
-    const kept = code.curve_variance_kept === undefined ? '' : `${shortText(100 * code.curve_variance_kept, 3)} % of its variance`;
+    const kept = code.curve_variance_kept === undefined ?
+        '' :
+        `${shortText(100 * code.curve_variance_kept, 3)} % of its variance`;
     this.waveforms.title(i, code.name, 'light above, gate below');
     this.correlation.title(i, code.name);
     this.curves.title(i, code.name, kept);
     this.waveforms.plots[i].show({
-      label: `Waveforms of ${code.name}, ${code.measurements} measurements`, samples: code.light.shape[1],
-      light: code.light, gates: code.gates, lightBehind: code.light_behind, gatesBehind: code.gates_behind, lightEdges: code.light_edges, gateEdges: code.gate_edges,
+      label: `Waveforms of ${code.name}, ${code.measurements} measurements`,
+      samples: code.light.shape[1],
+      light: code.light,
+      gates: code.gates,
+      lightBehind: code.light_behind,
+      gatesBehind: code.gates_behind,
+      lightEdges: code.light_edges,
+      gateEdges: code.gate_edges,
       move: (arm, measurement, edge, position) => {
-        this.held ??= this.lab.state.codes[i];  // its edges keep their places in the list while one is held
+        this.held ??=
+            this.lab.state.codes[i];  // its edges keep their places in the list while one is held
         this.lab.moveEdge(i, this.held, {arm, measurement, edge, position});
       },
       settle: () => {
@@ -196,6 +287,10 @@ export class CodesView {
     const codes = this.lab.slots.slice(0, this.lab.state.codes.length).map((slot) => slot.code);
     const points = codes.map((code) => code && centred(code.curve));
     const radius = Math.max(1e-12, ...points.filter(Boolean).map(radiusOf));
-    codes.forEach((code, i) => code && this.curves.plots[i].show({label: `Coding curve of ${code.name} in three directions`, points: points[i], radius}));
+    codes.forEach((code, i) => code && this.curves.plots[i].show({
+      label: `Coding curve of ${code.name} in three directions`,
+      points: points[i],
+      radius
+    }));
   }
 }

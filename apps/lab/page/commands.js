@@ -3,25 +3,36 @@
 // The commands that give what the page shows, each below what it gives.
 
 import {announce, copyText, element} from './dom.js';
-import {codeWord} from './lab.js';
 import {Outdated} from './engine.js';
+import {codeWord} from './lab.js';
 
 /** The strips of commands. */
 export class Commands {
   constructor(lab, effort) {
     Object.assign(this, {lab, effort, timer: 0});
-    this.strips = [...document.querySelectorAll('[data-command]')].map((place) => this.#strip(place));
+    this.strips =
+        [...document.querySelectorAll('[data-command]')].map((place) => this.#strip(place));
     lab.listen((what) => what === 'state' && this.follow());
   }
 
   #strip(place) {
-    const text = element('pre', {tabindex: 0, 'aria-label': 'The command that gives the same'}), files = element('p', {class: 'files'});
-    const copy = element('button', {type: 'button', 'aria-label': 'Copy the command', onclick: async () => {
-      const isCopied = await copyText(text.textContent);
-      copy.textContent = isCopied ? 'Copied' : 'Copy by hand';
-      announce(isCopied ? 'The command is copied.' : 'The browser does not let the page copy.');
-      setTimeout(() => { copy.textContent = 'Copy'; }, 1500);
-    }}, 'Copy');
+    const text = element('pre', {tabindex: 0, 'aria-label': 'The command that gives the same'}),
+          files = element('p', {class: 'files'});
+    const copy = element(
+        'button', {
+          type: 'button',
+          'aria-label': 'Copy the command',
+          onclick: async () => {
+            const isCopied = await copyText(text.textContent);
+            copy.textContent = isCopied ? 'Copied' : 'Copy by hand';
+            announce(
+                isCopied ? 'The command is copied.' : 'The browser does not let the page copy.');
+            setTimeout(() => {
+              copy.textContent = 'Copy';
+            }, 1500);
+          }
+        },
+        'Copy');
     place.append(element('div', {class: 'strip'}, text, copy), files);
     return {what: place.dataset.command, text, files};
   }
@@ -34,17 +45,37 @@ export class Commands {
 
   async #ask() {
     const {camera, codes, chosen, trials, seed, scene} = this.lab.state;
-    const own = camera.file === undefined ? {built_in: camera.built_in} : {camera_file: camera.file_name};
+    const own =
+        camera.file === undefined ? {built_in: camera.built_in} : {camera_file: camera.file_name};
     for (const {what, text, files} of this.strips) {
       const played = what === 'design' ? [] : what === 'scene' ? [codes[chosen]] : codes;
-      const asked = {what, ...own, changes: camera.changes, codes: played.map(codeWord), trials, seed, scene: scene.name, filter: scene.filter,
-        width: scene.width, signal: scene.signal, ambient: scene.ambient, effort: Number(this.effort.value)};
+      const asked = {
+        what,
+        ...own,
+        changes: camera.changes,
+        codes: played.map(codeWord),
+        trials,
+        seed,
+        scene: scene.name,
+        filter: scene.filter,
+        width: scene.width,
+        signal: scene.signal,
+        ambient: scene.ambient,
+        effort: Number(this.effort.value)
+      };
       try {
-        const each = what === 'codes' ? asked.codes.map((code) => ({...asked, codes: [code]})) : [asked];
-        const answers = await Promise.all(each.map((one, i) => this.lab.engine.call('command', one, {lane: `command ${what} ${i}`, rank: 6})));
+        const each =
+            what === 'codes' ? asked.codes.map((code) => ({...asked, codes: [code]})) : [asked];
+        const answers = await Promise.all(each.map(
+            (one, i) =>
+                this.lab.engine.call('command', one, {lane: `command ${what} ${i}`, rank: 6})));
         text.textContent = answers.map((answer) => answer.command).join('\n');
-        const needed = [...(own.camera_file ? [own.camera_file] : []), ...played.filter((code) => code.file !== undefined).map(codeWord)];
-        files.textContent = needed.length ? `It reads ${needed.join(', ')}: save ${needed.length > 1 ? 'these' : 'it'} from this page first.` : '';
+        const needed = [
+          ...(own.camera_file ? [own.camera_file] : []),
+          ...played.filter((code) => code.file !== undefined).map(codeWord)
+        ];
+        files.textContent =
+            needed.length ? `It reads ${needed.join(', ')}: save that from this page first.` : '';
       } catch (error) {
         if (!(error instanceof Outdated)) text.textContent = `no command: ${error.message}`;
       }

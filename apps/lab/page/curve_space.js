@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A curve in space on a canvas, turned by pointer and keys; all of them turn together.
 
-import {colourOf, drawSoon, element, forgetColours, onWidth, widthOf} from './dom.js';
 import {cssColour, sequentialColour} from './colours.js';
+import {colourOf, drawSoon, element, forgetColours, onWidth, widthOf} from './dom.js';
 
-const view = {yaw: 0.6, pitch: 0.45, zoom: 1};
+const view = {
+  yaw: 0.6,
+  pitch: 0.45,
+  zoom: 1
+};
 const shown = new Set();
 
 function turn(yaw, pitch) {
@@ -15,11 +19,14 @@ function turn(yaw, pitch) {
 }
 
 function projection(width, height, radius) {
-  const [sy, cy, sp, cp] = [Math.sin(view.yaw), Math.cos(view.yaw), Math.sin(view.pitch), Math.cos(view.pitch)];
+  const [sy, cy, sp, cp] =
+      [Math.sin(view.yaw), Math.cos(view.yaw), Math.sin(view.pitch), Math.cos(view.pitch)];
   const scale = 0.46 * Math.min(width, height) / radius * view.zoom;
   return (x, y, z) => {
     const across = cy * x - sy * y, away = sy * x + cy * y;
-    return [width / 2 + scale * across, height / 2 - scale * (cp * z + sp * away), cp * away - sp * z];
+    return [
+      width / 2 + scale * across, height / 2 - scale * (cp * z + sp * away), cp * away - sp * z
+    ];
   };
 }
 
@@ -30,7 +37,9 @@ function redrawAll() {
 addEventListener('themechange', redrawAll);
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redrawAll);
 
-/** One coding curve. What it shows: {label, points: (N, 3) as one array, radius of all, range_m}. */
+/**
+ * One coding curve. What it shows: {label, points: (N, 3) as one array, radius of all, range_m}.
+ */
 export class CurveSpace {
   #spec = null;
 
@@ -49,12 +58,19 @@ export class CurveSpace {
     this.#spec = spec;
     if (!spec) return void shown.delete(this);
     shown.add(this);
-    this.canvas.setAttribute('aria-label', `${spec.label}. Arrow keys turn it, plus and minus change its size, 0 turns it back.`);
+    this.canvas.setAttribute(
+        'aria-label',
+        `${spec.label}. Arrow keys turn it, plus and minus change its size, 0 turns it back.`);
     drawSoon(this, () => this.draw());
   }
 
   #key(event) {
-    const step = {ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1]}[event.key];
+    const step = {
+      ArrowLeft: [-0.1, 0],
+      ArrowRight: [0.1, 0],
+      ArrowUp: [0, -0.1],
+      ArrowDown: [0, 0.1]
+    }[event.key];
     const zoom = {'+': 1.15, '=': 1.15, '-': 1 / 1.15}[event.key];
     if (event.ctrlKey || event.metaKey || (!step && !zoom && event.key !== '0')) return;
     event.preventDefault();
@@ -79,7 +95,8 @@ export class CurveSpace {
     const width = widthOf(this.node), spec = this.#spec;
     if (!spec || width < 20) return;
     const height = Math.min(width, 320), ratio = window.devicePixelRatio || 1;
-    if (this.canvas.width !== Math.round(width * ratio) || this.canvas.height !== Math.round(height * ratio)) {
+    if (this.canvas.width !== Math.round(width * ratio) ||
+        this.canvas.height !== Math.round(height * ratio)) {
       this.canvas.width = Math.round(width * ratio);
       this.canvas.height = Math.round(height * ratio);
       this.canvas.style.height = `${height}px`;
@@ -111,8 +128,10 @@ function drawAxes(context, project, length) {
 
 function drawCurve(context, project, points) {
   const count = points.length / 3;
-  const ends = Array.from({length: count}, (_, i) => project(points[3 * i], points[3 * i + 1], points[3 * i + 2]));
-  const pieces = ends.map((end, i) => ({i, from: end, to: ends[(i + 1) % count]})).sort((a, b) => b.from[2] - a.from[2]);
+  const ends = Array.from(
+      {length: count}, (_, i) => project(points[3 * i], points[3 * i + 1], points[3 * i + 2]));
+  const pieces = ends.map((end, i) => ({i, from: end, to: ends[(i + 1) % count]}))
+                     .sort((a, b) => b.from[2] - a.from[2]);
   const depths = ends.map((end) => end[2]);
   const [near, far] = [Math.min(...depths), Math.max(...depths)];
   context.lineCap = 'round';

@@ -12,15 +12,26 @@ const efforts = [['0.1', 'a first look'], ['0.3', 'short'], ['1', 'usual']];
 export class DesignView {
   constructor(lab, startWorker) {
     Object.assign(this, {lab, startWorker, engine: null});
-    this.effort = element('select', {id: 'design-effort'}, ...efforts.map(([value, text]) => element('option', {value}, `${value}: ${text}`)));
-    this.start = element('button', {type: 'button', id: 'design-start', class: 'main', onclick: () => this.#run()}, 'Design');
-    this.cancel = element('button', {type: 'button', id: 'design-cancel', disabled: true, onclick: () => this.#stop()}, 'Cancel');
-    this.bar = element('progress', {max: 1, value: 0, hidden: true, 'aria-label': 'Progress of the design'});
+    this.effort = element(
+        'select', {id: 'design-effort'},
+        ...efforts.map(([value, text]) => element('option', {value}, `${value}: ${text}`)));
+    this.start = element(
+        'button', {type: 'button', id: 'design-start', class: 'main', onclick: () => this.#run()},
+        'Design');
+    this.cancel = element(
+        'button',
+        {type: 'button', id: 'design-cancel', disabled: true, onclick: () => this.#stop()},
+        'Cancel');
+    this.bar = element(
+        'progress', {max: 1, value: 0, hidden: true, 'aria-label': 'Progress of the design'});
     this.text = element('span', {class: 'progress', id: 'design-text'});
     this.problem = element('p', {class: 'problem', role: 'alert', hidden: true});
     this.explanation = element('div', {class: 'figures', id: 'design-explanation'});
     byId('design-controls').after(this.explanation);
-    byId('design-controls').append(element('label', {}, 'Effort', this.effort), this.start, this.cancel, this.bar, this.text, this.problem);
+    byId('design-controls')
+        .append(
+            element('label', {}, 'Effort', this.effort), this.start, this.cancel, this.bar,
+            this.text, this.problem);
   }
 
   #busy(isBusy) {
@@ -28,8 +39,10 @@ export class DesignView {
     this.cancel.disabled = !isBusy;
     this.bar.hidden = !isBusy;
     byId('design').setAttribute('aria-busy', String(isBusy));
-    if (isBusy) this.cancel.focus();
-    else if (document.activeElement === document.body || document.activeElement === this.cancel) this.start.focus();
+    if (isBusy)
+      this.cancel.focus();
+    else if (document.activeElement === document.body || document.activeElement === this.cancel)
+      this.start.focus();
   }
 
   async #run() {
@@ -42,18 +55,27 @@ export class DesignView {
     this.#busy(true);
     announce('The design begins.');
     try {
-      const asked = {camera: this.lab.camera.toml, effort: Number(this.effort.value), seed: this.lab.state.seed};
-      const answer = await this.engine.call('design', asked, {onProgress: (progress) => this.#follow(progress)});
+      const asked = {
+        camera: this.lab.camera.toml,
+        effort: Number(this.effort.value),
+        seed: this.lab.state.seed
+      };
+      const answer = await this.engine.call(
+          'design', asked, {onProgress: (progress) => this.#follow(progress)});
       const name = answer.name ?? JSON.parse(answer.file).name ?? 'designed';
       this.lab.addCode({name, file: answer.file});
-      const error = Number.isFinite(answer.error_m) ? `depth error ${lengthText(answer.error_m)}` : '';
+      const error =
+          Number.isFinite(answer.error_m) ? `depth error ${lengthText(answer.error_m)}` : '';
       this.text.textContent = `${name}: ${error}`;
-      this.explanation.replaceChildren(...[answer.explanation ?? []].flat().map((text) => element('p', {}, text)));
+      this.explanation.replaceChildren(
+          ...[answer.explanation ?? []].flat().map((text) => element('p', {}, text)));
       announce(`The design is ready: ${name}, ${error}.`);
     } catch (error) {
       this.text.textContent = error instanceof Outdated ? 'cancelled; nothing is changed' : '';
-      if (error instanceof Outdated) announce('The design is cancelled; nothing is changed.');
-      else showProblem(this.problem, error.message);
+      if (error instanceof Outdated)
+        announce('The design is cancelled; nothing is changed.');
+      else
+        showProblem(this.problem, error.message);
     }
     this.engine?.close();
     this.engine = null;

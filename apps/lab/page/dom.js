@@ -10,8 +10,10 @@ export const byId = (id) => document.getElementById(id);
 function filled(node, attributes, children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (value === undefined || value === null || value === false) continue;
-    if (name.startsWith('on')) node.addEventListener(name.slice(2), value);
-    else node.setAttribute(name, value === true ? '' : value);
+    if (name.startsWith('on'))
+      node.addEventListener(name.slice(2), value);
+    else
+      node.setAttribute(name, value === true ? '' : value);
   }
   node.append(...children.filter((child) => child !== null && child !== undefined));
   return node;
@@ -19,11 +21,11 @@ function filled(node, attributes, children) {
 
 /** An HTML element with attributes (`onclick` and such are listeners) and children. */
 export const element = (name, attributes = {}, ...children) =>
-  filled(document.createElement(name), attributes, children);
+    filled(document.createElement(name), attributes, children);
 
 /** The same of SVG. */
 export const drawn = (name, attributes = {}, ...children) =>
-  filled(document.createElementNS(svgNamespace, name), attributes, children);
+    filled(document.createElementNS(svgNamespace, name), attributes, children);
 
 /** Says a sentence to screen readers. */
 export function announce(text) {
@@ -35,8 +37,16 @@ export function announce(text) {
 export function notice(text) {
   const place = byId('notice');
   place.hidden = !text;
-  place.replaceChildren(...(text ? [element('span', {}, text),
-    element('button', {type: 'button', 'aria-label': 'Put the message away', onclick: () => notice('')}, 'OK')] : []));
+  place.replaceChildren(...(
+      text ?
+          [
+            element('span', {}, text),
+            element(
+                'button',
+                {type: 'button', 'aria-label': 'Put the message away', onclick: () => notice('')},
+                'OK')
+          ] :
+          []));
 }
 
 /** Shows a problem where it arose, or takes it away. */
@@ -64,11 +74,12 @@ const drawings = new Map();
 
 /** Draws before the next frame, once however often it is asked for. */
 export function drawSoon(owner, draw) {
-  if (!drawings.size) requestAnimationFrame(() => {
-    const now = [...drawings.values()];
-    drawings.clear();
-    for (const one of now) one();
-  });
+  if (!drawings.size)
+    requestAnimationFrame(() => {
+      const now = [...drawings.values()];
+      drawings.clear();
+      for (const one of now) one();
+    });
   drawings.set(owner, draw);
 }
 

@@ -13,22 +13,27 @@ export class Refused extends Error {
   }
 }
 
-// (module (func (result v128) i32.const 0 i8x16.splat i8x16.popcnt)): valid only where SIMD is known.
-const simdModule = Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0,
-  65, 0, 253, 15, 253, 98, 11);
+// (module (func (result v128) i32.const 0 i8x16.splat i8x16.popcnt)): valid only where SIMD is
+// known.
+const simdModule = Uint8Array.of(
+    0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253,
+    15, 253, 98, 11);
 
 /** What this browser lacks, as a sentence; null if nothing. */
 export function missingFeature() {
-  if (typeof WebAssembly !== 'object') return 'This browser has no WebAssembly, which the lab computes with.';
+  if (typeof WebAssembly !== 'object')
+    return 'This browser has no WebAssembly, which the lab computes with.';
   if (!WebAssembly.validate(simdModule))
-    return 'This browser has WebAssembly without SIMD, which the lab needs. Browsers since 2023 have it: Chromium 91, Firefox 89, Safari 16.4.';
+    return 'This browser has WebAssembly without SIMD, which the lab needs. ' +
+        'Browsers since 2023 have it: Chromium 91, Firefox 89, Safari 16.4.';
   if (typeof DecompressionStream !== 'function' || typeof Worker !== 'function')
-    return 'This browser is too old for the lab: Chromium 123, Firefox 120 and Safari 17.5, of 2024, will do.';
+    return 'This browser is too old for the lab: Chromium 123, Firefox 120, Safari 17.5 will do.';
   return null;
 }
 
-const decoded = (base64) => Uint8Array.fromBase64
-  ? Uint8Array.fromBase64(base64) : Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+const decoded = (base64) => Uint8Array.fromBase64 ?
+    Uint8Array.fromBase64(base64) :
+    Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
 
 /** Compiles the packed engine once; gives a function that starts a worker with it. */
 export async function packedEngine() {
@@ -37,7 +42,8 @@ export async function packedEngine() {
   const base64 = text('lab-wasm');
   let start = null;
   if (base64) {
-    const stream = new Blob([decoded(base64)]).stream().pipeThrough(new DecompressionStream('gzip'));
+    const stream =
+        new Blob([decoded(base64)]).stream().pipeThrough(new DecompressionStream('gzip'));
     start = await WebAssembly.compile(await new Response(stream).arrayBuffer());
     document.getElementById('lab-wasm').textContent = '';
   }
@@ -58,12 +64,14 @@ export class Engine {
   /** @param startWorker  gives a new worker; @param size  how many there are */
   constructor(startWorker, size) {
     this.#startWorker = startWorker;
-    for (let i = 0; i < size; ++i) this.#workers.push(this.#started({isSwift: size > 1 && i === 0}));
+    for (let i = 0; i < size; ++i)
+      this.#workers.push(this.#started({isSwift: size > 1 && i === 0}));
   }
 
   /**
    * Asks for an answer; a newer call of the same lane makes this one outdated.
-   * @param options  lane; isSlow: may take more than a moment, and leaves one worker free; isLong: is
+   * @param options  lane; isSlow: may take more than a moment, and leaves one worker free; isLong:
+   *     is
    *                 stopped when outdated, too; rank: lower ones go first; onProgress
    * @returns {Promise<object>} the answer, with typed arrays in place of their descriptions
    */
@@ -71,7 +79,13 @@ export class Engine {
     const {lane} = options;
     if (lane) this.cancel(lane);
     return new Promise((resolve, reject) => {
-      const call = {message: {...values, id: this.#nextId++, call: name}, resolve, reject, rank: 0, ...options};
+      const call = {
+        message: {...values, id: this.#nextId++, call: name},
+        resolve,
+        reject,
+        rank: 0,
+        ...options
+      };
       const place = this.#waiting.findIndex((other) => other.rank > call.rank);
       this.#waiting.splice(place < 0 ? this.#waiting.length : place, 0, call);
       this.#serve();
@@ -80,7 +94,8 @@ export class Engine {
 
   /** Drops what waits or runs in a lane; long calls are stopped at once. */
   cancel(lane) {
-    for (const call of this.#waiting.filter((waiting) => waiting.lane === lane)) call.reject(new Outdated());
+    for (const call of this.#waiting.filter((waiting) => waiting.lane === lane))
+      call.reject(new Outdated());
     this.#waiting = this.#waiting.filter((waiting) => waiting.lane !== lane);
     for (const worker of this.#workers)
       if (worker.call?.lane === lane) {
@@ -143,8 +158,10 @@ export class Engine {
       if (data.progress) return call.onProgress?.(data.progress);
       worker.call = null;
       if (data.error?.fatal) this.#restart(worker);  // the engine's own fault: it cannot go on
-      if (data.error) call.reject(new Refused(data.error));
-      else call.resolve(withArrays(data.answer, data.arrays ?? {}));
+      if (data.error)
+        call.reject(new Refused(data.error));
+      else
+        call.resolve(withArrays(data.answer, data.arrays ?? {}));
     }
     this.#serve();
   }
@@ -156,7 +173,8 @@ export class Engine {
         return;
       }
       if (worker.call || !worker.isReady) continue;
-      const place = this.#waiting.findIndex((call) => !((call.isSlow || call.isLong) && worker.isSwift));
+      const place =
+          this.#waiting.findIndex((call) => !((call.isSlow || call.isLong) && worker.isSwift));
       if (place < 0) continue;
       worker.call = this.#waiting.splice(place, 1)[0];
       worker.thread.postMessage(worker.call.message);

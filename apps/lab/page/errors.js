@@ -2,19 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // Depth error over light: a table as the command prints it, a map of each code, curves with bounds.
 
-import {byId, drawSoon, element, showProblem} from './dom.js';
 import {Columns} from './codes.js';
-import {HeatMap} from './heat_map.js';
-import {LinePlot, paddedRange} from './plot.js';
-import {fixedText, rangeOf, rateText, shortText} from './numbers.js';
 import {seriesColour} from './colours.js';
+import {byId, drawSoon, element, showProblem} from './dom.js';
+import {HeatMap} from './heat_map.js';
+import {fixedText, rangeOf, rateText, shortText} from './numbers.js';
+import {LinePlot, paddedRange} from './plot.js';
 
 const trialChoices = [1000, 5000, 20000, 100000];
-const bounds = [['cramer_rao_mae_m', 'Cramer-Rao', '6 4'], ['receiver_bound_mae_m', 'receiver', '2 4'], ['direct_tof_bound_mae_m', 'direct ToF', '1 3']];
+const bounds = [
+  ['cramer_rao_mae_m', 'Cramer-Rao', '6 4'], ['receiver_bound_mae_m', 'receiver', '2 4'],
+  ['direct_tof_bound_mae_m', 'direct ToF', '1 3']
+];
 
 /** A depth error and its standard error in millimetres, as `tofsmith evaluate` writes them. */
 export const errorText = (mean, deviation) =>
-  `${fixedText(1e3 * mean, 4)} \u00b1 ${fixedText(1e3 * deviation, 2)}`;
+    `${fixedText(1e3 * mean, 4)} \u00b1 ${fixedText(1e3 * deviation, 2)}`;
 
 const distinct = (values) => [...new Set(values)];
 const ambientOf = (one) => distinct(one.points.map((p) => p.ambient_e_per_s));
@@ -36,22 +39,32 @@ export class ErrorsView {
     byId('error-curves').append(element('figure', {}, this.curves.root));
     const trials = byId('trials'), seed = byId('seed'), {store} = lab;
     trials.append(...trialChoices.map((count) => element('option', {value: count}, String(count))));
-    trials.addEventListener('change', () => store.change((state) => { state.trials = Number(trials.value); }));
+    trials.addEventListener('change', () => store.change((state) => {
+      state.trials = Number(trials.value);
+    }));
     seed.addEventListener('change', () => this.#setSeed(seed));
-    byId('curve-ambient').addEventListener('change', (event) =>
-      store.change((state) => { state.curve_ambient = Number(event.target.value); }));
+    byId('curve-ambient').addEventListener('change', (event) => store.change((state) => {
+      state.curve_ambient = Number(event.target.value);
+    }));
     lab.listen((what, i) => {
       if (what === 'state') this.#arrange();
       if (what === 'code' || what === 'problem') this.maps.pale(i, lab.slots[i].problem);
-      if (what === 'state' || what === 'evaluation' || what === 'problem') drawSoon(this, () => this.#draw());
+      if (what === 'state' || what === 'evaluation' || what === 'problem')
+        drawSoon(this, () => this.#draw());
     });
   }
 
   #setSeed(input) {
     const isSeed = /^\d{1,15}$/.test(input.value.trim());
     input.setAttribute('aria-invalid', String(!isSeed));
-    showProblem(byId('error-problem'), isSeed ? '' : `seed: found ${input.value || 'nothing'}; expected a whole number, 0 or more`);
-    if (isSeed) this.lab.store.change((state) => { state.seed = Number(input.value); });
+    showProblem(
+        byId('error-problem'),
+        isSeed ? '' :
+                 `seed: found ${input.value || 'nothing'}; expected a whole number, 0 or more`);
+    if (isSeed)
+      this.lab.store.change((state) => {
+        state.seed = Number(input.value);
+      });
   }
 
   #arrange() {
@@ -66,15 +79,15 @@ export class ErrorsView {
   // Evaluations of the codes that there are, with what place they have.
   #known() {
     return this.lab.slots.slice(0, this.lab.state.codes.length)
-      .map((slot, i) => ({i, document: slot.evaluation, one: slot.evaluation?.codes[0]})).filter(({one}) => one);
+        .map((slot, i) => ({i, document: slot.evaluation, one: slot.evaluation?.codes[0]}))
+        .filter(({one}) => one);
   }
 
   #draw() {
     const known = this.#known(), {trials} = this.lab.state, kind = this.lab.errorKind;
-    const least = Math.min(...known.map(({document}) => document.trials));
-    byId('error-progress').textContent = !known.length ? '' : least < trials ? `${least} of ${trials} trials so far` : `${trials} trials`;
-    byId('error').dataset.trials = Number.isFinite(least) ? least : 0;
-    if (!known.length) return;
+    if (!known.length) return void (byId('error-progress').textContent = '');
+    const done = Math.min(...known.map(({document}) => document.trials));
+    byId('error-progress').textContent = `${done < trials ? `${done} of ` : ''}${trials} trials`;
     this.#drawTable(known, kind, trials);
     this.#drawMaps(known, kind);
     this.#drawCurves(known, kind);
@@ -84,22 +97,41 @@ export class ErrorsView {
     const row = ({i, document, one}) => {
       const best = least(one.points, 'circular_mde_m');
       const light = `${rateText(best.signal_e_per_s)}, ${rateText(best.ambient_e_per_s)}`;
-      const {problem} = this.lab.slots[i], cell = (text) => element('td', problem || document.trials < trials ? {class: 'estimate'} : {}, text);
-      return element('tr', {'data-code': i},
-        element('th', {scope: 'row'}, element('span', {class: 'dot', style: `display:inline-block;width:.6rem;height:.6rem;border-radius:50%;margin-right:.4rem;background:${seriesColour(i)}`}), problem ? `${one.name}, before the problem` : one.name),
-        cell(String(one.measurements)),
-        ...['linear', 'circular'].map((which) => cell(errorText(one[which].geometric_mean_m, one[which].geometric_mean_se_m))),
-        cell(errorText(best.circular_mde_m, best.circular_se_m)), cell(light), cell(fixedText(100 * Math.max(...one.points.map((p) => p.outlier_rate)), 3)));
+      const {problem} = this.lab.slots[i],
+            cell = (text) =>
+                element('td', problem || document.trials < trials ? {class: 'estimate'} : {}, text);
+      return element(
+          'tr', {'data-code': i},
+          element(
+              'th', {scope: 'row'},
+              element('span', {class: 'row-dot', style: `background:${seriesColour(i)}`}),
+              problem ? `${one.name}, before the problem` : one.name),
+          cell(String(one.measurements)),
+          ...['linear', 'circular'].map(
+              (which) =>
+                  cell(errorText(one[which].geometric_mean_m, one[which].geometric_mean_se_m))),
+          cell(errorText(best.circular_mde_m, best.circular_se_m)), cell(light),
+          cell(fixedText(100 * Math.max(...one.points.map((p) => p.outlier_rate)), 3)));
     };
-    const head = ['code', 'K', 'linear (mm)', 'circular (mm)', 'best circular (mm)', 'at signal, ambient (e/s)', 'outliers up to (%)'];
-    byId('error-table').replaceChildren(element('table', {},
-      element('caption', {}, element('span', {}, `Geometric mean over ${known[0].one.points.length} light levels; \u00b1 is one standard error. The camera is judged by the ${kind} error.`)),
-      element('thead', {}, element('tr', {}, ...head.map((text) => element('th', {scope: 'col'}, text)))),
-      element('tbody', {}, ...known.map(row))));
+    const head = [
+      'code', 'K', 'linear (mm)', 'circular (mm)', 'best circular (mm)', 'at signal, ambient (e/s)',
+      'outliers up to (%)'
+    ];
+    const levels = known[0].one.points.length;
+    const caption = `Geometric mean over ${levels} light levels; \u00b1 is one standard error. ` +
+        `The camera is judged by the ${kind} error.`;
+    byId('error-table')
+        .replaceChildren(element(
+            'table', {}, element('caption', {}, element('span', {}, caption)),
+            element(
+                'thead', {},
+                element('tr', {}, ...head.map((text) => element('th', {scope: 'col'}, text)))),
+            element('tbody', {}, ...known.map(row))));
   }
 
   #drawMaps(known, kind) {
-    const range = rangeOf(known.map(({one}) => one.points.map((point) => point[`${kind}_mde_m`])), true);
+    const range =
+        rangeOf(known.map(({one}) => one.points.map((point) => point[`${kind}_mde_m`])), true);
     const {scene} = this.lab.state;
     for (const {i, one} of known) {
       const signal = distinct(one.points.map((p) => p.signal_e_per_s)), ambient = ambientOf(one);
@@ -108,13 +140,22 @@ export class ErrorsView {
       this.maps.title(i, one.name, `${kind} depth error (mm)`);
       const c = signal.indexOf(scene.signal), r = ambient.indexOf(scene.ambient);
       this.maps.plots[i].show({
-        label: `Map of the depth error of ${one.name}`, columns: signal, rows: ambient, values, range, text: (value) => `${shortText(1e3 * value, 3)} mm`,
-        titles: {x: 'signal (e/s)', y: 'ambient (e/s)'}, current: c >= 0 && r >= 0 ? [c, r] : null,
+        label: `Map of the depth error of ${one.name}`,
+        columns: signal,
+        rows: ambient,
+        values,
+        range,
+        text: (value) => `${shortText(1e3 * value, 3)} mm`,
+        titles: {x: 'signal (e/s)', y: 'ambient (e/s)'},
+        current: c >= 0 && r >= 0 ? [c, r] : null,
         details: (column, row) => {
           const p = at(column, row);
-          return [`signal ${rateText(p.signal_e_per_s)}, ambient ${rateText(p.ambient_e_per_s)} e/s`,
-            `error ${errorText(p[`${kind}_mde_m`], p[`${kind}_se_m`])} mm`, `outliers ${shortText(100 * p.outlier_rate, 3)} %`,
-            `Cramer-Rao ${shortText(1e3 * p.cramer_rao_mae_m, 4)} mm`];
+          return [
+            `signal ${rateText(p.signal_e_per_s)}, ambient ${rateText(p.ambient_e_per_s)} e/s`,
+            `error ${errorText(p[`${kind}_mde_m`], p[`${kind}_se_m`])} mm`,
+            `outliers ${shortText(100 * p.outlier_rate, 3)} %`,
+            `Cramer-Rao ${shortText(1e3 * p.cramer_rao_mae_m, 4)} mm`
+          ];
         },
         choose: (column, row) => this.lab.store.change((state) => {
           Object.assign(state.scene, {signal: signal[column], ambient: ambient[row]});
@@ -126,7 +167,8 @@ export class ErrorsView {
 
   #drawCurves(known, kind) {
     const ambient = ambientOf(known[0].one);
-    const wanted = this.lab.state.curve_ambient ?? Math.floor(ambient.length / 2), level = Math.min(wanted, ambient.length - 1);
+    const wanted = this.lab.state.curve_ambient ?? Math.floor(ambient.length / 2),
+          level = Math.min(wanted, ambient.length - 1);
     const select = byId('curve-ambient'), texts = ambient.map((a) => `${shortText(a, 4)} e/s`);
     if ([...select.options].map((option) => option.textContent).join() !== texts.join())
       select.replaceChildren(...texts.map((text, value) => element('option', {value}, text)));
@@ -134,20 +176,44 @@ export class ErrorsView {
     const series = [];
     for (const {i, one} of known) {
       const points = pointsAt(one, level), x = points.map((p) => p.signal_e_per_s);
-      const mean = points.map((p) => 1e3 * p[`${kind}_mde_m`]), deviation = points.map((p) => 2e3 * p[`${kind}_se_m`]);
-      series.push({name: one.name, x, y: mean, colour: seriesColour(i), width: 2.2,
-        band: [mean.map((v, n) => v - deviation[n]), mean.map((v, n) => v + deviation[n])]});
+      const mean = points.map((p) => 1e3 * p[`${kind}_mde_m`]),
+            deviation = points.map((p) => 2e3 * p[`${kind}_se_m`]);
+      series.push({
+        name: one.name,
+        x,
+        y: mean,
+        colour: seriesColour(i),
+        width: 2.2,
+        band: [mean.map((v, n) => v - deviation[n]), mean.map((v, n) => v + deviation[n])]
+      });
     }
     for (const {i, one} of known) {
       const points = pointsAt(one, level), x = points.map((p) => p.signal_e_per_s);
       for (const [key, name, dash] of i === known[0].i ? bounds : bounds.slice(0, 1))
-        series.push({name: key === 'cramer_rao_mae_m' ? `${name} of ${one.name}` : `${name} bound`, x, y: points.map((p) => 1e3 * p[key]),
-          colour: key === 'cramer_rao_mae_m' ? seriesColour(i) : 'var(--line)', width: 1.4, dash});
+        series.push({
+          name: key === 'cramer_rao_mae_m' ? `${name} of ${one.name}` : `${name} bound`,
+          x,
+          y: points.map((p) => 1e3 * p[key]),
+          colour: key === 'cramer_rao_mae_m' ? seriesColour(i) : 'var(--line)',
+          width: 1.4,
+          dash
+        });
     }
     this.curves.show({
-      label: `Depth error over signal at ambient light of ${texts[level]}, with bounds`, height: 320,
-      x: {title: 'signal (e/s)', log: true, range: paddedRange(rangeOf(series.map((one) => one.x), true), true), text: (v) => `signal ${shortText(v, 4)} e/s`},
-      y: {title: `${kind} depth error (mm)`, log: true, range: paddedRange(rangeOf(series.map((one) => one.y), true), true), unit: 'mm'},
+      label: `Depth error over signal at ambient light of ${texts[level]}, with bounds`,
+      height: 320,
+      x: {
+        title: 'signal (e/s)',
+        log: true,
+        range: paddedRange(rangeOf(series.map((one) => one.x), true), true),
+        text: (v) => `signal ${shortText(v, 4)} e/s`
+      },
+      y: {
+        title: `${kind} depth error (mm)`,
+        log: true,
+        range: paddedRange(rangeOf(series.map((one) => one.y), true), true),
+        unit: 'mm'
+      },
       series,
     });
   }

@@ -8,7 +8,8 @@ import {askedCode} from './lab.js';
 /** Larger files are refused without a look into them. */
 export const maxFileBytes = 64 * 2 ** 20;
 
-const sizeText = (bytes) => (bytes >= 1e9 ? `${(bytes / 1e9).toFixed(1)} GB` : `${(bytes / 1e6).toFixed(1)} MB`);
+const sizeText = (bytes) =>
+    (bytes >= 1e9 ? `${(bytes / 1e9).toFixed(1)} GB` : `${(bytes / 1e6).toFixed(1)} MB`);
 
 /** Reads dropped and chosen files into the lab. */
 export class Files {
@@ -21,9 +22,15 @@ export class Files {
       input.value = '';
     });
     const holdsFiles = (event) => [...(event.dataTransfer?.types ?? [])].includes('Files');
-    addEventListener('dragenter', (event) => { if (holdsFiles(event)) drop.hidden = false; });
-    addEventListener('dragover', (event) => { if (holdsFiles(event)) event.preventDefault(); });
-    addEventListener('dragleave', (event) => { if (!event.relatedTarget) drop.hidden = true; });
+    addEventListener('dragenter', (event) => {
+      if (holdsFiles(event)) drop.hidden = false;
+    });
+    addEventListener('dragover', (event) => {
+      if (holdsFiles(event)) event.preventDefault();
+    });
+    addEventListener('dragleave', (event) => {
+      if (!event.relatedTarget) drop.hidden = true;
+    });
     addEventListener('drop', (event) => {
       drop.hidden = true;
       if (!holdsFiles(event)) return;
@@ -47,18 +54,23 @@ export class Files {
   }
 
   async #takeOne(file) {
-    if (file.size > maxFileBytes) throw new Error(`${sizeText(file.size)} is too large; cameras and codes are at most ${sizeText(maxFileBytes)}`);
+    if (file.size > maxFileBytes)
+      throw new Error(
+          `${sizeText(file.size)} is too large; expected at most ${sizeText(maxFileBytes)}`);
     if (file.size === 0) throw new Error('the file is empty');
     const bytes = new Uint8Array(await file.arrayBuffer());
-    if (bytes.subarray(0, 4096).includes(0)) throw new Error('neither a camera (TOML) nor a code (JSON): it is binary');
+    if (bytes.subarray(0, 4096).includes(0))
+      throw new Error('neither a camera (TOML) nor a code (JSON): it is binary');
     let text;
     try {
       text = new TextDecoder('utf-8', {fatal: true}).decode(bytes);
     } catch {
       throw new Error('neither a camera (TOML) nor a code (JSON): it is not UTF-8 text');
     }
-    if (/^\s*\{/.test(text)) await this.#takeCode(file, text);
-    else await this.#takeCamera(file, text);
+    if (/^\s*\{/.test(text))
+      await this.#takeCode(file, text);
+    else
+      await this.#takeCamera(file, text);
   }
 
   async #takeCode(file, text) {
@@ -70,6 +82,8 @@ export class Files {
 
   async #takeCamera(file, text) {
     await this.lab.engine.call('camera', {camera: text, changes: []});
-    this.lab.store.change((state) => { state.camera = {file: text, file_name: file.name, changes: []}; });
+    this.lab.store.change((state) => {
+      state.camera = {file: text, file_name: file.name, changes: []};
+    });
   }
 }

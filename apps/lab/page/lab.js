@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// The lab behind the page: its state, the camera and codes that follow from it, and who wants to know.
+// The lab behind the page: its state, the camera and codes that follow from it, and who wants to
+// know.
 
-import {newestOnly, Sharpener} from './pace.js';
 import {Outdated, Refused} from './engine.js';
+import {newestOnly, Sharpener} from './pace.js';
 import {maxCodes} from './store.js';
 
 const quickTrials = 200, middleTrials = 2000;
@@ -13,7 +14,8 @@ const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 export const problemText = (error) => (error instanceof Outdated ? null : error.message);
 
 /** What the engine is asked for a camera of the state. */
-export const cameraRequest = ({built_in, file, changes}) => ({...(file === undefined ? {built_in} : {camera: file}), changes});
+export const cameraRequest = ({built_in, file, changes}) =>
+    ({...(file === undefined ? {built_in} : {camera: file}), changes});
 
 /** One of up to four codes: what was computed of it. */
 class Slot {
@@ -26,15 +28,17 @@ class Slot {
 /** The lab. Listeners: camera(), code(i), evaluation(i), scene(), problem(i). */
 export class Lab {
   slots = Array.from({length: maxCodes}, () => new Slot());
-  camera = null;       // answer of `camera`
-  firstFields = [];    // of the camera that changes are made to
+  camera = null;     // answer of `camera`
+  firstFields = [];  // of the camera that changes are made to
   #answers = new Map();
   #listeners = [];
 
   constructor(store, engine) {
     this.store = store;
     this.engine = engine;
-    this.sharpeners = this.slots.map((slot, i) => new Sharpener(2, () => engine.cancel(`code-${i}`), (error) => this.#failed(i, error)));
+    this.sharpeners = this.slots.map(
+        (slot, i) =>
+            new Sharpener(2, () => engine.cancel(`code-${i}`), (error) => this.#failed(i, error)));
     this.update = newestOnly(() => this.#update());
     this.set = newestOnly((key, value, heard) => this.#set(key, value, heard));
     this.moveEdge = newestOnly((i, code, edge) => this.#moveEdge(i, code, edge));
@@ -51,7 +55,8 @@ export class Lab {
   }
 
   #tell(what, i) {
-    if (what === 'code') performance.mark('tofsmith picture');  // how soon pictures come, for measurements
+    if (what === 'code')
+      performance.mark('tofsmith picture');  // how soon pictures come, for measurements
     for (const listener of this.#listeners) listener(what, i);
   }
 
@@ -91,10 +96,12 @@ export class Lab {
       this.sharpeners[i].request([]);
       return;
     }
-    const source = JSON.stringify([camera, code]), lane = `code-${i}`, asked = {camera, code: askedCode(code)};
+    const source = JSON.stringify([camera, code]), lane = `code-${i}`,
+          asked = {camera, code: askedCode(code)};
     const evaluate = (count, rank) => async () => {
       const isLong = count > middleTrials, isSlow = count > quickTrials;
-      const {document} = await this.engine.call('evaluate', {...asked, trials: count, seed}, {lane, isSlow, isLong, rank});
+      const {document} = await this.engine.call(
+          'evaluate', {...asked, trials: count, seed}, {lane, isSlow, isLong, rank});
       if (slot.key !== key && isLong) return;
       slot.evaluation = document;
       this.#tell('evaluation', i);
@@ -105,7 +112,9 @@ export class Lab {
       Object.assign(slot, {source, problem: null});
       this.#tell('code', i);
     }];
-    [quickTrials, middleTrials].filter((count) => count < trials).forEach((count, rank) => steps.push(evaluate(count, rank + 1)));
+    [quickTrials, middleTrials]
+        .filter((count) => count < trials)
+        .forEach((count, rank) => steps.push(evaluate(count, rank + 1)));
     steps.push(evaluate(trials, 3));
     this.sharpeners[i].request(steps);
   }
@@ -120,20 +129,28 @@ export class Lab {
   async #set(key, text, heard) {
     try {
       const {camera} = this, field = camera.fields.find((one) => one.key === key);
-      const value = text === '' && field?.default === null ? undefined : text;  // leaves the key out
+      const value =
+          text === '' && field?.default === null ? undefined : text;  // leaves the key out
       const answer = await this.engine.call('set', {camera: camera.toml, key, value});
       const change = answer.change ?? {key, value: value ?? null};
       const first = new Map(this.firstFields.map((field) => [field.key, field.value]));
-      const isFirst = answer.fields.every((one) => one.key !== change.key || same(one.value, first.get(one.key)));
-      const kept = this.state.camera.changes.filter((old) => old.key !== change.key && !old.key.startsWith(change.key + '.'));
+      const isFirst = answer.fields.every(
+          (one) => one.key !== change.key || same(one.value, first.get(one.key)));
+      const kept = this.state.camera.changes.filter(
+          (old) => old.key !== change.key && !old.key.startsWith(change.key + '.'));
       const changes = isFirst && first.has(change.key) ? kept : [...kept, change];
       this.#remember({...this.state.camera, changes}, answer);
-      this.store.change((state) => { state.camera.changes = changes; }, `set ${key}`);
+      this.store.change((state) => {
+        state.camera.changes = changes;
+      }, `set ${key}`);
       heard(null);
       await this.update();
     } catch (error) {
       if (error instanceof Outdated) return;
-      heard(error instanceof Refused && error.field && error.field !== key ? `${error.field}: ${error.message}` : error.message);
+      heard(
+          error instanceof Refused && error.field && error.field !== key ?
+              `${error.field}: ${error.message}` :
+              error.message);
     }
   }
 
@@ -147,7 +164,9 @@ export class Lab {
 
   async #moveEdge(i, code, {arm, measurement, edge, position}) {
     try {
-      const answer = await this.engine.call('move_edge', {camera: this.camera.toml, code: askedCode(code), arm, measurement, edge, position});
+      const answer = await this.engine.call(
+          'move_edge',
+          {camera: this.camera.toml, code: askedCode(code), arm, measurement, edge, position});
       this.store.change((state) => {
         if (state.codes[i]) state.codes[i] = {name: answer.name, file: answer.file};
       }, `edge ${i} ${arm} ${measurement} ${edge}`);
@@ -160,23 +179,31 @@ export class Lab {
   /** Puts a code beside the others, or in the chosen one's place where there are four. */
   addCode(code) {
     this.store.change((state) => {
-      if (state.codes.length < maxCodes) state.codes.push(code);
-      else state.codes[state.chosen] = code;
-      state.chosen = state.codes.length < maxCodes || state.codes.at(-1) === code ? state.codes.indexOf(code) : state.chosen;
+      if (state.codes.length < maxCodes)
+        state.codes.push(code);
+      else
+        state.codes[state.chosen] = code;
+      state.chosen = state.codes.length < maxCodes || state.codes.at(-1) === code ?
+          state.codes.indexOf(code) :
+          state.chosen;
     });
   }
 
   /** The kind of error that the camera is judged by: linear or circular. */
   get errorKind() {
-    return this.camera?.fields.find((field) => field.key === 'operating.error')?.value ?? 'circular';
+    return this.camera?.fields.find((field) => field.key === 'operating.error')?.value ??
+        'circular';
   }
 }
 
 /** A code as the engine takes it. */
-export const askedCode = (code) => (code.file === undefined ? {name: code.name} : {file: code.file});
+export const askedCode = (code) =>
+    (code.file === undefined ? {name: code.name} : {file: code.file});
 
 /** What a file of this code would be called; a family's name as it is. */
-export const codeWord = (code) => (code.file === undefined ? code.name : `${fileName(code.name)}.code.json`);
+export const codeWord = (code) =>
+    (code.file === undefined ? code.name : `${fileName(code.name)}.code.json`);
 
 /** A name that can be that of a file. */
-export const fileName = (name) => name.replace(/[^\w.+-]+/g, '-').replace(/^[-.]+/, '').slice(0, 80) || 'unnamed';
+export const fileName = (name) =>
+    name.replace(/[^\w.+-]+/g, '-').replace(/^[-.]+/, '').slice(0, 80) || 'unnamed';

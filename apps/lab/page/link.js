@@ -7,8 +7,8 @@ import {problemOf} from './store.js';
 /** The version of links that this page writes; it reads no other. */
 export const linkVersion = 1;
 
-const maxLink = 1e5;    // characters: longer addresses are cut off by what they pass through
-const maxState = 2e6;   // characters of JSON that are unpacked at most
+const maxLink = 1e5;   // characters: longer addresses are cut off by what they pass through
+const maxState = 2e6;  // characters of JSON that are unpacked at most
 
 async function through(bytes, stream) {
   return new Response(new Blob([bytes]).stream().pipeThrough(stream));
@@ -17,11 +17,13 @@ async function through(bytes, stream) {
 /** The state as text for an address, `#` included; null if it is too long for one. */
 export async function linkOf(state) {
   const json = new TextEncoder().encode(JSON.stringify(state));
-  const packed = new Uint8Array(await (await through(json, new CompressionStream('deflate-raw'))).arrayBuffer());
+  const packed = new Uint8Array(
+      await (await through(json, new CompressionStream('deflate-raw'))).arrayBuffer());
   if (packed.length > maxLink) return null;
   let binary = '';
   for (const byte of packed) binary += String.fromCharCode(byte);
-  return `#${linkVersion}.` + btoa(binary).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
+  return `#${linkVersion}.` +
+      btoa(binary).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
 }
 
 async function limitedText(response) {
@@ -47,13 +49,18 @@ export async function stateOf(hash) {
   const found = /^#(\d+)\.([\w-]*)$/.exec(hash);
   if (!found) return {problem: 'This link is not one of the lab; it starts fresh.'};
   if (Number(found[1]) !== linkVersion)
-    return {problem: `This link is of version ${found[1]} of the lab's links, and this page reads version ${linkVersion}; it starts fresh.`};
+    return {
+      problem:
+          `This link is of version ${found[1]}; this page reads ${linkVersion} and starts fresh.`
+    };
   try {
     const binary = atob(found[2].replaceAll('-', '+').replaceAll('_', '/'));
     const bytes = Uint8Array.from(binary, (c) => c.charCodeAt(0));
-    const state = JSON.parse(await limitedText(await through(bytes, new DecompressionStream('deflate-raw'))));
+    const state =
+        JSON.parse(await limitedText(await through(bytes, new DecompressionStream('deflate-raw'))));
     const problem = problemOf(state);
-    return problem ? {problem: `This link is damaged (${problem}); the lab starts fresh.`} : {state};
+    return problem ? {problem: `This link is damaged (${problem}); the lab starts fresh.`} :
+                     {state};
   } catch {
     return {problem: 'This link is damaged or cut off; the lab starts fresh.'};
   }

@@ -2,19 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Begins the lab.
 
-import {announce, byId, copyText, element, notice, saveText, showProblem} from './dom.js';
-import {Engine, missingFeature, packedEngine} from './engine.js';
 import {CodesView} from './codes.js';
 import {Commands} from './commands.js';
 import {DesignView} from './design.js';
+import {announce, byId, copyText, element, notice, saveText, showProblem} from './dom.js';
+import {Engine, missingFeature, packedEngine} from './engine.js';
 import {ErrorsView} from './errors.js';
 import {FieldPanel} from './fields.js';
 import {Files} from './files.js';
-import {Lab, fileName} from './lab.js';
-import {SceneView} from './scene.js';
-import {Store, firstState} from './store.js';
+import {fileName, Lab} from './lab.js';
 import {linkOf, stateOf} from './link.js';
 import {shortText} from './numbers.js';
+import {SceneView} from './scene.js';
+import {firstState, Store} from './store.js';
 import {startTheme} from './theme.js';
 
 const patienceSeconds = 60;
@@ -27,35 +27,45 @@ function stop(text) {
 function startCamera(lab, about) {
   const choice = byId('camera-choice'), {store} = lab;
   const panel = new FieldPanel(byId('fields'), {
-    set: (key, text) => lab.set(key, text, (problem) => {
-      panel.tell(key, problem ?? '');
-      if (problem) announce(problem);
-    }),
+    set: (key, text) => lab.set(
+        key, text,
+        (problem) => {
+          panel.tell(key, problem ?? '');
+          if (problem) announce(problem);
+        }),
     reset: (key) => lab.reset(key),
     settle: () => store.settle(),
   });
   choice.addEventListener('change', () => choice.value !== '!' && store.change((state) => {
     state.camera = {built_in: choice.value, changes: []};
   }));
-  byId('save-camera').addEventListener('click', () =>
-    lab.camera && saveText(lab.camera.toml, cameraFileName(lab), 'application/toml'));
+  byId('save-camera')
+      .addEventListener(
+          'click',
+          () => lab.camera && saveText(lab.camera.toml, cameraFileName(lab), 'application/toml'));
   lab.listen((what, problem) => {
     if (what === 'camera problem') showProblem(byId('camera-error'), problem);
     if (what !== 'camera') return;
-    showProblem(byId('camera-error'), (lab.camera.warnings ?? []).map((warning) => warning.message ?? warning).join('\n'));
+    showProblem(
+        byId('camera-error'),
+        (lab.camera.warnings ?? []).map((warning) => warning.message ?? warning).join('\n'));
     const {camera} = lab.state;
-    choice.replaceChildren(...(camera.file === undefined ? [] : [element('option', {value: '!'}, camera.file_name)]),
-      ...about.cameras.map((name) => element('option', {value: name.name ?? name}, name.name ?? name)));
+    choice.replaceChildren(
+        ...(camera.file === undefined ? [] : [element('option', {value: '!'}, camera.file_name)]),
+        ...about.cameras.map(
+            (name) => element('option', {value: name.name ?? name}, name.name ?? name)));
     choice.value = camera.file === undefined ? camera.built_in : '!';
     panel.show(lab.camera.fields, lab.firstFields);
     const f0 = lab.camera.fields.find((field) => field.key === 'fundamental_frequency_hz')?.value;
-    byId('camera-summary').textContent = `${shortText(f0 / 1e6)} MHz, range ${shortText(299792458 / 2 / f0, 4)} m`;
+    byId('camera-summary').textContent =
+        `${shortText(f0 / 1e6)} MHz, range ${shortText(299792458 / 2 / f0, 4)} m`;
   });
 }
 
 function cameraFileName(lab) {
   const {camera} = lab.state;
-  if (camera.file !== undefined) return fileName(camera.file_name.replace(/\.toml$/i, '')) + '.toml';
+  if (camera.file !== undefined)
+    return fileName(camera.file_name.replace(/\.toml$/i, '')) + '.toml';
   return `${fileName(camera.built_in)}${camera.changes.length ? '-changed' : ''}.toml`;
 }
 
@@ -63,30 +73,43 @@ function startTools(lab) {
   const {store} = lab, undo = byId('undo'), redo = byId('redo');
   undo.addEventListener('click', () => store.undo());
   redo.addEventListener('click', () => store.redo());
-  byId('fresh').addEventListener('click', () => store.change((state) => Object.assign(state, firstState())));
+  byId('fresh').addEventListener(
+      'click', () => store.change((state) => Object.assign(state, firstState())));
   byId('link').addEventListener('click', async () => {
     const hash = await linkOf(store.state);
-    if (!hash) return notice('This state is too large for a link: save its camera and codes as files.');
+    if (!hash)
+      return notice('This state is too large for a link: save its camera and codes as files.');
     history.replaceState(null, '', hash);
     const isCopied = await copyText(location.href);
     byId('link').textContent = isCopied ? 'Copied' : 'In the address';
-    announce(isCopied ? 'A link to this state is copied.' : 'The address bar holds a link to this state.');
-    setTimeout(() => { byId('link').textContent = 'Link'; }, 1500);
+    announce(
+        isCopied ? 'A link to this state is copied.' :
+                   'The address bar holds a link to this state.');
+    setTimeout(() => {
+      byId('link').textContent = 'Link';
+    }, 1500);
   });
   addEventListener('keydown', (event) => {
     if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
     const key = event.key.toLowerCase(), back = key === 'z' && !event.shiftKey;
     if (!back && key !== 'y' && !(key === 'z' && event.shiftKey)) return;
     const {target} = event;
-    if (target.matches?.('input:not([type="range"], [type="checkbox"], [type="radio"])') && target.value !== target.defaultValue && target.dataset.typing) return;
+    if (target.matches?.('input:not([type="range"], [type="checkbox"], [type="radio"])') &&
+        target.value !== target.defaultValue && target.dataset.typing)
+      return;
     event.preventDefault();
-    if (back ? !store.canUndo : !store.canRedo) return announce(back ? 'Nothing to undo.' : 'Nothing to redo.');
-    if (back) store.undo();
-    else store.redo();
+    if (back ? !store.canUndo : !store.canRedo)
+      return announce(back ? 'Nothing to undo.' : 'Nothing to redo.');
+    if (back)
+      store.undo();
+    else
+      store.redo();
     announce(back ? 'Undone.' : 'Redone.');
   });
   // While something is being typed, Ctrl+Z is the field's own.
-  addEventListener('input', (event) => { event.target.dataset.typing = 'yes'; }, true);
+  addEventListener('input', (event) => {
+    event.target.dataset.typing = 'yes';
+  }, true);
   addEventListener('change', (event) => delete event.target.dataset.typing, true);
   const follow = () => {
     undo.disabled = !store.canUndo;
@@ -100,7 +123,10 @@ function keepLink(store) {
   let timer = 0;
   store.listen(() => {
     clearTimeout(timer);
-    timer = setTimeout(async () => history.replaceState(null, '', (await linkOf(store.state)) ?? location.pathname + location.search), 400);
+    timer = setTimeout(
+        async () => history.replaceState(
+            null, '', (await linkOf(store.state)) ?? location.pathname + location.search),
+        400);
   });
 }
 
@@ -113,8 +139,12 @@ async function begin() {
   const startWorker = await packedEngine();
   const cores = navigator.hardwareConcurrency || 2;
   const engine = new Engine(startWorker, Math.max(2, Math.min(4, cores)));
-  const about = await Promise.race([engine.call('about', {}), new Promise((_, reject) =>
-    setTimeout(() => reject(new Error('its engine does not answer')), 1000 * patienceSeconds))]);
+  const about = await Promise.race([
+    engine.call('about', {}),
+    new Promise(
+        (_, reject) => setTimeout(
+            () => reject(new Error('its engine does not answer')), 1000 * patienceSeconds))
+  ]);
   const store = new Store(state ?? firstState()), lab = new Lab(store, engine);
   startCamera(lab, about);
   new CodesView(lab, about);

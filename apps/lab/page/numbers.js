@@ -2,10 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Numbers as the page writes them, and where axes have their ticks.
 
-const superscripts = {'-': '\u207b', 0: '\u2070', 1: '\u00b9', 2: '\u00b2', 3: '\u00b3', 4: '\u2074', 5: '\u2075', 6: '\u2076', 7: '\u2077', 8: '\u2078', 9: '\u2079'};
+const superscripts = {
+  '-': '\u207b',
+  0: '\u2070',
+  1: '\u00b9',
+  2: '\u00b2',
+  3: '\u00b3',
+  4: '\u2074',
+  5: '\u2075',
+  6: '\u2076',
+  7: '\u2077',
+  8: '\u2078',
+  9: '\u2079'
+};
 
 /** 10 to a whole power, as text. */
-export const powerText = (power) => '10' + Array.from(String(power), (c) => superscripts[c]).join('');
+export const powerText = (power) =>
+    '10' + Array.from(String(power), (c) => superscripts[c]).join('');
 
 /** A number with at most so many digits that count, without zeros that say nothing. */
 export function shortText(value, digits = 4) {
@@ -14,15 +27,22 @@ export function shortText(value, digits = 4) {
   return text.replace('e+', 'e');
 }
 
-/** A number with exactly so many digits that count, as tables hold it; never with an exponent below 1e6. */
+/**
+ * A number with exactly so many digits that count, as tables hold it; never with an exponent below
+ * 1e6.
+ */
 export function fixedText(value, digits) {
   if (!Number.isFinite(value)) return 'none';
   if (value === 0) return '0';
   const power = Math.floor(Math.log10(Math.abs(Number(value.toPrecision(digits)))));
-  return power >= 6 || power < -5 ? value.toExponential(digits - 1) : value.toFixed(Math.max(0, digits - 1 - power));
+  return power >= 6 || power < -5 ? value.toExponential(digits - 1) :
+                                    value.toFixed(Math.max(0, digits - 1 - power));
 }
 
-/** A number as fields hold it: all its digits, large and small ones with an exponent in steps of three. */
+/**
+ * A number as fields hold it: all its digits, large and small ones with an exponent in steps of
+ * three.
+ */
 export function fieldText(value) {
   if (value === null || value === undefined) return '';
   if (Array.isArray(value)) return `[${value.map(fieldText).join(', ')}]`;
@@ -34,8 +54,9 @@ export function fieldText(value) {
 }
 
 /** Metres as text in the unit that suits them. */
-export const lengthText = (metres, digits = 4) =>
-  Math.abs(metres) < 1 ? `${shortText(metres * 1e3, digits)} mm` : `${shortText(metres, digits)} m`;
+export const lengthText = (metres, digits = 4) => Math.abs(metres) < 1 ?
+    `${shortText(metres * 1e3, digits)} mm` :
+    `${shortText(metres, digits)} m`;
 
 /** A rate of electrons as axes and lists write it. */
 export function rateText(value) {
@@ -50,9 +71,12 @@ export function linearTicks(low, high, count) {
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = power * [1, 2, 5, 10].find((s) => s * power >= rough * 0.999);
   const ticks = [];
-  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) ticks.push(i * step);
+  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i)
+    ticks.push(i * step);
   const decimals = Math.min(12, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
-  return ticks.map((value) => ({value, text: Math.abs(value) >= 1e6 ? shortText(value) : value.toFixed(decimals)}));
+  return ticks.map(
+      (value) =>
+          ({value, text: Math.abs(value) >= 1e6 ? shortText(value) : value.toFixed(decimals)}));
 }
 
 /** Powers of ten within [low, high]; with 2 and 5 times them where there are few. */

@@ -24,9 +24,9 @@ export function newestOnly(work) {
 }
 
 /**
- * A picture that is quick at first and then sharpens. Each request is a list of steps, functions that
- * return promises. The first `whole` ones are always finished, so that a picture follows however fast
- * requests come; the rest is given up for a newer request.
+ * A picture that is quick at first and then sharpens. Each request is a list of steps, functions
+ * that return promises. The first `whole` ones are always finished, so that a picture follows
+ * however fast requests come; the rest is given up for a newer request.
  */
 export class Sharpener {
   #next = null;
@@ -49,7 +49,8 @@ export class Sharpener {
       const now = this.#next;
       this.#next = null;
       try {
-        for (this.place = 0; this.place < now.length && (this.place < this.whole || !this.#next); ++this.place)
+        for (this.place = 0; this.place < now.length && (this.place < this.whole || !this.#next);
+             ++this.place)
           await now[this.place]();
       } catch (error) {
         if (!(error instanceof Outdated)) this.onProblem(error);

@@ -3,12 +3,12 @@
 // A plane of a picture as pixels, its value under the pointer.
 
 import {element} from './dom.js';
-import {ValueBox} from './plot.js';
 import {colourBar} from './heat_map.js';
+import {ValueBox} from './plot.js';
 
 /**
- * One plane. What it shows: {label, title, note, width, height, values, colour(value) -> [r, g, b] or null,
- * ends: [low, high] texts, gradient(place), text(value, index)}.
+ * One plane. What it shows: {label, title, note, width, height, values, colour(value) -> [r, g, b]
+ * or null, ends: [low, high] texts, gradient(place), text(value, index)}.
  */
 export class Picture {
   constructor() {
@@ -46,6 +46,8 @@ export class Picture {
     const row = Math.floor((event.clientY - box.top) / box.height * height);
     if (column < 0 || row < 0 || column >= width || row >= height) return;
     const i = row * width + column;
-    this.value.show(event.clientX - box.left, event.clientY - box.top, `column ${column}, row ${row}`, this.spec.text(values[i], i));
+    this.value.show(
+        event.clientX - box.left, event.clientY - box.top, `column ${column}, row ${row}`,
+        this.spec.text(values[i], i));
   }
 }

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // One scene, captured and decoded pixel by pixel: true depth, depth and error, alone and filtered.
 
-import {byId, element, showProblem} from './dom.js';
-import {Picture} from './picture.js';
-import {Sharpener} from './pace.js';
-import {askedCode} from './lab.js';
 import {divergingColour, sequentialColour} from './colours.js';
+import {byId, element, showProblem} from './dom.js';
+import {askedCode} from './lab.js';
 import {lengthText, rangeOf, shortText} from './numbers.js';
+import {Sharpener} from './pace.js';
+import {Picture} from './picture.js';
 
 const widths = [80, 160, 240, 320], quickWidth = 80;
 
@@ -22,51 +22,91 @@ export class SceneView {
   constructor(lab, about) {
     this.lab = lab;
     const picture = () => new Picture();
-    this.pictures = {truth: picture(), depth: picture(), error: picture(), plan: picture(), filtered: picture(), filteredError: picture()};
+    this.pictures = {
+      truth: picture(),
+      depth: picture(),
+      error: picture(),
+      plan: picture(),
+      filtered: picture(),
+      filteredError: picture()
+    };
     byId('scene-pictures').append(...Object.values(this.pictures).map((one) => one.root));
     this.pictures.plan.root.id = 'scene-deviation';
     this.#controls(about);
-    this.sharpener = new Sharpener(1, () => lab.engine.cancel('scene'), (error) => showProblem(byId('scene-problem'), error.message));
+    this.sharpener = new Sharpener(
+        1, () => lab.engine.cancel('scene'),
+        (error) => showProblem(byId('scene-problem'), error.message));
     lab.listen((what) => what === 'state' && this.#follow());
   }
 
   #controls(about) {
     const {store} = this.lab, put = (key, read) => (event) => {
-      const value = read(event.target.value);
+      const text = event.target.value, value = read(text);
       if (value === undefined) {
         event.target.setAttribute('aria-invalid', 'true');
-        showProblem(byId('scene-problem'), `${key}: found ${event.target.value}; expected a number >= 0, or nothing for what the command takes`);
+        showProblem(
+            byId('scene-problem'), `${key}: found ${text}; expected a number >= 0, or nothing`);
         return;
       }
       event.target.setAttribute('aria-invalid', 'false');
       showProblem(byId('scene-problem'), '');
-      store.change((state) => { state.scene[key] = value; });
+      store.change((state) => {
+        state.scene[key] = value;
+      });
     };
-    const rate = (text) => (text.trim() === '' ? null : Number.isFinite(Number(text)) && Number(text) >= 0 ? Number(text) : undefined);
-    const choice = (id, list, key, read) => element('select', {id, onchange: put(key, read)}, ...list.map((one) => element('option', {value: one}, String(one))));
+    const rate = (text) =>
+        (text.trim() === ''                                     ? null :
+             Number.isFinite(Number(text)) && Number(text) >= 0 ? Number(text) :
+                                                                  undefined);
+    const choice = (id, list, key, read) => element(
+        'select', {id, onchange: put(key, read)},
+        ...list.map((one) => element('option', {value: one}, String(one))));
     this.inputs = {
       name: choice('scene-name', about.scenes, 'name', String),
-      filter: choice('scene-filter', about.filters.filter((word) => word !== 'off'), 'filter', String),
+      filter:
+          choice('scene-filter', about.filters.filter((word) => word !== 'off'), 'filter', String),
       width: choice('scene-width', widths, 'width', Number),
-      signal: element('input', {id: 'scene-signal', size: 8, placeholder: 'usual', onchange: put('signal', rate)}),
-      ambient: element('input', {id: 'scene-ambient', size: 8, placeholder: 'usual', onchange: put('ambient', rate)}),
+      signal: element(
+          'input',
+          {id: 'scene-signal', size: 8, placeholder: 'usual', onchange: put('signal', rate)}),
+      ambient: element(
+          'input',
+          {id: 'scene-ambient', size: 8, placeholder: 'usual', onchange: put('ambient', rate)}),
     };
-    const texts = {name: 'Scene', filter: 'Filter', width: 'Columns', signal: 'Signal (e/s)', ambient: 'Ambient (e/s)'};
-    byId('scene-controls').append(...Object.entries(this.inputs).map(([key, input]) => element('label', {}, texts[key], input)));
+    const texts = {
+      name: 'Scene',
+      filter: 'Filter',
+      width: 'Columns',
+      signal: 'Signal (e/s)',
+      ambient: 'Ambient (e/s)'
+    };
+    byId('scene-controls')
+        .append(...Object.entries(this.inputs)
+                    .map(([key, input]) => element('label', {}, texts[key], input)));
   }
 
   #follow() {
     const {state, camera} = this.lab, {scene} = state, code = state.codes[state.chosen];
     for (const [key, input] of Object.entries(this.inputs)) {
-      if (input.tagName === 'SELECT' && ![...input.options].some((option) => option.value === String(scene[key])))
+      if (input.tagName === 'SELECT' &&
+          ![...input.options].some((option) => option.value === String(scene[key])))
         input.append(element('option', {value: scene[key]}, String(scene[key])));
-      if (input !== document.activeElement || input.getAttribute('aria-invalid') !== 'true') input.value = scene[key] ?? '';
+      if (input !== document.activeElement || input.getAttribute('aria-invalid') !== 'true')
+        input.value = scene[key] ?? '';
     }
     const key = JSON.stringify([camera.toml, code, scene, state.seed]);
     if (key === this.key) return;
     this.key = key;
     const shot = (width, isLong) => async () => {
-      const asked = {camera: camera.toml, code: askedCode(code), scene: scene.name, seed: state.seed, width, signal: scene.signal, ambient: scene.ambient};
+      const asked = {
+        camera: camera.toml,
+        code: askedCode(code),
+        scene: scene.name,
+        seed: state.seed,
+        width,
+        signal: scene.signal,
+        ambient: scene.ambient
+      };
       const options = {lane: 'scene', isSlow: true, isLong, rank: 4}, {engine} = this.lab;
       const alone = await engine.call('scene', {...asked, filter: 'off'}, options);
       const filtered = await engine.call('scene', {...asked, filter: scene.filter}, options);
@@ -75,7 +115,9 @@ export class SceneView {
       this.#draw(alone, filtered, code, scene);
       byId('scene').dataset.width = width;
     };
-    this.sharpener.request(scene.width > quickWidth ? [shot(quickWidth, false), shot(scene.width, true)] : [shot(scene.width, false)]);
+    this.sharpener.request(
+        scene.width > quickWidth ? [shot(quickWidth, false), shot(scene.width, true)] :
+                                   [shot(scene.width, false)]);
   }
 
   #draw(alone, filtered, code, scene) {
@@ -83,21 +125,63 @@ export class SceneView {
     const errors = alone.deviation_m.values, filteredErrors = filtered.deviation_m.values;
     const depths = rangeOf([truth]), most = spread(errors), name = code.name;
     const size = {width, height};
-    const depthSpec = (values, title, note, label) => ({...size, values, title, note, label, gradient: sequentialColour,
-      colour: (v) => sequentialColour((v - depths[0]) / (depths[1] - depths[0] || 1)), ends: depths.map((v) => lengthText(v, 3)), text: (v) => `${title} ${lengthText(v)}`});
-    const errorSpec = (values, title, note, label) => ({...size, values, title, note, label, gradient: divergingColour,
-      colour: (v) => divergingColour(0.5 + v / most / 2), ends: [lengthText(-most, 3), lengthText(most, 3)], text: (v) => `${title} ${lengthText(v)}`});
-    const mean = (answer) => (answer.mean_error_m === undefined ? '' : `mean ${lengthText(answer.mean_error_m, 3)}`);
-    const {pictures} = this, deviations = alone.standard_deviation_m.values, scale = [rangeOf([deviations])[0], 2 * spread(deviations)];
-    pictures.truth.show(depthSpec(truth, 'True depth', scene.name, `True depth of the scene ${scene.name}`));
-    pictures.depth.show(depthSpec(alone.depth_m.values, 'Depth', 'each pixel alone', `Depth decoded with ${name}, each pixel alone`));
-    pictures.error.show(errorSpec(errors, 'Error', mean(alone), `Depth error, each pixel alone, ${mean(alone)}`));
-    pictures.plan.show({...size, values: deviations, title: 'Predicted deviation', note: 'each pixel alone', label: 'Deviation of depth that the decoder predicts', gradient: sequentialColour,
-      colour: (v) => sequentialColour((v - scale[0]) / (scale[1] - scale[0] || 1)), ends: scale.map((v) => lengthText(v, 3)), text: (v) => `deviation ${lengthText(v)}`});
-    pictures.filtered.show(depthSpec(filtered.depth_m.values, 'Depth', `filter ${scene.filter}`, `Depth decoded with ${name} and the filter ${scene.filter}`));
-    pictures.filteredError.show(errorSpec(filteredErrors, 'Error', `${mean(filtered)}, filter ${scene.filter}`, `Depth error with the filter, ${mean(filtered)}`));
-    byId('scene-figures').textContent = `Code ${name}; signal ${shortText(alone.signal_e_per_s)} e/s, ambient ${shortText(alone.ambient_e_per_s)} e/s at the reference. ` +
-      `Median error ${lengthText(alone.median_error_m, 3)} alone, ${lengthText(filtered.median_error_m, 3)} filtered` +
-      (alone.ok_share === undefined ? '.' : `; ${shortText(100 * alone.ok_share, 3)} % of the pixels are ok alone, ${shortText(100 * filtered.ok_share, 3)} % filtered.`);
+    const depthSpec = (values, title, note, label) => ({
+      ...size,
+      values,
+      title,
+      note,
+      label,
+      gradient: sequentialColour,
+      colour: (v) => sequentialColour((v - depths[0]) / (depths[1] - depths[0] || 1)),
+      ends: depths.map((v) => lengthText(v, 3)),
+      text: (v) => `${title} ${lengthText(v)}`
+    });
+    const errorSpec = (values, title, note, label) => ({
+      ...size,
+      values,
+      title,
+      note,
+      label,
+      gradient: divergingColour,
+      colour: (v) => divergingColour(0.5 + v / most / 2),
+      ends: [lengthText(-most, 3), lengthText(most, 3)],
+      text: (v) => `${title} ${lengthText(v)}`
+    });
+    const mean = (answer) =>
+        (answer.mean_error_m === undefined ? '' : `mean ${lengthText(answer.mean_error_m, 3)}`);
+    const {pictures} = this, deviations = alone.standard_deviation_m.values,
+          scale = [rangeOf([deviations])[0], 2 * spread(deviations)];
+    pictures.truth.show(
+        depthSpec(truth, 'True depth', scene.name, `True depth of the scene ${scene.name}`));
+    pictures.depth.show(depthSpec(
+        alone.depth_m.values, 'Depth', 'each pixel alone',
+        `Depth decoded with ${name}, each pixel alone`));
+    pictures.error.show(
+        errorSpec(errors, 'Error', mean(alone), `Depth error, each pixel alone, ${mean(alone)}`));
+    pictures.plan.show({
+      ...size,
+      values: deviations,
+      title: 'Predicted deviation',
+      note: 'each pixel alone',
+      label: 'Deviation of depth that the decoder predicts',
+      gradient: sequentialColour,
+      colour: (v) => sequentialColour((v - scale[0]) / (scale[1] - scale[0] || 1)),
+      ends: scale.map((v) => lengthText(v, 3)),
+      text: (v) => `deviation ${lengthText(v)}`
+    });
+    pictures.filtered.show(depthSpec(
+        filtered.depth_m.values, 'Depth', `filter ${scene.filter}`,
+        `Depth decoded with ${name} and the filter ${scene.filter}`));
+    pictures.filteredError.show(errorSpec(
+        filteredErrors, 'Error', `${mean(filtered)}, filter ${scene.filter}`,
+        `Depth error with the filter, ${mean(filtered)}`));
+    const each = (text) => `${text(alone)} alone, ${text(filtered)} filtered`;
+    const share = ({ok_share: ok}) => `${shortText(100 * ok, 3)} %`;
+    const rates =
+        [alone.signal_e_per_s, alone.ambient_e_per_s].map((rate) => `${shortText(rate)} e/s`);
+    byId('scene-figures').textContent =
+        `Code ${name}; signal ${rates[0]}, ambient ${rates[1]} at the reference. ` +
+        `Median error ${each((one) => lengthText(one.median_error_m, 3))}; ` +
+        `pixels that are ok ${each(share)}.`;
   }
 }

@@ -23,15 +23,22 @@ const isRate = (value) => value === null || (Number.isFinite(value) && value >= 
 /** What is wrong with a state that came from elsewhere; null if nothing. */
 export function problemOf(state) {
   const {camera, codes, scene} = state ?? {};
-  if (!camera || (isText(camera.built_in) === isText(camera.file)) || !Array.isArray(camera.changes) ||
-      !camera.changes.every((change) => isText(change?.key) && (change.value === null || isText(change.value)))) return 'its camera';
+  if (!camera || (isText(camera.built_in) === isText(camera.file)) ||
+      !Array.isArray(camera.changes) ||
+      !camera.changes.every(
+          (change) => isText(change?.key) && (change.value === null || isText(change.value))))
+    return 'its camera';
   if (!Array.isArray(codes) || !isAt(codes.length, 1, maxCodes) ||
-      !codes.every((code) => isText(code?.name) && (code.file === undefined || isText(code.file)))) return 'its codes';
+      !codes.every((code) => isText(code?.name) && (code.file === undefined || isText(code.file))))
+    return 'its codes';
   if (!isAt(state.chosen, 0, codes.length - 1)) return 'its chosen code';
-  if (!isAt(state.trials, 2, 4e9) || !isAt(state.seed, 0, Number.MAX_SAFE_INTEGER)) return 'its trials or seed';
-  if (state.curve_ambient !== null && !isAt(state.curve_ambient, 0, 1e6)) return 'its ambient level';
-  if (!isText(scene?.name) || !isText(scene.filter) || !isAt(scene.width, 8, 1000) || !isRate(scene.signal) ||
-      !isRate(scene.ambient)) return 'its scene';
+  if (!isAt(state.trials, 2, 4e9) || !isAt(state.seed, 0, Number.MAX_SAFE_INTEGER))
+    return 'its trials or seed';
+  if (state.curve_ambient !== null && !isAt(state.curve_ambient, 0, 1e6))
+    return 'its ambient level';
+  if (!isText(scene?.name) || !isText(scene.filter) || !isAt(scene.width, 8, 1000) ||
+      !isRate(scene.signal) || !isRate(scene.ambient))
+    return 'its scene';
   return null;
 }
 

@@ -3,7 +3,11 @@
 // Light, dark, or as the system has it.
 
 const themes = ['auto', 'light', 'dark'];
-const names = {auto: 'Auto', light: 'Light', dark: 'Dark'};
+const names = {
+  auto: 'Auto',
+  light: 'Light',
+  dark: 'Dark'
+};
 const place = 'tofsmith-lab-theme';
 
 function kept() {
@@ -17,8 +21,10 @@ function kept() {
 /** Lets a button go through the themes, and begins with the one that was chosen last. */
 export function startTheme(button) {
   const show = (theme) => {
-    if (theme === 'auto') delete document.documentElement.dataset.theme;
-    else document.documentElement.dataset.theme = theme;
+    if (theme === 'auto')
+      delete document.documentElement.dataset.theme;
+    else
+      document.documentElement.dataset.theme = theme;
     button.textContent = `\u25d0 ${names[theme]}`;
     button.setAttribute('aria-label', `Colours: ${names[theme].toLowerCase()}; change`);
     button.dataset.now = theme;

@@ -16,6 +16,10 @@ add_test(NAME Lab.PageWorksInABrowser
   COMMAND /usr/bin/python3 "${lab_tests}/lab_page_test.py" "${mock_page}")
 set_tests_properties(Lab.PageWorksInABrowser
   PROPERTIES FIXTURES_REQUIRED mock_lab SKIP_RETURN_CODE 77 TIMEOUT 300 LABELS apps)
+add_test(NAME Lab.BuiltPageWorksInABrowser
+  COMMAND /usr/bin/python3 "${lab_tests}/lab_page_test.py" "${PROJECT_SOURCE_DIR}/build-lab/lab.html")
+set_tests_properties(Lab.BuiltPageWorksInABrowser
+  PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 600 LABELS apps)
 if(TARGET tofsmith_cli)
   add_test(NAME Lab.PageEqualsTheCommand
     COMMAND /usr/bin/python3 "${lab_tests}/lab_numbers_test.py" $<TARGET_FILE:tofsmith_cli>

@@ -152,7 +152,7 @@ class Page(LabTest):
             edge.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowRight', bubbles: true, cancelable: true}));
             await settled();""")
         self.assertIn("hamiltonian-k4-edited.code.json", self.text("[data-command=evaluate] pre"))
-        self.assertIn("save it", self.text("[data-command=evaluate] .files"))
+        self.assertIn("from this page first", self.text("[data-command=evaluate] .files"))
 
     def test_what_no_field_may_hold_is_told_there_and_the_picture_stays(self):
         for text in ("nan", "inf", "-1", "1e400", "five", ""):
