@@ -5,7 +5,7 @@
 # The Debian packages of the project, in one place. Sourced by the other scripts; run by hand it
 # installs what is missing of the groups named:
 #
-#   scripts/packages.sh core|design|build|python|lab|package|test|docs|benchmark|check|fuzz ..
+#   scripts/packages.sh core|design|build|python|lab|package|test|docs|benchmark|check|fuzz|arm64 ..
 #                                                     install what is missing
 #   scripts/packages.sh --list GROUP                  print the names, one a line
 
@@ -87,6 +87,16 @@ packages_fuzz=(
   clang libclang-rt-14-dev
 )
 
+# scripts/arm64.sh: what compiles and runs for Arm here; and, from Debian for arm64, what core and its
+# tests use.
+packages_arm64=(
+  crossbuild-essential-arm64 qemu-user-static cmake ninja-build dpkg-dev
+)
+packages_arm64_libraries=(
+  libc6-dev libstdc++-12-dev libeigen3-dev libtbb-dev libhwy-dev libfmt-dev librandom123-dev
+  libgtest-dev libgmock-dev nlohmann-json3-dev
+)
+
 tofsmith_die() {
   printf '%s: %s\n' "$(basename "$0")" "$*" >&2
   exit 1
@@ -106,7 +116,9 @@ packages_of() {
     benchmark) printf '%s\n' "${packages_benchmark[@]}" ;;
     check) printf '%s\n' "${packages_check[@]}" ;;
     fuzz) printf '%s\n' "${packages_fuzz[@]}" ;;
-    *) tofsmith_die "no package group '$1'; there are core, design, build, python, lab, package, test, docs, benchmark, check and fuzz" ;;
+    arm64) printf '%s\n' "${packages_arm64[@]}" ;;
+    arm64_libraries) printf '%s\n' "${packages_arm64_libraries[@]}" ;;
+    *) tofsmith_die "no package group '$1'; there are core, design, build, python, lab, package, test, docs, benchmark, check, fuzz and arm64" ;;
   esac
 }
 

@@ -103,6 +103,53 @@ TEST(DecoderOfRandomCodes, FindsTheBinsOfTheDefinition) {
   }
 }
 
+/// Of numbers that every processor computes alike: triangle waves, and raw numbers that are whole.
+struct WholeNumbers {
+  WholeNumbers(int measurements, int samples, int pixels, RandomStream& random) {
+    table.correlation.resize(samples, measurements);
+    for (int k = 0; k < measurements; ++k) {
+      const double shift = random.uniform(), second = random.uniform();
+      for (int n = 0; n < samples; ++n) {
+        const double at = n / double(samples) + shift, twice = 2 * at + second;
+        table.correlation(n, k) = std::abs(2 * (at - std::floor(at)) - 1) +
+                                  0.5 * std::abs(2 * (twice - std::floor(twice)) - 1);
+      }
+    }
+    const auto every = [&](double value) { return Eigen::VectorXd::Constant(measurements, value); };
+    table.ambient_gain = table.exposure_s = table.gain_e_per_raw = every(1.0);
+    table.dark_electrons = table.black_level = every(0.0);
+    table.constant_variance_e2 = every(1.0);
+    table.range_m = 1.0;
+    for (int i = 0; i < pixels; ++i) {
+      const int n =
+          i < pixels / 2 ? i * samples / pixels : static_cast<int>(random.uniform() * samples);
+      const double signal = 50 + 5000 * random.uniform();
+      for (int k = 0; k < measurements; ++k)
+        raw.push_back(static_cast<float>(
+            std::floor(1000 + signal * table.correlation(n, k) + 40 * random.uniform())));
+    }
+  }
+  DecodingTable table;
+  std::vector<float> raw;
+};
+
+TEST(DecoderOfRandomCodes, FindsTheSameBinsOnEveryProcessor) {
+  RandomStream random(31, 0);
+  std::uint64_t hash = 14695981039346656037u;  // FNV-1a
+  for (const int measurements : {3, 4, 5, 8, 11})
+    for (const int samples : {20, 240, 1000}) {
+      constexpr int pixels = 1000;
+      const WholeNumbers input(measurements, samples, pixels, random);
+      const Decoder decoder(input.table);
+      std::vector<std::int32_t> bin(pixels);
+      decoder.decode_bins(input.raw.data(), pixels, bin.data());
+      for (const std::int32_t n : bin)
+        hash = (hash ^ static_cast<std::uint32_t>(n)) * 1099511628211u;
+    }
+  // As an x86 processor with AVX-512 found them.
+  EXPECT_EQ(hash, 11286135160687803514u);
+}
+
 TEST(DecoderOfRandomCodes, FindsTheBinOfAPixelWhateverStandsBesideIt) {
   RandomStream random(29, 0);
   for (const Code& code : codes) {

@@ -1,0 +1,76 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Builds the component core for 64-bit Arm by Debian's cross compiler and runs its tests of how bins
+# are found here, by qemu-user: the kernels for NEON must find the bins that they find on x86.
+# Libraries for Arm come into a folder of the build; the system gets none of them.
+#
+#   scripts/arm64.sh [--floors NAME,NAME ..] [DIR]     build there instead of in build-arm64
+#
+#   --floors NAMES   all tests of these folders of core: core, code, camera, scene, decode, simulate;
+#                    they take fifteen times as long as on x86, or more
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# shellcheck source=scripts/packages.sh
+source "$root/scripts/packages.sh"
+
+floors='' directory=''
+while (($#)); do
+  case "$1" in
+    -h | --help)
+      sed -n '/^# Builds/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+      exit 0
+      ;;
+    --floors) floors=${2:?--floors needs names} && shift ;;
+    -*) tofsmith_die "unknown option $1; see --help" ;;
+    *) directory=$1 ;;
+  esac
+  shift
+done
+filter='DecoderOfRandomCodes.*:BinMatcher.*:ArcSearch.*:TileProjection.*'
+[[ -z "$floors" ]] || filter='*'
+IFS=, read -r -a names <<<"${floors:-decode}"
+for name in "${names[@]}"; do
+  [[ " core code camera scene decode simulate " == *" $name "* ]] ||
+    tofsmith_die "--floors: core has no folder '$name'; there are core, code, camera, scene, decode and simulate"
+done
+build=$(realpath -m "${directory:-$root/build-arm64}")
+libraries=$build/root
+mirror=${TOFSMITH_DEBIAN_MIRROR:-http://deb.debian.org/debian}
+
+install_packages arm64
+use_debian_tools
+
+# apt with lists, cache and installed packages of its own: what the system has does not count.
+apt_of_arm64() {
+  apt-get -q -y -o APT::Architecture=arm64 -o APT::Architectures=arm64 \
+    -o Dir::Etc::sourcelist="$build/apt/sources.list" -o Dir::Etc::sourceparts=/dev/null \
+    -o Dir::State="$build/apt" -o Dir::State::status="$build/apt/status" -o Dir::Cache="$build/apt" \
+    -o Debug::NoLocking=1 "$@" </dev/null
+}
+
+if [[ ! -e $libraries/complete ]]; then
+  echo "Fetching libraries for arm64 into $libraries"
+  rm -rf "$build/apt" "$libraries"
+  mkdir -p "$build"/apt/{lists,archives}/partial "$libraries"
+  : >"$build/apt/status"
+  echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror bookworm main" \
+    >"$build/apt/sources.list"
+  apt_of_arm64 update
+  mapfile -t packages < <(packages_of arm64_libraries)
+  apt_of_arm64 install --download-only --no-install-recommends "${packages[@]}"
+  for package in "$build"/apt/archives/*.deb; do dpkg-deb -x "$package" "$libraries"; done
+  touch "$libraries/complete"
+fi
+
+cmake --log-level=WARNING -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_TOOLCHAIN_FILE="$root/cmake/arm64.toolchain.cmake" -DTOFSMITH_ARM64_ROOT="$libraries" \
+  -DTOFSMITH_COMPONENTS=core -DTOFSMITH_BUILD_APPS=OFF -DTOFSMITH_BUILD_PYTHON=OFF \
+  -DTOFSMITH_BUILD_TESTS=ON -DTOFSMITH_UNITY=ON -DTOFSMITH_WERROR=ON
+cmake --build "$build" --target tofsmith_core "${names[@]/#/test_}"
+for name in "${names[@]}"; do
+  echo "== $name"
+  qemu-aarch64-static -L "$libraries" "$build/tests/test_$name" --gtest_filter="$filter"
+done
