@@ -34,6 +34,11 @@ void bind_bounds(py::module_& module) {
   py::class_<ReceiverBound>(module, "ReceiverBound")
       .def(py::init<const Camera&, int>())
       .def("mae_m", &mae_m<ReceiverBound>);
+  py::class_<HistogramBound>(module, "HistogramBound")
+      .def(py::init([](const CodeSet& code, const Camera& camera) {
+        return HistogramBound(ForwardModel(code, camera), camera);
+      }))
+      .def("mae_m", &mae_m<HistogramBound>);
   py::class_<DirectTofBound>(module, "DirectTofBound")
       .def(py::init<const Camera&>())
       .def("mae_m", &mae_m<DirectTofBound>);

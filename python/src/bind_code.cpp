@@ -40,6 +40,11 @@ CodeSet code_from_arrays(const std::string& name, const Doubles& modulation,
   return CodeSet::create(name, static_cast<int>(m.rows()), taps, waveforms_of(m), waveforms_of(d));
 }
 
+CodeSet rows_from_arrays(const std::string& name, const Doubles& light, const Doubles& rows) {
+  const Eigen::MatrixXd m = to_matrix(light, "light");
+  return CodeSet::create_rows(name, Eigen::VectorXd(m.reshaped()), to_matrix(rows, "rows"));
+}
+
 Waveform binary(const Doubles& on_intervals, double level) {
   const Eigen::MatrixXd on = to_matrix(on_intervals, "on_intervals");
   if (on.cols() != 2) refuse("on_intervals", "shape " + shape_of(on_intervals), "(intervals, 2)");
@@ -95,6 +100,7 @@ void bind_waveform(py::module_& module) {
 void bind_code_set(py::module_& module) {
   py::class_<CodeSet>(module, "CodeSet")
       .def_static("create", &CodeSet::create)
+      .def_static("from_rows", &rows_from_arrays)
       .def_static("from_arrays", &code_from_arrays)
       .def_static("parse", [](const std::string& json,
                               const std::string& file) { return parse_code_json(json, file); })
@@ -102,6 +108,7 @@ void bind_code_set(py::module_& module) {
       .def("name", &CodeSet::name)
       .def("samples", &CodeSet::samples)
       .def("taps", &CodeSet::taps)
+      .def("is_rows", &CodeSet::is_rows)
       .def("exposures", &CodeSet::exposures)
       .def("measurements", &CodeSet::measurements)
       .def("peak", &CodeSet::peak)

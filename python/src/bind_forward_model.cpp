@@ -51,6 +51,13 @@ py::array_t<double> variance(const ForwardModel& model, const Doubles& depth_bin
   });
 }
 
+py::array_t<double> covariance(const ForwardModel& model, double depth_bin, double signal,
+                               double ambient) {
+  check_light(signal, ambient);
+  const Return seen{signal, depth_bin};
+  return adopt(model.covariance_e2({&seen, 1}, ambient));
+}
+
 py::array_t<double> table(const ForwardModel& model, int points) {
   if (points < 1 || points > 10'000'000)
     refuse("points", std::to_string(points), "a whole number from 1 to 10000000");
@@ -79,7 +86,8 @@ void bind_forward_model(py::module_& module) {
       .def("constant_variance_e2",
            [](const ForwardModel& m) { return adopt(m.constant_variance_e2()); })
       .def("expected_electrons", &expected)
-      .def("variance_e2", &variance);
+      .def("variance_e2", &variance)
+      .def("covariance_e2", &covariance);
 }
 
 }  // namespace tofsmith::python

@@ -20,7 +20,7 @@ from types import ModuleType as _ModuleType
 
 from . import _components  # isort: skip
 from . import _check, _tofsmith
-from ._bounds import CramerRaoBound, DirectTofBound, ReceiverBound
+from ._bounds import CramerRaoBound, DirectTofBound, HistogramBound, ReceiverBound
 from ._camera import Camera, built_in_camera_names, camera_keys
 from ._camera_fields import (
     Generator,
@@ -214,6 +214,7 @@ __all__ = [
     "GeneratorLoss",
     "GeneratorModel",
     "HarmonicRatio",
+    "HistogramBound",
     "IdealCodeFit",
     "ImpulseResponse",
     "Interrupted",

@@ -65,6 +65,30 @@ class ReceiverBound:
         return self._handle.mae_m(*light, bool(uniform_albedo))
 
 
+class HistogramBound:
+    """How well depth can be measured with all time bins of the light of rows of one exposure: no
+    rows of that light do better; docs/rows.md.
+
+    Parameters
+    ----------
+    code : CodeSet, name of a family or file
+        Rows, of which the light counts.
+    camera : Camera, or the name of a built-in camera or camera file
+        One with `sensor.readout` = "rows".
+    """
+
+    def __init__(self, code: CodeLike, camera: CameraLike) -> None:
+        camera = camera_of(camera)
+        self._handle = _tofsmith.HistogramBound(code_of(code, camera)._handle, camera._handle)
+
+    def mae_m(
+        self, signal_e_per_s: float, ambient_e_per_s: float, *, uniform_albedo: bool = False
+    ) -> float:
+        """Mean absolute error over depth [m]."""
+        light = light_of(signal_e_per_s, ambient_e_per_s)
+        return self._handle.mae_m(*light, bool(uniform_albedo))
+
+
 class DirectTofBound:
     """What the camera's light alone allows, to an ideal direct time-of-flight receiver."""
 

@@ -25,7 +25,7 @@ class CodeSet:
 
     See Also
     --------
-    build_family, load_code, CodeSet.from_arrays, CodeSet.from_waveforms
+    build_family, load_code, CodeSet.from_arrays, CodeSet.from_waveforms, CodeSet.from_rows
     """
 
     _handle: _tofsmith.CodeSet
@@ -84,6 +84,35 @@ class CodeSet:
         )
 
     @classmethod
+    def from_rows(
+        cls, light: npt.ArrayLike, rows: npt.ArrayLike, *, name: str = "rows"
+    ) -> CodeSet:
+        """Rows of one exposure: K weighted sums of the light in N time bins, all of the same light.
+
+        For cameras with `sensor.readout` = "rows".
+
+        Parameters
+        ----------
+        light : array_like, shape (N,)
+            Values >= 0 of any scale; becomes light of mean 1.
+        rows : array_like, shape (N, K) or (K, N)
+            Weights of the time bins, of any sign and scale, K up to 16.
+        name : str
+
+        Raises
+        ------
+        ValueError
+            Naming light or row and the rule it breaks.
+        """
+        return cls._of(
+            _tofsmith.CodeSet.from_rows(
+                _check.text(name, "name"),
+                _check.finite_array(light, "light", "(N,)").reshape(-1, 1),
+                _check.finite_array(rows, "rows", "(N, K)"),
+            )
+        )
+
+    @classmethod
     def from_waveforms(
         cls,
         modulation: Sequence[Waveform],
@@ -126,7 +155,13 @@ class CodeSet:
 
     @property
     def taps(self) -> int:
+        """Values read out of one exposure; rows, where they are read out."""
         return self._handle.taps()
+
+    @property
+    def is_rows(self) -> bool:
+        """Whether the measurements are weighted sums of the light of one exposure."""
+        return self._handle.is_rows()
 
     @property
     def exposures(self) -> int:

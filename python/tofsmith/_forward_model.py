@@ -112,6 +112,13 @@ class ForwardModel:
         light = _light(signal_e_per_s, ambient_e_per_s)
         return self._by_depth(depth_bin, lambda d: self._handle.variance_e2(d, *light))
 
+    def covariance_e2(
+        self, depth_bin: float, signal_e_per_s: float, ambient_e_per_s: float
+    ) -> FloatArray:
+        """Their covariance [e^2] at one depth (K, K); diagonal but where rows are read out."""
+        light = _light(signal_e_per_s, ambient_e_per_s)
+        return self._handle.covariance_e2(_check.number(depth_bin, "depth_bin"), *light)
+
     def _by_depth(self, depth_bin: npt.ArrayLike, of_depths: Any) -> FloatArray:
         depths = np.asarray(depth_bin)
         flat = _check.finite_array(depths.reshape(-1), "depth_bin", "(depths,)")

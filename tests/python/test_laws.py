@@ -109,6 +109,22 @@ def test_codes_survive_arrays_files_and_pickles(camera, tmp_path):
     assert waveform.mean == 1.0 and waveform.delayed(0.25).on_intervals.tolist() == [[0.5, 0.75]]
 
 
+def test_rows_of_one_exposure_have_correlated_noise():
+    camera = ts.Camera(
+        fundamental_frequency_hz=5e6, exposure_s=1, samples=60,
+        light={"impulse_response": {"kind": "gaussian", "cutoff_hz": 30e6}},
+        sensor={"readout": "rows", "read_noise_e": 3}, operating={"signal_e_per_s": [1e3]})
+    weights = np.random.default_rng(1).normal(size=(60, 5))
+    code = ts.CodeSet.from_rows(np.arange(60.0), weights)
+    assert code.is_rows and pickle.loads(pickle.dumps(code)) == code
+    assert not ts.build_family("hamiltonian-k4", "paper-10f0").is_rows
+    covariance = ts.ForwardModel(code, camera).covariance_e2(7.5, 0, 600)
+    assert np.allclose(covariance, 10 * weights.T @ weights + 9 * np.eye(5))
+    mae_m = ts.CramerRaoBound(code, camera).mae_m(1e3, 600)
+    assert ts.HistogramBound(code, camera).mae_m(1e3, 600) < mae_m
+    assert (ts.evaluate(code, camera, trials=100).cramer_rao_mae_m > 0).all()
+
+
 def test_expected_electrons_follow_their_formula(camera):
     model = ts.ForwardModel("hamiltonian-k4", camera)
     z = np.array([[0.0, 17.25], [60.5, 119.9]])
