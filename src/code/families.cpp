@@ -191,6 +191,24 @@ std::vector<FamilyDescription> list_families() {
   };
 }
 
+std::vector<std::string> family_members(const FamilyOptions& options, int highest_frequency) {
+  constexpr int min_measurements = 3, max_measurements = 10, max_steps = 4;
+  std::vector<std::string> names = {"single-ramp-k3", "double-ramp-k3", "multifrequency-k5"};
+  for (int k = min_measurements; k <= max_measurements; ++k)
+    for (const char* family : {"sinusoid", "square", "hamiltonian", "gray"})
+      names.push_back(fmt::format("{}-k{}", family, k));
+  for (int q = 2; q <= highest_frequency; ++q) {
+    for (const int low_steps : {2, 3}) names.push_back(pulsed_multi_frequency_name(low_steps, q));
+    for (int low_steps = 2; low_steps <= max_steps; ++low_steps)
+      for (int steps = 2; steps <= max_steps; ++steps)
+        if (q != 7 || low_steps != 3 || steps != 2)  // that one has a name of its own
+          names.push_back(fmt::format("multifrequency-1x{}-{}x{}", low_steps, q, steps));
+  }
+  std::erase_if(names,
+                [&](const std::string& name) { return why_no_family(name, options).has_value(); });
+  return names;
+}
+
 bool is_family(std::string_view name) { return member_named(name).has_value(); }
 
 std::optional<std::string> why_no_family(std::string_view name, const FamilyOptions& options) {

@@ -7,14 +7,13 @@
 #include <iterator>
 
 #include "core/shared/enum_words.hpp"
+#include "design/baselines.hpp"
 #include "design/chips/searched_code.hpp"
-#include "design/chips/standard_chip_codes.hpp"
 #include "design/factorize/factorized_code.hpp"
 #include "design/judge.hpp"
 #include "design/optimize/design_problem.hpp"
 #include "design/optimize/optimized_code.hpp"
 #include "design/rows/tone_rows.hpp"
-#include "design/shortest_run.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -41,51 +40,6 @@ BrokenRule no_code_found(const std::string& name) {
 
 bool includes(DesignMethod asked, DesignMethod method) {
   return asked == method || asked == DesignMethod::best;
-}
-
-constexpr int samples_of_standard_codes = 360;
-
-/// Notes why something does not compete, once for all that share the reason.
-void leave_out(DesignResult& result, const std::string& name, const std::string& reason) {
-  const std::string ending = ": " + reason;
-  for (std::string& line : result.left_out)
-    if (line.ends_with(ending)) {
-      const std::string names = line.substr(0, line.size() - ending.size());
-      if (names != name) line = fmt::format("{}, {}{}", names, name, ending);
-      return;
-    }
-  result.left_out.push_back(name + ending);
-}
-
-/// Lets a code compete as it is, if the camera can play it.
-void add_baseline(CodeSet code, const std::string& method, const Camera& camera,
-                  DesignResult& result) {
-  if (const auto reason = why_not_playable(code, camera))
-    return leave_out(result, code.name(), *reason);
-  if (!keeps_shortest_run(code, camera))
-    return leave_out(result, code.name(), "has pulses or gaps below sensor.shortest_pulse_s");
-  result.candidates.push_back({.code = std::move(code), .method = method});
-}
-
-/// Codes that compete as they are: families, what a sensor of exclusive taps plays if nobody
-/// searches, and the naive code of every target.
-void add_baselines(const Camera& camera, const DesignOptions& options,
-                   const std::vector<TargetSet>& targets, DesignResult& result) {
-  for (const std::string& name :
-       options.baselines ? *options.baselines : suggested_baselines(camera, options))
-    if (const auto reason = why_no_family(name, camera))
-      leave_out(result, name, *reason);
-    else
-      add_baseline(build_family(name, camera), "family", camera, result);
-  if (camera.sensor.taps >= 3)
-    for (const StandardCode& standard : standard_chip_codes(camera, samples_of_standard_codes))
-      if (standard.code.taps() == camera.sensor.taps)
-        add_baseline(standard.code.resampled(camera.samples), "reference", camera, result);
-  for (const TargetSet& target : targets) {
-    if (!options.target && result.find(target.name)) continue;  // that family is the naive code
-    if (auto code = naive_code(target, camera))
-      result.candidates.push_back({.code = std::move(*code), .method = "naive"});
-  }
 }
 
 /// Whether nothing keeps a method from serving a camera. Something is a refusal if the method was
@@ -178,26 +132,6 @@ std::vector<const Candidate*> by_geometric_mean_error(const DesignResult& result
 Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErrorKind kind) {
   return ratio_of(other.error.of(kind).geometric_mean_m,
                   result.winner().error.of(kind).geometric_mean_m);
-}
-
-std::vector<std::string> suggested_baselines(const Camera& camera, const DesignOptions& options) {
-  if (camera.sensor.readout == Readout::rows) {
-    std::vector<std::string> names{"hamiltonian-k4", "hamiltonian-k5", "gray-k5", "gray-k6"};
-    for (const int rows : designable_rows(options)) {
-      names.push_back(fmt::format("fourier-k{}", rows));
-      names.push_back(fmt::format("histogram-k{}", rows));
-    }
-    return names;
-  }
-  if (options.method != DesignMethod::factorize)
-    return {"sinusoid-k3",    "sinusoid-k4",    "square-k4",      "multifrequency-k5",
-            "hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5", "pulsed-multifrequency-k5"};
-  std::vector<int> exposures = options.exposures;
-  if (exposures.empty() && !options.target)
-    exposures = suggested_exposures(camera, DesignMethod::factorize);
-  std::vector<std::string> names;
-  for (const int e : exposures) names.push_back(fmt::format("hamiltonian-k{}", e));
-  return names;
 }
 
 namespace {

@@ -35,7 +35,7 @@ std::string what_it_beats(const Camera& camera, const DesignResult& result, Dept
                       baseline->code.name());
   if (!winner.is_designed())
     return text + ": a standard code, which nothing that was designed here improves on.";
-  return text + ", the best of the codes that were not designed for this camera.";
+  return text + ", the best of the codes here that were not designed for this camera.";
 }
 
 /// The least error among codes of each number of exposures.
@@ -76,10 +76,16 @@ std::string what_limits_it(const DesignResult& result) {
     return a.circular_mde_m.value < b.circular_mde_m.value;
   };
   const auto [min, max] = std::minmax_element(points.begin(), points.end(), by_error);
+  constexpr double exceeds = 2.0;  // bound over error
   const bool is_rows = result.winner().code.is_rows();
   const auto describe = [is_rows](const PointDepthError& p) {
     std::string text = plain_number(1e3 * p.circular_mde_m.value, 3) + " mm";
-    if (p.cramer_rao_mae_m > 0.0)
+    // Errors end with the range, the bound does not: few depths can make up most of its mean.
+    if (p.cramer_rao_mae_m > exceeds * p.circular_mde_m.value)
+      text +=
+          " (its Cramer-Rao bound says nothing there: its correlation functions are nearly flat at "
+          "some depth, or the light is too dim)";
+    else if (p.cramer_rao_mae_m > 0.0)
       text += fmt::format(", {:.2f} times its Cramer-Rao bound",
                           p.circular_mde_m.value / p.cramer_rao_mae_m);
     if (p.receiver_bound_mae_m > 0.0)

@@ -40,7 +40,8 @@ class CodePool {
       : options_(options), design_(with_effort({}, options.effort)) {
     design_.seed = options.seed;
     design_.trials = std::clamp(options.trials / 10, 1000, 5000);
-    for (const std::string& name : suggested_baselines(camera, design_))
+    design_.baselines = suggested_baselines(camera, design_);  // others join no design
+    for (const std::string& name : *design_.baselines)
       if (!why_no_family(name, camera)) codes_.push_back(build_family(name, camera));
   }
 

@@ -2,19 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "design/judge.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "core/shared/random.hpp"
+#include "design/baselines.hpp"
 #include "same_code.hpp"
 #include "simulate/shared/error_by_rotation.hpp"
 #include "small_design.hpp"
+#include "tofsmith/code/families.hpp"
 
 namespace tofsmith {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -143,6 +150,82 @@ TEST(SuggestedBaselines, SuitTheMethod) {
   options.exposures = {};
   options.target = targets_of(build_family("square-k3", camera));
   EXPECT_TRUE(suggested_baselines(camera, options).empty());
+}
+
+TEST(OtherFamilies, AreAllBuiltInCodesThatFitTheCameraAndFewEnoughToTry) {
+  const Camera camera = built_in_camera("paper-10f0");
+  std::vector<std::string> names = other_families(camera, {});
+  const std::vector<std::string> shown = suggested_baselines(camera, {});
+  names.insert(names.end(), shown.begin(), shown.end());
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
+  for (const FamilyDescription& family : list_families())
+    EXPECT_TRUE(why_no_family(family.example, camera) ||
+                std::find(names.begin(), names.end(), family.example) != names.end())
+        << family.example;
+  for (const char* low : {"pulsed-multifrequency-k4-q", "pulsed-multifrequency-k5-q"})
+    for (const int q : {2, 4, 5, 6}) EXPECT_THAT(names, Contains(fmt::format("{}{}", low, q)));
+  for (const std::string& name : names) EXPECT_FALSE(why_no_family(name, camera)) << name;
+  Camera wide = camera;  // passes 400 harmonics
+  wide.light.impulse_response.f_max_hz = wide.sensor.impulse_response.f_max_hz = 6e9;
+  EXPECT_LT(other_families(wide, {}).size(), 400u);
+}
+
+TEST(ContendingFamilies, HoldTheBestOfAllByManyTrials) {
+  for (const auto& [taps, kind] :
+       {std::pair(1, DepthErrorKind::linear), std::pair(2, DepthErrorKind::circular)}) {
+    Camera camera = small_camera("paper-10f0", kind);
+    camera.sensor.taps = taps;
+    std::vector<std::string> names = other_families(camera, {});
+    std::erase_if(names, [](const std::string& name) { return name.find("-1x4") < name.size(); });
+    std::vector<Candidate> all;
+    for (const std::string& name : names)
+      if (const CodeSet code = build_family(name, camera); !why_no_depth(code, camera))
+        all.push_back({.code = code, .method = "family"});
+    const std::string best = judge(camera, all, small_options()).winner().code.name();
+    const Contenders contenders = contending_families(names, camera, 2);
+    EXPECT_LE(contenders.codes.size(), 8u);
+    EXPECT_TRUE(std::any_of(contenders.codes.begin(), contenders.codes.end(),
+                            [&](const CodeSet& code) { return code.name() == best; }))
+        << best;
+    std::size_t told = contenders.codes.size();
+    for (const auto& [reason, left_out] : contenders.left_out) told += left_out.size();
+    EXPECT_EQ(told, names.size()) << "each competes or is told why not";
+  }
+}
+
+TEST(ContendingFamilies, AreToldWhyTheyCannotCompete) {
+  Camera camera = small_camera("paper-10f0");
+  camera.sensor.taps = 2;
+  camera.sensor.shortest_pulse_s = 0.2 / camera.fundamental_frequency_hz;
+  const Contenders contenders =
+      contending_families({"single-ramp-k3", "square-k4", "nothing-k4"}, camera, 2);
+  std::string told;
+  for (const auto& [reason, names] : contenders.left_out)
+    told += fmt::format("{}: {}\n", fmt::join(names, ","), reason);
+  EXPECT_THAT(told, HasSubstr("single-ramp-k3: has pulses or gaps below sensor.shortest_pulse_s"));
+  EXPECT_THAT(told, HasSubstr("nothing-k4: code = nothing-k4"));
+  ASSERT_EQ(contenders.codes.size(), 1u) << told;
+}
+
+TEST(Design, LetsEveryBuiltInCodeCompeteAndSaysWhichWereNotJudged) {
+  Camera camera = small_camera("paper-10f0", DepthErrorKind::circular);
+  camera.sensor.taps = 2;
+  DesignOptions options = small_options();
+  options.method = DesignMethod::optimize;
+  options.baselines = {};
+  options.exposures = {2};
+  options.optimize.starts = 1;
+  options.optimize.steps_per_start = options.optimize.polish_steps = 1;
+  options.optimize.hops = options.optimize.refinement_steps = 0;
+  options.optimize.pool_trials = 1000;
+  const DesignResult result = design(camera, options);
+  EXPECT_NE(result.find("sinusoid-k4"), nullptr) << "shown, however it does";
+  EXPECT_THAT(result.left_out, Contains(HasSubstr("times as much as the best")));
+  EXPECT_NE(by_geometric_mean_error(result, DepthErrorKind::circular)
+                .front()
+                ->code.name()
+                .find("pulsed-multifrequency-k4-q"),
+            std::string::npos);
 }
 
 TEST(DesignSeed, ReachesFactorization) {

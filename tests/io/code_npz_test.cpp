@@ -93,6 +93,23 @@ TEST(CodeNpz, TheOrderOfTapsIsNeverGuessed) {
             "a.npz: found 6 columns; expected a multiple of taps = 4");
 }
 
+TEST(CodeNpz, OneExposureHasNoOrderToTell) {
+  std::vector<Waveform> gates;
+  for (int tap = 0; tap < 3; ++tap) {
+    Eigen::VectorXd gate = Eigen::VectorXd::Zero(60);
+    gate.segment(20 * tap, 10 + 5 * tap).setConstant(0.5);
+    gates.push_back(Waveform::sampled(gate));
+  }
+  const CodeSet code = CodeSet::create("a", 60, 3, {square_wave(1, 0.0)}, gates);
+  const FileBytes bytes = serialize_code_npz(code);
+  for (const std::optional<TapOrder> order :
+       {std::optional<TapOrder>(), std::optional(TapOrder::blocked),
+        std::optional(TapOrder::interleaved)}) {
+    EXPECT_EQ(serialize_code_npz(code, order), bytes);
+    expect_same_samples(parse_code_npz(bytes, "a.npz", {3, order}), code);
+  }
+}
+
 TEST(CodeNpz, TapsOfOneExposureSeeTheSameLight) {
   const CodeSet code = hamiltonian().with_two_buckets();
   EXPECT_EQ(refusal(with_value(code, "modfs", 7, 3, 0.25), interleaved),

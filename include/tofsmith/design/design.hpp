@@ -55,7 +55,8 @@ struct DesignOptions {
   /// edge jitter; the choice among all candidates sees all perturbations.
   bool robust = false;
   /// Families that compete, whether or not anything is designed; those the camera cannot play are
-  /// left out. None: what suits the method (suggested_baselines).
+  /// left out. None: suggested_baselines() and, unless only factorization is asked for, all other
+  /// built-in codes that few trials find near the best (eight at most).
   std::optional<std::vector<std::string>> baselines;
   bool best_rotation = true;  ///< for the linear error: give every candidate its best origin
   int search_trials = 600;    ///< per operating point, while pairs are chosen; >= 100
@@ -125,9 +126,9 @@ Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErro
 /// wider the band.
 std::vector<int> suggested_exposures(const Camera& camera, DesignMethod method);
 
-/// Families to compare with where DesignOptions::baselines names none: for factorization alone the
-/// Hamiltonian codes that are aimed at (for a target of the user's, those of the exposures listed),
-/// else sinusoids, squares, multi-frequency and Hamiltonian codes.
+/// Families that every comparison shows where DesignOptions::baselines names none: for
+/// factorization alone the Hamiltonian codes that are aimed at (for a target of the user's, those
+/// of the exposures listed), else sinusoids, squares, multi-frequency and Hamiltonian codes.
 std::vector<std::string> suggested_baselines(const Camera& camera, const DesignOptions& options);
 
 /// The judge of designs: moves every candidate to its best origin if options ask (best_rotation()),

@@ -36,7 +36,8 @@ enum class TapOrder {
 /// What an NPZ file does not say about its columns.
 struct TapLayout {
   int taps = 1;
-  std::optional<TapOrder> order;  ///< must be given for several taps: it is never guessed
+  std::optional<TapOrder> order;  ///< must be given for several taps of several exposures: it
+                                  ///< is never guessed
 };
 
 /// Reads the arrays `modfs` and `demodfs`, each (N, K), in the layout that other time-of-flight
@@ -45,8 +46,8 @@ struct TapLayout {
 /// must have the same shape.
 /// @param file  what errors call it; its stem becomes the code's name
 /// @throws IoError naming file, array, row and column for shapes that disagree, values that no
-///         code can have, taps of one exposure with different modulation, or several taps without
-///         an order
+///         code can have, taps of one exposure with different modulation, or several taps of
+///         several exposures without an order
 CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file,
                        const TapLayout& layout = {});
 

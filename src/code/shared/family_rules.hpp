@@ -27,4 +27,9 @@ std::optional<BrokenRule> walk_misfit(int measurements);
 
 std::string pulsed_multi_frequency_name(int low_steps, int high_frequency);
 
+/// Names of all members of the families that can be built with these options, each once: up to 10
+/// measurements, higher frequencies up to `highest_frequency`, and of lists of frequencies those of
+/// the fundamental and one more, 2 .. 4 steps each.
+std::vector<std::string> family_members(const FamilyOptions& options, int highest_frequency);
+
 }  // namespace tofsmith

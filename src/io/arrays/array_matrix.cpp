@@ -23,8 +23,8 @@ int exposures_of(Eigen::Index columns, const TapLayout& layout, std::string_view
   if (columns % layout.taps != 0)
     throw IoError(file, fmt::format("found {} columns; expected a multiple of taps = {}", columns,
                                     layout.taps));
-  // Of a single exposure there is one order only.
-  if (layout.taps > 1 && columns > layout.taps && !layout.order)
+  const bool has_order = layout.taps > 1 && columns > layout.taps;  // one exposure has none to tell
+  if (has_order && !layout.order)
     throw IoError(file, fmt::format("does not say in which order its columns hold {} taps; "
                                     "expected --tap-order blocked or interleaved",
                                     layout.taps));

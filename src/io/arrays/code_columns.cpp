@@ -180,7 +180,7 @@ CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file
 
 std::vector<std::byte> serialize_code_npz(const CodeSet& code, std::optional<TapOrder> order) {
   require(code.taps() == 1 || code.exposures() == 1 || order.has_value(), "taps", code.taps(),
-          "several taps need an order, blocked or interleaved");
+          "several taps of several exposures need an order, blocked or interleaved");
   const Eigen::MatrixXd light = code.modulation_samples(), gains = code.demodulation_samples();
   Eigen::MatrixXd modulation(code.samples(), code.measurements());
   Eigen::MatrixXd demodulation = modulation, correlation = modulation;

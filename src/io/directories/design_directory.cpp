@@ -77,7 +77,6 @@ Camera self_contained(Camera camera) {
 
 /// Everything that determines a designed code, as text.
 std::string design_key(const Camera& camera, DesignOptions options) {
-  options.baselines = options.baselines.value_or(suggested_baselines(camera, options));
   // Codes are judged afresh, and are called by how many exposures they have.
   options.trials = 0;
   if (!options.exposures.empty()) options.exposures = {0};

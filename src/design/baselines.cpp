@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/baselines.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "code/shared/family_rules.hpp"
+#include "design/chips/standard_chip_codes.hpp"
+#include "design/factorize/factorized_code.hpp"
+#include "design/judge.hpp"
+#include "design/rows/tone_rows.hpp"
+#include "design/shortest_run.hpp"
+#include "design/suggested_exposures.hpp"
+#include "tofsmith/code/families.hpp"
+#include "tofsmith/core/parallel.hpp"
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+namespace {
+
+constexpr int samples_of_standard_codes = 360;
+constexpr const char* short_runs = "has pulses or gaps below sensor.shortest_pulse_s";
+
+/// Preselection: trials per operating point, how far from the least error a code may be, and how
+/// many stay.
+constexpr int min_trials_per_point = 1000, trials_of_all_points = 25000;
+constexpr double contending = 1.12;
+constexpr std::size_t max_contenders = 8;
+
+int trials_per_point(const Camera& camera) {
+  const auto points = static_cast<int>(camera.operating.points().size());
+  return std::max(min_trials_per_point, trials_of_all_points / std::max(1, points));
+}
+
+/// By the camera's choice, at the best origin [m].
+double first_error_m(const CodeSet& code, const Camera& camera, std::uint64_t seed) {
+  const EvaluateOptions options{.trials = trials_per_point(camera), .seed = seed, .bounds = false};
+  if (!rotates(camera, {}))
+    return geometric_mean_error_m(evaluate(code, camera, options), DepthErrorKind::circular);
+  const std::vector<double> of_rotation =
+      best_rotation(code, camera, options).linear_geometric_mean_m;
+  return *std::min_element(of_rotation.begin(), of_rotation.end());
+}
+
+/// Why a code cannot compete on a camera; none: it can.
+std::optional<std::string> why_not_comparable(const CodeSet& code, const Camera& camera) {
+  if (auto reason = why_not_playable(code, camera)) return reason;
+  if (!keeps_shortest_run(code, camera)) return short_runs;
+  return why_no_depth(code, camera);
+}
+
+/// Lets a code compete as it is, if it can. What tells no depth is left out by the judge.
+void add_baseline(CodeSet code, const std::string& method, const Camera& camera,
+                  DesignResult& result) {
+  if (const auto reason = why_not_playable(code, camera))
+    return leave_out(result, code.name(), *reason);
+  if (!keeps_shortest_run(code, camera)) return leave_out(result, code.name(), short_runs);
+  result.candidates.push_back({.code = std::move(code), .method = method});
+}
+
+/// The first few of many names, and how many there are beside.
+std::string brief_list(const std::vector<std::string>& names) {
+  constexpr std::size_t listed = 4;
+  if (names.size() <= listed + 1) return fmt::format("{}", fmt::join(names, ", "));
+  return fmt::format("{} and {} other standard codes",
+                     fmt::join(names.begin(), names.begin() + listed, ", "), names.size() - listed);
+}
+
+}  // namespace
+
+void leave_out(DesignResult& result, const std::string& name, const std::string& reason) {
+  const std::string ending = ": " + reason;
+  for (std::string& line : result.left_out)
+    if (line.ends_with(ending)) {
+      const std::string names = line.substr(0, line.size() - ending.size());
+      if (names != name) line = fmt::format("{}, {}{}", names, name, ending);
+      return;
+    }
+  result.left_out.push_back(name + ending);
+}
+
+Contenders contending_families(const std::vector<std::string>& names, const Camera& camera,
+                               std::uint64_t seed) {
+  Contenders found;
+  std::vector<std::optional<std::string>> reasons(names.size());
+  std::vector<std::optional<CodeSet>> codes(names.size());
+  std::vector<double> errors_m(names.size(), infinity);
+  parallel_for_blocks(std::ssize(names), 1, [&](IndexRange block) {
+    for (auto i = static_cast<std::size_t>(block.begin); i < static_cast<std::size_t>(block.end);
+         ++i) {
+      if ((reasons[i] = why_no_family(names[i], camera))) continue;
+      codes[i] = build_family(names[i], camera);
+      reasons[i] = why_not_comparable(*codes[i], camera);
+      if (!reasons[i]) errors_m[i] = first_error_m(*codes[i], camera, seed);
+    }
+  });
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (reasons[i])
+      found.left_out[*reasons[i]].push_back(names[i]);
+    else
+      order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return errors_m[a] < errors_m[b]; });
+  const std::string worse =
+      fmt::format("by {} trials per operating point err more than {} times as much as the best",
+                  trials_per_point(camera), contending);
+  const std::string beside = fmt::format("{} others err less", max_contenders);
+  for (const std::size_t i : order)
+    if (!(errors_m[i] <= contending * errors_m[order.front()]))
+      found.left_out[worse].push_back(names[i]);
+    else if (found.codes.size() == max_contenders)
+      found.left_out[beside].push_back(names[i]);
+    else
+      found.codes.push_back(std::move(*codes[i]));
+  return found;
+}
+
+void add_baselines(const Camera& camera, const DesignOptions& options,
+                   const std::vector<TargetSet>& targets, DesignResult& result) {
+  for (const std::string& name :
+       options.baselines ? *options.baselines : suggested_baselines(camera, options))
+    if (const auto reason = why_no_family(name, camera))
+      leave_out(result, name, *reason);
+    else
+      add_baseline(build_family(name, camera), "family", camera, result);
+  if (!options.baselines && options.method != DesignMethod::factorize) {
+    Contenders others =
+        contending_families(other_families(camera, options), camera, search_seed(options));
+    for (CodeSet& code : others.codes) add_baseline(std::move(code), "family", camera, result);
+    for (const auto& [reason, names] : others.left_out)
+      leave_out(result, brief_list(names), reason);
+  }
+  if (camera.sensor.taps >= 3)
+    for (const StandardCode& standard : standard_chip_codes(camera, samples_of_standard_codes))
+      if (standard.code.taps() == camera.sensor.taps)
+        add_baseline(standard.code.resampled(camera.samples), "reference", camera, result);
+  for (const TargetSet& target : targets) {
+    if (!options.target && result.find(target.name)) continue;  // that family is the naive code
+    if (auto code = naive_code(target, camera))
+      result.candidates.push_back({.code = std::move(*code), .method = "naive"});
+  }
+}
+
+std::vector<std::string> suggested_baselines(const Camera& camera, const DesignOptions& options) {
+  if (camera.sensor.readout == Readout::rows) {
+    std::vector<std::string> names{"hamiltonian-k4", "hamiltonian-k5", "gray-k5", "gray-k6"};
+    for (const int rows : designable_rows(options)) {
+      names.push_back(fmt::format("fourier-k{}", rows));
+      names.push_back(fmt::format("histogram-k{}", rows));
+    }
+    return names;
+  }
+  if (options.method != DesignMethod::factorize)
+    return {"sinusoid-k3",    "sinusoid-k4",    "square-k4",      "multifrequency-k5",
+            "hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5", "pulsed-multifrequency-k5"};
+  std::vector<int> exposures = options.exposures;
+  if (exposures.empty() && !options.target)
+    exposures = suggested_exposures(camera, DesignMethod::factorize);
+  std::vector<std::string> names;
+  for (const int e : exposures) names.push_back(fmt::format("hamiltonian-k{}", e));
+  return names;
+}
+
+std::vector<std::string> other_families(const Camera& camera, const DesignOptions& options) {
+  constexpr int highest_without_limit = 15, highest_tried = 30;
+  if (camera.sensor.taps > 2) return {};  // families are codes of one tap or two buckets
+  if (camera.sensor.readout == Readout::rows) return {};  // all that have rows are suggested
+  const int harmonics = useful_harmonics(camera);
+  const std::vector<std::string> shown = suggested_baselines(camera, options);
+  std::vector<std::string> names;
+  for (std::string& name :
+       family_members({.samples = camera.samples, .peak_factor = camera.light.peak_factor},
+                      harmonics == 0 ? highest_without_limit : std::min(harmonics, highest_tried)))
+    if (std::find(shown.begin(), shown.end(), name) == shown.end())
+      names.push_back(std::move(name));
+  return names;
+}
+
+}  // namespace tofsmith
