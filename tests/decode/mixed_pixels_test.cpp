@@ -87,6 +87,21 @@ TEST(MixedPixels, SumsOfTwoSurfacesAreLabelledAndKeepTheirDepth) {
   EXPECT_LE(elsewhere, height * width / 200);
 }
 
+TEST(MixedPixels, ALittleLightOfAnotherSurfaceIsFoundThoughTheDepthIsThatOfOne) {
+  const DecodeSetup setup = setup_of();
+  const DepthImage image =
+      marked(setup, frame_seen(setup.decoder.table(), [](int, int x) {
+               return x == edge ? Seen{70.0, 1e6, 120.0, 3e4} : Seen{x < edge ? 70.0 : 120.0, 1e6};
+             }));
+  int found = 0;
+  for (int y = 0; y < height; ++y) {
+    EXPECT_NEAR(image.depth_m(y, edge) / setup.decoder.table().bin_m(), 70.0, 0.48) << y;
+    found += image.status(y, edge) == PixelStatus::mixed ? 1 : 0;
+  }
+  EXPECT_GE(found, height * 9 / 10);
+  EXPECT_LE(share_marked(image) * height * width - found, height * width / 100);
+}
+
 TEST(MixedPixels, SnappedDepthIsThatOfAPixelNearby) {
   const DecodeSetup setup = setup_of();
   const RawFrames raw =

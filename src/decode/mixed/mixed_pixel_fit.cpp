@@ -13,8 +13,11 @@ namespace tofsmith {
 namespace {
 
 /// By so much in chi^2 two returns must beat either one of them alone, and may be beaten by a
-/// single return at the decoded depth.
-constexpr double far_better = 6.0, little_worse = 25.0;
+/// single return at the decoded depth. Where a pixel has a depth of its own beside an edge, both
+/// surfaces are likely.
+constexpr double better = 3.0, little_worse = 25.0;
+/// By so much they must beat the single return where its depth is that of a surface.
+constexpr double far_better = 6.0;
 /// Surfaces are not flat and lenses not the same for all that is added: so much of the chi^2 of one
 /// alone may remain.
 constexpr double may_remain = 0.25;
@@ -117,7 +120,8 @@ MixedPixelFit::Explanation MixedPixelFit::explain(const double* electrons, doubl
       std::min(fit<1>(electrons, weight, {&near}).chi2, fit<1>(electrons, weight, {&far}).chi2);
   const Return own = return_at(std::isfinite(decoded_m) ? decoded_m : first.depth_m);
   const double single = fit<1>(electrons, weight, {&own}).chi2;
-  found.is_two = two.chi2 + far_better < one && two.chi2 < single + little_worse + may_remain * one;
+  found.is_two = two.chi2 + better < one && two.chi2 < single + little_worse + may_remain * one;
+  found.is_no_single = found.is_two && two.chi2 + far_better < single;
   return found;
 }
 

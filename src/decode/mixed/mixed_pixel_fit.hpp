@@ -26,7 +26,8 @@ class MixedPixelFit {
 
   /// What the measurements of a pixel are explained by.
   struct Explanation {
-    bool is_two = false;  ///< both returns are there, and far better than one of them alone
+    bool is_two = false;        ///< both returns are there, and better than one of them alone
+    bool is_no_single = false;  ///< and better than a single return at the decoded depth
     double first_e_per_s = 0.0, second_e_per_s = 0.0;  ///< of both surfaces
     double chi2 = 0.0;                                 ///< of both
   };

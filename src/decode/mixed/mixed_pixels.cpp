@@ -130,10 +130,12 @@ class Surroundings {
     if (surfaces.size() > most_surfaces) surfaces.resize(most_surfaces);
   }
 
-  /// Whether a pixel's depth is that of a surface.
+  /// Whether a pixel's depth is that of a surface. Half of what joins the depths of one: a little
+  /// light of another surface moves the depth by as little, and those of pixels beside it.
   bool lies_on(std::size_t i, const Surface& surface) const {
     return std::abs(depth_[i] - surface.here.depth_m) <=
-           std::max(same_m_, same_sigma * std::hypot(deviation_[i], surface.here.deviation_m));
+           0.5 *
+               std::max(same_m_, same_sigma * std::hypot(deviation_[i], surface.here.deviation_m));
   }
 
  private:
@@ -307,8 +309,6 @@ class MixedPixelSearch {
       if (surfaces.size() == 1) return MixedPixel{surfaces.front()};
       return MixedPixel{stronger_of_two(own_ ? *own_ : decoded_, row, x, surfaces)};
     }
-    const auto has_its_depth = [&](const Surface& surface) { return around_.lies_on(i, surface); };
-    if (std::any_of(surfaces.begin(), surfaces.end(), has_its_depth)) return std::nullopt;
     auto stronger = stronger_of_two(decoded_, row, x, surfaces);
     if (!stronger && own_) stronger = stronger_of_two(*own_, row, x, surfaces);
     return stronger ? std::optional(MixedPixel{stronger}) : std::nullopt;
@@ -323,6 +323,9 @@ class MixedPixelSearch {
     const std::size_t pixel = around_.at(row, x);
     const double averaged = raw.averaged ? raw.averaged[pixel] : 1.0;
     const double offset_m = offset_m_.empty() ? 0.0 : offset_m_.pixels[pixel];
+    const bool has_depth_of_one =
+        std::any_of(surfaces.begin(), surfaces.end(),
+                    [&](const Surface& surface) { return around_.lies_on(pixel, surface); });
     std::optional<Surface> stronger;
     double best = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < surfaces.size(); ++i)
@@ -331,7 +334,8 @@ class MixedPixelSearch {
         first.depth_m += offset_m, second.depth_m += offset_m;
         const auto found = fit_.explain(electrons.data(), averaged,
                                         around_.depth_m(pixel) + offset_m, first, second);
-        if (!(found.is_two || around_.was_mixed(pixel)) || !(found.chi2 < best)) continue;
+        const bool is_mixed = has_depth_of_one ? found.is_no_single : found.is_two;
+        if (!(is_mixed || around_.was_mixed(pixel)) || !(found.chi2 < best)) continue;
         best = found.chi2;
         stronger = found.first_e_per_s >= found.second_e_per_s ? surfaces[i] : surfaces[j];
       }
