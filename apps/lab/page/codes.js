@@ -276,7 +276,7 @@ export class CodesView {
       },
       settle: () => {
         this.held = null;
-        this.lab.store.settle();
+        this.lab.settle();
       },
     });
     this.correlation.plots[i].show(correlationSpec(code));

@@ -30,6 +30,7 @@ export class Lab {
   slots = Array.from({length: maxCodes}, () => new Slot());
   camera = null;     // answer of `camera`
   firstFields = [];  // of the camera that changes are made to
+  gesture = 0;
   #answers = new Map();
   #listeners = [];
 
@@ -40,8 +41,8 @@ export class Lab {
         (slot, i) =>
             new Sharpener(2, () => engine.cancel(`code-${i}`), (error) => this.#failed(i, error)));
     this.update = newestOnly(() => this.#update());
-    this.set = newestOnly((key, value, heard) => this.#set(key, value, heard));
-    this.moveEdge = newestOnly((i, code, edge) => this.#moveEdge(i, code, edge));
+    this.setNewest = newestOnly((...asked) => this.#set(...asked));
+    this.moveNewest = newestOnly((...asked) => this.#moveEdge(...asked));
     store.listen(() => this.update());
   }
 
@@ -126,7 +127,22 @@ export class Lab {
     this.#tell('problem', i);
   }
 
-  async #set(key, text, heard) {
+  /** Sets a key of the camera; `heard(problem)` is told how that went, null: well. */
+  set(key, text, heard) {
+    this.setNewest(key, text, heard, this.gesture);
+  }
+
+  /** Moves an edge of the i-th code, from where it is in `code`. */
+  moveEdge(i, code, edge) {
+    this.moveNewest(i, code, edge, this.gesture);
+  }
+
+  /** A hand has let go: what it asks for from now on is undone on its own. */
+  settle() {
+    ++this.gesture;
+  }
+
+  async #set(key, text, heard, gesture) {
     try {
       const {camera} = this, field = camera.fields.find((one) => one.key === key);
       const value =
@@ -142,7 +158,7 @@ export class Lab {
       this.#remember({...this.state.camera, changes}, answer);
       this.store.change((state) => {
         state.camera.changes = changes;
-      }, `set ${key}`);
+      }, `set ${key} ${gesture}`);
       heard(null);
       await this.update();
     } catch (error) {
@@ -162,14 +178,14 @@ export class Lab {
     });
   }
 
-  async #moveEdge(i, code, {arm, measurement, edge, position}) {
+  async #moveEdge(i, code, {arm, measurement, edge, position}, gesture) {
     try {
       const answer = await this.engine.call(
           'move_edge',
           {camera: this.camera.toml, code: askedCode(code), arm, measurement, edge, position});
       this.store.change((state) => {
         if (state.codes[i]) state.codes[i] = {name: answer.name, file: answer.file};
-      }, `edge ${i} ${arm} ${measurement} ${edge}`);
+      }, `edge ${i} ${arm} ${measurement} ${edge} ${gesture}`);
       await this.update();
     } catch (error) {
       if (!(error instanceof Outdated)) this.#tell('edge problem', error.message);

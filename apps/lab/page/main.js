@@ -34,7 +34,7 @@ function startCamera(lab, about) {
           if (problem) announce(problem);
         }),
     reset: (key) => lab.reset(key),
-    settle: () => store.settle(),
+    settle: () => lab.settle(),
   });
   choice.addEventListener('change', () => choice.value !== '!' && store.change((state) => {
     state.camera = {built_in: choice.value, changes: []};

@@ -4,17 +4,21 @@
 
 import {Outdated} from './engine.js';
 
-/** A function that runs `work` with its newest arguments, never twice at once. */
+/**
+ * A function that runs `work`, never twice at once; of calls that wait with the same first argument
+ * only the newest is left.
+ */
 export function newestOnly(work) {
-  let waiting = null, isBusy = false;
+  const waiting = new Map();
+  let isBusy = false;
   return async (...values) => {
-    waiting = values;
+    waiting.set(values[0], values);
     if (isBusy) return;
     isBusy = true;
     try {
-      while (waiting) {
-        const next = waiting;
-        waiting = null;
+      while (waiting.size) {
+        const [first, next] = waiting.entries().next().value;
+        waiting.delete(first);
         await work(...next);
       }
     } finally {

@@ -73,11 +73,6 @@ export class Store {
     this.#put(next);
   }
 
-  /** The next change is undone on its own. */
-  settle() {
-    this.#merge = null;
-  }
-
   get canUndo() {
     return this.#past.length > 0;
   }
