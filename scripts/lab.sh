@@ -35,8 +35,12 @@ cmake --log-level=WARNING --preset lab
 cmake --build --preset lab
 
 page="$root/build-lab/lab.html"
+licences=() # of what is compiled in: headers, and the C and C++ libraries of emscripten
+for package in emscripten libeigen3-dev libhwy-dev libfmt-dev librandom123-dev libtomlplusplus-dev nlohmann-json3-dev; do
+  licences+=(--licence "/usr/share/doc/$package/copyright")
+done
 apps/lab/page/pack.py --worker build-lab/lab/engine.js --worker apps/lab/engine/worker.js \
-  --wasm build-lab/lab/engine.wasm -o "$page"
+  --wasm build-lab/lab/engine.wasm "${licences[@]}" -o "$page"
 bytes=$(stat -c %s "$page")
 ((bytes <= 8000000)) || tofsmith_die "$page has $bytes bytes; expected at most 8000000"
 [[ -z "$output" ]] || cp "$page" "$output"

@@ -130,8 +130,16 @@ function keepLink(store) {
   });
 }
 
+function startLicences() {
+  const licences = byId('licences');
+  licences.addEventListener('toggle', () => {
+    licences.querySelector('pre').textContent = byId('lab-licences')?.textContent ?? '';
+  });
+}
+
 async function begin() {
   startTheme(byId('theme'));
+  startLicences();
   if (matchMedia('(max-width: 56rem)').matches) byId('camera-fold').open = false;
   const missing = missingFeature();
   if (missing) return stop(missing);

@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Packs the lab into one page that needs nothing else: styles, modules, workers, WebAssembly.
 
-    pack.py --worker glue.js [--worker more.js ..] [--wasm engine.wasm] -o lab.html
+    pack.py --worker glue.js [--worker more.js ..] [--wasm engine.wasm] [--licence FILE ..]
+            -o lab.html
 
 Modules become functions in the order of their imports, so that one classic script holds them all. For
 that they keep to two forms: `import {a, b as c} from './x.js';` and `export` before a declaration.
@@ -56,7 +57,7 @@ def embedded(text):
     return re.sub(r"<(?=/script|!--|script)", r"\\x3c", text, flags=re.I)
 
 
-def packed_page(folder, workers, wasm):
+def packed_page(folder, workers, wasm, licences):
     """The page as one text."""
     page = (folder / "index.html").read_text()
     page = re.sub(r'<link rel="stylesheet" href="([\w.]+)">',
@@ -69,9 +70,11 @@ def packed_page(folder, workers, wasm):
         return f"<script>\n'use strict';\n{embedded(code)}</script>"
 
     worker = embedded("\n".join(path.read_text() for path in workers))
+    held = embedded("\n\n".join(f"== {path.parent.name}\n\n{path.read_text()}" for path in licences))
     engine = base64.b64encode(gzip.compress(wasm.read_bytes(), 9, mtime=0)).decode() if wasm else ""
     parts = (f'<script type="text/plain" id="lab-worker">{worker}</script>\n'
-             f'<script type="text/plain" id="lab-wasm">{engine}</script>\n')
+             f'<script type="text/plain" id="lab-wasm">{engine}</script>\n'
+             f'<script type="text/plain" id="lab-licences">{held}</script>\n')
     page, count = re.subn(r'<script type="module" src="([\w.]+)"></script>',
                           lambda m: parts + script(m), page)
     if count != 1:
@@ -86,9 +89,11 @@ def main():
     parser.add_argument("--worker", type=Path, action="append", required=True,
                         help="classic script of the worker; several are joined in this order")
     parser.add_argument("--wasm", type=Path, help="the engine")
+    parser.add_argument("--licence", type=Path, action="append", default=[],
+                        help="terms of what the engine holds, in a folder of its name")
     parser.add_argument("-o", "--output", type=Path, required=True)
     arguments = parser.parse_args()
-    page = packed_page(arguments.page, arguments.worker, arguments.wasm)
+    page = packed_page(arguments.page, arguments.worker, arguments.wasm, arguments.licence)
     partial = arguments.output.with_name(arguments.output.name + ".partial")
     partial.write_text(page)
     os.replace(partial, arguments.output)

@@ -27,9 +27,13 @@ class Pack(unittest.TestCase):
             given.update({key.replace("_", "."): text for key, text in files.items()})
             for file, text in given.items():
                 (folder / file).write_text(text)
+            (folder / "library").mkdir()
+            (folder / "library" / "copyright").write_text("Free to all.")
             done = subprocess.run(
                 [sys.executable, PACK, "--page", folder, "--worker", folder / "worker.js", "--wasm",
-                 folder / "engine.wasm", "-o", folder / "lab.html"], capture_output=True, text=True)
+                 folder / "engine.wasm", "--licence",
+                 folder / "library" / "copyright", "-o", folder / "lab.html"], capture_output=True,
+                text=True)
             page = folder / "lab.html"
             return done.returncode, done.stderr, page.read_text() if page.exists() else None
 
@@ -39,7 +43,8 @@ class Pack(unittest.TestCase):
             x_js="import {y} from './y.js';\nexport const a = y;\nexport class C {}\n",
             y_js="export async function y() {}\n", worker_js="say('</script>');")
         self.assertEqual(status, 0)
-        self.assertEqual(page.count("</script>"), 3)
+        self.assertEqual(page.count("</script>"), 4)
+        self.assertIn('id="lab-licences">== library\n\nFree to all.<', page)
         self.assertNotRegex(page, r"(?m)^(import|export)\b|src=|href=")
         self.assertLess(page.index("module_y ="), page.index("module_x ="))
         self.assertIn("const {a: b, C} = module_x;", page)
