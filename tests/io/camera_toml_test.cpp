@@ -211,7 +211,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "\"uniform\""},
         BadLine{"sensor.readout = \"diference\"",
                 "c.toml:2:18: sensor.readout: found \"diference\"; expected one of \"separate\", "
-                "\"difference\"; did you mean \"difference\"?"},
+                "\"difference\", \"rows\"; did you mean \"difference\"?"},
         BadLine{"light.peak_factor = 0.5",
                 "c.toml:2:21: light.peak_factor = 0.5; must be finite and >= 1: the peak is never "
                 "below the average"},
