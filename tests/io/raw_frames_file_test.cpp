@@ -103,7 +103,7 @@ TEST(RawFramesFile, RefusesArraysThatAreNoFrames) {
   EXPECT_THAT(refusal(NpyType::float32, {0, 2, 2, 4}), HasSubstr("at least one"));
   EXPECT_THAT(refusal(NpyType::float32, {2, 0, 4}), HasSubstr("2 x 0 pixels"));
   EXPECT_THAT(io_error_of([&] { read_raw_frames(directory / "a.bin"); }),
-              HasSubstr("expected one of .npy, .npz"));
+              HasSubstr("expected .npy, .npz or .h5"));
   EXPECT_THAT(io_error_of([&] { read_raw_frames(directory / "b.npy"); }), HasSubstr("no such"));
 }
 
