@@ -71,7 +71,8 @@ CodeSet fourier_rows(int rows, const FamilyOptions& options) {
   Eigen::MatrixXd weights(count, rows);
   for (int k = 0; k < rows; ++k)
     for (int n = 0; n < count; ++n) {
-      const double turn = 2 * std::numbers::pi * (k / 2 + 1) * (n + 0.5) / count;
+      const int harmonic = k / 2 + 1;
+      const double turn = 2 * std::numbers::pi * harmonic * (n + 0.5) / count;
       weights(n, k) = k % 2 == 0 ? std::cos(turn) : std::sin(turn);
     }
   return CodeSet::create_rows(fmt::format("fourier-k{}", rows),
