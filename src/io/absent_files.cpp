@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "io/arrays/shared/array_matrix.hpp"
 #include "io/documents/lens_calibration.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/code_file.hpp"
@@ -35,6 +36,18 @@ Lens read_lens_calibration(const std::filesystem::path& path,
 CodeSet parse_code_npz(std::span<const std::byte> /*content*/, std::string_view file,
                        const TapLayout& /*layout*/) {
   refuse_file(std::string(file), "the text of a .json file");
+}
+
+CodeSet parse_code_csv(std::string_view /*text*/, std::string_view file) {
+  refuse_file(std::string(file), "the text of a .json file");
+}
+
+CodeSet read_rows(const std::filesystem::path& path) {
+  refuse_file(path.string(), "the text of a .json file");
+}
+
+CodeSet read_rows(const std::filesystem::path& light, const std::filesystem::path& /*rows*/) {
+  refuse_file(light.string(), "the text of a .json file");
 }
 
 std::vector<std::byte> serialize_code_npz(const CodeSet& /*code*/,
