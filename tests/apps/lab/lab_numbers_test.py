@@ -75,6 +75,9 @@ class Numbers(LabTest):
     def test_the_table_and_the_command_shown_give_what_the_command_gives(self):
         self.compare("paper-10f0", [{"key": "exposure_s", "value": "0.25"}], "hamiltonian-k4")
 
+    def test_curves_that_are_equally_long_in_several_directions_too(self):
+        self.compare("paper-10f0", [{"key": "light.peak_factor", "value": "6"}], "hamiltonian-k4")
+
     def test_cameras_of_the_trade_too(self):
         self.compare("kinect-v2", [], "multifrequency-2x3-10x3-15x3")
 
