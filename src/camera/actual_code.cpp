@@ -57,6 +57,11 @@ double average_power_scale(const Waveform& modulation) {
   return 1.0 / std::max(1.0, modulation.mean());
 }
 
+Waveform at_average_power(const Waveform& modulation) {
+  const double scale = average_power_scale(modulation);
+  return scale < 1.0 ? scaled(modulation, scale) : modulation;
+}
+
 bool taps_share_a_generator(const CodeSet& code, const Camera& camera) {
   return code.taps() == 2 && !camera.sensor.drain;
 }
@@ -83,8 +88,7 @@ ActualCode actual_code(const CodeSet& code, const Camera& camera) {
     }
     const Waveform points = generated(nominal, *camera.light.generator, frequency_hz);
     require(lost_pulse(code, e, points, *camera.light.generator, frequency_hz));
-    const double scale = average_power_scale(points);
-    actual.modulation.push_back(scale < 1.0 ? scaled(points, scale) : points);
+    actual.modulation.push_back(at_average_power(points));
   }
   for (int i = 0; i < code.measurements(); ++i) {
     if (!camera.sensor.generator)

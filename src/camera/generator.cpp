@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera/shared/actual_code.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -142,6 +143,19 @@ double generated_switching_time(double switching_time_periods, const Generator& 
   moved_to(table);
   if (actual_points != table) moved_to(actual_points);
   return switching_time_periods;
+}
+
+bool plays_alike_rotated(const Camera& camera, int samples, int rotation_bin) {
+  if (!camera.light.generator) return true;
+  constexpr double tolerance_bin = 1.0 / 16;
+  const Generator& generator = *camera.light.generator;
+  const double f0_hz = camera.fundamental_frequency_hz;
+  const auto whole = [&](double points) {
+    const double moved = points * rotation_bin / samples;
+    return std::abs(moved - std::round(moved)) * samples / points <= tolerance_bin;
+  };
+  return (!generator.edge_grid_s || whole(grid_steps(*generator.edge_grid_s, f0_hz))) &&
+         whole(generator.points_in_table(f0_hz)) && whole(generator.points_per_period(f0_hz));
 }
 
 Waveform generator_table(const Waveform& waveform, const Generator& generator,

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/shared/poisson_attempt.hpp"
+#include "core/poisson_attempt.hpp"
 
 #include <array>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/shared/poisson_attempt.hpp"
+#include "core/poisson_attempt.hpp"
 
 namespace tofsmith {
 

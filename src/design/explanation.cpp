@@ -59,10 +59,8 @@ std::string why_so_many_exposures(const Camera& camera, const DesignResult& resu
                             plain_number(1e3 * error_m, 3));
   const int harmonics = useful_harmonics(camera);
   const std::string band =
-      harmonics == 0
-          ? std::string("no band limit")
-          : fmt::format("a band that passes {} harmonics (a twenty-fifth of them or more)",
-                        harmonics);
+      harmonics == 0 ? std::string("no band limit")
+                     : fmt::format("a band that passes {} harmonics (by 4 % or more)", harmonics);
   return fmt::format(
       "With {} and {} per exposure it takes {} exposure{}{}: more of them, or more taps, resolve "
       "more "

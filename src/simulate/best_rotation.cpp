@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
+#include "camera/shared/actual_code.hpp"
 #include "simulate/depth_trials.hpp"
 #include "simulate/shared/error_by_rotation.hpp"
 
@@ -32,6 +35,9 @@ BestRotation best_rotation(const CodeSet& code, const Camera& on, const Evaluate
   BestRotation best;
   for (const double sum : log_sum)
     best.linear_geometric_mean_m.push_back(std::exp(sum / static_cast<double>(of_point.size())));
+  for (int r = 0; r < std::ssize(log_sum); ++r)
+    if (!plays_alike_rotated(camera, trials.samples(), r))
+      log_sum[static_cast<std::size_t>(r)] = std::numeric_limits<double>::infinity();
   best.rotation_bin = best_of_rotations(log_sum);
   return best;
 }

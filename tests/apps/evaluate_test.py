@@ -61,7 +61,7 @@ class Evaluate(CommandLineTest):
             for line, error_m in ((first + 1, min(points[code])), (first + 2, max(points[code]))):
                 self.assertIn(code, lines[line])
                 self.assertAlmostEqual(float(lines[line].split()[5]) / error_m, 1e3, delta=1)
-        self.assertIn("all 25 light levels: --every-level", lines[-1])
+        self.assertIn("all 25 light levels of the camera (S = 1e+03 .. 1e+05, A = 100 .. 1e+05 e/s): --every-level", "\n".join(lines))
         full = [lines[i] for i in (0, 2, 3, 5, 6)]  # without means, which have no bounds
         self.assertEqual(len({len(line) for line in full}), 1)  # columns stand below each other
         lines = self.do("evaluate", *codes, *FAST, "--every-level").splitlines()

@@ -76,8 +76,9 @@ class CorrelationByDefinition {
   int best(const Eigen::VectorXd& y) const {
     int best = 0;
     for (int z = 1; z < samples; ++z)
+      // Of bins that tie up to rounding, the first.
       if (references_[static_cast<std::size_t>(z)].dot(y) >
-          references_[static_cast<std::size_t>(best)].dot(y))
+          references_[static_cast<std::size_t>(best)].dot(y) + 1e-9 * y.norm())
         best = z;
     return best;
   }

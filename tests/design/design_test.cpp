@@ -272,8 +272,8 @@ TEST(ChooseByDepthError, IsNeverWorseThanEitherStart) {
     const EvaluateOptions search{.trials = 300, .seed = 5};
     const auto error_of = [&](const PairChoice& choice) {
       const CodeSet code = assemble("x", factorizations, choice, camera);
-      return rotated ? std::ranges::min(best_rotation(code, camera, search).linear_geometric_mean_m)
-                     : evaluate(code, camera, search).linear.geometric_mean_m.value;
+      const DepthErrorReport error = evaluate(code, camera, search);
+      return (rotated ? error.circular : error.linear).geometric_mean_m.value;
     };
     PairChoice naive;
     for (const Factorization& f : factorizations) {

@@ -7,6 +7,7 @@
 
 #include "core/shared/random.hpp"
 #include "design/factorize/edge_refinement.hpp"
+#include "design/factorize/point_settling.hpp"
 #include "design/factorize/shared/alternation.hpp"
 #include "design/factorize/shared/start_pool.hpp"
 #include "design/run_lengths.hpp"
@@ -262,6 +263,32 @@ TEST(TargetSet, UserTablesAreResampledAndChecked) {
                  std::invalid_argument);
   EXPECT_THROW(targets_from_table("mine", Eigen::MatrixXd::Ones(9, 1), 8, true),
                std::invalid_argument);
+}
+
+TEST(SettleOnPoints, GeneratorsPlayItAsItIsAndItIsNoWorseThanRounding) {
+  const Camera camera = built_in_camera("prototype");
+  const double f0_hz = camera.fundamental_frequency_hz;
+  for (const CorrelationTarget& target :
+       targets_of(make_family("hamiltonian-k5", {.samples = camera.samples})).measurements) {
+    const PairModel model(target, camera);
+    const WaveformPair ideal = naive_start(model).front().pair;
+    const WaveformPair between = {ideal.modulation.delayed(0.0031),
+                                  ideal.demodulation.delayed(0.0031)};
+    const auto settled = settle_on_points(model, between);
+    ASSERT_TRUE(settled);
+    EXPECT_EQ(generated(settled->modulation, *camera.light.generator, f0_hz), settled->modulation);
+    EXPECT_EQ(generated(settled->demodulation, *camera.sensor.generator, f0_hz),
+              settled->demodulation);
+    EXPECT_LE(settled->modulation.peak(), camera.light.peak_factor * (1 + 1e-9));
+    EXPECT_NEAR(settled->modulation.mean(), 1.0, 1e-9);
+    EXPECT_LE(model.residual_rms(*settled), model.residual_rms(between));
+  }
+}
+
+TEST(SettleOnPoints, LeavesAlonePairsOfNoGenerator) {
+  const Camera camera = camera_with_peak(8);
+  const PairModel model(hamiltonian_targets(4).measurements[1], camera);
+  EXPECT_FALSE(settle_on_points(model, naive_start(model).front().pair));
 }
 
 }  // namespace

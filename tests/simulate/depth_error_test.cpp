@@ -309,5 +309,21 @@ TEST(BestRotation, PredictsTheErrorOfTheRotatedCode) {
             0.95 * rotation.linear_geometric_mean_m[0]);
 }
 
+// A hundred points in 300 bins: a pulse that comes one bin later is rounded to another.
+TEST(BestRotation, AGeneratorPlaysTheRotatedCodeAlike) {
+  const Camera camera = built_in_camera("prototype");
+  const CodeSet code = build_family("hamiltonian-k4", camera);
+  const int bins = best_rotation(code, camera, {.trials = 400}).rotation_bin;
+  const CodeSet rotated = code.rotated(bins);
+  EXPECT_GT(bins, 0);
+  const auto played = [&](const Waveform& waveform) {
+    return generated(waveform, *camera.light.generator, camera.fundamental_frequency_hz);
+  };
+  for (int e = 0; e < code.exposures(); ++e) {
+    const Waveform later = played(code.modulation(e)).delayed(bins / 300.0);
+    EXPECT_LT((played(rotated.modulation(e)).harmonics(50) - later.harmonics(50)).norm(), 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace tofsmith

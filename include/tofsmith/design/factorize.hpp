@@ -80,8 +80,8 @@ struct FactorizeOptions {
   bool structured_starts = true;  ///< thresholded target with pulses and pulse trains
   bool keep_naive = true;         ///< the ideal demodulation with one pulse stays a candidate
   bool refine_edges = true;       ///< move switching times continuously afterwards
-  int refined = 16;               ///< how many of the best projections are refined, >= 1
-  int kept = 6;                   ///< how many distinct pairs are returned, >= 1
+  int refined = 24;               ///< how many of the best projections are refined, >= 1
+  int kept = 16;                  ///< how many distinct pairs are returned, >= 1
   std::uint64_t seed = 1;
 
   /// @throws std::invalid_argument naming field, value and rule

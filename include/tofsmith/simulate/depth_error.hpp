@@ -164,8 +164,8 @@ struct BestRotation {
 /// rotation but those that put the origin between the two, where it costs the range less that. So
 /// one run of trials gives the error at all N rotations. (Every rotation is judged by the same
 /// trials and the least is taken: its own figure is a little low; evaluate the rotated code for an
-/// honest one. A camera's generator rounds switching times, so on one this holds for rotations by
-/// whole points only.)
+/// honest one. A generator of the light rounds switching times: on one, rotations by whole points
+/// alone are chosen among.)
 /// @param options  as for evaluate
 BestRotation best_rotation(const CodeSet& code, const Camera& camera,
                            const EvaluateOptions& options = {}, const Progress& progress = {});

@@ -5,21 +5,45 @@
 #include <limits>
 #include <map>
 
+#include "core/shared/random.hpp"
 #include "design/judge.hpp"
 
 namespace tofsmith {
 
 namespace {
 
+constexpr std::uint32_t random_choices = 8;
+
 /// The depth error of a code by the camera's choice, at its best origin if asked; infinite where
 /// pairs that are good one by one leave depth untold together.
 double search_error_m(const CodeSet& code, const Camera& camera, const EvaluateOptions& options,
                       bool at_best_rotation) {
   if (why_no_depth(code, camera)) return std::numeric_limits<double>::infinity();
-  if (!at_best_rotation)
-    return geometric_mean_error_m(evaluate(code, camera, options), camera.operating.error);
-  const BestRotation best = best_rotation(code, camera, options);
-  return best.linear_geometric_mean_m[static_cast<std::size_t>(best.rotation_bin)];
+  const DepthErrorKind kind = at_best_rotation ? DepthErrorKind::circular : camera.operating.error;
+  return geometric_mean_error_m(evaluate(code, camera, options), kind);
+}
+
+/// The choice after no change of a single pair makes it better.
+template <typename Error>
+PairChoice bettered(PairChoice best, const std::vector<Factorization>& factorizations,
+                    const Error& error_of, const Progress& progress) {
+  constexpr int rounds = 3;
+  bool improved = true;
+  for (int round = 0; improved && round < rounds; ++round) {
+    improved = false;
+    for (std::size_t k = 0; k < best.size(); ++k) {
+      const double done = round + static_cast<double>(k) / static_cast<double>(best.size());
+      for (std::size_t i = 0; i < factorizations[k].candidates.size(); ++i) {
+        report(progress, done / rounds, "choosing pairs by depth error");
+        PairChoice trial = best;
+        trial[k] = i;
+        if (error_of(trial) >= error_of(best)) continue;
+        best = trial;
+        improved = true;
+      }
+    }
+  }
+  return best;
 }
 
 /// Index of the naive pair, or of the best one where there is no naive pair.
@@ -56,25 +80,22 @@ PairChoice choose_by_depth_error(const std::vector<Factorization>& factorization
     return entry->second;
   };
 
-  PairChoice best(factorizations.size(), 0);
-  PairChoice naive;
-  for (const Factorization& f : factorizations) naive.push_back(naive_index(f));
-  if (error_of(naive) < error_of(best)) best = naive;
-
-  bool improved = true;
-  for (int round = 0; improved && round < 3; ++round) {
-    improved = false;
-    for (std::size_t k = 0; k < best.size(); ++k) {
-      const double done = (round + static_cast<double>(k) / static_cast<double>(best.size())) / 3;
-      for (std::size_t i = 0; i < factorizations[k].candidates.size(); ++i) {
-        report(progress, done, "choosing pairs by depth error");
-        PairChoice trial = best;
-        trial[k] = i;
-        if (error_of(trial) >= error_of(best)) continue;
-        best = trial;
-        improved = true;
-      }
-    }
+  // One pair after another, from several choices: pairs that are good together need not be the next
+  // ones of those that are good by themselves.
+  std::vector<PairChoice> starts{PairChoice(factorizations.size(), 0), {}};
+  for (const Factorization& f : factorizations) starts[1].push_back(naive_index(f));
+  for (std::uint32_t i = 0; i < random_choices; ++i) {
+    RandomStream random(options.seed, 0xc401ce, i);
+    PairChoice& start = starts.emplace_back();
+    for (const Factorization& f : factorizations)
+      start.push_back(
+          static_cast<std::size_t>(random.uniform() * static_cast<double>(f.candidates.size())));
+  }
+  const ProgressParts parts(progress, starts.size());
+  PairChoice best = starts[0];
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const PairChoice found = bettered(starts[i], factorizations, error_of, parts[i]);
+    if (error_of(found) < error_of(best)) best = found;
   }
   return best;
 }

@@ -15,10 +15,11 @@ using PairChoice = std::vector<std::size_t>;
 CodeSet assemble(const std::string& name, const std::vector<Factorization>& factorizations,
                  const PairChoice& choice, const Camera& camera);
 
-/// Chooses pairs by depth error, not by residual: starts from the smallest residuals and from the
-/// naive pairs, and changes one measurement at a time as long as the error falls. All trials share
-/// their random numbers, so small differences count.
-/// @param at_best_rotation  judge by the linear error at each code's best origin
+/// Chooses pairs by depth error, not by residual: starts from the smallest residuals, from the
+/// naive pairs and from some at random, and changes one measurement at a time as long as the error
+/// falls. All trials share their random numbers, so small differences count.
+/// @param at_best_rotation  each code gets its best origin later: its circular error is judged, as
+///                          few trials tell nothing of how many wraps are left there
 PairChoice choose_by_depth_error(const std::vector<Factorization>& factorizations,
                                  const Camera& camera, const EvaluateOptions& options,
                                  bool at_best_rotation, const Progress& progress);

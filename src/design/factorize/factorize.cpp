@@ -9,6 +9,7 @@
 
 #include "core/shared/shared_progress.hpp"
 #include "design/factorize/edge_refinement.hpp"
+#include "design/factorize/point_settling.hpp"
 #include "design/factorize/shared/alternation.hpp"
 #include "design/factorize/shared/start_pool.hpp"
 #include "design/shortest_run.hpp"
@@ -60,9 +61,10 @@ void refine_best(const PairModel& model, const FactorizeOptions& options,
       return;  // nothing to gain; naive stays as it is
     const auto refined = refine_edges(model, c.pair);
     if (!refined) return;
-    const double residual = model.residual_rms(*refined);
+    const WaveformPair pair = settle_on_points(model, *refined).value_or(*refined);
+    const double residual = model.residual_rms(pair);
     if (residual >= c.residual_rms) return;
-    c.pair = *refined;
+    c.pair = pair;
     c.residual_rms = residual;
   });
 }

@@ -3,7 +3,9 @@
 #include "design/factorize/shared/pair_model.hpp"
 
 #include <cmath>
+#include <limits>
 
+#include "camera/shared/actual_code.hpp"
 #include "design/grid_transfer.hpp"
 #include "design/shortest_run.hpp"
 #include "tofsmith/camera/forward_model.hpp"
@@ -60,7 +62,19 @@ double PairModel::residual_rms(const Eigen::VectorXd& modulation,
   return residual_rms(spectrum(modulation), spectrum(demodulation));
 }
 
-double PairModel::residual_rms(const WaveformPair& pair) const {
+WaveformPair PairModel::actual(const WaveformPair& pair) const {
+  const double f0_hz = camera_.fundamental_frequency_hz;
+  WaveformPair played = pair;
+  if (const auto& generator = camera_.light.generator)
+    played.modulation = at_average_power(generated(pair.modulation, *generator, f0_hz));
+  if (const auto& generator = camera_.sensor.generator)
+    played.demodulation = generated(pair.demodulation, *generator, f0_hz);
+  return played;
+}
+
+double PairModel::residual_rms(const WaveformPair& nominal) const {
+  const WaveformPair pair = actual(nominal);
+  if (pair.modulation.mean() <= 0.0) return std::numeric_limits<double>::infinity();
   const CorrelationFunction function =
       camera_.band_limited()
           ? CorrelationFunction(pair.demodulation, pair.modulation, camera_.transfer(4 * samples()))

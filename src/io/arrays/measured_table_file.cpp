@@ -138,6 +138,12 @@ void note_unused(const NpzReader& archive, const std::string& file,
 
 /// Columns exposure by exposure, the taps of each side by side.
 void sort_columns(MeasuredTable& table, const TapLayout& layout, const std::string& file) {
+  if (layout.taps > 1 && table.columns() > layout.taps && !layout.order)
+    throw IoError(file, fmt::format("found {0} columns of a camera of {1} taps; expected every tap "
+                                    "of each exposure, with --tap-order blocked or interleaved, or "
+                                    "--taps 1 if they are of one tap, or an .npz file with corrfs "
+                                    "and differences = 1 if they are differences of two",
+                                    table.columns(), layout.taps));
   const int exposures = exposures_of(table.columns(), layout, file);
   table.taps = layout.taps;
   Eigen::VectorXi source(table.columns());

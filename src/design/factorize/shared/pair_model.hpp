@@ -18,6 +18,7 @@ class PairModel {
  public:
   PairModel(const CorrelationTarget& target, const Camera& camera);
 
+  const Camera& camera() const { return camera_; }
   int samples() const { return transform_.samples(); }
   double peak_factor() const { return peak_factor_; }
   bool binary_modulation() const { return binary_modulation_; }
@@ -46,10 +47,14 @@ class PairModel {
   /// The same from samples.
   double residual_rms(const Eigen::VectorXd& modulation, const Eigen::VectorXd& demodulation) const;
   /// rms over depth for waveforms of any kind: switching times enter exactly, the target is linear
-  /// between bins, and the difference is sampled at 8 points per bin.
+  /// between bins, and the difference is sampled at 8 points per bin. Of what the camera's
+  /// generators make of the pair, where it has any; infinite where that is no light.
   double residual_rms(const WaveformPair& pair) const;
 
  private:
+  /// What the generators play for a pair.
+  WaveformPair actual(const WaveformPair& pair) const;
+
   CorrelationTarget target_;
   Camera camera_;
   double peak_factor_;
