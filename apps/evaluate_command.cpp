@@ -22,6 +22,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/result_document.hpp"
+#include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/design_report.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
@@ -121,6 +122,13 @@ std::string trials_text(const std::vector<EvaluatedCode>& codes, const EvaluateO
   return fmt::format("{} to {} trials", min_trials, max_trials);
 }
 
+std::string true_depths_text(const Camera& camera, const EvaluateOptions& options) {
+  if (options.depth != DepthSampling::bins) return true_depths_in_words(camera);
+  const OperatingRange& range = camera.operating;
+  return range.depths || range.working_distance_m ? "on bins " + true_depths_in_words(camera)
+                                                  : "on bins";
+}
+
 /// What a reader must know of points that reached the most trials before the target.
 void note_missed_targets(const Session& session, const std::vector<EvaluatedCode>& codes,
                          const EvaluateOptions& options) {
@@ -146,8 +154,7 @@ void print(const Session& session, const Camera& camera, const std::vector<Evalu
   session.say(fmt::format(
       "{} per operating point, seed {}, N = {}, true depths {}, decoded by {}; ± is one "
       "standard error; (x) is the circular error over the bound",
-      trials_text(codes, options), options.seed, camera.samples,
-      options.depth == DepthSampling::bins ? "on bins" : "anywhere in the range",
+      trials_text(codes, options), options.seed, camera.samples, true_depths_text(camera, options),
       name_of(options.method)));
   if (const std::size_t levels = codes.front().error.points.size(); levels > 2 && !every_level)
     session.say(
