@@ -175,10 +175,10 @@ Section camera_section(const Camera& camera) {
 
 std::string true_depths_in_words(const Camera& camera) {
   const OperatingRange& range = camera.operating;
-  const std::string where = range.working_distance_m ? fmt::format("from {:.4g} to {:.4g} m",
-                                                                   (*range.working_distance_m)[0],
-                                                                   (*range.working_distance_m)[1])
-                                                     : "anywhere in the range";
+  std::string where = range.working_distance_m
+                          ? fmt::format("from {:.4g} to {:.4g} m", (*range.working_distance_m)[0],
+                                        (*range.working_distance_m)[1])
+                          : "anywhere in the range";
   if (!range.depths || DepthPrior::are_alike(*range.depths)) return where;
   return fmt::format("{}, as often as {} weights say", where, range.depths->size());
 }
