@@ -166,8 +166,9 @@ Section camera_section(const Camera& camera) {
   section.blocks.push_back(line_figure(
       {.id = "true-depths",
        .title = "How often depths occur",
-       .caption = "Over depths that are all alike. Errors and Cramer-Rao bounds are means over "
-                  "these; the decoder looks for all depths alike."},
+       .caption =
+           "1 is as often as if all depths were alike. Errors and Cramer-Rao bounds are means over "
+           "these; the decoder looks for all depths alike."},
       {std::move(density)}, {.label = "depth", .unit = "m"},
       {.label = "density of true depths", .from_zero = true}));
   return section;
