@@ -6,6 +6,7 @@
 
 #include "tofsmith/io/result_document.hpp"
 #include "tofsmith/io/scene_toml.hpp"
+#include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/design_report.hpp"
 
 namespace tofsmith::apps {
@@ -29,8 +30,12 @@ void add_multipath(std::vector<std::vector<std::string>>& rows, const DesignResu
 std::string verdict(const Camera& camera, const DesignResult& result) {
   const DepthErrorKind kind = camera.operating.error;
   const Candidate& winner = result.winner();
-  std::string text = fmt::format("best: {} (geometric means over {} operating points, N = {})",
-                                 winner.code.name(), winner.error.points.size(), camera.samples);
+  const OperatingRange& range = camera.operating;
+  std::string text = fmt::format("best: {} (geometric means over {} operating points, N = {}{})",
+                                 winner.code.name(), winner.error.points.size(), camera.samples,
+                                 range.depths || range.working_distance_m
+                                     ? ", true depths " + true_depths_in_words(camera)
+                                     : "");
   for (const std::string& sentence : result.explanation) text += "\n  " + sentence;
   std::string tied;
   for (const Candidate& c : result.candidates) {

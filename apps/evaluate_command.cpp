@@ -22,6 +22,7 @@
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 #include "tofsmith/io/result_document.hpp"
+#include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/design_report.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
@@ -121,6 +122,13 @@ std::string trials_text(const std::vector<EvaluatedCode>& codes, const EvaluateO
   return fmt::format("{} to {} trials", min_trials, max_trials);
 }
 
+std::string true_depths_text(const Camera& camera, const EvaluateOptions& options) {
+  if (options.depth != DepthSampling::bins) return true_depths_in_words(camera);
+  const OperatingRange& range = camera.operating;
+  return range.depths || range.working_distance_m ? "on bins " + true_depths_in_words(camera)
+                                                  : "on bins";
+}
+
 /// "25 light levels (S = 1e+03 .. 1e+05, A = 100 .. 1e+05 e/s)"
 std::string light_levels_text(const OperatingRange& operating) {
   const auto span = [](const std::vector<double>& e_per_s) {
@@ -165,8 +173,7 @@ void print(const Session& session, const Camera& camera, const std::vector<Evalu
   session.say(fmt::format(
       "{} per operating point, seed {}, N = {}, true depths {}, decoded by {}; ± is one "
       "standard error; (x) is the circular error over the bound",
-      trials_text(codes, options), options.seed, camera.samples,
-      options.depth == DepthSampling::bins ? "on bins" : "anywhere in the range",
+      trials_text(codes, options), options.seed, camera.samples, true_depths_text(camera, options),
       name_of(options.method)));
   if (codes.front().error.points.size() > 2 && !every_level)
     session.say(fmt::format("all {}: --every-level, or -o FILE (.csv .json .html)",

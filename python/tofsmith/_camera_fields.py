@@ -254,6 +254,11 @@ class Operating:
         Pixels of one depth that a filter adds before it decodes: codes are judged on such sums.
     multipath : OperatingMultipath, optional
         What designs take into account; None: light comes back once.
+    working_distance_m : tuple of two floats, optional
+        Where depths lie, nearest and farthest [m]; None: anywhere in the unambiguous range.
+    depths : tuple of float, optional
+        How often depths occur: weights of equal parts of the working distance, or of the range,
+        such as a scene's histogram; None: all depths alike.
     """
 
     signal_e_per_s: tuple[float, ...]
@@ -262,6 +267,8 @@ class Operating:
     albedo: Union[float, str]
     neighbours: int = 1
     multipath: Optional[OperatingMultipath] = None
+    working_distance_m: Optional[tuple[float, float]] = None
+    depths: Optional[tuple[float, ...]] = None
 
 
 @dataclass(frozen=True)

@@ -85,6 +85,30 @@ void validate_sensor(const Sensor& sensor) {
   if (sensor.readout == Readout::rows) validate_rows(sensor);
 }
 
+void validate_depths(const OperatingRange& range, double range_m) {
+  if (const auto& distance_m = range.working_distance_m) {
+    const auto [nearest_m, farthest_m] = *distance_m;
+    require(nearest_m >= 0.0 && nearest_m < farthest_m && farthest_m <= range_m,
+            "operating.working_distance_m", fmt::format("[{}, {}]", nearest_m, farthest_m),
+            fmt::format("must be [nearest, farthest] with 0 <= nearest < farthest <= the "
+                        "unambiguous range, {:.6g} m",
+                        range_m));
+  }
+  if (!range.depths) return;
+  constexpr std::size_t max_parts = 10000;
+  const std::vector<double>& weights = *range.depths;
+  require(!weights.empty(), "operating.depths", "[]", "must list at least one weight");
+  require(weights.size() <= max_parts, "operating.depths",
+          fmt::format("{} weights", weights.size()),
+          fmt::format("must be at most {}, of equal parts of the working distance or range",
+                      max_parts));
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    require(std::isfinite(weights[i]) && weights[i] >= 0.0, fmt::format("operating.depths[{}]", i),
+            weights[i], "must be a finite weight >= 0");
+  require(*std::max_element(weights.begin(), weights.end()) > 0.0, "operating.depths",
+          "weights that are all 0", "must have one > 0: some depth must occur");
+}
+
 void validate_operating(const OperatingRange& range, double range_m) {
   const auto levels = [](const std::vector<double>& values, const std::string& field, bool zero) {
     require(!values.empty(), field, "[]", "must list at least one level");
@@ -100,6 +124,7 @@ void validate_operating(const OperatingRange& range, double range_m) {
   require(range.neighbours >= 1 && range.neighbours <= 10000, "operating.neighbours",
           range.neighbours, "must be in [1, 10000]");
   if (range.multipath) range.multipath->validate(range_m);
+  validate_depths(range, range_m);
 }
 
 Eigen::VectorXcd arm_transfer(const ImpulseResponse& response, double edge_jitter_s,

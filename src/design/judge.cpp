@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "camera/shared/depth_prior.hpp"
 #include "design/explanation.hpp"
 #include "design/optimize/two_return_limit.hpp"
 #include "tofsmith/core/error.hpp"
@@ -104,7 +105,8 @@ void keep_best_of_each_name(const std::vector<double>& ranking_m, DesignResult& 
 std::uint64_t search_seed(const DesignOptions& options) { return options.seed + 1; }
 
 bool rotates(const Camera& camera, const DesignOptions& options) {
-  return options.best_rotation && camera.operating.error == DepthErrorKind::linear;
+  return options.best_rotation &&
+         (camera.operating.error == DepthErrorKind::linear || !DepthPrior(camera).is_uniform());
 }
 
 void require_judgeable(const Camera& camera, const DesignOptions& options) {

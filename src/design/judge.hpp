@@ -14,7 +14,8 @@ namespace tofsmith {
 /// those of evaluate() with the same seed.
 std::uint64_t search_seed(const DesignOptions& options);
 
-/// Whether candidates are moved to their best origin. The circular error does not depend on it.
+/// Whether candidates are moved to their best origin. The circular error does not depend on it,
+/// unless the camera weighs depths.
 bool rotates(const Camera& camera, const DesignOptions& options);
 
 /// Why no depth can be decoded with a code: the camera cannot play it, or what it measures does not

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/shared/enum_words.hpp"
+#include "design/judge.hpp"
 #include "design/optimize/design_problem.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
@@ -33,6 +34,14 @@ struct BestCode {
 
 using Codes = std::vector<const CodeSet*>;
 
+/// A family on a camera, where its origin matters (depths that are not all alike) at the best one.
+CodeSet family_for(const std::string& name, const Camera& camera, const DesignOptions& options) {
+  CodeSet code = build_family(name, camera);
+  if (!rotates(camera, options) || why_no_depth(code, camera)) return code;
+  const EvaluateOptions search{.trials = options.trials, .seed = search_seed(options)};
+  return code.rotated(best_rotation(code, camera, search).rotation_bin);
+}
+
 /// Every code found so far. They are all tried wherever the camera is changed to.
 class CodePool {
  public:
@@ -42,7 +51,7 @@ class CodePool {
     design_.trials = std::clamp(options.trials / 10, 1000, 5000);
     design_.baselines = suggested_baselines(camera, design_);  // others join no design
     for (const std::string& name : *design_.baselines)
-      if (!why_no_family(name, camera)) codes_.push_back(build_family(name, camera));
+      if (!why_no_family(name, camera)) codes_.push_back(family_for(name, camera, design_));
   }
 
   /// Designs codes for a camera, whose winner joins.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "camera/shared/actual_code.hpp"
+#include "camera/shared/depth_prior.hpp"
 #include "report/shared/waveform_series.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/code/families.hpp"
@@ -147,14 +148,47 @@ KeyValueList camera_description(const Camera& camera) {
       fmt::format("{} depth error over {} signal x {} ambient levels",
                   name_of(camera.operating.error), camera.operating.signal_e_per_s.size(),
                   camera.operating.ambient_e_per_s.size()));
+  if (!DepthPrior(camera).is_uniform()) add("true depths", true_depths_in_words(camera));
   return list;
+}
+
+Section camera_section(const Camera& camera) {
+  Section section{"Camera", {camera_description(camera)}};
+  const DepthPrior depths(camera);
+  if (depths.is_uniform()) return section;
+  constexpr int parts = 2000;
+  const Eigen::VectorXd masses = depths.masses(parts);
+  Series density{.name = "true depths", .mark = Mark::steps};
+  for (int i = 0; i < parts; ++i) {
+    density.x.push_back(camera.range_m() * i / parts);
+    density.y.push_back(parts * masses[i]);
+  }
+  section.blocks.push_back(line_figure(
+      {.id = "true-depths",
+       .title = "How often depths occur",
+       .caption =
+           "1 is as often as if all depths were alike. Errors and Cramer-Rao bounds are means over "
+           "these; the decoder looks for all depths alike."},
+      {std::move(density)}, {.label = "depth", .unit = "m"},
+      {.label = "density of true depths", .from_zero = true}));
+  return section;
+}
+
+std::string true_depths_in_words(const Camera& camera) {
+  const OperatingRange& range = camera.operating;
+  std::string where = range.working_distance_m
+                          ? fmt::format("from {:.4g} to {:.4g} m", (*range.working_distance_m)[0],
+                                        (*range.working_distance_m)[1])
+                          : "anywhere in the range";
+  if (!range.depths || DepthPrior::are_alike(*range.depths)) return where;
+  return fmt::format("{}, as often as {} weights say", where, range.depths->size());
 }
 
 Page code_page(const CodeSet& code, const Camera& camera, const std::string& command_line) {
   Page page{.title = code.name(),
             .subtitle = fmt::format("{} measurements on {}", code.measurements(), camera.name),
             .footer = "tofsmith " TOFSMITH_VERSION};
-  page.sections.push_back({"Camera", {camera_description(camera)}});
+  page.sections.push_back(camera_section(camera));
   page.sections.push_back(
       {"Waveforms",
        {waveform_figure({.id = "waveforms",

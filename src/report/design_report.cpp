@@ -351,7 +351,7 @@ Page design_report(const Camera& camera, const DesignResult& result,
   Section first{"Result", {headline(result, camera.operating.error)}};
   first.blocks.push_back(explanation(result, camera.operating.error));
   page.sections.push_back(std::move(first));
-  page.sections.push_back({"Camera", {camera_description(camera)}});
+  page.sections.push_back(camera_section(camera));
 
   std::vector<DepthErrorRow> compared;
   for (const Candidate& c : result.candidates) compared.push_back({&c.error, c.method});
@@ -385,7 +385,7 @@ Page evaluation_report(const Camera& camera, const std::vector<CodeSet>& codes,
   Page page{.title = fmt::format("Depth error on {}", camera.name),
             .subtitle = fmt::format("{} code{}", codes.size(), codes.size() == 1 ? "" : "s"),
             .footer = "tofsmith " TOFSMITH_VERSION};
-  page.sections.push_back({"Camera", {camera_description(camera)}});
+  page.sections.push_back(camera_section(camera));
   std::vector<DepthErrorRow> compared;
   std::size_t best = 0;
   const DepthErrorKind kind = camera.operating.error;

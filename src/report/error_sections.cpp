@@ -11,6 +11,7 @@
 #include "report/shared/bar_figure.hpp"
 #include "report/shared/depth_error_scale.hpp"
 #include "report/shared/level_text.hpp"
+#include "tofsmith/report/code_figures.hpp"
 #include "tofsmith/report/figure.hpp"
 
 namespace tofsmith {
@@ -108,21 +109,21 @@ std::vector<std::size_t> by_error(std::span<const DepthErrorRow> codes, DepthErr
 Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> codes,
                        const std::vector<std::size_t>& order, std::size_t best) {
   const DepthErrorReport& first = *codes[0].error;
-  Table table{.id = "comparison",
-              .caption = fmt::format(
-                  "Depth error over {} operating points (geometric means; the last but "
-                  "one column is the arithmetic mean of the circular error), {} trials "
-                  "each, N = {}, true "
-                  "depths anywhere in the range; ± is one standard error. Outliers are "
-                  "circular errors beyond {:.2g} m.",
-                  first.points.size(), first.trials, camera.samples, first.outlier_threshold_m),
-              .columns = {{"code"},
-                          {"made by"},
-                          {"K", true},
-                          {"linear (mm)", true},
-                          {"circular (mm)", true},
-                          {"arithmetic (mm)", true},
-                          {"outliers (%)", true}}};
+  Table table{
+      .id = "comparison",
+      .caption = fmt::format("Depth error over {} operating points (geometric means; the last but "
+                             "one column is the arithmetic mean of the circular error), {} trials "
+                             "each, N = {}, true depths {}; ± is one standard error. Outliers are "
+                             "circular errors beyond {:.2g} m.",
+                             first.points.size(), first.trials, camera.samples,
+                             true_depths_in_words(camera), first.outlier_threshold_m),
+      .columns = {{"code"},
+                  {"made by"},
+                  {"K", true},
+                  {"linear (mm)", true},
+                  {"circular (mm)", true},
+                  {"arithmetic (mm)", true},
+                  {"outliers (%)", true}}};
   for (const std::size_t i : order) {
     const DepthErrorReport& e = *codes[i].error;
     double outliers = 0.0;

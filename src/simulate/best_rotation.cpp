@@ -4,31 +4,55 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <span>
 
 #include "camera/shared/actual_code.hpp"
 #include "simulate/depth_trials.hpp"
 #include "simulate/shared/error_by_rotation.hpp"
 
 namespace tofsmith {
+namespace {
 
-BestRotation best_rotation(const CodeSet& code, const Camera& on, const EvaluateOptions& options,
-                           const Progress& progress) {
-  const Camera camera = judged_camera(on);
+/// Sums of errors [bin] of every round, at every rotation.
+template <typename Errors>
+std::vector<std::vector<double>> sums_by_rotation(const DepthTrials& trials,
+                                                  std::span<const TrialRound> rounds,
+                                                  const Errors& none, const Progress& progress) {
   constexpr std::int64_t runs_at_once = 64;  // each keeps N figures
-  const ForwardModel model(code, camera);
-  const DepthTrials trials(model, camera, options);
-  const std::vector<TrialRound> rounds = trials.first_rounds();
-  const std::vector<ErrorByRotation> of_point = trials.sum(
-      rounds, ErrorByRotation(trials.samples()),
-      [](ErrorByRotation& errors, const TrialBlock& block) {
+  const std::vector<Errors> of_round = trials.sum(
+      rounds, none,
+      [](Errors& errors, const TrialBlock& block) {
         for (std::size_t t = 0; t < block.true_bin.size(); ++t)
           errors.add(block.true_bin[t], block.decoded_bin[t]);
       },
       progress, runs_at_once);
+  std::vector<std::vector<double>> sums;
+  for (const Errors& errors : of_round) sums.push_back(errors.sums());
+  return sums;
+}
 
-  std::vector<double> log_sum(static_cast<std::size_t>(trials.samples()), 0.0);
+}  // namespace
+
+BestRotation best_rotation(const CodeSet& code, const Camera& on, const EvaluateOptions& options,
+                           const Progress& progress) {
+  Camera camera = judged_camera(on);
+  const DepthPrior prior(camera);
+  camera.operating.depths.reset();  // trials serve all rotations
+  camera.operating.working_distance_m.reset();
+  const ForwardModel model(code, camera);
+  const DepthTrials trials(model, camera, options);
+  const std::vector<TrialRound> rounds = trials.first_rounds();
+  const int samples = trials.samples();
+  const std::vector<std::vector<double>> of_point =
+      prior.is_uniform()
+          ? sums_by_rotation(trials, rounds, ErrorByRotation(samples), progress)
+          : sums_by_rotation(trials, rounds,
+                             WeighedErrorByRotation(prior, camera.operating.error, samples),
+                             progress);
+
+  std::vector<double> log_sum(static_cast<std::size_t>(samples), 0.0);
   for (std::size_t p = 0; p < of_point.size(); ++p) {
-    const std::vector<double> sums = of_point[p].sums();
+    const std::vector<double>& sums = of_point[p];
     for (std::size_t r = 0; r < sums.size(); ++r)
       log_sum[r] += std::log(sums[r] * camera.bin_m() / static_cast<double>(rounds[p].trials));
   }

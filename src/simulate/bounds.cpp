@@ -9,6 +9,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "camera/shared/depth_prior.hpp"
 #include "simulate/bound_means.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
@@ -123,7 +124,8 @@ CramerRaoBound::CramerRaoBound(const ForwardModel& model, const Camera& camera,
                                NoiseInformation information)
     : range_m_(camera.range_m()),
       information_(information),
-      constant_variance_e2_(model.constant_variance_e2()) {
+      constant_variance_e2_(model.constant_variance_e2()),
+      masses_(DepthPrior(camera).masses(cells_per_bin * model.samples())) {
   if (model.has_rows()) {
     const int points = 2 * cells_per_bin * model.samples();
     middles_and_slopes(model.correlation_table(points) * model.exposure_s().asDiagonal(), signal_,
@@ -162,22 +164,25 @@ HistogramBound::HistogramBound(const ForwardModel& model, const Camera& camera)
     light_(j / cells_per_bin, j % cells_per_bin) = middle(j, 0);
     slope_(j / cells_per_bin, j % cells_per_bin) = slope(j, 0);
   }
+  const Eigen::VectorXd masses = DepthPrior(camera).masses(middle.rows());
+  if (masses.size() > 0) masses_ = masses.reshaped(cells_per_bin, samples).rowwise().sum();
   dark_e_ = model.expected_tap_electrons({}, 0.0)[0];
   ambient_e_ = model.expected_tap_electrons({}, 1.0)[0] - dark_e_;
 }
 
 double HistogramBound::mae_m(const OperatingPoint& point) const {
   constexpr double min_e = 1e-9;  // a bin without any light tells nothing
-  double sum_m = 0.0;
+  Eigen::VectorXd sigma_m(light_.cols());
   for (Eigen::Index j = 0; j < light_.cols(); ++j) {
     const Eigen::ArrayXd weight = (point.signal_e_per_s * light_.col(j).array() +
                                    point.ambient_e_per_s * ambient_e_ + dark_e_)
                                       .max(min_e)
                                       .rsqrt();
-    sum_m += deviation_of_depth_m(point.signal_e_per_s * slope_.col(j).array() * weight,
-                                  light_.col(j).array() * weight, ambient_e_ * weight, range_m_);
+    sigma_m[j] =
+        deviation_of_depth_m(point.signal_e_per_s * slope_.col(j).array() * weight,
+                             light_.col(j).array() * weight, ambient_e_ * weight, range_m_);
   }
-  return mae_per_sigma() * sum_m / static_cast<double>(light_.cols());
+  return mae_per_sigma() * mean_over_depths(sigma_m, masses_);
 }
 
 double HistogramBound::mae_uniform_albedo_m(const OperatingPoint& point) const {
@@ -250,7 +255,7 @@ Eigen::VectorXd CramerRaoBound::sigma_m(const OperatingPoint& point) const {
 }
 
 double CramerRaoBound::mae_m(const OperatingPoint& point) const {
-  return mae_per_sigma() * sigma_m(point).mean();
+  return mae_per_sigma() * mean_over_depths(sigma_m(point), masses_);
 }
 
 double CramerRaoBound::mae_uniform_albedo_m(const OperatingPoint& point) const {
@@ -266,7 +271,8 @@ ReceiverBound::ReceiverBound(const Camera& camera, int exposures)
       peak_factor_(camera.light.peak_factor),
       sensitivity_(1.0 + 0.5 * std::abs(camera.sensor.tap_mismatch)),
       dark_e_per_s_(camera.sensor.dark_current_e_per_s),
-      constant_variance_e2_(has_rows_ ? 0.0 : constant_variance_e2_of(camera.sensor)) {
+      constant_variance_e2_(has_rows_ ? 0.0 : constant_variance_e2_of(camera.sensor)),
+      max_density_(DepthPrior(camera).max_density()) {
   camera.validate();
   require(exposures >= 1, "exposures", exposures, "must be >= 1");
   require(camera.exposure_s.each_s.empty() ||
@@ -298,7 +304,8 @@ double ReceiverBound::tap_information(const OperatingPoint& point) const {
     information +=
         taps_ * std::pow(signal * time_s, 2) * v * largest_gated(b, c, taps_, taps_ == 1 || drain_);
   }
-  return information;
+  // That bounds the mean over all depths; what photons contribute holds at each.
+  return max_density_ * information;
 }
 
 double ReceiverBound::photon_information(const OperatingPoint& point) const {

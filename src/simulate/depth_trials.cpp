@@ -3,6 +3,7 @@
 #include "simulate/depth_trials.hpp"
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "core/shared/whole_vectors.hpp"
@@ -23,6 +24,20 @@ EvaluateOptions with_even_trials(EvaluateOptions options) {
   return options;
 }
 
+/// Moves depths, drawn alike over the range, to where a prior has as many below.
+void move_depths(const TrialModel& model, const DepthPrior& prior, bool on_bins, int trials,
+                 TrialTile& tile) {
+  const double samples = model.samples();
+  for (int i = 0; i < trials; ++i) {
+    double bin = prior.quantile(tile.true_bin[i] / samples) * samples;
+    bin = std::min(on_bins ? std::floor(bin) : bin, std::nextafter(samples, 0.0));
+    const double at = bin * model.rows_per_bin(), row = std::floor(at);
+    tile.true_bin[i] = bin;
+    tile.row[i] = static_cast<std::int32_t>(row);
+    tile.share[i] = static_cast<float>(at - row);
+  }
+}
+
 /// About, where they go on until a target is met.
 std::int64_t all_trials(const EvaluateOptions& options, std::size_t points) {
   return static_cast<std::int64_t>(points) *
@@ -40,6 +55,7 @@ DepthTrials::DepthTrials(const ForwardModel& model, const Camera& camera,
     : options_(with_even_trials(options)),
       uniform_albedo_(camera.operating.uniform_albedo),
       albedo_(camera.operating.albedo),
+      depths_(camera),
       points_(camera.operating.points()),
       model_(model.has_rows() ? TrialModel(model) : TrialModel(model, camera)),
       decoder_(options.method, std::move(believed), options.unwrap_weights,
@@ -85,13 +101,15 @@ TrialBlock DepthTrials::run(const TrialRound& round, IndexRange trials, TrialTil
                              static_cast<std::uint32_t>(round.first + trials.begin)};
   tile.pixels.pixels = count;
 
+  const bool on_bins = options_.depth == DepthSampling::bins;
   // 1. A depth in the trial's slice, and light.
   draw_words(streams, 0, drawn, tile.words);
   place_depths(model_,
                {.first = trials.begin,
                 .rows_per_trial = model_.rows() / static_cast<double>(round.trials),
-                .on_bins = options_.depth == DepthSampling::bins},
+                .on_bins = on_bins && depths_.is_uniform()},
                drawn, tile);
+  if (!depths_.is_uniform()) move_depths(model_, depths_, on_bins, drawn, tile);
   // 2. Noise of that depth and light where the decoder looks, or of every measurement; 3. decode.
   if (draws_in_plane()) {
     const PlaneNoise& noise = plane_noise_[round.point];

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "camera/shared/depth_prior.hpp"
 #include "core/shared/shared_progress.hpp"
 #include "decode/output/shared/trial_decoder.hpp"
 #include "simulate/row_trials.hpp"
@@ -22,8 +23,8 @@ struct TrialBlock {
   std::span<const double> decoded_bin;
 };
 
-/// Trials first .. first + trials - 1 of an operating point, one in each of as many equal slices of
-/// the range.
+/// Trials first .. first + trials - 1 of an operating point, one in each of as many slices of the
+/// range, in each of which depths are equally likely.
 struct TrialRound {
   std::size_t point = 0;
   std::int64_t first = 0;
@@ -75,6 +76,7 @@ class DepthTrials {
   EvaluateOptions options_;
   bool uniform_albedo_ = false;
   double albedo_ = 1.0;
+  DepthPrior depths_;
   std::vector<OperatingPoint> points_;
   TrialModel model_;
   std::optional<RowTrials> rows_;  // where they are read out

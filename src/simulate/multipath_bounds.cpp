@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "camera/shared/depth_prior.hpp"
 #include "core/shared/decompositions.hpp"
 #include "core/shared/exponential_average.hpp"
 #include "simulate/bound_means.hpp"
@@ -36,7 +37,8 @@ MultipathBound::MultipathBound(const ForwardModel& model, const Camera& camera)
       readout_(model.readout()),
       table_(model.tap_correlation_table(points_per_bin * model.samples()) *
              model.tap_exposure_s().asDiagonal()),
-      ambient_(model.exposure_s().cwiseProduct(unknown_ambient_gain(model, camera))) {
+      ambient_(model.exposure_s().cwiseProduct(unknown_ambient_gain(model, camera))),
+      masses_(DepthPrior(camera).masses(samples_)) {
   const Eigen::MatrixXd sums = readout_.cwiseAbs();
   shot_ambient_ = sums * model.tap_exposure_s().cwiseProduct(model.tap_ambient_gain());
   floor_variance_e2_ = model.constant_variance_e2() +
@@ -100,7 +102,7 @@ Eigen::VectorXd MultipathBound::tail_sigma_m(const OperatingPoint& point,
 }
 
 double MultipathBound::mae_m(const Eigen::VectorXd& sigma_m) const {
-  return (mae_per_sigma() * sigma_m).cwiseMin(0.25 * range_m_).mean();
+  return mean_over_depths((mae_per_sigma() * sigma_m).cwiseMin(0.25 * range_m_), masses_);
 }
 
 double single_path_bias_m(double ratio, double delay_m) { return ratio * delay_m / (1.0 + ratio); }

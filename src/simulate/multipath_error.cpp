@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "camera/shared/depth_prior.hpp"
 #include "simulate/shared/pixel_capture.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
@@ -34,6 +35,7 @@ class CellTrials {
   CellTrials(const CodeSet& code, const Camera& camera, const MultipathErrorOptions& options)
       : options_(options),
         camera_(camera),
+        depths_(camera),
         model_(code, camera),
         pixel_(model_, camera),
         table_(make_decoding_table(model_, camera)),
@@ -57,6 +59,7 @@ class CellTrials {
 
   const MultipathErrorOptions& options_;
   const Camera& camera_;
+  DepthPrior depths_;
   ForwardModel model_;
   PixelCapture pixel_;
   DecodingTable table_;
@@ -84,8 +87,9 @@ RawFrames CellTrials::capture(const CellLight& light, std::uint64_t number,
     std::vector<double> work(taps), sum(taps);
     for (std::int64_t t = trials.begin; t < trials.end; ++t) {
       RandomStream random(options_.seed, number, static_cast<std::uint32_t>(t));
-      const double depth_m = (static_cast<double>(t) + random.uniform()) /
-                             static_cast<double>(options_.trials) * camera_.range_m();
+      const double part =
+          (static_cast<double>(t) + random.uniform()) / static_cast<double>(options_.trials);
+      const double depth_m = depths_.quantile(part) * camera_.range_m();
       sum.assign(taps, 0.0);
       pixel_.add_light(depth_m, light.signal_e_per_s, work, sum);
       const double later = light.ratio * light.signal_e_per_s;

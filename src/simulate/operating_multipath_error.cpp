@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera/shared/depth_prior.hpp"
 #include "simulate/shared/pixel_capture.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
@@ -31,13 +32,14 @@ TrialFrame draw_frame(const PixelCapture& pixel, const Camera& camera,
   frame.raw.measurements = pixel.measurements();
   frame.raw.values.resize(static_cast<std::size_t>(trials * pixel.measurements()));
   frame.true_m.resize(static_cast<std::size_t>(trials));
+  const DepthPrior prior(camera);
   parallel_for_blocks(trials, 256, [&](IndexRange block) {
     const auto taps = static_cast<std::size_t>(pixel.tap_values());
     std::vector<double> work(taps), sum(taps);
     for (std::int64_t t = block.begin; t < block.end; ++t) {
       RandomStream random(options.seed, point, static_cast<std::uint32_t>(t));
-      const double depth_m = (static_cast<double>(t) + random.uniform()) /
-                             static_cast<double>(trials) * camera.range_m();
+      const double part = (static_cast<double>(t) + random.uniform()) / static_cast<double>(trials);
+      const double depth_m = prior.quantile(part) * camera.range_m();
       const double albedo =
           camera.operating.uniform_albedo ? random.uniform() : camera.operating.albedo;
       const double signal_e_per_s = albedo * light.signal_e_per_s;

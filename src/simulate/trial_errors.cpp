@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera/shared/depth_prior.hpp"
+
 namespace tofsmith {
 
 namespace {
@@ -57,15 +59,19 @@ class AdaptiveTrials {
   /// Few trials may have met no wrap at all, and know nothing of the scatter it brings. With depths
   /// anywhere in the range, the share that wraps is (circular error) / (2 range) at each end, and
   /// each costs about the range: the linear error is about twice the circular one, its variance
-  /// about (circular error) x range.
+  /// about (circular error) x range. Where the ends occur w times as often, it is 1 + w times, and
+  /// the variance w times that.
   std::int64_t foreseen_trials(const ErrorSums& sums) const {
     if (camera_.operating.error != DepthErrorKind::linear) return 0;
     const double circular_m = sums.circular(camera_.bin_m()).value;
     const double target = options_.target_standard_error;
+    const DepthPrior depths(camera_);
+    const double at_ends = 0.5 * (depths.density(0.0) + depths.density(1.0));
     if (!(circular_m > 0.0)) return 0;
     return static_cast<std::int64_t>(
         std::min(static_cast<double>(options_.max_trials),
-                 camera_.range_m() / (4 * circular_m * target * target)));
+                 at_ends * camera_.range_m() /
+                     ((1 + at_ends) * (1 + at_ends) * circular_m * target * target)));
   }
 
   const Camera& camera_;

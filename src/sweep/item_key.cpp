@@ -8,6 +8,7 @@
 #include <iterator>
 #include <span>
 
+#include "camera/shared/depth_prior.hpp"
 #include "core/shared/hash.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
@@ -78,6 +79,8 @@ std::string item_key(std::string_view setup, const OperatingRange& light,
                  static_cast<int>(light.error));
   if (light.neighbours != 1)
     fmt::format_to(std::back_inserter(text), "neighbours {}\n", light.neighbours);
+  if (light.working_distance_m) append(text, "working distance ", *light.working_distance_m);
+  if (light.depths && !DepthPrior::are_alike(*light.depths)) append(text, "depths ", *light.depths);
   return fnv1a_128_hex(text);
 }
 

@@ -120,6 +120,15 @@ class Evaluate(CommandLineTest):
         separate = self.do_json("evaluate", "sinusoid-k4", *FAST, "--set", "sensor.taps=2")
         self.assertEqual(separate["codes"][0]["measurements"], 8)
 
+    def test_the_depths_that_are_judged_are_told(self):
+        text = self.do("evaluate", "sinusoid-k4", *FAST)
+        self.assertIn("true depths anywhere in the range, decoded", text)
+        near = ("--set", "operating.working_distance_m=[1, 3]")
+        self.assertIn("true depths from 1 to 3 m, decoded",
+                      self.do("evaluate", "sinusoid-k4", *FAST, *near))
+        text = self.do("evaluate", "sinusoid-k4", *FAST, *near, "--set", "operating.depths=[1, 2]")
+        self.assertIn("true depths from 1 to 3 m, as often as 2 weights say, decoded", text)
+
     def test_sinusoids_are_unwrapped(self):
         codes = ("sinusoid-k4", "multifrequency-k5")
         zncc = self.do_json("evaluate", *codes, *FAST)

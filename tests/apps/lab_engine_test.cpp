@@ -102,6 +102,28 @@ TEST(LabEngine, SetDoesWhatTheCommandsOptionDoes) {
             load_camera("paper-10f0", std::array{std::string("light.peak_factor=7")}));
 }
 
+TEST(LabEngine, DepthsThatOccurAreListsAndStayWhereOtherFieldsChange) {
+  const std::array settings = {std::string("operating.working_distance_m=[1, 3]"),
+                               std::string("operating.depths=[3, 1, 0.5]")};
+  const Camera camera = load_camera("paper-10f0", settings);
+  const Answered answered = ask({{"call", "set"},
+                                 {"camera", camera_to_toml(camera)},
+                                 {"key", "operating.error"},
+                                 {"value", "circular"}});
+  const Camera changed = parse_camera_toml(answered.json["toml"].get<std::string>(), "x.toml");
+  EXPECT_EQ(changed.operating.error, DepthErrorKind::circular);
+  EXPECT_EQ(changed.operating.depths, camera.operating.depths);
+  const Json depths = field_of(answered, "operating.depths");
+  EXPECT_EQ(depths["type"], "list");
+  EXPECT_EQ(depths["value"], Json({3, 1, 0.5}));
+  EXPECT_EQ(depths["low"], 0);
+  EXPECT_FALSE(depths.contains("high"));
+  const Json distance = field_of(answered, "operating.working_distance_m");
+  EXPECT_EQ(distance["unit"], "m");
+  EXPECT_EQ(distance["value"], Json({1, 3}));
+  EXPECT_FALSE(distance["doc"].get<std::string>().empty());
+}
+
 TEST(LabEngine, AnotherKindOfResponseGetsItsNumberAndTheChangeSaysSo) {
   for (const char* kind : {"none", "hann", "gaussian", "lowpass"}) {
     const Answered answered = ask({{"call", "set"},

@@ -37,13 +37,13 @@ struct Setting {
 };
 
 TrialBatch trials_for(const Setting& setting, int count, bool ends_matter = false,
-                      bool later = false) {
+                      bool later = false, const DepthPrior& depths = {}) {
   RandomStream random(7, 2);
   OperatingRange range;
   range.uniform_albedo = true;
   const MultipathTrials second{{}, setting.camera.range_m()};
   return draw_trials(count, setting.sampled().measurements(), range, ends_matter, random, nullptr,
-                     later ? &second : nullptr);
+                     later ? &second : nullptr, depths);
 }
 
 /// The batch with trial t and no other.
@@ -124,10 +124,12 @@ void expect_slopes(const Setting& setting, const SampledCode& gradient, ErrorOf&
 
 TEST(DepthErrorLoss, GradientByTheWaveformsMatchesFiniteDifferences) {
   for (const Setting& setting : settings())
-    for (const bool circular : {false, true}) {
+    for (const auto& [circular, depths] : {std::pair(false, DepthPrior()),
+                                           {true, DepthPrior()},
+                                           {false, DepthPrior({3, 0, 1, 2})}}) {
       const SampledCamera camera = setting.sampled();
       const auto measured = camera.measure(setting.code);
-      const TrialBatch batch = trials_for(setting, 20, !circular, circular);
+      const TrialBatch batch = trials_for(setting, 20, !circular, circular, depths);
       DepthErrorLoss loss(camera, measured.table,
                           circular ? DepthErrorKind::circular : DepthErrorKind::linear);
       const double sharpness = 1.2 / loss.mean_variance_e2(setting.point);
@@ -214,6 +216,32 @@ TEST(TwoReturnLoss, GradientByTheWaveformsMatchesFiniteDifferences) {
                                           sharpness);
       });
     }
+}
+
+TEST(DrawTrials, TakesDepthsAsOftenAsTheyOccur) {
+  for (const bool ends_matter : {false, true}) {
+    RandomStream random(7, 3);
+    const TrialBatch batch = draw_trials(40000, 3, {}, ends_matter, random, nullptr, nullptr,
+                                         DepthPrior({4.0, 0.0, 1.0, 3.0}));
+    Eigen::Vector4d share = Eigen::Vector4d::Zero();
+    for (const DepthTrial& trial : batch.trials)
+      share[static_cast<int>(4 * trial.depth_periods)] += trial.weight / 40000;
+    EXPECT_TRUE(share.isApprox(Eigen::Vector4d(0.5, 0.0, 0.125, 0.375), 0.01)) << share.transpose();
+  }
+}
+
+TEST(DrawTrials, EvenWeightsOfDepthsAreTheSameBitsAsNone) {
+  for (const bool ends_matter : {false, true}) {
+    RandomStream random(7, 3), again(7, 3);
+    const TrialBatch none = draw_trials(100, 3, {}, ends_matter, random);
+    const TrialBatch even =
+        draw_trials(100, 3, {}, ends_matter, again, nullptr, nullptr, DepthPrior({0.3, 0.3, 0.3}));
+    for (std::size_t t = 0; t < none.trials.size(); ++t) {
+      EXPECT_EQ(none.trials[t].depth_periods, even.trials[t].depth_periods);
+      EXPECT_EQ(none.trials[t].weight, even.trials[t].weight);
+    }
+    EXPECT_EQ(none.normals, even.normals);
+  }
 }
 
 }  // namespace

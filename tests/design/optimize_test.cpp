@@ -64,6 +64,23 @@ DesignResult judged(const Camera& camera, std::vector<Candidate> candidates,
   return judge(camera, std::move(candidates), options);
 }
 
+TEST(Optimize, ADesignForAWorkingDistanceErrsLessThereThanOneForAllDepths) {
+  for (const DepthErrorKind kind : {DepthErrorKind::circular, DepthErrorKind::linear}) {
+    const Camera anywhere = small_camera(kind);
+    Camera near = anywhere;
+    near.operating.depths = {0, 1, 1, 0, 0, 0, 0, 0, 0, 0};
+    const double of_near_m = judged(near, optimize(near, 4, small_options()))
+                                 .winner()
+                                 .error.of(kind)
+                                 .geometric_mean_m.value;
+    const double of_all_m = judged(near, optimize(anywhere, 4, small_options()))
+                                .winner()
+                                .error.of(kind)
+                                .geometric_mean_m.value;
+    EXPECT_LT(of_near_m, 0.9 * of_all_m);
+  }
+}
+
 TEST(Optimize, MakesCandidatesAndJudgesNone) {
   const Camera camera = small_camera();
   const std::vector<CodeSet> also = {build_family("hamiltonian-k4", camera)};

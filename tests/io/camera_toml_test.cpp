@@ -104,6 +104,8 @@ Camera every_field_set() {
                          .sunlight_w_per_m2_nm = 0.4};
   camera.operating = {{1e3}, {0.0, 1e2}, DepthErrorKind::circular, 1.0, true};
   camera.operating.neighbours = 50;
+  camera.operating.working_distance_m = {0.5, 4.0};
+  camera.operating.depths = {0.0, 2.5, 1.0};
   camera.operating.multipath = OperatingMultipath{{0.0, 1.0}, {0.25, 1.0 / 3}, 0.125};
   return camera;
 }
@@ -267,6 +269,37 @@ INSTANTIATE_TEST_SUITE_P(
                 "c.toml:3:11: operating.multipath.delay_m = [1, 8]; must be [shortest, longest] "
                 "with 0 < shortest <= longest and below the unambiguous range, 7.495 m"}));
 
+INSTANTIATE_TEST_SUITE_P(
+    OperatingDepths, CameraTomlRefuses,
+    testing::Values(
+        BadLine{"operating.depths = []",
+                "c.toml:2:20: operating.depths = []; must list at least one weight"},
+        BadLine{"operating.depths = [0, 0]",
+                "c.toml:2:20: operating.depths = weights that are all 0; must have one > 0: some "
+                "depth must occur"},
+        BadLine{"operating.depths = [1, -2]",
+                "c.toml:2:20: operating.depths[1] = -2; must be a finite weight >= 0"},
+        BadLine{"operating.depths = [1, nan]",
+                "c.toml:2:24: operating.depths[1]: found nan; expected a finite number"},
+        BadLine{"operating.depths = \"near\"",
+                "c.toml:2:20: operating.depths: found \"near\"; expected a list of numbers"},
+        BadLine{"operating.depth = [1, 2]",
+                "c.toml:2:11: unknown key operating.depth; did you mean operating.depths?"},
+        BadLine{"operating.working_distance_m = 3",
+                "c.toml:2:32: operating.working_distance_m: found 3; expected a list of two "
+                "numbers"},
+        BadLine{"operating.working_distance_m = [1, 8]",
+                "c.toml:2:32: operating.working_distance_m = [1, 8]; must be [nearest, farthest] "
+                "with 0 <= nearest < farthest <= the unambiguous range, 7.49481 m"}));
+
+TEST(CameraToml, MoreWeightsOfDepthsThanAnyoneNeedsAreRefused) {
+  std::string list = "1";
+  for (int i = 0; i < 10000; ++i) list += ",1";
+  EXPECT_EQ(refusal(std::string(shortest) + "operating.depths = [" + list + "]"),
+            "c.toml:2:20: operating.depths = 10001 weights; must be at most 10000, of equal parts "
+            "of the working distance or range");
+}
+
 TEST(CameraToml, SaysWhereTextThatIsNoTomlBreaksOff) {
   EXPECT_THAT(refusal("fundamental_frequency_hz = 15e6\n\n[light\n"), HasSubstr("c.toml:3:7: "));
   EXPECT_THAT(refusal("a = 1\na = 2\n"), HasSubstr("c.toml:2:"));
@@ -339,6 +372,11 @@ TEST(CameraSettings, AreNamedInWhatTheyBreak) {
   EXPECT_THAT(broken_by("samples"), HasSubstr("setting 'samples': "));
   EXPECT_THAT(broken_by("samples=1 2"), HasSubstr("expected key = value"));
   EXPECT_THAT(broken_by(""), HasSubstr("setting '': found no key; expected key = value"));
+  std::string list = "operating.depths=[1";
+  for (int i = 0; i < 5000; ++i) list += ",1";
+  EXPECT_EQ(broken_by(list + ",-1]"), "setting '" + list.substr(0, 160) +
+                                          "..': operating.depths[5001] = -1; must be a finite "
+                                          "weight >= 0");
   EXPECT_THAT(broken_by("=5"), HasSubstr("expected key = value"));
 }
 

@@ -56,6 +56,24 @@ def test_every_key_of_a_camera_file_is_an_attribute():
         assert last in parts or last in known, key
 
 
+def test_depths_may_be_a_scenes_histogram(camera):
+    scene = ts.built_in_scene("ball", 24, 18)
+    weights, _ = np.histogram(scene.depth_m % camera.range_m, bins=50, range=(0, camera.range_m))
+    there = camera.replace(operating={"depths": weights})
+    assert there.operating.depths == tuple(weights) and there.operating.working_distance_m is None
+    assert camera.operating.depths is None and there.replace(samples=60).operating.depths == tuple(weights)
+    # Where nothing lies near the ends of the range, nothing wraps.
+    light = {"signal_e_per_s": [1e4], "ambient_e_per_s": [1e3]}
+    anywhere, here = (ts.evaluate("hamiltonian-k4", c.replace(operating=light), trials=20000)
+                      for c in (camera, there))
+    assert here.linear.geometric_mean_m == here.circular.geometric_mean_m
+    assert anywhere.linear.geometric_mean_m > anywhere.circular.geometric_mean_m
+    near = camera.replace(operating={"working_distance_m": (1, 3)})
+    assert near.operating.working_distance_m == (1.0, 3.0)
+    with pytest.raises(ValueError, match="operating.depths = weights that are all 0"):
+        camera.replace(operating={"depths": np.zeros(50)})
+
+
 def test_a_lens_is_a_pinhole_and_a_blur(camera):
     blurred = camera.replace(lens={"blur": "gaussian", "blur_sigma_px": 0.5})
     assert blurred.lens is None and blurred.blur == ts.LensBlur("gaussian", 1, 0.5)

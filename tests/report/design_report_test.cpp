@@ -147,6 +147,25 @@ TEST(EvaluationReport, ShowsCodesEvenOfTheSameName) {
   expect_sound(evaluation_report(camera, {code, code}, {error, error}, "x"), 4);
 }
 
+TEST(EvaluationReport, DrawsHowOftenDepthsOccurWhereTheyAreNotAlike) {
+  Camera camera = small_camera("paper-5f0");
+  const CodeSet code = build_family("sinusoid-k4", camera);
+  const auto html_of = [&] {
+    const DepthErrorReport error = evaluate(code, camera, {.trials = 1000});
+    const Page page = evaluation_report(camera, {code}, {error}, "x");
+    expect_sound(page, 3);
+    return render(page);
+  };
+  std::string html = html_of();
+  EXPECT_THAT(html, Not(HasSubstr("<figure id=\"true-depths\">")));
+  EXPECT_THAT(html, HasSubstr("true depths anywhere in the range;"));
+  camera.operating.working_distance_m = {1.0, 3.0};
+  camera.operating.depths = {2.0, 1.0};
+  html = html_of();
+  EXPECT_THAT(html, HasSubstr("<figure id=\"true-depths\">"));
+  EXPECT_THAT(html, HasSubstr("true depths from 1 to 3 m, as often as 2 weights say;"));
+}
+
 TEST(SceneSection, OfASceneWithoutCapturesShowsTheScene) {
   const Camera camera = small_camera("paper-5f0");
   SceneResult scene = small_scene(camera, {});

@@ -42,6 +42,10 @@ TEST(WorkList, AKeyDependsOnAllThatDeterminesTheResult) {
       axis("light.peak_factor", "12"),
       axis("sensor.read_noise_e", "5"),
       axis("light.impulse_response.f_max_hz", "1e8"),
+      axis("operating.depths", "[0, 1, 2]"),
+      axis("operating.depths", "[0, 1, 3]"),
+      axis("operating.working_distance_m", "[1, 3]"),
+      axis("operating.working_distance_m", "[1, 4]"),
       "outlier_threshold_m = 0.25\n",
       "target_standard_error = 0.01\n",
       "target_standard_error = 0.01\nmax_trials = 1000\n"};
@@ -55,6 +59,7 @@ TEST(WorkList, AKeyDependsOnNothingElse) {
   EXPECT_EQ(key_of(""), key_of(axis("name", "\"other\"")));
   EXPECT_EQ(key_of(""), key_of("max_trials = 1000\n"));  // without a target
   EXPECT_EQ(key_of(""), key_of(axis("unwrap_weights", "\"frequency\"")));
+  EXPECT_EQ(key_of(""), key_of(axis("operating.depths", "[2, 2]")));  // all depths alike
   EXPECT_EQ(key_of(axis("signal_e_per_s", "5e3")), key_of(axis("signal_e_per_s", "5000, 1")));
 }
 

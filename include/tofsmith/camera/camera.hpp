@@ -302,6 +302,12 @@ struct OperatingRange {
   int neighbours = 1;
   /// Multipath that designs take into account; none: light comes back once.
   std::optional<OperatingMultipath> multipath = {};
+  /// Where depths lie: nearest and farthest, 0 <= nearest < farthest <= range; none: anywhere in
+  /// the unambiguous range.
+  std::optional<std::array<double, 2>> working_distance_m = {};
+  /// How often depths occur: weights >= 0 of equal parts of the working distance, or of the range,
+  /// at most 10000 and not all 0; none: all depths alike.
+  std::optional<std::vector<double>> depths = {};
 
   /// All pairs, signal by signal.
   std::vector<OperatingPoint> points() const;

@@ -30,6 +30,12 @@ Figure coding_curve_figure(FigureText text, const std::vector<CodeSet>& codes,
 
 /// The camera in words and numbers.
 KeyValueList camera_description(const Camera& camera);
+/// The same as a section, with a figure of how often depths occur where they are not all alike.
+Section camera_section(const Camera& camera);
+
+/// Which depths a camera's codes are judged at: "anywhere in the range", "from 1 to 3 m, as often
+/// as 20 weights say".
+std::string true_depths_in_words(const Camera& camera);
 
 /// A page that shows one code on one camera.
 /// @param command_line  as typed, to be shown on the page; may be empty

@@ -71,7 +71,8 @@ class CramerRaoBound {
   /// inverse Fisher matrix over (depth, S, A), variance mu_i + constant variance. Infinite where
   /// depth cannot be separated from signal and ambient.
   Eigen::VectorXd sigma_m(const OperatingPoint& point) const;
-  /// Mean over depth of sqrt(2 / pi) sigma: the mean absolute error of a normal deviation [m].
+  /// Mean over depth, as the camera weighs depths, of sqrt(2 / pi) sigma: the mean absolute error
+  /// of a normal deviation [m].
   double mae_m(const OperatingPoint& point) const;
   /// The same averaged over a signal scaled uniformly in (0, 1); at each albedo held to range / 4,
   /// the mean circular error of a guess, without which the average diverges.
@@ -85,6 +86,7 @@ class CramerRaoBound {
   Eigen::MatrixXd signal_, signal_slope_, shot_signal_, shot_signal_slope_;
   Eigen::VectorXd ambient_, shot_ambient_;
   Eigen::VectorXd constant_variance_e2_;
+  Eigen::VectorXd masses_;  // share of depths in each cell; empty: all alike
   /// Of rows, whose noise is correlated: at the same depths, and its slope.
   std::optional<RowCovariance> covariance_;
   Eigen::MatrixXd covariance_slope_;
@@ -104,7 +106,7 @@ class HistogramBound {
   /// @throws std::invalid_argument unless model.has_rows()
   HistogramBound(const ForwardModel& model, const Camera& camera);
 
-  /// Mean over depth within a bin of sqrt(2 / pi) sigma [m]; every bin is alike.
+  /// Mean over depth of sqrt(2 / pi) sigma [m]; every bin is alike.
   double mae_m(const OperatingPoint& point) const;
   /// The same averaged over a signal scaled uniformly in (0, 1), at each albedo held to range / 4.
   double mae_uniform_albedo_m(const OperatingPoint& point) const;
@@ -112,6 +114,7 @@ class HistogramBound {
  private:
   double range_m_;
   Eigen::MatrixXd light_, slope_;  // electrons of all bins per unit of S, (N, depths in a bin)
+  Eigen::VectorXd masses_;         // share of depths at each of those in a bin; empty: all alike
   double ambient_e_ = 0.0, dark_e_ = 0.0;  // of every bin
 };
 
@@ -127,6 +130,7 @@ class ReceiverBound {
 
   /// Mean over depth of the largest information on depth [1 / period^2] that taps can gather: from
   /// the largest harmonic the arms let through and from how much a gate of duty kappa can hold.
+  /// Where depths are not alike, as many times that as the most frequent occur more often.
   double tap_information(const OperatingPoint& point) const;
   /// The same for photons recorded one by one behind both arms, one read-out per exposure: from
   /// the arms' response itself or from the largest ripple within the peak, whichever is less.
@@ -145,6 +149,7 @@ class ReceiverBound {
   double sensitivity_;  // of the most sensitive tap
   double dark_e_per_s_;
   double constant_variance_e2_;
+  double max_density_;                        // of depths, over that of uniform ones
   std::vector<double> exposure_s_;            // of each exposure
   std::optional<PhotonInformation> photons_;  // behind both arms; none without limit
 };
@@ -204,6 +209,7 @@ class MultipathBound {
   double range_m_;
   Eigen::MatrixXd readout_, table_;  // T o chi of the tap values, (points, taps)
   Eigen::VectorXd ambient_, shot_ambient_, floor_variance_e2_;
+  Eigen::VectorXd masses_;  // share of depths in each bin; empty: all alike
 };
 
 /// Bias of single-path decoding behind a second return, where it is closer than the correlation

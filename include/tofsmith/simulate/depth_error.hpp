@@ -134,7 +134,8 @@ auto fields_of(ConstOrNot<DepthErrorReport> auto& r) {
 /// Monte Carlo depth error at every operating point of the camera, with bounds beside it.
 ///
 /// Trial t of point p draws from the stream (seed, p, t) alone: its depth, uniform on the t-th of
-/// `trials` equal slices of the range, its albedo if that is uniform, and its noise. Codes are so
+/// `trials` equal slices of the range (slices in which depths are equally likely, where the camera
+/// weighs them), its albedo if that is uniform, and its noise. Codes are so
 /// compared on the same depths. Noise is normal or Poisson as the sensor says, of the variance of
 /// that depth; of rows it is drawn in every time bin, or normal with their covariance. Where all
 /// that follows is linear and ZNCC decodes, normal noise is drawn in the plane that ZNCC looks at,
@@ -154,11 +155,15 @@ DepthErrorReport evaluate(const CodeSet& code, const Camera& camera,
 /// The best origin of depth of a code.
 struct BestRotation {
   int rotation_bin = 0;  ///< CodeSet::rotated by this many bins has the least linear error
-  /// Geometric mean over the operating points of the linear error [m], for each rotation (N).
+  /// Geometric mean over the operating points of the linear error [m], for each rotation (N). Where
+  /// the camera weighs depths, of the error that it asks for.
   std::vector<double> linear_geometric_mean_m;
 };
 
-/// Finds the rotation with the least linear depth error. Circular error does not depend on it.
+/// Finds the rotation with the least linear depth error. Circular error does not depend on it, but
+/// where the camera weighs depths (OperatingRange::depths): there the error that the camera asks
+/// for decides, and trials, drawn uniformly, are weighed at every rotation by how often their depth
+/// occurs.
 ///
 /// Rotating a code moves true and decoded depths alike: a trial costs |decoded - true| at every
 /// rotation but those that put the origin between the two, where it costs the range less that. So

@@ -132,7 +132,8 @@ struct MultipathErrorReport {
 
 /// Bias and error over (delta, r), single-path against two-return decoding, in the camera's noise.
 /// Trial t of a cell draws from the stream (seed, cell, t): its depth, uniform on the t-th of
-/// `trials` slices of the range, then noise; all codes see the same.
+/// `trials` slices of the range (of those that the camera says occur), then noise; all codes see
+/// the same.
 /// @throws std::invalid_argument if camera, code or options are invalid; Interrupted if progress
 ///         says so
 /// @note same bits for any number of threads

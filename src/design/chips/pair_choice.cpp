@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "camera/shared/depth_prior.hpp"
 #include "core/shared/random.hpp"
 #include "design/judge.hpp"
 
@@ -19,6 +20,10 @@ constexpr std::uint32_t random_choices = 8;
 double search_error_m(const CodeSet& code, const Camera& camera, const EvaluateOptions& options,
                       bool at_best_rotation) {
   if (why_no_depth(code, camera)) return std::numeric_limits<double>::infinity();
+  if (at_best_rotation && !DepthPrior(camera).is_uniform()) {
+    const BestRotation best = best_rotation(code, camera, options);
+    return best.linear_geometric_mean_m[static_cast<std::size_t>(best.rotation_bin)];
+  }
   const DepthErrorKind kind = at_best_rotation ? DepthErrorKind::circular : camera.operating.error;
   return geometric_mean_error_m(evaluate(code, camera, options), kind);
 }

@@ -19,7 +19,8 @@ CodeSet assemble(const std::string& name, const std::vector<Factorization>& fact
 /// naive pairs and from some at random, and changes one measurement at a time as long as the error
 /// falls. All trials share their random numbers, so small differences count.
 /// @param at_best_rotation  each code gets its best origin later: its circular error is judged, as
-///                          few trials tell nothing of how many wraps are left there
+///                          few trials tell nothing of how many wraps are left there; where depths
+///                          are weighed, its error at that origin
 PairChoice choose_by_depth_error(const std::vector<Factorization>& factorizations,
                                  const Camera& camera, const EvaluateOptions& options,
                                  bool at_best_rotation, const Progress& progress);

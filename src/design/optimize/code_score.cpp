@@ -36,7 +36,8 @@ SampledCode rotated(const SampledCode& code, int rotation_bin) {
 }
 
 std::vector<TrialBatch> draw_batches(const DesignProblem& problem, int trials, bool ends_matter,
-                                     std::uint64_t seed, std::uint64_t work_item) {
+                                     const DepthPrior& depths, std::uint64_t seed,
+                                     std::uint64_t work_item) {
   const CameraVariant* widest = &problem.variants.front();
   for (const CameraVariant& variant : problem.variants)
     if (variant.levels.size() > widest->levels.size()) widest = &variant;
@@ -46,7 +47,7 @@ std::vector<TrialBatch> draw_batches(const DesignProblem& problem, int trials, b
     const LightLevel& level = widest->levels[p];
     batches.push_back(draw_trials(DesignProblem::trials_of(level, trials), problem.measurements(),
                                   problem.operating, ends_matter, random, nullptr,
-                                  problem.multipath_of(level)));
+                                  problem.multipath_of(level), depths));
   }
   return batches;
 }
@@ -63,20 +64,33 @@ double mean_error_bin(const TrialBatch& batch, const std::vector<double>& decode
   return sum / static_cast<double>(decoded_bin.size());
 }
 
+/// Errors of a batch at every rotation [bin].
+template <typename Errors>
+std::vector<double> sums_of(Errors errors, const TrialBatch& batch,
+                            const std::vector<double>& decoded_bin) {
+  for (std::size_t t = 0; t < decoded_bin.size(); ++t) {  // the end of the last chord is bin 0
+    const int samples = errors.samples();
+    errors.add(batch.trials[t].depth_periods * samples,
+               std::min(decoded_bin[t], std::nextafter(samples, 0.0)));
+  }
+  return errors.sums();
+}
+
 }  // namespace
 
 CodeJudge::CodeJudge(const DesignProblem& problem, int trials, std::uint64_t seed,
                      std::uint64_t work_item)
     : problem_(&problem),
-      judging_(draw_batches(problem, trials, problem.linear(), seed, work_item)) {
-  if (problem.linear()) rotating_ = draw_batches(problem, trials, false, seed, work_item);
+      judging_(draw_batches(problem, trials, problem.linear(), problem.depths, seed, work_item)) {
+  if (problem.linear() || !problem.depths.is_uniform())
+    rotating_ = draw_batches(problem, trials, false, DepthPrior(), seed, work_item);
 }
 
 CodeScore CodeJudge::score(const SampledCode& code) const {
   const SampledCode fine = on_grid_of(problem_->variants.front().judge, code);
   const int finer = fine.samples() / code.samples();
   const double in_bins_of_code = std::log(finer);
-  if (!problem_->linear()) return {log_error(fine) - in_bins_of_code, 0};
+  if (rotating_.empty()) return {log_error(fine) - in_bins_of_code, 0};
   const int rotation = best_rotation(fine);
   return {log_error(rotated(fine, rotation)) - in_bins_of_code, rotation / finer};
 }
@@ -107,13 +121,15 @@ int CodeJudge::best_rotation(const SampledCode& code) const {
                         problem_->operating.error);
     std::vector<double> log_error(worst.size(), 0.0);
     for (std::size_t p = 0; p < variant.levels.size(); ++p) {
-      if (rotating_[p].two_returns) continue;  // their error is circular
+      const DepthPrior& depths = problem_->depths;
+      const bool circular = !problem_->linear() || rotating_[p].two_returns;
+      if (circular && depths.is_uniform()) continue;  // it does not depend on the rotation
       loss.decode(variant.levels[p].point, rotating_[p], decoded_bin);
-      ErrorByRotation errors(samples);
-      for (std::size_t t = 0; t < decoded_bin.size(); ++t)  // the end of the last chord is bin 0
-        errors.add(rotating_[p].trials[t].depth_periods * samples,
-                   std::min(decoded_bin[t], std::nextafter(samples, 0.0)));
-      const std::vector<double> sums = errors.sums();
+      const auto kind = circular ? DepthErrorKind::circular : DepthErrorKind::linear;
+      const std::vector<double> sums =
+          depths.is_uniform()
+              ? sums_of(ErrorByRotation(samples), rotating_[p], decoded_bin)
+              : sums_of(WeighedErrorByRotation(depths, kind, samples), rotating_[p], decoded_bin);
       for (std::size_t r = 0; r < sums.size(); ++r)
         log_error[r] += variant.levels[p].weight * std::log(std::max(min_error_bin, sums[r])) /
                         variant.total_weight();

@@ -13,12 +13,12 @@ namespace tofsmith {
 /// How good a code is on the grid.
 struct CodeScore {
   double log_error_bin = 0.0;  ///< mean over light levels of log depth error; of the worst variant
-  int rotation_bin = 0;        ///< at which the linear error is judged; 0 for the circular one
+  int rotation_bin = 0;        ///< at which it is judged; 0 where the error does not depend on it
 };
 
-/// Judges codes by the error of the hard decoder, all of them on the same trials. For
-/// the linear error, one set of trials finds the best common rotation and another, denser at the
-/// ends of the range, judges the code there.
+/// Judges codes by the error of the hard decoder, all of them on the same trials. For the linear
+/// error, and where depths are not all alike, one set of trials finds the best common rotation and
+/// another, for the linear error denser at the ends of the range, judges the code there.
 class CodeJudge {
  public:
   /// @param trials  per light level
@@ -32,7 +32,7 @@ class CodeJudge {
 
   const DesignProblem* problem_;
   std::vector<TrialBatch> judging_;   // one per light level, shared by variants
-  std::vector<TrialBatch> rotating_;  // the same, for the linear error
+  std::vector<TrialBatch> rotating_;  // of depths that are all alike, to find the rotation
 };
 
 /// The parameters with the origin of depth moved to `rotation_bin`, to the nearest cell.

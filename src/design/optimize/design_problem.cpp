@@ -192,6 +192,7 @@ DesignProblem make_design_problem(std::span<const Camera> given, int exposures, 
   DesignProblem problem;
   problem.space = waveform_space(camera, exposures, samples);
   problem.operating = camera.operating;
+  problem.depths = DepthPrior(camera);
   problem.shortest_run_periods = shortest_run_periods(camera);
   problem.binary_modulation = camera.light.binary;
   problem.binary_demodulation = camera.sensor.binary;

@@ -44,6 +44,7 @@ struct DesignProblem {
   WaveformSpace space;
   std::vector<CameraVariant> variants;              ///< the first is the camera itself; never empty
   OperatingRange operating;                         ///< kind of error and albedo
+  DepthPrior depths;                                ///< how often they occur
   double shortest_run_periods = 0.0;                ///< of binary waveforms
   std::optional<MultipathTrials> later;             ///< second returns of the levels that have them
   std::optional<MultipathTrials> multipath_as_two;  ///< the same, decoded as two returns

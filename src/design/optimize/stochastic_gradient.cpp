@@ -53,9 +53,10 @@ SampledCode StochasticGradient::at(const SampledCode& code, double decision_shar
         trials_ / static_cast<int>(variant.usual_levels() * problem_->variants.size());
     for (std::size_t p = 0; p < variant.levels.size(); ++p) {
       const LightLevel& level = variant.levels[p];
-      const TrialBatch batch = draw_trials(
-          DesignProblem::trials_of(level, trials), variant.camera.measurements(),
-          problem_->operating, problem_->linear(), random, &noise_, problem_->multipath_of(level));
+      const TrialBatch batch =
+          draw_trials(DesignProblem::trials_of(level, trials), variant.camera.measurements(),
+                      problem_->operating, problem_->linear(), random, &noise_,
+                      problem_->multipath_of(level), problem_->depths);
       const double sharpness = decision_sharpness / loss.mean_variance_e2(level.point);
       if (average_error_[v][p] == 0.0)
         add(v, p, std::max(1e-9, loss.soft_error(level.point, batch, sharpness)));

@@ -28,11 +28,12 @@ void move_to(const TwoReturnGrid& grid, DepthTrial& trial) {
                               grid.bins;
 }
 
-/// Density of the even mixture of uniform depths and depths near the ends.
-double mixture_density(double depth_periods) {
+/// Density of the depths of a prior over that of their even mixture with depths near the ends.
+double weight_in_mixture(double depth_periods, const DepthPrior& depths) {
   const double distance = std::min(depth_periods, 1.0 - depth_periods);
   const double near_ends = distance > 0.5 * closest ? 0.5 / (distance * decades) : 0.0;
-  return 0.5 + 0.5 * near_ends;
+  const double density = depths.density(depth_periods);
+  return density == 0.0 ? 0.0 : density / (0.5 * density + 0.5 * near_ends);
 }
 
 }  // namespace
@@ -52,22 +53,24 @@ std::vector<double> NoiseStore::window(std::size_t count, RandomStream& random) 
 }
 
 TrialBatch draw_trials(int count, int measurements, const OperatingRange& range, bool ends_matter,
-                       RandomStream& random, const NoiseStore* store,
-                       const MultipathTrials* later) {
+                       RandomStream& random, const NoiseStore* store, const MultipathTrials* later,
+                       const DepthPrior& depths) {
   TrialBatch batch;
   batch.measurements = measurements;
   if (later) batch.two_returns = later->decoded_as_two;
   batch.trials.resize(static_cast<std::size_t>(count));
   if (batch.two_returns) ends_matter = false;  // they are judged by circular errors
+  // Ends where no depth occurs cost nothing.
+  if (depths.density(0.0) == 0.0 && depths.density(1.0) == 0.0) ends_matter = false;
   const int uniform = ends_matter ? count / 2 : count;
   for (int t = 0; t < count; ++t) {
     DepthTrial& trial = batch.trials[static_cast<std::size_t>(t)];
     const double u = random.uniform();
     if (t < uniform)
-      trial.depth_periods = (t + u) / uniform;
+      trial.depth_periods = depths.quantile((t + u) / uniform);
     else
       trial.depth_periods = depth_near_end((t - uniform + u) / (count - uniform), t % 2 == 1);
-    if (ends_matter) trial.weight = 1.0 / mixture_density(trial.depth_periods);
+    if (ends_matter) trial.weight = weight_in_mixture(trial.depth_periods, depths);
     trial.albedo = range.uniform_albedo ? random.uniform() : range.albedo;
     if (later) {
       trial.multipath_ratio = later->returns.ratio_at(random.uniform());

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "camera/shared/depth_prior.hpp"
 #include "core/shared/random.hpp"
 #include "design/optimize/soft_two_return_decoder.hpp"
 #include "tofsmith/camera/camera.hpp"
@@ -14,7 +15,7 @@ namespace tofsmith {
 /// One true depth and how much it counts.
 struct DepthTrial {
   double depth_periods = 0.0;        ///< in [0, 1)
-  double weight = 1.0;               ///< uniform density over the density it was drawn from
+  double weight = 1.0;               ///< density of depths over the density it was drawn from
   double albedo = 1.0;               ///< scales the signal
   double multipath_ratio = 0.0;      ///< of a second return over the direct one
   double later_delay_periods = 0.0;  ///< behind the direct return, in [0, 1)
@@ -58,13 +59,14 @@ struct MultipathTrials {
   std::optional<TwoReturnGrid> decoded_as_two;  ///< depths and delays lie on this grid then
 };
 
-/// Draws trials: depths stratified over the range. With ends_matter, half of them lie near the ends
-/// of the range, where a wrap costs the whole of it, with a density that falls as 1 / distance; not
-/// so where they are decoded as two returns.
+/// Draws trials: depths stratified over the range, as often as they occur. With ends_matter, half
+/// of them lie near the ends of the range, where a wrap costs the whole of it, with a density that
+/// falls as 1 / distance; not so where they are decoded as two returns.
 /// @param store  where noise comes from; null: fresh
 /// @param later  every trial has such a second return; null: none
+/// @param depths  how often they occur
 TrialBatch draw_trials(int count, int measurements, const OperatingRange& range, bool ends_matter,
                        RandomStream& random, const NoiseStore* store = nullptr,
-                       const MultipathTrials* later = nullptr);
+                       const MultipathTrials* later = nullptr, const DepthPrior& depths = {});
 
 }  // namespace tofsmith

@@ -181,6 +181,8 @@ void visit_operating(Table& table, Field<Table, OperatingRange>& range) {
   table.choice("error", range.error, words_by_name<DepthErrorKind, 2>("DepthErrorKind", "error"));
   table.number_or_word("albedo", range.albedo, "uniform", range.uniform_albedo);
   table.value("neighbours", range.neighbours);
+  table.value("working_distance_m", range.working_distance_m);
+  table.value("depths", range.depths);
   table.table("multipath", range.multipath, visit_operating_multipath<Table>);
 }
 

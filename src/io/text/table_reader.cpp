@@ -49,8 +49,13 @@ std::string one_line(const toml::node& node) {
   return out.str();
 }
 
+/// A long list is named by its beginning.
 std::string describe_setting(std::string_view setting) {
-  return fmt::format("setting '{}'", setting);
+  constexpr std::size_t longest = 160;
+  if (setting.size() <= longest) return fmt::format("setting '{}'", setting);
+  std::size_t end = longest;
+  while (end > 0 && (static_cast<unsigned char>(setting[end]) & 0xC0) == 0x80) --end;  // UTF-8
+  return fmt::format("setting '{}..'", setting.substr(0, end));
 }
 
 /// Keys of `change` replace those of `base`. Nodes are moved: copies forget where they stood.

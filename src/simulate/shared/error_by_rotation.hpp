@@ -7,13 +7,19 @@
 #include <cmath>
 #include <vector>
 
+#include "camera/shared/depth_prior.hpp"
+#include "core/shared/periodic.hpp"
+
 namespace tofsmith {
 
-/// Sum of linear errors [bin] at every rotation, as a step function of the rotation kept by its
-/// jumps: jumps[r] is what rotation r adds over rotation r - 1; jumps[0] is the sum at rotation 0.
+/// Sum of linear errors [bin] at every rotation, of trials whose depths are all alike, as a step
+/// function of the rotation kept by its jumps: jumps[r] is what rotation r adds over rotation
+/// r - 1; jumps[0] is the sum at rotation 0.
 class ErrorByRotation {
  public:
   explicit ErrorByRotation(int samples) : jumps_(static_cast<std::size_t>(samples) + 1, 0.0) {}
+
+  int samples() const { return static_cast<int>(jumps_.size()) - 1; }
 
   void add(double true_bin, double decoded_bin) {
     const auto samples = static_cast<double>(jumps_.size() - 1);
@@ -37,6 +43,53 @@ class ErrorByRotation {
 
  private:
   std::vector<double> jumps_;
+};
+
+/// Sum of errors [bin] at every rotation where depths are not alike, of trials whose depths are:
+/// each is weighed by how often the bin occurs that it lies in, seen from the origin. Of the linear
+/// error, a trial costs its circular one, but where the origin parts the shorter way round.
+class WeighedErrorByRotation {
+ public:
+  WeighedErrorByRotation(const DepthPrior& prior, DepthErrorKind kind, int samples)
+      : weight_(samples * prior.masses(samples)),
+        is_linear_(kind == DepthErrorKind::linear),
+        circular_(Eigen::VectorXd::Zero(samples)),
+        parted_(Eigen::VectorXd::Zero(samples)) {}
+
+  int samples() const { return static_cast<int>(weight_.size()); }
+
+  void add(double true_bin, double decoded_bin) {
+    const Eigen::Index samples = weight_.size();
+    const auto around = static_cast<double>(samples);
+    const auto [low, high] = std::minmax(true_bin, decoded_bin);
+    const double error = std::min(high - low, around - (high - low));
+    const auto at = static_cast<Eigen::Index>(true_bin);
+    circular_[at] += error;
+    if (!is_linear_) return;
+    const double begin = high - low <= error ? low : high;
+    const auto last = static_cast<Eigen::Index>(std::floor(begin + error));
+    for (auto origin = static_cast<Eigen::Index>(begin) + 1; origin <= last; ++origin)
+      parted_[origin % samples] +=
+          weight_[(at + 2 * samples - origin) % samples] * (around - 2.0 * error);
+  }
+  void merge(const WeighedErrorByRotation& other) {
+    circular_ += other.circular_;
+    parted_ += other.parted_;
+  }
+  /// Sums at rotations 0 .. N - 1.
+  std::vector<double> sums() const {
+    const Eigen::VectorXd all = parted_ + circular_correlation(circular_, weight_);
+    std::vector<double> result(static_cast<std::size_t>(all.size()));
+    std::transform(all.begin(), all.end(), result.begin(),
+                   [](double sum) { return std::max(sum, 0.0); });  // but for rounding
+    return result;
+  }
+
+ private:
+  Eigen::VectorXd weight_;  // of each bin, 1 on average
+  bool is_linear_;
+  Eigen::VectorXd circular_;  // of trials in each bin, unweighed
+  Eigen::VectorXd parted_;    // what each rotation costs beside
 };
 
 /// The best origin of depth: of all rotations by their errors, or monotone functions of them, the
