@@ -32,6 +32,7 @@ packages_build=(
   python3-plotly      # its plotly.js goes into the reports
   esbuild             # minifies it
   zlib1g-dev          # packs it and the pictures
+  ocl-icd-opencl-dev opencl-c-headers  # decoding on a GPU; can be left out
 )
 # The Python package, on top of the library.
 packages_python=(
@@ -57,6 +58,7 @@ packages_test=(
   "${packages_python[@]}"
   libgtest-dev libgmock-dev
   libopenmpi-dev openmpi-bin                 # sweeps of several ranks
+  pocl-opencl-icd                            # OpenCL on the processor
   python3-pytest mypy                        # the Python package
   python3-h5py                               # writes what .h5 readers must read
   python3-opencv                             # distorts as lenses must
