@@ -55,6 +55,37 @@ std::string strip(const Waveform& waveform) {
   return text;
 }
 
+/// Its switching times; a sampled one has none, though its samples step.
+std::string edges_text(const Waveform& waveform) {
+  return waveform.is_binary() ? fmt::format("{}", waveform.edges()) : "sampled";
+}
+
+std::string counted(int count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+/// A line for every tap value, headings first: of a row its weights in place of a gate's duty.
+std::vector<std::vector<std::string>> waveform_rows(const CodeSet& code, std::string_view value) {
+  std::vector<std::vector<std::string>> rows{
+      {std::string(value), "mod. duty", "mod. peak", "edges"}};
+  if (code.is_rows())
+    rows[0].insert(rows[0].end(), {"least weight", "most weight"});
+  else
+    rows[0].insert(rows[0].end(), {"dem. duty", "edges"});
+  for (int i = 0; i < code.measurements(); ++i) {
+    const Waveform& m = code.modulation_of(i);
+    const Waveform& d = code.demodulation(i);
+    rows.push_back({fmt::format("{}", i + 1), fmt::format("{:.4f}", m.duty()),
+                    fmt::format("{:.3f}", m.peak()), edges_text(m)});
+    if (code.is_rows())
+      rows.back().insert(rows.back().end(),
+                         {fmt::format("{:.4g}", d.minimum()), fmt::format("{:.4g}", d.peak())});
+    else
+      rows.back().insert(rows.back().end(), {fmt::format("{:.4f}", d.mean()), edges_text(d)});
+  }
+  return rows;
+}
+
 void show(const Session& session, const CodeSet& code, const Camera& camera) {
   const ForwardModel model(code, camera);
   const Eigen::MatrixXd table = model.correlation_table(8 * code.samples());
@@ -70,9 +101,6 @@ void show(const Session& session, const CodeSet& code, const Camera& camera) {
                                      {"coding_curve_length", coding_curve_length(table)},
                                      {"coding_curve_rank", coding_curve_rank(table)},
                                      {"harmonics_99_percent", harmonics_used(table)}};
-  std::vector<std::vector<std::string>> rows{{are_differences ? "tap value" : "measurement",
-                                              "mod. duty", "mod. peak", "edges", "dem. duty",
-                                              "edges"}};
   std::string strips;
   for (int i = 0; i < code.measurements(); ++i) {
     const Waveform& m = code.modulation_of(i);
@@ -82,9 +110,6 @@ void show(const Session& session, const CodeSet& code, const Camera& camera) {
                                            {"modulation_edges", m.edges()},
                                            {"demodulation_duty", d.mean()},
                                            {"demodulation_edges", d.edges()}});
-    rows.push_back({fmt::format("{}", i + 1), fmt::format("{:.4f}", m.duty()),
-                    fmt::format("{:.3f}", m.peak()), fmt::format("{}", m.edges()),
-                    fmt::format("{:.4f}", d.mean()), fmt::format("{}", d.edges())});
     strips += fmt::format("  m{:<2} |{}|\n  d{:<2} |{}|\n", i + 1, strip(m), i + 1, strip(d));
   }
   const std::vector<GeneratorReport> generators = generator_report(code, camera);
@@ -92,12 +117,14 @@ void show(const Session& session, const CodeSet& code, const Camera& camera) {
     document["generators"] = nlohmann::ordered_json::parse(generators_document(generators));
   session.print_json(document);
   session.say(fmt::format(
-      "{} on {}: {} measurements{}, {} exposures, N = {}, peak {:.3g}\n"
-      "coding curve: length {:.4g}, rank {}, 99 % of its energy within {} harmonics\n\n{}\n{}",
-      code.name(), camera.name, measurements,
+      "{} on {}: {}{}, {}, N = {}, peak {:.3g}\n"
+      "coding curve: length {:.4g}, rank {}, 99 % of its energy within {}\n\n{}\n{}",
+      code.name(), camera.name, counted(measurements, "measurement"),
       are_differences ? fmt::format(" (differences of {} tap values)", code.measurements()) : "",
-      code.exposures(), code.samples(), code.peak(), coding_curve_length(table),
-      coding_curve_rank(table), harmonics_used(table), text_table(rows), strips));
+      counted(code.exposures(), "exposure"), code.samples(), code.peak(),
+      coding_curve_length(table), coding_curve_rank(table),
+      counted(harmonics_used(table), "harmonic"),
+      text_table(waveform_rows(code, are_differences ? "tap value" : "measurement")), strips));
   if (!generators.empty())
     session.say("Nominal and actual waveforms of the generators, ahead of the arms' responses:\n" +
                 text_table(generator_report_rows(generators)));

@@ -121,6 +121,25 @@ std::string trials_text(const std::vector<EvaluatedCode>& codes, const EvaluateO
   return fmt::format("{} to {} trials", min_trials, max_trials);
 }
 
+/// "25 light levels (S = 1e+03 .. 1e+05, A = 100 .. 1e+05 e/s)"
+std::string light_levels_text(const OperatingRange& operating) {
+  const auto span = [](const std::vector<double>& e_per_s) {
+    const auto [least, most] = std::ranges::minmax(e_per_s);
+    return least == most ? fmt::format("{:.3g}", least)
+                         : fmt::format("{:.3g} .. {:.3g}", least, most);
+  };
+  return fmt::format("{} light levels of the camera (S = {}, A = {} e/s)",
+                     operating.signal_e_per_s.size() * operating.ambient_e_per_s.size(),
+                     span(operating.signal_e_per_s), span(operating.ambient_e_per_s));
+}
+
+/// Whether somewhere a bound is larger than the error that it bounds by more than noise.
+bool exceeds_error(const EvaluatedCode& code) {
+  return std::ranges::any_of(code.error.points, [](const PointDepthError& p) {
+    return std::isfinite(p.cramer_rao_mae_m) && 0.9 * p.cramer_rao_mae_m > p.circular_mde_m.value;
+  });
+}
+
 /// What a reader must know of points that reached the most trials before the target.
 void note_missed_targets(const Session& session, const std::vector<EvaluatedCode>& codes,
                          const EvaluateOptions& options) {
@@ -149,9 +168,13 @@ void print(const Session& session, const Camera& camera, const std::vector<Evalu
       trials_text(codes, options), options.seed, camera.samples,
       options.depth == DepthSampling::bins ? "on bins" : "anywhere in the range",
       name_of(options.method)));
-  if (const std::size_t levels = codes.front().error.points.size(); levels > 2 && !every_level)
+  if (codes.front().error.points.size() > 2 && !every_level)
+    session.say(fmt::format("all {}: --every-level, or -o FILE (.csv .json .html)",
+                            light_levels_text(camera.operating)));
+  if (std::ranges::any_of(codes, exceeds_error))
     session.say(
-        fmt::format("all {} light levels: --every-level, or -o FILE (.csv .json .html)", levels));
+        "bounds above the error (below 1x) hold for decoders without bias; an error ends with the "
+        "range, and such a bound does not");
   note_missed_targets(session, codes, options);
 }
 
@@ -243,6 +266,7 @@ void run(EvaluateArguments& arguments, const Session& session) {
   for (const CodeSet& code : codes)
     if (const auto note = ambiguity_note(make_decoding_table(ForwardModel(code, camera), camera)))
       session.say(fmt::format("{}: {}", code.name(), *note));
+  if (!arguments.output.empty()) session.say(fmt::format("wrote {}", arguments.output));
 }
 
 }  // namespace
@@ -251,7 +275,9 @@ void add_evaluate_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<EvaluateArguments>();
   CLI::App* command = app.add_subcommand(
       "evaluate", "depth error of codes at every operating point of a camera, with bounds");
-  command->add_option("CODE", arguments->codes, "families or code files (.code.json, .npz)")
+  command
+      ->add_option("CODE", arguments->codes,
+                   "families, or code files (.code.json .npz .csv; rows as LIGHT.npy,ROWS.npy)")
       ->required();
   arguments->camera.add_to(*command);
   const CLI::Range trials(std::int64_t{2}, std::int64_t{4'000'000'000});

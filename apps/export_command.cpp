@@ -97,7 +97,7 @@ void add_export_command(CLI::App& app, Session& session) {
       "export",
       "waveforms as files for generators and pattern memories, and what their limits cost");
   ExportOptions& options = arguments->request.options;
-  command->add_option("CODE", arguments->code, "a family or a code file (.code.json, .npz)")
+  command->add_option("CODE", arguments->code, "a family or a code file (.code.json .npz .csv)")
       ->required();
   command->add_option("--format", options.format, "format of the files, see below")->required();
   command->add_option("--variant", options.variant,

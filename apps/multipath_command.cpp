@@ -139,7 +139,7 @@ void add_multipath_command(CLI::App& app, Session& session) {
       "multipath",
       "bias and error of direct depth behind a second return or a tail, single-path against "
       "two-return decoding, with the Cramer-Rao bound");
-  command->add_option("CODE", arguments->codes, "families or code files (.code.json, .npz)")
+  command->add_option("CODE", arguments->codes, "families or code files (.code.json .npz .csv)")
       ->required();
   arguments->camera.add_to(*command);
   const auto list = [&](const char* name, std::vector<double>& values, const char* help) {

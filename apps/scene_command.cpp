@@ -4,8 +4,9 @@
 #include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 #include "commands.hpp"
 #include "fresh_directory.hpp"
@@ -20,16 +21,27 @@
 namespace tofsmith::apps {
 namespace {
 
+/// The depths between which all but a few pixels lie: strays of a decoded image are among the few.
+/// {0, 0} if nothing returns.
+std::pair<double, double> shown_span_m(const SceneImage& scene) {
+  constexpr double left_out = 0.005;  // at either end
+  std::vector<double> depth_m;
+  for (const double z_m : scene.depth_m.pixels)
+    if (std::isfinite(z_m)) depth_m.push_back(z_m);
+  if (depth_m.empty()) return {0.0, 0.0};
+  const auto quantile = [&](double share) {
+    const auto at = depth_m.begin() + std::lround(share * static_cast<double>(depth_m.size() - 1));
+    std::nth_element(depth_m.begin(), at, depth_m.end());
+    return *at;
+  };
+  return {quantile(left_out), quantile(1.0 - left_out)};
+}
+
 /// A picture to look at: left the depth, near bright and far dark; right what the camera's own
 /// light shows, albedo x cosine. Black where nothing returns.
 PngImage scene_preview(const SceneImage& scene) {
   constexpr double darkest = 0.2;  // of what returns: black means no return
-  double nearest_m = std::numeric_limits<double>::infinity(), farthest_m = 0.0;
-  for (const double depth_m : scene.depth_m.pixels)
-    if (std::isfinite(depth_m)) {
-      nearest_m = std::min(nearest_m, depth_m);
-      farthest_m = std::max(farthest_m, depth_m);
-    }
+  const auto [nearest_m, farthest_m] = shown_span_m(scene);
   const double span_m = std::max(farthest_m - nearest_m, 1e-9);
 
   PngImage png{.height = scene.height(), .width = 2 * scene.width()};
@@ -39,7 +51,8 @@ PngImage scene_preview(const SceneImage& scene) {
   for (int row = 0; row < scene.height(); ++row) {
     for (int column = 0; column < scene.width(); ++column) {
       const double depth_m = scene.depth_m(row, column);
-      grey(std::isfinite(depth_m) ? 1.0 - (1.0 - darkest) * (depth_m - nearest_m) / span_m : 0.0);
+      const double share = std::clamp((depth_m - nearest_m) / span_m, 0.0, 1.0);
+      grey(std::isfinite(depth_m) ? 1.0 - (1.0 - darkest) * share : 0.0);
     }
     for (int column = 0; column < scene.width(); ++column) {
       const double light = static_cast<double>(scene.albedo(row, column)) *

@@ -19,7 +19,10 @@ namespace tofsmith::apps {
 
 UsageError wrong_option(const std::invalid_argument& error) {
   std::string text = error.what();
-  std::replace(text.begin(), std::find(text.begin(), text.end(), ' '), '_', '-');
+  const auto end = std::find(text.begin(), text.end(), ' ');
+  // A key of the camera is none.
+  if (std::find(text.begin(), end, '.') != end) return UsageError(text);
+  std::replace(text.begin(), end, '_', '-');
   return UsageError("--" + text);
 }
 

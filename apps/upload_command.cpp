@@ -236,7 +236,7 @@ void add_upload_command(CLI::App& app, Session& session) {
   auto arguments = std::make_shared<UploadArguments>();
   CLI::App* command = app.add_subcommand(
       "upload", "play a code on a generator in the network: load, set, read back and compare");
-  command->add_option("CODE", arguments->code, "a family or a code file (.code.json, .npz)")
+  command->add_option("CODE", arguments->code, "a family or a code file (.code.json .npz .csv)")
       ->required();
   command->add_option("--instrument", arguments->address,
                       "host, host:port, tcp://host:port, vxi11://host or "

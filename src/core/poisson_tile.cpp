@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
+#include "core/shared/poisson_attempt.hpp"
 #include "core/shared/random_tile.hpp"
 
 #ifndef TOFSMITH_CORE_POISSON_TILE_CONSTANTS
 #define TOFSMITH_CORE_POISSON_TILE_CONSTANTS
 namespace tofsmith {
 namespace {
-constexpr double min_rejection_mean = 10.0;
 constexpr double min_stirling_count = 16.0;
 }  // namespace
 }  // namespace tofsmith
@@ -43,7 +42,7 @@ HWY_INLINE Double open_uniform(const std::uint32_t* word) {
   return hn::Mul(hn::Add(number, all(0.5)), all(0x1p-32));
 }
 
-/// A vector of attempts of PTRS.
+/// A vector of attempts, as attempted_poisson() makes one.
 struct Attempt {
   HWY_INLINE Attempt(const std::uint32_t* u_word, const std::uint32_t* v_word, const double* means)
       : mean(hn::Max(hn::LoadU(Doubles(), means), all(min_rejection_mean))),
@@ -130,30 +129,6 @@ std::uint32_t block_of(int draw, std::uint32_t number) {
   return first_poisson_block + static_cast<std::uint32_t>(draw) * blocks_per_draw + number;
 }
 
-/// ln n! of n < 16.
-double log_factorial(double n) {
-  static const std::array<double, 16> table = [] {
-    std::array<double, 16> values{};
-    for (std::size_t i = 2; i < values.size(); ++i)
-      values[i] = values[i - 1] + std::log(static_cast<double>(i));
-    return values;
-  }();
-  return table[static_cast<std::size_t>(n)];
-}
-
-double open_uniform(std::uint32_t word) { return (word + 0.5) * 0x1p-32; }
-
-/// Whether an attempt that came out at k < 16 is accepted.
-bool is_few_accepted(double mean, double k, std::uint32_t u_word, std::uint32_t v_word) {
-  const double us = 0.5 - std::abs(open_uniform(u_word) - 0.5), v = open_uniform(v_word);
-  const double b = 0.931 + 2.53 * std::sqrt(mean), a = -0.059 + 0.02483 * b;
-  if (us >= 0.07 && v <= 0.9277 - 3.6224 / (b - 2)) return true;
-  if (k < 0.0 || (us < 0.013 && v > us)) return false;
-  const double inverse_alpha = 1.1239 + 1.1328 / (b - 3.4);
-  return std::log(v * inverse_alpha / (a / (us * us) + b)) <=
-         k * std::log(mean) - mean - log_factorial(k);
-}
-
 /// Words of one stream, scalar.
 std::array<std::uint32_t, 4> words_of(const TrialStreams& streams, std::uint32_t block, int i) {
   const r123::Philox4x32::ctr_type counter = {
@@ -164,17 +139,6 @@ std::array<std::uint32_t, 4> words_of(const TrialStreams& streams, std::uint32_t
       {static_cast<std::uint32_t>(streams.seed), static_cast<std::uint32_t>(streams.seed >> 32)}};
   const auto words = r123::Philox4x32()(counter, key);
   return {words[0], words[1], words[2], words[3]};
-}
-
-/// Smallest k whose distribution function reaches a uniform number of 53 bits.
-double by_inversion(double mean, std::uint32_t high, std::uint32_t low) {
-  const double u = static_cast<double>(((std::uint64_t{high} << 32) | low) >> 11) * 0x1p-53;
-  double probability = std::exp(-mean), rest = u - probability, k = 0.0;
-  while (rest >= 0.0 && k < 200.0) {
-    probability *= mean / ++k;
-    rest -= probability;
-  }
-  return k;
 }
 
 /// Trials whose count is still open, side by side.
@@ -201,7 +165,8 @@ struct OpenTrials {
     size = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(before); ++i) {
       const bool is_few = count[i] < min_stirling_count;
-      if (is_few ? is_few_accepted(mean[i], count[i], u_word[i], v_word[i]) : is_accepted[i] != 0)
+      if (is_few ? attempted_poisson(mean[i], u_word[i], v_word[i]).has_value()
+                 : is_accepted[i] != 0)
         counts[trial[i]] = count[i];
       else
         add(trial[i], mean[i]);
@@ -222,7 +187,8 @@ void draw_poisson(const TrialStreams& streams, int draw, int trials, const doubl
   OpenTrials open;
   for (int i = 0; i < trials; ++i) {
     if (mean[i] < min_rejection_mean)
-      count[i] = mean[i] > 0.0 ? by_inversion(mean[i], words[i], words[trials_per_tile + i]) : 0.0;
+      count[i] =
+          mean[i] > 0.0 ? inverted_poisson(mean[i], words[i], words[trials_per_tile + i]) : 0.0;
     else if (is_accepted[i] == 0)
       open.add(i, mean[i]);
   }

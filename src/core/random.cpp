@@ -6,7 +6,8 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
+
+#include "core/shared/poisson_attempt.hpp"
 
 namespace tofsmith {
 
@@ -51,9 +52,13 @@ double RandomStream::normal() {
 double RandomStream::poisson(double mean) {
   if (!(mean > 0.0)) return 0.0;
   // Above 1e9 the standard deviation is 3e-5 of the mean and the normal limit is exact to the last
-  // digit that a double of counts can carry; std::poisson_distribution would overflow its integer.
+  // digit that a double of counts can carry.
   if (mean > 1e9) return std::round(mean + std::sqrt(mean) * normal());
-  return static_cast<double>(std::poisson_distribution<std::int64_t>(mean)(*this));
+  for (;;) {
+    const result_type first = (*this)(), second = (*this)();
+    if (mean < min_rejection_mean) return inverted_poisson(mean, first, second);
+    if (const auto count = attempted_poisson(mean, first, second)) return *count;
+  }
 }
 
 std::uint64_t combine_keys(std::uint64_t a, std::uint64_t b) {

@@ -11,6 +11,35 @@ namespace {
 constexpr double no_ambient = 1e-9;
 constexpr double no_dimension = 1e-12;
 constexpr double no_contrast = 1e-9;
+// Singular values as close as this are one: which directions belong to each is up to rounding.
+constexpr double tied_values = 1e-6;
+
+/// The one orthonormal basis of the space that these columns span which any other basis of it
+/// gives, too: its first vector is the projection of the unit vector that lies in the space best,
+/// of those that do equally well the first, and so on in what is left.
+Eigen::MatrixXd settled_basis(const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd left = columns * columns.transpose();  // of each unit vector in the space
+  Eigen::MatrixXd basis(columns.rows(), columns.cols());
+  for (Eigen::Index i = 0; i < basis.cols(); ++i) {
+    const Eigen::VectorXd lengths = left.colwise().norm();
+    Eigen::Index first = 0;
+    while (lengths[first] < (1.0 - tied_values) * lengths.maxCoeff()) ++first;
+    basis.col(i) = left.col(first) / lengths[first];
+    left -= basis.col(i) * (basis.col(i).transpose() * left).eval();
+  }
+  return basis;
+}
+
+/// Directions, and signs, that the decomposition leaves to rounding, the same on any processor: a
+/// seed's noise is drawn along them.
+void settle(Eigen::MatrixXd& directions, const Eigen::VectorXd& values) {
+  for (Eigen::Index begin = 0, end = 0; begin < directions.cols(); begin = end) {
+    while (end < directions.cols() && values[end] >= (1.0 - tied_values) * values[begin]) ++end;
+    directions.middleCols(begin, end - begin) =
+        settled_basis(directions.middleCols(begin, end - begin));
+  }
+}
+
 }  // namespace
 
 AmbientProjection::AmbientProjection(const DecodingTable& table) {
@@ -34,6 +63,7 @@ AmbientProjection::AmbientProjection(const DecodingTable& table) {
   Eigen::Index kept = 0;
   while (kept < svd.values.size() && svd.values[kept] > no_dimension * whole) ++kept;
   noise_basis = svd.v.leftCols(kept);
+  settle(noise_basis, svd.values);
   basis = noise_basis;
   if (table.has_rows()) basis = table.whitening.transpose() * noise_basis;
 

@@ -136,10 +136,17 @@ Estimate gain_over(const DesignResult& result, const Candidate& other, DepthErro
 
 namespace {
 
-/// More are rows.
+/// More are rows, and of those a design needs some.
 void require_exposures(const Camera& camera, const DesignOptions& options) {
   constexpr int max_exposures = 8;
-  if (camera.sensor.readout == Readout::rows) return;
+  if (camera.sensor.readout == Readout::rows) {
+    for (const int rows : options.exposures)
+      require(rows >= min_designed_rows && rows <= max_exposure_rows, "DesignOptions::exposures",
+              rows,
+              fmt::format("must be in [{}, {}] on a camera that reads rows: how many to design",
+                          min_designed_rows, max_exposure_rows));
+    return;
+  }
   for (const int exposures : options.exposures)
     require(exposures <= max_exposures, "DesignOptions::exposures", exposures,
             fmt::format("must be in [1, {}]; up to {} are rows of one exposure", max_exposures,

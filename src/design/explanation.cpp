@@ -58,9 +58,11 @@ std::string why_so_many_exposures(const Camera& camera, const DesignResult& resu
       others += fmt::format("{}{} would give {} mm", others.empty() ? "" : ", ", exposures,
                             plain_number(1e3 * error_m, 3));
   const int harmonics = useful_harmonics(camera);
-  const std::string band = harmonics == 0
-                               ? std::string("no band limit")
-                               : fmt::format("a band that passes {} harmonics", harmonics);
+  const std::string band =
+      harmonics == 0
+          ? std::string("no band limit")
+          : fmt::format("a band that passes {} harmonics (a twenty-fifth of them or more)",
+                        harmonics);
   return fmt::format(
       "With {} and {} per exposure it takes {} exposure{}{}: more of them, or more taps, resolve "
       "more "

@@ -171,6 +171,14 @@ TEST_P(PoissonTile, HasThePoissonDistribution) {
   EXPECT_LT(chi_square_deviation(counts, mean), 4.0);
 }
 
+// Scalar, with the same law.
+TEST_P(PoissonTile, CountsOfAStreamHaveItToo) {
+  RandomStream stream(11, 2);
+  std::vector<double> counts(std::size_t{200} * trials_per_tile);
+  for (double& count : counts) count = stream.poisson(GetParam());
+  EXPECT_LT(chi_square_deviation(counts, GetParam()), 4.0);
+}
+
 INSTANTIATE_TEST_SUITE_P(FromRareToPlenty, PoissonTile,
                          testing::Values(0.1, 1.0, 4.0, 9.99, 10.0, 12.5, 30.0, 100.0, 1e3, 3e4,
                                          1e6, 1e7));

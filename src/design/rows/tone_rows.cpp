@@ -303,9 +303,6 @@ std::vector<int> designable_rows(const DesignOptions& options) {
 std::string rows_name(int rows) { return fmt::format("tones-k{}", rows); }
 
 std::optional<BrokenRule> why_no_row_design(const Camera& camera, int rows) {
-  if (rows < 3 || rows > max_exposure_rows)
-    return broken("rows", rows,
-                  fmt::format("must be in [3, {}] to design them", max_exposure_rows));
   if (camera.light.peak_factor <= 1.0)
     return broken("light.peak_factor", camera.light.peak_factor,
                   "must be > 1 to design rows: light that never changes carries no depth");

@@ -12,6 +12,9 @@
 
 namespace tofsmith {
 
+/// Two of one tone and one that tells the period.
+constexpr int min_designed_rows = 3;
+
 /// Numbers of rows to design for: DesignOptions::exposures, or 8.
 std::vector<int> designable_rows(const DesignOptions& options);
 std::string rows_name(int rows);

@@ -9,8 +9,11 @@
 import json
 import subprocess
 import sys
+import tempfile
 import unittest
 from pathlib import Path
+
+import numpy as np
 
 TOOL = sys.argv[1]
 PAGES = [Path(name) for name in sys.argv[2:] if Path(name).is_file()]
@@ -67,6 +70,25 @@ class Numbers(LabTest):
         shown = self.text("[data-command=evaluate] pre")
         self.assertEqual(self.shell(shown + " --json"), theirs)
 
+    def compare_scene(self, camera, code):
+        """Depth of every pixel, to single precision."""
+        ours = self.run_script("""
+            const {depth_m} = await tofsmithLab.engine.call('scene', {
+              camera: args[0], code: {name: args[1]}, scene: 'table-top', seed: 3, width: 64, signal: 1e5, ambient: 1e4, filter: 'off'
+            });
+            return [...depth_m.values].map(String);""",
+            subprocess.run([TOOL, "cameras", camera], capture_output=True, text=True, check=True).stdout, code)
+        with tempfile.TemporaryDirectory() as folder:
+            raw, depth = Path(folder, "raw.npy"), Path(folder, "depth.npy")
+            on = ["--code", code, "--camera", camera]
+            command("simulate", "table-top", *on, "--width", "64", "--height", "48", "--signal", "1e5", "--ambient", "1e4",
+                    "--seed", "3", "-o", str(raw))
+            command("decode", str(raw), *on, "-o", str(depth))
+            theirs = np.load(depth).ravel()
+        found = np.array(ours, dtype=float)
+        np.testing.assert_array_equal(np.isfinite(found), np.isfinite(theirs))
+        np.testing.assert_allclose(found, theirs, rtol=1e-6)
+
     def shell(self, text):
         """What the command that the page shows gives."""
         words = text.replace("tofsmith", TOOL, 1)
@@ -75,8 +97,15 @@ class Numbers(LabTest):
     def test_the_table_and_the_command_shown_give_what_the_command_gives(self):
         self.compare("paper-10f0", [{"key": "exposure_s", "value": "0.25"}], "hamiltonian-k4")
 
+    def test_curves_that_are_equally_long_in_several_directions_too(self):
+        self.compare("paper-10f0", [{"key": "light.peak_factor", "value": "6"}], "hamiltonian-k4")
+
     def test_cameras_of_the_trade_too(self):
         self.compare("kinect-v2", [], "multifrequency-2x3-10x3-15x3")
+
+    def test_scenes_have_the_depth_of_the_command(self):
+        self.compare_scene("paper-10f0", "hamiltonian-k4")
+        self.compare_scene("kinect-v2", "multifrequency-2x3-10x3-15x3")  # counts photons
 
     def test_what_no_camera_may_be_is_told_as_the_command_tells_it(self):
         done = subprocess.run([TOOL, "cameras", "paper-10f0"], capture_output=True, text=True, check=True)
