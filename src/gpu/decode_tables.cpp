@@ -100,7 +100,7 @@ void add_cells(const CellSearch& cells, Words& words, MatchParameters& p) {
 void add_arcs(const ArcTable& arcs, const DirectionTable& directions, Words& words,
               MatchParameters& p) {
   const Margins margins = margins_of(arcs.rank());
-  const auto block = static_cast<std::size_t>((arcs.rank() + 1) * block_lanes);
+  const auto block = static_cast<std::size_t>(arcs.rank() + 1) * block_lanes;
   std::vector<float> radii;
   for (std::int32_t w = 0; w < arcs.windows(); ++w) radii.push_back(arcs.window_radius(w));
   p.way = by_arcs;

@@ -65,8 +65,8 @@ void DeviceOptions::validate() const { check_fields(*this, "DeviceOptions::"); }
 struct DeviceDecoder::Plan {
   Plan(const Device& device_, const Decoder& decoder_, const DeviceOptions& options)
       : device(device_), decoder(decoder_), tile(device, decoder, options.use_doubles) {
-    const double most =
-        std::min<double>(max_tile_pixels, std::numeric_limits<int>::max() / decoder.measurements());
+    const double most = std::min<double>(
+        max_tile_pixels, double{std::numeric_limits<int>::max()} / decoder.measurements());
     tile_pixels = static_cast<std::int64_t>(
         std::clamp(1e6 * options.memory_mb / static_cast<double>(tile.bytes_per_pixel()),
                    static_cast<double>(min_tile_pixels), most));
