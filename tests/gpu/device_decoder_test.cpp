@@ -195,17 +195,17 @@ TEST_F(DeviceDecoding, ReadsNumbersOfEveryTypeAndLayout) {
 
 TEST_F(DeviceDecoding, DecidesBinsOfDoublesByTheDoubles) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  // In so much ambient light floats are whole numbers, and the signal is what they leave out.
   RandomStream random(5, 0);
   std::vector<double> raw;
-  for (const float value : noisy_pixels(setup.decoder.table(), 1e4, 1e5, 4000, 8))
-    raw.push_back(value * (1.0 + 1e-7 * random.uniform()));
+  for (const float value : noisy_pixels(setup.decoder.table(), 1e4, 1e8, 4000, 8))
+    raw.push_back(value + random.uniform());
   raw[5] = 1e300;  // a float would be infinite, and the pixel invalid
   const DeviceDecoder on_device(device(), setup.decoder);
   const RawView view = RawView::interleaved(raw.data(), 40, 100, 4);
   std::int64_t left = 0;
   expect_alike(device().info(), true, decoded(on_device, view, left), decoded(setup.decoder, view),
                1e6);
-  EXPECT_LT(left, 1000);
 }
 
 TEST_F(DeviceDecoding, KnowsTheNoiseOfMeans) {
