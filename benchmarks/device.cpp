@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // Pixels that a device of OpenCL decodes per second, from its memory and from this computer's,
-// beside copies of the same bytes in the same run.
+// beside copies of the same bytes in the same run; and how many of them differ from the Decoder's.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cstring>
 #include <functional>
 
 #include "decode_setup.hpp"
@@ -52,13 +53,35 @@ struct Planes {
   std::vector<std::int32_t> bin;
 };
 
+template <typename Value>
+std::int64_t differences(const std::vector<Value>& a, const std::vector<Value>& b) {
+  std::int64_t count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    count += std::memcmp(&a[i], &b[i], sizeof(Value)) != 0 ? 1 : 0;
+  return count;
+}
+
+/// Tells how many bins, statuses and bits of other planes differ.
+void tell_differences(const Planes& a, const Planes& b) {
+  std::int64_t floats = 0;
+  for (const auto plane :
+       {&DepthImage::depth_m, &DepthImage::signal_e_per_s, &DepthImage::ambient_e_per_s,
+        &DepthImage::confidence, &DepthImage::predicted_standard_deviation_m})
+    floats += differences((a.image.*plane).pixels, (b.image.*plane).pixels);
+  fmt::print(
+      "{:<16} of {} pixels {} bins, {} statuses and {} floats differ (asked: 0, 0, none by "
+      "2e-6)\n",
+      "", a.bin.size(), differences(a.bin, b.bin),
+      differences(a.image.status.pixels, b.image.status.pixels), floats);
+}
+
 void report(const Device& device, const char* code, int pixels, double copy_bytes_per_s, int runs) {
   Camera camera = camera_with("paper-10f0");
   camera.samples = 960;
   const DecodeSetup setup(code, camera);
   const int measurements = setup.decoder.measurements();
   // Some noise, repeated: what is decoded beside it does not matter.
-  const std::vector<float> some = noisy_pixels(setup.decoder.table(), 1e5, 1e4, 1 << 16, 1);
+  const std::vector<float> some = noisy_pixels(setup.decoder.table(), 1e5, 1e4, 1 << 19, 1);
   std::vector<float> raw;
   while (raw.size() < static_cast<std::size_t>(pixels) * static_cast<std::size_t>(measurements))
     raw.insert(raw.end(), some.begin(), some.end());
@@ -88,6 +111,10 @@ void report(const Device& device, const char* code, int pixels, double copy_byte
   };
   tell("bins", {.bin = planes.bin.data()}, 4.0, 0.25);
   tell("all outputs", planes.all(), 25.0, 1.0 / 6.0);
+  Planes on_it(pixels);
+  on_device.decode(view, on_it.all());
+  setup.decoder.decode(view, planes.all());
+  tell_differences(on_it, planes);
 }
 
 int run(int argc, char** argv) {
