@@ -4,7 +4,7 @@
 # src/CMakeLists.txt.
 
 set(kernel_text)
-foreach(file IN ITEMS decode_parameters.h decode.cl)
+foreach(file IN ITEMS decode_parameters.h bins.cl planes.cl)
   set(path "${CMAKE_CURRENT_SOURCE_DIR}/gpu/${file}")
   file(READ "${path}" text)
   string(APPEND kernel_text "${text}")
