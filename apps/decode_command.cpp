@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "decode_pipe.hpp"
 #include "decode_report.hpp"
+#include "device_arguments.hpp"
 #include "filter_arguments.hpp"
 #include "help_pages.hpp"
 #include "method_arguments.hpp"
@@ -32,6 +33,7 @@ struct DecodeArguments {
   TableArguments table;
   MethodArguments method;
   MultipathArguments multipath;
+  DeviceArguments device;
   FilterArguments filter;
   std::string stray_light, rays;
   std::vector<std::string> planes;
@@ -110,7 +112,13 @@ void run(DecodeArguments& arguments, Session& session) {
   const AnyDecoder decoder =
       make_decoder(arguments.method.method(), source.table, arguments.options,
                    arguments.method.unwrap_weights(), arguments.multipath.options());
-  const DecodeRequest request = request_of(arguments, camera, session);
+  const std::optional<DeviceDecoder> on_device = arguments.device.decoder_like(decoder);
+  DecodeRequest request = request_of(arguments, camera, session);
+  if (on_device)
+    request.decode_by = [&on_device](const RawView& raw, const DecodedView& decoded,
+                                     const Progress& progress) {
+      on_device->decode(raw, decoded, progress);
+    };
   if (reads_pipe(arguments)) {
     for (const std::string& note : source.notes) fmt::print(stderr, "{}\n", note);
     return decode_pipe(request, decoder, session);
@@ -126,6 +134,7 @@ void run(DecodeArguments& arguments, Session& session) {
       {"range_m", source.table.range_m},
       {"range_source", source.range_source},
       {"method", name_of(arguments.method.method())},
+      {"device", on_device ? on_device->device().info().name : "cpu"},
       {"average", request.average},
       {"averaged", request.averaged},
       {"hdr", request.hdr},
@@ -142,6 +151,7 @@ void run(DecodeArguments& arguments, Session& session) {
   document["notes"] = notes;
   session.print_json(document);
   std::string lines = decode_lines(request, result);
+  if (on_device) lines += "\ndevice " + on_device->device().info().name;
   if (source.tell_range)
     lines += fmt::format("\nrange {:.4g} m ({})", source.table.range_m, source.range_source);
   if (camera_source) lines += "\ncamera " + *camera_source;
@@ -223,6 +233,7 @@ void add_decode_command(CLI::App& app, Session& session) {
       ->group(for_experts);
   arguments->method.add_to(*command);
   arguments->multipath.add_to(*command);
+  arguments->device.add_to(*command);
   command
       ->add_option(
           "--outputs", arguments->planes,

@@ -15,7 +15,6 @@
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/report/page.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
-#include "tofsmith/sweep/sweep_results.hpp"
 #include "tofsmith/version.hpp"
 
 namespace tofsmith::apps {

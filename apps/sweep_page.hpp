@@ -6,7 +6,7 @@
 #include <string>
 
 #include "tofsmith/report/page.hpp"
-#include "tofsmith/sweep/sweep_results.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
 
 namespace tofsmith::apps {
 

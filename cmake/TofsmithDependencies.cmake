@@ -49,6 +49,20 @@ if(TOFSMITH_HAS_io)
   pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)  # not the one for MPI
 endif()
 
+set(TOFSMITH_HAS_OPENCL OFF)
+if(TOFSMITH_HAS_gpu)
+  if(TOFSMITH_USE_OPENCL STREQUAL "AUTO")
+    find_package(OpenCL)
+  elseif(TOFSMITH_USE_OPENCL)
+    find_package(OpenCL REQUIRED)
+  endif()
+  if(TOFSMITH_USE_OPENCL AND OpenCL_FOUND)
+    set(TOFSMITH_HAS_OPENCL ON)
+  else()
+    message(STATUS "Without OpenCL: no device but the processor decodes")
+  endif()
+endif()
+
 set(TOFSMITH_HAS_LXI OFF)
 if(TOFSMITH_HAS_lab)
   find_path(BOOST_ASIO_INCLUDE_DIR boost/asio.hpp REQUIRED)  # headers only

@@ -25,6 +25,9 @@ if(TOFSMITH_IS_STATIC)
     list(APPEND finds_core "find_dependency(PkgConfig)"
          "pkg_check_modules(FFTW REQUIRED QUIET IMPORTED_TARGET fftw3)")
   endif()
+  if(TOFSMITH_HAS_OPENCL)
+    set(finds_gpu "find_dependency(OpenCL)")
+  endif()
   set(finds_io "find_dependency(TBB)" "find_dependency(tomlplusplus)" "find_dependency(OpenEXR)"
       "find_dependency(PNG)" "find_dependency(embree 3.13)"
       "find_dependency(PkgConfig)"
@@ -53,7 +56,9 @@ foreach(component IN LISTS TOFSMITH_BUILT_COMPONENTS)
   list(JOIN finds_${component} "\n" finds)
   file(CONFIGURE OUTPUT ${dependencies} CONTENT "# What tofsmith::${component} needs.\n@finds@\n" @ONLY)
   install(FILES ${dependencies} DESTINATION ${package_dir} COMPONENT ${dev})
-  list(TRANSFORM tofsmith_${component}_folders PREPEND "${PROJECT_SOURCE_DIR}/include/tofsmith/"
+  set(folders ${tofsmith_${component}_folders})
+  list(REMOVE_ITEM folders gpu)  # one header says all of it
+  list(TRANSFORM folders PREPEND "${PROJECT_SOURCE_DIR}/include/tofsmith/"
        OUTPUT_VARIABLE headers)
   install(DIRECTORY ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tofsmith COMPONENT ${dev}
           FILES_MATCHING PATTERN "*.hpp")

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Installs what is missing, builds tofsmith as shared libraries and makes Debian packages of it:
-# libtofsmith-core0.1 and libtofsmith-core-dev, so for design, io, lab, report and sweep;
+# libtofsmith-core0.1 and libtofsmith-core-dev, so for gpu, design, io, lab, report and sweep;
 # libtofsmith-dev for all of them, tofsmith and python3-tofsmith. The same commit makes the same bytes,
 # in whatever directory it is built (scripts/reproduce_build.sh). What is packed must be hardened
 # (scripts/check_elf.py).

@@ -5,7 +5,7 @@
 # The Debian packages of the project, in one place. Sourced by the other scripts; run by hand it
 # installs what is missing of the groups named:
 #
-#   scripts/packages.sh core|design|build|python|lab|package|test|docs|benchmark|check|fuzz|arm64 ..
+#   scripts/packages.sh core|gpu|design|build|python|lab|package|test|docs|benchmark|check|fuzz|arm64 ..
 #                                                     install what is missing
 #   scripts/packages.sh --list GROUP                  print the names, one a line
 
@@ -18,11 +18,16 @@ packages_core=(
   libfmt-dev
   librandom123-dev    # random streams
 )
+# core and gpu.
+packages_gpu=(
+  "${packages_core[@]}"
+  ocl-icd-opencl-dev opencl-c-headers  # the loader of OpenCL; can be left out
+)
 # core and design: nothing more.
 packages_design=("${packages_core[@]}")
 # All components and the command line.
 packages_build=(
-  "${packages_core[@]}"
+  "${packages_gpu[@]}"
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev
   libzip-dev libhdf5-dev libopenexr-dev libpng-dev
   libyaml-cpp-dev     # calibrations of lenses
@@ -57,6 +62,7 @@ packages_test=(
   "${packages_python[@]}"
   libgtest-dev libgmock-dev
   libopenmpi-dev openmpi-bin                 # sweeps of several ranks
+  pocl-opencl-icd                            # OpenCL on the processor
   python3-pytest mypy                        # the Python package
   python3-h5py                               # writes what .h5 readers must read
   python3-opencv                             # distorts as lenses must
@@ -106,6 +112,7 @@ tofsmith_die() {
 packages_of() {
   case "$1" in
     core) printf '%s\n' "${packages_core[@]}" ;;
+    gpu) printf '%s\n' "${packages_gpu[@]}" ;;
     design) printf '%s\n' "${packages_design[@]}" ;;
     build) printf '%s\n' "${packages_build[@]}" ;;
     python) printf '%s\n' "${packages_python[@]}" ;;
@@ -118,7 +125,7 @@ packages_of() {
     fuzz) printf '%s\n' "${packages_fuzz[@]}" ;;
     arm64) printf '%s\n' "${packages_arm64[@]}" ;;
     arm64_libraries) printf '%s\n' "${packages_arm64_libraries[@]}" ;;
-    *) tofsmith_die "no package group '$1'; there are core, design, build, python, lab, package, test, docs, benchmark, check, fuzz and arm64" ;;
+    *) tofsmith_die "no package group '$1'; there are core, gpu, design, build, python, lab, package, test, docs, benchmark, check, fuzz and arm64" ;;
   esac
 }
 
@@ -171,9 +178,9 @@ use_debian_tools() {
 
 if [[ "${BASH_SOURCE[0]}" == "$0" ]]; then
   set -euo pipefail
-  (($#)) || tofsmith_die "which group? core, design, build, python, lab, package, test, docs, benchmark or check"
+  (($#)) || tofsmith_die "which group? core, gpu, design, build, python, lab, package, test, docs, benchmark or check"
   if [[ "$1" == --list ]]; then
-    packages_of "${2:?which group? core, design, build, python, lab, package, test, docs, benchmark or check}"
+    packages_of "${2:?which group? core, gpu, design, build, python, lab, package, test, docs, benchmark or check}"
   else
     for group in "$@"; do
       install_packages "$group"

@@ -40,7 +40,7 @@ components=
 if ((${#floors[@]})); then
   targets=()
   # No other floor stands on these; without them nothing of the paper is built, either.
-  [[ " ${floors[*]} " =~ \ (report|paper|house)\  ]] || components='sweep;lab'
+  [[ " ${floors[*]} " =~ \ (report|paper|house)\  ]] || components='sweep;lab;gpu'
   for floor in "${floors[@]}"; do
     compgen -G "tests/$floor/*.cpp" >/dev/null || tofsmith_die "there are no tests in tests/$floor"
     targets+=("test_$floor")

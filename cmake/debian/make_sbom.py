@@ -30,7 +30,7 @@ OBJECTS = {
 DECLARATIONS = re.compile(
     r"libc6-dev|linux-libc-dev|libcrypt-dev|libpng-dev|zlib1g-dev|libzip-dev|libhdf5-dev|"
     r"libsqlite3-dev|liblxi-dev|libtirpc-dev|libopenmpi-dev|libfftw3-dev|libpython3\.\d+-dev|"
-    r"python3-numpy")
+    r"opencl-c-headers|python3-numpy")
 SPDX_NAMES = {"Expat": "MIT", "BSD-2-clause": "BSD-2-Clause", "BSD-3-clause": "BSD-3-Clause"}
 
 

@@ -4,7 +4,6 @@
 #include <cstdio>
 
 #include "tofsmith/sweep/run_sweep.hpp"
-#include "tofsmith/sweep/sweep_results.hpp"
 
 constexpr const char* sweep = R"(
 camera = "paper-10f0"

@@ -7,5 +7,4 @@
 
 #include "tofsmith/io.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
-#include "tofsmith/sweep/sweep_results.hpp"
 #include "tofsmith/sweep/training_set.hpp"

@@ -9,6 +9,9 @@
 #if __has_include("tofsmith/design.hpp")
 #include "tofsmith/design.hpp"
 #endif
+#if __has_include("tofsmith/gpu.hpp")
+#include "tofsmith/gpu.hpp"
+#endif
 #if __has_include("tofsmith/io.hpp")
 #include "tofsmith/io.hpp"
 #endif

@@ -3,6 +3,8 @@
 #include <pybind11/stl.h>
 
 #include <map>
+#include <memory>
+#include <optional>
 
 #include "bindings.hpp"
 #include "file_objects.hpp"
@@ -16,6 +18,7 @@
 #include "tofsmith/decode/decode_method.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 #include "tofsmith/decode/depth_image.hpp"
+#include "tofsmith/gpu.hpp"
 #include "tofsmith/io/decode_recording.hpp"
 #include "tofsmith/io/decoding_table_file.hpp"
 
@@ -24,16 +27,34 @@ namespace tofsmith::python {
 namespace {
 
 /// A class of its own: pybind11 would take a variant apart.
-struct BoundDecoder {
-  AnyDecoder any;
+class BoundDecoder {
+ public:
+  BoundDecoder(AnyDecoder any, const std::string& device)
+      : any_(std::make_unique<const AnyDecoder>(std::move(any))),
+        on_device_(device_decoder(device, *any_)) {}
+
+  const AnyDecoder& any() const { return *any_; }
+  void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress) const {
+    if (on_device_)
+      on_device_->decode(raw, decoded, progress);
+    else
+      std::visit([&](const auto& d) { d.decode(raw, decoded, progress); }, *any_);
+  }
+  std::string device() const { return on_device_ ? on_device_->device().info().name : "cpu"; }
+
+ private:
+  std::unique_ptr<const AnyDecoder> any_;  // stays where the device's looks for it
+  std::optional<DeviceDecoder> on_device_;
 };
 
 BoundDecoder decoder_of(const DecodingTable& table, const py::dict& values) {
   DecodeMethod method = DecodeMethod::zncc;
   DecodeOptions options;
   UnwrapWeights weights = UnwrapWeights::variance;
+  std::string device = "cpu";
   OptionReader reader(values, "");
-  reader.word("method", method, parse_decode_method)
+  reader.value("device", device)
+      .word("method", method, parse_decode_method)
       .word("unwrap_weights", weights, parse_unwrap_weights)
       .value("low_signal_sigma", options.low_signal_sigma)
       .value("min_confidence", options.min_confidence);
@@ -41,11 +62,11 @@ BoundDecoder decoder_of(const DecodingTable& table, const py::dict& values) {
       multipath_options(reader.table("multipath"), "multipath", table.range_m);
   reader.finish();
   const py::gil_scoped_release release;
-  return {make_decoder(method, table, options, weights, multipath)};
+  return {make_decoder(method, table, options, weights, multipath), device};
 }
 
 const DecodingTable& table_of(const BoundDecoder& decoder) {
-  return std::visit([](const auto& d) -> const DecodingTable& { return d.table(); }, decoder.any);
+  return std::visit([](const auto& d) -> const DecodingTable& { return d.table(); }, decoder.any());
 }
 
 /// The planes of a stack of frames, in arrays that Python allocated.
@@ -119,7 +140,7 @@ void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_p
       if (!signal.empty()) decoded.signal_e_per_s = signal.data();
       const auto decode_one = [&](const RawView& numbers, const UnfilteredPixels& unfiltered,
                                   const Progress& here) {
-        std::visit([&](const auto& d) { d.decode(numbers, decoded, here); }, decoder.any);
+        decoder.decode(numbers, decoded, here);
         if (table.correction)
           apply(*table.correction, table.range_m, decoded, raw.height, raw.width, 0, pixels);
         if (!maps.empty()) apply(maps, table.range_m, decoded, 0, pixels);
@@ -134,9 +155,14 @@ void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_p
   });
 }
 
-DecodeRequest request_of(const std::vector<std::string>& raw, const std::string& output,
-                         const py::object& lens, const py::dict& values) {
+DecodeRequest request_of(const BoundDecoder& decoder, const std::vector<std::string>& raw,
+                         const std::string& output, const py::object& lens,
+                         const py::dict& values) {
   DecodeRequest request;
+  request.decode_by = [&decoder](const RawView& view, const DecodedView& decoded,
+                                 const Progress& progress) {
+    decoder.decode(view, decoded, progress);
+  };
   std::string raw_format, mixed, offset_map, gain_map, stray_light, rays;
   std::vector<std::string> outputs;
   bool overwrite = false;
@@ -190,9 +216,9 @@ std::map<std::string, std::int64_t> counts_of(const StatusCounts& statuses) {
 py::dict decode_a_recording(const BoundDecoder& decoder, const std::vector<std::string>& raw,
                             const std::string& output, const py::object& lens,
                             const py::dict& values, const py::object& callback) {
-  const DecodeRequest request = request_of(raw, output, lens, values);
+  const DecodeRequest request = request_of(decoder, raw, output, lens, values);
   const DecodedRecording result = without_gil(callback, [&](const Progress& progress) {
-    return decode_recording(request, decoder.any, progress);
+    return decode_recording(request, decoder.any(), progress);
   });
   std::vector<std::string> files, outputs;
   for (const std::filesystem::path& file : result.files) files.push_back(file.string());
@@ -215,14 +241,14 @@ py::dict decode_a_recording(const BoundDecoder& decoder, const std::vector<std::
 py::dict decode_a_stream(const BoundDecoder& decoder, const py::object& source,
                          const py::object& take, const py::object& write, const py::object& lens,
                          const py::dict& values, const py::object& callback) {
-  const DecodeRequest request = request_of({}, "", lens, values);
+  const DecodeRequest request = request_of(decoder, {}, "", lens, values);
   DecodedStream result;
   FrameSink sink(take, write,
                  request.outputs.empty() ? std::vector{DecodedPlane::depth} : request.outputs,
                  result);
   without_gil(callback, [&](const Progress& progress) {
     try {
-      decode_stream(request, decoder.any, reading_from(source), sink.stream(), progress, result);
+      decode_stream(request, decoder.any(), reading_from(source), sink.stream(), progress, result);
     } catch (const FrameSink::Stopped&) {
       ++result.frames;  // that was taken
     }
@@ -248,7 +274,7 @@ py::array_t<double> decode_depth_bins(const BoundDecoder& decoder, const Floats&
         [&](const auto& d) {
           d.decode_depth_bins(measurements.data(), measurements.shape(0), depth_bin.data());
         },
-        decoder.any);
+        decoder.any());
   }
   return adopt(std::move(depth_bin));
 }
@@ -323,6 +349,7 @@ void bind_decode(py::module_& module) {
   bind_table(module);
   py::class_<BoundDecoder>(module, "Decoder")
       .def(py::init(&decoder_of))
+      .def("device", &BoundDecoder::device)
       .def("table", [](const BoundDecoder& decoder) { return table_of(decoder); })
       .def("decode", &decode)
       .def("decode_recording", &decode_a_recording)

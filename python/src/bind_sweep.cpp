@@ -6,7 +6,6 @@
 #include "options.hpp"
 #include "progress.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
-#include "tofsmith/sweep/sweep_results.hpp"
 
 namespace tofsmith::python {
 

@@ -55,6 +55,9 @@ class Decoder:
         ambiguous below this probability (0.9).
     unwrap_weights : {"variance", "frequency"}, optional
         Of unwrap.
+    device : str, optional
+        What decodes: "cpu"; "gpu", the first one; "auto", that or else the processor; a number or
+        part of a name of the devices of OpenCL. Not the processor for zncc alone. See docs/gpu.md.
     multipath : dict, optional
         Of two-return and tail: threshold, shortest_delay_m, longest_delay_m, tail_m, and prior, a
         dict of single_probability, mean_delay_m, max_ratio; see docs/multipath.md.
@@ -63,6 +66,8 @@ class Decoder:
     ------
     ValueError
         If the method cannot decode the code, or an option breaks a rule.
+    OSError
+        If there is no such device, or it fails.
 
     Examples
     --------
@@ -81,6 +86,7 @@ class Decoder:
         min_confidence: Optional[float] = None,
         unwrap_weights: Optional[str] = None,
         multipath: Optional[Mapping[str, Any]] = None,
+        device: str = "cpu",
     ) -> None:
         table = table_of(code, camera)
         lens = None if camera is None else camera_of(camera).lens
@@ -93,6 +99,7 @@ class Decoder:
             "min_confidence": min_confidence,
             "unwrap_weights": unwrap_weights,
             "multipath": None if multipath is None else dict(multipath),
+            "device": device,
         }
         self._handle = _tofsmith.Decoder(table._handle, options)
         self._table = table
@@ -118,6 +125,11 @@ class Decoder:
     @property
     def method(self) -> str:
         return self._method
+
+    @property
+    def device(self) -> str:
+        """Name of the device that decodes, or cpu."""
+        return self._handle.device()
 
     @property
     def table(self) -> DecodingTable:

@@ -10,6 +10,7 @@
 #include "decode/output/output_kernel.hpp"
 #include "decode/output/pixel_model.hpp"
 #include "decode/output/pixel_output.hpp"
+#include "decode/output/shared/decoder_parts.hpp"
 #include "decode/search/chord_matcher.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -71,6 +72,10 @@ Decoder& Decoder::operator=(Decoder&&) noexcept = default;
 const DecodingTable& Decoder::table() const { return plan_->table; }
 const DecodeOptions& Decoder::options() const { return plan_->options; }
 int Decoder::rank() const { return plan_->model.rank(); }
+
+DecoderParts parts_of(const Decoder& decoder) {
+  return {decoder.plan_->matcher, decoder.plan_->outputs};
+}
 
 void Decoder::decode_bins(const float* measurements, std::int64_t pixels, std::int32_t* bin) const {
   for_each_tile(plan_->matcher.bins(), column_of(measurements, pixels, this->measurements()),

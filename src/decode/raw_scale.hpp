@@ -23,6 +23,13 @@ class RawScale {
     const Line& line = lines_[static_cast<std::size_t>(measurement)];
     return (raw - line.dark_raw) * line.gain_e_per_raw;
   }
+  /// Raw number without light.
+  double dark_raw(int measurement) const {
+    return lines_[static_cast<std::size_t>(measurement)].dark_raw;
+  }
+  double gain_e_per_raw(int measurement) const {
+    return lines_[static_cast<std::size_t>(measurement)].gain_e_per_raw;
+  }
   double raw(double electrons, int measurement) const {
     const Line& line = lines_[static_cast<std::size_t>(measurement)];
     return electrons / line.gain_e_per_raw + line.dark_raw;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tofsmith/sweep/sweep_results.hpp"
+#include "tofsmith/sweep/run_sweep.hpp"
 
 #include <fmt/format.h>
 

@@ -23,7 +23,7 @@ Folders operator+(Folders a, const Folders& b) {
 
 const Folders data_types = {"core", "code", "scene", "camera", "decode", "simulate", "design"};
 const Folders products =
-    data_types + Folders{"io", "waveforms", "sweep", "calibrate", "instrument", "report"};
+    data_types + Folders{"gpu", "io", "waveforms", "sweep", "calibrate", "instrument", "report"};
 const Folders all = products + Folders{"paper"};
 
 /// The house: which other folders each folder may include. simulate never includes design: the
@@ -35,6 +35,7 @@ const std::map<std::string, Folders> may_include = {
     {"camera", {"core", "code"}},
     {"decode", {"core", "code", "camera"}},
     {"simulate", {"core", "code", "scene", "camera", "decode"}},
+    {"gpu", {"core", "code", "camera", "decode"}},
     {"design", {"core", "code", "scene", "camera", "decode", "simulate"}},
     {"io", data_types},
     {"waveforms", data_types + Folders{"io"}},
@@ -53,6 +54,7 @@ struct Component {
 };
 const std::map<std::string, Component> components = {
     {"core", {{"core", "code", "scene", "camera", "decode", "simulate"}, ""}},
+    {"gpu", {{"gpu"}, "core"}},
     {"design", {{"design"}, "core"}},
     {"io", {{"io"}, "design"}},
     {"lab", {{"waveforms", "calibrate", "instrument"}, "io"}},

@@ -7,7 +7,6 @@
 
 #include "temporary_directory.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
-#include "tofsmith/sweep/sweep_results.hpp"
 
 namespace tofsmith {
 

@@ -13,6 +13,8 @@
 
 namespace tofsmith {
 
+struct DecoderParts;
+
 /// Thresholds of a pixel's status.
 struct DecodeOptions {
   /// low_signal below this many standard deviations of the signal estimate; >= 0.
@@ -97,6 +99,8 @@ class Decoder {
   void decode_bins(const float* measurements, std::int64_t pixels, std::int32_t* bin) const;
 
  private:
+  friend DecoderParts parts_of(const Decoder& decoder);
+
   struct Plan;
   std::unique_ptr<const Plan> plan_;
 };

@@ -113,6 +113,9 @@ struct DecodeRequest {
   double offset_m = 0.0;                ///< of every pixel, beside that of its map [m]
   std::filesystem::path gain_map;       ///< as PixelMaps::gain; empty: none
   double memory_mb = 256.0;             ///< for frames under way [MB], > 0
+  /// Decodes frames in place of the decoder, and as it does: a DeviceDecoder; empty: the decoder.
+  std::function<void(const RawView& raw, const DecodedView& decoded, const Progress& progress)>
+      decode_by;
   OutputPolicy policy = OutputPolicy::refuse_existing;
   std::vector<std::string> other_inputs;  ///< files that were read too: no output replaces them
 };

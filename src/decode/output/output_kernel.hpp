@@ -45,6 +45,9 @@ class OutputKernel {
   OutputKernel(const DecodingTable& table, const AmbientProjection& projection,
                const DecodeOptions& options);
 
+  const BinRecords& records() const { return records_; }
+  const OutputConstants& constants() const { return constants_; }
+
   /// Which rows of a tile these planes need besides `plane` and `bin`.
   bool needs_electrons(const DecodedView& planes) const;
   bool needs_second_peaks(const DecodedView& planes) const;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/shared/shared_progress.hpp"
+#include "decode/output/shared/decoder_parts.hpp"
 #include "decode/search/nearest_bins.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
@@ -67,6 +68,12 @@ void require_measurements(const RawView& raw, int measurements) {
           "must equal the code's " + std::to_string(measurements));
 }
 
+void require_frame(const RawView& raw, int measurements) {
+  require_measurements(raw, measurements);
+  require(raw.height >= 0 && raw.width >= 0, "raw height and width",
+          std::min(raw.height, raw.width), "must be >= 0");
+}
+
 double probability_of(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
 
 double confidence_of(double lead, double expected_lead, double deviation) {
@@ -76,9 +83,7 @@ double confidence_of(double lead, double expected_lead, double deviation) {
 
 void for_each_block(const RawView& raw, int measurements, const Progress& progress,
                     const std::function<void(IndexRange pixels)>& work, std::int64_t block_pixels) {
-  require_measurements(raw, measurements);
-  require(raw.height >= 0 && raw.width >= 0, "raw height and width",
-          std::min(raw.height, raw.width), "must be >= 0");
+  require_frame(raw, measurements);
   const std::int64_t count = raw.pixels();
   SharedProgress shared(progress, static_cast<double>(count), "decoding");
   parallel_for_blocks(count, block_pixels, [&](IndexRange range) {

@@ -18,6 +18,8 @@ class ArcSearch {
   explicit ArcSearch(const DirectionTable& directions, std::int32_t blocks_per_arc = 1)
       : table_(directions, blocks_per_arc) {}
 
+  const ArcTable& table() const { return table_; }
+
   /// Rows with the highest scores, for vectors q of any length.
   /// @param plane   [rank][stride]: q of pixel i is plane[i], plane[stride + i], ..
   /// @param error   (pixels): bounds |q - q_exact|; infinite where nothing can be proven. With a

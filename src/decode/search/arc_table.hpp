@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "decode/search/direction_table.hpp"
@@ -45,6 +46,26 @@ class KnotLevel {
   std::size_t lanes_per_block_;
   std::vector<BlockLanes> lanes_;
 };
+
+/// How far float scores may be off, as shares of |q| (in all: `per_error` times the error of q and
+/// `share` |q|). `lead` is what proves that one score beats another; pruned is what scores less
+/// than the best by more than `prune`.
+struct Margins {
+  float lead;
+  float tie;
+  float prune;
+};
+
+// Rounding a direction to float and summing rank products, fused or not, moves a score by at most
+// (rank + 2) u |q| to first order. The bound of an arc takes at most 1.5 of that from its knots
+// (growth), and few u |q| from its own operations.
+inline Margins margins_of(int rank) {
+  constexpr float unit_roundoff = 0.5f * std::numeric_limits<float>::epsilon();
+  const float score = static_cast<float>(rank + 2) * unit_roundoff * 1.01f;
+  const float bound = 4.0f * static_cast<float>(rank + 4) * unit_roundoff;
+  const auto tie = static_cast<float>(2 * tie_tolerance);
+  return {2.0f * score, tie, score + bound + tie};
+}
 
 /// Unit directions of a code's curve, laid out for branch and bound over its arcs.
 class ArcTable {

@@ -26,7 +26,6 @@ namespace {
 
 static_assert(block_lanes == widest_vector);
 constexpr float no_score = -std::numeric_limits<float>::infinity();
-constexpr float unit_roundoff = 0.5f * std::numeric_limits<float>::epsilon();
 constexpr int max_flat_blocks = 16;  // of arcs that are looked at one by one
 
 HWY_INLINE float largest(Vector v) { return hn::GetLane(hn::MaxOfLanes(Floats(), v)); }
@@ -57,25 +56,6 @@ HWY_INLINE Vector scores(const Query& q, const float* block) {
   for (int j = 0; j < rank; ++j)
     sum = hn::MulAdd(all(q[j]), hn::Load(d, block + (j + 1) * block_lanes), sum);
   return sum;
-}
-
-/// How far float scores may be off, as shares of |q| (in all: `per_error` times the error of q and
-/// `share` |q|). `lead` is what proves that one score beats another; pruned is what scores less
-/// than the best by more than `prune`.
-struct Margins {
-  float lead;
-  float tie;
-  float prune;
-};
-
-// Rounding a direction to float and summing rank products, fused or not, moves a score by at most
-// (rank + 2) u |q| to first order. The bound of an arc takes at most 1.5 of that from its knots
-// (growth), and few u |q| from its own operations.
-HWY_INLINE Margins margins_of(int rank) {
-  const float score = static_cast<float>(rank + 2) * unit_roundoff * 1.01f;
-  const float bound = 4.0f * static_cast<float>(rank + 4) * unit_roundoff;
-  const auto tie = static_cast<float>(2 * tie_tolerance);
-  return {2.0f * score, tie, score + bound + tie};
 }
 
 /// The arcs of one query that may hold its best row: of all, or of the bundles that may.

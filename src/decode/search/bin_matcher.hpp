@@ -23,6 +23,12 @@ class BinMatcher {
   BinMatcher& operator=(const BinMatcher&) = delete;
 
   const ExactProjection& exact() const { return exact_; }
+  const TileProjection& projection() const { return projection_; }
+  const DirectionTable& directions() const { return directions_; }
+  /// What searches for the best bins; arcs() where it is neither.
+  using Search = std::variant<std::monostate, CircleSearch, CellSearch>;
+  const Search& search() const { return search_; }
+  const ArcSearch& arcs() const { return arcs_; }
 
   /// Fills a tile with the pixels of a view from pixel `first` on; bins are -1 where a raw number
   /// is none.
@@ -45,7 +51,6 @@ class BinMatcher {
   std::int32_t choose(const double* unit, double tie) const;
   std::int32_t second_peak_of(const PixelTile& tile, int pixel) const;
 
-  using Search = std::variant<std::monostate, CircleSearch, CellSearch>;
   Search make_search(bool for_few) const;
   double min_distance() const;
 

@@ -115,8 +115,9 @@ class RecordBuilder {
 RecordTable::RecordTable(std::int32_t rows, int fields)
     : stride_(fields <= floats_per_line ? rounded_up(fields, 4)
                                         : rounded_up(fields, floats_per_line)),
-      values_(static_cast<float*>(::operator new[](offset(rows) * sizeof(float), alignment))) {
-  std::fill_n(values_.get(), offset(rows), 0.0f);
+      size_(offset(rows)),
+      values_(static_cast<float*>(::operator new[](size_ * sizeof(float), alignment))) {
+  std::fill_n(values_.get(), size_, 0.0f);
 }
 
 BinRecords::BinRecords(const DecodingTable& table, const AmbientProjection& projection)

@@ -36,6 +36,12 @@ class CellSearch {
   CellSearch(const DistinctDirections& directions, const SecondPeakSearch& second_peaks);
 
   const CellTable& table() const { return table_; }
+  const CellSearchView& view() const { return view_; }
+  /// As in the view.
+  std::span<const float> steps() const { return steps_; }
+  std::span<const float> units() const { return units_; }
+  /// Bin of every direction (M), by increasing bin.
+  std::span<const std::int32_t> bins() const { return bin_; }
 
   /// Fills bin of a tile from plane and error: -1 where single precision does not prove that it
   /// beats all others by more than ties need (see TileProjection).

@@ -66,9 +66,9 @@ class CellTable {
   int root_bits() const { return root_bits_; }
   int cut_bits() const { return cut_bits_; }
   /// Twice the place of a root's first cell, plus 1 where it is cut.
-  const std::uint32_t* roots() const { return roots_.data(); }
-  const CellRecord* cells() const { return cells_.data(); }
-  const CellRecord* lists() const { return lists_.data(); }
+  std::span<const std::uint32_t> roots() const { return roots_; }
+  std::span<const CellRecord> cells() const { return cells_; }
+  std::span<const CellRecord> lists() const { return lists_; }
   /// Unit of CellRecord::fit, in directions.
   double fit_unit() const { return fit_unit_; }
   /// No fit of a cell with one run is steeper: the sum of its sizes, in directions.

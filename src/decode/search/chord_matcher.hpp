@@ -4,6 +4,7 @@
 
 #include <numbers>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "decode/search/bin_matcher.hpp"
@@ -33,6 +34,17 @@ class ChordMatcher {
   /// The best bins themselves.
   const BinMatcher& bins() const { return bins_; }
   bool is_coarse() const { return pieces_.has_value(); }
+  /// What matches: bins(), or of a coarse table its points.
+  const BinMatcher& points() const { return pieces_ ? *pieces_->matcher : bins_; }
+  /// Of points of a coarse table: the end of its chord that is closer; and the point of a bin.
+  std::span<const std::int32_t> bin_of_point() const {
+    return pieces_ ? std::span<const std::int32_t>(pieces_->bin_of_point)
+                   : std::span<const std::int32_t>();
+  }
+  std::span<const std::int32_t> point_of_bin() const {
+    return pieces_ ? std::span<const std::int32_t>(pieces_->point_of_bin)
+                   : std::span<const std::int32_t>();
+  }
 
   /// As BinMatcher's.
   void match(const RawView& view, std::int64_t first, int pixels, bool for_outputs,

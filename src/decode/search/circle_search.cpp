@@ -23,7 +23,6 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
-constexpr float overlap = 2e-5f;   // of pieces, in c
 constexpr float farthest = 1e30f;  // beyond, sums of numbers may be infinite
 
 bool search(const CirclePiece* pieces, int resolution, float margin, PixelTile& tile) {
@@ -53,8 +52,8 @@ bool search(const CirclePiece* pieces, int resolution, float margin, PixelTile& 
     const auto excess = hn::Sub(c, border);
     // An error of q moves c by no more than twice itself over |larger|.
     const auto least = hn::Add(hn::Set(d, margin), hn::Div(hn::Add(error, error), hn::Abs(larger)));
-    const auto is_near =
-        hn::And(hn::Lt(least, hn::Set(d, overlap)), hn::Lt(hn::Abs(larger), hn::Set(d, farthest)));
+    const auto is_near = hn::And(hn::Lt(least, hn::Set(d, CirclePiece::overlap)),
+                                 hn::Lt(hn::Abs(larger), hn::Set(d, farthest)));
     const auto is_sure = hn::RebindMask(di, hn::And(hn::Gt(hn::Abs(excess), least), is_near));
     const auto above = hn::BitCast(di, hn::ShiftRight<16>(hn::BitCast(dw, bins)));
     const auto below = hn::And(bins, hn::Set(di, 0xffff));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "decode/search/distinct_directions.hpp"
@@ -14,6 +15,8 @@ namespace tofsmith {
 /// A piece of a side of the square around the circle: below `border` one bin is the closest, above
 /// it another.
 struct CirclePiece {
+  static constexpr float overlap = 2e-5f;  ///< how far pieces reach beyond their ends, in c
+
   float border = 0.0f;      ///< in c of the side; NaN where more than two bins can be the closest
   std::uint16_t below = 0;  ///< bin
   std::uint16_t above = 0;  ///< bin
@@ -34,6 +37,13 @@ class CircleSearch {
   std::int32_t second_peak(std::int32_t bin) const {
     return second_peak_of_bin_[static_cast<std::size_t>(bin)];
   }
+  /// Of the four sides, one after another; as many of each.
+  std::span<const CirclePiece> pieces() const { return pieces_; }
+  int resolution() const { return resolution_; }
+  /// By how much c must be off a border.
+  float margin() const { return margin_; }
+  /// By bin; of bins that are never the best one -1.
+  std::span<const std::int32_t> second_peaks() const { return second_peak_of_bin_; }
   /// As CellSearch::choose, for any `tie`.
   std::int32_t choose(const double* unit, double tie) const;
   /// Between neighbours on the circle [rad].

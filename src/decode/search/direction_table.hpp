@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "decode/ambient_projection.hpp"
@@ -51,6 +52,9 @@ class DirectionTable {
   double direction(std::int32_t row, int j) const {
     return block(row / rows_per_block)[j * rows_per_block + row % rows_per_block];
   }
+
+  /// Of every row, filled up to a whole block.
+  std::span<const std::int32_t> bins_by_row() const { return bin_of_row_; }
 
   const Lobe& main_lobe(std::int32_t bin) const {
     return main_lobes_[static_cast<std::size_t>(bin)];

@@ -24,6 +24,7 @@ class ExactProjection {
   ExactProjection(const DecodingTable& table, const AmbientProjection& projection)
       : scale_(table), basis_(projection.basis), ambient_(projection.ambient.stableNormalized()) {}
 
+  const RawScale& scale() const { return scale_; }
   int measurements() const { return static_cast<int>(basis_.rows()); }
   int rank() const { return static_cast<int>(basis_.cols()); }
 

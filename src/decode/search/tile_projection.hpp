@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "decode/search/shared/pixel_tile.hpp"
@@ -39,6 +40,10 @@ class TileProjection {
   /// @param min_distance  between directions that the search tells apart by differences of scores
   TileProjection(const DecodingTable& table, const AmbientProjection& projection,
                  double min_distance);
+
+  const ProjectionView& view() const { return view_; }
+  /// Error per rounding of a raw number (K).
+  std::span<const double> error_per_rounding() const { return error_per_rounding_; }
 
   /// Fills plane and error of a tile, up to a multiple of 16 pixels. The error is a little more
   /// than rounding needs: if one direction is the best wherever the vector lies within it, its

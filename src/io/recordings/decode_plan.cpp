@@ -145,6 +145,7 @@ const DecodingTable& table_of(const AnyDecoder& decoder) {
 MappedDecoder::MappedDecoder(const DecodeRequest& request, const AnyDecoder& decoder,
                              const std::string& source, int height, int width)
     : decoder_(decoder),
+      decode_by_(request.decode_by),
       table_(table_of(decoder)),
       maps_(load_maps(request, height, width)),
       mixed_(request.mixed) {
@@ -159,7 +160,10 @@ void MappedDecoder::decode(const RawView& raw, const Band& band, const DecodeTar
                            const DecodedView& decoded, const Progress& progress,
                            const UnfilteredPixels& unfiltered) const {
   const auto pixels = static_cast<std::size_t>(raw.pixels());
-  std::visit([&](const auto& d) { d.decode(raw, decoded, progress); }, decoder_);
+  if (decode_by_)
+    decode_by_(raw, decoded, progress);
+  else
+    std::visit([&](const auto& d) { d.decode(raw, decoded, progress); }, decoder_);
   const std::size_t first =
       static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(raw.width);
   if (table_.correction)

@@ -48,6 +48,7 @@ class MappedDecoder {
 
  private:
   const AnyDecoder& decoder_;
+  decltype(DecodeRequest::decode_by) decode_by_;
   const DecodingTable& table_;
   PixelMaps maps_;
   std::optional<MixedPixels> mixed_;  // in bands that are whole frames

@@ -16,6 +16,8 @@ class RecordTable {
   RecordTable(std::int32_t rows, int fields);
 
   int stride() const { return stride_; }
+  /// Of all rows, from row -1 on.
+  std::size_t size() const { return size_; }
   /// Row n starts at (n + 1) stride.
   const float* data() const { return values_.get(); }
   const float* row(std::int32_t n) const { return &values_[offset(n)]; }
@@ -31,6 +33,7 @@ class RecordTable {
     void operator()(float* values) const { ::operator delete[](values, alignment); }
   };
   int stride_;  // in floats
+  std::size_t size_;
   std::unique_ptr<float[], Free> values_;
 };
 

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// @file
+/// All of tofsmith::gpu: decoding on devices of OpenCL. Includes tofsmith/core.hpp.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tofsmith/core.hpp"
+
+namespace tofsmith {
+
+/// What a device is.
+enum class DeviceKind { gpu, cpu, other };
+
+/// "gpu", "cpu", "other".
+std::string_view name_of(DeviceKind kind);
+
+/// What OpenCL says of a device.
+struct DeviceInfo {
+  std::string name;      ///< as its driver gives it
+  std::string platform;  ///< whose driver that is
+  std::string version;   ///< of OpenCL, and of the driver
+  DeviceKind kind = DeviceKind::other;
+  std::uint64_t memory_bytes = 0;
+  bool has_doubles = false;           ///< arithmetic in double precision
+  bool divides_as_processor = false;  ///< quotients and roots rounded correctly
+};
+
+/// A processor that OpenCL knows, which may be this computer's own. Its drivers are loaded when
+/// devices are asked for, not before. Copies are the same device.
+class Device {
+ public:
+  /// Of all platforms, in the order of their drivers; none where no driver is installed.
+  /// @throws IoError if this build has no OpenCL, or a driver fails
+  static std::vector<Device> all();
+  /// Why all() may be empty, and what to do.
+  static std::string_view none_found();
+  /// @param name  "gpu": the first one of that kind; a number: of all(), from 0 on; else a part of
+  ///              the name of a device or its platform, in any case of letters
+  /// @throws IoError if this build has no OpenCL, or there is no such device, with those that are
+  static Device named(std::string_view name);
+  /// The first GPU; none where there is none, or this build has no OpenCL.
+  static std::optional<Device> first_gpu();
+
+  const DeviceInfo& info() const;
+
+  struct State;  ///< of the backend
+  explicit Device(std::shared_ptr<State> state) : state_(std::move(state)) {}
+  State& state() const { return *state_; }
+
+ private:
+  std::shared_ptr<State> state_;
+};
+
+/// How a decoder uses its device.
+struct DeviceOptions {
+  /// For the pixels under way and their planes [MB], > 0; larger frames go in parts. Where the
+  /// device has less, parts become smaller.
+  double memory_mb = 512.0;
+  /// Computes with doubles where the device has them: ambient light, from raw numbers with black
+  /// levels and gains, is then the same to the last bit.
+  bool use_doubles = true;
+
+  /// @throws std::invalid_argument naming field, value and rule
+  void validate() const;
+};
+/// Its fields (core/fields.hpp).
+auto fields_of(ConstOrNot<DeviceOptions> auto& o) {
+  return std::tuple(Field("memory_mb", o.memory_mb, "finite and > 0"),
+                    Field("use_doubles", o.use_doubles));
+}
+
+/// A Decoder whose work a device does. Bins and statuses are those of the Decoder, everywhere: what
+/// single precision does not prove on the device, the Decoder decides here. Planes of floats are
+/// the same bits where the device rounds quotients and roots correctly and has doubles, else they
+/// differ in the last ones.
+///
+/// Safe to use from many threads, which wait for one another.
+class DeviceDecoder {
+ public:
+  /// Compiles kernels for the table and brings its tables to the device.
+  /// @param decoder  must outlive this one
+  /// @throws std::invalid_argument for options; IoError if the device fails, with what its compiler
+  ///         says of kernels
+  DeviceDecoder(const Device& device, const Decoder& decoder, const DeviceOptions& options = {});
+  DeviceDecoder(const Device& device, Decoder&& decoder,
+                const DeviceOptions& options = {}) = delete;
+  ~DeviceDecoder();
+  DeviceDecoder(DeviceDecoder&&) noexcept;
+  DeviceDecoder& operator=(DeviceDecoder&&) noexcept;
+
+  const Device& device() const;
+
+  /// Decodes one frame into the caller's planes, as Decoder::decode.
+  /// @return how many pixels were left to the Decoder
+  /// @throws std::invalid_argument if the shape does not fit; IoError if the device fails, with
+  /// part
+  ///         of the planes written; Interrupted if progress says so
+  std::int64_t decode(const RawView& raw, const DecodedView& decoded,
+                      const Progress& progress = {}) const;
+  /// The same for frame `frame` of several (F, H, W, K), into a new image.
+  DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
+
+ private:
+  struct Plan;
+  std::unique_ptr<Plan> plan_;
+};
+
+/// What decodes in place of a decoder on the device that a user names: "cpu", nothing; "auto": the
+/// first GPU, or nothing where there is none or the decoder is no Decoder; else Device::named().
+/// @param decoder  must outlive what comes
+/// @throws InvalidArgument if a device is named and the decoder is no Decoder; IoError if there is
+/// no
+///         such device, or it fails
+std::optional<DeviceDecoder> device_decoder(std::string_view device, const AnyDecoder& decoder);
+
+}  // namespace tofsmith

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// What kernels are told, in C++ and in OpenCL C alike: members of 4 bytes each. `int` beside a name
+// in the plural says where a table stands in the memory of tables, in words of 4 bytes; -1: nowhere.
+#ifdef __cplusplus
+#pragma once
+namespace tofsmith {
+#endif
+
+/// What raw numbers on the device are.
+enum RawNumber {
+  raw_float,
+  raw_uint16,
+  raw_uint8,
+  raw_rounded  ///< floats that were doubles
+};
+
+/// The pixels of a tile: number k of pixel i stands at i pixel_stride + k measurement_stride.
+struct TileParameters {
+  int pixels;
+  int pixel_stride;
+  int measurement_stride;
+  int number;  ///< RawNumber
+};
+
+/// As ProjectionView.
+struct ProjectionParameters {
+  int ratios, weights, offsets, errors_of_difference;
+  int errors_of_rounding;  ///< of doubles: times |raw|
+  int reference;
+  float error_of_reference, error_of_offset;
+};
+
+/// How bins are searched.
+enum SearchWay { by_arcs, by_angle, by_cells };
+
+/// As BinMatcher and what it searches by.
+struct MatchParameters {
+  struct ProjectionParameters projection;
+  int way;  ///< SearchWay
+  int samples;
+  int lobes;  ///< of every bin: begin, end
+
+  int rows, row_blocks, windows, window_count, window_radii, bins_of_rows;  ///< as ArcTable
+  float lead, tie;                                                          ///< as Margins
+
+  int pieces, resolution, second_peaks;  ///< as CircleSearch
+  float margin, overlap;
+
+  int root_bits, cut_bits, roots, cells, lists, directions, steps, units, bins;  ///< CellSearchView
+  float fit_unit, slack_unit, steepest_fit, rounding, reach;
+
+  int bins_of_points, points_of_bins;  ///< as ChordMatcher
+};
+
+/// As OutputConstants and the tables that go with them.
+struct OutputParameters {
+  struct ProjectionParameters projection;
+  int samples;
+  float bin_m, bin_high_m, bin_low_m, range_m;
+  int sees_ambient;
+  int ambient_weights, basis, shot_ambient, floor_noise;
+  float max_shot, max_shot_ambient, max_floor_e2;
+  float low_signal_sigma2, min_confidence, sure_log_odds, min_variance_e2;
+
+  int records, record_stride;
+  int chords, chord_blocks, chord_quarters;
+  int second_peak_directions, direction_stride;
+
+  int dark_raw, gain_e_per_raw;  ///< of every measurement: pairs of words, a double or high and low
+  int has_saturation;
+  float saturation_level;
+  int finds_confidence;
+};
+
+#ifdef __cplusplus
+}  // namespace tofsmith
+#endif

@@ -1,0 +1,224 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/decode_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <limits>
+#include <span>
+
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Tables one behind the other.
+class Words {
+ public:
+  explicit Words(std::vector<std::uint32_t>& words) : words_(words) {}
+
+  /// @return where the table begins
+  template <typename Value>
+  int add(std::span<const Value> table) {
+    static_assert(sizeof(Value) % sizeof(std::uint32_t) == 0);
+    constexpr std::size_t line = 16;  // words
+    const std::size_t at = (words_.size() + line - 1) / line * line;
+    require(at + table.size_bytes() / 4 < std::size_t{std::numeric_limits<int>::max()},
+            "words of decoding tables", at, "must be below 2^31 on a device");
+    words_.resize(at + table.size_bytes() / sizeof(std::uint32_t));
+    if (!table.empty()) std::memcpy(&words_[at], table.data(), table.size_bytes());
+    return static_cast<int>(at);
+  }
+  template <typename Value>
+  int add(const std::vector<Value>& table) {
+    return add(std::span<const Value>(table));
+  }
+  int add(const RecordTable& table) { return add(std::span(table.data(), table.size())); }
+  /// Doubles, or where there are none what is left of each beside a float, too.
+  int add_doubles(const std::vector<double>& table, bool has_doubles) {
+    if (has_doubles) return add(table);
+    std::vector<float> pairs;
+    for (const double value : table) {
+      pairs.push_back(static_cast<float>(value));
+      pairs.push_back(static_cast<float>(value - pairs.back()));
+    }
+    return add(pairs);
+  }
+
+ private:
+  std::vector<std::uint32_t>& words_;
+};
+
+ProjectionParameters parameters_of(const TileProjection& projection, Words& words) {
+  const ProjectionView& view = projection.view();
+  const auto count = static_cast<std::size_t>(view.measurements),
+             rank = static_cast<std::size_t>(view.rank);
+  // A double is off its float by half of a unit in the last place at most.
+  std::vector<float> of_rounding;
+  for (const double error : projection.error_per_rounding())
+    of_rounding.push_back(static_cast<float>(0.51 * std::numeric_limits<float>::epsilon() * error));
+  return {.ratios = words.add(std::span(view.ratio, count)),
+          .weights = words.add(std::span(view.weight, rank * count)),
+          .offsets = words.add(std::span(view.offset, rank)),
+          .errors_of_difference = words.add(std::span(view.error_of_difference, count)),
+          .errors_of_rounding = words.add(of_rounding),
+          .reference = view.reference,
+          .error_of_reference = view.error_of_reference,
+          .error_of_offset = view.error_of_offset};
+}
+
+void add_circle(const CircleSearch& circle, Words& words, MatchParameters& p) {
+  p.way = by_angle;
+  p.pieces = words.add(circle.pieces());
+  p.resolution = circle.resolution();
+  p.second_peaks = words.add(circle.second_peaks());
+  p.margin = circle.margin();
+  p.overlap = CirclePiece::overlap;
+}
+
+void add_cells(const CellSearch& cells, Words& words, MatchParameters& p) {
+  const CellSearchView& view = cells.view();
+  p.way = by_cells;
+  p.root_bits = view.root_bits;
+  p.cut_bits = view.cut_bits;
+  p.roots = words.add(cells.table().roots());
+  p.cells = words.add(cells.table().cells());
+  p.lists = words.add(cells.table().lists());
+  p.directions = view.count;
+  p.steps = words.add(cells.steps());
+  p.units = words.add(cells.units());
+  p.bins = view.bin ? words.add(cells.bins()) : -1;
+  p.fit_unit = view.fit_unit;
+  p.slack_unit = static_cast<float>(CellRecord::slack_unit);
+  p.steepest_fit = view.steepest_fit;
+  p.rounding = view.rounding;
+  p.reach = static_cast<float>(max_proven_error);
+}
+
+void add_arcs(const ArcTable& arcs, const DirectionTable& directions, Words& words,
+              MatchParameters& p) {
+  const Margins margins = margins_of(arcs.rank());
+  const auto block = static_cast<std::size_t>(arcs.rank() + 1) * block_lanes;
+  std::vector<float> radii;
+  for (std::int32_t w = 0; w < arcs.windows(); ++w) radii.push_back(arcs.window_radius(w));
+  p.way = by_arcs;
+  p.row_blocks = arcs.row_blocks();
+  p.rows = words.add(std::span(arcs.rows(0), static_cast<std::size_t>(p.row_blocks) * block));
+  p.window_count = arcs.windows();
+  p.windows = words.add(std::span(arcs.window(0), radii.size() * block));
+  p.window_radii = words.add(radii);
+  p.bins_of_rows = words.add(directions.bins_by_row());
+  p.lead = margins.lead;
+  p.tie = margins.tie;
+}
+
+MatchParameters parameters_of(const BinMatcher& matcher, Words& words) {
+  const DirectionTable& directions = matcher.directions();
+  std::vector<std::int32_t> lobes;
+  for (std::int32_t n = 0; n < directions.samples(); ++n) {
+    lobes.push_back(directions.main_lobe(n).begin);
+    lobes.push_back(directions.main_lobe(n).end);
+  }
+  MatchParameters p{};
+  p.projection = parameters_of(matcher.projection(), words);
+  p.samples = directions.samples();
+  p.lobes = words.add(lobes);
+  p.bins_of_points = p.points_of_bins = -1;
+  add_arcs(matcher.arcs().table(), directions, words, p);
+  if (const auto* circle = std::get_if<CircleSearch>(&matcher.search()))
+    add_circle(*circle, words, p);
+  else if (const auto* cells = std::get_if<CellSearch>(&matcher.search()))
+    add_cells(*cells, words, p);
+  return p;
+}
+
+OutputParameters parameters_of(const Decoder& decoder, const OutputKernel& kernel,
+                               const RawScale& scale, bool has_doubles, Words& words) {
+  const OutputConstants& c = kernel.constants();
+  const BinRecords& records = kernel.records();
+  std::vector<double> dark_raw, gain_e_per_raw;
+  for (int k = 0; k < decoder.measurements(); ++k) {
+    dark_raw.push_back(scale.dark_raw(k));
+    gain_e_per_raw.push_back(scale.gain_e_per_raw(k));
+  }
+  const std::optional<float> saturation_level = decoder.table().saturation_level;
+  OutputParameters p{};
+  p.samples = c.samples;
+  p.bin_m = c.bin_m;
+  p.bin_high_m = c.bin_high_m;
+  p.bin_low_m = c.bin_low_m;
+  p.range_m = c.range_m;
+  p.sees_ambient = c.sees_ambient ? 1 : 0;
+  p.ambient_weights = words.add(c.ambient_weight);
+  p.basis = words.add(c.basis);
+  p.shot_ambient = words.add(c.shot_ambient);
+  p.floor_noise = words.add(c.floor_noise_e2);
+  p.max_shot = c.max_shot;
+  p.max_shot_ambient = c.max_shot_ambient;
+  p.max_floor_e2 = c.max_floor_e2;
+  p.low_signal_sigma2 = c.low_signal_sigma2;
+  p.min_confidence = c.min_confidence;
+  p.sure_log_odds = sure_log_odds;
+  p.min_variance_e2 = static_cast<float>(min_variance_e2);
+  p.records = words.add(records.records);
+  p.record_stride = records.records.stride();
+  p.chords = words.add(records.chords);
+  p.chord_blocks = ChordLayout::blocks;
+  p.chord_quarters = ChordLayout::quarters;
+  p.second_peak_directions = words.add(records.directions);
+  p.direction_stride = records.directions.stride();
+  p.dark_raw = words.add_doubles(dark_raw, has_doubles);
+  p.gain_e_per_raw = words.add_doubles(gain_e_per_raw, has_doubles);
+  p.has_saturation = saturation_level ? 1 : 0;
+  p.saturation_level = saturation_level.value_or(0.0f);
+  return p;
+}
+
+std::string options_of(const RecordLayout& layout, bool has_doubles) {
+  std::string options = has_doubles ? "-D HAS_DOUBLES" : "";
+  const auto define = [&](const char* name, int value) {
+    options += fmt::format(" -D {}={}", name, value);
+  };
+  define("MEASUREMENTS", layout.measurements);
+  define("RANK", layout.rank);
+  define("RECORD_POINT", layout.point());
+  define("RECORD_LEFT", layout.left());
+  define("RECORD_RIGHT", layout.right());
+  define("RECORD_TURN", layout.turn());
+  define("RECORD_REACH", layout.reach());
+  define("RECORD_AMBIENT", layout.ambient());
+  define("RECORD_SIGNAL_NOISE", layout.signal_noise());
+  define("RECORD_DIRECTION", layout.direction());
+  define("RECORD_SHOT", layout.shot());
+  define("CHORD_FIELDS", ChordLayout::fields);
+  define("CHORD_DEPTH_NOISE", ChordLayout::depth_noise);
+  define("CHORD_AMBIENT", ChordLayout::ambient);
+  define("STATUS_OK", static_cast<int>(PixelStatus::ok));
+  define("STATUS_INVALID", static_cast<int>(PixelStatus::invalid));
+  define("STATUS_NO_RETURN", static_cast<int>(PixelStatus::no_return));
+  define("STATUS_SATURATED", static_cast<int>(PixelStatus::saturated));
+  define("STATUS_LOW_SIGNAL", static_cast<int>(PixelStatus::low_signal));
+  define("STATUS_AMBIGUOUS", static_cast<int>(PixelStatus::ambiguous));
+  return options;
+}
+
+}  // namespace
+
+DecodeTables::DecodeTables(const Decoder& decoder, bool has_doubles) {
+  const auto [matcher, kernel] = parts_of(decoder);
+  Words words_at(words);
+  is_coarse = matcher.is_coarse();
+  points = parameters_of(matcher.points(), words_at);
+  bins = is_coarse ? parameters_of(matcher.bins(), words_at) : points;
+  if (is_coarse) {
+    points.bins_of_points = words_at.add(matcher.bin_of_point());
+    points.points_of_bins = words_at.add(matcher.point_of_bin());
+  }
+  outputs = parameters_of(decoder, kernel, matcher.bins().exact().scale(), has_doubles, words_at);
+  outputs.projection = points.projection;
+  options = options_of(kernel.records().layout, has_doubles);
+}
+
+}  // namespace tofsmith

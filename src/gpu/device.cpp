@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/gpu.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+std::string in_small_letters(std::string_view text) {
+  std::string small(text);
+  for (char& letter : small)
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return small;
+}
+
+/// "0 NAME (cpu), 1 ..", or that there are none.
+std::string list_of(const std::vector<Device>& devices) {
+  if (devices.empty()) return std::string(Device::none_found());
+  std::string list = "expected one of";
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    const DeviceInfo& info = devices[i].info();
+    list += fmt::format("{} {} {} ({})", i > 0 ? "," : "", i, info.name, name_of(info.kind));
+  }
+  return list;
+}
+
+bool is_called(const DeviceInfo& info, const std::string& part) {
+  return in_small_letters(info.name).find(part) != std::string::npos ||
+         in_small_letters(info.platform).find(part) != std::string::npos;
+}
+
+}  // namespace
+
+std::string_view name_of(DeviceKind kind) {
+  switch (kind) {
+    case DeviceKind::gpu:
+      return "gpu";
+    case DeviceKind::cpu:
+      return "cpu";
+    case DeviceKind::other:
+      break;
+  }
+  return "other";
+}
+
+std::string_view Device::none_found() {
+  return "OpenCL finds no device: no driver is installed (on Debian, pocl-opencl-icd for this "
+         "computer's processor, or that of a GPU's maker), or it cannot start (pocl needs a folder "
+         "to write kernels to, POCL_CACHE_DIR)";
+}
+
+Device Device::named(std::string_view name) {
+  const std::vector<Device> devices = all();
+  std::size_t number = 0;
+  const auto read = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (!name.empty() && read.ec == std::errc() && read.ptr == name.data() + name.size()) {
+    if (number < devices.size()) return devices[number];
+  } else if (!name.empty()) {
+    const std::string part = in_small_letters(name);
+    for (const Device& device : devices)
+      if (part == "gpu" ? device.info().kind == DeviceKind::gpu : is_called(device.info(), part))
+        return device;
+  }
+  throw IoError(fmt::format("device {}", name),
+                (devices.empty() ? "" : "there is no such one; ") + list_of(devices));
+}
+
+std::optional<Device> Device::first_gpu() {
+  try {
+    for (const Device& device : all())
+      if (device.info().kind == DeviceKind::gpu) return device;
+  } catch (const IoError&) {  // no OpenCL, or drivers that fail: as good as none
+  }
+  return std::nullopt;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <type_traits>
+
+#include "gpu/device_tile.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+constexpr std::int64_t min_tile_pixels = 1024;
+constexpr std::int64_t max_tile_pixels = std::int64_t{1} << 24;
+
+/// Decodes the pixels of a tile that are open, as a frame of one row, to where they belong.
+template <typename Number>
+void decode_on_host(const Decoder& decoder, const RawView& raw, std::int64_t first,
+                    const std::vector<std::int32_t>& open, const DecodedView& decoded) {
+  const auto* data = std::get<const Number*>(raw.data);
+  const std::size_t count = open.size();
+  std::vector<Number> values;
+  values.reserve(count * static_cast<std::size_t>(raw.measurements));
+  std::vector<float> averaged;
+  for (const std::int32_t pixel : open) {
+    const std::int64_t at = first + pixel, row = at / raw.width, column = at % raw.width;
+    for (int k = 0; k < raw.measurements; ++k)
+      values.push_back(
+          data[row * raw.row_stride + column * raw.column_stride + k * raw.measurement_stride]);
+    if (raw.averaged) averaged.push_back(raw.averaged[at]);
+  }
+  RawView view = RawView::interleaved(values.data(), 1, static_cast<int>(count), raw.measurements);
+  if (raw.averaged) view.averaged = averaged.data();
+
+  DepthImage image(1, static_cast<int>(count));
+  std::vector<std::int32_t> bin(count);
+  DecodedView here = DecodedView::of(image);
+  here.bin = bin.data();
+  const auto only_wanted = [](auto*& from, const auto* to) {
+    if (!to) from = nullptr;
+  };
+  const auto for_each_plane = [&](const auto& use) {
+    use(here.bin, decoded.bin);
+    use(here.depth_m, decoded.depth_m);
+    use(here.signal_e_per_s, decoded.signal_e_per_s);
+    use(here.ambient_e_per_s, decoded.ambient_e_per_s);
+    use(here.confidence, decoded.confidence);
+    use(here.predicted_standard_deviation_m, decoded.predicted_standard_deviation_m);
+    use(here.status, decoded.status);
+  };
+  for_each_plane(only_wanted);
+  decoder.decode(view, here);
+  for_each_plane([&](const auto* from, auto* to) {
+    if (to)
+      for (std::size_t i = 0; i < count; ++i) to[open[i]] = from[i];
+  });
+}
+
+}  // namespace
+
+void DeviceOptions::validate() const { check_fields(*this, "DeviceOptions::"); }
+
+struct DeviceDecoder::Plan {
+  Plan(const Device& device_, const Decoder& decoder_, const DeviceOptions& options)
+      : device(device_), decoder(decoder_), tile(device, decoder, options.use_doubles) {
+    const double most = std::min<double>(
+        max_tile_pixels, double{std::numeric_limits<int>::max()} / decoder.measurements());
+    tile_pixels = static_cast<std::int64_t>(
+        std::clamp(1e6 * options.memory_mb / static_cast<double>(tile.bytes_per_pixel()),
+                   static_cast<double>(min_tile_pixels), most));
+  }
+
+  /// @param planes  from the first pixel on
+  /// @return how many pixels the decoder decoded
+  std::int64_t decode_tile(const RawView& raw, std::int64_t first, std::int64_t count,
+                           const DecodedView& planes) {
+    tile.upload(raw, first, count);
+    tile.decode(planes);
+    tile.fetch(planes);
+    const std::vector<std::int32_t> open = tile.open_pixels();
+    if (!open.empty())
+      std::visit(
+          [&](const auto* data) {
+            decode_on_host<std::remove_cvref_t<decltype(*data)>>(decoder, raw, first, open, planes);
+          },
+          raw.data);
+    return std::ssize(open);
+  }
+
+  Device device;
+  const Decoder& decoder;
+  std::mutex mutex;  // of what follows
+  DeviceTile tile;
+  std::int64_t tile_pixels;
+};
+
+DeviceDecoder::DeviceDecoder(const Device& device, const Decoder& decoder,
+                             const DeviceOptions& options) {
+  options.validate();
+  plan_ = std::make_unique<Plan>(device, decoder, options);
+}
+DeviceDecoder::~DeviceDecoder() = default;
+DeviceDecoder::DeviceDecoder(DeviceDecoder&&) noexcept = default;
+DeviceDecoder& DeviceDecoder::operator=(DeviceDecoder&&) noexcept = default;
+
+const Device& DeviceDecoder::device() const { return plan_->device; }
+
+std::int64_t DeviceDecoder::decode(const RawView& raw, const DecodedView& decoded,
+                                   const Progress& progress) const {
+  require_frame(raw, plan_->decoder.measurements());
+  const std::lock_guard lock(plan_->mutex);
+  std::int64_t left_open = 0;
+  for (std::int64_t first = 0; first < raw.pixels();) {
+    const std::int64_t count = std::min(raw.pixels() - first, plan_->tile_pixels);
+    try {
+      left_open +=
+          plan_->decode_tile(raw, first, count, decoded.from(static_cast<std::size_t>(first)));
+      first += count;
+    } catch (const OutOfDeviceMemory&) {
+      if (count <= min_tile_pixels) throw;
+      plan_->tile.release();
+      plan_->tile_pixels = std::max(count / 2, min_tile_pixels);
+      continue;
+    }
+    report(progress, static_cast<double>(first) / static_cast<double>(raw.pixels()), "decoding");
+  }
+  return left_open;
+}
+
+DepthImage DeviceDecoder::decode(const RawFrames& raw, int frame, const Progress& progress) const {
+  DepthImage image(raw.height, raw.width);
+  decode(view_of_frame(raw, frame), DecodedView::of(image), progress);
+  return image;
+}
+
+std::optional<DeviceDecoder> device_decoder(std::string_view device, const AnyDecoder& decoder) {
+  if (device == "cpu") return std::nullopt;
+  const auto* zncc = std::get_if<Decoder>(&decoder);
+  if (device == "auto") {
+    const std::optional<Device> gpu = zncc ? Device::first_gpu() : std::nullopt;
+    return gpu ? std::optional<DeviceDecoder>(std::in_place, *gpu, *zncc) : std::nullopt;
+  }
+  require(zncc != nullptr, "method", name_of(all_decode_methods[decoder.index()]),
+          "must be zncc, by which alone devices decode, or the device cpu");
+  return std::optional<DeviceDecoder>(std::in_place, Device::named(device), *zncc);
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/gpu.hpp"
+
+namespace tofsmith {
+
+/// Less memory on a device than was asked for; smaller parts may do.
+class OutOfDeviceMemory : public IoError {
+ public:
+  using IoError::IoError;
+};
+
+/// What a backend made, given back with this.
+using DeviceHandle = std::unique_ptr<void, void (*)(void*)>;
+inline DeviceHandle no_handle() {
+  return {nullptr, [](void*) {}};
+}
+
+/// Memory of a device, freed with this; at first none.
+struct DeviceMemory {
+  DeviceHandle handle = no_handle();
+  std::size_t bytes = 0;
+};
+
+/// A function that a device runs for many items.
+struct DeviceKernel {
+  DeviceHandle handle = no_handle();
+};
+
+/// What a backend does: work of a device, one piece after another. Every call throws IoError if the
+/// device fails, OutOfDeviceMemory where it is for that.
+class DeviceQueue {
+ public:
+  /// Items of a kernel that run together; kernels are started for whole groups.
+  static constexpr std::size_t group_items = 64;
+
+  explicit DeviceQueue(const Device& device);
+
+  DeviceMemory allocate(std::size_t bytes) const;
+  void upload(const void* from, std::size_t bytes, const DeviceMemory& to) const;
+  /// @param bytes  of the first of `from`
+  void download(const DeviceMemory& from, std::size_t bytes, void* to) const;
+  void copy(const DeviceMemory& from, const DeviceMemory& to, std::size_t bytes) const;
+  /// Compiled once for a device and these options.
+  DeviceKernel kernel(std::string_view source, const std::string& options, const char* name) const;
+  /// Runs a kernel for items 0, 1, .. of whole groups.
+  /// @param arguments  numbers and structs by value; memory, or null where it may be, by pointer
+  template <typename... Arguments>
+  void run(const DeviceKernel& kernel, std::int64_t items, const Arguments&... arguments) const {
+    unsigned at = 0;
+    (set(kernel, at++, arguments), ...);
+    start(kernel, items);
+  }
+  /// Waits until all work is done.
+  void finish() const;
+
+ private:
+  void set(const DeviceKernel& kernel, unsigned at, const DeviceMemory* memory) const;
+  void set_bytes(const DeviceKernel& kernel, unsigned at, const void* value,
+                 std::size_t bytes) const;
+  template <typename Value>
+  requires(!std::is_pointer_v<Value>) void set(const DeviceKernel& kernel, unsigned at,
+                                               const Value& value) const {
+    set_bytes(kernel, at, &value, sizeof(Value));
+  }
+  void start(const DeviceKernel& kernel, std::int64_t items) const;
+
+  Device device_;
+  DeviceHandle handle_ = no_handle();
+};
+
+}  // namespace tofsmith

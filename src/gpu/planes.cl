@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// From bins to planes, as src/decode/output/output_position-inl.hpp and output_noise-inl.hpp.
+
+/// <q, vector> with a vector of the record.
+float along_record(const float* q, Floats vector) {
+  float sum = q[0] * vector[0];
+  for (int j = 1; j < RANK; ++j) sum = q[j] * vector[j] + sum;
+  return sum;
+}
+
+float electrons_of(const struct OutputParameters* p, Floats tables, float raw, int k) {
+#ifdef HAS_DOUBLES
+  global const double* dark = (global const double*)(tables + p->dark_raw);
+  global const double* gain = (global const double*)(tables + p->gain_e_per_raw);
+  return (float)(((double)raw - dark[k]) * gain[k]);
+#else
+  Floats dark = tables + p->dark_raw + 2 * k;
+  const float lit = (raw - dark[0]) - dark[1];
+  Floats gain = tables + p->gain_e_per_raw + 2 * k;
+  return lit * gain[0] + lit * gain[1];
+#endif
+}
+
+float variance_of(float signal, float ambient, Floats noise) {
+  return fmax(signal * noise[0] + (ambient * noise[1] + noise[2]), 0.0f);
+}
+
+/// 1 / (1 + exp(-x)) at x in [0, 80].
+float logistic(float x) {
+  const float power = x * -1.44269504f;
+  const float whole = rint(power), rest = power - whole;
+  float series = rest * 1.54035304e-4f + 1.33335581e-3f;
+  series = rest * series + 9.61812911e-3f;
+  series = rest * series + 5.55041087e-2f;
+  series = rest * series + 0.240226507f;
+  series = rest * series + 0.693147181f;
+  series = rest * series + 1.0f;
+  const float two_to_whole = as_float(((int)whole + 127) << 23);
+  return 1.0f / (series * two_to_whole + 1.0f);
+}
+
+/// Probability of the bin against its second peak.
+float confidence_of(const struct OutputParameters* p, Floats tables, const float* q, Floats record,
+                    int second_peak, float signal, float ambient, float share) {
+  if (second_peak < 0 || !(signal > 0.0f)) return 1.0f;
+  Floats other = tables + p->second_peak_directions + (second_peak + 1) * p->direction_stride;
+  float score = 0.0f, lead = 0.0f, square = 0.0f, apart[RANK];
+  for (int j = 0; j < RANK; ++j) {
+    const float best = record[RECORD_DIRECTION + j];
+    apart[j] = best - other[j];
+    score = best * q[j] + score;
+    lead = apart[j] * q[j] + lead;
+    square = apart[j] * apart[j] + square;
+  }
+  const float product = fmax(lead, 0.0f) * score;
+  const float max_noise =
+      signal * p->max_shot + (ambient * p->max_shot_ambient + p->max_floor_e2);
+  if (product >= p->sure_log_odds * (max_noise * share)) return 1.0f;
+  float variance = 0.0f;
+  for (int k = 0; k < MEASUREMENTS; ++k) {
+    float weight = 0.0f;
+    for (int j = 0; j < RANK; ++j)
+      weight = apart[j] * tables[p->basis + k * RANK + j] + weight;
+    const float without_signal =
+        ambient * tables[p->shot_ambient + k] + tables[p->floor_noise + k];
+    const float noise = signal * record[RECORD_SHOT + k] + without_signal;
+    variance = weight * weight * fmax(noise, p->min_variance_e2) + variance;
+  }
+  return logistic(fmin(product * square / (variance * share), p->sure_log_odds));
+}
+
+/// Planes that are null are not wanted. Pixels without proven bin are left to the host.
+kernel void write_planes(const struct OutputParameters p, const struct TileParameters tile,
+                         Floats tables, global const uchar* raw_numbers, Floats averaged,
+                         global const int* bins, global const int* second_peaks,
+                         global float* depth_m, global float* signal_e_per_s,
+                         global float* ambient_e_per_s, global float* confidences,
+                         global float* deviation_m, global uchar* status) {
+  const int pixel = (int)get_global_id(0);
+  if (pixel >= tile.pixels) return;
+  const int bin = bins[pixel];
+  if (bin == UNPROVEN) return;
+  float raw[MEASUREMENTS], q[RANK];
+  for (int k = 0; k < MEASUREMENTS; ++k) raw[k] = raw_number(&tile, raw_numbers, pixel, k);
+  project(&p.projection, tile.number, tables, raw, q);
+  Floats record = tables + p.records + (bin + 1) * p.record_stride;
+
+  // Best point on the chords left and right.
+  const float at_bin = along_record(q, record + RECORD_POINT);
+  const float to_left = along_record(q, record + RECORD_LEFT);
+  const float to_right = along_record(q, record + RECORD_RIGHT);
+  const float turn_left = record[RECORD_TURN], turn_right = record[RECORD_TURN + 1];
+  const float reach_left = record[RECORD_REACH], reach_right = record[RECORD_REACH + 1];
+  const bool left_is_on = to_left > 0.0f && !(to_left * (reach_left + turn_left) > at_bin);
+  const bool right_is_on = to_right > 0.0f && !(to_right * (reach_right + turn_right) > at_bin);
+  const bool is_left = left_is_on == right_is_on ? to_left >= to_right : left_is_on;
+  const float rise = fmax(is_left ? to_left : to_right, 0.0f);
+  const float inside = at_bin - rise * (is_left ? turn_left : turn_right);
+  const bool has_depth = bin >= 0 && at_bin > 0.0f && inside > 0.0f;
+  const float reach = is_left ? reach_left : reach_right;
+  const float t = has_depth ? fmin(rise * reach / inside, 1.0f) : 0.0f;
+  const float signal = has_depth ? inside : 0.0f, offset = is_left ? -t : t;
+
+  if (depth_m) {
+    const float whole = bin == 0 && offset < 0.0f ? (float)p.samples : (float)bin;
+    const float rest = offset * p.bin_m + whole * p.bin_low_m;
+    const float depth = whole * p.bin_high_m + rest;
+    depth_m[pixel] = !has_depth ? NO_VALUE : depth >= p.range_m ? 0.0f : depth;
+  }
+  if (signal_e_per_s) signal_e_per_s[pixel] = has_depth ? signal : NO_VALUE;
+
+  const int quarter = min((int)(t * (float)p.chord_quarters), p.chord_quarters - 1) + 1;
+  const int steps = t == 0.0f ? 0 : is_left ? -quarter : quarter;
+  Floats chord = tables + p.chords +
+                 ((bin + 1) * p.chord_blocks + p.chord_quarters + steps) * CHORD_FIELDS;
+  float ambient = 0.0f;
+  if (p.sees_ambient && (ambient_e_per_s || confidences || deviation_m || status)) {
+    float sum = electrons_of(&p, tables, raw[0], 0) * tables[p.ambient_weights];
+    for (int k = 1; k < MEASUREMENTS; ++k)
+      sum = electrons_of(&p, tables, raw[k], k) * tables[p.ambient_weights + k] + sum;
+    ambient = sum - signal * (t * chord[CHORD_AMBIENT] + record[RECORD_AMBIENT]);
+  }
+  if (ambient_e_per_s) ambient_e_per_s[pixel] = p.sees_ambient && has_depth ? ambient : NO_VALUE;
+
+  const float noisy_ambient = fmax(ambient, 0.0f);
+  const float share = averaged ? 1.0f / averaged[pixel] : 1.0f;
+  if (deviation_m) {
+    const float variance = variance_of(signal, noisy_ambient, chord + CHORD_DEPTH_NOISE);
+    deviation_m[pixel] = has_depth ? sqrt(variance * share) / signal : NO_VALUE;
+  }
+  float confidence = 1.0f;
+  if (p.finds_confidence)
+    confidence = confidence_of(&p, tables, q, record, second_peaks[pixel], signal, noisy_ambient,
+                               share);
+  if (confidences) confidences[pixel] = has_depth ? confidence : NO_VALUE;
+  if (status) {
+    const float noise = variance_of(signal, noisy_ambient, record + RECORD_SIGNAL_NOISE) * share;
+    uchar value = confidence < p.min_confidence ? STATUS_AMBIGUOUS : STATUS_OK;
+    if (signal * signal < p.low_signal_sigma2 * noise) value = STATUS_LOW_SIGNAL;
+    if (!has_depth) value = STATUS_NO_RETURN;
+    for (int k = 0; k < MEASUREMENTS; ++k)
+      if (p.has_saturation && raw[k] >= p.saturation_level) value = STATUS_SATURATED;
+    if (bin < 0) value = STATUS_INVALID;
+    status[pixel] = value;
+  }
+}

@@ -1,0 +1,104 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""`decode --device`: the same files by a device of OpenCL, and drivers loaded when asked for alone."""
+
+import json
+import os
+import subprocess
+import unittest
+
+import command_line
+from command_line import CommandLineTest
+
+
+def devices():
+    """What OpenCL finds; nothing where tofsmith was built without it."""
+    listed = subprocess.run([command_line.TOOL, "decode", "--device", "list", "--json"],
+                            capture_output=True, text=True)
+    return json.loads(listed.stdout)["devices"] if listed.returncode == 0 else []
+
+
+DEVICES = devices()
+needs_device = unittest.skipUnless(DEVICES, "OpenCL finds no device: install pocl-opencl-icd")
+
+
+class Device(CommandLineTest):
+    def setUp(self):
+        super().setUp()
+        self.do("simulate", "table-top", "--code", "hamiltonian-k4", "--signal", "1e5", "--frames",
+                "2", "-o", "raw.npy")
+
+    def decode(self, device, *more, **options):
+        return self.run_tool("decode", "raw.npy", "--code", "hamiltonian-k4", "--device", device,
+                             *more, **options)
+
+    def refusal(self, device, *more, code=1, **options):
+        before = self.files()
+        status, out, error = self.decode(device, *more, "-o", "d.npz", **options)
+        self.assertEqual((status, out), (code, b""), error)
+        self.assertEqual(self.files(), before)
+        return error
+
+    @needs_device
+    def test_a_device_writes_the_files_that_the_processor_writes(self):
+        for more in ((), ("--filter", "light"), ("--memory-mb", "4"), ("--average", "2")):
+            for device in ("cpu", "auto", "0"):
+                code, _, error = self.decode(device, *more, "-o", device + ".npz", "--force")
+                self.assertEqual((code, error), (0, ""))
+            frames = ("",) if "--average" in more else ("-0", "-1")
+            for frame in frames:
+                expected = self.bytes_of(f"cpu{frame}.npz")
+                self.assertEqual(self.bytes_of(f"auto{frame}.npz"), expected)
+                if DEVICES[0]["doubles"]:
+                    self.assertEqual(self.bytes_of(f"0{frame}.npz"), expected, more)
+
+    @needs_device
+    def test_says_which_device_decoded(self):
+        code, out, _ = self.decode("0", "-o", "d.npz")
+        self.assertEqual(code, 0)
+        self.assertIn("device " + DEVICES[0]["name"], out.decode())
+        code, out, _ = self.decode("0", "-o", "e.npz", "--json")
+        self.assertEqual(json.loads(out)["device"], DEVICES[0]["name"])
+
+    @needs_device
+    def test_lists_devices_without_any_recording(self):
+        self.assertIn("0  " + DEVICES[0]["name"], self.do("decode", "--device", "list"))
+
+    @needs_device
+    def test_drivers_are_loaded_when_a_device_is_asked_for_alone(self):
+        def loaded(device):
+            error = self.decode(device, "-o", "d.npz", "--force",
+                                env=dict(os.environ, LD_DEBUG="files"))[2]
+            self.assertIn("libOpenCL", error)
+            return "libpocl" in error or "libnvidia-opencl" in error or "Rusticl" in error
+
+        self.assertFalse(loaded("cpu"))
+        if "Portable" in DEVICES[0]["platform"]:
+            self.assertTrue(loaded("0"))
+
+    @needs_device
+    def test_a_device_that_is_not_there_is_refused_with_those_that_are(self):
+        for name in ("7000", "no such"):
+            self.assertIn("0 " + DEVICES[0]["name"], self.refusal(name))
+
+    @needs_device
+    def test_other_methods_are_refused_on_a_device_and_decoded_by_auto(self):
+        self.assertIn("zncc", self.refusal("0", "--method", "ml", code=2))
+        self.assertEqual(self.decode("auto", "--method", "ml", "-o", "d.npz")[0], 0)
+
+    @needs_device
+    def test_a_driver_that_cannot_keep_kernels_is_refused(self):
+        self.write("file", "")
+        environment = dict(os.environ, POCL_CACHE_DIR=self.path("file/folder"))
+        if "Portable" in DEVICES[0]["platform"]:
+            self.assertIn("POCL_CACHE_DIR", self.refusal("0", env=environment))
+
+    def test_without_drivers_devices_are_refused_and_auto_is_the_processor(self):
+        os.mkdir(self.path("none"))
+        environment = dict(os.environ, OCL_ICD_VENDORS=self.path("none"))
+        self.assertIn("OpenCL", self.refusal("gpu", env=environment))
+        self.assertEqual(self.decode("auto", "-o", "d.npz", env=environment)[0], 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include "device_setup.hpp"
+#include "gpu/device_queue.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::HasSubstr;
+
+std::string refusal_of(std::string_view name) {
+  try {
+    Device::named(name);
+  } catch (const IoError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+using DeviceNames = OnDevice;
+
+TEST_F(DeviceNames, AreNumbersAndPartsOfNamesInAnyLetters) {
+  EXPECT_EQ(Device::named("0").info().name, device().info().name);
+  std::string part = device().info().platform;
+  for (char& letter : part) letter = static_cast<char>(std::toupper(letter));
+  EXPECT_EQ(Device::named(part).info().platform, device().info().platform);
+}
+
+TEST_F(DeviceNames, OfNoDeviceAreRefusedWithThoseThatAre) {
+  for (const char* name : {"7000", "no such device", "", "-1"})
+    EXPECT_THAT(refusal_of(name), HasSubstr("0 " + device().info().name)) << name;
+}
+
+TEST(DeviceNamesWithoutDriver, AreRefusedWithWhatIsMissing) {
+  if (!device_of_tests()) {
+    EXPECT_THAT(refusal_of("gpu"), HasSubstr("OpenCL"));
+  }
+}
+
+using DeviceQueues = OnDevice;
+
+TEST_F(DeviceQueues, SayWhatTheCompilerSaysOfAKernel) {
+  const DeviceQueue queue(device());
+  try {
+    queue.kernel("kernel void broken(global int* a) { a[0] = no_such_name; }", "", "broken");
+    FAIL() << "compiled";
+  } catch (const IoError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("no_such_name"));
+    EXPECT_THAT(error.what(), HasSubstr(device().info().name));
+  }
+}
+
+TEST_F(DeviceQueues, TellTooLittleMemoryApart) {
+  const DeviceQueue queue(device());
+  EXPECT_THROW(queue.allocate(std::size_t{1} << 60), OutOfDeviceMemory);
+}
+
+TEST_F(DeviceQueues, BringBackWhatTheyTook) {
+  const DeviceQueue queue(device());
+  const std::vector<std::int32_t> sent = {3, 1, 4, 1, 5};
+  const DeviceMemory a = queue.allocate(20), b = queue.allocate(20);
+  queue.upload(sent.data(), 20, a);
+  queue.copy(a, b, 20);
+  std::vector<std::int32_t> back(5);
+  queue.download(b, 20, back.data());
+  EXPECT_EQ(back, sent);
+}
+
+}  // namespace
+}  // namespace tofsmith

@@ -1,0 +1,60 @@
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+"""Decoding on a device of OpenCL, where there is one."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import tofsmith as ts
+
+
+@pytest.fixture(scope="module")
+def decoders():
+    """One of the processor and one of the first device."""
+    try:
+        return ts.Decoder("hamiltonian-k4", "paper-10f0"), ts.Decoder(
+            "hamiltonian-k4", "paper-10f0", device="0")
+    except OSError as error:
+        pytest.skip(str(error))
+
+
+def raw_frames():
+    return np.random.default_rng(1).poisson(3000, (2, 30, 40, 4)).astype(np.uint16)
+
+
+def test_a_device_gives_the_planes_of_the_processor(decoders, tmp_path):
+    here, there = decoders
+    assert here.device == "cpu" and there.device != "cpu"
+    raw = raw_frames()
+    expected, found = here.decode(raw), there.decode(raw)
+    np.testing.assert_array_equal(found.status, expected.status)
+    np.testing.assert_allclose(found.depth_m, expected.depth_m, rtol=2e-6)
+    np.testing.assert_array_equal(there.decode(raw, planes=["bin"]).bin,
+                                  here.decode(raw, planes=["bin"]).bin)
+    np.save(tmp_path / "raw.npy", raw)
+    for name, decoder in ("here", here), ("there", there):
+        decoder.decode_recording(tmp_path / "raw.npy", tmp_path / f"{name}.npy", stack=True)
+    np.testing.assert_allclose(np.load(tmp_path / "there.npy"), np.load(tmp_path / "here.npy"),
+                               rtol=2e-6)
+
+
+def test_a_decoder_keeps_its_device_when_it_is_pickled(decoders):
+    there = decoders[1]
+    assert pickle.loads(pickle.dumps(there)).device == there.device
+
+
+def test_devices_and_methods_that_do_not_go_are_refused(decoders):
+    with pytest.raises(OSError, match="expected one of 0 "):
+        ts.Decoder("hamiltonian-k4", "paper-10f0", device="7000")
+    with pytest.raises(ValueError, match="must be zncc"):
+        ts.Decoder("hamiltonian-k4", "paper-10f0", method="ml", device="0")
+    assert ts.Decoder("hamiltonian-k4", "paper-10f0", method="ml", device="auto").device == "cpu"
+
+
+def test_auto_decodes_whatever_there_is():
+    raw = raw_frames()
+    expected = ts.Decoder("hamiltonian-k4", "paper-10f0").decode(raw)
+    found = ts.Decoder("hamiltonian-k4", "paper-10f0", device="auto").decode(raw)
+    np.testing.assert_array_equal(found.status, expected.status)

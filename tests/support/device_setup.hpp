@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "output_setup.hpp"
+#include "tofsmith/gpu.hpp"
+
+namespace tofsmith {
+
+/// The device that tests use: the first one; none where there is none.
+inline std::optional<Device> device_of_tests() {
+  try {
+    const std::vector<Device> devices = Device::all();
+    if (!devices.empty()) return devices.front();
+  } catch (const IoError&) {  // built without OpenCL
+  }
+  return std::nullopt;
+}
+
+/// Of tests that need a device.
+class OnDevice : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!device_) GTEST_SKIP() << "OpenCL finds no device: install pocl-opencl-icd";
+  }
+  const Device& device() const { return *device_; }
+
+ private:
+  std::optional<Device> device_ = device_of_tests();
+};
+
+/// @param largest  of the values of a plane what an error is compared with, at least
+inline void expect_near(const std::vector<float>& a, const std::vector<float>& b, double largest) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(std::isnan(a[i]), std::isnan(b[i])) << "pixel " << i;
+    if (std::isnan(a[i]) || a[i] == b[i]) continue;  // infinities are equal
+    ASSERT_NEAR(a[i], b[i], 2e-6 * std::max<double>(largest, std::abs(b[i]))) << "pixel " << i;
+  }
+}
+
+/// The same bins and statuses, and planes of floats as close as a device gives them.
+/// @param brightest_e_per_s  light that a measurement sees
+inline void expect_alike(const DeviceInfo& info, bool uses_doubles, const Outputs& a,
+                         const Outputs& b, double brightest_e_per_s) {
+  if (info.divides_as_processor && info.has_doubles && uses_doubles) return expect_same(a, b);
+  EXPECT_EQ(a.bin, b.bin);
+  EXPECT_EQ(a.status, b.status);
+  expect_near(a.depth_m, b.depth_m, 0.0);
+  expect_near(a.signal, b.signal, 0.0);
+  expect_near(a.ambient, b.ambient, brightest_e_per_s);
+  expect_near(a.confidence, b.confidence, 1.0);
+  expect_near(a.deviation_m, b.deviation_m, 0.0);
+}
+
+}  // namespace tofsmith
