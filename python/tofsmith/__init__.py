@@ -6,6 +6,7 @@ The same words as the C++ library, the command line and the files: `Camera`, `Co
 `design`, `capture`, `Decoder`. SI units inside: names end in _m, _s, _hz, _e (photo-electrons),
 _e_per_s, _bin. Errors of arguments are ValueError or TypeError, of files OSError; long work takes
 `progress` and stops on Ctrl-C. Figures: `tofsmith.plot` (matplotlib), `tofsmith.figures` (Plotly).
+Gradients for learning: `tofsmith.torch` (PyTorch).
 
 Examples
 --------
@@ -158,8 +159,8 @@ __version__: str = _tofsmith.version
 
 
 def __getattr__(name: str) -> _ModuleType:
-    """tofsmith.plot and tofsmith.figures, when they are first asked for."""
-    if name in ("figures", "plot"):
+    """tofsmith.plot, tofsmith.figures and tofsmith.torch, when they are first asked for."""
+    if name in ("figures", "plot", "torch"):
         return _import_module(f"{__name__}.{name}")
     raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
 

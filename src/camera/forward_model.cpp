@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "camera/shared/actual_code.hpp"
+#include "camera/shared/ambient_leak.hpp"
 #include "core/shared/periodic.hpp"
 
 namespace tofsmith {
@@ -248,16 +249,11 @@ RowCovariance row_covariance(const ForwardModel& model, int points) {
 }
 
 Eigen::VectorXd unknown_ambient_gain(const ForwardModel& model, const Camera& camera) {
-  constexpr double share_of_noise = 0.05;
-  const std::vector<double>& ambient = camera.operating.ambient_e_per_s;
-  const double max_e_per_s =
-      ambient.empty() ? 0.0 : *std::max_element(ambient.begin(), ambient.end());
+  const double max_e_per_s = brightest_ambient_e_per_s(camera);
   const Eigen::VectorXd light_e = max_e_per_s * model.exposure_s();
-  const Eigen::ArrayXd leak_e = light_e.cwiseProduct(model.ambient_gain()).array().abs();
-  const Eigen::ArrayXd variance_e2 = model.variance_e2({}, max_e_per_s).array();
-  const bool cancels = camera.sensor.readout != Readout::separate && !ambient.empty() &&
-                       (leak_e <= share_of_noise * variance_e2.sqrt()).all();
-  if (cancels) return Eigen::VectorXd::Zero(model.measurements());
+  if (ambient_cancels(camera, light_e.cwiseProduct(model.ambient_gain()),
+                      model.variance_e2({}, max_e_per_s)))
+    return Eigen::VectorXd::Zero(model.measurements());
   return model.ambient_gain();
 }
 

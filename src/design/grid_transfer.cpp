@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tofsmith/camera/forward_model.hpp"
+
 namespace tofsmith {
 
 namespace {
@@ -30,6 +32,24 @@ Eigen::VectorXcd grid_transfer(const Camera& camera, int samples) {
       transfer[k] += h * sinc_squared(static_cast<double>(n) / samples);
     }
   return transfer;
+}
+
+Eigen::VectorXcd harmonic_shares(const Camera& camera, int samples) {
+  const int highest = harmonics_kept(samples);
+  const Eigen::VectorXcd response = camera.transfer(highest);
+  const Eigen::VectorXcd grid = grid_transfer(camera, samples);
+  const double smallest = 1e-12 * grid.cwiseAbs().maxCoeff();
+  Eigen::VectorXcd shares = Eigen::VectorXcd::Zero(highest + 1);
+  Eigen::Index used = 1;
+  for (int n = 0; n <= highest; ++n) {
+    const int k = n % samples;
+    const std::complex<double> whole = k < grid.size() ? grid[k] : std::conj(grid[samples - k]);
+    const std::complex<double> part = response[n] * sinc_squared(static_cast<double>(n) / samples);
+    if (std::abs(whole) <= 1e-3 * smallest) continue;  // rounding
+    shares[n] = part / whole;
+    if (std::abs(part) > smallest) used = n + 1;
+  }
+  return shares.head(used);
 }
 
 }  // namespace tofsmith

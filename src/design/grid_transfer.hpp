@@ -13,4 +13,11 @@ namespace tofsmith {
 /// k = 0 .. N/2, exact at the N bins. All ones without impulse responses.
 Eigen::VectorXcd grid_transfer(const Camera& camera, int samples);
 
+/// What harmonic n of a correlation function has of coefficient n mod N of its samples at the N
+/// bins:
+///   chi_n = shares[n] chi[n mod N] / N,  shares[n] = H(n) sinc^2(n / N) / G[n mod N],
+/// n = 0 .. as far as more than 1e-12 is left. Only of cameras whose arms are limited: without
+/// responses functions are straight between bins.
+Eigen::VectorXcd harmonic_shares(const Camera& camera, int samples);
+
 }  // namespace tofsmith

@@ -11,6 +11,7 @@
 
 #include "camera/shared/depth_prior.hpp"
 #include "simulate/bound_means.hpp"
+#include "simulate/shared/depth_information.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
@@ -23,53 +24,9 @@ double total_exposure_s(const ExposureTime& exposure) {
   return std::accumulate(exposure.each_s.begin(), exposure.each_s.end(), 0.0);
 }
 
-/// Depths of a Cramer-Rao bound in a bin.
-constexpr int cells_per_bin = 4;
-constexpr double min_e2 = 1e-9;  // a measurement without any light or noise tells nothing
-
-/// Values at the middle of every second cell of a table of twice as many points, and the slope over
-/// the cell around them.
-void middles_and_slopes(const Eigen::MatrixXd& fine, Eigen::MatrixXd& middle,
-                        Eigen::MatrixXd& slope) {
-  const Eigen::Index cells = fine.rows() / 2;
-  middle.resize(cells, fine.cols());
-  slope.resize(cells, fine.cols());
-  for (Eigen::Index j = 0; j < cells; ++j) {
-    middle.row(j) = fine.row(2 * j + 1);
-    slope.row(j) = (fine.row((2 * j + 2) % fine.rows()) - fine.row(2 * j)) * double(cells);
-  }
-}
-
-/// Residual of `vector` across `direction` (unit length or zero).
-template <typename Vector, typename Direction>
-void take_out(Vector& vector, const Direction& direction) {
-  vector -= vector.dot(direction) * direction;
-}
-
-/// Scales to unit length, or to zero what rounding alone made.
-template <typename Vector>
-void normalize_or_drop(Vector& vector, double original_norm) {
-  const double norm = vector.norm();
-  if (norm > 1e-10 * original_norm && norm > 0.0)
-    vector /= norm;
-  else
-    vector.setZero();
-}
-
-/// Of columns of a whitened Jacobian. [F^-1]_zz = 1 / |part of the depth column across the other
-/// two|^2: well defined even where ambient light and signal cannot be separated, and the matrix has
-/// no inverse.
-double deviation_of_depth_m(Eigen::VectorXd by_depth, Eigen::VectorXd by_signal,
-                            Eigen::VectorXd by_ambient, double range_m) {
-  const double depth_norm = by_depth.norm();
-  normalize_or_drop(by_ambient, by_ambient.norm());
-  const double signal_norm = by_signal.norm();
-  take_out(by_signal, by_ambient);
-  normalize_or_drop(by_signal, signal_norm);
-  take_out(by_depth, by_ambient);
-  take_out(by_depth, by_signal);
-  const double left = by_depth.norm();
-  return left > 1e-10 * depth_norm ? range_m / left : infinity;
+double deviation_of_depth_m(const Eigen::VectorXd& by_depth, const Eigen::VectorXd& by_signal,
+                            const Eigen::VectorXd& by_ambient, double range_m) {
+  return DepthPart<Eigen::VectorXd>(by_depth, by_signal, by_ambient).deviation_m(range_m);
 }
 
 /// Largest kappa (1 - kappa) / (b kappa + c) a tap can reach. The duties of an exposure's taps add

@@ -34,7 +34,7 @@ RawFrames capture(const SceneImage& scene, const SceneLight& light, const CodeSe
   if (blur.kind == LensBlur::Kind::none && light.stray_light.empty())
     return captured_rows(source, scene.height(), scene.width(), options.frames, progress);
   // An image has one ray a pixel, whatever the lens would like.
-  PixelLight blurred(scene.height(), scene.width(), source.tap_values());
+  CollectedLight blurred(scene.height(), scene.width(), source.tap_values());
   add_light(source, blur, 1, {0, source.tap_values()}, blurred);
   scatter_light(light.stray_light, options.ambient_e_per_s, blurred);
   return captured_frames(source, blurred, options.frames, progress);

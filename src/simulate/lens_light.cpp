@@ -109,7 +109,7 @@ class Band {
     }
   }
 
-  void write_to(PixelLight& light) const {
+  void write_to(CollectedLight& light) const {
     for (int r = 0; r < rows_; ++r)
       for (int c = 0; c < width_; ++c) {
         const auto pixel =
@@ -182,7 +182,7 @@ class Band {
 /// All bands; rows of rays go from `reach_rays` above a band to as many below.
 template <typename Kernel>
 void add_by(const Kernel& kernel, int reach_rays, const RowCapture& rays, int samples,
-            TapRange range, PixelLight& light) {
+            TapRange range, CollectedLight& light) {
   // Rows that bands share are read once for each: taller bands where kernels reach far.
   const int rows_of_band = std::max(8, 2 * reach_rays / samples);
   parallel_for_blocks(light.height, rows_of_band, [&](IndexRange rows) {
@@ -203,7 +203,7 @@ RawFrames empty_frames(int frames, int height, int width, int measurements) {
   return raw;
 }
 
-RawFrames captured_frames(const RowCapture& source, const PixelLight& light, int frames,
+RawFrames captured_frames(const RowCapture& source, const CollectedLight& light, int frames,
                           const Progress& progress) {
   RawFrames raw = empty_frames(frames, light.height, light.width, source.measurements());
   for (int frame = 0; frame < frames; ++frame) {
@@ -214,7 +214,7 @@ RawFrames captured_frames(const RowCapture& source, const PixelLight& light, int
   return raw;
 }
 
-PixelLight::PixelLight(int height_, int width_, int tap_values_)
+CollectedLight::CollectedLight(int height_, int width_, int tap_values_)
     : height(height_),
       width(width_),
       tap_values(tap_values_),
@@ -224,7 +224,7 @@ PixelLight::PixelLight(int height_, int width_, int tap_values_)
       far_m(near_m) {}
 
 void add_light(const RowCapture& rays, const LensBlur& blur, int samples, TapRange range,
-               PixelLight& light) {
+               CollectedLight& light) {
   const SceneImage& scene = rays.scene();
   require(scene.height() == light.height * samples && scene.width() == light.width * samples,
           "size of the image of rays", fmt::format("{} x {}", scene.height(), scene.width()),
@@ -241,7 +241,7 @@ void add_light(const RowCapture& rays, const LensBlur& blur, int samples, TapRan
   add_by(kernel, kernel.reach, rays, samples, range, light);
 }
 
-void scatter_light(const Image<float>& kernel, double ambient_e_per_s, PixelLight& light) {
+void scatter_light(const Image<float>& kernel, double ambient_e_per_s, CollectedLight& light) {
   if (kernel.empty()) return;
   if (light.ambient.empty()) light.ambient.assign(light.near_m.size(), ambient_e_per_s);
   StrayLight stray(kernel);
@@ -259,7 +259,7 @@ void scatter_light(const Image<float>& kernel, double ambient_e_per_s, PixelLigh
   scatter(light.ambient.data(), 1);
 }
 
-void expose_pixels(const RowCapture& source, const PixelLight& light, int frame, float* raw) {
+void expose_pixels(const RowCapture& source, const CollectedLight& light, int frame, float* raw) {
   const auto taps = static_cast<std::ptrdiff_t>(light.tap_values);
   parallel_for(light.height, [&](std::int64_t row) {
     std::vector<double> values(static_cast<std::size_t>(taps));

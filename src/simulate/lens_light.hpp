@@ -10,14 +10,14 @@
 namespace tofsmith {
 
 /// Light on the pixels of one frame before noise [e/s], and the depths it comes from.
-struct PixelLight {
+struct CollectedLight {
   int height = 0, width = 0;
   int tap_values = 0;
   std::vector<double> taps;     ///< (H, W, tap values): S chi
   std::vector<double> ambient;  ///< (H, W); empty: the same everywhere
   Image<float> near_m, far_m;   ///< of what brings a pixel light; NaN: nothing does
 
-  PixelLight(int height_, int width_, int tap_values_);
+  CollectedLight(int height_, int width_, int tap_values_);
 };
 
 /// Tap values first .. first + count - 1, those of one exposure or of all.
@@ -32,24 +32,24 @@ struct TapRange {
 /// @throws std::invalid_argument if their image is not of that size, or as DiscKernels
 /// @note the same bits for any number of threads
 void add_light(const RowCapture& rays, const LensBlur& blur, int samples, TapRange range,
-               PixelLight& light);
+               CollectedLight& light);
 
 /// Lets the lens scatter all light over the image: StrayLight::scatter() of each tap value and of
 /// ambient light.
 /// @param kernel             of StrayLight; empty: nothing changes
 /// @param ambient_e_per_s  where `light` has none of its own
 /// @throws std::invalid_argument as StrayLight
-void scatter_light(const Image<float>& kernel, double ambient_e_per_s, PixelLight& light);
+void scatter_light(const Image<float>& kernel, double ambient_e_per_s, CollectedLight& light);
 
 /// Raw frames of that size, all 0.
 RawFrames empty_frames(int frames, int height, int width, int measurements);
 
 /// Frames under one light, each with noise of its own.
 /// @throws Interrupted if progress says so
-RawFrames captured_frames(const RowCapture& source, const PixelLight& light, int frames,
+RawFrames captured_frames(const RowCapture& source, const CollectedLight& light, int frames,
                           const Progress& progress);
 
 /// One frame of pixels under that light, (H, W, K).
-void expose_pixels(const RowCapture& source, const PixelLight& light, int frame, float* raw);
+void expose_pixels(const RowCapture& source, const CollectedLight& light, int frame, float* raw);
 
 }  // namespace tofsmith

@@ -91,7 +91,7 @@ StagedCapture capture_moving(const StagedScene& scene, const CodeSet& code, cons
   StagedCapture result;
   result.raw = empty_frames(options.frames, height, width, source.measurements());
   for (int frame = 0; frame < options.frames; ++frame) {
-    PixelLight pixels(height, width, source.tap_values());
+    CollectedLight pixels(height, width, source.tap_values());
     for (int exposure = 0; exposure < exposures; ++exposure) {
       report(progress, (frame + static_cast<double>(exposure) / exposures) / options.frames,
              "capture");
@@ -142,7 +142,7 @@ StagedCapture capture(const StagedScene& scene, const CodeSet& code, const Camer
   const SceneLight light = light_of(scene, rays, setup, blur.pixel_samples);
   light.validate(rays, camera);
   const RowCapture source(rays, light, ForwardModel(code, camera), camera, options);
-  PixelLight pixels(truth.height(), truth.width(), source.tap_values());
+  CollectedLight pixels(truth.height(), truth.width(), source.tap_values());
   add_light(source, blur, blur.pixel_samples, {0, source.tap_values()}, pixels);
   scatter_light(setup.stray_light, options.ambient_e_per_s, pixels);
   result.raw = captured_frames(source, pixels, options.frames, progress);

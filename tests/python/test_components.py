@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A component that is not installed is named with its Debian package."""
 
+import subprocess
+import sys
+
 from tofsmith import _components
 
 
@@ -16,3 +19,12 @@ def test_a_missing_library_names_its_package():
 def test_other_errors_stay_as_they_are():
     error = ImportError("libembree3.so.3: cannot open shared object file")
     assert _components.explained(error) is error
+
+
+def test_the_package_does_not_need_torch():
+    hidden = ("import sys; import tofsmith; assert 'torch' not in sys.modules\n"
+              "sys.modules['torch'] = None\n"
+              "try: import tofsmith.torch\n"
+              "except ImportError as error: print(error)")
+    done = subprocess.run([sys.executable, "-B", "-c", hidden], capture_output=True, text=True)
+    assert "apt install python3-torch" in done.stdout, done.stderr

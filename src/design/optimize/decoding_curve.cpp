@@ -28,39 +28,44 @@ Eigen::VectorXd ambient_direction(const SampledCamera& camera, const Measurement
 
 }  // namespace
 
-DecodingCurve::DecodingCurve(const SampledCamera& camera, const MeasurementTable& table)
+template <typename Value>
+DecodingCurveOf<Value>::DecodingCurveOf(const SampledCamera& camera, const MeasurementTable& table)
     : samples(table.samples()), measurements(table.measurements()), stride(padded_stride(samples)) {
   const Eigen::VectorXd direction = ambient_direction(camera, table);
   exact_points = table.correlation * relative_exposure(camera).asDiagonal();
   exact_points -= (exact_points * direction) * direction.transpose();
   const auto size = static_cast<std::size_t>(stride);
-  points.assign(size * static_cast<std::size_t>(measurements), 0.0f);
-  squares.assign(size, 0.0f);
-  products.assign(size, 0.0f);
+  points.assign(size * static_cast<std::size_t>(measurements), Value{0});
+  squares.assign(size, Value{0});
+  products.assign(size, Value{0});
   for (int j = 0; j <= samples; ++j) {
     const int at = j % samples, next = (at + 1) % samples;
     for (int r = 0; r < measurements; ++r)
       points[static_cast<std::size_t>(r) * size + static_cast<std::size_t>(j)] =
-          static_cast<float>(exact_points(at, r));
-    squares[static_cast<std::size_t>(j)] = static_cast<float>(exact_points.row(at).squaredNorm());
+          static_cast<Value>(exact_points(at, r));
+    squares[static_cast<std::size_t>(j)] = static_cast<Value>(exact_points.row(at).squaredNorm());
     products[static_cast<std::size_t>(j)] =
-        static_cast<float>(exact_points.row(at).dot(exact_points.row(next)));
+        static_cast<Value>(exact_points.row(at).dot(exact_points.row(next)));
   }
 }
 
-CurveGradient::CurveGradient(const DecodingCurve& curve)
-    : points(curve.points.size(), 0.0f),
-      squares(curve.squares.size(), 0.0f),
-      next_squares(curve.squares.size(), 0.0f),
-      products(curve.squares.size(), 0.0f) {}
+template <typename Value>
+CurveGradientOf<Value>::CurveGradientOf(const DecodingCurveOf<Value>& curve)
+    : points(curve.points.size(), Value{0}),
+      squares(curve.squares.size(), Value{0}),
+      next_squares(curve.squares.size(), Value{0}),
+      products(curve.squares.size(), Value{0}) {}
 
-void CurveGradient::clear() {
-  for (AlignedFloats* values : {&points, &squares, &next_squares, &products})
-    std::fill(values->begin(), values->end(), 0.0f);
+template <typename Value>
+void CurveGradientOf<Value>::clear() {
+  for (Aligned<Value>* values : {&points, &squares, &next_squares, &products})
+    std::fill(values->begin(), values->end(), Value{0});
 }
 
-void CurveGradient::pull_back(const SampledCamera& camera, const MeasurementTable& table,
-                              const DecodingCurve& curve, MeasurementTable& gradient) const {
+template <typename Value>
+void CurveGradientOf<Value>::pull_back(const SampledCamera& camera, const MeasurementTable& table,
+                                       const DecodingCurveOf<Value>& curve,
+                                       MeasurementTable& gradient) const {
   const int samples = curve.samples;
   Eigen::MatrixXd by_points(samples, curve.measurements);
   for (int j = 0; j < samples; ++j) {
@@ -87,5 +92,10 @@ void CurveGradient::pull_back(const SampledCamera& camera, const MeasurementTabl
       -(by_points.transpose() * curve_along + curve.exact_points.transpose() * along) / length;
   gradient.ambient_gain += by_ambient.cwiseProduct(exposure);
 }
+
+template struct DecodingCurveOf<float>;
+template struct DecodingCurveOf<double>;
+template struct CurveGradientOf<float>;
+template struct CurveGradientOf<double>;
 
 }  // namespace tofsmith

@@ -28,36 +28,43 @@ struct CacheLineAllocator {
   friend bool operator==(const CacheLineAllocator&, const CacheLineAllocator&) { return true; }
 };
 
-using AlignedFloats = std::vector<float, CacheLineAllocator<float>>;
+template <typename Value>
+using Aligned = std::vector<Value, CacheLineAllocator<Value>>;
+using AlignedFloats = Aligned<float>;
 
 /// The curve that the decoder compares with, without what ambient light explains:
 ///   p_j = P x_j,  x_j = g o chi_j,  P = I - a a^T / |a|^2,  a = g o kappa,  g_i = T_i / mean T,
 /// at bins j = 0 .. N, the last of which is the first again; and Q_jk = <p_j, p_k> for neighbours.
-struct DecodingCurve {
-  DecodingCurve(const SampledCamera& camera, const MeasurementTable& table);
+/// @tparam Value  float, or double where gradients are checked against differences
+template <typename Value>
+struct DecodingCurveOf {
+  DecodingCurveOf(const SampledCamera& camera, const MeasurementTable& table);
 
   /// Component r of the curve, j = 0 .. N and padding.
-  const float* component(int r) const { return points.data() + r * stride; }
+  const Value* component(int r) const { return points.data() + r * stride; }
 
   int samples, measurements;
   int stride;                    ///< between components; whole vectors, and room for one more point
-  AlignedFloats points;          ///< (R, stride)
-  AlignedFloats squares;         ///< Q_jj, j = 0 .. N
-  AlignedFloats products;        ///< Q_j,j+1, j = 0 .. N - 1
+  Aligned<Value> points;         ///< (R, stride)
+  Aligned<Value> squares;        ///< Q_jj, j = 0 .. N
+  Aligned<Value> products;       ///< Q_j,j+1, j = 0 .. N - 1
   Eigen::MatrixXd exact_points;  ///< (N, R)
 };
+using DecodingCurve = DecodingCurveOf<float>;
 
-/// Gradient of a function by what is in a DecodingCurve, summed over trials.
-struct CurveGradient {
-  explicit CurveGradient(const DecodingCurve& curve);
+/// Gradient of a function by what is in a decoding curve, summed over trials.
+template <typename Value>
+struct CurveGradientOf {
+  explicit CurveGradientOf(const DecodingCurveOf<Value>& curve);
   void clear();
   /// Adds the gradient by the table that the curve was made of.
   void pull_back(const SampledCamera& camera, const MeasurementTable& table,
-                 const DecodingCurve& curve, MeasurementTable& gradient) const;
+                 const DecodingCurveOf<Value>& curve, MeasurementTable& gradient) const;
 
-  AlignedFloats points;                 ///< (R, stride)
-  AlignedFloats squares, next_squares;  ///< by Q_jj and Q_j+1,j+1 as seen from chord j
-  AlignedFloats products;
+  Aligned<Value> points;                 ///< (R, stride)
+  Aligned<Value> squares, next_squares;  ///< by Q_jj and Q_j+1,j+1 as seen from chord j
+  Aligned<Value> products;
 };
+using CurveGradient = CurveGradientOf<float>;
 
 }  // namespace tofsmith

@@ -9,21 +9,6 @@
 
 namespace tofsmith {
 
-namespace {
-
-MeasurementTable zeros_like(const MeasurementTable& table) {
-  MeasurementTable zeros;
-  zeros.correlation = Eigen::MatrixXd::Zero(table.samples(), table.measurements());
-  zeros.ambient_gain = Eigen::VectorXd::Zero(table.measurements());
-  if (table.shot_correlation.size() > 0) {
-    zeros.shot_correlation = zeros.correlation;
-    zeros.shot_ambient_gain = zeros.ambient_gain;
-  }
-  return zeros;
-}
-
-}  // namespace
-
 DepthErrorLoss::DepthErrorLoss(const SampledCamera& camera, MeasurementTable table,
                                DepthErrorKind kind)
     : camera_(&camera),

@@ -36,6 +36,8 @@ SampledCamera::SampledCamera(const Camera& camera, int samples, int exposures)
   const int per_exposure = measurements() / exposures;
   for (int i = 0; i < measurements(); ++i)
     exposure_s_[i] = camera.exposure_s.of(i / per_exposure, exposures);
+  dark_electrons_ = readout.rowwise().sum().cwiseProduct(
+      (camera.sensor.dark_current_e_per_s * exposure_s_).array().matrix());
   const Eigen::VectorXd taps_read = readout.cwiseAbs().rowwise().sum();
   constant_variance_e2_ = taps_read.cwiseProduct(
       (camera.sensor.dark_current_e_per_s * exposure_s_).array().matrix() +
@@ -101,6 +103,17 @@ SampledCode SampledCamera::pull_back(const Measured& measured,
     result.modulation.col(e) = signal;
   }
   return result;
+}
+
+MeasurementTable zeros_like(const MeasurementTable& table) {
+  MeasurementTable zeros;
+  zeros.correlation = Eigen::MatrixXd::Zero(table.samples(), table.measurements());
+  zeros.ambient_gain = Eigen::VectorXd::Zero(table.measurements());
+  if (table.shot_correlation.size() > 0) {
+    zeros.shot_correlation = zeros.correlation;
+    zeros.shot_ambient_gain = zeros.ambient_gain;
+  }
+  return zeros;
 }
 
 }  // namespace tofsmith

@@ -39,6 +39,8 @@ class SampledCamera {
   const Eigen::VectorXd& exposure_s() const { return exposure_s_; }
   /// Variance without any light [e^2] (R): read noise, quantization and dark current.
   const Eigen::VectorXd& constant_variance_e2() const { return constant_variance_e2_; }
+  /// Electrons of dark current in every measurement (R).
+  const Eigen::VectorXd& dark_electrons() const { return dark_electrons_; }
   /// Whether a decoder has to reckon with ambient light: not where buckets are subtracted.
   bool ambient_unknown() const { return !difference_; }
 
@@ -59,7 +61,10 @@ class SampledCamera {
   Eigen::VectorXcd transfer_;    // G / N
   Eigen::MatrixXd combination_;  // (R, tap values): contrast, then readout
   Eigen::MatrixXd shot_combination_;
-  Eigen::VectorXd exposure_s_, constant_variance_e2_;
+  Eigen::VectorXd exposure_s_, constant_variance_e2_, dark_electrons_;
 };
+
+/// A table of zeros, with what the other has: gradients by tables are summed up in them.
+MeasurementTable zeros_like(const MeasurementTable& table);
 
 }  // namespace tofsmith

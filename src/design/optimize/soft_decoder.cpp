@@ -3,6 +3,7 @@
 #include "design/optimize/soft_decoder.hpp"
 
 #include <limits>
+#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "design/optimize/soft_decoder.cpp"
@@ -18,13 +19,19 @@ namespace tofsmith {
 namespace HWY_NAMESPACE {
 namespace {
 
+/// As wide as Floats and Doubles are.
+template <typename Value>
+using Tag = hn::CappedTag<Value, widest_vector * sizeof(float) / sizeof(Value)>;
+
 constexpr float smallest_square = 1e-10f;  // |p|^2 of a point without contrast
 constexpr float smallest = 1e-30f;
 
 /// beta_j = <y, p_j>, j = 0 .. N.
-HWY_INLINE void match_points(const DecodingCurve& curve, const float* HWY_RESTRICT electrons,
-                             SoftDecoder::Scratch& scratch) {
-  const Floats d;
+template <typename Value>
+HWY_INLINE void match_points(const DecodingCurveOf<Value>& curve,
+                             const Value* HWY_RESTRICT electrons,
+                             typename SoftDecoderOf<Value>::Scratch& scratch) {
+  const Tag<Value> d;
   const int lanes = lanes_of(d);
   for (int j = 0; j <= curve.samples; j += lanes) {
     auto sum = hn::Zero(d);
@@ -37,8 +44,10 @@ HWY_INLINE void match_points(const DecodingCurve& curve, const float* HWY_RESTRI
 /// Best point of every chord: with u = Q11 b0 - Q01 b1 and v = Q00 b1 - Q01 b0 it lies at
 /// t = v / (u + v) where both are > 0, else at the better end. Scores are S_j, -1 in the padding.
 /// @return the largest
-HWY_INLINE float score_chords(const DecodingCurve& curve, SoftDecoder::Scratch& scratch) {
-  const Floats d;
+template <typename Value>
+HWY_INLINE Value score_chords(const DecodingCurveOf<Value>& curve,
+                              typename SoftDecoderOf<Value>::Scratch& scratch) {
+  const Tag<Value> d;
   const int lanes = lanes_of(d);
   const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
   const auto min_square = hn::Set(d, smallest_square);
@@ -64,7 +73,7 @@ HWY_INLINE float score_chords(const DecodingCurve& curve, SoftDecoder::Scratch& 
         hn::Max(min_square, hn::MulAdd(hn::Mul(q00, s), s, hn::MulAdd(hn::Mul(q11, t), t, cross)));
     const auto ratio = hn::Div(match, square);
     const auto in_range =
-        hn::Lt(hn::Iota(d, static_cast<float>(j)), hn::Set(d, static_cast<float>(curve.samples)));
+        hn::Lt(hn::Iota(d, static_cast<Value>(j)), hn::Set(d, static_cast<Value>(curve.samples)));
     const auto score =
         hn::IfThenElse(in_range, hn::Mul(half, hn::Mul(match, ratio)), hn::Set(d, -1.0f));
     hn::Store(t, d, scratch.place.data() + j);
@@ -77,63 +86,75 @@ HWY_INLINE float score_chords(const DecodingCurve& curve, SoftDecoder::Scratch& 
 }
 
 /// The bin of the largest correlation. Uses scratch.ratio.
-HWY_INLINE int best_bin(const DecodingCurve& curve, SoftDecoder::Scratch& scratch) {
-  const Floats d;
+template <typename Value>
+HWY_INLINE int best_bin(const DecodingCurveOf<Value>& curve,
+                        typename SoftDecoderOf<Value>::Scratch& scratch) {
+  const Tag<Value> d;
   const int lanes = lanes_of(d);
-  auto largest = hn::Set(d, -std::numeric_limits<float>::max());
+  auto largest = hn::Set(d, -std::numeric_limits<Value>::max());
   for (int j = 0; j < curve.samples; j += lanes) {
     const auto match = hn::Load(d, scratch.match.data() + j);
     const auto square = hn::Add(hn::Load(d, curve.squares.data() + j), hn::Set(d, smallest_square));
     const auto in_range =
-        hn::Lt(hn::Iota(d, static_cast<float>(j)), hn::Set(d, static_cast<float>(curve.samples)));
+        hn::Lt(hn::Iota(d, static_cast<Value>(j)), hn::Set(d, static_cast<Value>(curve.samples)));
     const auto score = hn::IfThenElse(in_range, hn::Div(hn::Mul(match, hn::Abs(match)), square),
-                                      hn::Set(d, -std::numeric_limits<float>::max()));
+                                      hn::Set(d, -std::numeric_limits<Value>::max()));
     hn::Store(score, d, scratch.ratio.data() + j);
     largest = hn::Max(largest, score);
   }
-  const float wanted = hn::GetLane(hn::MaxOfLanes(d, largest));
+  const Value wanted = hn::GetLane(hn::MaxOfLanes(d, largest));
   int best = 0;
   while (best + 1 < curve.samples && scratch.ratio[static_cast<std::size_t>(best)] != wanted)
     ++best;
   return best;
 }
 
-float decode_best(const DecodingCurve& curve, const float* electrons,
-                  SoftDecoder::Scratch& scratch) {
+template <typename Value>
+Value best_place(const DecodingCurveOf<Value>& curve, const Value* electrons,
+                 typename SoftDecoderOf<Value>::Scratch& scratch) {
   match_points(curve, electrons, scratch);
   const auto right = static_cast<std::size_t>(best_bin(curve, scratch));
   score_chords(curve, scratch);
   const std::size_t left = right > 0 ? right - 1 : static_cast<std::size_t>(curve.samples) - 1;
   const std::size_t chord = scratch.score[left] > scratch.score[right] ? left : right;
-  return static_cast<float>(chord) + scratch.place[chord];
+  return static_cast<Value>(chord) + scratch.place[chord];
 }
 
 /// What a vector of chords is off by.
-template <typename V>
-HWY_INLINE V chord_error(Floats d, V place, float true_bin, float samples, bool circular) {
-  const auto distance = hn::Abs(hn::Sub(place, hn::Set(d, true_bin)));
-  if (!circular) return distance;
-  return hn::Min(distance, hn::Sub(hn::Set(d, samples), distance));
+template <typename D, typename V, typename Value>
+HWY_INLINE V chord_error(D d, V place, Value true_bin, Value samples,
+                         const SoftQuestion& question) {
+  const auto beyond = hn::Sub(place, hn::Set(d, true_bin));
+  const auto distance = hn::Abs(beyond), whole = hn::Set(d, samples);
+  if (question.is_signed) {
+    if (!question.circular) return beyond;
+    const auto around = hn::Gt(hn::Add(distance, distance), whole);
+    return hn::Sub(beyond, hn::IfThenElseZero(around, hn::CopySign(whole, beyond)));
+  }
+  if (!question.circular) return distance;
+  return hn::Min(distance, hn::Sub(whole, distance));
 }
 
 /// Shares of the chords (unnormalized) and their errors. Returns {sum of shares, sum of shares
 /// times errors}.
-HWY_INLINE void weigh_chords(const DecodingCurve& curve, const SoftQuestion& question,
-                             float largest, SoftDecoder::Scratch& scratch, float* sums) {
-  const Floats d;
+template <typename Value>
+HWY_INLINE void weigh_chords(const DecodingCurveOf<Value>& curve, const SoftQuestion& question,
+                             Value largest, typename SoftDecoderOf<Value>::Scratch& scratch,
+                             Value* sums) {
+  const Tag<Value> d;
   const int lanes = lanes_of(d);
-  const auto sharpness = hn::Set(d, static_cast<float>(question.sharpness));
+  const auto sharpness = hn::Set(d, static_cast<Value>(question.sharpness));
   const auto shift = hn::Set(d, largest);
   auto total = hn::Zero(d), error_total = hn::Zero(d);
   for (int j = 0; j < curve.samples; j += lanes) {
-    const auto index = hn::Iota(d, static_cast<float>(j));
+    const auto index = hn::Iota(d, static_cast<Value>(j));
     const auto place = hn::Add(index, hn::Load(d, scratch.place.data() + j));
-    const auto error = chord_error(d, place, static_cast<float>(question.true_bin),
-                                   static_cast<float>(curve.samples), question.circular);
+    const auto error = chord_error(d, place, static_cast<Value>(question.true_bin),
+                                   static_cast<Value>(curve.samples), question);
     const auto exponent =
         hn::Max(hn::Set(d, -80.0f),
                 hn::Mul(sharpness, hn::Sub(hn::Load(d, scratch.score.data() + j), shift)));
-    const auto in_range = hn::Lt(index, hn::Set(d, static_cast<float>(curve.samples)));
+    const auto in_range = hn::Lt(index, hn::Set(d, static_cast<Value>(curve.samples)));
     const auto share = hn::IfThenElseZero(in_range, hn::Exp(d, exponent));
     hn::Store(share, d, scratch.share.data() + j);
     hn::Store(error, d, scratch.error.data() + j);
@@ -146,15 +167,18 @@ HWY_INLINE void weigh_chords(const DecodingCurve& curve, const SoftQuestion& que
 
 /// Gradient of the expected error by the matches b_j of every chord's two ends (scratch) and, added
 /// with its weight, by the squares and products of the curve.
-HWY_INLINE void differentiate_chords(const DecodingCurve& curve, const SoftQuestion& question,
-                                     float weight, float normalization, float expected,
-                                     CurveGradient& gradient, SoftDecoder::Scratch& scratch) {
-  const Floats d;
+template <typename Value>
+HWY_INLINE void differentiate_chords(const DecodingCurveOf<Value>& curve,
+                                     const SoftQuestion& question, Value weight,
+                                     Value normalization, Value expected,
+                                     CurveGradientOf<Value>& gradient,
+                                     typename SoftDecoderOf<Value>::Scratch& scratch) {
+  const Tag<Value> d;
   const int lanes = lanes_of(d);
   const auto one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), zero = hn::Zero(d);
   const auto min_square = hn::Set(d, smallest_square);
-  const auto samples = hn::Set(d, static_cast<float>(curve.samples));
-  const auto truth = hn::Set(d, static_cast<float>(question.true_bin));
+  const auto samples = hn::Set(d, static_cast<Value>(curve.samples));
+  const auto truth = hn::Set(d, static_cast<Value>(question.true_bin));
   const auto scale = hn::Set(d, weight);
   for (int j = 0; j < curve.samples; j += lanes) {
     const auto b0 = hn::Load(d, scratch.match.data() + j);
@@ -168,7 +192,7 @@ HWY_INLINE void differentiate_chords(const DecodingCurve& curve, const SoftQuest
 
     // By the score: S = match^2 / (2 square), stationary in t where t is free.
     const auto by_score =
-        hn::Mul(hn::Mul(hn::Set(d, static_cast<float>(question.sharpness)), share),
+        hn::Mul(hn::Mul(hn::Set(d, static_cast<Value>(question.sharpness)), share),
                 hn::Sub(hn::Load(d, scratch.error.data() + j), hn::Set(d, expected)));
     const auto ratio = hn::Load(d, scratch.ratio.data() + j);
     const auto by_match = hn::Mul(by_score, ratio);
@@ -180,9 +204,10 @@ HWY_INLINE void differentiate_chords(const DecodingCurve& curve, const SoftQuest
     auto by_q01 = hn::Mul(hn::Mul(hn::Add(by_square, by_square), s), t);
 
     // By the place of the best point, t = v / (u + v).
-    const auto from_truth = hn::Sub(hn::Add(hn::Iota(d, static_cast<float>(j)), t), truth);
+    const auto from_truth = hn::Sub(hn::Add(hn::Iota(d, static_cast<Value>(j)), t), truth);
     auto sign = hn::IfThenElse(hn::Gt(from_truth, zero), one, hn::Set(d, -1.0f));
-    if (question.circular) {
+    if (question.is_signed) sign = one;
+    if (question.circular && !question.is_signed) {
       const auto around = hn::Gt(hn::Abs(from_truth), hn::Mul(half, samples));
       sign = hn::IfThenElse(around, hn::Neg(sign), sign);
     }
@@ -195,7 +220,7 @@ HWY_INLINE void differentiate_chords(const DecodingCurve& curve, const SoftQuest
     by_q00 = hn::MulAdd(by_v, b1, by_q00);
     by_q01 = hn::NegMulAdd(by_u, b1, hn::NegMulAdd(by_v, b0, by_q01));
 
-    const auto add = [&](AlignedFloats& sum, auto value) {
+    const auto add = [&](Aligned<Value>& sum, auto value) {
       hn::Store(hn::MulAdd(scale, value, hn::Load(d, sum.data() + j)), d, sum.data() + j);
     };
     add(gradient.squares, by_q00);
@@ -209,21 +234,23 @@ HWY_INLINE void differentiate_chords(const DecodingCurve& curve, const SoftQuest
 }
 
 /// From the matches b_j = <y, p_j> to the points, with the weight, and to y.
-HWY_INLINE void differentiate_matches(const DecodingCurve& curve, const float* electrons,
-                                      float weight, CurveGradient& gradient,
-                                      SoftDecoder::Scratch& scratch, float* by_electrons) {
-  const Floats d;
+template <typename Value>
+HWY_INLINE void differentiate_matches(const DecodingCurveOf<Value>& curve, const Value* electrons,
+                                      Value weight, CurveGradientOf<Value>& gradient,
+                                      typename SoftDecoderOf<Value>::Scratch& scratch,
+                                      Value* by_electrons) {
+  const Tag<Value> d;
   const int lanes = lanes_of(d);
   for (int j = 0; j < curve.samples; j += lanes) {
     const auto sum = hn::Add(hn::Load(d, scratch.by_match.data() + j),
                              hn::Load(d, scratch.by_next_match.data() + j));
     const auto in_range =
-        hn::Lt(hn::Iota(d, static_cast<float>(j)), hn::Set(d, static_cast<float>(curve.samples)));
+        hn::Lt(hn::Iota(d, static_cast<Value>(j)), hn::Set(d, static_cast<Value>(curve.samples)));
     hn::Store(hn::IfThenElseZero(in_range, sum), d, scratch.by_match.data() + j);
   }
   for (int r = 0; r < curve.measurements; ++r) {
-    float* HWY_RESTRICT by_points = gradient.points.data() + r * curve.stride;
-    const float* HWY_RESTRICT points = curve.component(r);
+    Value* HWY_RESTRICT by_points = gradient.points.data() + r * curve.stride;
+    const Value* HWY_RESTRICT points = curve.component(r);
     const auto electron = hn::Set(d, weight * electrons[r]);
     auto sum = hn::Zero(d);
     for (int j = 0; j < curve.samples; j += lanes) {
@@ -236,18 +263,40 @@ HWY_INLINE void differentiate_matches(const DecodingCurve& curve, const float* e
 }
 
 /// @param gradient  null: the error alone
-float soft_error(const DecodingCurve& curve, const float* electrons, const SoftQuestion& question,
-                 float weight, CurveGradient* gradient, SoftDecoder::Scratch& scratch,
-                 float* by_electrons) {
+template <typename Value>
+Value expected_error(const DecodingCurveOf<Value>& curve, const Value* electrons,
+                     const SoftQuestion& question, Value weight, CurveGradientOf<Value>* gradient,
+                     typename SoftDecoderOf<Value>::Scratch& scratch, Value* by_electrons) {
   match_points(curve, electrons, scratch);
-  const float largest = score_chords(curve, scratch);
-  float sums[2];
+  const Value largest = score_chords(curve, scratch);
+  Value sums[2];
   weigh_chords(curve, question, largest, scratch, sums);
-  const float expected = sums[1] / sums[0];
+  const Value expected = sums[1] / sums[0];
   if (!gradient) return expected;
   differentiate_chords(curve, question, weight, 1.0f / sums[0], expected, *gradient, scratch);
   differentiate_matches(curve, electrons, weight, *gradient, scratch, by_electrons);
   return expected;
+}
+
+// Dispatched functions are no templates.
+float decode_floats(const DecodingCurve& curve, const float* electrons,
+                    SoftDecoder::Scratch& scratch) {
+  return best_place(curve, electrons, scratch);
+}
+double decode_doubles(const DecodingCurveOf<double>& curve, const double* electrons,
+                      SoftDecoderOf<double>::Scratch& scratch) {
+  return best_place(curve, electrons, scratch);
+}
+float error_of_floats(const DecodingCurve& curve, const float* electrons,
+                      const SoftQuestion& question, float weight, CurveGradient* gradient,
+                      SoftDecoder::Scratch& scratch, float* by_electrons) {
+  return expected_error(curve, electrons, question, weight, gradient, scratch, by_electrons);
+}
+double error_of_doubles(const DecodingCurveOf<double>& curve, const double* electrons,
+                        const SoftQuestion& question, double weight,
+                        CurveGradientOf<double>* gradient, SoftDecoderOf<double>::Scratch& scratch,
+                        double* by_electrons) {
+  return expected_error(curve, electrons, question, weight, gradient, scratch, by_electrons);
 }
 
 }  // namespace
@@ -258,33 +307,61 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tofsmith {
 
-HWY_EXPORT(decode_best);
-HWY_EXPORT(soft_error);
+HWY_EXPORT(decode_floats);
+HWY_EXPORT(decode_doubles);
+HWY_EXPORT(error_of_floats);
+HWY_EXPORT(error_of_doubles);
 
-SoftDecoder::Scratch::Scratch(int stride) {
-  for (AlignedFloats* values :
+namespace {
+
+template <typename Value>
+Value soft_error(const DecodingCurveOf<Value>& curve, const Value* electrons,
+                 const SoftQuestion& question, Value weight, CurveGradientOf<Value>* gradient,
+                 typename SoftDecoderOf<Value>::Scratch& scratch, Value* by_electrons) {
+  if constexpr (std::is_same_v<Value, float>)
+    return HWY_DYNAMIC_DISPATCH(error_of_floats)(curve, electrons, question, weight, gradient,
+                                                 scratch, by_electrons);
+  else
+    return HWY_DYNAMIC_DISPATCH(error_of_doubles)(curve, electrons, question, weight, gradient,
+                                                  scratch, by_electrons);
+}
+
+}  // namespace
+
+template <typename Value>
+SoftDecoderOf<Value>::Scratch::Scratch(int stride) {
+  for (Aligned<Value>* values :
        {&match, &ratio, &score, &place, &free, &share, &error, &by_match, &by_next_match})
-    values->assign(static_cast<std::size_t>(stride), 0.0f);
+    values->assign(static_cast<std::size_t>(stride), Value{0});
 }
 
-SoftDecoder::SoftDecoder(const DecodingCurve& curve) : scratch_(curve.stride) {}
+template <typename Value>
+SoftDecoderOf<Value>::SoftDecoderOf(const DecodingCurveOf<Value>& curve) : scratch_(curve.stride) {}
 
-double SoftDecoder::decode(const DecodingCurve& curve, const float* electrons) {
-  return HWY_DYNAMIC_DISPATCH(decode_best)(curve, electrons, scratch_);
+template <typename Value>
+double SoftDecoderOf<Value>::decode(const DecodingCurveOf<Value>& curve, const Value* electrons) {
+  if constexpr (std::is_same_v<Value, float>)
+    return HWY_DYNAMIC_DISPATCH(decode_floats)(curve, electrons, scratch_);
+  else
+    return HWY_DYNAMIC_DISPATCH(decode_doubles)(curve, electrons, scratch_);
 }
 
-double SoftDecoder::expected_error(const DecodingCurve& curve, const float* electrons,
-                                   const SoftQuestion& question) {
-  return HWY_DYNAMIC_DISPATCH(soft_error)(curve, electrons, question, 0.0f, nullptr, scratch_,
-                                          nullptr);
+template <typename Value>
+double SoftDecoderOf<Value>::expected_error(const DecodingCurveOf<Value>& curve,
+                                            const Value* electrons, const SoftQuestion& question) {
+  return soft_error<Value>(curve, electrons, question, Value{0}, nullptr, scratch_, nullptr);
 }
 
-double SoftDecoder::expected_error(const DecodingCurve& curve, const float* electrons,
-                                   const SoftQuestion& question, float weight,
-                                   CurveGradient& gradient, float* by_electrons) {
-  return HWY_DYNAMIC_DISPATCH(soft_error)(curve, electrons, question, weight, &gradient, scratch_,
-                                          by_electrons);
+template <typename Value>
+double SoftDecoderOf<Value>::expected_error(const DecodingCurveOf<Value>& curve,
+                                            const Value* electrons, const SoftQuestion& question,
+                                            Value weight, CurveGradientOf<Value>& gradient,
+                                            Value* by_electrons) {
+  return soft_error<Value>(curve, electrons, question, weight, &gradient, scratch_, by_electrons);
 }
+
+template class SoftDecoderOf<float>;
+template class SoftDecoderOf<double>;
 
 }  // namespace tofsmith
 #endif

@@ -12,33 +12,36 @@ struct SoftQuestion {
   double true_bin = 0.0;
   double sharpness = 1.0;  ///< times the inverse variance of y [1/e^2]
   bool circular = false;   ///< errors go the shorter way round
+  bool is_signed = false;  ///< asks for the error itself, > 0 beyond true_bin, not for its size
 };
 
 /// Decodes measurements by zero-mean normalized cross-correlation, on all chords of the curve.
 /// Keeps scratch memory: one per thread.
-class SoftDecoder {
+template <typename Value>
+class SoftDecoderOf {
  public:
-  explicit SoftDecoder(const DecodingCurve& curve);
+  explicit SoftDecoderOf(const DecodingCurveOf<Value>& curve);
 
   /// Position of the best point for the electrons (R), on the chords beside the best bin [bin].
-  double decode(const DecodingCurve& curve, const float* electrons);
+  double decode(const DecodingCurveOf<Value>& curve, const Value* electrons);
 
-  /// Expected |error| [bin]. With a gradient, adds `weight` times its own by the curve, and writes
+  /// Expected error [bin]. With a gradient, adds `weight` times its own by the curve, and writes
   /// that by the electrons (R), unweighted.
-  double expected_error(const DecodingCurve& curve, const float* electrons,
+  double expected_error(const DecodingCurveOf<Value>& curve, const Value* electrons,
                         const SoftQuestion& question);
-  double expected_error(const DecodingCurve& curve, const float* electrons,
-                        const SoftQuestion& question, float weight, CurveGradient& gradient,
-                        float* by_electrons);
+  double expected_error(const DecodingCurveOf<Value>& curve, const Value* electrons,
+                        const SoftQuestion& question, Value weight,
+                        CurveGradientOf<Value>& gradient, Value* by_electrons);
 
   /// Lanes of scratch: one value per chord.
   struct Scratch {
     explicit Scratch(int stride);
-    AlignedFloats match, ratio, score, place, free, share, error, by_match, by_next_match;
+    Aligned<Value> match, ratio, score, place, free, share, error, by_match, by_next_match;
   };
 
  private:
   Scratch scratch_;
 };
+using SoftDecoder = SoftDecoderOf<float>;
 
 }  // namespace tofsmith

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+
+#include "tofsmith/camera/camera.hpp"
+
+namespace tofsmith {
+
+/// The brightest ambient light a camera is judged in; 0 if it has no operating points.
+inline double brightest_ambient_e_per_s(const Camera& camera) {
+  const auto& ambient = camera.operating.ambient_e_per_s;
+  return ambient.empty() ? 0.0 : *std::max_element(ambient.begin(), ambient.end());
+}
+
+/// The rule of unknown_ambient_gain(): whether what leaks of that light into measurements (K) [e]
+/// is nothing beside their noise.
+inline bool ambient_cancels(const Camera& camera, const Eigen::VectorXd& leak_e,
+                            const Eigen::VectorXd& variance_e2) {
+  constexpr double share_of_noise = 0.05;
+  return camera.sensor.readout != Readout::separate && !camera.operating.ambient_e_per_s.empty() &&
+         (leak_e.array().abs() <= share_of_noise * variance_e2.array().sqrt()).all();
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,215 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "design/gradients/gradient_steps.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/parallel.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// What cannot be undone step by step: it would ask for waveforms by their edges.
+const Camera& without_what_has_no_gradient(const Camera& camera, int samples, int exposures) {
+  camera.validate();
+  require(samples >= 8 && samples <= 65536, "samples", samples, "must be in [8, 65536]");
+  require(exposures >= 1 && exposures <= 1024, "exposures", exposures, "must be in [1, 1024]");
+  const std::size_t listed = camera.exposure_s.each_s.size();
+  require(listed == 0 || listed == static_cast<std::size_t>(exposures), "exposures", exposures,
+          "must equal the number of exposure_s of the camera");
+  const char* const needs = "must be left out where gradients are asked for";
+  require(camera.sensor.readout != Readout::rows, "sensor.readout", "rows",
+          "must be separate or difference where gradients are asked for");
+  require(!camera.light.generator, "light.generator", "set", needs);
+  require(!camera.sensor.generator, "sensor.generator", "set", needs);
+  require(!camera.playback, "playback", "set", needs);
+  require(!camera.temperature, "temperature", "set", needs);
+  require(camera.sensor.tap_mismatch == 0.0, "sensor.tap_mismatch", camera.sensor.tap_mismatch,
+          "must be 0 where gradients are asked for");
+  return camera;
+}
+
+/// Values of the functions of a table at all positions, (P, F).
+template <typename Store>
+void evaluate_blocks(const BetweenBins& between, const BetweenBins::Functions& functions,
+                     std::span<const double> depth_bin, IndexRange range, bool with_slopes,
+                     const Store& store) {
+  const std::size_t size = static_cast<std::size_t>(functions.count()) * harmonic_block;
+  std::vector<double> values(size), slopes(with_slopes ? size : 0);
+  for (std::int64_t first = range.begin; first < range.end; first += harmonic_block) {
+    const auto count = std::min<std::int64_t>(harmonic_block, range.end - first);
+    between.evaluate(
+        functions,
+        depth_bin.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)),
+        values.data(), with_slopes ? slopes.data() : nullptr);
+    store(first, count, values.data(), slopes.data());
+  }
+}
+
+}  // namespace
+
+std::int64_t pixels_in_a_group(std::int64_t pixels) {
+  constexpr std::int64_t groups = 64;
+  const std::int64_t even = (pixels + groups - 1) / groups;
+  return std::max<std::int64_t>(1, (even + harmonic_block - 1) / harmonic_block) * harmonic_block;
+}
+
+CodeGradients::Steps::Steps(const Camera& its, int samples, int exposures)
+    : camera(without_what_has_no_gradient(its, samples, exposures)),
+      sampled(camera, samples, exposures),
+      between(camera, samples),
+      exposures(exposures) {}
+
+BetweenBins::Functions CodeGradients::Steps::functions_of(const MeasurementTable& table) const {
+  if (!has_shot()) return between.of(table.correlation);
+  Eigen::MatrixXd both(table.samples(), 2 * table.measurements());
+  both << table.correlation, table.shot_correlation;
+  return between.of(both);
+}
+
+void CodeGradients::Steps::pull_back_functions(const BetweenBins::Functions& gradient,
+                                               MeasurementTable& by_table) const {
+  const Eigen::MatrixXd both = between.pull_back(gradient);
+  const Eigen::Index K = by_table.correlation.cols();
+  by_table.correlation += both.leftCols(K);
+  if (has_shot()) by_table.shot_correlation += both.rightCols(K);
+}
+
+CodeGradients::CodeGradients(const Camera& camera, int samples, int exposures)
+    : steps_(std::make_unique<const Steps>(camera, samples, exposures)) {}
+CodeGradients::~CodeGradients() = default;
+
+int CodeGradients::samples() const { return steps_->sampled.samples(); }
+int CodeGradients::exposures() const { return steps_->exposures; }
+int CodeGradients::tap_values() const { return steps_->exposures * steps_->camera.sensor.taps; }
+int CodeGradients::measurements() const { return steps_->sampled.measurements(); }
+bool CodeGradients::has_shot() const { return steps_->has_shot(); }
+const Eigen::VectorXd& CodeGradients::dark_electrons() const {
+  return steps_->sampled.dark_electrons();
+}
+
+MeasurementTable CodeGradients::measure(const Eigen::MatrixXd& modulation,
+                                        const Eigen::MatrixXd& demodulation) const {
+  return steps_->sampled.measure({modulation, demodulation}).table;
+}
+
+std::pair<Eigen::MatrixXd, Eigen::MatrixXd> CodeGradients::pull_back(
+    const Eigen::MatrixXd& modulation, const Eigen::MatrixXd& demodulation,
+    const MeasurementTable& by_table) const {
+  const SampledCamera::Measured measured = steps_->sampled.measure({modulation, demodulation});
+  SampledCode by_code = steps_->sampled.pull_back(measured, by_table);
+  return {std::move(by_code.modulation), std::move(by_code.demodulation)};
+}
+
+void CodeGradients::electrons(const MeasurementTable& table, const PixelLight& light, Rows& mean,
+                              Rows& variance) const {
+  const int K = measurements();
+  const auto pixels = static_cast<std::int64_t>(light.depth_bin.size());
+  const BetweenBins::Functions functions = steps_->functions_of(table);
+  const Eigen::VectorXd& time_s = steps_->sampled.exposure_s();
+  const Eigen::VectorXd& dark_e = steps_->sampled.dark_electrons();
+  const Eigen::VectorXd& constant_e2 = steps_->sampled.constant_variance_e2();
+  const Eigen::VectorXd &kappa = table.ambient_gain, &shot_kappa = table.shot_ambient();
+  const int shot = has_shot() ? K * harmonic_block : 0;
+  mean.resize(pixels, K);
+  variance.resize(pixels, K);
+  const auto store = [&](std::int64_t first, std::int64_t count, const double* values,
+                         const double*) {
+    for (std::int64_t p = 0; p < count; ++p) {
+      const auto pixel = static_cast<std::size_t>(first + p);
+      const double signal = light.signal_e_per_s[pixel], ambient = light.ambient_e_per_s[pixel];
+      for (int i = 0; i < K; ++i) {
+        const double* const chi = values + i * harmonic_block + p;
+        mean(first + p, i) = time_s[i] * (signal * *chi + ambient * kappa[i]) + dark_e[i];
+        variance(first + p, i) =
+            time_s[i] * (signal * chi[shot] + ambient * shot_kappa[i]) + constant_e2[i];
+      }
+    }
+  };
+  parallel_for_blocks(pixels, pixels_in_a_group(pixels), [&](IndexRange range) {
+    evaluate_blocks(steps_->between, functions, light.depth_bin, range, false, store);
+  });
+}
+
+PixelGradient CodeGradients::pull_back_electrons(const MeasurementTable& table,
+                                                 const PixelLight& light, const Rows& by_mean,
+                                                 const Rows& by_variance,
+                                                 WantedGradients wanted) const {
+  const int K = measurements();
+  const auto pixels = static_cast<std::int64_t>(light.depth_bin.size());
+  const BetweenBins::Functions functions = steps_->functions_of(table);
+  const Eigen::VectorXd& time_s = steps_->sampled.exposure_s();
+  const bool apart = has_shot();
+  PixelGradient gradient{zeros_like(table), Eigen::VectorXd::Zero(pixels),
+                         Eigen::VectorXd::Zero(pixels), Eigen::VectorXd::Zero(pixels)};
+
+  // What a group of pixels adds to the gradient by the table.
+  struct Part {
+    BetweenBins::Functions functions;
+    Eigen::VectorXd by_ambient, by_shot_ambient;
+  };
+  const std::int64_t in_a_group = pixels_in_a_group(pixels);
+  std::vector<Part> parts(static_cast<std::size_t>((pixels + in_a_group - 1) / in_a_group),
+                          Part{steps_->between.zeros(wanted.table ? functions.count() : 0),
+                               Eigen::VectorXd::Zero(K), Eigen::VectorXd::Zero(K)});
+  const auto add_to_table = [&](Part& part, std::int64_t first, std::int64_t count) {
+    std::vector<double> weights(static_cast<std::size_t>(functions.count()) * harmonic_block);
+    for (std::int64_t p = 0; p < count; ++p) {
+      const auto pixel = static_cast<std::size_t>(first + p);
+      for (int i = 0; i < K; ++i) {
+        const double mean = time_s[i] * by_mean(first + p, i);
+        const double variance = time_s[i] * by_variance(first + p, i);
+        double* const weight = weights.data() + i * harmonic_block + p;
+        const double signal = light.signal_e_per_s[pixel];
+        *weight = signal * (apart ? mean : mean + variance);
+        if (apart) weight[K * harmonic_block] = signal * variance;
+        part.by_ambient[i] += light.ambient_e_per_s[pixel] * mean;
+        part.by_shot_ambient[i] += light.ambient_e_per_s[pixel] * variance;
+      }
+    }
+    steps_->between.add(
+        light.depth_bin.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)),
+        weights.data(), part.functions);
+  };
+  const int shot = apart ? K * harmonic_block : 0;
+  const auto add_to_light = [&](std::int64_t first, std::int64_t count, const double* values,
+                                const double* slopes) {
+    for (std::int64_t p = 0; p < count; ++p) {
+      const double signal = light.signal_e_per_s[static_cast<std::size_t>(first + p)];
+      for (int i = 0; i < K; ++i) {
+        const std::int64_t at = i * harmonic_block + p;
+        const double mean = time_s[i] * by_mean(first + p, i);
+        const double variance = time_s[i] * by_variance(first + p, i);
+        gradient.signal_e_per_s[first + p] += mean * values[at] + variance * values[at + shot];
+        gradient.ambient_e_per_s[first + p] +=
+            mean * table.ambient_gain[i] + variance * table.shot_ambient()[i];
+        if (wanted.depth)
+          gradient.depth_bin[first + p] +=
+              signal * (mean * slopes[at] + variance * slopes[at + shot]);
+      }
+    }
+  };
+  parallel_for_blocks(pixels, in_a_group, [&](IndexRange range) {
+    Part& part = parts[static_cast<std::size_t>(range.begin / in_a_group)];
+    if (wanted.table)
+      for (std::int64_t first = range.begin; first < range.end; first += harmonic_block)
+        add_to_table(part, first, std::min<std::int64_t>(harmonic_block, range.end - first));
+    if (wanted.light || wanted.depth)
+      evaluate_blocks(steps_->between, functions, light.depth_bin, range, wanted.depth,
+                      add_to_light);
+  });
+  if (!wanted.table || parts.empty()) return gradient;
+  for (std::size_t g = 1; g < parts.size(); ++g) {
+    parts[0].functions.add(parts[g].functions);
+    parts[0].by_ambient += parts[g].by_ambient;
+    parts[0].by_shot_ambient += parts[g].by_shot_ambient;
+  }
+  steps_->pull_back_functions(parts[0].functions, gradient.table);
+  gradient.table.ambient_gain += parts[0].by_ambient;
+  (apart ? gradient.table.shot_ambient_gain : gradient.table.ambient_gain) +=
+      parts[0].by_shot_ambient;
+  return gradient;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+
+/// Depths of a Cramer-Rao bound in a bin.
+constexpr int cells_per_bin = 4;
+constexpr double min_e2 = 1e-9;  // a measurement without any light or noise tells nothing
+
+/// Values at the middle of every second cell of a table of twice as many points, and the slope over
+/// the cell around them.
+inline void middles_and_slopes(const Eigen::MatrixXd& fine, Eigen::MatrixXd& middle,
+                               Eigen::MatrixXd& slope) {
+  const Eigen::Index cells = fine.rows() / 2;
+  middle.resize(cells, fine.cols());
+  slope.resize(cells, fine.cols());
+  for (Eigen::Index j = 0; j < cells; ++j) {
+    middle.row(j) = fine.row(2 * j + 1);
+    slope.row(j) = (fine.row((2 * j + 2) % fine.rows()) - fine.row(2 * j)) * double(cells);
+  }
+}
+
+/// The adjoint: gradient by the fine table of a function whose gradient by both is given.
+inline Eigen::MatrixXd pull_back_middles_and_slopes(const Eigen::MatrixXd& by_middle,
+                                                    const Eigen::MatrixXd& by_slope) {
+  const Eigen::Index cells = by_middle.rows();
+  Eigen::MatrixXd by_fine(2 * cells, by_middle.cols());
+  for (Eigen::Index j = 0; j < cells; ++j) {
+    by_fine.row(2 * j + 1) = by_middle.row(j);
+    by_fine.row(2 * j) = (by_slope.row((j + cells - 1) % cells) - by_slope.row(j)) * double(cells);
+  }
+  return by_fine;
+}
+
+/// Of the columns of a whitened Jacobian, the part of that of depth across the other two:
+///   across = by_depth - signal_share by_signal - ambient_share by_ambient,
+/// [F^-1]_zz = 1 / |across|^2: well defined even where ambient light and signal cannot be
+/// separated, and the matrix has no inverse.
+template <typename Vector>
+struct DepthPart {
+  DepthPart(Vector by_depth, Vector by_signal, Vector by_ambient) {
+    const double depth_norm = by_depth.norm();
+    const double ambient_scale = normalize_or_drop(by_ambient, by_ambient.norm());
+    const double signal_norm = by_signal.norm();
+    const double signal_along = take_out(by_signal, by_ambient);
+    const double signal_scale = normalize_or_drop(by_signal, signal_norm);
+    const double depth_along = take_out(by_depth, by_ambient);
+    signal_share = take_out(by_depth, by_signal) * signal_scale;
+    ambient_share = (depth_along - signal_share * signal_along) * ambient_scale;
+    length = by_depth.norm();
+    if (!(length > 1e-10 * depth_norm)) length = 0.0;
+    across = by_depth;
+  }
+
+  /// Smallest standard deviation [m]; infinite where depth cannot be told from the others.
+  double deviation_m(double range_m) const { return length > 0.0 ? range_m / length : infinity; }
+
+  Vector across;
+  double length;  ///< of it; 0 where rounding alone is left
+  double signal_share, ambient_share;
+
+ private:
+  /// Residual of `vector` across `direction` (unit length or zero).
+  /// @return what was along it
+  static double take_out(Vector& vector, const Vector& direction) {
+    const double along = vector.dot(direction);
+    vector -= along * direction;
+    return along;
+  }
+
+  /// Scales to unit length, or to zero what rounding alone made.
+  /// @return the scale
+  static double normalize_or_drop(Vector& vector, double original_norm) {
+    const double norm = vector.norm();
+    if (norm > 1e-10 * original_norm && norm > 0.0) {
+      vector /= norm;
+      return 1.0 / norm;
+    }
+    vector.setZero();
+    return 0.0;
+  }
+};
+
+}  // namespace tofsmith

@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// Steps of CodeGradients have the values of the library, and adjoints that match differences.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/shared/random.hpp"
+#include "each_target.hpp"
+#include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/design/optimize.hpp"
+#include "tofsmith/simulate/bounds.hpp"
+
+namespace tofsmith {
+namespace {
+
+constexpr int samples = 24, exposures = 3, pixels = 70;
+
+Camera camera_of(const char* name, Readout readout) {
+  Camera camera = built_in_camera(name);
+  camera.samples = samples;
+  camera.sensor.taps = 2;
+  camera.sensor.drain = false;
+  camera.sensor.readout = readout;
+  camera.sensor.dark_current_e_per_s = 500.0;
+  return camera;
+}
+
+std::vector<Camera> cameras() {
+  return {camera_of("paper-10f0", Readout::separate), camera_of("paper-10f0", Readout::difference),
+          camera_of("paper-30x", Readout::separate)};
+}
+
+/// Smooth waveforms, shaken.
+struct Setting {
+  explicit Setting(const Camera& its) : camera(its), steps(camera, samples, exposures) {
+    RandomStream random(5, 1);
+    for (int e = 0; e < exposures; ++e)
+      for (int n = 0; n < samples; ++n) {
+        const double turn = 2.0 * 3.14159265358979 * (double(n) / samples - e / 3.0);
+        modulation(n, e) = std::exp(3.0 * std::cos(turn)) * (1.0 + 0.2 * random.uniform());
+        demodulation(n, 2 * e) = 0.4 + 0.35 * std::cos(turn - 1.0) * (0.9 + 0.1 * random.uniform());
+        demodulation(n, 2 * e + 1) = 1.0 - demodulation(n, 2 * e);
+      }
+    for (int e = 0; e < exposures; ++e) modulation.col(e) /= modulation.col(e).mean();
+    table = steps.measure(modulation, demodulation);
+    for (int p = 0; p < pixels; ++p) {
+      depth_bin.push_back(samples * random.uniform());
+      signal.push_back(1e5 * (0.5 + random.uniform()));
+      ambient.push_back(1e4 * random.uniform());
+      weight.push_back(random.uniform() - 0.5);
+    }
+  }
+  PixelLight light() const { return {depth_bin, signal, ambient}; }
+
+  Camera camera;
+  CodeGradients steps;
+  Eigen::MatrixXd modulation{samples, exposures}, demodulation{samples, 2 * exposures};
+  MeasurementTable table;
+  std::vector<double> depth_bin, signal, ambient, weight;
+};
+
+/// Slope of `value` of tables along a direction, beside what the gradient says. Functions that are
+/// linear take large steps.
+template <typename Value>
+void expect_gradient(const MeasurementTable& table, const MeasurementTable& gradient,
+                     const Value& value, double step = 3e-7) {
+  RandomStream random(9, 2);
+  for (int trial = 0; trial < 5; ++trial) {
+    MeasurementTable ahead = table, behind = table;
+    double slope = 0.0;
+    const auto move = [&](auto& forward, auto& backward, const auto& by) {
+      for (Eigen::Index i = 0; i < by.size(); ++i) {
+        const double direction = random.uniform() - 0.5;
+        forward.reshaped()[i] += step * direction;
+        backward.reshaped()[i] -= step * direction;
+        slope += by.reshaped()[i] * direction;
+      }
+    };
+    move(ahead.correlation, behind.correlation, gradient.correlation);
+    move(ahead.ambient_gain, behind.ambient_gain, gradient.ambient_gain);
+    move(ahead.shot_correlation, behind.shot_correlation, gradient.shot_correlation);
+    move(ahead.shot_ambient_gain, behind.shot_ambient_gain, gradient.shot_ambient_gain);
+    const double difference = (value(ahead) - value(behind)) / (2.0 * step);
+    EXPECT_NEAR(difference, slope, 1e-4 * std::abs(slope) + 1e-5 * std::abs(value(table)));
+  }
+}
+
+TEST(CodeGradients, ValuesAreThoseOfTheLibrary) {
+  for_each_target([] {
+    for (const Camera& camera : cameras()) {
+      const Setting setting(camera);
+      std::vector<Waveform> modulation, demodulation;
+      for (const auto& column : setting.modulation.colwise())
+        modulation.push_back(Waveform::sampled(column));
+      for (const auto& column : setting.demodulation.colwise())
+        demodulation.push_back(Waveform::sampled(column));
+      const ForwardModel model(CodeSet::create("code", samples, 2, modulation, demodulation),
+                               camera);
+      CodeGradients::Rows mean, variance;
+      setting.steps.electrons(setting.table, setting.light(), mean, variance);
+      for (int p = 0; p < pixels; ++p) {
+        const auto at = static_cast<std::size_t>(p);
+        const Return light{setting.signal[at], setting.depth_bin[at]};
+        const Eigen::VectorXd expected = model.expected_electrons({&light, 1}, setting.ambient[at]);
+        EXPECT_LT((mean.row(p).transpose() - expected).norm(), 1e-8 * expected.norm());
+        const Eigen::VectorXd noise = model.variance_e2({&light, 1}, setting.ambient[at]);
+        EXPECT_LT((variance.row(p).transpose() - noise).norm(), 1e-8 * noise.norm());
+      }
+      const OperatingPoint points[] = {{1e5, 1e4}, {1e4, 0.0}};
+      const Eigen::MatrixXd deviation_m = setting.steps.depth_deviation_m(setting.table, points);
+      const CramerRaoBound bound(model, camera);
+      for (int l = 0; l < 2; ++l)
+        EXPECT_TRUE(deviation_m.col(l).isApprox(bound.sigma_m(points[l]), 1e-8));
+    }
+  });
+}
+
+TEST(CodeGradients, AdjointsMatchDifferences) {
+  for (const Camera& camera : cameras()) {
+    const Setting setting(camera);
+    const CodeGradients& steps = setting.steps;
+    const int K = steps.measurements();
+    RandomStream random(6, 3);
+    CodeGradients::Rows by_mean(pixels, K), by_variance(pixels, K);
+    for (double& w : by_mean.reshaped()) w = random.uniform() - 0.5;
+    for (double& w : by_variance.reshaped()) w = random.uniform() - 0.5;
+    const auto electrons = [&](const MeasurementTable& table) {
+      CodeGradients::Rows mean, variance;
+      steps.electrons(table, setting.light(), mean, variance);
+      return mean.cwiseProduct(by_mean).sum() + variance.cwiseProduct(by_variance).sum();
+    };
+    expect_gradient(
+        setting.table,
+        steps.pull_back_electrons(setting.table, setting.light(), by_mean, by_variance).table,
+        electrons, 1e-3);
+
+    CodeGradients::Rows y, variance;
+    steps.electrons(setting.table, setting.light(), y, variance);
+    const std::span<const double> measured(y.data(), static_cast<std::size_t>(y.size()));
+    const std::vector<double> temperature(pixels, 1e7);
+    for (const bool circular : {false, true}) {
+      const SoftDecoding decoding{temperature, circular};
+      const auto decoded = [&](const MeasurementTable& table) {
+        const auto depth_bin = steps.soft_decode(table, measured, decoding);
+        double sum = 0.0;
+        for (std::size_t p = 0; p < pixels; ++p) sum += setting.weight[p] * depth_bin[p];
+        return sum;
+      };
+      expect_gradient(
+          setting.table,
+          steps.pull_back_decoded(setting.table, measured, decoding, {}, setting.weight).table,
+          decoded);
+    }
+
+    const OperatingPoint points[] = {{1e5, 1e4}, {3e4, 1e3}};
+    Eigen::MatrixXd by_deviation(4 * samples, 2);
+    for (double& w : by_deviation.reshaped()) w = random.uniform();
+    const auto bound = [&](const MeasurementTable& table) {
+      return steps.depth_deviation_m(table, points).cwiseProduct(by_deviation).sum();
+    };
+    expect_gradient(setting.table,
+                    steps.pull_back_depth_deviation(setting.table, points, by_deviation).table,
+                    bound);
+  }
+}
+
+TEST(CodeGradients, RefusesWhatHasNoGradient) {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.sensor.tap_mismatch = 0.1;
+  camera.sensor.taps = 2;
+  EXPECT_THROW(CodeGradients(camera, samples, exposures), InvalidArgument);
+  EXPECT_THROW(CodeGradients(built_in_camera("prototype"), samples, exposures), InvalidArgument);
+  EXPECT_THROW(CodeGradients(built_in_camera("paper-10f0"), samples, 0), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace tofsmith
