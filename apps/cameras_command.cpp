@@ -52,17 +52,19 @@ void show_camera(const Session& session, const std::string& name) {
   session.say(toml);
 }
 
-/// One of a file as it is read, with what it leaves to defaults.
-void show_file(const Session& session, const std::string& path) {
-  const Camera camera = load_camera(path);
+/// One of a file or with keys changed, as it is read, with what it leaves to defaults.
+void show_changed(const Session& session, const std::string& name_or_path, Settings settings) {
+  const Camera camera = load_camera(name_or_path, settings);
   session.print_json({{"name", camera.name},
                       {"fundamental_frequency_hz", camera.fundamental_frequency_hz},
                       {"range_m", camera.range_m()},
                       {"camera", nlohmann::ordered_json::parse(camera_to_json(camera))}});
   std::string toml = camera_to_toml(camera);
   toml.pop_back();  // say() ends the line
-  session.say(fmt::format("# {} with every default filled in: range {:.2f} m\n{}", path,
-                          camera.range_m(), toml));
+  std::string with;
+  for (const std::string& setting : settings) with += ", " + setting;
+  session.say(fmt::format("# {}{} with every default filled in: range {:.2f} m\n{}", name_or_path,
+                          with, camera.range_m(), toml));
 }
 
 void show_raw_format(const Session& session, const std::string& name) {
@@ -79,16 +81,21 @@ void show_raw_format(const Session& session, const std::string& name) {
 
 void add_cameras_command(CLI::App& app, Session& session) {
   auto name = std::make_shared<std::string>();
+  auto settings = std::make_shared<std::vector<std::string>>();
   auto raw_format = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand(
       "cameras", "list the built-in cameras, or print one as TOML with its sources or defaults");
   command->add_option("NAME", *name, "a built-in camera, or a camera file (.toml)");
+  add_settings_option(*command, *settings);
   command->add_flag("--raw-format", *raw_format,
                     "print how its raw frames run instead, as `decode --raw-format` takes it");
-  command->callback([name, raw_format, &session] {
+  command->callback([name, settings, raw_format, &session] {
+    if (!settings->empty() && (*raw_format || name->empty()))
+      throw UsageError("--set changes the keys of the camera NAME that is printed");
     if (*raw_format) return show_raw_format(session, *name);
     if (name->empty()) return list_cameras(session);
-    if (std::filesystem::path(*name).extension() == ".toml") return show_file(session, *name);
+    if (!settings->empty() || std::filesystem::path(*name).extension() == ".toml")
+      return show_changed(session, *name, *settings);
     show_camera(session, *name);
   });
 }

@@ -65,14 +65,19 @@ OutputPolicy Session::check_outputs(const std::vector<std::filesystem::path>& pa
   return policy;
 }
 
+void add_settings_option(CLI::App& command, std::vector<std::string>& settings) {
+  command
+      .add_option("--set", settings,
+                  "override a key of the camera, e.g. --set light.peak_factor=5; without a value, "
+                  "--set sensor.adc_bits=, leave it out (repeatable)")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
 void CameraArguments::add_to(CLI::App& command) {
   option = command.add_option("--camera", name, "camera: a TOML file or a built-in name")
                ->capture_default_str();
-  command
-      .add_option("--set", settings,
-                  "override a key of the camera, e.g. --set light.peak_factor=5 (repeatable)")
-      ->take_all()
-      ->allow_extra_args(false);
+  add_settings_option(command, settings);
 }
 
 void CameraArguments::add_positional(CLI::App& command) {

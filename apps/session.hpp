@@ -57,6 +57,9 @@ struct Session {
   OutputPolicy check_outputs(const std::vector<std::filesystem::path>& paths) const;
 };
 
+/// `--set key=value`, which changes keys of a camera.
+void add_settings_option(CLI::App& command, std::vector<std::string>& settings);
+
 /// The options that name a camera: a positional or `--camera` name or file, and `--set key=value`.
 struct CameraArguments {
   std::string name = "paper-10f0";

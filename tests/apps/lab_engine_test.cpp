@@ -232,6 +232,15 @@ TEST(LabEngine, CommandsCanBePastedIntoAShell) {
             "--set 'operating.signal_e_per_s=[1e3, 1e4]' --trials 1000");
 }
 
+TEST(LabEngine, CommandsLeaveOutTheKeysThatThePageDoes) {
+  const Answered answered =
+      ask({{"call", "command"},
+           {"what", "camera"},
+           {"built_in", "kinect-v2"},
+           {"changes", {{{"key", "sensor.full_well_e"}, {"value", nullptr}}}}});
+  EXPECT_EQ(answered.json["command"], "tofsmith cameras kinect-v2 --set sensor.full_well_e=");
+}
+
 TEST(LabEngine, ADesignIsACodeOfTheCameraAndTellsHowFarItIs) {
   double told = 0.0;
   const Json request = {{"call", "design"},

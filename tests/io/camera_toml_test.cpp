@@ -355,6 +355,24 @@ TEST(CameraSettings, MayMendAFileThatIsIncomplete) {
   EXPECT_EQ(parse_camera_toml("", "c.toml", settings).fundamental_frequency_hz, 10e6);
 }
 
+TEST(CameraSettings, WithoutAValueLeaveTheKeyOut) {
+  const Camera bare = built_in_camera("paper-10f0");
+  const std::vector<std::string> full = {"sensor.full_well_e=3e4", "sensor.shortest_pulse_s=1e-8"};
+  const Camera with_both = with_settings(bare, full);
+  const std::vector<std::string> out = {"sensor.full_well_e=", " sensor.shortest_pulse_s = "};
+  EXPECT_EQ(with_settings(with_both, out), bare);
+  const std::vector<std::string> table = {"light.impulse_response="};
+  EXPECT_EQ(with_settings(bare, table).light.impulse_response.kind, ImpulseResponse::Kind::none);
+  EXPECT_EQ(
+      refusal(std::string(documented), {"light.peak_facter="}),
+      "setting 'light.peak_facter=': found no key light.peak_facter to leave out; did you mean "
+      "peak_factor?");
+  EXPECT_THAT(refusal(std::string(documented), {"samples.light="}),
+              HasSubstr("found no key samples.light to leave out"));
+  EXPECT_THAT(refusal(std::string(documented), {"fundamental_frequency_hz="}),
+              HasSubstr("fundamental_frequency_hz"));
+}
+
 TEST(CameraSettings, AreNamedInWhatTheyBreak) {
   const auto broken_by = [](const std::string& setting) {
     return refusal(std::string(documented), {setting});

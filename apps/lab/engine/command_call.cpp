@@ -26,18 +26,23 @@ std::string shell_word(const std::string& word) {
   return text + "'";
 }
 
+/// The name of a built-in camera or of the file that it was saved to.
+std::string camera_name(const Request& request) {
+  return request.has("camera_file") ? request.text("camera_file") : request.text("built_in", "");
+}
+
+/// `--set ..` for every key that was changed.
+std::string settings_words(const Request& request) {
+  std::string words;
+  for (const Change& change : request.changes())
+    words += " --set " + shell_word(change.key + "=" + change.value.value_or(""));
+  return words;
+}
+
 /// `--camera X --set ..`, as far as it differs from what a command takes anyway.
 std::string camera_words(const Request& request) {
-  std::string words;
-  const std::string name =
-      request.has("camera_file") ? request.text("camera_file") : request.text("built_in", "");
-  if (!name.empty()) words += " --camera " + shell_word(name);
-  for (const Change& change : request.changes()) {
-    require(change.value.has_value(), "changes", change.key,
-            "no command leaves a key out; save the camera and name its file");
-    words += " --set " + shell_word(change.key + "=" + *change.value);
-  }
-  return words;
+  const std::string name = camera_name(request);
+  return (name.empty() ? "" : " --camera " + shell_word(name)) + settings_words(request);
 }
 
 std::string option(const Request& request, const char* argument, const char* name) {
@@ -75,9 +80,9 @@ Answer command_answer(const Request& request) {
   };
   std::string command;
   if (what == "camera") {
-    const std::string name =
-        request.has("camera_file") ? request.text("camera_file") : request.text("built_in", "");
-    command = "tofsmith cameras " + shell_word(name.empty() ? "paper-10f0" : name);
+    const std::string name = camera_name(request);
+    command = "tofsmith cameras " + shell_word(name.empty() ? "paper-10f0" : name) +
+              settings_words(request);
   } else if (what == "codes") {
     command = "tofsmith codes " + first_code() + camera;
   } else if (what == "evaluate") {

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cmath>
-#include <sstream>
 
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/io/camera_toml.hpp"
@@ -20,17 +19,6 @@ constexpr std::size_t max_changes = 1000;
 
 /// A name as a shell would not split it, for codes that are in no file: the file of the page.
 constexpr const char* code_file_name = "code.json";
-
-/// The camera's TOML without the line of a key.
-std::string without_key(const Camera& camera, const std::string& key) {
-  std::istringstream lines(camera_to_toml(camera));
-  std::string text, table;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with('[')) table = line.substr(1, line.find(']') - 1) + ".";
-    if (table + line.substr(0, line.find(" = ")) != key) text += line + "\n";
-  }
-  return text;
-}
 
 }  // namespace
 
@@ -138,12 +126,9 @@ CodeSet Request::code(const Camera& camera) const {
 }
 
 std::pair<Camera, Change> changed(const Camera& camera, const Change& change) {
-  if (!change.value) {
-    return {parse_camera_toml(without_key(camera, change.key), camera.name), change};
-  }
   constexpr std::string_view kind = ".impulse_response.kind";
   Change told = change;
-  if (change.key.ends_with(kind)) {
+  if (change.value && change.key.ends_with(kind)) {
     told.key = change.key.substr(0, change.key.size() - std::string(".kind").size());
     const bool is_light = told.key.starts_with("light");
     const ImpulseResponse& before =
@@ -160,7 +145,7 @@ std::pair<Camera, Change> changed(const Camera& camera, const Change& change) {
     else
       told.value = fmt::format("{{ kind = \"{}\" }}", word);
   }
-  const std::array settings = {told.key + "=" + *told.value};
+  const std::array settings = {told.key + "=" + told.value.value_or("")};
   return {with_settings(camera, settings), told};
 }
 

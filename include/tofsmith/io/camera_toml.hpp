@@ -25,7 +25,8 @@ struct SettingValue {
 
 /// Keys that replace those of a file, each as the file would say it: "light.peak_factor=5",
 /// "exposure_s=[0.1, 0.2]", "sensor.readout=difference" (quotes around one word may be left out).
-/// They are laid over the file before anything is checked; the last one of a key counts.
+/// "sensor.full_well_e=" leaves the key out, as if the file did not have it. They are laid over the
+/// file before anything is checked; the last one of a key counts.
 using Settings = std::span<const std::string>;
 
 /// Reads a camera from TOML. Keys are the names of the fields; all but fundamental_frequency_hz

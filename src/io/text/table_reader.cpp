@@ -126,6 +126,39 @@ toml::table parse_setting(const std::string& setting) {
   }
 }
 
+/// The key of a setting that ends in its sign, "sensor.full_well_e=".
+std::optional<std::string> key_left_out(std::string_view setting) {
+  const std::size_t end = setting.find_last_not_of(" \t");
+  if (end == std::string_view::npos || setting[end] != '=') return std::nullopt;
+  const std::string_view before = setting.substr(0, end);
+  const std::size_t first = before.find_first_not_of(" \t"), last = before.find_last_not_of(" \t");
+  if (first == std::string_view::npos || before.find_first_of("=\"'#") != std::string_view::npos)
+    return std::nullopt;
+  return std::string(before.substr(first, last - first + 1));
+}
+
+/// Takes a dotted key out of the tables that hold it.
+void leave_out(toml::table& root, std::string_view key, std::string_view setting) {
+  toml::table* table = &root;
+  for (std::string_view rest = key;;) {
+    const std::size_t dot = rest.find('.');
+    const std::string_view part = rest.substr(0, dot);
+    if (dot == std::string_view::npos && table->erase(part) > 0) return;
+    toml::table* inner = table->get_as<toml::table>(part);
+    if (dot != std::string_view::npos && inner != nullptr) {
+      table = inner;
+      rest.remove_prefix(dot + 1);
+      continue;
+    }
+    std::vector<std::string> there;
+    for (const auto& [name, node] : *table) there.emplace_back(name.str());
+    const std::string near = nearest_word(part, there);
+    throw IoError(describe_setting(setting),
+                  fmt::format("found no key {} to leave out{}", key,
+                              near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  }
+}
+
 /// What stands in the file, for "found ..".
 std::string describe(const toml::node& node) {
   if (node.is_table()) return "a table";
@@ -165,6 +198,10 @@ TomlDocument::TomlDocument(std::string_view text, std::string_view source_name)
 }
 
 void TomlDocument::apply(const std::string& setting) {
+  if (const std::optional<std::string> key = key_left_out(setting)) {
+    refuse_long_keys(setting, describe_setting(setting));
+    return leave_out(root_, *key, setting);
+  }
   toml::table change = parse_setting(setting);
   if (change.empty())
     throw IoError(describe_setting(setting), "found no key; expected key = value");

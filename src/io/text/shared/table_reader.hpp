@@ -38,8 +38,9 @@ class TomlDocument {
 
   /// Lays one `key.key = value` over the document, as if the file had said so. A word that is no
   /// TOML value is a string, so that shells need no second pair of quotes. A table in braces
-  /// replaces the one before; other keys of a table stay.
-  /// @throws IoError if that is no TOML
+  /// replaces the one before; other keys of a table stay. `key.key =` without a value takes the
+  /// key out.
+  /// @throws IoError if that is no TOML, or there is no key to take out
   void apply(const std::string& setting);
 
   const toml::table& root() const { return root_; }
