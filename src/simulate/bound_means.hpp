@@ -17,7 +17,7 @@ inline double mae_per_sigma() { return std::sqrt(2.0 / std::numbers::pi); }
 /// where the error grows.
 template <typename Mae>
 double mean_over_albedo(double largest, Mae&& mae) {
-  constexpr int nodes = 24;
+  constexpr int nodes = 48;
   double sum = 0.0;
   for (int i = 0; i < nodes; ++i) {
     const double x = (i + 0.5) / nodes;  // albedo = x^2, d albedo = 2 x dx

@@ -12,6 +12,7 @@
 #include "camera/shared/depth_prior.hpp"
 #include "simulate/bound_means.hpp"
 #include "simulate/shared/depth_information.hpp"
+#include "simulate/ziv_zakai.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
@@ -29,23 +30,14 @@ double deviation_of_depth_m(const Eigen::VectorXd& by_depth, const Eigen::Vector
   return DepthPart<Eigen::VectorXd>(by_depth, by_signal, by_ambient).deviation_m(range_m);
 }
 
-/// Largest kappa (1 - kappa) / (b kappa + c) a tap can reach. The duties of an exposure's taps add
-/// to at most 1, or to exactly 1 if charge cannot be thrown away; the expression is concave in
-/// kappa, so equal duties are best.
-double largest_gated(double b, double c, int taps, bool may_be_shorter) {
-  if (may_be_shorter && c == 0.0) return 1.0 / b;  // the limit of ever shorter gates
-  const double best = c / (std::sqrt(c * c + b * c) + c);
-  const double kappa = may_be_shorter ? std::min(best, 1.0 / taps) : 1.0 / taps;
-  return kappa * (1.0 - kappa) / (b * kappa + c);
-}
-
 }  // namespace
 
 DirectTofBound::DirectTofBound(const Camera& camera)
     : range_m_(camera.range_m()),
       exposure_s_(total_exposure_s(camera.exposure_s) *
                   (1.0 + 0.5 * std::abs(camera.sensor.tap_mismatch))),
-      peak_factor_(camera.light.peak_factor) {
+      peak_factor_(camera.light.peak_factor),
+      max_density_(DepthPrior(camera).max_density()) {
   camera.validate();
   if (!camera.light_is_band_limited()) return;
   transfer_ = camera.light_transfer(harmonics_kept(camera.samples));
@@ -69,7 +61,7 @@ double DirectTofBound::information_of(const Waveform& modulation,
 }
 
 double DirectTofBound::mae_m(const OperatingPoint& point) const {
-  return range_m_ * mae_per_sigma() / std::sqrt(photon_information(point));
+  return mae_of_information_m(photon_information(point), range_m_, max_density_);
 }
 
 double DirectTofBound::mae_uniform_albedo_m(const OperatingPoint& point) const {
@@ -216,73 +208,6 @@ double CramerRaoBound::mae_m(const OperatingPoint& point) const {
 }
 
 double CramerRaoBound::mae_uniform_albedo_m(const OperatingPoint& point) const {
-  return mean_over_albedo(0.25 * range_m_,
-                          [&](double albedo) { return mae_m(dimmed(point, albedo)); });
-}
-
-ReceiverBound::ReceiverBound(const Camera& camera, int exposures)
-    : range_m_(camera.range_m()),
-      taps_(camera.sensor.taps),
-      has_rows_(camera.sensor.readout == Readout::rows),
-      drain_(camera.sensor.drain),
-      peak_factor_(camera.light.peak_factor),
-      sensitivity_(1.0 + 0.5 * std::abs(camera.sensor.tap_mismatch)),
-      dark_e_per_s_(camera.sensor.dark_current_e_per_s),
-      constant_variance_e2_(has_rows_ ? 0.0 : constant_variance_e2_of(camera.sensor)),
-      max_density_(DepthPrior(camera).max_density()) {
-  camera.validate();
-  require(exposures >= 1, "exposures", exposures, "must be >= 1");
-  require(camera.exposure_s.each_s.empty() ||
-              camera.exposure_s.each_s.size() == static_cast<std::size_t>(exposures),
-          "exposures", exposures, "must equal the number of exposure_s of the camera");
-  for (int e = 0; e < exposures; ++e) exposure_s_.push_back(camera.exposure_s.of(e, exposures));
-  if (!camera.band_limited()) return;
-  using Kind = ImpulseResponse::Kind;
-  const bool may_ring = camera.light.impulse_response.kind == Kind::file ||
-                        camera.sensor.impulse_response.kind == Kind::file;
-  photons_.emplace(camera.transfer(harmonics_kept(camera.samples)), may_ring);
-}
-
-double ReceiverBound::tap_information(const OperatingPoint& point) const {
-  if (!photons_ || has_rows_) return infinity;
-  const double p = peak_factor_;
-  const double largest_harmonic =
-      p / std::numbers::pi * std::sin(std::numbers::pi * std::min(1.0 / p, 0.5));
-  const double v = photons_->largest_slope_power() * largest_harmonic * largest_harmonic;
-  const double signal = sensitivity_ * point.signal_e_per_s;
-  const double ambient =
-      sensitivity_ * point.ambient_e_per_s - signal * photons_->undershoot(peak_factor_);
-  double information = 0.0;
-  for (const double time_s : exposure_s_) {
-    // A response that rings may take ambient light away: at most at a duty of 1.
-    const double b = time_s * std::max(ambient, 0.0);
-    const double c = constant_variance_e2_ + time_s * (dark_e_per_s_ + std::min(ambient, 0.0));
-    if (c < 0.0 || b + c == 0.0) return infinity;
-    information +=
-        taps_ * std::pow(signal * time_s, 2) * v * largest_gated(b, c, taps_, taps_ == 1 || drain_);
-  }
-  // That bounds the mean over all depths; what photons contribute holds at each.
-  return max_density_ * information;
-}
-
-double ReceiverBound::photon_information(const OperatingPoint& point) const {
-  if (!photons_) return infinity;
-  double information = 0.0;
-  for (const double time_s : exposure_s_) {
-    const double signal_e = time_s * sensitivity_ * point.signal_e_per_s;
-    const double other_e =
-        time_s * (sensitivity_ * point.ambient_e_per_s + dark_e_per_s_) + constant_variance_e2_;
-    information += photons_->largest(signal_e, other_e, peak_factor_);
-  }
-  return information;
-}
-
-double ReceiverBound::mae_m(const OperatingPoint& point) const {
-  const double information = std::min(tap_information(point), photon_information(point));
-  return range_m_ * mae_per_sigma() / std::sqrt(information);
-}
-
-double ReceiverBound::mae_uniform_albedo_m(const OperatingPoint& point) const {
   return mean_over_albedo(0.25 * range_m_,
                           [&](double albedo) { return mae_m(dimmed(point, albedo)); });
 }

@@ -11,6 +11,7 @@
 
 #include "core/shared/random.hpp"
 #include "tofsmith/code/families.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
 namespace {
@@ -20,6 +21,13 @@ using std::numbers::pi;
 CramerRaoBound bound_of(const CodeSet& code, const Camera& camera,
                         NoiseInformation information = NoiseInformation::mean) {
   return {ForwardModel(code, camera), camera, information};
+}
+
+/// The receiver bound by information alone, as a Cramer-Rao bound does not know of confusion
+/// either.
+double by_information_m(const ReceiverBound& bound, const Camera& camera,
+                        const OperatingPoint& point) {
+  return camera.range_m() * std::sqrt(2 / pi / bound.information(point));
 }
 
 TEST(CramerRaoBound, OfSinusoidsUnderStrongAmbientLightIsThatOfFourPhases) {
@@ -192,7 +200,7 @@ TEST(ReceiverBound, NoCodeBeatsIt) {
           for (const OperatingPoint& point :
                {OperatingPoint{1e3, 1e2}, OperatingPoint{1e4, 1e4}, OperatingPoint{1e5, 0.0},
                 OperatingPoint{1e6, 1e2}, OperatingPoint{1e3, 1e7}}) {
-            const double ratio = of_code.mae_m(point) / of_camera.mae_m(point);
+            const double ratio = of_code.mae_m(point) / by_information_m(of_camera, camera, point);
             EXPECT_GE(ratio, 1.0) << code.name() << " peak " << peak_factor << " " << name << " S "
                                   << point.signal_e_per_s << " A " << point.ambient_e_per_s;
             closest = std::min(closest, ratio);
@@ -213,10 +221,11 @@ TEST(ReceiverBound, ALightThatCannotBeBrighterThanItsAverageMayStillBlink) {
   const CodeSet code =
       CodeSet::create("blinking", camera.samples, 1, {3, square_wave(1, 0.0)}, gates);
   const OperatingPoint point{1e4, 1e5};
-  EXPECT_LE(ReceiverBound(camera, 3).mae_m(point), bound_of(code, camera).mae_m(point));
+  EXPECT_LE(by_information_m(ReceiverBound(camera, 3), camera, point),
+            bound_of(code, camera).mae_m(point));
 }
 
-TEST(ReceiverBound, DifferencesAndUniformAlbedoStayAboveIt) {
+TEST(ReceiverBound, HoldsForDifferencesAndUniformAlbedo) {
   Camera camera = built_in_camera("paper-10f0");
   camera.samples = 60;
   camera.sensor.taps = 2;
@@ -225,9 +234,54 @@ TEST(ReceiverBound, DifferencesAndUniformAlbedoStayAboveIt) {
   const CramerRaoBound of_code = bound_of(code, camera);
   const ReceiverBound of_camera(camera, 4);
   for (const OperatingPoint& point : camera.operating.points()) {
-    EXPECT_GE(of_code.mae_m(point), of_camera.mae_m(point));
-    EXPECT_GE(of_code.mae_uniform_albedo_m(point), of_camera.mae_uniform_albedo_m(point));
+    EXPECT_GE(of_code.mae_m(point), by_information_m(of_camera, camera, point));
+    double sum_m = 0.0;
+    for (int i = 0; i < 200; ++i) {
+      const double root = (i + 0.5) / 200;
+      sum_m +=
+          2 * root * of_camera.mae_m({root * root * point.signal_e_per_s, point.ambient_e_per_s});
+    }
+    EXPECT_NEAR(of_camera.mae_uniform_albedo_m(point) / (sum_m / 200), 1.0, 0.01);
   }
+  camera.operating.uniform_albedo = true;
+  for (const PointDepthError& error : evaluate(code, camera, {.trials = 2000}).points)
+    EXPECT_GE(error.circular_mde_m.value + 4 * error.circular_mde_m.standard_error,
+              error.receiver_bound_mae_m);
+}
+
+TEST(ReceiverBound, IsAGuessWithoutLightAndByInformationInBrightLight) {
+  const Camera camera = built_in_camera("paper-10f0");
+  const ReceiverBound bound(camera, 4);
+  EXPECT_DOUBLE_EQ(bound.mae_m({0.0, 1e4}), camera.range_m() / 4);
+  EXPECT_NEAR(bound.mae_m({1e-3, 1e4}), camera.range_m() / 4, 1e-3 * camera.range_m());
+  for (const double read_noise_e : {20.0, 2000.0}) {
+    Camera noisy = camera;
+    noisy.sensor.read_noise_e = read_noise_e;
+    const ReceiverBound of_noisy(noisy, 4);
+    const OperatingPoint bright{1e7, 0.0};
+    EXPECT_NEAR(of_noisy.mae_m(bright) / by_information_m(of_noisy, noisy, bright), 1.0, 0.02);
+  }
+  for (double signal_e_per_s = 1e2; signal_e_per_s < 1e6; signal_e_per_s *= 3)
+    EXPECT_LT(bound.mae_m({2 * signal_e_per_s, 1e4}), bound.mae_m({signal_e_per_s, 1e4}));
+  const OperatingPoint dim{1e3, 1e5};
+  EXPECT_GT(bound.mae_m(dim), 1.5 * by_information_m(bound, camera, dim));
+}
+
+TEST(ReceiverBound, GatesTakePartOfWhatPhotonsTell) {
+  // Against the plain photons of as many electrons and as much noise of their own.
+  const Camera camera = built_in_camera("paper-10f0");
+  const OperatingPoint bright{1e6, 1e3};
+  const double time_s = 0.3 / 4,
+               light_e = time_s * (bright.signal_e_per_s + bright.ambient_e_per_s);
+  double passed = 0.0;
+  for (int i = 1; i < 100000; ++i)
+    passed = std::max(passed, i * 1e-5 * (1 - i * 1e-5) * light_e / (i * 1e-5 * light_e + 400.0));
+  Camera quiet = camera;
+  quiet.sensor.read_noise_e = 0.0;
+  EXPECT_NEAR(ReceiverBound(camera, 4).photon_information(bright) /
+                  (passed * ReceiverBound(quiet, 4).photon_information(bright)),
+              1.0, 1e-3);
+  EXPECT_LT(passed, 0.9);
 }
 
 TEST(ReceiverBound, ThrowingChargeAwayCanOnlyHelp) {

@@ -118,9 +118,9 @@ class HistogramBound {
   double ambient_e_ = 0.0, dark_e_ = 0.0;  // of every bin
 };
 
-/// How well any code at all can do on a camera, in a number of exposures: below every
-/// CramerRaoBound of a code whose harmonics the camera's arms limit, and 0 without impulse
-/// responses. Of rows, what photons recorded one by one tell, without read noise.
+/// How well any code at all can do on a camera, in a number of exposures: below the circular error
+/// of every code whose harmonics the camera's arms limit; 0 without impulse responses. Of rows,
+/// what photons recorded one by one tell, without read noise.
 /// @see docs/bounds.md for derivation and assumptions
 class ReceiverBound {
  public:
@@ -132,10 +132,17 @@ class ReceiverBound {
   /// the largest harmonic the arms let through and from how much a gate of duty kappa can hold.
   /// Where depths are not alike, as many times that as the most frequent occur more often.
   double tap_information(const OperatingPoint& point) const;
-  /// The same for photons recorded one by one behind both arms, one read-out per exposure: from
-  /// the arms' response itself or from the largest ripple within the peak, whichever is less.
+  /// The same for photons recorded one by one behind both arms, one read-out per exposure, and for
+  /// those that gates pass or stop: from the arms' response itself or from the largest ripple
+  /// within the peak, whichever is least.
   double photon_information(const OperatingPoint& point) const;
-  /// range sqrt(2 / pi) / sqrt(smaller of both) [m].
+  /// The smaller of both.
+  double information(const OperatingPoint& point) const;
+
+  /// Mean circular error [m] below which no estimator comes, biased or not, wraps and confused
+  /// depths included: the Ziv-Zakai bound from how far apart taps can keep any two depths and from
+  /// information(), S and A known. range / 4 without light, range sqrt(2 / pi) / sqrt(information)
+  /// in much of it, and that at all where depths are not alike; 0 without impulse responses.
   double mae_m(const OperatingPoint& point) const;
   /// The same averaged over a signal scaled uniformly in (0, 1), at each albedo held to range / 4.
   double mae_uniform_albedo_m(const OperatingPoint& point) const;
@@ -152,6 +159,9 @@ class ReceiverBound {
   double max_density_;                        // of depths, over that of uniform ones
   std::vector<double> exposure_s_;            // of each exposure
   std::optional<PhotonInformation> photons_;  // behind both arms; none without limit
+  Eigen::VectorXd transfer_power_;            // |H|^2 of both arms at harmonics 1 ..
+
+  double gathered(const OperatingPoint& point) const;
 };
 
 /// What the light alone allows, for scale: depth from photons recorded one by one by an ideal
@@ -169,7 +179,8 @@ class DirectTofBound {
   /// No modulation within the camera's peak and average power carries more [1 / period^2];
   /// infinite where the light has no impulse response.
   double photon_information(const OperatingPoint& point) const;
-  /// range sqrt(2 / pi) / sqrt(photon_information) [m].
+  /// range sqrt(2 / pi) / sqrt(photon_information) [m], and range / 4, a guess, without light: the
+  /// Ziv-Zakai bound of it, where depths are all alike.
   double mae_m(const OperatingPoint& point) const;
   /// The same averaged over a signal scaled uniformly in (0, 1), at each albedo held to range / 4.
   double mae_uniform_albedo_m(const OperatingPoint& point) const;
@@ -181,6 +192,7 @@ class DirectTofBound {
   double range_m_;
   double exposure_s_;  // of all exposures together, times the sensitivity of the best tap
   double peak_factor_;
+  double max_density_;                        // of depths, over that of uniform ones
   Eigen::VectorXcd transfer_;                 // of the light; empty if it has no limit
   std::optional<PhotonInformation> photons_;  // behind the light's response; none if no limit
 };
