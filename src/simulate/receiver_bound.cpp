@@ -48,6 +48,7 @@ ReceiverBound::ReceiverBound(const Camera& camera, int exposures)
                         camera.sensor.impulse_response.kind == Kind::file;
   const Eigen::VectorXcd transfer = camera.transfer(harmonics_kept(camera.samples));
   photons_.emplace(transfer, may_ring);
+  if (!has_rows_ && !may_ring) gates_.emplace(transfer);
   transfer_power_ = transfer.tail(transfer.size() - 1).cwiseAbs2();
 }
 
@@ -86,21 +87,28 @@ double ReceiverBound::photon_information(const OperatingPoint& point) const {
     const double ambient_e = time_s * sensitivity_ * point.ambient_e_per_s;
     const double c = time_s * dark_e_per_s_ + constant_variance_e2_;
     double largest = photons_->largest(signal_e, ambient_e + c, peak_factor_);
-    if (!has_rows_) {
-      const double light_e = signal_e + ambient_e;
-      const double passed =
-          light_e > 0.0 ? taps_ * light_e * largest_gated(light_e, c, taps_, taps_ == 1 || drain_)
-                        : 0.0;
-      const double gated = photons_->largest(signal_e, ambient_e, peak_factor_);
-      if (passed > 0.0) largest = std::min(largest, passed * gated);
-    }
+    if (gates_) largest = std::min(largest, taps_ * gates_->at_any_depth(signal_e, ambient_e, c));
     information += largest;
   }
   return information;
 }
 
+double ReceiverBound::gate_information(const OperatingPoint& point) const {
+  if (!gates_) return infinity;
+  double information = 0.0, last_s = 0.0, last = 0.0;
+  for (const double time_s : exposure_s_) {
+    if (time_s != last_s)
+      last = gates_->mean_over_depths(time_s * sensitivity_ * point.signal_e_per_s,
+                                      time_s * sensitivity_ * point.ambient_e_per_s,
+                                      time_s * dark_e_per_s_ + constant_variance_e2_);
+    last_s = time_s;
+    information += taps_ * last;
+  }
+  return max_density_ * information;
+}
+
 double ReceiverBound::information(const OperatingPoint& point) const {
-  return std::min(tap_information(point), photon_information(point));
+  return std::min({tap_information(point), photon_information(point), gate_information(point)});
 }
 
 double ReceiverBound::mae_m(const OperatingPoint& point) const {

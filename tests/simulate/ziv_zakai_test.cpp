@@ -21,7 +21,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The integral over shifts for given shares, by brute force.
 double confusion_of(const Eigen::VectorXd& power, const Eigen::VectorXd& shares) {
-  constexpr int cells = 200000;
+  constexpr int cells = 20000;
   double sum = 0.0;
   for (int j = 0; j < cells; ++j) {
     const double h = 0.5 * (j + 0.5) / cells;

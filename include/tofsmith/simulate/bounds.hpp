@@ -44,6 +44,33 @@ class PhotonInformation {
   double largest_slope_power_ = 0.0;
 };
 
+/// How much one tap can learn of a delay from how many electrons a gate passes in an exposure,
+/// whatever the gate (0 <= d <= 1) and the light (mean at most 1). A gate that passes x electrons
+/// of l(t) = s g + a, g the arms' response, has
+///   |slope of x| <= Phi(x) = max of integral d l',  |curvature of x| <= Psi(x) = .. d l''
+/// over all gates with integral d l = x: those that open where l'/l is largest (Neyman-Pearson).
+/// @see docs/bounds.md
+class GateInformation {
+ public:
+  /// @param transfer  harmonics 0 .. highest of what blurs the light; its response must not ring
+  explicit GateInformation(const Eigen::VectorXcd& transfer);
+
+  /// max Phi^2 / (x + other): no depth has more information [1 / period^2].
+  /// @param signal_e  s, electrons of the light if the gate were always open
+  /// @param ambient_e  a, the same of ambient light
+  /// @param other_e2  variance without light
+  double at_any_depth(double signal_e, double ambient_e, double other_e2) const;
+
+  /// The mean over all depths cannot be as large: x comes and goes. Between two depths where it
+  /// turns, a and b, its squared slope z(x) is at most Phi^2 and starts and ends at 0 with a slope
+  /// of at most 2 Psi, so that the mean of z / (x + other) is at most, over all a and b,
+  ///   integral sqrt(z) / (x + other) dx  /  integral dx / sqrt(z)   from a to b.
+  double mean_over_depths(double signal_e, double ambient_e, double other_e2) const;
+
+ private:
+  Eigen::ArrayXd response_, slope_, curvature_;  // over one period, at equal distances
+};
+
 /// Integral over the period of (s x')^2 / (s x + other), x and x' sampled at equal distances.
 double information_of_shape(const Eigen::VectorXd& shape, const Eigen::VectorXd& slope,
                             double signal_e, double other_e);
@@ -132,11 +159,14 @@ class ReceiverBound {
   /// the largest harmonic the arms let through and from how much a gate of duty kappa can hold.
   /// Where depths are not alike, as many times that as the most frequent occur more often.
   double tap_information(const OperatingPoint& point) const;
-  /// The same for photons recorded one by one behind both arms, one read-out per exposure, and for
-  /// those that gates pass or stop: from the arms' response itself or from the largest ripple
-  /// within the peak, whichever is least.
+  /// The same for photons recorded one by one behind both arms, one read-out per exposure, from the
+  /// arms' response itself or from the largest ripple within the peak, and for those that any gate
+  /// makes of them: the least of these.
   double photon_information(const OperatingPoint& point) const;
-  /// The smaller of both.
+  /// The mean over depth of what any gate makes of photons while the light passes it: infinite for
+  /// rows and for measured responses, which may ring.
+  double gate_information(const OperatingPoint& point) const;
+  /// The least of all.
   double information(const OperatingPoint& point) const;
 
   /// Mean circular error [m] below which no estimator comes, biased or not, wraps and confused
@@ -159,6 +189,7 @@ class ReceiverBound {
   double max_density_;                        // of depths, over that of uniform ones
   std::vector<double> exposure_s_;            // of each exposure
   std::optional<PhotonInformation> photons_;  // behind both arms; none without limit
+  std::optional<GateInformation> gates_;      // the same; none of rows and of what may ring
   Eigen::VectorXd transfer_power_;            // |H|^2 of both arms at harmonics 1 ..
 
   double gathered(const OperatingPoint& point) const;

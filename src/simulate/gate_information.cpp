@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+#include "core/shared/periodic.hpp"
+#include "tofsmith/simulate/bounds.hpp"
+
+namespace tofsmith {
+namespace {
+
+constexpr int min_points = 512;
+/// Of the largest value: what the harmonics left out may make of a response that is 0.
+constexpr double rounding = 1e-7;
+constexpr int cells = 64;
+
+/// x and the largest integral of d times a derivative of the light at it: the corners of a concave
+/// polygon from (0, 0) to (all light, 0).
+struct Profile {
+  std::vector<double> passed{0.0}, largest{0.0};
+};
+
+Profile profile_of(const Eigen::ArrayXd& light, const Eigen::ArrayXd& derivative) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(light.size()));
+  std::iota(order.begin(), order.end(), 0);
+  const Eigen::ArrayXd ratio = derivative / light;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Eigen::Index a, Eigen::Index b) { return ratio[a] > ratio[b]; });
+  Profile profile;
+  const double width = 1.0 / static_cast<double>(light.size());
+  for (const Eigen::Index j : order) {
+    profile.passed.push_back(profile.passed.back() + light[j] * width);
+    profile.largest.push_back(profile.largest.back() + derivative[j] * width);
+  }
+  return profile;
+}
+
+/// At each x, which rise, for gates and for those that are open where others are shut: their
+/// derivatives are the same but for the sign.
+std::vector<double> largest_at(const Profile& profile, const std::vector<double>& x) {
+  const auto at = [&](double passed) {
+    const auto right = std::upper_bound(profile.passed.begin(), profile.passed.end(), passed);
+    if (right == profile.passed.end()) return 0.0;
+    const auto i = static_cast<std::size_t>(right - profile.passed.begin());
+    const double share =
+        (passed - profile.passed[i - 1]) / (profile.passed[i] - profile.passed[i - 1]);
+    return std::max(0.0, std::lerp(profile.largest[i - 1], profile.largest[i], share));
+  };
+  std::vector<double> values;
+  values.reserve(x.size());
+  for (const double passed : x)
+    values.push_back(std::max(at(passed), at(profile.passed.back() - passed)));
+  return values;
+}
+
+}  // namespace
+
+GateInformation::GateInformation(const Eigen::VectorXcd& transfer) {
+  const Eigen::Index highest = transfer.size() - 1;
+  const auto points = static_cast<int>(std::max<Eigen::Index>(min_points, 4 * highest));
+  const PeriodicTransform transform(points);
+  Eigen::VectorXcd spectrum = Eigen::VectorXcd::Zero(transform.coefficients());
+  spectrum.head(highest + 1) = transfer * static_cast<double>(points);
+  const auto next_derivative = [&] {
+    Eigen::VectorXd values;
+    transform.inverse(spectrum, values);
+    for (Eigen::Index n = 0; n <= highest; ++n)
+      spectrum[n] *= std::complex<double>(0.0, 2.0 * std::numbers::pi * static_cast<double>(n));
+    return Eigen::ArrayXd(values.array());
+  };
+  response_ = next_derivative();
+  slope_ = next_derivative();
+  curvature_ = next_derivative();
+  response_ = response_.max(rounding * response_.maxCoeff());
+}
+
+double GateInformation::at_any_depth(double signal_e, double ambient_e, double other_e2) const {
+  if (signal_e <= 0.0) return 0.0;
+  const Profile profile = profile_of(signal_e * response_ + ambient_e, signal_e * slope_);
+  double largest = 0.0;
+  for (std::size_t i = 1; i < profile.passed.size(); ++i) {
+    const double slope = profile.largest[i], passed = profile.passed[i];
+    // A gate that is shut where this one is open has the same slope.
+    for (const double x : {passed, profile.passed.back() - passed})
+      if (x + other_e2 > 0.0) largest = std::max(largest, slope * slope / (x + other_e2));
+  }
+  return largest;
+}
+
+double GateInformation::mean_over_depths(double signal_e, double ambient_e, double other_e2) const {
+  if (signal_e <= 0.0) return 0.0;
+  const Eigen::ArrayXd light = signal_e * response_ + ambient_e;
+  const Profile slopes = profile_of(light, signal_e * slope_);
+  const Profile curvatures = profile_of(light, signal_e * curvature_);
+  // Cells of x, narrow where few electrons make little noise.
+  const double all = slopes.passed.back();
+  std::vector<double> middle, width, weight;
+  for (int j = 0; j < cells; ++j) {
+    const double begin = std::pow(j / static_cast<double>(cells), 2) * all;
+    const double end = std::pow((j + 1) / static_cast<double>(cells), 2) * all;
+    middle.push_back(0.5 * (begin + end));
+    width.push_back(end - begin);
+    weight.push_back(1.0 / (middle.back() + other_e2));
+  }
+  std::vector<double> steepest = largest_at(slopes, middle);
+  for (double& z : steepest) z *= z;
+  std::vector<double> risen{0.0};  // of z from x = 0 on
+  const std::vector<double> curvature = largest_at(curvatures, middle);
+  for (std::size_t j = 0; j < cells; ++j)
+    risen.push_back(risen.back() + 2.0 * curvature[j] * width[j]);
+
+  const auto mean_between = [&](std::size_t a, std::size_t b) {
+    double gained = 0.0, taken = 0.0;
+    for (std::size_t j = a; j < b; ++j) {
+      const double here = 0.5 * (risen[j] + risen[j + 1]);
+      const double slope = std::sqrt(std::min({steepest[j], here - risen[a], risen[b] - here}));
+      gained += slope * weight[j] * width[j];
+      taken += width[j] / slope;
+    }
+    return gained / taken;
+  };
+  // The mean changes little from cell to cell: every few of them, then all around the largest.
+  constexpr std::size_t step = 4;
+  double largest = 0.0;
+  std::size_t best_a = 0, best_b = cells;
+  const auto look = [&](std::size_t a, std::size_t b) {
+    const double mean = mean_between(a, b);
+    if (mean <= largest) return;
+    largest = mean;
+    best_a = a;
+    best_b = b;
+  };
+  for (std::size_t a = 0; a < cells; a += step)
+    for (std::size_t b = a + step; b <= cells; b += step) look(a, b);
+  const std::size_t around_a = best_a, around_b = best_b;
+  for (std::size_t a = around_a - std::min(around_a, step); a <= around_a + step; ++a)
+    for (std::size_t b = std::max(a + 1, around_b - step);
+         b <= std::min<std::size_t>(cells, around_b + step); ++b)
+      look(a, b);
+  return largest;
+}
+
+}  // namespace tofsmith
