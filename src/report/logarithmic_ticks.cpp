@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -12,13 +13,16 @@ namespace {
 
 /// Within a factor of 5: multiples of 1, 2 or 5 times a power of ten, about five of them.
 std::vector<Tick> round_multiples(const ValueRange& range) {
-  const double width = range.high - range.low;
+  constexpr double rounding = 1e-9;  // values closer than that are one
+  const double width = std::max(range.high - range.low, rounding * range.high);
   double step = std::pow(10.0, std::floor(std::log10(width)) - 1.0);
   for (const double factor : {2.0, 2.5, 2.0, 2.0, 2.5})
     if (width / step > 6.0) step *= factor;
   std::vector<Tick> ticks;
-  for (double i = std::ceil(range.low / step - 1e-6); i * step <= range.high + 1e-6 * step; ++i) {
-    const std::string text = fmt::format("{:.6g}", i * step);
+  const double first = std::ceil(range.low / step - 1e-6);
+  const int count = 1 + static_cast<int>(std::floor(range.high / step + 1e-6 - first));
+  for (int i = 0; i < count; ++i) {
+    const std::string text = fmt::format("{:.6g}", (first + i) * step);
     ticks.push_back({std::strtod(text.c_str(), nullptr), text});
   }
   return ticks;

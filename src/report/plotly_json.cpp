@@ -73,8 +73,10 @@ std::optional<ValueRange> positive_range(std::span<const double> values) {
     high = std::max(high, value);
   }
   if (high == 0) return std::nullopt;
+  constexpr double rounding = 1e-6;
+  if (high <= low * (1.0 + rounding)) return ValueRange{low / 3, low * 3};
   const double margin = std::pow(high / low, 0.05);
-  return low < high ? ValueRange{low / margin, high * margin} : ValueRange{low / 3, low * 3};
+  return ValueRange{low / margin, high * margin};
 }
 
 const char* dash_name(Dash dash) {

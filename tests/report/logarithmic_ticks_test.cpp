@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace tofsmith::plotly {
 namespace {
 
@@ -19,6 +21,12 @@ TEST(LogarithmicTicks, AreRoundFewAndInsideWhateverTheRange) {
       }
     }
   }
+}
+
+TEST(LogarithmicTicks, EndWhereTheRangeIsRounding) {
+  const double low = 0.0888;
+  for (const double high : {low, std::nextafter(low, 1.0), low * (1 + 1e-15), low * (1 + 1e-9)})
+    EXPECT_LE(logarithmic_ticks({low, high}).size(), 9u) << high - low;
 }
 
 TEST(LogarithmicTicks, AreOneTwoAndFiveTimesPowersOfTen) {
