@@ -2,27 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <limits>
-#include <mutex>
 #include <type_traits>
 
-#include "gpu/device_tile.hpp"
+#include "gpu/device_decoder_plan.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 
 namespace {
 
-constexpr std::int64_t min_tile_pixels = 1024;
 constexpr std::int64_t max_tile_pixels = std::int64_t{1} << 24;
 
-/// Decodes the pixels of a tile that are open, as a frame of one row, to where they belong.
-template <typename Number>
-void decode_on_host(const Decoder& decoder, const RawView& raw, std::int64_t first,
-                    const std::vector<std::int32_t>& open, const DecodedView& decoded) {
+/// Numbers of pixels that are open, as a frame of one row of the type that they have.
+template <typename Number, typename Use>
+void with_numbers_of(const RawView& raw, std::int64_t first, const std::vector<std::int32_t>& open,
+                     const Use& use) {
   const auto* data = std::get<const Number*>(raw.data);
-  const std::size_t count = open.size();
   std::vector<Number> values;
-  values.reserve(count * static_cast<std::size_t>(raw.measurements));
+  values.reserve(open.size() * static_cast<std::size_t>(raw.measurements));
   std::vector<float> averaged;
   for (const std::int32_t pixel : open) {
     const std::int64_t at = first + pixel, row = at / raw.width, column = at % raw.width;
@@ -31,9 +28,61 @@ void decode_on_host(const Decoder& decoder, const RawView& raw, std::int64_t fir
           data[row * raw.row_stride + column * raw.column_stride + k * raw.measurement_stride]);
     if (raw.averaged) averaged.push_back(raw.averaged[at]);
   }
-  RawView view = RawView::interleaved(values.data(), 1, static_cast<int>(count), raw.measurements);
+  RawView view =
+      RawView::interleaved(values.data(), 1, static_cast<int>(open.size()), raw.measurements);
   if (raw.averaged) view.averaged = averaged.data();
+  use(view);
+}
 
+}  // namespace
+
+void DeviceOptions::validate() const { check_fields(*this, "DeviceOptions::"); }
+
+DeviceDecoder::Plan::Plan(const Device& device_, const Decoder& decoder_,
+                          const DeviceOptions& options_)
+    : device(device_),
+      decoder(decoder_),
+      options(options_),
+      tile(device, decoder, options.use_doubles) {
+  const double most = std::min<double>(
+      max_tile_pixels, double{std::numeric_limits<int>::max()} / decoder.measurements());
+  tile_pixels = static_cast<std::int64_t>(
+      std::clamp(1e6 * options.memory_mb / static_cast<double>(tile.bytes_per_pixel()),
+                 static_cast<double>(min_tile_pixels), most));
+}
+
+std::int64_t DeviceDecoder::Plan::decode_tile(const RawView& raw, std::int64_t first,
+                                              std::int64_t count, const DecodedView& planes) {
+  tile.upload(raw, first, count);
+  tile.decode(planes);
+  tile.fetch(planes);
+  const std::vector<std::int32_t> open = tile.open_pixels();
+  // From where they came: doubles are floats on the device.
+  if (!open.empty())
+    std::visit(
+        [&](const auto* data) {
+          with_numbers_of<std::remove_cvref_t<decltype(*data)>>(
+              raw, first, open,
+              [&](const RawView& numbers) { decode_open_pixels(numbers, open, planes); });
+        },
+        raw.data);
+  return std::ssize(open);
+}
+
+std::int64_t DeviceDecoder::Plan::decode_what_is_there(const DecodedView& planes) {
+  tile.decode(planes);
+  tile.fetch(planes);
+  const std::vector<std::int32_t> open = tile.open_pixels();
+  if (!open.empty())
+    decode_open_pixels(OpenNumbers(tile.numbers_of(open), decoder.measurements()).view(), open,
+                       planes);
+  return std::ssize(open);
+}
+
+void DeviceDecoder::Plan::decode_open_pixels(const RawView& numbers,
+                                             const std::vector<std::int32_t>& open,
+                                             const DecodedView& decoded) const {
+  const std::size_t count = open.size();
   DepthImage image(1, static_cast<int>(count));
   std::vector<std::int32_t> bin(count);
   DecodedView here = DecodedView::of(image);
@@ -51,50 +100,12 @@ void decode_on_host(const Decoder& decoder, const RawView& raw, std::int64_t fir
     use(here.status, decoded.status);
   };
   for_each_plane(only_wanted);
-  decoder.decode(view, here);
+  decoder.decode(numbers, here);
   for_each_plane([&](const auto* from, auto* to) {
     if (to)
       for (std::size_t i = 0; i < count; ++i) to[open[i]] = from[i];
   });
 }
-
-}  // namespace
-
-void DeviceOptions::validate() const { check_fields(*this, "DeviceOptions::"); }
-
-struct DeviceDecoder::Plan {
-  Plan(const Device& device_, const Decoder& decoder_, const DeviceOptions& options)
-      : device(device_), decoder(decoder_), tile(device, decoder, options.use_doubles) {
-    const double most = std::min<double>(
-        max_tile_pixels, double{std::numeric_limits<int>::max()} / decoder.measurements());
-    tile_pixels = static_cast<std::int64_t>(
-        std::clamp(1e6 * options.memory_mb / static_cast<double>(tile.bytes_per_pixel()),
-                   static_cast<double>(min_tile_pixels), most));
-  }
-
-  /// @param planes  from the first pixel on
-  /// @return how many pixels the decoder decoded
-  std::int64_t decode_tile(const RawView& raw, std::int64_t first, std::int64_t count,
-                           const DecodedView& planes) {
-    tile.upload(raw, first, count);
-    tile.decode(planes);
-    tile.fetch(planes);
-    const std::vector<std::int32_t> open = tile.open_pixels();
-    if (!open.empty())
-      std::visit(
-          [&](const auto* data) {
-            decode_on_host<std::remove_cvref_t<decltype(*data)>>(decoder, raw, first, open, planes);
-          },
-          raw.data);
-    return std::ssize(open);
-  }
-
-  Device device;
-  const Decoder& decoder;
-  std::mutex mutex;  // of what follows
-  DeviceTile tile;
-  std::int64_t tile_pixels;
-};
 
 DeviceDecoder::DeviceDecoder(const Device& device, const Decoder& decoder,
                              const DeviceOptions& options) {
@@ -110,6 +121,10 @@ const Device& DeviceDecoder::device() const { return plan_->device; }
 std::int64_t DeviceDecoder::decode(const RawView& raw, const DecodedView& decoded,
                                    const Progress& progress) const {
   require_frame(raw, plan_->decoder.measurements());
+  if (raw.pixels() < plan_->options.min_pixels) {
+    plan_->decoder.decode(raw, decoded, progress);
+    return raw.pixels();
+  }
   const std::lock_guard lock(plan_->mutex);
   std::int64_t left_open = 0;
   for (std::int64_t first = 0; first < raw.pixels();) {
@@ -140,7 +155,9 @@ std::optional<DeviceDecoder> device_decoder(std::string_view device, const AnyDe
   const auto* zncc = std::get_if<Decoder>(&decoder);
   if (device == "auto") {
     const std::optional<Device> gpu = zncc ? Device::first_gpu() : std::nullopt;
-    return gpu ? std::optional<DeviceDecoder>(std::in_place, *gpu, *zncc) : std::nullopt;
+    if (!gpu) return std::nullopt;
+    const DeviceOptions options{.min_pixels = auto_min_pixels_to_decode};
+    return std::optional<DeviceDecoder>(std::in_place, *gpu, *zncc, options);
   }
   require(zncc != nullptr, "method", name_of(all_decode_methods[decoder.index()]),
           "must be zncc, by which alone devices decode, or the device cpu");
