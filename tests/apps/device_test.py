@@ -22,6 +22,10 @@ DEVICES = devices()
 needs_device = unittest.skipUnless(DEVICES, "OpenCL finds no device: install pocl-opencl-icd")
 
 
+def is_pocl():
+    return "Portable" in DEVICES[0]["platform"]
+
+
 class Device(CommandLineTest):
     def setUp(self):
         super().setUp()
@@ -41,7 +45,9 @@ class Device(CommandLineTest):
 
     @needs_device
     def test_a_device_writes_the_files_that_the_processor_writes(self):
-        for more in ((), ("--filter", "light"), ("--memory-mb", "4"), ("--average", "2")):
+        for more in ((), ("--filter", "normal"), ("--memory-mb", "4"), ("--average", "2"),
+                     ("--filter", "light", "--mixed", "snap", "--outputs", "depth,status,averaged"),
+                     ("--filter", "strong", "--time-filter", "2", "--outputs", "averaged,bin")):
             for device in ("cpu", "auto", "0"):
                 code, _, error = self.decode(device, *more, "-o", device + ".npz", "--force")
                 self.assertEqual((code, error), (0, ""))
@@ -92,6 +98,37 @@ class Device(CommandLineTest):
         environment = dict(os.environ, POCL_CACHE_DIR=self.path("file/folder"))
         if "Portable" in DEVICES[0]["platform"]:
             self.assertIn("POCL_CACHE_DIR", self.refusal("0", env=environment))
+
+    @needs_device
+    def test_a_folder_of_kernels_that_is_read_only_is_said_and_what_it_holds_is_used(self):
+        if not is_pocl() or os.geteuid() == 0:
+            self.skipTest("permissions of folders are no matter to root, or to other drivers")
+        os.mkdir(self.path("kernels"), mode=0o500)
+        environment = dict(os.environ, POCL_CACHE_DIR=self.path("kernels"))
+        self.assertIn("POCL_CACHE_DIR", self.refusal("0", env=environment))
+        os.chmod(self.path("kernels"), 0o700)
+        self.assertEqual(self.decode("0", "-o", "d.npz", env=environment)[0], 0)
+
+    @needs_device
+    def test_kernels_kept_from_elsewhere_are_not_taken(self):
+        """A driver's cache whose files are damaged: compiled anew, or refused; never other numbers."""
+        environment = dict(os.environ, POCL_CACHE_DIR=self.path("kernels"))
+        os.mkdir(self.path("kernels"))
+        self.assertEqual(self.decode("0", "-o", "a.npz", "--stack", env=environment)[0], 2)
+        self.assertEqual(self.decode("0", "--filter", "light", "-o", "a.npz", env=environment)[0], 0)
+
+    @needs_device
+    def test_processes_share_a_device(self):
+        more = ("--filter", "normal", "--frame", "0")
+        self.assertEqual(self.decode("cpu", *more, "-o", "cpu.npz")[0], 0)
+        started = [subprocess.Popen(
+            [command_line.TOOL, "decode", "raw.npy", "--code", "hamiltonian-k4", "--device", "0",
+             *more, "-o", f"{i}.npz"], cwd=self.path(""), stdout=subprocess.DEVNULL)
+            for i in range(3)]
+        for i, process in enumerate(started):
+            self.assertEqual(process.wait(), 0)
+            if DEVICES[0]["doubles"]:
+                self.assertEqual(self.bytes_of(f"{i}.npz"), self.bytes_of("cpu.npz"))
 
     def test_without_drivers_devices_are_refused_and_auto_is_the_processor(self):
         os.mkdir(self.path("none"))
