@@ -60,7 +60,8 @@ std::int64_t DeviceFrame::bytes(int rows, int width) const {
 
 void DeviceFrame::resize(int rows, int width) {
   FilterParameters& p = parameters_;
-  if (p.height == rows && p.width == width && planes_.handle) return;
+  if (has_margins_ && p.height == rows && p.width == width) return;
+  has_margins_ = false;  // until all of this has been done
   const int step = window_step(plan_.options.windows - 1), above = margin_rows(step);
   const FilterGrid grid = FilterPlanes::grid_of(rows, width, step);
   p.height = rows;
@@ -72,11 +73,13 @@ void DeviceFrame::resize(int rows, int width) {
   // Margins stay 0.
   queue().clear(*reserve(queue(), planes_, plane_bytes * planes_of_frame(plan_)));
   queue().clear(*reserve(queue(), weights_, plane_bytes * weight_planes));
+  has_margins_ = true;
 }
 
 void DeviceFrame::release() {
   tile_.release();
   raw_.release();
+  has_margins_ = false;
   for (DeviceMemory* memory : {&planes_, &weights_, &left_out_}) *memory = DeviceMemory();
 }
 

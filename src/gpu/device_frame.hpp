@@ -64,6 +64,7 @@ class DeviceFrame {
   FilterParameters parameters_;
   DeviceMemory words_, planes_, weights_, left_out_;
   bool has_left_out_ = false;
+  bool has_margins_ = false;  // of the size of the parameters, all 0
   DeviceRaw raw_;
   int result_ = 0;  // the set of light that is filtered; the other has it as measured
 };
