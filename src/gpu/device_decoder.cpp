@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include "gpu/device_decoder_plan.hpp"
 #include "tofsmith/core/error.hpp"
@@ -47,26 +48,63 @@ DeviceDecoder::Plan::Plan(const Device& device_, const Decoder& decoder_,
   const double most = std::min<double>(
       max_tile_pixels, double{std::numeric_limits<int>::max()} / decoder.measurements());
   tile_pixels = static_cast<std::int64_t>(
-      std::clamp(1e6 * options.memory_mb / static_cast<double>(tile.bytes_per_pixel()),
+      std::clamp(0.5e6 * options.memory_mb / static_cast<double>(tile.bytes_per_pixel()),
                  static_cast<double>(min_tile_pixels), most));
 }
 
-std::int64_t DeviceDecoder::Plan::decode_tile(const RawView& raw, std::int64_t first,
-                                              std::int64_t count, const DecodedView& planes) {
-  tile.upload(raw, first, count);
-  tile.decode(planes);
-  tile.fetch(planes);
-  const std::vector<std::int32_t> open = tile.open_pixels();
+std::int64_t DeviceDecoder::Plan::pixels_of_part(const RawView& raw) const {
+  constexpr std::int64_t parts = 4;  // the first copy and the last are beside no kernel
+  const std::int64_t pixels = raw.pixels();
+  const std::int64_t part = pixels <= 2 * min_overlapped_pixels
+                                ? pixels
+                                : std::max((pixels + parts - 1) / parts, min_overlapped_pixels);
+  return std::min(part, tile_pixels);
+}
+
+void DeviceDecoder::Plan::start(DeviceTile& in, const RawView& raw, const FramePart& part,
+                                const DecodedView& planes) {
+  in.upload(raw, part.first, part.count);
+  in.decode(planes);
+  in.queue().flush();
+}
+
+std::int64_t DeviceDecoder::Plan::finish(DeviceTile& in, const RawView& raw, const FramePart& part,
+                                         const DecodedView& decoded) {
+  const DecodedView planes = decoded.from(static_cast<std::size_t>(part.first));
+  in.fetch(planes);
+  const std::vector<std::int32_t> open = in.open_pixels();
   // From where they came: doubles are floats on the device.
   if (!open.empty())
     std::visit(
         [&](const auto* data) {
           with_numbers_of<std::remove_cvref_t<decltype(*data)>>(
-              raw, first, open,
+              raw, part.first, open,
               [&](const RawView& numbers) { decode_open_pixels(numbers, open, planes); });
         },
         raw.data);
   return std::ssize(open);
+}
+
+void DeviceDecoder::Plan::decode_from(FrameDone& done, const RawView& raw,
+                                      const DecodedView& planes, const Progress& progress) {
+  const std::int64_t all = raw.pixels(), at_a_time = pixels_of_part(raw);
+  if (all - done.pixels > at_a_time && !other_tile)
+    other_tile = std::make_unique<DeviceTile>(device, decoder, options.use_doubles);
+  std::int64_t next = done.pixels;
+  std::optional<FramePart> under_way;
+  for (DeviceTile *here = &tile, *there = other_tile.get(); next < all || under_way;
+       std::swap(here, there)) {
+    const std::optional<FramePart> before = std::exchange(under_way, std::nullopt);
+    if (next < all) {
+      under_way = FramePart{next, std::min(all - next, at_a_time)};
+      start(*here, raw, *under_way, planes);
+      next += under_way->count;
+    }
+    if (!before) continue;
+    done.by_decoder += finish(*there, raw, *before, planes);
+    done.pixels = before->first + before->count;
+    report(progress, static_cast<double>(done.pixels) / static_cast<double>(all), "decoding");
+  }
 }
 
 std::int64_t DeviceDecoder::Plan::decode_what_is_there(const DecodedView& planes) {
@@ -126,22 +164,20 @@ std::int64_t DeviceDecoder::decode(const RawView& raw, const DecodedView& decode
     return raw.pixels();
   }
   const std::lock_guard lock(plan_->mutex);
-  std::int64_t left_open = 0;
-  for (std::int64_t first = 0; first < raw.pixels();) {
-    const std::int64_t count = std::min(raw.pixels() - first, plan_->tile_pixels);
+  FrameDone done;
+  while (done.pixels < raw.pixels()) {
+    const std::int64_t before = plan_->tile_pixels;
     try {
-      left_open +=
-          plan_->decode_tile(raw, first, count, decoded.from(static_cast<std::size_t>(first)));
-      first += count;
+      plan_->decode_from(done, raw, decoded, progress);
     } catch (const OutOfDeviceMemory&) {
-      if (count <= min_tile_pixels) throw;
+      if (before <= min_tile_pixels) throw;
       plan_->tile.release();
-      plan_->tile_pixels = std::max(count / 2, min_tile_pixels);
-      continue;
+      plan_->other_tile.reset();
+      const std::int64_t tried = std::min(before, raw.pixels() - done.pixels);
+      plan_->tile_pixels = std::max(tried / 2, min_tile_pixels);
     }
-    report(progress, static_cast<double>(first) / static_cast<double>(raw.pixels()), "decoding");
   }
-  return left_open;
+  return done.by_decoder;
 }
 
 DepthImage DeviceDecoder::decode(const RawFrames& raw, int frame, const Progress& progress) const {

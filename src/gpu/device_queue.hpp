@@ -72,6 +72,8 @@ class DeviceQueue {
     set_all(kernel, arguments...);
     start(kernel, pixels, group);
   }
+  /// Has the device begin with what it was given.
+  void flush() const;
   /// Waits until all work is done.
   void finish() const;
 

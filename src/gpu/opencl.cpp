@@ -261,6 +261,10 @@ void DeviceQueue::start(const DeviceKernel& kernel, const Extent& items,
         place_of(device_.info()), "starting a kernel");
 }
 
+void DeviceQueue::flush() const {
+  check(clFlush(queue_of(handle_)), place_of(device_.info()), "starting kernels");
+}
+
 void DeviceQueue::finish() const {
   check(clFinish(queue_of(handle_)), place_of(device_.info()), "waiting for kernels");
 }

@@ -32,6 +32,7 @@ void DeviceQueue::set_bytes(const DeviceKernel&, unsigned, const void*, std::siz
   refuse();
 }
 void DeviceQueue::start(const DeviceKernel&, const Extent&, const Extent&) const { refuse(); }
+void DeviceQueue::flush() const { refuse(); }
 void DeviceQueue::finish() const { refuse(); }
 
 }  // namespace tofsmith

@@ -142,6 +142,27 @@ TEST_F(FailingDevice, IsAnErrorWhereverItFailsAndWorksAgainWhenItIsBack) {
     }
 }
 
+TEST_F(FailingDevice, DecodesWhatItDecodedInPartsWhereverItFails) {
+  setup_.decoder.decode(view(), expected_.view());
+  const DeviceDecoder decoder(device(), setup_.decoder, {.memory_mb = 1e-3});
+  for (const cl_int error : {CL_DEVICE_NOT_AVAILABLE, CL_OUT_OF_RESOURCES})
+    for (int first = 0;; ++first) {
+      Outputs outputs(expected_.bin.size());
+      failure = {.first = first, .last = first, .error = error};
+      bool has_failed = false;
+      try {
+        decoder.decode(view(), outputs.view());
+      } catch (const IoError&) {
+        has_failed = true;
+      }
+      ASSERT_EQ(has_failed, failure.calls > first);
+      if (!has_failed) break;
+      failure = {};
+      decoder.decode(view(), outputs.view());
+      expect_alike(device().info(), true, outputs, expected_, 1e6);
+    }
+}
+
 TEST_F(FailingDevice, ThatLacksMemoryOnceHasTheRestInParts) {
   for (const cl_int error : {CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_OUT_OF_RESOURCES})
     for (int call = 0; call < 60; call += call < 25 ? 1 : 7) {
