@@ -112,13 +112,9 @@ void run(DecodeArguments& arguments, Session& session) {
   const AnyDecoder decoder =
       make_decoder(arguments.method.method(), source.table, arguments.options,
                    arguments.method.unwrap_weights(), arguments.multipath.options());
-  const std::optional<DeviceDecoder> on_device = arguments.device.decoder_like(decoder);
+  std::optional<RecordingDevice> on_device = arguments.device.device_for(decoder);
   DecodeRequest request = request_of(arguments, camera, session);
-  if (on_device)
-    request.decode_by = [&on_device](const RawView& raw, const DecodedView& decoded,
-                                     const Progress& progress) {
-      on_device->decode(raw, decoded, progress);
-    };
+  if (on_device) on_device->take(request);
   if (reads_pipe(arguments)) {
     for (const std::string& note : source.notes) fmt::print(stderr, "{}\n", note);
     return decode_pipe(request, decoder, session);
@@ -134,7 +130,7 @@ void run(DecodeArguments& arguments, Session& session) {
       {"range_m", source.table.range_m},
       {"range_source", source.range_source},
       {"method", name_of(arguments.method.method())},
-      {"device", on_device ? on_device->device().info().name : "cpu"},
+      {"device", on_device ? on_device->info().name : "cpu"},
       {"average", request.average},
       {"averaged", request.averaged},
       {"hdr", request.hdr},
@@ -151,7 +147,7 @@ void run(DecodeArguments& arguments, Session& session) {
   document["notes"] = notes;
   session.print_json(document);
   std::string lines = decode_lines(request, result);
-  if (on_device) lines += "\ndevice " + on_device->device().info().name;
+  if (on_device) lines += "\ndevice " + on_device->info().name;
   if (source.tell_range)
     lines += fmt::format("\nrange {:.4g} m ({})", source.table.range_m, source.range_source);
   if (camera_source) lines += "\ncamera " + *camera_source;

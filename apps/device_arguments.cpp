@@ -50,16 +50,36 @@ void DeviceArguments::add_to(CLI::App& command) {
             list_devices(json && json->count() > 0);
             throw CLI::Success();
           },
-          "what decodes: cpu; gpu, the first one; auto, that or else cpu; a number or part of a "
-          "name from list, which prints the devices of OpenCL. The same numbers come out, of zncc "
-          "alone")
+          "what filters and decodes: cpu; gpu, the first one; auto, that or else cpu, which small "
+          "frames are left to; a number or part of a name from list, which prints the devices of "
+          "OpenCL. The same numbers come out, of zncc alone")
       ->default_str(name_)
       ->group(for_experts);
 }
 
-std::optional<DeviceDecoder> DeviceArguments::decoder_like(const AnyDecoder& decoder) const {
+RecordingDevice::RecordingDevice(DeviceDecoder on_device, const Decoder& decoder, std::string name)
+    : on_device_(std::move(on_device)), decoder_(decoder), name_(std::move(name)) {}
+
+void RecordingDevice::take(DecodeRequest& request) {
+  request.decode_by = [this](const RawView& raw, const DecodedView& decoded,
+                             const Progress& progress) {
+    on_device_.decode(raw, decoded, progress);
+  };
+  if (!request.filter) return;
+  filter_ = std::make_unique<const Filter>(decoder_.table(), *request.filter);
+  filter_on_device_ = device_filter(name_, *filter_, &on_device_);
+  request.filter_by = [this](const RawView& raw, const DecodedView& decoded,
+                             FilteredFrame* filtered, const Progress& progress,
+                             const Image<std::uint8_t>& left_out) {
+    filter_on_device_->decode(raw, on_device_, decoded, filtered, progress, left_out);
+  };
+}
+
+std::optional<RecordingDevice> DeviceArguments::device_for(const AnyDecoder& decoder) const {
   try {
-    return device_decoder(name_, decoder);
+    std::optional<DeviceDecoder> on_device = device_decoder(name_, decoder);
+    if (!on_device) return std::nullopt;
+    return RecordingDevice(std::move(*on_device), std::get<Decoder>(decoder), name_);
   } catch (const std::invalid_argument& error) {
     throw wrong_option(error);
   }

@@ -3,12 +3,33 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "tofsmith/gpu.hpp"
+#include "tofsmith/io/decode_recording.hpp"
 
 namespace tofsmith::apps {
+
+/// A device that decodes recordings and filters them.
+class RecordingDevice {
+ public:
+  /// @param decoder  of the request's recording; outlives this
+  /// @param name     of the device, for its filter
+  RecordingDevice(DeviceDecoder on_device, const Decoder& decoder, std::string name);
+
+  /// Has it do the work of a request, while this lives.
+  void take(DecodeRequest& request);
+  const DeviceInfo& info() const { return on_device_.device().info(); }
+
+ private:
+  DeviceDecoder on_device_;
+  const Decoder& decoder_;
+  std::string name_;
+  std::unique_ptr<const Filter> filter_;
+  std::optional<DeviceFilter> filter_on_device_;
+};
 
 /// What decodes: `--device`. Nothing of OpenCL is loaded unless another one than cpu is named.
 class DeviceArguments {
@@ -17,7 +38,7 @@ class DeviceArguments {
   /// What decodes in place of `decoder`, which must outlive it; none: it does so itself.
   /// @throws UsageError if a device is named and no device decodes by this method; IoError if there
   ///         is no such device, or it fails
-  std::optional<DeviceDecoder> decoder_like(const AnyDecoder& decoder) const;
+  std::optional<RecordingDevice> device_for(const AnyDecoder& decoder) const;
 
  private:
   std::string name_ = "cpu";

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pixels that a device of OpenCL decodes per second, from its memory and from this computer's,
 // beside copies of the same bytes in the same run; and how many of them differ from the Decoder's.
+// Frames that it filters per second beside the Filter's; and from which size on it is the faster.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstring>
 #include <functional>
+#include <optional>
 
 #include "decode_setup.hpp"
 #include "gpu/device_tile.hpp"
@@ -117,6 +119,100 @@ void report(const Device& device, const char* code, int pixels, double copy_byte
   tell_differences(on_it, planes);
 }
 
+/// A frame of a slanted wall with a box before it.
+std::vector<float> frame_of_a_box(const DecodingTable& table, int height, int width) {
+  RandomStream random(7, 0);
+  std::vector<float> raw;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const bool is_box =
+          std::abs(3 * y - height) < height / 2 && std::abs(2 * x - width) < width / 2;
+      const double bin = table.samples() * (is_box ? 0.2 : 0.4 + 0.2 * x / width);
+      append_noisy_pixel(table, is_box ? 5e4 : 1e4, 1e4, bin, random, raw);
+    }
+  return raw;
+}
+
+void report_filters(const Device& device, int runs) {
+  constexpr int height = 480, width = 640;
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  const std::vector<float> raw = frame_of_a_box(table, height, width);
+  const RawView view = RawView::interleaved(raw.data(), height, width, 4);
+  const DeviceDecoder on_device(device, setup.decoder);
+  for (const FilterStrength strength : all_filter_strengths) {
+    const Filter filter(table, FilterOptions::of(strength));
+    const DeviceFilter filter_on_device(device, filter);
+    FilteredFrame here, there;
+    Planes planes_here(height * width), planes_there(height * width);
+    const DecodedView wanted = planes_there.all();
+    const double with_decoder =
+        seconds_of([&] { filter_on_device.decode(view, on_device, wanted); }, runs);
+    const double back = seconds_of([&] { filter_on_device.apply(view, there); }, runs);
+    const double by_filter = seconds_of([&] { filter.apply(view, here); }, runs);
+    const double by_both = seconds_of(
+        [&] {
+          filter.apply(view, here);
+          setup.decoder.decode(here.view(), planes_here.all());
+        },
+        runs);
+    fmt::print(
+        "filter {:<9} VGA, K = 4: {:8.1f} frames/s with copies{}; filtered and decoded there "
+        "{:8.1f}; here {:8.1f} and {:8.1f}; {} numbers differ\n",
+        name_of(strength), 1.0 / back, strength == FilterStrength::normal ? " (asked: 1000)" : "",
+        1.0 / with_decoder, 1.0 / by_filter, 1.0 / by_both,
+        differences(there.values().values, here.values().values) +
+            differences(there.averaged().pixels, here.averaged().pixels));
+    tell_differences(planes_there, planes_here);
+  }
+}
+
+/// The smallest of some sizes from which on `there` takes less time than `here`; in words.
+std::string crossover(const std::function<double(int)>& there,
+                      const std::function<double(int)>& here) {
+  std::optional<int> from;
+  for (int side = 1024; side >= 32; side /= 2) {
+    if (there(side) >= here(side)) break;
+    from = side;
+  }
+  return from ? fmt::format("{} pixels", *from * *from) : "none up to 1048576 pixels";
+}
+
+/// From which size on the device is faster, copies included: what DeviceOptions::min_pixels is for.
+void report_crossovers(const Device& device, int runs) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  const std::vector<float> raw = frame_of_a_box(table, 1024, 1024);
+  const auto view = [&](int side) { return RawView::interleaved(raw.data(), side, side, 4); };
+  Planes planes(1024 * 1024);
+  const DecodedView wanted = planes.all();
+  const Filter filter(table);
+  const DeviceDecoder on_device(device, setup.decoder);
+  const DeviceFilter filter_on_device(device, filter);
+  FilteredFrame filtered;
+  const std::string to_decode = crossover(
+      [&](int side) { return seconds_of([&] { on_device.decode(view(side), wanted); }, runs); },
+      [&](int side) {
+        return seconds_of([&] { setup.decoder.decode(view(side), wanted); }, runs);
+      });
+  const std::string to_filter = crossover(
+      [&](int side) {
+        return seconds_of([&] { filter_on_device.decode(view(side), on_device, wanted); }, runs);
+      },
+      [&](int side) {
+        return seconds_of(
+            [&] {
+              filter.apply(view(side), filtered);
+              setup.decoder.decode(filtered.view(), wanted);
+            },
+            runs);
+      });
+  fmt::print(
+      "faster than here, copies included, from: all outputs {} (auto: {}), filter normal and all "
+      "outputs {} (auto: {})\n",
+      to_decode, auto_min_pixels_to_decode, to_filter, auto_min_pixels_to_filter);
+}
+
 int run(int argc, char** argv) {
   CLI::App app("decoding on a device of OpenCL beside copies in its memory");
   std::string name = "0";
@@ -137,6 +233,8 @@ int run(int argc, char** argv) {
   if (info.kind != DeviceKind::gpu) fmt::print("no GPU: shares say nothing of one\n");
   for (const char* code : {"hamiltonian-k3", "hamiltonian-k4", "hamiltonian-k5"})
     report(device, code, pixels, rate, runs);
+  report_filters(device, runs);
+  report_crossovers(device, runs);
   return 0;
 }
 

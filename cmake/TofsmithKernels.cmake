@@ -1,23 +1,30 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-# The kernels of tofsmith::gpu as a text in it, which devices compile; and OpenCL. Included from
+# The kernels of tofsmith::gpu as texts in it, which devices compile; and OpenCL. Included from
 # src/CMakeLists.txt.
 
-set(kernel_text)
-foreach(file IN ITEMS decode_parameters.h bins.cl planes.cl)
-  set(path "${CMAKE_CURRENT_SOURCE_DIR}/gpu/${file}")
-  file(READ "${path}" text)
-  string(APPEND kernel_text "${text}")
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${path}")
-endforeach()
-set(kernel_source "${CMAKE_CURRENT_BINARY_DIR}/decode_kernels.cpp")
-file(CONFIGURE OUTPUT "${kernel_source}" @ONLY CONTENT
-"#include \"gpu/decode_tables.hpp\"
+# Adds NAME, the text of some files one behind the other, which HEADER declares.
+function(tofsmith_add_kernels name header)
+  set(kernel_text)
+  foreach(file IN LISTS ARGN)
+    set(path "${CMAKE_CURRENT_SOURCE_DIR}/gpu/${file}")
+    file(READ "${path}" text)
+    string(APPEND kernel_text "${text}")
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${path}")
+  endforeach()
+  set(source "${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp")
+  file(CONFIGURE OUTPUT "${source}" @ONLY CONTENT
+"#include \"gpu/@header@\"
 namespace tofsmith {
-const std::string_view decode_kernels = R\"kernels(@kernel_text@)kernels\";
+const std::string_view @name@ = R\"kernels(@kernel_text@)kernels\";
 }  // namespace tofsmith
 ")
-target_sources(tofsmith_gpu PRIVATE "${kernel_source}")
+  target_sources(tofsmith_gpu PRIVATE "${source}")
+endfunction()
+
+tofsmith_add_kernels(decode_kernels decode_tables.hpp decode_parameters.h numbers.cl bins.cl planes.cl)
+tofsmith_add_kernels(filter_kernels filter_tables.hpp decode_parameters.h numbers.cl filter_parameters.h
+                     windows.cl slopes.cl)
 
 if(TOFSMITH_HAS_OPENCL)
   target_link_libraries(tofsmith_gpu PRIVATE OpenCL::OpenCL)

@@ -3,7 +3,7 @@
 #pragma once
 
 /// @file
-/// All of tofsmith::gpu: decoding on devices of OpenCL. Includes tofsmith/core.hpp.
+/// All of tofsmith::gpu: filtering and decoding on devices of OpenCL. Includes tofsmith/core.hpp.
 
 #include <array>
 #include <cstdint>
@@ -60,14 +60,18 @@ class Device {
   std::shared_ptr<State> state_;
 };
 
-/// How a decoder uses its device.
+/// How a decoder or filter uses its device.
 struct DeviceOptions {
   /// For the pixels under way and their planes [MB], > 0; larger frames go in parts. Where the
-  /// device has less, parts become smaller.
+  /// device has less, parts become smaller. Filters take as many rows as a result depends on, at
+  /// least.
   double memory_mb = 512.0;
   /// Computes with doubles where the device has them: ambient light, from raw numbers with black
   /// levels and gains, is then the same to the last bit.
   bool use_doubles = true;
+  /// Frames of fewer pixels are left to the processor, >= 0: copies and the start of kernels take
+  /// longer than they save.
+  int min_pixels = 0;
 
   /// @throws std::invalid_argument naming field, value and rule
   void validate() const;
@@ -75,8 +79,12 @@ struct DeviceOptions {
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<DeviceOptions> auto& o) {
   return std::tuple(Field("memory_mb", o.memory_mb, "finite and > 0"),
-                    Field("use_doubles", o.use_doubles));
+                    Field("use_doubles", o.use_doubles), Field("min_pixels", o.min_pixels, ">= 0"));
 }
+
+/// DeviceOptions::min_pixels of the device `auto`, of decoding and of filtering: not measured on
+/// any GPU, and rather too large than too small.
+inline constexpr int auto_min_pixels_to_decode = 300'000, auto_min_pixels_to_filter = 75'000;
 
 /// A Decoder whose work a device does. Bins and statuses are those of the Decoder, everywhere: what
 /// single precision does not prove on the device, the Decoder decides here. Planes of floats are
@@ -109,6 +117,51 @@ class DeviceDecoder {
   /// The same for frame `frame` of several (F, H, W, K), into a new image.
   DepthImage decode(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
 
+  struct Plan;  ///< of the implementation
+
+ private:
+  friend class DeviceFilter;
+  std::unique_ptr<Plan> plan_;
+};
+
+/// A Filter whose work a device does, and a decoder's after it, with frames that stay there between
+/// the two. Numbers are those of the Filter: the same bits where the device rounds quotients and
+/// roots correctly and has doubles, else they differ in the last ones, and where a threshold lies
+/// between, by more.
+///
+/// Safe to use from many threads, which wait for one another.
+class DeviceFilter {
+ public:
+  /// Compiles kernels for the table and brings its tables to the device.
+  /// @param filter  must outlive this one
+  /// @throws std::invalid_argument for options; IoError if the device fails, with what its compiler
+  ///         says of kernels
+  DeviceFilter(const Device& device, const Filter& filter, const DeviceOptions& options = {});
+  DeviceFilter(const Device& device, Filter&& filter, const DeviceOptions& options = {}) = delete;
+  ~DeviceFilter();
+  DeviceFilter(DeviceFilter&&) noexcept;
+  DeviceFilter& operator=(DeviceFilter&&) noexcept;
+
+  const Device& device() const;
+
+  /// Filters one frame, as Filter::apply.
+  /// @throws std::invalid_argument if the measurements or sizes differ; IoError if the device
+  /// fails;
+  ///         Interrupted if progress says so
+  void apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress = {},
+             const Image<std::uint8_t>& left_out = {}) const;
+  /// The same for frame `frame` of several (F, H, W, K).
+  FilteredFrame apply(const RawFrames& raw, int frame = 0, const Progress& progress = {}) const;
+
+  /// Filters one frame and has it decoded on the device, into the caller's planes.
+  /// @param decoder   on the same device
+  /// @param filtered  brought back as well; null: not wanted
+  /// @return how many pixels were left to the Decoder
+  /// @throws as apply() and DeviceDecoder::decode, with part of the planes written
+  std::int64_t decode(const RawView& raw, const DeviceDecoder& decoder, const DecodedView& decoded,
+                      FilteredFrame* filtered = nullptr, const Progress& progress = {},
+                      const Image<std::uint8_t>& left_out = {}) const;
+
  private:
   struct Plan;
   std::unique_ptr<Plan> plan_;
@@ -116,10 +169,17 @@ class DeviceDecoder {
 
 /// What decodes in place of a decoder on the device that a user names: "cpu", nothing; "auto": the
 /// first GPU, or nothing where there is none or the decoder is no Decoder; else Device::named().
+/// `auto` leaves frames of fewer than auto_min_pixels_to_decode to the processor.
 /// @param decoder  must outlive what comes
 /// @throws InvalidArgument if a device is named and the decoder is no Decoder; IoError if there is
 /// no
 ///         such device, or it fails
 std::optional<DeviceDecoder> device_decoder(std::string_view device, const AnyDecoder& decoder);
+
+/// The same of a filter; on the device of a decoder that follows it, if there is one.
+/// @param filter  must outlive what comes
+/// @param after   null: none follows
+std::optional<DeviceFilter> device_filter(std::string_view device, const Filter& filter,
+                                          const DeviceDecoder* after = nullptr);
 
 }  // namespace tofsmith

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "bindings.hpp"
+#include "bound_filter.hpp"
 #include "file_objects.hpp"
 #include "filter_options.hpp"
 #include "lens.hpp"
@@ -29,9 +30,10 @@ namespace {
 /// A class of its own: pybind11 would take a variant apart.
 class BoundDecoder {
  public:
-  BoundDecoder(AnyDecoder any, const std::string& device)
+  BoundDecoder(AnyDecoder any, std::string device)
       : any_(std::make_unique<const AnyDecoder>(std::move(any))),
-        on_device_(device_decoder(device, *any_)) {}
+        name_(std::move(device)),
+        on_device_(device_decoder(name_, *any_)) {}
 
   const AnyDecoder& any() const { return *any_; }
   void decode(const RawView& raw, const DecodedView& decoded, const Progress& progress) const {
@@ -41,9 +43,20 @@ class BoundDecoder {
       std::visit([&](const auto& d) { d.decode(raw, decoded, progress); }, *any_);
   }
   std::string device() const { return on_device_ ? on_device_->device().info().name : "cpu"; }
+  bool is_on_device() const { return on_device_.has_value(); }
+  /// What filters on its device, ahead of it. @param filter  outlives that
+  DeviceFilter on_its_device(const Filter& filter) const {
+    return std::move(*device_filter(name_, filter, &*on_device_));
+  }
+  void decode(const DeviceFilter& filter, const RawView& raw, const DecodedView& decoded,
+              FilteredFrame* filtered, const Progress& progress,
+              const Image<std::uint8_t>& left_out) const {
+    filter.decode(raw, *on_device_, decoded, filtered, progress, left_out);
+  }
 
  private:
   std::unique_ptr<const AnyDecoder> any_;  // stays where the device's looks for it
+  std::string name_;                       // of the device, as it was asked for
   std::optional<DeviceDecoder> on_device_;
 };
 
@@ -118,7 +131,7 @@ PixelMaps maps_of(const py::object& delay_offset_m, const py::object& gain, cons
 
 void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_planar,
             const py::dict& arrays, const py::object& averaged, const py::object& delay_offset_m,
-            const py::object& gain, const std::string& mixed, const Filter* filter,
+            const py::object& gain, const std::string& mixed, const BoundFilter* filter,
             const py::object& callback) {
   RawArray raw = view_raw(raw_numbers, is_planar, table_of(decoder).measurements());
   const Floats means = averaged.is_none() ? Floats() : Floats::ensure(averaged);
@@ -132,33 +145,56 @@ void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_p
     const ProgressParts parts(progress, raw.frames.size());
     const DecodingTable& table = table_of(decoder);
     FilteredFrame filtered;
+    std::optional<DeviceFilter> on_device;
+    if (filter && decoder.is_on_device())
+      on_device.emplace(decoder.on_its_device(filter->filter()));
     std::vector<float> signal;  // where the correction alone needs it
     if (table.correction && table.correction->needs_signal() && !planes.view().signal_e_per_s)
       signal.resize(pixels);
     for (std::size_t f = 0; f < raw.frames.size(); ++f) {
       DecodedView decoded = planes.view().from(f * pixels);
       if (!signal.empty()) decoded.signal_e_per_s = signal.data();
-      const auto decode_one = [&](const RawView& numbers, const UnfilteredPixels& unfiltered,
-                                  const Progress& here) {
-        decoder.decode(numbers, decoded, here);
+      const PixelStatus* const statuses = marking ? decoded.status : nullptr;
+      const auto finish = [&](const RawView& numbers, const UnfilteredPixels& unfiltered) {
         if (table.correction)
           apply(*table.correction, table.range_m, decoded, raw.height, raw.width, 0, pixels);
         if (!maps.empty()) apply(maps, table.range_m, decoded, 0, pixels);
         if (marking) mark_mixed_pixels(table, numbers, *marking, decoded, maps, {}, unfiltered);
       };
-      if (filter)
-        decode_filtered(*filter, raw.frames[f], filtered, decode_one,
-                        marking ? decoded.status : nullptr, parts[f]);
-      else
-        decode_one(raw.frames[f], {}, parts[f]);
+      const RawView& frame = raw.frames[f];
+      const auto filter_and_decode = [&](const UnfilteredPixels& unfiltered, const Progress& here) {
+        if (on_device) {
+          decoder.decode(*on_device, frame, decoded, marking ? &filtered : nullptr, here,
+                         unfiltered.mixed);
+        } else {
+          const ProgressParts of_both(here, {8.0, 1.0});  // about
+          filter->apply(frame, filtered, of_both[0], unfiltered.mixed);
+          decoder.decode(filtered.view(), decoded, of_both[1]);
+        }
+        finish(on_device && !marking ? frame : filtered.view(), unfiltered);
+      };
+      if (filter) {
+        decode_filtered(frame, filter_and_decode, statuses, parts[f]);
+      } else {
+        decoder.decode(frame, decoded, parts[f]);
+        finish(frame, {});
+      }
     }
   });
 }
 
-DecodeRequest request_of(const BoundDecoder& decoder, const std::vector<std::string>& raw,
-                         const std::string& output, const py::object& lens,
-                         const py::dict& values) {
-  DecodeRequest request;
+/// A request with what filters on its decoder's device.
+struct BoundRequest : DecodeRequest {
+  std::unique_ptr<const Filter> its_filter;
+  std::optional<DeviceFilter> on_device;
+};
+
+std::unique_ptr<BoundRequest> request_of(const BoundDecoder& decoder,
+                                         const std::vector<std::string>& raw,
+                                         const std::string& output, const py::object& lens,
+                                         const py::dict& values) {
+  auto bound = std::make_unique<BoundRequest>();
+  BoundRequest& request = *bound;
   request.decode_by = [&decoder](const RawView& view, const DecodedView& decoded,
                                  const Progress& progress) {
     decoder.decode(view, decoded, progress);
@@ -203,7 +239,16 @@ DecodeRequest request_of(const BoundDecoder& decoder, const std::vector<std::str
   request.policy = policy_of(overwrite);
   for (const std::string& plane : outputs) request.outputs.push_back(parse_decoded_plane(plane));
   request.lens = rays.empty() ? to_optional_lens(lens) : std::optional(Lens{.rays = rays});
-  return request;
+  if (request.filter && decoder.is_on_device()) {
+    request.its_filter = std::make_unique<const Filter>(table_of(decoder), *request.filter);
+    request.on_device.emplace(decoder.on_its_device(*request.its_filter));
+    request.filter_by = [&](const RawView& view, const DecodedView& decoded,
+                            FilteredFrame* filtered, const Progress& progress,
+                            const Image<std::uint8_t>& left_out) {
+      decoder.decode(*request.on_device, view, decoded, filtered, progress, left_out);
+    };
+  }
+  return bound;
 }
 
 std::map<std::string, std::int64_t> counts_of(const StatusCounts& statuses) {
@@ -216,7 +261,8 @@ std::map<std::string, std::int64_t> counts_of(const StatusCounts& statuses) {
 py::dict decode_a_recording(const BoundDecoder& decoder, const std::vector<std::string>& raw,
                             const std::string& output, const py::object& lens,
                             const py::dict& values, const py::object& callback) {
-  const DecodeRequest request = request_of(decoder, raw, output, lens, values);
+  const auto bound = request_of(decoder, raw, output, lens, values);
+  const DecodeRequest& request = *bound;
   const DecodedRecording result = without_gil(callback, [&](const Progress& progress) {
     return decode_recording(request, decoder.any(), progress);
   });
@@ -241,7 +287,8 @@ py::dict decode_a_recording(const BoundDecoder& decoder, const std::vector<std::
 py::dict decode_a_stream(const BoundDecoder& decoder, const py::object& source,
                          const py::object& take, const py::object& write, const py::object& lens,
                          const py::dict& values, const py::object& callback) {
-  const DecodeRequest request = request_of(decoder, {}, "", lens, values);
+  const auto bound = request_of(decoder, {}, "", lens, values);
+  const DecodeRequest& request = *bound;
   DecodedStream result;
   FrameSink sink(take, write,
                  request.outputs.empty() ? std::vector{DecodedPlane::depth} : request.outputs,

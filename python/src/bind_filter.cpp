@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "bindings.hpp"
+#include "bound_filter.hpp"
 #include "field_dicts.hpp"
 #include "filter_options.hpp"
 #include "options.hpp"
@@ -82,10 +83,11 @@ py::tuple filter_frames(const py::array& raw_numbers, bool is_planar, int measur
   return filtered.arrays(!gives_stacks && raw.plane_shape().size() == 2);
 }
 
-py::tuple apply_filter(const Filter& filter, const py::array& raw_numbers, bool is_planar,
+py::tuple apply_filter(const BoundFilter& filter, const py::array& raw_numbers, bool is_planar,
                        const py::object& averaged, const py::object& callback) {
   FilteredFrame filtered;
-  return filter_frames(raw_numbers, is_planar, filter.measurements(), averaged, callback, false,
+  return filter_frames(raw_numbers, is_planar, filter.filter().measurements(), averaged, callback,
+                       false,
                        [&](const RawView& raw, const Progress& progress) -> std::optional<RawView> {
                          filter.apply(raw, filtered, progress);
                          return filtered.view();
@@ -150,14 +152,17 @@ py::array_t<float> without_stray_light(const DecodingTable& table, const py::arr
 }  // namespace
 
 void bind_filter(py::module_& module) {
-  py::class_<Filter>(module, "Filter")
-      .def(py::init([](const DecodingTable& table, const py::dict& values) {
-        const FilterOptions options = filter_options(values);
-        const py::gil_scoped_release release;
-        return Filter(table, options);
-      }))
-      .def("table", [](const Filter& filter) { return filter.table(); })
-      .def("options", [](const Filter& filter) { return fields_dict(filter.options()); })
+  py::class_<BoundFilter>(module, "Filter")
+      .def(py::init(
+          [](const DecodingTable& table, const py::dict& values, const std::string& device) {
+            const FilterOptions options = filter_options(values);
+            const py::gil_scoped_release release;
+            return BoundFilter(Filter(table, options), device);
+          }))
+      .def("device", &BoundFilter::device)
+      .def("table", [](const BoundFilter& bound) { return bound.filter().table(); })
+      .def("options",
+           [](const BoundFilter& bound) { return fields_dict(bound.filter().options()); })
       .def("apply", &apply_filter);
   py::class_<TimeFilter>(module, "TimeFilter")
       .def(py::init([](const DecodingTable& table, const py::dict& values) {

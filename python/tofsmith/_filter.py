@@ -86,11 +86,15 @@ class Filter(_OfTable):
     options : dict, optional
         For experts, instead of what the strength says: windows, slope_rounds, max_difference_sigma,
         trusted_pixels, same_depth_sigma, own_light_sigma.
+    device : str, optional
+        What filters, as Decoder's. See docs/gpu.md.
 
     Raises
     ------
     ValueError
         For another strength, or an option that breaks a rule.
+    OSError
+        If there is no such device, or it fails.
 
     Examples
     --------
@@ -109,11 +113,17 @@ class Filter(_OfTable):
         *,
         strength: str = "normal",
         options: Optional[Mapping[str, Any]] = None,
+        device: str = "cpu",
     ) -> None:
         _check.one_of(strength, "strength", tuple(_tofsmith.filter_strengths()))
         values = {} if options is None else dict(options)
         self._handle: _tofsmith.Filter = _tofsmith.Filter(
-            table_of(code, camera)._handle, {**values, "strength": strength})
+            table_of(code, camera)._handle, {**values, "strength": strength}, device)
+
+    @property
+    def device(self) -> str:
+        """Name of the device that filters, or cpu."""
+        return self._handle.device()
 
     def apply(
         self,

@@ -1,35 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Pixels to bins as src/decode/search does it, a work item each. Compiled behind
-// decode_parameters.h and ahead of planes.cl, with MEASUREMENTS (K), RANK, what PixelStatus means and
-// where the fields of records stand. Products and sums are rounded one by one, as there, so that
-// numbers are the same.
+// Pixels to bins as src/decode/search does it, a work item each. Compiled behind decode_parameters.h
+// and numbers.cl and ahead of planes.cl, with what PixelStatus means and where the fields of records
+// stand.
 //
 // `match` finds the bins that single precision proves. Pixels that it leaves open, or whose second
 // peak hangs on rounding, go into a list, and the host decodes them.
-#pragma OPENCL FP_CONTRACT OFF
-#ifdef HAS_DOUBLES
-#pragma OPENCL EXTENSION cl_khr_fp64 : enable
-#endif
-
 #define NO_VALUE as_float(0x7fc00000)  // the not-a-number of the host
 #define UNPROVEN (-2)
 #define BLOCK 16       // lanes of ArcTable
 #define HALF_BLOCK 8   // rows from one of its windows to the next
 #define TO_WHOLE 12582912.0f  // 1.5 * 2^23, as cell_place-inl.hpp
-
-typedef global const float* Floats;
-typedef global const int* Ints;
-
-Ints ints_at(Floats tables, int at) { return (Ints)(tables + at); }
-
-float raw_number(const struct TileParameters* tile, global const uchar* raw, int pixel, int k) {
-  const size_t at =
-      (size_t)pixel * (size_t)tile->pixel_stride + (size_t)k * (size_t)tile->measurement_stride;
-  if (tile->number == raw_uint16) return (float)((global const ushort*)raw)[at];
-  if (tile->number == raw_uint8) return (float)raw[at];
-  return ((Floats)raw)[at];
-}
 
 // ---- The vector of a pixel, as tile_projection.cpp.
 

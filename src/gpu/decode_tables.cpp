@@ -4,37 +4,21 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
 #include <limits>
 #include <span>
 
-#include "tofsmith/core/error.hpp"
+#include "gpu/table_words.hpp"
 
 namespace tofsmith {
 
 namespace {
 
-/// Tables one behind the other.
-class Words {
+/// With tables of other makes.
+class Words : public TableWords {
  public:
-  explicit Words(std::vector<std::uint32_t>& words) : words_(words) {}
+  using TableWords::add;
+  using TableWords::TableWords;
 
-  /// @return where the table begins
-  template <typename Value>
-  int add(std::span<const Value> table) {
-    static_assert(sizeof(Value) % sizeof(std::uint32_t) == 0);
-    constexpr std::size_t line = 16;  // words
-    const std::size_t at = (words_.size() + line - 1) / line * line;
-    require(at + table.size_bytes() / 4 < std::size_t{std::numeric_limits<int>::max()},
-            "words of decoding tables", at, "must be below 2^31 on a device");
-    words_.resize(at + table.size_bytes() / sizeof(std::uint32_t));
-    if (!table.empty()) std::memcpy(&words_[at], table.data(), table.size_bytes());
-    return static_cast<int>(at);
-  }
-  template <typename Value>
-  int add(const std::vector<Value>& table) {
-    return add(std::span<const Value>(table));
-  }
   int add(const RecordTable& table) { return add(std::span(table.data(), table.size())); }
   /// Doubles, or where there are none what is left of each beside a float, too.
   int add_doubles(const std::vector<double>& table, bool has_doubles) {
@@ -46,9 +30,6 @@ class Words {
     }
     return add(pairs);
   }
-
- private:
-  std::vector<std::uint32_t>& words_;
 };
 
 ProjectionParameters parameters_of(const TileProjection& projection, Words& words) {

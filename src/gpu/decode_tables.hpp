@@ -12,7 +12,7 @@
 
 namespace tofsmith {
 
-/// decode_parameters.h, bins.cl and planes.cl, one behind the other.
+/// decode_parameters.h, numbers.cl, bins.cl and planes.cl, one behind the other.
 extern const std::string_view decode_kernels;
 
 /// All that a decoder decides by, as a device reads it.

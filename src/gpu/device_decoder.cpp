@@ -2,27 +2,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <limits>
-#include <mutex>
 #include <type_traits>
+#include <utility>
 
-#include "gpu/device_tile.hpp"
+#include "gpu/device_decoder_plan.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
 
 namespace {
 
-constexpr std::int64_t min_tile_pixels = 1024;
 constexpr std::int64_t max_tile_pixels = std::int64_t{1} << 24;
 
-/// Decodes the pixels of a tile that are open, as a frame of one row, to where they belong.
-template <typename Number>
-void decode_on_host(const Decoder& decoder, const RawView& raw, std::int64_t first,
-                    const std::vector<std::int32_t>& open, const DecodedView& decoded) {
+/// Numbers of pixels that are open, as a frame of one row of the type that they have.
+template <typename Number, typename Use>
+void with_numbers_of(const RawView& raw, std::int64_t first, const std::vector<std::int32_t>& open,
+                     const Use& use) {
   const auto* data = std::get<const Number*>(raw.data);
-  const std::size_t count = open.size();
   std::vector<Number> values;
-  values.reserve(count * static_cast<std::size_t>(raw.measurements));
+  values.reserve(open.size() * static_cast<std::size_t>(raw.measurements));
   std::vector<float> averaged;
   for (const std::int32_t pixel : open) {
     const std::int64_t at = first + pixel, row = at / raw.width, column = at % raw.width;
@@ -31,9 +29,98 @@ void decode_on_host(const Decoder& decoder, const RawView& raw, std::int64_t fir
           data[row * raw.row_stride + column * raw.column_stride + k * raw.measurement_stride]);
     if (raw.averaged) averaged.push_back(raw.averaged[at]);
   }
-  RawView view = RawView::interleaved(values.data(), 1, static_cast<int>(count), raw.measurements);
+  RawView view =
+      RawView::interleaved(values.data(), 1, static_cast<int>(open.size()), raw.measurements);
   if (raw.averaged) view.averaged = averaged.data();
+  use(view);
+}
 
+}  // namespace
+
+void DeviceOptions::validate() const { check_fields(*this, "DeviceOptions::"); }
+
+DeviceDecoder::Plan::Plan(const Device& device_, const Decoder& decoder_,
+                          const DeviceOptions& options_)
+    : device(device_),
+      decoder(decoder_),
+      options(options_),
+      tile(device, decoder, options.use_doubles) {
+  const double most = std::min<double>(
+      max_tile_pixels, double{std::numeric_limits<int>::max()} / decoder.measurements());
+  tile_pixels = static_cast<std::int64_t>(
+      std::clamp(0.5e6 * options.memory_mb / static_cast<double>(tile.bytes_per_pixel()),
+                 static_cast<double>(min_tile_pixels), most));
+}
+
+std::int64_t DeviceDecoder::Plan::pixels_of_part(const RawView& raw) const {
+  constexpr std::int64_t parts = 4;  // the first copy and the last are beside no kernel
+  const std::int64_t pixels = raw.pixels();
+  const std::int64_t part = pixels <= 2 * min_overlapped_pixels
+                                ? pixels
+                                : std::max((pixels + parts - 1) / parts, min_overlapped_pixels);
+  return std::min(part, tile_pixels);
+}
+
+void DeviceDecoder::Plan::start(DeviceTile& in, const RawView& raw, const FramePart& part,
+                                const DecodedView& planes) {
+  in.upload(raw, part.first, part.count);
+  in.decode(planes);
+  in.queue().flush();
+}
+
+std::int64_t DeviceDecoder::Plan::finish(DeviceTile& in, const RawView& raw, const FramePart& part,
+                                         const DecodedView& decoded) {
+  const DecodedView planes = decoded.from(static_cast<std::size_t>(part.first));
+  in.fetch(planes);
+  const std::vector<std::int32_t> open = in.open_pixels();
+  // From where they came: doubles are floats on the device.
+  if (!open.empty())
+    std::visit(
+        [&](const auto* data) {
+          with_numbers_of<std::remove_cvref_t<decltype(*data)>>(
+              raw, part.first, open,
+              [&](const RawView& numbers) { decode_open_pixels(numbers, open, planes); });
+        },
+        raw.data);
+  return std::ssize(open);
+}
+
+void DeviceDecoder::Plan::decode_from(FrameDone& done, const RawView& raw,
+                                      const DecodedView& planes, const Progress& progress) {
+  const std::int64_t all = raw.pixels(), at_a_time = pixels_of_part(raw);
+  if (all - done.pixels > at_a_time && !other_tile)
+    other_tile = std::make_unique<DeviceTile>(device, decoder, options.use_doubles);
+  std::int64_t next = done.pixels;
+  std::optional<FramePart> under_way;
+  for (DeviceTile *here = &tile, *there = other_tile.get(); next < all || under_way;
+       std::swap(here, there)) {
+    const std::optional<FramePart> before = std::exchange(under_way, std::nullopt);
+    if (next < all) {
+      under_way = FramePart{next, std::min(all - next, at_a_time)};
+      start(*here, raw, *under_way, planes);
+      next += under_way->count;
+    }
+    if (!before) continue;
+    done.by_decoder += finish(*there, raw, *before, planes);
+    done.pixels = before->first + before->count;
+    report(progress, static_cast<double>(done.pixels) / static_cast<double>(all), "decoding");
+  }
+}
+
+std::int64_t DeviceDecoder::Plan::decode_what_is_there(const DecodedView& planes) {
+  tile.decode(planes);
+  tile.fetch(planes);
+  const std::vector<std::int32_t> open = tile.open_pixels();
+  if (!open.empty())
+    decode_open_pixels(OpenNumbers(tile.numbers_of(open), decoder.measurements()).view(), open,
+                       planes);
+  return std::ssize(open);
+}
+
+void DeviceDecoder::Plan::decode_open_pixels(const RawView& numbers,
+                                             const std::vector<std::int32_t>& open,
+                                             const DecodedView& decoded) const {
+  const std::size_t count = open.size();
   DepthImage image(1, static_cast<int>(count));
   std::vector<std::int32_t> bin(count);
   DecodedView here = DecodedView::of(image);
@@ -51,50 +138,12 @@ void decode_on_host(const Decoder& decoder, const RawView& raw, std::int64_t fir
     use(here.status, decoded.status);
   };
   for_each_plane(only_wanted);
-  decoder.decode(view, here);
+  decoder.decode(numbers, here);
   for_each_plane([&](const auto* from, auto* to) {
     if (to)
       for (std::size_t i = 0; i < count; ++i) to[open[i]] = from[i];
   });
 }
-
-}  // namespace
-
-void DeviceOptions::validate() const { check_fields(*this, "DeviceOptions::"); }
-
-struct DeviceDecoder::Plan {
-  Plan(const Device& device_, const Decoder& decoder_, const DeviceOptions& options)
-      : device(device_), decoder(decoder_), tile(device, decoder, options.use_doubles) {
-    const double most = std::min<double>(
-        max_tile_pixels, double{std::numeric_limits<int>::max()} / decoder.measurements());
-    tile_pixels = static_cast<std::int64_t>(
-        std::clamp(1e6 * options.memory_mb / static_cast<double>(tile.bytes_per_pixel()),
-                   static_cast<double>(min_tile_pixels), most));
-  }
-
-  /// @param planes  from the first pixel on
-  /// @return how many pixels the decoder decoded
-  std::int64_t decode_tile(const RawView& raw, std::int64_t first, std::int64_t count,
-                           const DecodedView& planes) {
-    tile.upload(raw, first, count);
-    tile.decode(planes);
-    tile.fetch(planes);
-    const std::vector<std::int32_t> open = tile.open_pixels();
-    if (!open.empty())
-      std::visit(
-          [&](const auto* data) {
-            decode_on_host<std::remove_cvref_t<decltype(*data)>>(decoder, raw, first, open, planes);
-          },
-          raw.data);
-    return std::ssize(open);
-  }
-
-  Device device;
-  const Decoder& decoder;
-  std::mutex mutex;  // of what follows
-  DeviceTile tile;
-  std::int64_t tile_pixels;
-};
 
 DeviceDecoder::DeviceDecoder(const Device& device, const Decoder& decoder,
                              const DeviceOptions& options) {
@@ -110,23 +159,25 @@ const Device& DeviceDecoder::device() const { return plan_->device; }
 std::int64_t DeviceDecoder::decode(const RawView& raw, const DecodedView& decoded,
                                    const Progress& progress) const {
   require_frame(raw, plan_->decoder.measurements());
-  const std::lock_guard lock(plan_->mutex);
-  std::int64_t left_open = 0;
-  for (std::int64_t first = 0; first < raw.pixels();) {
-    const std::int64_t count = std::min(raw.pixels() - first, plan_->tile_pixels);
-    try {
-      left_open +=
-          plan_->decode_tile(raw, first, count, decoded.from(static_cast<std::size_t>(first)));
-      first += count;
-    } catch (const OutOfDeviceMemory&) {
-      if (count <= min_tile_pixels) throw;
-      plan_->tile.release();
-      plan_->tile_pixels = std::max(count / 2, min_tile_pixels);
-      continue;
-    }
-    report(progress, static_cast<double>(first) / static_cast<double>(raw.pixels()), "decoding");
+  if (raw.pixels() < plan_->options.min_pixels) {
+    plan_->decoder.decode(raw, decoded, progress);
+    return raw.pixels();
   }
-  return left_open;
+  const std::lock_guard lock(plan_->mutex);
+  FrameDone done;
+  while (done.pixels < raw.pixels()) {
+    const std::int64_t before = plan_->tile_pixels;
+    try {
+      plan_->decode_from(done, raw, decoded, progress);
+    } catch (const OutOfDeviceMemory&) {
+      if (before <= min_tile_pixels) throw;
+      plan_->tile.release();
+      plan_->other_tile.reset();
+      const std::int64_t tried = std::min(before, raw.pixels() - done.pixels);
+      plan_->tile_pixels = std::max(tried / 2, min_tile_pixels);
+    }
+  }
+  return done.by_decoder;
 }
 
 DepthImage DeviceDecoder::decode(const RawFrames& raw, int frame, const Progress& progress) const {
@@ -140,7 +191,9 @@ std::optional<DeviceDecoder> device_decoder(std::string_view device, const AnyDe
   const auto* zncc = std::get_if<Decoder>(&decoder);
   if (device == "auto") {
     const std::optional<Device> gpu = zncc ? Device::first_gpu() : std::nullopt;
-    return gpu ? std::optional<DeviceDecoder>(std::in_place, *gpu, *zncc) : std::nullopt;
+    if (!gpu) return std::nullopt;
+    const DeviceOptions options{.min_pixels = auto_min_pixels_to_decode};
+    return std::optional<DeviceDecoder>(std::in_place, *gpu, *zncc, options);
   }
   require(zncc != nullptr, "method", name_of(all_decode_methods[decoder.index()]),
           "must be zncc, by which alone devices decode, or the device cpu");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -41,6 +42,8 @@ struct DeviceKernel {
 /// device fails, OutOfDeviceMemory where it is for that.
 class DeviceQueue {
  public:
+  /// Columns and rows of items.
+  using Extent = std::array<std::size_t, 2>;
   /// Items of a kernel that run together; kernels are started for whole groups.
   static constexpr std::size_t group_items = 64;
 
@@ -51,16 +54,26 @@ class DeviceQueue {
   /// @param bytes  of the first of `from`
   void download(const DeviceMemory& from, std::size_t bytes, void* to) const;
   void copy(const DeviceMemory& from, const DeviceMemory& to, std::size_t bytes) const;
+  /// Zeroes all of it.
+  void clear(const DeviceMemory& memory) const;
   /// Compiled once for a device and these options.
   DeviceKernel kernel(std::string_view source, const std::string& options, const char* name) const;
   /// Runs a kernel for items 0, 1, .. of whole groups.
   /// @param arguments  numbers and structs by value; memory, or null where it may be, by pointer
   template <typename... Arguments>
   void run(const DeviceKernel& kernel, std::int64_t items, const Arguments&... arguments) const {
-    unsigned at = 0;
-    (set(kernel, at++, arguments), ...);
-    start(kernel, items);
+    set_all(kernel, arguments...);
+    start(kernel, {static_cast<std::size_t>(items), 1}, {group_items, 1});
   }
+  /// The same for the pixels of a picture, column and row of each, in whole tiles of `group`.
+  template <typename... Arguments>
+  void run(const DeviceKernel& kernel, const Extent& pixels, const Extent& group,
+           const Arguments&... arguments) const {
+    set_all(kernel, arguments...);
+    start(kernel, pixels, group);
+  }
+  /// Has the device begin with what it was given.
+  void flush() const;
   /// Waits until all work is done.
   void finish() const;
 
@@ -73,7 +86,12 @@ class DeviceQueue {
                                                const Value& value) const {
     set_bytes(kernel, at, &value, sizeof(Value));
   }
-  void start(const DeviceKernel& kernel, std::int64_t items) const;
+  template <typename... Arguments>
+  void set_all(const DeviceKernel& kernel, const Arguments&... arguments) const {
+    unsigned at = 0;
+    (set(kernel, at++, arguments), ...);
+  }
+  void start(const DeviceKernel& kernel, const Extent& items, const Extent& group) const;
 
   Device device_;
   DeviceHandle handle_ = no_handle();

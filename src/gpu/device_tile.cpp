@@ -2,41 +2,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/device_tile.hpp"
 
-#include <type_traits>
-
-#include "core/shared/pixel_runs.hpp"
+#include <utility>
 
 namespace tofsmith {
 
-namespace {
-
-/// Numbers of pixels first .. first + count - 1 side by side, doubles as floats.
-template <typename Number>
-auto packed(const RawView& raw, std::int64_t first, std::int64_t count) {
-  using Packed = std::conditional_t<std::is_same_v<Number, double>, float, Number>;
-  std::vector<Packed> values(static_cast<std::size_t>(count * raw.measurements));
-  for_each_run(raw, first, count, [&](const auto* from, std::int64_t length, std::int64_t done) {
-    Packed* to = &values[static_cast<std::size_t>(done * raw.measurements)];
-    for (std::int64_t i = 0; i < length; ++i)
-      for (int k = 0; k < raw.measurements; ++k)
-        *to++ = static_cast<Packed>(from[i * raw.column_stride + k * raw.measurement_stride]);
-  });
-  return values;
+OpenNumbers::OpenNumbers(std::vector<float> numbers, int measurements)
+    : measurements_(measurements), numbers_(std::move(numbers)) {
+  const auto each = static_cast<std::size_t>(measurements) + 1;
+  for (std::size_t at = each - 1; at < numbers_.size(); at += each)
+    averaged_.push_back(numbers_[at]);
 }
 
-bool is_packed(const RawView& raw) {
-  return raw.measurement_stride == 1 && raw.column_stride == raw.measurements &&
-         raw.row_stride == raw.width * raw.column_stride;
+RawView OpenNumbers::view() const {
+  const auto pixels = static_cast<int>(averaged_.size());
+  RawView view = RawView::interleaved(numbers_.data(), 1, pixels, measurements_);
+  view.column_stride = measurements_ + 1;
+  view.row_stride = pixels * view.column_stride;
+  view.averaged = averaged_.data();
+  return view;
 }
-
-template <typename Number>
-constexpr RawNumber raw_number_of() {
-  if (std::is_same_v<Number, std::uint16_t>) return raw_uint16;
-  if (std::is_same_v<Number, std::uint8_t>) return raw_uint8;
-  return std::is_same_v<Number, double> ? raw_rounded : raw_float;
-}
-
-}  // namespace
 
 DeviceTile::DeviceTile(const Device& device, const Decoder& decoder, bool use_doubles)
     : outputs_(parts_of(decoder).outputs),
@@ -44,6 +28,8 @@ DeviceTile::DeviceTile(const Device& device, const Decoder& decoder, bool use_do
       queue_(device),
       match_(queue_.kernel(decode_kernels, tables_.options, "match")),
       write_(queue_.kernel(decode_kernels, tables_.options, "write_planes")),
+      gather_(queue_.kernel(decode_kernels, tables_.options, "gather_numbers")),
+      scatter_(queue_.kernel(decode_kernels, tables_.options, "scatter_values")),
       words_(queue_.allocate(tables_.words.size() * sizeof(std::uint32_t))),
       opened_(queue_.allocate(sizeof(std::int32_t))) {
   queue_.upload(tables_.words.data(), words_.bytes, words_);
@@ -54,73 +40,44 @@ std::int64_t DeviceTile::bytes_per_pixel() const {
   return 4 * (outputs_.records().layout.measurements + words);
 }
 
-DeviceMemory* DeviceTile::reserve(DeviceMemory& memory, std::int64_t bytes) const {
-  if (memory.bytes < static_cast<std::size_t>(bytes)) {
-    memory = DeviceMemory();  // the smaller one goes first
-    memory = queue_.allocate(static_cast<std::size_t>(bytes));
-  }
-  return &memory;
-}
-
-void DeviceTile::upload(const RawView& view, std::int64_t first, std::int64_t count) {
-  tile_ = {.pixels = static_cast<int>(count),
-           .pixel_stride = view.measurements,
-           .measurement_stride = 1,
-           .number = raw_float};
-  std::visit(
-      [&](const auto* data) {
-        using Number = std::remove_cvref_t<decltype(*data)>;
-        const auto upload_numbers = [&](const auto* numbers) {
-          const std::int64_t bytes = count * view.measurements * std::int64_t{sizeof(*numbers)};
-          queue_.upload(numbers, static_cast<std::size_t>(bytes), *reserve(raw_, bytes));
-        };
-        tile_.number = raw_number_of<Number>();
-        if (is_packed(view) && !std::is_same_v<Number, double>)
-          upload_numbers(data + first * view.measurements);
-        else
-          upload_numbers(packed<Number>(view, first, count).data());
-      },
-      view.data);
-  has_averaged_ = view.averaged != nullptr;
-  if (has_averaged_)
-    queue_.upload(view.averaged + first, static_cast<std::size_t>(count) * sizeof(float),
-                  *reserve_for(view.averaged, averaged_));
+const DeviceRaw& DeviceTile::reserve_planes(std::int64_t pixels) {
+  raw_.reserve_planes(queue_, pixels, outputs_.records().layout.measurements);
+  return raw_;
 }
 
 void DeviceTile::find_bins(const MatchParameters& parameters, const DeviceMemory& bins,
                            const DeviceMemory* second_peaks) const {
-  queue_.run(match_, tile_.pixels, parameters, tile_, &words_, &raw_, second_peaks ? 1 : 0, &bins,
-             second_peaks, &opened_, &open_);
+  queue_.run(match_, raw_.tile().pixels, parameters, raw_.tile(), &words_, raw_.numbers(),
+             second_peaks ? 1 : 0, &bins, second_peaks, &opened_, &open_);
 }
 
 void DeviceTile::decode(const DecodedView& wanted) {
-  const std::int64_t of_words = tile_.pixels * std::int64_t{sizeof(std::int32_t)};
+  const std::int64_t of_words = raw_.tile().pixels * std::int64_t{sizeof(std::int32_t)};
   constexpr std::int32_t none = 0;
   queue_.upload(&none, sizeof none, opened_);
-  reserve(open_, 2 * of_words);
+  room(open_, 2 * of_words);
   if (wanted.bin && (wanted.wants_bins_only() || tables_.is_coarse))
-    find_bins(tables_.bins, *reserve(best_bins_, of_words), nullptr);
+    find_bins(tables_.bins, *room(best_bins_, of_words), nullptr);
   if (wanted.wants_bins_only()) return;
 
-  reserve(bins_, of_words);
+  room(bins_, of_words);
   const DeviceMemory* second_peaks =
-      outputs_.needs_second_peaks(wanted) ? reserve(second_peaks_, of_words) : nullptr;
+      outputs_.needs_second_peaks(wanted) ? room(second_peaks_, of_words) : nullptr;
   find_bins(tables_.points, bins_, second_peaks);
   OutputParameters parameters = tables_.outputs;
   parameters.finds_confidence = second_peaks ? 1 : 0;
-  queue_.run(write_, tile_.pixels, parameters, tile_, &words_, &raw_,
-             has_averaged_ ? &averaged_ : nullptr, &bins_, second_peaks,
-             reserve_for(wanted.depth_m, depth_), reserve_for(wanted.signal_e_per_s, signal_),
-             reserve_for(wanted.ambient_e_per_s, ambient_),
-             reserve_for(wanted.confidence, confidence_),
-             reserve_for(wanted.predicted_standard_deviation_m, deviation_),
-             reserve_for(wanted.status, status_));
+  queue_.run(write_, raw_.tile().pixels, parameters, raw_.tile(), &words_, raw_.numbers(),
+             raw_.averaged(), &bins_, second_peaks, room_for(wanted.depth_m, depth_),
+             room_for(wanted.signal_e_per_s, signal_), room_for(wanted.ambient_e_per_s, ambient_),
+             room_for(wanted.confidence, confidence_),
+             room_for(wanted.predicted_standard_deviation_m, deviation_),
+             room_for(wanted.status, status_));
 }
 
 void DeviceTile::fetch(const DecodedView& to) const {
   const auto fetch_plane = [&](const DeviceMemory& from, auto* plane) {
     if (plane)
-      queue_.download(from, static_cast<std::size_t>(tile_.pixels) * sizeof(*plane), plane);
+      queue_.download(from, static_cast<std::size_t>(raw_.tile().pixels) * sizeof(*plane), plane);
   };
   const bool has_best_bins = to.wants_bins_only() || tables_.is_coarse;
   fetch_plane(has_best_bins ? best_bins_ : bins_, to.bin);
@@ -133,8 +90,9 @@ void DeviceTile::fetch(const DecodedView& to) const {
 }
 
 void DeviceTile::release() {
-  for (DeviceMemory* memory : {&raw_, &averaged_, &bins_, &best_bins_, &second_peaks_, &open_,
-                               &depth_, &signal_, &ambient_, &confidence_, &deviation_, &status_})
+  raw_.release();
+  for (DeviceMemory* memory : {&bins_, &best_bins_, &second_peaks_, &open_, &some_numbers_, &depth_,
+                               &signal_, &ambient_, &confidence_, &deviation_, &status_})
     *memory = DeviceMemory();
 }
 
@@ -144,6 +102,31 @@ std::vector<std::int32_t> DeviceTile::open_pixels() const {
   std::vector<std::int32_t> pixels(static_cast<std::size_t>(count));
   if (count > 0) queue_.download(open_, pixels.size() * sizeof(std::int32_t), pixels.data());
   return pixels;
+}
+
+std::vector<float> DeviceTile::numbers_of(const std::vector<std::int32_t>& open) {
+  const auto each = static_cast<std::size_t>(outputs_.records().layout.measurements) + 1;
+  std::vector<float> numbers(open.size() * each);
+  if (open.empty()) return numbers;
+  const std::size_t bytes = numbers.size() * sizeof(float);
+  const DeviceMemory* const some = room(some_numbers_, static_cast<std::int64_t>(bytes));
+  queue_.run(gather_, std::ssize(open), raw_.tile(), raw_.numbers(), raw_.averaged(), &open_,
+             static_cast<std::int32_t>(open.size()), some);
+  queue_.download(*some, bytes, numbers.data());
+  return numbers;
+}
+
+void DeviceTile::put_depth(const std::vector<std::int32_t>& open, const std::vector<float>& depth_m,
+                           const std::vector<float>& deviation_m) {
+  const std::size_t bytes = open.size() * sizeof(float);
+  const DeviceMemory* const some = room(some_numbers_, static_cast<std::int64_t>(bytes));
+  const auto put = [&](const std::vector<float>& values, const DeviceMemory* plane) {
+    queue_.upload(values.data(), bytes, *some);
+    queue_.run(scatter_, std::ssize(open), &open_, static_cast<std::int32_t>(open.size()), some,
+               plane);
+  };
+  put(depth_m, &depth_);
+  put(deviation_m, &deviation_);
 }
 
 }  // namespace tofsmith

@@ -6,12 +6,24 @@
 #include <vector>
 
 #include "gpu/decode_tables.hpp"
-#include "gpu/device_queue.hpp"
+#include "gpu/device_raw.hpp"
 
 namespace tofsmith {
 
-/// A tile of pixels on a device: brought there, decoded there, and fetched. Its memory there grows
-/// with the largest tile.
+/// Numbers of pixels that a device leaves open: K, and of how many measurements they are the mean.
+class OpenNumbers {
+ public:
+  OpenNumbers(std::vector<float> numbers, int measurements);
+  /// A frame of one row.
+  RawView view() const;
+
+ private:
+  int measurements_;
+  std::vector<float> numbers_, averaged_;
+};
+
+/// A tile of pixels on a device: brought there or made there, decoded there, and fetched. Its
+/// memory there grows with the largest tile.
 class DeviceTile {
  public:
   /// @param decoder  must outlive this
@@ -21,7 +33,12 @@ class DeviceTile {
   std::int64_t bytes_per_pixel() const;
 
   /// Brings pixels first .. first + count - 1 of a frame, row by row.
-  void upload(const RawView& view, std::int64_t first, std::int64_t count);
+  void upload(const RawView& view, std::int64_t first, std::int64_t count) {
+    raw_.upload(queue_, view, first, count);
+  }
+  /// Makes room for so many pixels whose numbers, and of how many they are the mean, a kernel
+  /// writes: DeviceRaw::reserve_planes().
+  const DeviceRaw& reserve_planes(std::int64_t pixels);
   /// Starts to decode them into planes of the device.
   /// @param wanted  those that are not null
   void decode(const DecodedView& wanted);
@@ -32,14 +49,24 @@ class DeviceTile {
   void release();
   /// Pixels of the tile that the decoder has to decode; one may be named twice.
   std::vector<std::int32_t> open_pixels() const;
+  /// What OpenNumbers takes of those.
+  std::vector<float> numbers_of(const std::vector<std::int32_t>& open);
+  /// Puts what the decoder says of those into the planes of depth and deviation.
+  void put_depth(const std::vector<std::int32_t>& open, const std::vector<float>& depth_m,
+                 const std::vector<float>& deviation_m);
 
   const DeviceQueue& queue() const { return queue_; }
+  const DeviceRaw& raw() const { return raw_; }
+  const DeviceMemory* depth() const { return &depth_; }
+  const DeviceMemory* deviation() const { return &deviation_; }
 
  private:
-  DeviceMemory* reserve(DeviceMemory& memory, std::int64_t bytes) const;
+  DeviceMemory* room(DeviceMemory& memory, std::int64_t bytes) const {
+    return reserve(queue_, memory, bytes);
+  }
   template <typename Value>
-  DeviceMemory* reserve_for(const Value* plane, DeviceMemory& memory) const {
-    return plane ? reserve(memory, tile_.pixels * std::int64_t{sizeof(Value)}) : nullptr;
+  DeviceMemory* room_for(const Value* plane, DeviceMemory& memory) const {
+    return plane ? room(memory, raw_.tile().pixels * std::int64_t{sizeof(Value)}) : nullptr;
   }
   void find_bins(const MatchParameters& parameters, const DeviceMemory& bins,
                  const DeviceMemory* second_peaks) const;
@@ -47,11 +74,10 @@ class DeviceTile {
   const OutputKernel& outputs_;
   DecodeTables tables_;
   DeviceQueue queue_;
-  DeviceKernel match_, write_;
+  DeviceKernel match_, write_, gather_, scatter_;
   DeviceMemory words_;  // of the tables
-  TileParameters tile_{};
-  bool has_averaged_ = false;
-  DeviceMemory raw_, averaged_, bins_, best_bins_, second_peaks_, opened_, open_;
+  DeviceRaw raw_;
+  DeviceMemory bins_, best_bins_, second_peaks_, opened_, open_, some_numbers_;
   DeviceMemory depth_, signal_, ambient_, confidence_, deviation_, status_;
 };
 

@@ -220,6 +220,13 @@ void DeviceQueue::copy(const DeviceMemory& from, const DeviceMemory& to, std::si
         place_of(device_.info()), "copying on the device");
 }
 
+void DeviceQueue::clear(const DeviceMemory& memory) const {
+  constexpr cl_uchar zero = 0;
+  check(clEnqueueFillBuffer(queue_of(handle_), memory_of(memory), &zero, sizeof zero, 0,
+                            memory.bytes, 0, nullptr, nullptr),
+        place_of(device_.info()), "clearing memory");
+}
+
 DeviceKernel DeviceQueue::kernel(std::string_view source, const std::string& options,
                                  const char* name) const {
   const DeviceInfo& info = device_.info();
@@ -243,12 +250,19 @@ void DeviceQueue::set_bytes(const DeviceKernel& kernel, unsigned at, const void*
         "setting an argument of a kernel");
 }
 
-void DeviceQueue::start(const DeviceKernel& kernel, std::int64_t items) const {
-  const std::size_t local = group_items,
-                    global = (static_cast<std::size_t>(items) + local - 1) / local * local;
-  check(clEnqueueNDRangeKernel(queue_of(handle_), kernel_of(kernel), 1, nullptr, &global, &local, 0,
-                               nullptr, nullptr),
+void DeviceQueue::start(const DeviceKernel& kernel, const Extent& items,
+                        const Extent& group) const {
+  Extent whole = items;
+  for (std::size_t i = 0; i < whole.size(); ++i)
+    whole[i] = (items[i] + group[i] - 1) / group[i] * group[i];
+  const cl_uint dimensions = group[1] > 1 ? 2 : 1;
+  check(clEnqueueNDRangeKernel(queue_of(handle_), kernel_of(kernel), dimensions, nullptr,
+                               whole.data(), group.data(), 0, nullptr, nullptr),
         place_of(device_.info()), "starting a kernel");
+}
+
+void DeviceQueue::flush() const {
+  check(clFlush(queue_of(handle_)), place_of(device_.info()), "starting kernels");
 }
 
 void DeviceQueue::finish() const {

@@ -145,3 +145,20 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
     status[pixel] = value;
   }
 }
+
+/// Raw numbers of some pixels and of how many measurements they are the mean: K + 1 numbers each.
+kernel void gather_numbers(const struct TileParameters tile, global const uchar* raw_numbers,
+                           Floats averaged, Ints pixels, const int count, global float* numbers) {
+  const int i = (int)get_global_id(0);
+  if (i >= count) return;
+  const int pixel = pixels[i];
+  for (int k = 0; k < MEASUREMENTS; ++k)
+    numbers[i * (MEASUREMENTS + 1) + k] = raw_number(&tile, raw_numbers, pixel, k);
+  numbers[i * (MEASUREMENTS + 1) + MEASUREMENTS] = averaged ? averaged[pixel] : 1.0f;
+}
+
+/// Puts values of some pixels where they belong in a plane.
+kernel void scatter_values(Ints pixels, const int count, Floats values, global float* plane) {
+  const int i = (int)get_global_id(0);
+  if (i < count) plane[pixels[i]] = values[i];
+}

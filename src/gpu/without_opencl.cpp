@@ -23,6 +23,7 @@ DeviceMemory DeviceQueue::allocate(std::size_t) const { refuse(); }
 void DeviceQueue::upload(const void*, std::size_t, const DeviceMemory&) const { refuse(); }
 void DeviceQueue::download(const DeviceMemory&, std::size_t, void*) const { refuse(); }
 void DeviceQueue::copy(const DeviceMemory&, const DeviceMemory&, std::size_t) const { refuse(); }
+void DeviceQueue::clear(const DeviceMemory&) const { refuse(); }
 DeviceKernel DeviceQueue::kernel(std::string_view, const std::string&, const char*) const {
   refuse();
 }
@@ -30,7 +31,8 @@ void DeviceQueue::set(const DeviceKernel&, unsigned, const DeviceMemory*) const 
 void DeviceQueue::set_bytes(const DeviceKernel&, unsigned, const void*, std::size_t) const {
   refuse();
 }
-void DeviceQueue::start(const DeviceKernel&, std::int64_t) const { refuse(); }
+void DeviceQueue::start(const DeviceKernel&, const Extent&, const Extent&) const { refuse(); }
+void DeviceQueue::flush() const { refuse(); }
 void DeviceQueue::finish() const { refuse(); }
 
 }  // namespace tofsmith

@@ -4,6 +4,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import unittest
 
@@ -20,6 +21,10 @@ def devices():
 
 DEVICES = devices()
 needs_device = unittest.skipUnless(DEVICES, "OpenCL finds no device: install pocl-opencl-icd")
+
+
+def is_pocl():
+    return "Portable" in DEVICES[0]["platform"]
 
 
 class Device(CommandLineTest):
@@ -41,7 +46,9 @@ class Device(CommandLineTest):
 
     @needs_device
     def test_a_device_writes_the_files_that_the_processor_writes(self):
-        for more in ((), ("--filter", "light"), ("--memory-mb", "4"), ("--average", "2")):
+        for more in ((), ("--filter", "normal"), ("--memory-mb", "4"), ("--average", "2"),
+                     ("--filter", "light", "--mixed", "snap", "--outputs", "depth,status,averaged"),
+                     ("--filter", "strong", "--time-filter", "2", "--outputs", "averaged,bin")):
             for device in ("cpu", "auto", "0"):
                 code, _, error = self.decode(device, *more, "-o", device + ".npz", "--force")
                 self.assertEqual((code, error), (0, ""))
@@ -92,6 +99,47 @@ class Device(CommandLineTest):
         environment = dict(os.environ, POCL_CACHE_DIR=self.path("file/folder"))
         if "Portable" in DEVICES[0]["platform"]:
             self.assertIn("POCL_CACHE_DIR", self.refusal("0", env=environment))
+
+    @needs_device
+    def test_a_folder_where_no_kernel_can_be_written_is_said(self):
+        for folder in ("/proc", "/proc/none"):  # whoever runs the tests
+            environment = dict(os.environ, POCL_CACHE_DIR=folder)
+            if is_pocl():
+                self.assertIn("POCL_CACHE_DIR", self.refusal("0", env=environment))
+
+    @needs_device
+    def test_kernels_that_are_damaged_never_make_other_numbers(self):
+        """pocl gives an error for some, and for others ends the program."""
+        if not is_pocl():
+            self.skipTest("the driver keeps kernels elsewhere")
+        os.mkdir(self.path("kernels"))
+        environment = dict(os.environ, POCL_CACHE_DIR=self.path("kernels"))
+        more = ("--stack", "-o", "a.npy", "--force")
+        self.assertEqual(self.decode("0", *more, env=environment)[0], 0)
+        expected = self.bytes_of("a.npy")
+        kept = [name for name in self.files() if name.startswith("kernels/") and
+                os.path.isfile(self.path(name))]
+        self.assertGreater(len(kept), 1)
+        for damage in (b"", b"not a kernel" * 100):
+            for name in kept:
+                self.write(name, damage)
+            code = self.decode("0", *more, env=environment)[0]
+            self.assertIn(code, (0, 1, -signal.SIGABRT))
+            self.assertEqual(self.bytes_of("a.npy"), expected)
+        self.assertEqual([name for name in self.files() if not name.startswith("kernels")],
+                         ["a.npy", "raw.camera.toml", "raw.npy"])
+
+    @needs_device
+    def test_processes_share_a_device(self):
+        more = ("--filter", "normal", "--frame", "0")
+        self.assertEqual(self.decode("cpu", *more, "-o", "cpu.npz")[0], 0)
+        started = [self.start("decode", "raw.npy", "--code", "hamiltonian-k4", "--device", "0", *more,
+                              "-o", f"{i}.npz") for i in range(3)]
+        for i, process in enumerate(started):
+            self.assertEqual(process.communicate(timeout=60)[1], b"")
+            self.assertEqual(process.returncode, 0)
+            if DEVICES[0]["doubles"]:
+                self.assertEqual(self.bytes_of(f"{i}.npz"), self.bytes_of("cpu.npz"))
 
     def test_without_drivers_devices_are_refused_and_auto_is_the_processor(self):
         os.mkdir(self.path("none"))

@@ -243,6 +243,26 @@ TEST_F(DeviceDecoding, LargeFramesGoInPartsAndSmallOnesWhole) {
   }
 }
 
+TEST_F(DeviceDecoding, CopiesBesideKernelsChangeNothing) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  constexpr int height = 370, width = 601;  // in four parts
+  std::vector<float> raw = noisy_pixels(setup.decoder.table(), 3e4, 1e4, height * width, 9);
+  const RawView view = RawView::interleaved(raw.data(), height, width, 4);
+  const Outputs expected = decoded(setup.decoder, view);
+  const DeviceDecoder on_device(device(), setup.decoder);
+  std::vector<double> told;
+  Outputs outputs(static_cast<std::size_t>(view.pixels()));
+  on_device.decode(view, outputs.view(), [&](double fraction, std::string_view) {
+    told.push_back(fraction);
+    return true;
+  });
+  expect_alike(device().info(), true, outputs, expected, 1e6);
+  EXPECT_EQ(told.size(), 4u);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  std::int64_t left = 0;
+  expect_only(decoded(on_device, view, left, 1), expected, 1);
+}
+
 TEST_F(DeviceDecoding, RefusesWhatIsNoFrameOfTheCode) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DeviceDecoder on_device(device(), setup.decoder);

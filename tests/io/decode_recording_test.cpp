@@ -70,6 +70,51 @@ TEST_F(DecodeRecording, FiltersAsTheFilterDoes) {
   EXPECT_EQ(plane("f-averaged.npy", 0), frame.averaged().pixels);
 }
 
+TEST_F(DecodeRecording, IsFilteredByWhateverTheRequestSays) {
+  const Decoder& decoder = std::get<Decoder>(decoder_);
+  const Filter filter(decoder.table());
+  DecodeRequest filtered = request("f.npy");
+  filtered.filter = filter.options();
+  filtered.stack = true;
+  filtered.outputs = {DecodedPlane::depth};
+  decode_recording(filtered, decoder_);
+  int frames = 0;
+  filtered.output = filtered.output.parent_path() / "by.npy";
+  filtered.filter_by = [&](const RawView& raw, const DecodedView& decoded, FilteredFrame* numbers,
+                           const Progress& progress, const Image<std::uint8_t>& left_out) {
+    EXPECT_EQ(numbers, nullptr) << "nobody asked for them";
+    EXPECT_TRUE(left_out.empty());
+    FilteredFrame frame;
+    filter.apply(raw, frame, progress);
+    decoder.decode(frame.view(), decoded);
+    ++frames;
+  };
+  decode_recording(filtered, decoder_);
+  EXPECT_EQ(frames, 3);
+  for (std::size_t f = 0; f < 3; ++f) EXPECT_EQ(plane("by.npy", f), plane("f.npy", f));
+}
+
+TEST_F(DecodeRecording, LeavesWholeFilesWhereADeviceFailsHalfWay) {
+  for (const bool stack : {false, true}) {
+    DecodeRequest failing = request("d.npy");
+    failing.stack = stack;
+    int frames = 0;
+    failing.decode_by = [&](const RawView& raw, const DecodedView& decoded, const Progress&) {
+      std::get<Decoder>(decoder_).decode(raw, decoded);
+      if (++frames == 2) throw IoError("device", "is lost");
+    };
+    const std::filesystem::path folder = failing.output.parent_path();
+    const auto files = [&] {
+      return std::distance(std::filesystem::directory_iterator(folder), {});
+    };
+    const auto before = files();
+    DecodedRecording result;
+    EXPECT_THROW(decode_recording(failing, decoder_, {}, result), IoError);
+    EXPECT_EQ(files() - before, stack ? 0 : 1);
+    EXPECT_EQ(result.files.size(), stack ? 0u : 1u);
+  }
+}
+
 TEST_F(DecodeRecording, AddsUpFramesAsTheTimeFilterDoes) {
   const TimeFilterOptions options{.max_frames = 5, .max_difference_sigma = 9.0};
   DecodeRequest added = request("all.npy");

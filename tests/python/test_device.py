@@ -40,6 +40,41 @@ def test_a_device_gives_the_planes_of_the_processor(decoders, tmp_path):
                                rtol=2e-6)
 
 
+def assert_same_planes(found, expected):
+    np.testing.assert_array_equal(found.status, expected.status)
+    for name in ("depth_m", "signal_e_per_s", "confidence", "predicted_standard_deviation_m"):
+        np.testing.assert_allclose(getattr(found, name), getattr(expected, name), rtol=1e-5)
+
+
+def test_a_device_filters_as_the_processor(decoders, tmp_path):
+    here, there = decoders
+    raw = raw_frames()
+    for filter in ("light", "strong", ts.Filter("hamiltonian-k4", "paper-10f0")):
+        for mixed in (None, "label"):
+            assert_same_planes(there.decode(raw, filter=filter, mixed=mixed),
+                               here.decode(raw, filter=filter, mixed=mixed))
+    np.save(tmp_path / "raw.npy", raw)
+    for name, decoder in ("here", here), ("there", there):
+        decoder.decode_recording(tmp_path / "raw.npy", tmp_path / f"{name}.npy", stack=True,
+                                 filter="normal", mixed="snap", outputs=["depth", "averaged"])
+    for plane in ("", "-averaged"):
+        np.testing.assert_allclose(np.load(tmp_path / f"there{plane}.npy"),
+                                   np.load(tmp_path / f"here{plane}.npy"), rtol=1e-5)
+
+
+def test_a_filter_has_a_device_of_its_own(decoders):
+    here = ts.Filter("hamiltonian-k4", "paper-10f0")
+    there = ts.Filter("hamiltonian-k4", "paper-10f0", device="0")
+    assert (here.device, there.device) == ("cpu", decoders[1].device)
+    raw = raw_frames()
+    for found, expected in zip(there.apply(raw, averaged=2.0), here.apply(raw, averaged=2.0)):
+        np.testing.assert_allclose(found, expected, rtol=1e-5)
+    for decoder in decoders:
+        assert_same_planes(decoder.decode(raw, filter=there), decoders[0].decode(raw, filter=here))
+    with pytest.raises(OSError, match="expected one of 0 "):
+        ts.Filter("hamiltonian-k4", "paper-10f0", device="7000")
+
+
 def test_a_decoder_keeps_its_device_when_it_is_pickled(decoders):
     there = decoders[1]
     assert pickle.loads(pickle.dumps(there)).device == there.device

@@ -88,6 +88,7 @@ class FilteredFrame {
 
  private:
   friend class Filter;
+  friend FilterPlanes& planes_of(FilteredFrame& frame);
   std::unique_ptr<FilterPlanes> planes_;
 };
 
@@ -143,6 +144,7 @@ class Filter {
   struct Plan;  ///< of the implementation
 
  private:
+  friend const Plan& plan_of(const Filter& filter);
   std::unique_ptr<const Plan> plan_;
 };
 
@@ -155,6 +157,12 @@ class Filter {
 void decode_filtered(
     const Filter& filter, const RawView& raw, FilteredFrame& filtered,
     const std::function<void(const RawView&, const UnfilteredPixels&, const Progress&)>& decode,
+    const PixelStatus* statuses, const Progress& progress = {});
+/// The same by what filters and decodes in one, as a DeviceFilter.
+/// @param filter_and_decode  leaves out the pixels that are mixed before; throws what it may
+void decode_filtered(
+    const RawView& raw,
+    const std::function<void(const UnfilteredPixels&, const Progress&)>& filter_and_decode,
     const PixelStatus* statuses, const Progress& progress = {});
 
 struct TimeFilterOptions {

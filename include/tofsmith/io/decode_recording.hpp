@@ -116,6 +116,13 @@ struct DecodeRequest {
   /// Decodes frames in place of the decoder, and as it does: a DeviceDecoder; empty: the decoder.
   std::function<void(const RawView& raw, const DecodedView& decoded, const Progress& progress)>
       decode_by;
+  /// Filters frames by `filter`, if there is one, and decodes them, in place of a Filter and of the
+  /// decoder, and as they do: a DeviceFilter; empty: they do.
+  /// @param filtered  to hold the filtered numbers afterwards; null: they are not wanted
+  /// @param left_out  as Filter::apply
+  std::function<void(const RawView& raw, const DecodedView& decoded, FilteredFrame* filtered,
+                     const Progress& progress, const Image<std::uint8_t>& left_out)>
+      filter_by;
   OutputPolicy policy = OutputPolicy::refuse_existing;
   std::vector<std::string> other_inputs;  ///< files that were read too: no output replaces them
 };

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/shared/enum_words.hpp"
-#include "decode/filter/filter_plan.hpp"
+#include "decode/filter/shared/filter_parts.hpp"
 #include "decode/output/pixel_output.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -42,6 +42,19 @@ Filter::~Filter() = default;
 Filter::Filter(Filter&&) noexcept = default;
 Filter& Filter::operator=(Filter&&) noexcept = default;
 
+void require_filterable(const Filter::Plan& plan, const RawView& raw,
+                        const Image<std::uint8_t>& left_out) {
+  require_measurements(raw, plan.measurements);
+  require(raw.height > 0 && raw.width > 0, "raw height and width", std::min(raw.height, raw.width),
+          "must be > 0");
+  require(left_out.empty() || (left_out.height == raw.height && left_out.width == raw.width),
+          "left_out", std::to_string(left_out.height) + " x " + std::to_string(left_out.width),
+          "must be of the size of the frame");
+}
+
+const Filter::Plan& plan_of(const Filter& filter) { return *filter.plan_; }
+FilterPlanes& planes_of(FilteredFrame& frame) { return *frame.planes_; }
+
 const DecodingTable& Filter::table() const { return plan_->decoder.table(); }
 const FilterOptions& Filter::options() const { return plan_->options; }
 
@@ -62,12 +75,7 @@ std::size_t Filter::memory_bytes(const FilterOptions& options, int height, int w
 void Filter::apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress,
                    const Image<std::uint8_t>& left_out) const {
   const Plan& plan = *plan_;
-  require_measurements(raw, plan.measurements);
-  require(raw.height > 0 && raw.width > 0, "raw height and width", std::min(raw.height, raw.width),
-          "must be > 0");
-  require(left_out.empty() || (left_out.height == raw.height && left_out.width == raw.width),
-          "left_out", std::to_string(left_out.height) + " x " + std::to_string(left_out.width),
-          "must be of the size of the frame");
+  require_filterable(plan, raw, left_out);
   FilterPlanes& frame = *filtered.planes_;
   const int windows = plan.options.windows;
   frame.resize(raw.height, raw.width, plan.measurements, window_step(windows - 1));
@@ -107,20 +115,31 @@ void decode_filtered(
     const Filter& filter, const RawView& raw, FilteredFrame& filtered,
     const std::function<void(const RawView&, const UnfilteredPixels&, const Progress&)>& decode,
     const PixelStatus* statuses, const Progress& progress) {
-  constexpr double effort = 8.0;  // where decoding takes 1: about
-  const double again = statuses ? 1.0 : 0.0;
-  const ProgressParts parts(progress, {effort, 1.0, again * effort, again});
+  decode_filtered(
+      raw,
+      [&](const UnfilteredPixels& unfiltered, const Progress& here) {
+        constexpr double effort = 8.0;  // where decoding takes 1: about
+        const ProgressParts parts(here, {effort, 1.0});
+        filter.apply(raw, filtered, parts[0], unfiltered.mixed);
+        decode(filtered.view(), unfiltered, parts[1]);
+      },
+      statuses, progress);
+}
+
+void decode_filtered(
+    const RawView& raw,
+    const std::function<void(const UnfilteredPixels&, const Progress&)>& filter_and_decode,
+    const PixelStatus* statuses, const Progress& progress) {
+  const ProgressParts parts(progress, {1.0, statuses ? 1.0 : 0.0});
   UnfilteredPixels unfiltered{.measured = &raw};
-  filter.apply(raw, filtered, parts[0]);
-  decode(filtered.view(), unfiltered, parts[1]);
+  filter_and_decode(unfiltered, parts[0]);
   if (!statuses) return;
   const auto is_mixed = [](PixelStatus status) { return status == PixelStatus::mixed; };
   const PixelStatus* const end = statuses + raw.pixels();
   if (std::none_of(statuses, end, is_mixed)) return;
   unfiltered.mixed = Image<std::uint8_t>(raw.height, raw.width);
   std::transform(statuses, end, unfiltered.mixed.pixels.begin(), is_mixed);
-  filter.apply(raw, filtered, parts[2], unfiltered.mixed);
-  decode(filtered.view(), unfiltered, parts[3]);
+  filter_and_decode(unfiltered, parts[1]);
 }
 
 }  // namespace tofsmith

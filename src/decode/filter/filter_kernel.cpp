@@ -48,18 +48,13 @@ HWY_INLINE void test_row(const SimilarityTest& test, std::ptrdiff_t at, std::ptr
   }
 }
 
-/// A pair's own difference of more standard deviations is not of noise.
-constexpr double own_difference_sigma = 3.0;
-
 void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const FilterStrip& strip,
                    const PairWeights& weights) {
   const int reach = test.patch_reach, side = 2 * reach + 1;
-  const auto others = static_cast<float>(side * side - 1);
-  const auto freedom = static_cast<float>(test.rank - 1);
-  const float deviations = std::sqrt(others / (2 * freedom));
-  const Vector by = all(deviations / others), expected = all(freedom * deviations);
+  const PatchScale scale(test.rank, reach);
+  const Vector by = all(scale.by), expected = all(scale.expected);
   const Vector inverse_max = all(1.0f / test.max_difference_sigma);
-  const Vector noise_limit = all(chi2_limit(test.rank - 1, own_difference_sigma));
+  const Vector noise_limit = all(scale.noise_limit);
   const int rows = strip.rows + strip.rows_above();
   const int scratch_rows = rows + 2 * patch_reach;
   float* const lambda = weights.scratch;
@@ -228,16 +223,6 @@ void find_offsets(const float* plane, const FilterGrid& grid, const FilterStrip&
   }
 }
 
-/// Light of a single pixel of so many standard deviations needs no other proof.
-constexpr float evident_sigma = 3.0f;
-constexpr int own_light_reach = 3, own_light_side = 2 * own_light_reach + 1;
-/// Light around a pixel is its own from so many deviations of its error, and from this share of
-/// what was added, on.
-constexpr float own_light_least_sigma = 1.0f, own_light_least_share = 0.05f;
-/// Beside a straight edge fewer pixels are of its far side. Of normal noise, so many standard
-/// deviations below the mean, with so many times its error.
-constexpr float own_light_share = 0.4f, own_light_below_mean = 0.25f, own_light_noise = 1.28f;
-
 /// Measured light of a pixel along what was added to another, times the length of that.
 HWY_INLINE Vector along_added(const OwnLightTest& test, std::ptrdiff_t added,
                               std::ptrdiff_t measured) {
@@ -262,6 +247,8 @@ HWY_INLINE Mask is_light_around(const OwnLightTest& test, const FilterGrid& grid
     }
   return hn::Le(below, hn::Mul(all(own_light_share), count));
 }
+
+bool fuses() { return HWY_NATIVE_FMA != 0; }
 
 void find_own_light(const OwnLightTest& test, const FilterGrid& grid, int row, float* is_own) {
   constexpr float mean_noise = own_light_noise / own_light_side;  // in deviations of one pixel
@@ -325,10 +312,26 @@ HWY_EXPORT(add_weighted);
 HWY_EXPORT(find_offsets);
 HWY_EXPORT(find_energy);
 HWY_EXPORT(find_own_light);
+HWY_EXPORT(fuses);
 
 namespace {
+/// A pair's own difference of more standard deviations is not of noise.
+constexpr double own_difference_sigma = 3.0;
+
 std::size_t row_floats(const FilterGrid& grid) { return static_cast<std::size_t>(grid.stride); }
 }  // namespace
+
+PatchScale::PatchScale(int rank, int patch_reach)
+    : noise_limit(chi2_limit(rank - 1, own_difference_sigma)) {
+  const int side = 2 * patch_reach + 1;
+  const auto others = static_cast<float>(side * side - 1);
+  const auto freedom = static_cast<float>(rank - 1);
+  const float deviations = std::sqrt(others / (2 * freedom));
+  by = deviations / others;
+  expected = freedom * deviations;
+}
+
+bool fuses_products() { return HWY_DYNAMIC_DISPATCH(fuses)(); }
 
 std::size_t weight_floats(const FilterGrid& grid, const FilterStrip& strip) {
   return half_window.size() * static_cast<std::size_t>(strip.rows + strip.rows_above()) *

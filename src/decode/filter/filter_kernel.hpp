@@ -74,6 +74,9 @@ inline void clear_margins(const FilterGrid& grid, float* row) {
   std::fill_n(row + end, grid.stride - end, 0.0f);
 }
 
+/// Whether products are added in one step on this processor, rounded once.
+bool fuses_products();
+
 /// The test of parallelism.
 struct SimilarityTest {
   std::array<const float*, max_measurements> u{};  ///< (rank) planes
@@ -86,6 +89,15 @@ struct SimilarityTest {
 };
 void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const FilterStrip& strip,
                    const PairWeights& weights);
+
+/// From the sum of lambda over a patch, but for the pair's own, to standard deviations.
+struct PatchScale {
+  PatchScale(int rank, int patch_reach);
+
+  float by;           ///< deviations of a unit of the sum
+  float expected;     ///< deviations of what noise alone makes
+  float noise_limit;  ///< of a pair's own lambda: what noise can be
+};
 
 /// What is added with the weights: planes in, their weighted means out.
 struct WeightedSums {
@@ -110,6 +122,17 @@ void find_energy(const std::array<const float*, max_measurements>& u, int rank,
                  const float* variance, const float* floor, float floor_share,
                  const FilterGrid& grid, int first_row, int rows, float* energy,
                  float* inverse_sigma);
+
+/// Light of a single pixel of so many standard deviations needs no other proof.
+inline constexpr float evident_sigma = 3.0f;
+inline constexpr int own_light_reach = 3, own_light_side = 2 * own_light_reach + 1;
+/// Light around a pixel is its own from so many deviations of its error, and from this share of
+/// what was added, on.
+inline constexpr float own_light_least_sigma = 1.0f, own_light_least_share = 0.05f;
+/// Beside a straight edge fewer pixels are of its far side. Of normal noise, so many standard
+/// deviations below the mean, with so many times its error.
+inline constexpr float own_light_share = 0.4f, own_light_below_mean = 0.25f;
+inline constexpr float own_light_noise = 1.28f;
 
 /// Whether what was added to a pixel can be its own light.
 struct OwnLightTest {

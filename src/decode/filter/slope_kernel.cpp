@@ -25,8 +25,6 @@ HWY_INLINE Vector nearest(Vector difference, Vector samples, Vector per_sample) 
   return hn::NegMulAdd(hn::Round(hn::Mul(difference, per_sample)), samples, difference);
 }
 
-constexpr float min_depth_variance = 1e-8f;  // [bin^2], of scenes without noise
-
 void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const FilterStrip& strip,
                         const PairWeights& weights) {
   const Vector samples = all(test.samples), per_sample = all(1.0f / test.samples);
@@ -63,10 +61,6 @@ void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const Fil
   }
 }
 
-/// Neighbours that tell the slope: few, because near ones of filtered pixels share their noise.
-constexpr WindowStep half_rings[] = {{0, 3}, {3, -3}, {3, 0},  {3, 3},    {0, 6},  {6, -6},
-                                     {6, 0}, {6, 6},  {0, 12}, {12, -12}, {12, 0}, {12, 12}};
-
 /// Where a neighbour is, in pixels.
 struct RingPlace {
   std::ptrdiff_t away = 0;
@@ -84,7 +78,7 @@ struct RingPlace {
 /// Neighbours ahead, each followed by the one opposite.
 std::array<RingPlace, 2 * std::size(half_rings)> ring_places(std::ptrdiff_t stride) {
   return [&]<std::size_t... I>(std::index_sequence<I...>) {
-    return std::array{RingPlace(half_rings[I / 2], I % 2 == 0 ? 1 : -1, stride)...};
+    return std::array{RingPlace(half_rings.data()[I / 2], I % 2 == 0 ? 1 : -1, stride)...};
   }
   (std::make_index_sequence<2 * std::size(half_rings)>());
 }
@@ -110,9 +104,6 @@ struct SlopeSums {
     slope_y = hn::Mul(hn::NegMulAdd(xy, xd, hn::Mul(a, yd)), inverse);
   }
 };
-
-/// From this neighbour of ring_places on pixels are so far apart that they share few measurements.
-constexpr std::size_t first_far = 16;
 
 void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, int rows,
                  float* slope_x, float* slope_y, float* excess) {
@@ -157,7 +148,7 @@ void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, i
         const Vector squares = hn::Div(hn::Mul(beyond, beyond), hn::Add(noise, variance));
         const Vector w = hn::Div(hn::Mul(weight_of(squares, inverse_max), usable), noise);
         singles.add(w, place, difference);
-        if (i < first_far) continue;
+        if (i < 2 * first_far_ring) continue;
         const Vector told = hn::Mul(weight_of(squares, hn::Mul(inverse_max, all(0.25f))), usable);
         chi2 = hn::MulAdd(told, squares, chi2);
         count = hn::Add(count, told);
@@ -232,16 +223,6 @@ void join_row(const CurvePoints& curve, const JoinRow& row, int width) {
     }
   }
 }
-
-/// Pixels around one that are looked at together: 5 x 5, every other one, because near sums of
-/// pixels side by side share most of their measurements.
-constexpr int compared_reach = 4, compared_step = 2;
-/// Of the near sum's variance, so much is the least that its difference from the far one has.
-constexpr float least_noise_share = 0.25f;
-/// Chi^2 of a direction per degree of freedom that noise is taken to make.
-constexpr float explained_by_noise = 1.6f;
-/// Near sums of fewer standard deviations, squared, tell too little of their direction.
-constexpr float least_energy = 25.0f;
 
 void compare_sums(const NearAndFar& sums, const FilterGrid& grid, int row) {
   const Vector zero = hn::Zero(Floats()), tiny = all(1e-30f);

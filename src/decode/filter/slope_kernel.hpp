@@ -6,6 +6,25 @@
 
 namespace tofsmith {
 
+inline constexpr float min_depth_variance = 1e-8f;  // [bin^2], of scenes without noise
+
+/// Neighbours that tell the slope, and those opposite: few, because near ones of filtered pixels
+/// share their noise.
+inline constexpr std::array<WindowStep, 12> half_rings = {{{0, 3},
+                                                           {3, -3},
+                                                           {3, 0},
+                                                           {3, 3},
+                                                           {0, 6},
+                                                           {6, -6},
+                                                           {6, 0},
+                                                           {6, 6},
+                                                           {0, slope_reach},
+                                                           {slope_reach, -slope_reach},
+                                                           {slope_reach, 0},
+                                                           {slope_reach, slope_reach}}};
+/// From this one of them on pixels are so far apart that they share few measurements.
+inline constexpr std::size_t first_far_ring = 8;
+
 /// The test of depths along slopes, all in bins.
 struct SlopeTest {
   const float* depth = nullptr;
@@ -55,6 +74,16 @@ struct JoinRow {
 };
 void join_row(const CurvePoints& curve, const JoinRow& row, int width);
 
+/// Pixels around one that are looked at together: 5 x 5, every other one, because near sums of
+/// pixels side by side share most of their measurements.
+inline constexpr int compared_reach = 4, compared_step = 2;
+/// Of the near sum's variance, so much is the least that its difference from the far one has.
+inline constexpr float least_noise_share = 0.25f;
+/// Chi^2 of a direction per degree of freedom that noise is taken to make.
+inline constexpr float explained_by_noise = 1.6f;
+/// Near sums of fewer standard deviations, squared, tell too little of their direction.
+inline constexpr float least_energy = 25.0f;
+
 /// Two sums for each pixel: of near neighbours, and of these and far ones.
 struct NearAndFar {
   std::array<const float*, max_measurements> near{};
@@ -73,5 +102,15 @@ void compare_sums(const NearAndFar& sums, const FilterGrid& grid, int row);
 /// with them, of pixels around one, have other directions than the near sums by more than noise
 /// explains, so much of the near sum is kept. Needs `difference` of the rows around.
 void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row);
+
+/// What the noise of slopes adds to the variance of a sum along them,
+///   v (sum + sum_offset d^2) + v' (before + before_offset d^2),
+/// where v is the variance of the sum without it, v' that of the depth that slopes were taken from,
+/// and d how far the middle of what was added lies from the pixel, in steps of the last window.
+struct SlopeNoise {
+  float sum, sum_offset, before, before_offset;
+};
+/// For so many windows, in this round of those.
+SlopeNoise slope_noise_of(int windows, int round);
 
 }  // namespace tofsmith

@@ -14,13 +14,6 @@ namespace tofsmith {
 
 namespace {
 
-/// What the noise of slopes adds to the variance of a sum along them,
-///   v (sum + sum_offset d^2) + v' (before + before_offset d^2),
-/// where v is the variance of the sum without it, v' that of the depth that slopes were taken from,
-/// and d how far the middle of what was added lies from the pixel, in steps of the last window.
-struct SlopeNoise {
-  float sum, sum_offset, before, before_offset;
-};
 /// For one window and more. All steps are linear in the noise of depth: this is the energy of their
 /// impulse response, on a plane where all neighbours weigh alike and beside its border.
 constexpr SlopeNoise first_slope_noise[] = {
@@ -30,6 +23,10 @@ constexpr SlopeNoise later_slope_noise[] = {
     {0.005f, 0.1f, 0.003f, 0.065f}, {0.31f, 0.45f, 0.03f, 0.085f}, {0.62f, 1.48f, 0.05f, 0.19f}};
 
 }  // namespace
+
+SlopeNoise slope_noise_of(int windows, int round) {
+  return (round == 0 ? first_slope_noise : later_slope_noise)[windows - 1];
+}
 
 void Filter::Plan::find_depth(const RawView& raw, FilterPlanes& frame, int from, int into) const {
   const FilterGrid& grid = frame.grid;
@@ -119,7 +116,7 @@ void Filter::Plan::keep_near_sums(FilterPlanes& frame, int rest, int to, int win
 
 void Filter::Plan::add_slope_noise(FilterPlanes& frame, int round) const {
   const int window = options.windows - 1;
-  const SlopeNoise& noise = (round == 0 ? first_slope_noise : later_slope_noise)[window];
+  const SlopeNoise noise = slope_noise_of(options.windows, round);
   // Later rounds test depths by their noise alone.
   const bool is_last = round + 1 == options.slope_rounds;
   for_each_row(frame, [&](int row) {

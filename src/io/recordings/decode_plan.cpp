@@ -128,6 +128,7 @@ Preparation preparation_of(const DecodeRequest& request) {
                           .averaged = request.averaged,
                           .time_filter = request.time_filter,
                           .filter = request.filter,
+                          .filters_with_decoder = static_cast<bool>(request.filter_by),
                           .find_mixed = request.mixed.has_value(),
                           .undistort = request.undistort,
                           .stray_kernel = {},
@@ -146,6 +147,7 @@ MappedDecoder::MappedDecoder(const DecodeRequest& request, const AnyDecoder& dec
                              const std::string& source, int height, int width)
     : decoder_(decoder),
       decode_by_(request.decode_by),
+      filter_by_(request.filter ? request.filter_by : nullptr),
       table_(table_of(decoder)),
       maps_(load_maps(request, height, width)),
       mixed_(request.mixed) {
@@ -159,11 +161,24 @@ MappedDecoder::MappedDecoder(const DecodeRequest& request, const AnyDecoder& dec
 void MappedDecoder::decode(const RawView& raw, const Band& band, const DecodeTarget& target,
                            const DecodedView& decoded, const Progress& progress,
                            const UnfilteredPixels& unfiltered) const {
-  const auto pixels = static_cast<std::size_t>(raw.pixels());
   if (decode_by_)
     decode_by_(raw, decoded, progress);
   else
     std::visit([&](const auto& d) { d.decode(raw, decoded, progress); }, decoder_);
+  finish(raw, band, target, decoded, unfiltered);
+}
+
+void MappedDecoder::filter_and_decode(const RawView& raw, const Band& band,
+                                      const DecodeTarget& target, const DecodedView& decoded,
+                                      FilteredFrame* filtered, const Progress& progress,
+                                      const UnfilteredPixels& unfiltered) const {
+  filter_by_(raw, decoded, filtered, progress, unfiltered.mixed);
+  finish(filtered ? filtered->view() : raw, band, target, decoded, unfiltered);
+}
+
+void MappedDecoder::finish(const RawView& raw, const Band& band, const DecodeTarget& target,
+                           const DecodedView& decoded, const UnfilteredPixels& unfiltered) const {
+  const auto pixels = static_cast<std::size_t>(raw.pixels());
   const std::size_t first =
       static_cast<std::size_t>(band.first_row) * static_cast<std::size_t>(raw.width);
   if (table_.correction)
@@ -182,8 +197,21 @@ bool decode_next(PreparedFrames& input, const MappedDecoder& decoder, const Band
   if (!raw) return false;
   const std::size_t first = target.first_pixel(band);
   const DecodedView decoded = planes.view().from(first);
+  const PixelStatus* const statuses = target.find_mixed ? decoded.status : nullptr;
+  if (decoder.filters()) {
+    const bool is_wanted = target.find_mixed || planes.has(DecodedPlane::averaged);
+    FilteredFrame* const filtered = is_wanted ? &input.filtered() : nullptr;
+    decode_filtered(
+        *raw,
+        [&](const UnfilteredPixels& unfiltered, const Progress& here) {
+          decoder.filter_and_decode(*raw, band, target, decoded, filtered, here, unfiltered);
+          if (filtered) planes.keep_averaged(filtered->view(), first);
+        },
+        statuses, parts[1]);
+    return true;
+  }
   input.decode(
-      *raw, target.find_mixed ? decoded.status : nullptr,
+      *raw, statuses,
       [&](const RawView& numbers, const UnfilteredPixels& unfiltered, const Progress& here) {
         decoder.decode(numbers, band, target, decoded, here, unfiltered);
         planes.keep_averaged(numbers, first);

@@ -45,10 +45,22 @@ class MappedDecoder {
   void decode(const RawView& raw, const Band& band, const DecodeTarget& target,
               const DecodedView& decoded, const Progress& progress,
               const UnfilteredPixels& unfiltered = {}) const;
+  /// Whether it is the request's `filter_by` that filters.
+  bool filters() const { return static_cast<bool>(filter_by_); }
+  /// Filters and decodes a frame by that.
+  /// @param filtered  null: its numbers are not wanted, and mixed pixels not looked for
+  void filter_and_decode(const RawView& raw, const Band& band, const DecodeTarget& target,
+                         const DecodedView& decoded, FilteredFrame* filtered,
+                         const Progress& progress, const UnfilteredPixels& unfiltered) const;
 
  private:
+  /// What follows on decoding. @param raw  what was decoded, where mixed pixels are looked for
+  void finish(const RawView& raw, const Band& band, const DecodeTarget& target,
+              const DecodedView& decoded, const UnfilteredPixels& unfiltered) const;
+
   const AnyDecoder& decoder_;
   decltype(DecodeRequest::decode_by) decode_by_;
+  decltype(DecodeRequest::filter_by) filter_by_;  // empty without a filter
   const DecodingTable& table_;
   PixelMaps maps_;
   std::optional<MixedPixels> mixed_;  // in bands that are whole frames

@@ -135,7 +135,8 @@ PreparedFrames::PreparedFrames(Input input, const DecodingTable& table,
                                const Preparation& preparation, int recorded)
     : table_(table), preparation_(preparation), recorded_(recorded), input_(std::move(input)) {
   if (preparation.time_filter) time_filter_.emplace(table, *preparation.time_filter);
-  if (preparation.filter) filter_.emplace(table, *preparation.filter);
+  if (preparation.filter && !preparation.filters_with_decoder)
+    filter_.emplace(table, *preparation.filter);
   if (!preparation.stray_kernel.empty()) stray_light_.emplace(preparation.stray_kernel);
 }
 

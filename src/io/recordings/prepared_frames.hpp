@@ -19,6 +19,7 @@ struct Preparation {
   double averaged = 1.0;  ///< of how many measurements raw numbers are the mean as they are read
   std::optional<TimeFilterOptions> time_filter;  ///< of those means
   std::optional<FilterOptions> filter;           ///< of what comes of that
+  bool filters_with_decoder = false;             ///< it is what decodes that filters
   bool find_mixed = false;                       ///< afterwards, in whole frames
   bool undistort = false;                        ///< last of all, in whole frames
   Image<float> stray_kernel;                     ///< of StrayLight, taken off first; empty: none
@@ -82,12 +83,15 @@ class PreparedFrames {
     return (preparation_.group() > 1 ? 1.0 : 0.0) + comparisons;
   }
   double decode_effort() const {
-    return filter_ ? 9.0 * (preparation_.find_mixed ? 2.0 : 1.0) : 1.0;
+    return preparation_.filter ? 9.0 * (preparation_.find_mixed ? 2.0 : 1.0) : 1.0;
   }
   /// The raw numbers of the next band, of frame `frame` of those that come out, until the call
   /// after; none after the last.
   /// @throws IoError as the input; Interrupted if progress says so
   std::optional<RawView> next(int frame, const Progress& progress);
+
+  /// Memory for filtered numbers.
+  FilteredFrame& filtered() { return filtered_; }
 
   /// Has numbers that next() gave decoded, filtered in space if there is a filter.
   /// @param statuses, decode  as decode_filtered() takes them

@@ -1,0 +1,206 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <mutex>
+
+#include "gpu/device_decoder_plan.hpp"
+#include "gpu/device_frame.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Rows of a frame that come out at a time, at least; with those that they depend on.
+constexpr int min_band_rows = 16;
+
+/// Numbers of rows that a device wrote, to where they belong in a filtered frame.
+class FilteredRows {
+ public:
+  FilteredRows(const RawView& raw, FilteredFrame& frame) : planes_(planes_of(frame)) {
+    planes_.resize(raw.height, raw.width, raw.measurements, 1);
+    planes_.result = 0;
+  }
+
+  void fetch(const DeviceQueue& queue, const DeviceRaw& from, int first_row, int rows) {
+    const auto width = static_cast<std::size_t>(planes_.grid.width),
+               pixels = width * static_cast<std::size_t>(rows),
+               measurements = static_cast<std::size_t>(planes_.measurements);
+    numbers_.resize(pixels * measurements);
+    queue.download(*from.numbers(), numbers_.size() * sizeof(float), numbers_.data());
+    queue.download(*from.averaged(), pixels * sizeof(float), &planes_.averaged(first_row, 0));
+    const float* row_of_numbers = numbers_.data();
+    for (int k = 0; k < planes_.measurements; ++k)
+      for (int row = first_row; row < first_row + rows; ++row, row_of_numbers += width)
+        std::copy_n(row_of_numbers, width, planes_.light(0, k) + row * planes_.grid.stride);
+  }
+
+ private:
+  FilterPlanes& planes_;
+  std::vector<float> numbers_;
+};
+
+}  // namespace
+
+struct DeviceFilter::Plan {
+  Plan(const Device& device_, const Filter& filter_, const DeviceOptions& options_)
+      : device(device_),
+        filter(filter_),
+        options(options_),
+        frame(device, plan_of(filter), options.use_doubles) {}
+
+  /// Rows that come out at a time so that all fits into the memory there is to be.
+  int rows_at_a_time(const RawView& raw) const;
+  std::int64_t run(const RawView& raw, DeviceDecoder::Plan* after, const DecodedView& decoded,
+                   FilteredFrame* filtered, const Progress& progress,
+                   const Image<std::uint8_t>& left_out);
+  std::int64_t run_here(const RawView& raw, const DeviceDecoder::Plan* after,
+                        const DecodedView& decoded, FilteredFrame* filtered,
+                        const Progress& progress, const Image<std::uint8_t>& left_out);
+  std::int64_t run_band(const RawView& raw, IndexRange rows, DeviceDecoder::Plan* after,
+                        const DecodedView& decoded, FilteredRows* filtered,
+                        const Progress& progress, const Image<std::uint8_t>& left_out);
+
+  Device device;
+  const Filter& filter;
+  DeviceOptions options;
+  std::mutex mutex;  // of what follows
+  DeviceFrame frame;
+  DeviceRaw result;
+  FilteredFrame on_host;  // of small frames
+  double memory_share = 1.0;
+};
+
+int DeviceFilter::Plan::rows_at_a_time(const RawView& raw) const {
+  const double memory = memory_share * 1e6 * options.memory_mb;
+  const auto bytes = [&](int rows) { return static_cast<double>(frame.bytes(rows, raw.width)); };
+  if (bytes(raw.height) <= memory) return raw.height;
+  const double of_row = bytes(2) - bytes(1), of_none = bytes(1) - of_row;
+  const double rows = (memory - of_none) / of_row - 2.0 * DeviceFrame::reach(filter.options());
+  return static_cast<int>(std::clamp(rows, double{min_band_rows}, double(raw.height)));
+}
+
+/// Filters the rows with those that they depend on, which have been filtered or will be.
+std::int64_t DeviceFilter::Plan::run_band(const RawView& raw, IndexRange rows,
+                                          DeviceDecoder::Plan* after, const DecodedView& decoded,
+                                          FilteredRows* filtered, const Progress& progress,
+                                          const Image<std::uint8_t>& left_out) {
+  const int reach = DeviceFrame::reach(filter.options());
+  const auto first = static_cast<int>(rows.begin), count = static_cast<int>(rows.end) - first;
+  const int from = std::max(0, first - reach),
+            to = std::min(raw.height, static_cast<int>(rows.end) + reach);
+  const FilterOptions& steps = filter.options();
+  const double all_steps = steps.windows * (1 + steps.slope_rounds) + 1;
+  int done = 0;
+  frame.filter(raw, from, to - from, left_out.empty() ? nullptr : left_out.pixels.data(), [&] {
+    if (!progress) return;
+    frame.queue().finish();
+    report(progress, ++done / all_steps, "filtering");
+  });
+  const std::int64_t pixels = std::int64_t{count} * raw.width;
+  if (!after) result.reserve_planes(frame.queue(), pixels, raw.measurements);
+  const DeviceRaw& out = after ? after->tile.reserve_planes(pixels) : result;
+  frame.write(first - from, count, out);
+  frame.queue().finish();
+  if (filtered) filtered->fetch(frame.queue(), out, first, count);
+  const std::size_t first_pixel =
+      static_cast<std::size_t>(first) * static_cast<std::size_t>(raw.width);
+  return after ? after->decode_what_is_there(decoded.from(first_pixel)) : 0;
+}
+
+std::int64_t DeviceFilter::Plan::run(const RawView& raw, DeviceDecoder::Plan* after,
+                                     const DecodedView& decoded, FilteredFrame* filtered,
+                                     const Progress& progress,
+                                     const Image<std::uint8_t>& left_out) {
+  if (raw.pixels() < options.min_pixels)
+    return run_here(raw, after, decoded, filtered, progress, left_out);
+  std::optional<FilteredRows> wanted;
+  if (filtered) wanted.emplace(raw, *filtered);
+  std::int64_t left_open = 0;
+  for (std::int64_t first = 0; first < raw.height;) {
+    const int rows = rows_at_a_time(raw);
+    const IndexRange band{first, std::min<std::int64_t>(raw.height, first + rows)};
+    const auto height = static_cast<double>(raw.height);
+    const Progress here = !progress ? Progress() : [&](double fraction, std::string_view step) {
+      const double done =
+          static_cast<double>(band.begin) + fraction * static_cast<double>(band.end - band.begin);
+      return progress(done / height, step);
+    };
+    try {
+      left_open += run_band(raw, band, after, decoded, wanted ? &*wanted : nullptr, here, left_out);
+      first = band.end;
+    } catch (const OutOfDeviceMemory&) {
+      if (rows <= min_band_rows) throw;
+      frame.release();
+      result.release();
+      if (after) after->tile.release();
+      memory_share *= 0.5;
+      continue;
+    }
+    report(progress, static_cast<double>(first) / height, "filtering");
+  }
+  return left_open;
+}
+
+std::int64_t DeviceFilter::Plan::run_here(const RawView& raw, const DeviceDecoder::Plan* after,
+                                          const DecodedView& decoded, FilteredFrame* filtered,
+                                          const Progress& progress,
+                                          const Image<std::uint8_t>& left_out) {
+  FilteredFrame& numbers = filtered ? *filtered : on_host;
+  filter.apply(raw, numbers, progress, left_out);
+  if (!after) return raw.pixels();
+  after->decoder.decode(numbers.view(), decoded);
+  return raw.pixels();
+}
+
+DeviceFilter::DeviceFilter(const Device& device, const Filter& filter,
+                           const DeviceOptions& options) {
+  options.validate();
+  plan_ = std::make_unique<Plan>(device, filter, options);
+}
+DeviceFilter::~DeviceFilter() = default;
+DeviceFilter::DeviceFilter(DeviceFilter&&) noexcept = default;
+DeviceFilter& DeviceFilter::operator=(DeviceFilter&&) noexcept = default;
+
+const Device& DeviceFilter::device() const { return plan_->device; }
+
+void DeviceFilter::apply(const RawView& raw, FilteredFrame& filtered, const Progress& progress,
+                         const Image<std::uint8_t>& left_out) const {
+  require_filterable(plan_of(plan_->filter), raw, left_out);
+  const std::lock_guard lock(plan_->mutex);
+  plan_->run(raw, nullptr, {}, &filtered, progress, left_out);
+}
+
+FilteredFrame DeviceFilter::apply(const RawFrames& raw, int frame, const Progress& progress) const {
+  FilteredFrame filtered;
+  apply(view_of_frame(raw, frame), filtered, progress);
+  return filtered;
+}
+
+std::int64_t DeviceFilter::decode(const RawView& raw, const DeviceDecoder& decoder,
+                                  const DecodedView& decoded, FilteredFrame* filtered,
+                                  const Progress& progress,
+                                  const Image<std::uint8_t>& left_out) const {
+  require_filterable(plan_of(plan_->filter), raw, left_out);
+  require(&decoder.device().state() == &device().state(), "decoder's device",
+          decoder.device().info().name, "must be that of the filter, or a copy");
+  require(decoder.plan_->decoder.measurements() == raw.measurements, "decoder's measurements",
+          decoder.plan_->decoder.measurements(), "must be those of the frame");
+  const std::scoped_lock lock(plan_->mutex, decoder.plan_->mutex);
+  return plan_->run(raw, decoder.plan_.get(), decoded, filtered, progress, left_out);
+}
+
+std::optional<DeviceFilter> device_filter(std::string_view device, const Filter& filter,
+                                          const DeviceDecoder* after) {
+  if (device == "cpu") return std::nullopt;
+  DeviceOptions options;
+  if (device == "auto") options.min_pixels = auto_min_pixels_to_filter;
+  std::optional<Device> on;
+  if (after)
+    on = after->device();
+  else
+    on = device == "auto" ? Device::first_gpu() : Device::named(device);
+  return on ? std::optional<DeviceFilter>(std::in_place, *on, filter, options) : std::nullopt;
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/device_raw.hpp"
+
+#include <type_traits>
+#include <vector>
+
+#include "core/shared/pixel_runs.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Numbers of pixels first .. first + count - 1 side by side, doubles as floats.
+template <typename Number>
+auto packed(const RawView& raw, std::int64_t first, std::int64_t count) {
+  using Packed = std::conditional_t<std::is_same_v<Number, double>, float, Number>;
+  std::vector<Packed> values(static_cast<std::size_t>(count * raw.measurements));
+  for_each_run(raw, first, count, [&](const auto* from, std::int64_t length, std::int64_t done) {
+    Packed* to = &values[static_cast<std::size_t>(done * raw.measurements)];
+    for (std::int64_t i = 0; i < length; ++i)
+      for (int k = 0; k < raw.measurements; ++k)
+        *to++ = static_cast<Packed>(from[i * raw.column_stride + k * raw.measurement_stride]);
+  });
+  return values;
+}
+
+bool is_packed(const RawView& raw) {
+  return raw.measurement_stride == 1 && raw.column_stride == raw.measurements &&
+         raw.row_stride == raw.width * raw.column_stride;
+}
+
+template <typename Number>
+constexpr RawNumber raw_number_of() {
+  if (std::is_same_v<Number, std::uint16_t>) return raw_uint16;
+  if (std::is_same_v<Number, std::uint8_t>) return raw_uint8;
+  return std::is_same_v<Number, double> ? raw_rounded : raw_float;
+}
+
+}  // namespace
+
+DeviceMemory* reserve(const DeviceQueue& queue, DeviceMemory& memory, std::int64_t bytes) {
+  if (memory.bytes < static_cast<std::size_t>(bytes)) {
+    memory = DeviceMemory();  // the smaller one goes first
+    memory = queue.allocate(static_cast<std::size_t>(bytes));
+  }
+  return &memory;
+}
+
+void DeviceRaw::upload(const DeviceQueue& queue, const RawView& view, std::int64_t first,
+                       std::int64_t count) {
+  tile_ = {.pixels = static_cast<int>(count),
+           .pixel_stride = view.measurements,
+           .measurement_stride = 1,
+           .number = raw_float};
+  std::visit(
+      [&](const auto* data) {
+        using Number = std::remove_cvref_t<decltype(*data)>;
+        const auto upload_numbers = [&](const auto* numbers) {
+          const std::int64_t bytes = count * view.measurements * std::int64_t{sizeof(*numbers)};
+          queue.upload(numbers, static_cast<std::size_t>(bytes), *reserve(queue, numbers_, bytes));
+        };
+        tile_.number = raw_number_of<Number>();
+        if (is_packed(view) && !std::is_same_v<Number, double>)
+          upload_numbers(data + first * view.measurements);
+        else
+          upload_numbers(packed<Number>(view, first, count).data());
+      },
+      view.data);
+  has_averaged_ = view.averaged != nullptr;
+  const std::int64_t bytes = count * std::int64_t{sizeof(float)};
+  if (has_averaged_)
+    queue.upload(view.averaged + first, static_cast<std::size_t>(bytes),
+                 *reserve(queue, averaged_, bytes));
+}
+
+void DeviceRaw::reserve_planes(const DeviceQueue& queue, std::int64_t pixels, int measurements) {
+  tile_ = {.pixels = static_cast<int>(pixels),
+           .pixel_stride = 1,
+           .measurement_stride = static_cast<int>(pixels),
+           .number = raw_float};
+  has_averaged_ = true;
+  const std::int64_t bytes = pixels * std::int64_t{sizeof(float)};
+  reserve(queue, numbers_, bytes * measurements);
+  reserve(queue, averaged_, bytes);
+}
+
+void DeviceRaw::release() {
+  numbers_ = DeviceMemory();
+  averaged_ = DeviceMemory();
+}
+
+}  // namespace tofsmith

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "gpu/decode_parameters.h"
+#include "gpu/device_queue.hpp"
+
+namespace tofsmith {
+
+/// Memory of a device that holds at least so many bytes; what it held is lost if it grows.
+DeviceMemory* reserve(const DeviceQueue& queue, DeviceMemory& memory, std::int64_t bytes);
+
+/// Raw numbers of some pixels on a device, and of how many measurements they are the mean. Memory
+/// there grows with the most pixels.
+class DeviceRaw {
+ public:
+  /// Brings pixels first .. first + count - 1 of a frame, row by row.
+  void upload(const DeviceQueue& queue, const RawView& view, std::int64_t first,
+              std::int64_t count);
+  /// Makes room for floats, measurement after measurement, that a kernel writes; all of them are
+  /// means.
+  void reserve_planes(const DeviceQueue& queue, std::int64_t pixels, int measurements);
+  void release();
+
+  const TileParameters& tile() const { return tile_; }
+  const DeviceMemory* numbers() const { return &numbers_; }
+  /// Null where they are no means.
+  const DeviceMemory* averaged() const { return has_averaged_ ? &averaged_ : nullptr; }
+
+ private:
+  TileParameters tile_{};
+  bool has_averaged_ = false;
+  DeviceMemory numbers_, averaged_;
+};
+
+}  // namespace tofsmith

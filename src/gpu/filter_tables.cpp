@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "gpu/filter_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <span>
+
+#include "gpu/table_words.hpp"
+
+namespace tofsmith {
+
+namespace {
+
+/// Lines that kernels are compiled behind.
+class Constants {
+ public:
+  void add(const char* name, int value) { text_ += fmt::format("#define {} {}\n", name, value); }
+  /// Exactly this one.
+  void add(const char* name, float value) {
+    text_ += fmt::format("#define {} {:a}f\n", name, value);
+  }
+  void add_steps(const char* name, std::span<const WindowStep> steps) {
+    std::string rows, columns;
+    for (const WindowStep& step : steps) {
+      rows += fmt::format("{}, ", step.rows);
+      columns += fmt::format("{}, ", step.columns);
+    }
+    text_ +=
+        fmt::format("constant int {0}_rows[] = {{{1}}};\nconstant int {0}_columns[] = {{{2}}};\n",
+                    name, rows, columns);
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+std::string constants_of(const Filter::Plan& plan, bool fuses) {
+  Constants c;
+  if (fuses) c.add("FUSES_PRODUCTS", 1);
+  c.add("MEASUREMENTS", plan.measurements);
+  c.add("RANK", plan.rank);
+  c.add("PLANE_USABLE", FilterPlanes::usable);
+  c.add("PLANE_VARIANCE", FilterPlanes::variance);
+  c.add("PLANE_ENERGY", FilterPlanes::energy);
+  c.add("PLANE_INVERSE_SIGMA", FilterPlanes::inverse_sigma);
+  c.add("PLANE_SLOPE_X", FilterPlanes::energy);
+  c.add("PLANE_SLOPE_Y", FilterPlanes::inverse_sigma);
+  c.add("PLANE_DEPTH", FilterPlanes::depth);
+  c.add("PLANE_DEPTH_VARIANCE", FilterPlanes::depth_variance);
+  c.add("PLANE_SIGNAL", FilterPlanes::signal);
+  c.add("PLANE_SIGNAL_NEXT", FilterPlanes::signal_next);
+  c.add("PLANE_SHIFT", FilterPlanes::shift);
+  c.add("PLANE_BEFORE", before_plane(plan.measurements));
+  c.add("PATCH_REACH", patch_reach);
+  c.add("WINDOW_REACH", window_reach);
+  c.add("HALF_WINDOW", static_cast<int>(half_window.size()));
+  c.add_steps("half_window", half_window);
+  c.add("HALF_RINGS", static_cast<int>(half_rings.size()));
+  c.add_steps("half_ring", half_rings);
+  c.add("FIRST_FAR_RING", static_cast<int>(first_far_ring));
+  c.add("MIN_DEPTH_VARIANCE", min_depth_variance);
+  c.add("COMPARED_REACH", compared_reach);
+  c.add("COMPARED_STEP", compared_step);
+  c.add("LEAST_NOISE_SHARE", least_noise_share);
+  c.add("EXPLAINED_BY_NOISE", explained_by_noise);
+  c.add("LEAST_ENERGY", least_energy);
+  c.add("EVIDENT_SIGMA", evident_sigma);
+  c.add("OWN_LIGHT_REACH", own_light_reach);
+  c.add("OWN_LIGHT_LEAST_SIGMA", own_light_least_sigma);
+  c.add("OWN_LIGHT_LEAST_SHARE", own_light_least_share);
+  c.add("OWN_LIGHT_SHARE", own_light_share);
+  c.add("OWN_LIGHT_BELOW_MEAN", own_light_below_mean);
+  c.add("OWN_LIGHT_NOISE", own_light_noise);
+  return c.text();
+}
+
+}  // namespace
+
+int light_plane(int set, int measurements) { return FilterPlanes::scalars + set * measurements; }
+
+int before_plane(int measurements) { return light_plane(FilterPlanes::light_sets, measurements); }
+
+FilterTables::FilterTables(const Filter::Plan& plan, bool fuses)
+    : source(constants_of(plan, fuses) + std::string(filter_kernels)) {
+  TableWords tables(words);
+  std::vector<float> dark_e, gain_e_per_raw, dark_raw, raw_per_e;
+  for (int k = 0; k < plan.measurements; ++k) {
+    const RawScale& scale = plan.scale;
+    dark_e.push_back(static_cast<float>(scale.electrons(0.0, k)));
+    gain_e_per_raw.push_back(static_cast<float>(scale.electrons(1.0, k) - scale.electrons(0.0, k)));
+    dark_raw.push_back(static_cast<float>(scale.raw(0.0, k)));
+    raw_per_e.push_back(static_cast<float>(scale.raw(1.0, k) - scale.raw(0.0, k)));
+  }
+  const FilterOptions& options = plan.options;
+  FilterParameters& p = parameters;
+  p.to_coordinates = tables.add(plan.to_coordinates);
+  p.to_measurements = tables.add(plan.to_measurements);
+  p.curve = tables.add(plan.curve);
+  p.dark_e = tables.add(dark_e);
+  p.gain_e_per_raw = tables.add(gain_e_per_raw);
+  p.dark_raw = tables.add(dark_raw);
+  p.raw_per_e = tables.add(raw_per_e);
+  p.shot_share = tables.add(plan.hidden.shot_share);
+  p.samples = plan.samples();
+  p.bins_per_m = static_cast<float>(1.0 / plan.decoder.table().bin_m());
+  p.clipped =
+      plan.decoder.table().saturation_level.value_or(std::numeric_limits<float>::infinity());
+  p.floor_variance_e2 = plan.hidden.floor_variance_e2;
+  p.shot_per_signal = plan.hidden.shot_per_signal;
+  p.mean_curve_square = plan.hidden.mean_curve_square;
+  p.has_own_shot_noise = plan.has_own_shot_noise ? 1 : 0;
+  p.inverse_max_difference = 1.0f / static_cast<float>(options.max_difference_sigma);
+  p.same_depth_sigma2 = static_cast<float>(options.same_depth_sigma * options.same_depth_sigma);
+  p.own_light_sigma = static_cast<float>(options.own_light_sigma);
+}
+
+}  // namespace tofsmith

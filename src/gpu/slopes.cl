@@ -1,0 +1,336 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// A Filter's rounds along slopes, as slope_rounds.cpp and slope_kernel.cpp do them. Compiled behind
+// windows.cl.
+
+/// Depths and deviations that were decoded, in bins; where there are none, pixels are not usable.
+kernel void take_depth(const struct FilterParameters p, Floats depth_m, Floats deviation_m,
+                       global float* planes) {
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1);
+  if (x >= p.width || y >= p.height) return;
+  const int at = y * p.stride + x, pixel = y * p.width + x;
+  const Plane usable = plane_of(&p, planes, PLANE_USABLE);
+  const float depth = depth_m[pixel], deviation = deviation_m[pixel] * p.bins_per_m;
+  const bool is_known = usable[at] > 0.0f && isfinite(depth) && isfinite(deviation);
+  usable[at] = is_known ? 1.0f : 0.0f;
+  plane_of(&p, planes, PLANE_DEPTH)[at] = is_known ? depth * p.bins_per_m : 0.0f;
+  plane_of(&p, planes, PLANE_DEPTH_VARIANCE)[at] = is_known ? deviation * deviation : 1.0f;
+}
+
+/// A difference of depths, of a period's bins, as the nearest way round.
+float nearest(float difference, float samples, float per_sample) {
+  return product_plus(-rint(difference * per_sample), samples, difference);
+}
+
+// ---- Slopes.
+
+/// Sums of a plane's slopes, weighted: of x^2, x y, y^2, x d, y d.
+struct SlopeSums {
+  float xx, xy, yy, xd, yd;
+};
+
+void add_slope(struct SlopeSums* s, float weight, float x, float y, float difference) {
+  const float d = weight * difference;
+  s->xx = product_plus(weight, x * x, s->xx);
+  s->xy = product_plus(weight, x * y, s->xy);
+  s->yy = product_plus(weight, y * y, s->yy);
+  s->xd = product_plus(d, x, s->xd);
+  s->yd = product_plus(d, y, s->yd);
+}
+
+/// One direction alone tells nothing of the other.
+float2 slopes_of(const struct SlopeSums* s) {
+  const float little = product_plus(s->xx + s->yy, 1e-4f, 1e-20f);
+  const float a = s->xx + little, b = s->yy + little;
+  const float inverse = 1.0f / product_plus(-s->xy, s->xy, a * b);
+  return (float2)(product_plus(-s->xy, s->yd, b * s->xd) * inverse,
+                  product_plus(-s->xy, s->xd, a * s->yd) * inverse);
+}
+
+/// What a neighbour says of a pixel's slope: how much farther it is, and its variance.
+struct Neighbour {
+  float difference, noise, usable;
+};
+
+struct Neighbour neighbour_of(const struct FilterParameters* p, global float* planes, int at,
+                              int other) {
+  const Plane depth = plane_of(p, planes, PLANE_DEPTH);
+  const float samples = (float)p->samples;
+  const float variance = plane_of(p, planes, PLANE_DEPTH_VARIANCE)[other];
+  struct Neighbour n;
+  n.difference = nearest(depth[other] - depth[at], samples, 1.0f / samples);
+  n.noise = LARGER(variance, MIN_DEPTH_VARIANCE);
+  n.usable = plane_of(p, planes, PLANE_USABLE)[other];
+  return n;
+}
+
+kernel void find_slopes(const struct FilterParameters p, global float* planes) {
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1);
+  if (x >= p.width || y >= p.height) return;
+  const int at = y * p.stride + x;
+  const float variance = plane_of(&p, planes, PLANE_DEPTH_VARIANCE)[at];
+  const float inverse_max = 1.0f / (4.0f * p.same_depth_sigma2);
+  // Opposite neighbours that differ from the pixel by as much in opposite ways, ..
+  struct SlopeSums pairs = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  for (int i = 0; i < HALF_RINGS; ++i) {
+    const int away = half_ring_rows[i] * p.stride + half_ring_columns[i];
+    const struct Neighbour ahead = neighbour_of(&p, planes, at, at + away);
+    const struct Neighbour behind = neighbour_of(&p, planes, at, at - away);
+    const float both = ahead.usable * behind.usable;
+    const float bend = ahead.difference + behind.difference, noise = ahead.noise + behind.noise;
+    const float all_noise = product_plus(variance, 4.0f, noise);
+    const float w = weight_of(bend * bend / all_noise, inverse_max) * both / noise;
+    add_slope(&pairs, w, (float)half_ring_columns[i], (float)half_ring_rows[i],
+              (ahead.difference - behind.difference) * 0.5f);
+  }
+  float2 slopes = slopes_of(&pairs);
+  // .. then every neighbour that the plane so found explains.
+  struct SlopeSums singles = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  float chi2 = 0.0f, count = 0.0f;
+  for (int i = 0; i < 2 * HALF_RINGS; ++i) {
+    const int sign = i % 2 == 0 ? 1 : -1;
+    const int rows = sign * half_ring_rows[i / 2], columns = sign * half_ring_columns[i / 2];
+    const struct Neighbour n = neighbour_of(&p, planes, at, at + rows * p.stride + columns);
+    const float expected =
+        product_plus(slopes.x, (float)columns, slopes.y * (float)rows);
+    const float beyond = n.difference - expected;
+    const float squares = beyond * beyond / (n.noise + variance);
+    const float w = weight_of(squares, inverse_max) * n.usable / n.noise;
+    add_slope(&singles, w, (float)columns, (float)rows, n.difference);
+    if (i < 2 * FIRST_FAR_RING) continue;
+    const float told = weight_of(squares, inverse_max * 0.25f) * n.usable;
+    chi2 = product_plus(told, squares, chi2);
+    count += told;
+  }
+  slopes = slopes_of(&singles);
+  // How much more the depths of far pixels of the surface scatter about the plane.
+  const float excess = chi2 / LARGER(count, 1e-6f);
+  plane_of(&p, planes, PLANE_BEFORE)[at] *= LARGER(excess, 1.0f);
+  const bool usable = plane_of(&p, planes, PLANE_USABLE)[at] > 0.0f;
+  plane_of(&p, planes, PLANE_SLOPE_X)[at] = usable ? slopes.x : 0.0f;
+  plane_of(&p, planes, PLANE_SLOPE_Y)[at] = usable ? slopes.y : 0.0f;
+}
+
+// ---- Light along the curve.
+
+/// A place between two bins, as where their points stand in the curve.
+struct CurvePlace {
+  int from, to;
+  float share;
+};
+
+/// @param bin  in [-N, 2 N)
+struct CurvePlace place_of(const struct FilterParameters* p, float bin) {
+  const float samples = (float)p->samples;
+  bin += bin < 0.0f ? samples : 0.0f;
+  bin -= bin >= samples ? samples : 0.0f;
+  const int at = clamp((int)bin, 0, p->samples - 1);
+  struct CurvePlace place;
+  place.share = bin - (float)at;
+  place.from = p->curve + at * MEASUREMENTS;
+  place.to = p->curve + (at < p->samples - 1 ? at + 1 : 0) * MEASUREMENTS;
+  return place;
+}
+
+float on_curve(const struct CurvePlace* place, Floats tables, int k) {
+  const float a = tables[place->from + k], b = tables[place->to + k];
+  return product_plus(place->share, b - a, a);
+}
+
+/// Light into signal along its depth and the rest; without a depth all is rest.
+kernel void split(const struct FilterParameters p, const struct SlopeParameters w, Floats tables,
+                  global float* planes) {
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1);
+  if (x >= p.width || y >= p.height) return;
+  const int at = y * p.stride + x;
+  const struct CurvePlace place = place_of(&p, plane_of(&p, planes, PLANE_DEPTH)[at]);
+  float along = 0.0f, own = 1e-30f;
+  for (int k = 0; k < RANK; ++k) {
+    const float point = on_curve(&place, tables, k);
+    along = product_plus(point, plane_of(&p, planes, w.light + k)[at], along);
+    own = product_plus(point, point, own);
+  }
+  const bool is_guided = plane_of(&p, planes, PLANE_USABLE)[at] > 0.0f;
+  const float signal = is_guided ? along / own : 0.0f;
+  plane_of(&p, planes, PLANE_SIGNAL)[at] = signal;
+  for (int k = 0; k < MEASUREMENTS; ++k) {
+    const float in = plane_of(&p, planes, w.light + k)[at];
+    plane_of(&p, planes, w.rest + k)[at] =
+        product_plus(-signal, on_curve(&place, tables, k), in);
+  }
+}
+
+/// How far a neighbour ahead lies beyond the slope, and the weight of both.
+struct SlopePair {
+  float weight, shifted;
+};
+
+struct SlopePair pair_of(const struct FilterParameters* p, global float* planes, int at, int away,
+                         float half_down, float half_right) {
+  const int other = at + away;
+  const Plane slope_x = plane_of(p, planes, PLANE_SLOPE_X);
+  const Plane slope_y = plane_of(p, planes, PLANE_SLOPE_Y);
+  const Plane depth = plane_of(p, planes, PLANE_DEPTH);
+  const Plane variances = plane_of(p, planes, PLANE_DEPTH_VARIANCE);
+  const Plane usable = plane_of(p, planes, PLANE_USABLE);
+  const float across = slope_x[at] + slope_x[other], along = slope_y[at] + slope_y[other];
+  const float expected = product_plus(across, half_right, along * half_down);
+  const float difference = (depth[other] - depth[at]) - expected;
+  const float samples = (float)p->samples;
+  const float beyond = nearest(difference, samples, 1.0f / samples);
+  const float both = variances[at] + variances[other];
+  const float variance = LARGER(both, MIN_DEPTH_VARIANCE);
+  const float squares = beyond * beyond / (p->same_depth_sigma2 * variance);
+  struct SlopePair pair;
+  pair.weight =
+      weight_of(squares - 1.0f, p->inverse_max_difference) * (usable[at] * usable[other]);
+  pair.shifted = pair.weight * beyond;
+  return pair;
+}
+
+/// Adds a pixel's signal to the rest of its light, where its depth is and `shift` / signal beyond.
+void join(const struct FilterParameters* p, Floats tables, global float* planes, int light, int at,
+          float signal, float shift) {
+  // Where noise leaves next to no signal, there is nothing to be moved.
+  const float beyond = signal > fabs(shift) * 0.25f ? shift / signal : 0.0f;
+  const struct CurvePlace place = place_of(p, plane_of(p, planes, PLANE_DEPTH)[at] + beyond);
+  const float added = plane_of(p, planes, PLANE_USABLE)[at] > 0.0f ? signal : 0.0f;
+  for (int k = 0; k < MEASUREMENTS; ++k) {
+    const Plane plane = plane_of(p, planes, light + k);
+    plane[at] = product_plus(added, on_curve(&place, tables, k), plane[at]);
+  }
+}
+
+/// One window along slopes: a pixel finds the weights of all 24 neighbours and adds them. After the
+/// last, `signal_next` says how far from the pixel the middle of what was added lies, squared.
+kernel void add_along_slopes(const struct FilterParameters p, const struct SlopeParameters w,
+                             Floats tables, global float* planes) {
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1);
+  if (x >= p.width || y >= p.height) return;
+  const int at = y * p.stride + x;
+  const Plane variances = plane_of(&p, planes, w.variance_in);
+  const Plane signals = plane_of(&p, planes, PLANE_SIGNAL);
+  float sum[MEASUREMENTS];
+  for (int k = 0; k < MEASUREMENTS; ++k) sum[k] = plane_of(&p, planes, w.rest + k)[at];
+  float signal = signals[at], variance = variances[at], weight = 1.0f, shift = 0.0f;
+  float middle = signal, across = 0.0f, along = 0.0f;
+  for (int i = 0; i < HALF_WINDOW; ++i) {
+    const int down = half_window_rows[i] * w.step, right = half_window_columns[i] * w.step;
+    const int away = down * p.stride + right;
+    const float half_down = 0.5f * (float)down, half_right = 0.5f * (float)right;
+    const struct SlopePair ahead = pair_of(&p, planes, at, away, half_down, half_right);
+    const struct SlopePair behind = pair_of(&p, planes, at - away, away, half_down, half_right);
+    weight += ahead.weight + behind.weight;
+    variance = product_plus(ahead.weight * ahead.weight, variances[at + away], variance);
+    variance = product_plus(behind.weight * behind.weight, variances[at - away], variance);
+    const float signal_ahead = signals[at + away], signal_behind = signals[at - away];
+    signal = product_plus(ahead.weight, signal_ahead, signal);
+    signal = product_plus(behind.weight, signal_behind, signal);
+    // Seen from the neighbour behind, the pixel lies as far on the other side.
+    shift = product_plus(ahead.shifted, signal_ahead, shift);
+    shift = product_plus(-behind.shifted, signal_behind, shift);
+    const float of_ahead = ahead.weight * signal_ahead, of_behind = behind.weight * signal_behind;
+    const float apart = of_ahead - of_behind;
+    middle += of_ahead + of_behind;
+    across = product_plus(apart, (float)half_window_columns[i], across);
+    along = product_plus(apart, (float)half_window_rows[i], along);
+    for (int k = 0; k < MEASUREMENTS; ++k) {
+      const Plane in = plane_of(&p, planes, w.rest + k);
+      sum[k] = product_plus(ahead.weight, in[at + away], sum[k]);
+      sum[k] = product_plus(behind.weight, in[at - away], sum[k]);
+    }
+  }
+  const float inverse = 1.0f / weight;
+  plane_of(&p, planes, w.variance_out)[at] = variance * (inverse * inverse);
+  for (int k = 0; k < MEASUREMENTS; ++k) plane_of(&p, planes, w.to + k)[at] = sum[k] * inverse;
+  join(&p, tables, planes, w.to, at, signal * inverse, shift * inverse);
+  if (!w.is_last) return;
+  const float squares = product_plus(across, across, along * along);
+  const float most = middle * middle * (float)(WINDOW_REACH * WINDOW_REACH);
+  const float least = middle * middle;
+  plane_of(&p, planes, PLANE_SIGNAL_NEXT)[at] = SMALLER(squares, most) / LARGER(least, 1e-30f);
+}
+
+// ---- Near sums that are kept.
+
+/// Chi^2 of the directions of the sums before a window, whose light is made whole again, and after.
+kernel void compare_sums(const struct FilterParameters p, const struct SlopeParameters w,
+                         Floats tables, global float* planes) {
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1);
+  if (x >= p.width || y >= p.height) return;
+  const int at = y * p.stride + x;
+  join(&p, tables, planes, w.rest, at, plane_of(&p, planes, PLANE_SIGNAL)[at], 0.0f);
+  float far2 = 0.0f, dot_product = 0.0f;
+  for (int j = 0; j < RANK; ++j) {
+    const float far = plane_of(&p, planes, w.to + j)[at];
+    far2 = product_plus(far, far, far2);
+    dot_product = product_plus(plane_of(&p, planes, w.rest + j)[at], far, dot_product);
+  }
+  // What of the near sum is not along the far one.
+  const float along = LARGER(dot_product, 0.0f) / LARGER(far2, 1e-30f);
+  float across = 0.0f;
+  for (int j = 0; j < RANK; ++j) {
+    const float beside = product_plus(-along, plane_of(&p, planes, w.to + j)[at],
+                                      plane_of(&p, planes, w.rest + j)[at]);
+    across = product_plus(beside, beside, across);
+  }
+  // The far sum holds the near one, so their difference has less noise than that has.
+  const float variance = plane_of(&p, planes, w.variance_in)[at];
+  const float near_variance = LARGER(variance, 1e-12f);
+  const float less = near_variance - plane_of(&p, planes, w.variance_out)[at];
+  const float least = near_variance * LEAST_NOISE_SHARE, noise = LARGER(less, least);
+  const bool is_told = plane_of(&p, planes, PLANE_USABLE)[at] > 0.0f &&
+                       far2 > near_variance * LEAST_ENERGY;
+  plane_of(&p, planes, PLANE_SHIFT)[at] = is_told ? across / noise : 0.0f;
+}
+
+kernel void keep_near(const struct FilterParameters p, const struct SlopeParameters w,
+                      global float* planes) {
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1);
+  if (x >= p.width || y >= p.height) return;
+  const int at = y * p.stride + x;
+  const Plane usable = plane_of(&p, planes, PLANE_USABLE);
+  const Plane difference = plane_of(&p, planes, PLANE_SHIFT);
+  float chi2 = 0.0f, count = 0.0f;
+  for (int dy = -COMPARED_REACH; dy <= COMPARED_REACH; dy += COMPARED_STEP)
+    for (int dx = -COMPARED_REACH; dx <= COMPARED_REACH; dx += COMPARED_STEP) {
+      const int pixel = at + dy * p.stride + dx;
+      chi2 = product_plus(usable[pixel], difference[pixel], chi2);
+      count += usable[pixel];
+    }
+  const float noise = EXPLAINED_BY_NOISE * (float)(RANK - 1);
+  const float any = product_plus(-noise, count / LARGER(chi2, 1e-30f), 1.0f);
+  const float kept = LARGER(any, 0.0f);
+  plane_of(&p, planes, PLANE_SIGNAL)[at] = kept;
+  if (kept <= 0.0f) return;
+  for (int k = 0; k < MEASUREMENTS; ++k) {
+    const Plane to = plane_of(&p, planes, w.to + k);
+    const float far = to[at];
+    to[at] = product_plus(kept, plane_of(&p, planes, w.rest + k)[at] - far, far);
+  }
+  // The far sum is a mean of all: its covariance with the near one is its own variance. Where noise
+  // alone has some of the near sum kept, it was so much larger than usual.
+  const Plane far_variance = plane_of(&p, planes, w.variance_out);
+  const float far = far_variance[at];
+  const float more = plane_of(&p, planes, w.variance_in)[at] - far;
+  const float beyond = LARGER(more, 0.0f), share2 = kept * kept * EXPLAINED_BY_NOISE;
+  far_variance[at] = product_plus(share2, beyond, far);
+}
+
+/// What the noise of slopes adds to the variance of the sums of a round.
+kernel void add_slope_noise(const struct FilterParameters p, const struct SlopeNoiseParameters n,
+                            global float* planes) {
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1);
+  if (x >= p.width || y >= p.height) return;
+  const int at = y * p.stride + x;
+  if (!(plane_of(&p, planes, PLANE_USABLE)[at] > 0.0f)) return;
+  const float far_share =
+      n.has_near_share ? 1.0f - plane_of(&p, planes, PLANE_SIGNAL)[at] : 1.0f;
+  const float d2 = n.is_last ? plane_of(&p, planes, PLANE_SIGNAL_NEXT)[at] : 0.0f;
+  const float of_sum = n.sum + n.sum_offset * d2;
+  const float of_before = n.is_last ? n.before + n.before_offset * d2 : 0.0f;
+  const Plane variance = plane_of(&p, planes, n.variance);
+  const float before = plane_of(&p, planes, PLANE_BEFORE)[at];
+  variance[at] +=
+      far_share * far_share * (of_sum * variance[at] + of_before * before);
+}

@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// Devices that fail half-way: functions of OpenCL stand here in front of the loader's own, and give
+// an error where a test says so.
+#if __has_include(<CL/cl.h>)
+#include <dlfcn.h>
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
+
+#include "device_setup.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+namespace {
+
+/// Which calls fail, of those that work on the device.
+struct Failure {
+  int first = std::numeric_limits<int>::max();
+  int last = std::numeric_limits<int>::max();
+  cl_int error = CL_SUCCESS;
+  int calls = 0;
+
+  /// The error of the next call.
+  cl_int next() {
+    const int call = calls++;
+    return call >= first && call <= last ? error : CL_SUCCESS;
+  }
+};
+Failure failure;
+
+template <typename Function>
+Function* real(const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+}
+
+}  // namespace
+}  // namespace tofsmith
+
+#define REAL(function) tofsmith::real<decltype(function)>(#function)
+
+extern "C" {
+
+cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
+                              const size_t* offset, const size_t* global, const size_t* local,
+                              cl_uint waits, const cl_event* list, cl_event* event) {
+  if (const cl_int error = tofsmith::failure.next()) return error;
+  return REAL(clEnqueueNDRangeKernel)(queue, kernel, dimensions, offset, global, local, waits, list,
+                                      event);
+}
+
+cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem memory, cl_bool blocks, size_t offset,
+                           size_t bytes, void* to, cl_uint waits, const cl_event* list,
+                           cl_event* event) {
+  if (const cl_int error = tofsmith::failure.next()) return error;
+  return REAL(clEnqueueReadBuffer)(queue, memory, blocks, offset, bytes, to, waits, list, event);
+}
+
+cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem memory, cl_bool blocks, size_t offset,
+                            size_t bytes, const void* from, cl_uint waits, const cl_event* list,
+                            cl_event* event) {
+  if (const cl_int error = tofsmith::failure.next()) return error;
+  return REAL(clEnqueueWriteBuffer)(queue, memory, blocks, offset, bytes, from, waits, list, event);
+}
+
+cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem memory, const void* pattern,
+                           size_t pattern_bytes, size_t offset, size_t bytes, cl_uint waits,
+                           const cl_event* list, cl_event* event) {
+  if (const cl_int error = tofsmith::failure.next()) return error;
+  return REAL(clEnqueueFillBuffer)(queue, memory, pattern, pattern_bytes, offset, bytes, waits,
+                                   list, event);
+}
+
+cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t bytes, void* from,
+                      cl_int* error) {
+  *error = tofsmith::failure.next();
+  return *error ? nullptr : REAL(clCreateBuffer)(context, flags, bytes, from, error);
+}
+
+cl_int clFinish(cl_command_queue queue) {
+  if (const cl_int error = tofsmith::failure.next()) return error;
+  return REAL(clFinish)(queue);
+}
+
+}  // extern "C"
+
+namespace tofsmith {
+namespace {
+
+/// A frame, and what the processor makes of it.
+class FailingDevice : public OnDevice {
+ protected:
+  static constexpr int height = 90, width = 30;
+
+  FailingDevice()
+      : setup_("hamiltonian-k4", camera_with("paper-10f0")),
+        filter_(setup_.decoder.table()),
+        raw_(noisy_pixels(setup_.decoder.table(), 1e5, 1e4, height * width, 3)),
+        expected_(raw_.size() / 4) {
+    setup_.decoder.decode(filter_.apply(frame(), 0).view(), expected_.view());
+  }
+  void SetUp() override {
+    OnDevice::SetUp();
+    failure = {};
+  }
+  void TearDown() override { failure = {}; }
+
+  RawFrames frame() const {
+    return {.frames = 1, .height = height, .width = width, .measurements = 4, .values = raw_};
+  }
+  RawView view() const { return RawView::interleaved(raw_.data(), height, width, 4); }
+  /// Filters and decodes a frame on the device. @return whether the device failed
+  bool fails(const DeviceFilter& filter, const DeviceDecoder& decoder, Outputs& outputs) const {
+    try {
+      filter.decode(view(), decoder, outputs.view());
+      return false;
+    } catch (const IoError& error) {
+      EXPECT_NE(std::string(error.what()).find(device().info().name), std::string::npos);
+      return true;
+    }
+  }
+
+  DecodeSetup setup_;
+  Filter filter_;
+  std::vector<float> raw_;
+  Outputs expected_;
+};
+
+TEST_F(FailingDevice, IsAnErrorWhereverItFailsAndWorksAgainWhenItIsBack) {
+  for (const cl_int error : {CL_DEVICE_NOT_AVAILABLE, CL_INVALID_COMMAND_QUEUE})
+    for (int first = 0;; first += first < 25 ? 1 : 7) {
+      const DeviceDecoder decoder(device(), setup_.decoder);
+      const DeviceFilter filter(device(), filter_);
+      Outputs outputs(expected_.bin.size());
+      failure = {.first = first, .error = error};
+      const bool has_failed = fails(filter, decoder, outputs);
+      const int calls = failure.calls;
+      failure = {};
+      EXPECT_FALSE(has_failed && fails(filter, decoder, outputs)) << first;
+      expect_alike(device().info(), true, outputs, expected_, 1e6);
+      EXPECT_EQ(has_failed, first < calls);
+      if (!has_failed) break;
+    }
+}
+
+TEST_F(FailingDevice, DecodesWhatItDecodedInPartsWhereverItFails) {
+  setup_.decoder.decode(view(), expected_.view());
+  const DeviceDecoder decoder(device(), setup_.decoder, {.memory_mb = 1e-3});
+  for (const cl_int error : {CL_DEVICE_NOT_AVAILABLE, CL_OUT_OF_RESOURCES})
+    for (int first = 0;; ++first) {
+      Outputs outputs(expected_.bin.size());
+      failure = {.first = first, .last = first, .error = error};
+      bool has_failed = false;
+      try {
+        decoder.decode(view(), outputs.view());
+      } catch (const IoError&) {
+        has_failed = true;
+      }
+      ASSERT_EQ(has_failed, failure.calls > first);
+      if (!has_failed) break;
+      failure = {};
+      decoder.decode(view(), outputs.view());
+      expect_alike(device().info(), true, outputs, expected_, 1e6);
+    }
+}
+
+TEST_F(FailingDevice, ThatLacksMemoryOnceHasTheRestInParts) {
+  for (const cl_int error : {CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_OUT_OF_RESOURCES})
+    for (int call = 0; call < 60; call += call < 25 ? 1 : 7) {
+      const DeviceDecoder decoder(device(), setup_.decoder);
+      const DeviceFilter filter(device(), filter_);
+      Outputs outputs(expected_.bin.size());
+      failure = {.first = call, .last = call, .error = error};
+      EXPECT_FALSE(fails(filter, decoder, outputs)) << call;
+      failure = {};
+      expect_alike(device().info(), true, outputs, expected_, 1e6);
+    }
+}
+
+TEST_F(FailingDevice, ThatLacksMemoryForAllIsAnError) {
+  const DeviceDecoder decoder(device(), setup_.decoder);
+  const DeviceFilter filter(device(), filter_);
+  Outputs outputs(expected_.bin.size());
+  failure = {.first = 0, .error = CL_OUT_OF_RESOURCES};
+  EXPECT_TRUE(fails(filter, decoder, outputs));
+  EXPECT_THROW(decoder.decode(view(), outputs.view()), IoError);
+  failure = {.first = 0, .error = CL_DEVICE_NOT_AVAILABLE};
+  EXPECT_THROW(DeviceFilter(device(), filter_), IoError);
+  EXPECT_THROW(DeviceDecoder(device(), setup_.decoder), IoError);
+}
+
+}  // namespace
+}  // namespace tofsmith
+#endif

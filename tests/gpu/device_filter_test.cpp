@@ -1,0 +1,282 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// What a device filters against what the Filter does.
+#include <cmath>
+#include <limits>
+
+#include "device_setup.hpp"
+#include "each_target.hpp"
+#include "random_codes.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+namespace {
+
+using DeviceFiltering = OnDevice;
+
+/// Surfaces that slant, an edge, a dark part, and one where depth begins anew; dim and bright.
+RawFrames frame_of_surfaces(const DecodingTable& table, int height, int width,
+                            std::uint64_t seed = 1) {
+  const double samples = table.samples();
+  return frame_by_pixel(
+      table.measurements(), height, width, seed,
+      [&](int y, int x, RandomStream& random, std::vector<float>& raw) {
+        const bool is_near = 3 * x < width + y % 7;
+        const double bin =
+            is_near ? 0.2 * samples + 0.002 * samples * y : 0.95 * samples + 0.003 * samples * x;
+        const bool is_dark = 5 * y > 4 * height && 2 * x > width;
+        const double signal = is_dark ? 0.0 : is_near ? 2e4 : 4e3 + 1e3 * (y % 50);
+        append_noisy_pixel(table, signal, 1e4, std::fmod(bin, samples), random, raw);
+      });
+}
+
+/// Pixels that are saturated or no numbers, alone and side by side.
+void spoil(RawFrames& raw, float saturated) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  for (std::size_t i = 0; i < raw.values.size(); ++i)
+    if (i % 97 == 5) raw.values[i] = i % 2 == 0 ? nan : saturated;
+  for (std::size_t i = raw.values.size() / 3; i < raw.values.size() / 3 + 40; ++i)
+    raw.values[i] = std::numeric_limits<float>::infinity();
+}
+
+/// Of numbers and of how many measurements they are the mean: the share that differs by more than
+/// `most` of what they are.
+double share_beyond(const FilteredFrame& a, const FilteredFrame& b, double most) {
+  const RawFrames values = a.values(), expected = b.values();
+  std::size_t count = 0;
+  const auto differ = [&](float x, float y) {
+    if (std::isnan(x) || std::isnan(y)) return std::isnan(x) != std::isnan(y);
+    return x != y && !(std::abs(x - y) <= most * std::abs(y));
+  };
+  const auto compare = [&](const std::vector<float>& x, const std::vector<float>& y) {
+    for (std::size_t i = 0; i < x.size(); ++i) count += differ(x[i], y[i]);
+  };
+  compare(values.values, expected.values);
+  compare(a.averaged().pixels, b.averaged().pixels);
+  return static_cast<double>(count) /
+         static_cast<double>(values.values.size() + b.averaged().size());
+}
+
+/// What is seen of devices that round otherwise; a frame of few pixels may have more.
+void expect_near(const FilteredFrame& a, const FilteredFrame& b) {
+  EXPECT_LT(share_beyond(a, b, 1e-4), 0.06);
+  EXPECT_LT(share_beyond(a, b, 1e-3), 0.002);
+}
+
+/// The same bits where the device divides as the processor does.
+void expect_alike(const Device& device, const FilteredFrame& a, const FilteredFrame& b) {
+  if (!device.info().divides_as_processor || !device.info().has_doubles) return expect_near(a, b);
+  EXPECT_EQ(share_beyond(a, b, 0.0), 0.0);
+}
+
+/// Filtered, and filtered and decoded in one.
+void expect_what_the_filter_gives(const Device& device, const DecodingTable& table,
+                                  const FilterOptions& options, const RawView& raw,
+                                  const DeviceOptions& on_device_options = {},
+                                  const Image<std::uint8_t>& left_out = {}) {
+  const Filter filter(table, options);
+  const DeviceFilter on_device(device, filter, on_device_options);
+  FilteredFrame filtered, expected;
+  filter.apply(raw, expected, {}, left_out);
+  on_device.apply(raw, filtered, {}, left_out);
+  expect_alike(device, filtered, expected);
+
+  const Decoder decoder(table);
+  const DeviceDecoder after(device, decoder);
+  Outputs outputs(static_cast<std::size_t>(raw.pixels())), expected_outputs = outputs;
+  FilteredFrame again;
+  on_device.decode(raw, after, outputs.view(), &again, {}, left_out);
+  expect_alike(device, again, expected);
+  decoder.decode(again.view(), expected_outputs.view());
+  tofsmith::expect_alike(device.info(), true, outputs, expected_outputs, 1e6);
+}
+
+struct Case {
+  const char* code;
+  Camera camera;
+};
+
+std::vector<Case> cases() {
+  Camera counts = camera_with("paper-10f0");
+  counts.sensor.adc_bits = 12;
+  counts.sensor.gain_e_per_dn = 2.0;
+  counts.sensor.black_level_dn = 40.0;
+  counts.sensor.dark_current_e_per_s = 1e3;
+  return {{"hamiltonian-k4", camera_with("paper-10f0")},
+          {"hamiltonian-k3", camera_with("paper-10f0")},
+          {"multifrequency-k5", counts},
+          {"square-k4", camera_with("paper-10f0", 2, Readout::difference)}};
+}
+
+TEST_F(DeviceFiltering, GivesTheNumbersOfTheFilter) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.code);
+    const DecodeSetup setup(c.code, c.camera);
+    DecodingTable table = setup.decoder.table();
+    table.saturation_level = 5e4f;
+    RawFrames raw = frame_of_surfaces(table, 71, 85);
+    spoil(raw, 5e4f);
+    for (const FilterStrength strength : all_filter_strengths) {
+      SCOPED_TRACE(name_of(strength));
+      expect_what_the_filter_gives(device(), table, FilterOptions::of(strength),
+                                   view_of_frame(raw, 0));
+    }
+  }
+}
+
+TEST_F(DeviceFiltering, RoundsAsTheProcessorsInstructionsDo) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const RawFrames raw = frame_of_surfaces(setup.decoder.table(), 40, 50);
+  for_each_target([&] {
+    expect_what_the_filter_gives(device(), setup.decoder.table(), {}, view_of_frame(raw, 0));
+  });
+}
+
+// As a device does that rounds otherwise: this one adds products in two steps, the processor in
+// one.
+TEST_F(DeviceFiltering, OtherRoundingMovesFewNumbersByMoreThanRounding) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const RawFrames raw = frame_of_surfaces(setup.decoder.table(), 120, 160);
+  for (const FilterStrength strength : all_filter_strengths) {
+    const Filter filter(setup.decoder.table(), FilterOptions::of(strength));
+    std::vector<FilteredFrame> there, here;
+    for_each_target([&] {
+      there.push_back(DeviceFilter(device(), filter).apply(raw));
+      here.push_back(filter.apply(raw));
+    });
+    expect_near(there.back(), here.front());
+  }
+}
+
+TEST_F(DeviceFiltering, TakesFramesSmallerThanItsWindows) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const Filter filter(setup.decoder.table());
+  const DeviceFilter on_device(device(), filter);
+  FilteredFrame reused;
+  for (const auto& [height, width] : {std::pair{1, 1}, {1, 40}, {40, 1}, {3, 7}, {33, 8}, {3, 7}}) {
+    const RawFrames raw = frame_of_surfaces(setup.decoder.table(), height, width);
+    on_device.apply(view_of_frame(raw, 0), reused);
+    expect_alike(device(), reused, filter.apply(raw));
+  }
+}
+
+TEST_F(DeviceFiltering, TakesAnyCodeAndOptions) {
+  RandomStream random(4, 0);
+  for (const RandomCode& code : {RandomCode{4, 64, 3}, {5, 1000, 4}, {16, 200, 6}}) {
+    SCOPED_TRACE(code.measurements);
+    const DecodingTable table = random_table(code, random);
+    const RawFrames raw = frame_of_surfaces(table, 60, 44);
+    for (const FilterOptions& options :
+         {FilterOptions{.windows = 3, .slope_rounds = 1},
+          FilterOptions{.windows = 1, .slope_rounds = 3, .same_depth_sigma = 2.0},
+          FilterOptions{.slope_rounds = 0, .max_difference_sigma = 6.0, .trusted_pixels = 40.0},
+          FilterOptions{.own_light_sigma = 0.5}})
+      expect_what_the_filter_gives(device(), table, options, view_of_frame(raw, 0));
+  }
+}
+
+TEST_F(DeviceFiltering, KnowsMeansAndWhatIsLeftOut) {
+  for (const Readout readout : {Readout::separate, Readout::difference}) {
+    const DecodeSetup setup("square-k4", camera_with("paper-10f0", 2, readout));
+    const DecodingTable& table = setup.decoder.table();
+    const RawFrames raw = frame_of_surfaces(table, 50, 45);
+    RawView view = view_of_frame(raw, 0);
+    std::vector<float> averaged;
+    for (int i = 0; i < 50 * 45; ++i)
+      averaged.push_back(i % 31 == 0 ? 0.0f : 0.5f * static_cast<float>(2 + i % 4));
+    view.averaged = averaged.data();
+    Image<std::uint8_t> left_out(50, 45);
+    for (std::size_t i = 0; i < left_out.pixels.size(); ++i) left_out.pixels[i] = i % 13 == 0;
+    expect_what_the_filter_gives(device(), table, {}, view, {}, left_out);
+  }
+}
+
+TEST_F(DeviceFiltering, ReadsNumbersOfEveryTypeAndLayout) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  RawFrames raw = frame_of_surfaces(table, 30, 44);
+  for (float& value : raw.values) value = std::clamp(std::round(value), 0.0f, 65535.0f);
+  const std::vector<std::uint16_t> words(raw.values.begin(), raw.values.end());
+  std::vector<double> doubles(raw.values.begin(), raw.values.end());
+  doubles[7] += 1e-9;
+  expect_what_the_filter_gives(device(), table, {}, RawView::interleaved(words.data(), 30, 44, 4));
+  expect_what_the_filter_gives(device(), table, {}, RawView::planar(doubles.data(), 30, 44, 4));
+}
+
+TEST_F(DeviceFiltering, FramesThatDoNotFitGoInBandsOfRows) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  RawFrames raw = frame_of_surfaces(table, 230, 24);
+  spoil(raw, 1e3f);
+  Image<std::uint8_t> left_out(230, 24);
+  for (std::size_t i = 0; i < left_out.pixels.size(); ++i) left_out.pixels[i] = i % 17 == 0;
+  for (const FilterStrength strength : all_filter_strengths)
+    for (const double memory_mb : {0.001, 3.0})
+      expect_what_the_filter_gives(device(), table, FilterOptions::of(strength),
+                                   view_of_frame(raw, 0), {.memory_mb = memory_mb}, left_out);
+}
+
+TEST_F(DeviceFiltering, LeavesSmallFramesToTheProcessor) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const RawFrames raw = frame_of_surfaces(setup.decoder.table(), 20, 20);
+  const Filter filter(setup.decoder.table());
+  const DeviceFilter on_device(device(), filter, {.min_pixels = 401});
+  const DeviceDecoder after(device(), setup.decoder, {.min_pixels = 401});
+  Outputs outputs(400), expected(400);
+  EXPECT_EQ(on_device.decode(view_of_frame(raw, 0), after, outputs.view()), 400);
+  setup.decoder.decode(filter.apply(raw).view(), expected.view());
+  expect_same(outputs, expected);
+  EXPECT_EQ(after.decode(view_of_frame(raw, 0), outputs.view()), 400);
+  setup.decoder.decode(view_of_frame(raw, 0), expected.view());
+  expect_same(outputs, expected);
+}
+
+TEST_F(DeviceFiltering, RefusesWhatIsNoFrameOfTheFilter) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const Filter filter(setup.decoder.table());
+  const DeviceFilter on_device(device(), filter);
+  FilteredFrame filtered;
+  const std::vector<float> raw(40);
+  EXPECT_THROW(on_device.apply(RawView::interleaved(raw.data(), 2, 4, 5), filtered),
+               InvalidArgument);
+  EXPECT_THROW(on_device.apply(RawView::interleaved(raw.data(), 0, 4, 4), filtered),
+               InvalidArgument);
+  const RawView view = RawView::interleaved(raw.data(), 2, 5, 4);
+  EXPECT_THROW(on_device.apply(view, filtered, {}, Image<std::uint8_t>(5, 2)), InvalidArgument);
+  EXPECT_THROW(DeviceFilter(device(), filter, {.min_pixels = -1}), InvalidArgument);
+  const DeviceDecoder elsewhere(Device::all().front(), setup.decoder);
+  Outputs outputs(10);
+  EXPECT_THROW(on_device.decode(view, elsewhere, outputs.view()), InvalidArgument);
+}
+
+TEST_F(DeviceFiltering, StopsWhereProgressSaysSoAndGoesOnAfterwards) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const Filter filter(setup.decoder.table());
+  const DeviceFilter on_device(device(), filter);
+  const RawFrames raw = frame_of_surfaces(setup.decoder.table(), 40, 30);
+  FilteredFrame filtered;
+  double last = 0.0;
+  EXPECT_THROW(on_device.apply(view_of_frame(raw, 0), filtered,
+                               [&](double fraction, std::string_view) {
+                                 EXPECT_GE(fraction, last);
+                                 last = fraction;
+                                 return fraction < 0.5;
+                               }),
+               Interrupted);
+  EXPECT_LT(last, 1.0);
+  on_device.apply(view_of_frame(raw, 0), filtered);
+  expect_alike(device(), filtered, filter.apply(raw));
+}
+
+TEST_F(DeviceFiltering, TheDeviceOfAUsersNameFiltersToo) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const Filter filter(setup.decoder.table());
+  EXPECT_FALSE(device_filter("cpu", filter));
+  EXPECT_EQ(device_filter("0", filter)->device().info().name, device().info().name);
+  EXPECT_THROW(device_filter("no such device", filter), IoError);
+  const DeviceDecoder after(device(), setup.decoder);
+  EXPECT_EQ(&device_filter("auto", filter, &after)->device().state(), &device().state());
+}
+
+}  // namespace
+}  // namespace tofsmith
