@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "core/shared/periodic.hpp"
@@ -25,14 +25,15 @@ struct Profile {
 };
 
 Profile profile_of(const Eigen::ArrayXd& light, const Eigen::ArrayXd& derivative) {
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(light.size()));
-  std::iota(order.begin(), order.end(), 0);
-  const Eigen::ArrayXd ratio = derivative / light;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Eigen::Index a, Eigen::Index b) { return ratio[a] > ratio[b]; });
+  std::vector<std::pair<double, Eigen::Index>> order;
+  order.reserve(static_cast<std::size_t>(light.size()));
+  for (Eigen::Index j = 0; j < light.size(); ++j) order.emplace_back(-derivative[j] / light[j], j);
+  std::sort(order.begin(), order.end());
   Profile profile;
+  profile.passed.reserve(order.size() + 1);
+  profile.largest.reserve(order.size() + 1);
   const double width = 1.0 / static_cast<double>(light.size());
-  for (const Eigen::Index j : order) {
+  for (const auto& [ratio, j] : order) {
     profile.passed.push_back(profile.passed.back() + light[j] * width);
     profile.largest.push_back(profile.largest.back() + derivative[j] * width);
   }

@@ -79,7 +79,7 @@ double ReceiverBound::tap_information(const OperatingPoint& point) const {
   return max_density_ * photons_->largest_slope_power() * gathered(point);
 }
 
-double ReceiverBound::photon_information(const OperatingPoint& point) const {
+double ReceiverBound::recorded_information(const OperatingPoint& point, bool by_gates) const {
   if (!photons_) return infinity;
   double information = 0.0;
   for (const double time_s : exposure_s_) {
@@ -87,10 +87,15 @@ double ReceiverBound::photon_information(const OperatingPoint& point) const {
     const double ambient_e = time_s * sensitivity_ * point.ambient_e_per_s;
     const double c = time_s * dark_e_per_s_ + constant_variance_e2_;
     double largest = photons_->largest(signal_e, ambient_e + c, peak_factor_);
-    if (gates_) largest = std::min(largest, taps_ * gates_->at_any_depth(signal_e, ambient_e, c));
+    if (by_gates && gates_)
+      largest = std::min(largest, taps_ * gates_->at_any_depth(signal_e, ambient_e, c));
     information += largest;
   }
   return information;
+}
+
+double ReceiverBound::photon_information(const OperatingPoint& point) const {
+  return recorded_information(point, true);
 }
 
 double ReceiverBound::gate_information(const OperatingPoint& point) const {
@@ -108,7 +113,9 @@ double ReceiverBound::gate_information(const OperatingPoint& point) const {
 }
 
 double ReceiverBound::information(const OperatingPoint& point) const {
-  return std::min({tap_information(point), photon_information(point), gate_information(point)});
+  // Where depths are all alike, the mean over them is never above the largest of them.
+  return std::min({tap_information(point), recorded_information(point, max_density_ > 1.0),
+                   gate_information(point)});
 }
 
 double ReceiverBound::mae_m(const OperatingPoint& point) const {

@@ -193,6 +193,7 @@ class ReceiverBound {
   Eigen::VectorXd transfer_power_;            // |H|^2 of both arms at harmonics 1 ..
 
   double gathered(const OperatingPoint& point) const;
+  double recorded_information(const OperatingPoint& point, bool by_gates) const;
 };
 
 /// What the light alone allows, for scale: depth from photons recorded one by one by an ideal

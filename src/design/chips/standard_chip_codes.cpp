@@ -113,6 +113,7 @@ std::vector<std::vector<ComparedCode>> compare_chip_codes(const std::vector<Stan
                                                           EvaluateOptions options,
                                                           const Progress& progress) {
   options.method = DecodeMethod::ml;
+  options.bounds = false;
   const std::vector<OperatingPoint> points = camera.operating.points();
   std::vector<std::vector<ComparedCode>> table(points.size());
   const ProgressParts parts(progress, codes.size());

@@ -145,6 +145,7 @@ Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
   EvaluateOptions search;
   search.trials = options.search_trials;
   search.seed = search_seed(options);
+  search.bounds = false;
   const PairChoice choice =
       choose_by_depth_error(factorizations, camera, search, rotates(camera, options), parts[1]);
   // 3. Put the code together and say how near its target it is.
