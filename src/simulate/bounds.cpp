@@ -105,7 +105,7 @@ CramerRaoBound::CramerRaoBound(const ForwardModel& model, const Camera& camera,
   shot_ambient_ = sums * tap_ambient;
   // What differences of buckets leave of ambient light is rounding, not a direction to take out.
   ambient_ = (ambient_.array().abs() > 1e-9 * shot_ambient_.array()).select(ambient_, 0.0);
-  constant_variance_e2_ += sums * (camera.sensor.dark_current_e_per_s * model.tap_exposure_s());
+  constant_variance_e2_ += sums * (model.tap_dark_e_per_s() * model.tap_exposure_s());
 }
 
 HistogramBound::HistogramBound(const ForwardModel& model, const Camera& camera)
@@ -222,13 +222,13 @@ double CramerRaoBound::mae_uniform_albedo_m(const OperatingPoint& point) const {
 
 ReceiverBound::ReceiverBound(const Camera& camera, int exposures)
     : range_m_(camera.range_m()),
-      taps_(camera.sensor.taps),
+      taps_(in_buckets(camera).sensor.taps),
       has_rows_(camera.sensor.readout == Readout::rows),
-      drain_(camera.sensor.drain),
+      drain_(in_buckets(camera).sensor.drain),
       peak_factor_(camera.light.peak_factor),
       sensitivity_(1.0 + 0.5 * std::abs(camera.sensor.tap_mismatch)),
-      dark_e_per_s_(camera.sensor.dark_current_e_per_s),
-      constant_variance_e2_(has_rows_ ? 0.0 : constant_variance_e2_of(camera.sensor)),
+      dark_e_per_s_(in_buckets(camera).sensor.dark_current_e_per_s),
+      constant_variance_e2_(has_rows_ ? 0.0 : constant_variance_e2_of(in_buckets(camera).sensor)),
       max_density_(DepthPrior(camera).max_density()) {
   camera.validate();
   require(exposures >= 1, "exposures", exposures, "must be >= 1");

@@ -38,10 +38,17 @@ CodeSet code_set(const SampledCode& code, int taps) {
   return CodeSet::create("random", code.samples(), taps, m, d);
 }
 
+Camera uneven(Camera camera) {
+  camera.sensor.tap_mismatch = 0.08;
+  return camera;
+}
+
 TEST(SampledCamera, MeasuresWhatTheForwardModelDoes) {
   for (const Camera& camera :
        {camera_with(1, Readout::separate, 1.0), camera_with(2, Readout::difference, 0.7),
-        camera_with(3, Readout::separate, 0.6, "paper-30x")}) {
+        camera_with(3, Readout::separate, 0.6, "paper-30x"),
+        uneven(camera_with(1, Readout::separate, 1.0)),
+        uneven(camera_with(2, Readout::difference, 0.7))}) {
     const SampledCode code = random_code(40, 3, camera.sensor.taps);
     const ForwardModel model(code_set(code, camera.sensor.taps), camera);
     const SampledCamera sampled(camera, 40, 3);
@@ -55,6 +62,20 @@ TEST(SampledCamera, MeasuresWhatTheForwardModelDoes) {
                                           2e4 * table.shot_ambient()) +
         sampled.constant_variance_e2();
     EXPECT_LT((variance - model.variance_e2({&light, 1}, 2e4)).cwiseAbs().maxCoeff(), 0.02);
+  }
+}
+
+TEST(SampledCamera, ReckonsWithAmbientLightThatUnevenBucketsLeak) {
+  Camera camera = camera_with(2, Readout::difference, 1.0);
+  EXPECT_FALSE(SampledCamera(camera, 40, 3).ambient_unknown());
+  EXPECT_TRUE(SampledCamera(uneven(camera), 40, 3).ambient_unknown());
+  // As a decoder does: not where it is nothing beside the noise.
+  camera.sensor.tap_mismatch = 1e-5;
+  EXPECT_FALSE(SampledCamera(camera, 40, 3).ambient_unknown());
+  for (const double mismatch : {1e-5, 0.08}) {
+    camera.sensor.tap_mismatch = mismatch;
+    const ForwardModel model(build_family("square-k4", camera), camera);
+    EXPECT_EQ(sees_ambient(camera, 4), !unknown_ambient_gain(model, camera).isZero(0.0));
   }
 }
 

@@ -34,7 +34,11 @@ std::vector<int> factorizable_exposures(const Camera& camera, const DesignOption
 FamilyOptions ideal_on(const Camera& camera) { return {.samples = camera.samples}; }
 
 /// Why codes for these targets cannot be played at all, before time is spent on them.
-std::optional<BrokenRule> why_not_designable(const TargetSet& targets, const Camera& camera) {
+std::optional<BrokenRule> why_not_designable(const TargetSet& targets, const Camera& on) {
+  if (on.sensor.is_signed() && on.sensor.tap_mismatch != 0.0)
+    return broken("sensor.tap_mismatch", on.sensor.tap_mismatch,
+                  "must be 0 to factorize for sensor.demodulation = \"signed\"");
+  const Camera camera = in_buckets(on);
   if (camera.sensor.readout == Readout::rows)
     return broken("sensor.readout", "rows",
                   "must be separate or difference to factorize correlation functions");
@@ -118,6 +122,10 @@ std::vector<TargetSet> targets_for(const Camera& camera, const DesignOptions& op
 }
 
 std::optional<CodeSet> naive_code(const TargetSet& targets, const Camera& camera) {
+  if (camera.sensor.is_signed()) {
+    const auto code = naive_code(targets, in_buckets(camera));
+    return code ? std::optional(code->signed_of_buckets()) : std::nullopt;
+  }
   std::vector<Factorization> pairs;
   for (const CorrelationTarget& target : targets.measurements) {
     pairs.push_back({.candidates = naive_start(PairModel(target, camera))});
@@ -131,6 +139,11 @@ std::optional<CodeSet> naive_code(const TargetSet& targets, const Camera& camera
 
 Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
                                const DesignOptions& options, const Progress& progress) {
+  if (camera.sensor.is_signed()) {
+    Candidate candidate = factorized_candidate(targets, in_buckets(camera), options, progress);
+    candidate.code = candidate.code.signed_of_buckets();
+    return candidate;
+  }
   const ProgressParts parts(progress, {40, 60});  // factorizing, choosing pairs
   const auto begin = std::chrono::steady_clock::now();
   // 1. Factorize every measurement by itself.

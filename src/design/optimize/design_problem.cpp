@@ -105,20 +105,24 @@ std::vector<LightLevel> levels_of(const Camera& camera,
 
 }  // namespace
 
-std::optional<BrokenRule> why_not_optimizable(const Camera& camera, int exposures) {
+std::optional<BrokenRule> why_not_optimizable(const Camera& on, int exposures) {
+  if (on.sensor.is_signed() && on.sensor.tap_mismatch != 0.0)
+    return broken("sensor.tap_mismatch", on.sensor.tap_mismatch,
+                  "must be 0 to optimize codes for sensor.demodulation = \"signed\"");
+  const Camera camera = in_buckets(on);
   if (exposures < 1 || exposures > 8) return broken("exposures", exposures, "must be in [1, 8]");
   if (camera.sensor.readout == Readout::rows)
     return broken("sensor.readout", "rows", "must be separate or difference to optimize codes");
   const bool difference = camera.sensor.readout == Readout::difference;
   const int measurements = difference ? exposures : exposures * camera.sensor.taps;
-  const int fewest = difference ? 2 : 3;
+  const int fewest = sees_ambient(camera, exposures) ? 3 : 2;
   if (measurements < fewest)
     return broken(
         "exposures", exposures,
         fmt::format("must give at least {} measurements; with sensor.taps = {} that takes "
                     "{}",
                     fewest, camera.sensor.taps,
-                    difference ? 2 : (2 + camera.sensor.taps) / camera.sensor.taps));
+                    difference ? fewest : (2 + camera.sensor.taps) / camera.sensor.taps));
   if (camera.light.peak_factor <= 1.0)
     return broken("light.peak_factor", camera.light.peak_factor,
                   "must be > 1 to optimize: light that never changes carries no depth");

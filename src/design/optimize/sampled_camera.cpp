@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "design/optimize/sampled_camera.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "camera/shared/ambient_leak.hpp"
 #include "design/grid_transfer.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 
@@ -19,17 +24,44 @@ Eigen::MatrixXd mixing_matrix(int exposures, int taps, double contrast) {
   return mixing;
 }
 
+/// Sensitivity of every tap value beside the mean of its pixel.
+Eigen::VectorXd sensitivities(int exposures, int taps, double mismatch) {
+  Eigen::VectorXd sensitivity = Eigen::VectorXd::Ones(exposures * taps);
+  for (int i = 0; i < exposures * taps; ++i)
+    sensitivity[i] += ((taps == 1 ? i : i % taps) % 2 == 0 ? 0.5 : -0.5) * mismatch;
+  return sensitivity;
+}
+
 }  // namespace
+
+bool sees_ambient(const Camera& camera, int exposures) {
+  if (camera.sensor.readout != Readout::difference) return true;
+  if (camera.sensor.tap_mismatch == 0.0) return false;
+  const double leak = 0.5 * std::abs(camera.sensor.tap_mismatch);  // of gates open half the time
+  // The longest exposure counts: light grows with time, and its noise as the root of that.
+  const std::vector<double>& each_s = camera.exposure_s.each_s;
+  const double exposure_s = each_s.empty() ? camera.exposure_s.total_s / exposures
+                                           : *std::max_element(each_s.begin(), each_s.end());
+  const double light_e = exposure_s * brightest_ambient_e_per_s(camera);
+  const double variance_e2 = light_e +
+                             2.0 * exposure_s * camera.sensor.dark_current_e_per_s +
+                             2.0 * constant_variance_e2_of(camera.sensor);
+  return !ambient_cancels(camera, Eigen::VectorXd::Constant(1, leak * light_e),
+                          Eigen::VectorXd::Constant(1, variance_e2));
+}
 
 SampledCamera::SampledCamera(const Camera& camera, int samples, int exposures)
     : transform_(samples),
       exposures_(exposures),
       taps_(camera.sensor.taps),
       difference_(camera.sensor.readout == Readout::difference),
+      ambient_unknown_(sees_ambient(camera, exposures)),
       transfer_(grid_transfer(camera, samples) / static_cast<double>(samples)) {
   const int tap_values = exposures * taps_;
   const Eigen::MatrixXd readout = readout_matrix(tap_values, camera.sensor.readout);
-  const Eigen::MatrixXd mixing = mixing_matrix(exposures, taps_, camera.sensor.modulation_contrast);
+  const Eigen::MatrixXd mixing =
+      sensitivities(exposures, taps_, camera.sensor.tap_mismatch).asDiagonal() *
+      mixing_matrix(exposures, taps_, camera.sensor.modulation_contrast);
   combination_ = readout * mixing;
   shot_combination_ = readout.cwiseAbs() * mixing;
   exposure_s_.resize(measurements());

@@ -20,8 +20,13 @@ struct SampledCode {
   int samples() const { return static_cast<int>(modulation.rows()); }
 };
 
+/// Whether a decoder has to reckon with ambient light: not where buckets that are open half the
+/// time are subtracted, unless they differ in sensitivity by more than unknown_ambient_gain()
+/// ignores.
+bool sees_ambient(const Camera& camera, int exposures);
+
 /// A camera on a grid: from waveforms to correlation functions and back with gradients. Band limit
-/// of both arms, contrast and the readout of taps are in it.
+/// of both arms, contrast, mismatch and the readout of taps are in it.
 class SampledCamera {
  public:
   /// A table, with the spectra of the waveforms it is of.
@@ -41,8 +46,10 @@ class SampledCamera {
   const Eigen::VectorXd& constant_variance_e2() const { return constant_variance_e2_; }
   /// Electrons of dark current in every measurement (R).
   const Eigen::VectorXd& dark_electrons() const { return dark_electrons_; }
-  /// Whether a decoder has to reckon with ambient light: not where buckets are subtracted.
-  bool ambient_unknown() const { return !difference_; }
+  /// Whether buckets are subtracted: their shot noise is not that of the difference.
+  bool subtracts() const { return difference_; }
+  /// sees_ambient() of the camera.
+  bool ambient_unknown() const { return ambient_unknown_; }
 
   /// What the arms leave of harmonic n of waveforms held over the grid's cells, n = 0 .. N/2.
   std::complex<double> transfer(int harmonic) const {
@@ -57,9 +64,9 @@ class SampledCamera {
  private:
   PeriodicTransform transform_;
   int exposures_, taps_;
-  bool difference_;
+  bool difference_, ambient_unknown_;
   Eigen::VectorXcd transfer_;    // G / N
-  Eigen::MatrixXd combination_;  // (R, tap values): contrast, then readout
+  Eigen::MatrixXd combination_;  // (R, tap values): contrast, mismatch, then readout
   Eigen::MatrixXd shot_combination_;
   Eigen::VectorXd exposure_s_, constant_variance_e2_, dark_electrons_;
 };
