@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <utility>
 
 #include "code/shared/family_rules.hpp"
 #include "code/shared/hamiltonian.hpp"
@@ -137,13 +138,9 @@ std::optional<CodeSet> naive_code(const TargetSet& targets, const Camera& camera
   return code;
 }
 
-Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
+Candidate factorized_candidate(const TargetSet& targets, const Camera& on,
                                const DesignOptions& options, const Progress& progress) {
-  if (camera.sensor.is_signed()) {
-    Candidate candidate = factorized_candidate(targets, in_buckets(camera), options, progress);
-    candidate.code = candidate.code.signed_of_buckets();
-    return candidate;
-  }
+  const Camera camera = in_buckets(on);
   const ProgressParts parts(progress, {40, 60});  // factorizing, choosing pairs
   const auto begin = std::chrono::steady_clock::now();
   // 1. Factorize every measurement by itself.
@@ -161,11 +158,11 @@ Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
   const PairChoice choice =
       choose_by_depth_error(factorizations, camera, search, rotates(camera, options), parts[1]);
   // 3. Put the code together and say how near its target it is.
-  Candidate candidate{
-      .code = signed_by(assemble(targets.name + "-factorized", factorizations, choice, camera),
-                        "factorize", camera, options.seed),
-      .method = "factorize",
-      .target = target_table(targets)};
+  CodeSet code = assemble(targets.name + "-factorized", factorizations, choice, camera);
+  if (on.sensor.is_signed()) code = code.signed_of_buckets();
+  Candidate candidate{.code = signed_by(std::move(code), "factorize", camera, options.seed),
+                      .method = "factorize",
+                      .target = target_table(targets)};
   for (std::size_t k = 0; k < choice.size(); ++k) {
     const Factorization& f = factorizations[k];
     candidate.per_measurement.push_back(measurement_report(f, f.candidates[choice[k]]));

@@ -191,8 +191,8 @@ DesignProblem make_design_problem(std::span<const Camera> given, int exposures, 
   require(!given.empty(), "variants", given.size(), "must hold at least one camera");
   std::vector<Camera> variants;
   for (const Camera& variant : given) variants.push_back(judged_camera(variant));
-  const Camera& camera = variants.front();
-  require(why_not_optimizable(camera, exposures));
+  require(why_not_optimizable(variants.front(), exposures));
+  const Camera camera = in_buckets(variants.front());
   DesignProblem problem;
   problem.space = waveform_space(camera, exposures, samples);
   problem.operating = camera.operating;
@@ -206,9 +206,11 @@ DesignProblem make_design_problem(std::span<const Camera> given, int exposures, 
   if (problem.later && two_return_weight > 0.0)
     problem.multipath_as_two = decoded_as_two(*problem.later, problem.space.samples());
   for (const Camera& variant : variants) {
-    require(variant.sensor.taps == camera.sensor.taps &&
-                variant.sensor.readout == camera.sensor.readout,
-            "variants", variant.name, "must have the taps and the readout of the first");
+    const Sensor &its = variant.sensor, &first = variants.front().sensor;
+    require(its.taps == first.taps && its.readout == first.readout &&
+                its.demodulation == first.demodulation,
+            "variants", variant.name,
+            "must have the taps, the readout and the demodulation of the first");
     const int samples_here = problem.space.samples();
     const int finer = camera.band_limited() ? 1 : std::clamp(camera.samples / samples_here, 1, 4);
     problem.variants.push_back({SampledCamera(variant, samples_here, exposures),

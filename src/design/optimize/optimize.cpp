@@ -18,9 +18,9 @@
 #include "design/optimize/optimize_pool.hpp"
 #include "design/optimize/optimize_starts.hpp"
 #include "design/optimize/optimized_code.hpp"
+#include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
-#include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/decode/multipath_decoder.hpp"
 
 namespace tofsmith {
@@ -59,12 +59,11 @@ std::vector<PoolEntry> playable_entries(const DesignProblem& problem, const Opti
 std::vector<PoolStage> stages_of(const OptimizeOptions& options) {
   const OptimizeOptions usual;
   std::vector<PoolStage> stages;
-  for (int times = 1; options.starts >= 2 * times * usual.starts &&
-                      options.hops >= 2 * times * usual.hops &&
-                      options.refinement_steps >= 2 * times * usual.refinement_steps;
+  for (int times = 1;
+       options.starts >= 2 * times * usual.starts && options.hops >= 2 * times * usual.hops &&
+       options.refinement_steps >= 2 * times * usual.refinement_steps;
        times *= 2)
-    stages.push_back(
-        {times * usual.starts, times * usual.hops, times * usual.refinement_steps});
+    stages.push_back({times * usual.starts, times * usual.hops, times * usual.refinement_steps});
   stages.push_back({options.starts, options.hops, options.refinement_steps});
   return stages;
 }
@@ -122,41 +121,18 @@ std::vector<Candidate> playable_candidates(const DesignProblem& problem, Optimiz
 
 }  // namespace
 
-namespace {
-
-/// The same with two buckets in place of a mixer, whose codes are turned into its own.
-std::vector<Candidate> optimize_in_buckets(std::span<const Camera> variants, int exposures,
-                                           const OptimizeOptions& options,
-                                           std::span<const CodeSet> also,
-                                           const Progress& progress) {
-  std::vector<Camera> cameras;
-  for (const Camera& variant : variants) {
-    require(variant.sensor.is_signed(), "variants", variant.name,
-            "must have the demodulation of the first");
-    cameras.push_back(in_buckets(variant));
-  }
-  std::vector<CodeSet> starts;
-  for (const CodeSet& code : also)
-    if (code.is_signed()) starts.push_back(code.buckets_of_signed());
-  std::vector<Candidate> candidates = optimize(cameras, exposures, options, starts, progress);
-  for (Candidate& c : candidates) c.code = c.code.signed_of_buckets();
-  return candidates;
-}
-
-}  // namespace
-
 void OptimizeOptions::validate() const { check_fields(*this, "OptimizeOptions::"); }
 
 namespace {
 
 /// All of the search, for arms as they are.
 std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposures,
-                              const OptimizeOptions& options, std::span<const CodeSet> also,
-                              const Progress& progress) {
+                                    const OptimizeOptions& options, std::span<const CodeSet> also,
+                                    const Progress& progress) {
   const auto begin = std::chrono::steady_clock::now();
   const DesignProblem problem =
       make_design_problem(variants, exposures, options.samples, options.two_return_weight);
-  const Camera& camera = variants.front();
+  const Camera camera = in_buckets(variants.front());  // whose codes are searched
 
   // 1. Go downhill from many codes, from changed copies of the best, and once more from the best;
   // 2. make the best of them playable; and again with more of all, where more is asked for.
@@ -214,13 +190,16 @@ std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
   options.validate();
   require(!variants.empty(), "variants", variants.size(), "must hold at least one camera");
   const Camera& camera = variants.front();
-  if (camera.sensor.is_signed())
-    return optimize_in_buckets(variants, exposures, options, also, progress);
+  const bool is_signed = camera.sensor.is_signed();
+  std::vector<CodeSet> starts;
+  for (const CodeSet& code : also)
+    starts.push_back(code.is_signed() ? code.buckets_of_signed() : code);
   const bool switches = camera.light.binary && camera.sensor.binary;
-  std::vector<Candidate> candidates = switches
-                                          ? search_codes(variants, exposures, options, also, progress)
-                                          : search_analog(variants, exposures, options, also,
-                                                          progress);
+  std::vector<Candidate> candidates =
+      switches ? search_codes(variants, exposures, options, starts, progress)
+               : search_analog(variants, exposures, options, starts, progress);
+  if (is_signed)
+    for (Candidate& c : candidates) c.code = c.code.signed_of_buckets();
   report(progress, 1.0, "done");
   return candidates;
 }

@@ -33,8 +33,12 @@ class SampledCamera {
   struct Measured {
     MeasurementTable table;
     std::vector<Eigen::VectorXcd> modulation, demodulation;
+    std::vector<Eigen::VectorXcd> square;  ///< of the weights of a mixer, where they count
+    Eigen::MatrixXd weight;                ///< those (N, E)
   };
 
+  /// A mixer is taken as two buckets (in_buckets()), whose difference is its weight. Its shot noise
+  /// is by the square of that, where weights need not switch.
   /// @param samples  N of the grid
   SampledCamera(const Camera& camera, int samples, int exposures);
 
@@ -62,9 +66,13 @@ class SampledCamera {
   SampledCode pull_back(const Measured& measured, const MeasurementTable& gradient) const;
 
  private:
+  SampledCamera(const Camera& camera, int samples, int exposures, bool squares);
+  void measure_squares(const SampledCode& code, Measured& measured) const;
+
   PeriodicTransform transform_;
   int exposures_, taps_;
   bool difference_, ambient_unknown_;
+  bool squares_;                 // of weights make the shot noise
   Eigen::VectorXcd transfer_;    // G / N
   Eigen::MatrixXd combination_;  // (R, tap values): contrast, mismatch, then readout
   Eigen::MatrixXd shot_combination_;
