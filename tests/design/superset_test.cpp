@@ -101,6 +101,7 @@ TEST(MixerDesign, IsThatOfTwoBucketsReadAsTheirDifference) {
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t k = 0; k < found.size(); ++k) {
     EXPECT_FALSE(why_not_playable(found[k].code, camera));
+    EXPECT_EQ(found[k].per_measurement.size(), 4u);
     for (int e = 0; e < 4; ++e)
       EXPECT_EQ(found[k].code.demodulation(e), expected[k].code.demodulation(2 * e));
   }

@@ -199,7 +199,13 @@ std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
       switches ? search_codes(variants, exposures, options, starts, progress)
                : search_analog(variants, exposures, options, starts, progress);
   if (is_signed)
-    for (Candidate& c : candidates) c.code = c.code.signed_of_buckets();
+    for (Candidate& c : candidates) {
+      c.code = c.code.signed_of_buckets();
+      std::vector<MeasurementReport> of_first_buckets;
+      for (std::size_t k = 0; k < c.per_measurement.size(); k += 2)
+        of_first_buckets.push_back(std::move(c.per_measurement[k]));
+      c.per_measurement = std::move(of_first_buckets);
+    }
   report(progress, 1.0, "done");
   return candidates;
 }

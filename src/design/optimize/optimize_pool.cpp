@@ -191,9 +191,8 @@ void OptimizePool::keep(std::vector<PoolEntry> entries) {
 void OptimizePool::run_starts(const PoolStage& stage, std::span<const CodeSet> also,
                               const Progress& progress) {
   const auto count = static_cast<std::size_t>(stage.starts);
-  SharedProgress shared(progress,
-                        static_cast<double>(count - starts_done_) * options_.steps_per_start,
-                        "starts");
+  SharedProgress shared(
+      progress, static_cast<double>(count - starts_done_) * options_.steps_per_start, "starts");
   for (std::size_t first = starts_done_; first < count; first += together) {
     std::vector<PoolEntry> entries;
     for (std::size_t i = first; i < std::min(count, first + together); ++i) {
