@@ -177,8 +177,9 @@ std::vector<Candidate> search_analog(std::span<const Camera> variants, int expos
   std::vector<Candidate> switched = search_codes(switching, exposures, options, also, parts[0]);
   std::vector<CodeSet> starts{switched.back().code.renamed("what switches")};
   starts.insert(starts.end(), also.begin(), also.end());
-  std::vector<Candidate> candidates = search_codes(variants, exposures, options, starts, parts[1]);
-  std::move(switched.begin(), switched.end(), std::back_inserter(candidates));
+  std::vector<Candidate> analog = search_codes(variants, exposures, options, starts, parts[1]);
+  std::vector<Candidate> candidates = std::move(switched);
+  std::move(analog.begin(), analog.end(), std::back_inserter(candidates));
   return candidates;
 }
 
