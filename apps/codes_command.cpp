@@ -70,6 +70,8 @@ std::vector<std::vector<std::string>> waveform_rows(const CodeSet& code, std::st
       {std::string(value), "mod. duty", "mod. peak", "edges"}};
   if (code.is_rows())
     rows[0].insert(rows[0].end(), {"least weight", "most weight"});
+  else if (code.is_signed())
+    rows[0].insert(rows[0].end(), {"mean weight", "edges"});
   else
     rows[0].insert(rows[0].end(), {"dem. duty", "edges"});
   for (int i = 0; i < code.measurements(); ++i) {
@@ -81,7 +83,9 @@ std::vector<std::vector<std::string>> waveform_rows(const CodeSet& code, std::st
       rows.back().insert(rows.back().end(),
                          {fmt::format("{:.4g}", d.minimum()), fmt::format("{:.4g}", d.peak())});
     else
-      rows.back().insert(rows.back().end(), {fmt::format("{:.4f}", d.mean()), edges_text(d)});
+      rows.back().insert(rows.back().end(),
+                         {fmt::format("{:.4f}", code.is_signed() ? 2.0 * d.mean() - 1.0 : d.mean()),
+                          edges_text(d)});
   }
   return rows;
 }
@@ -110,6 +114,8 @@ void show(const Session& session, const CodeSet& code, const Camera& camera) {
                                            {"modulation_edges", m.edges()},
                                            {"demodulation_duty", d.mean()},
                                            {"demodulation_edges", d.edges()}});
+    if (code.is_signed())
+      document["per_measurement"].back()["demodulation_mean_weight"] = 2.0 * d.mean() - 1.0;
     strips += fmt::format("  m{:<2} |{}|\n  d{:<2} |{}|\n", i + 1, strip(m), i + 1, strip(d));
   }
   const std::vector<GeneratorReport> generators = generator_report(code, camera);

@@ -28,7 +28,7 @@ std::vector<Waveform> waveforms_of(const Eigen::MatrixXd& columns) {
 }
 
 CodeSet code_from_arrays(const std::string& name, const Doubles& modulation,
-                         const Doubles& demodulation, int taps) {
+                         const Doubles& demodulation, int taps, bool is_signed) {
   const Eigen::MatrixXd m = to_matrix(modulation, "modulation");
   const Eigen::MatrixXd d = to_matrix(demodulation, "demodulation");
   if (m.size() == 0) refuse("modulation", "shape " + shape_of(modulation), "(N, E), not empty");
@@ -37,6 +37,7 @@ CodeSet code_from_arrays(const std::string& name, const Doubles& modulation,
            "(" + std::to_string(m.rows()) + ", " + std::to_string(m.cols() * taps) +
                "), as modulation has shape " + shape_of(modulation) +
                " and taps = " + std::to_string(taps));
+  if (is_signed) return CodeSet::create_signed(name, waveforms_of(m), d);
   return CodeSet::create(name, static_cast<int>(m.rows()), taps, waveforms_of(m), waveforms_of(d));
 }
 
@@ -109,6 +110,7 @@ void bind_code_set(py::module_& module) {
       .def("samples", &CodeSet::samples)
       .def("taps", &CodeSet::taps)
       .def("is_rows", &CodeSet::is_rows)
+      .def("is_signed", &CodeSet::is_signed)
       .def("exposures", &CodeSet::exposures)
       .def("measurements", &CodeSet::measurements)
       .def("peak", &CodeSet::peak)
@@ -123,6 +125,7 @@ void bind_code_set(py::module_& module) {
       .def("resampled", &CodeSet::resampled)
       .def("rotated", &CodeSet::rotated)
       .def("with_two_buckets", &CodeSet::with_two_buckets)
+      .def("with_signed_weights", &CodeSet::with_signed_weights)
       .def("provenance", &provenance_of);
 }
 

@@ -98,6 +98,8 @@ class Sensor:
     readout : str
         separate; difference of two taps; or rows: weighted sums of the light in N time bins of
         one exposure.
+    demodulation : str
+        gain: of taps, in [0, 1]; or signed: the weight of a mixer, in [-1, 1].
     generator : Generator, optional
         Plays the demodulation; None: any waveform, exactly.
     full_well_e, adc_bits, gain_e_per_dn, black_level_dn, shortest_pulse_s : optional
@@ -118,6 +120,7 @@ class Sensor:
     tap_mismatch: float
     drain: bool
     readout: str
+    demodulation: str
     generator: Optional[Generator] = None
     full_well_e: Optional[float] = None
     adc_bits: Optional[int] = None

@@ -21,7 +21,8 @@ class CodeSet:
     """A set of coding functions: E modulations and K = E x taps demodulations. Immutable; pickles.
 
     Measurement i belongs to exposure i // taps and tap i % taps. Modulation is emitted over average
-    power (mean at most 1), demodulation is sensor gain in [0, 1].
+    power (mean at most 1), demodulation is sensor gain in [0, 1], or the weight of a mixer in
+    [-1, 1].
 
     See Also
     --------
@@ -50,6 +51,7 @@ class CodeSet:
         *,
         taps: int = 1,
         name: str = "code",
+        signed: bool = False,
     ) -> CodeSet:
         """A code from samples. A column of two levels, the lower of which is 0, becomes binary.
 
@@ -58,10 +60,13 @@ class CodeSet:
         modulation : array_like, shape (N, E)
             Values >= 0 with mean at most 1 in every column.
         demodulation : array_like, shape (N, E * taps)
-            Values in [0, 1], the taps of an exposure side by side.
+            Values in [0, 1], the taps of an exposure side by side; of a mixer weights in [-1, 1].
         taps : int
             Values read out of one exposure.
         name : str
+        signed : bool
+            For cameras with `sensor.demodulation` = "signed": weights of a mixer, of one tap. A
+            column of -1 and 1 becomes binary.
 
         Raises
         ------
@@ -79,7 +84,8 @@ class CodeSet:
                 _check.text(name, "name"),
                 light,
                 sensor,
-                _check.whole(taps, "taps", 1, 64),
+                _check.whole(taps, "taps", 1, 1 if signed else 64),
+                bool(signed),
             )
         )
 
@@ -164,6 +170,11 @@ class CodeSet:
         return self._handle.is_rows()
 
     @property
+    def is_signed(self) -> bool:
+        """Whether the demodulations are weights of a mixer, in [-1, 1]."""
+        return self._handle.is_signed()
+
+    @property
     def exposures(self) -> int:
         """E."""
         return self._handle.exposures()
@@ -185,7 +196,7 @@ class CodeSet:
 
     @property
     def demodulation(self) -> FloatArray:
-        """Cell averages (N, K)."""
+        """Cell averages (N, K): gains in [0, 1], weights of a mixer in [-1, 1], or rows."""
         return self._handle.demodulation_samples()
 
     def modulation_waveforms(self) -> list[Waveform]:
@@ -193,7 +204,7 @@ class CodeSet:
         return [Waveform._of(self._handle.modulation(e)) for e in range(self.exposures)]
 
     def demodulation_waveforms(self) -> list[Waveform]:
-        """The K demodulation functions."""
+        """The K demodulation functions; of a mixer what drives it, x in [0, 1] of a weight 2 x - 1."""
         return [Waveform._of(self._handle.demodulation(i)) for i in range(self.measurements)]
 
     @property
@@ -213,6 +224,10 @@ class CodeSet:
         return CodeSet._of(
             self._handle.rotated(_check.whole(rotation_bin, "rotation_bin", -(2**31)))
         )
+
+    def with_signed_weights(self) -> CodeSet:
+        """For a mixer: every gain d becomes the weight 2 d - 1; taps must be 1."""
+        return CodeSet._of(self._handle.with_signed_weights())
 
     def with_two_buckets(self) -> CodeSet:
         """With the complement of every demodulation read out of the same exposure; taps must be

@@ -31,15 +31,17 @@ constexpr EnumWords<ResponseArm, 3> arm_words("ResponseArm", "arm", "light", "se
 
 CorrelationCalibrationOptions sweep_options(const Camera& camera, const DelaySweep& sweep) {
   CorrelationCalibrationOptions options{.taps = camera.sensor.taps,
-                                        .differences = camera.sensor.readout == Readout::difference,
+                                        .differences = camera.sensor.subtracts(),
                                         .range_m = camera.range_m()};
-  if (!options.differences) {
+  if (camera.sensor.is_signed()) {
+    options.black_level = camera.sensor.black_level_dn.value_or(0.0);
+  } else if (!options.differences) {
     options.black_level = camera.sensor.black_level_dn.value_or(0.0);
     if (camera.sensor.adc_bits)
       options.saturation_level = static_cast<float>(std::exp2(*camera.sensor.adc_bits) - 1.0);
   }
   options.exposure_s = column_exposures_s(camera, sweep.frames.measurements,
-                                          options.differences ? options.taps / 2 : options.taps);
+                                          options.differences ? 1 : options.taps);
   return options;
 }
 
@@ -58,6 +60,9 @@ Image<float> flat_target_geometry_m(double distance_m, const Camera& camera, int
 }
 
 PhotonTransferOptions noise_options(const Camera& camera, bool has_dark_frames) {
+  require(!camera.sensor.is_signed(), "sensor.demodulation", "signed",
+          "must be \"gain\" to calibrate noise: what a mixer gathers does not say how much light "
+          "makes its noise");
   PhotonTransferOptions options{.adc_bits = camera.sensor.adc_bits};
   if (!has_dark_frames || camera.sensor.readout == Readout::difference)
     options.black_level_dn = camera.sensor.black_level_dn;

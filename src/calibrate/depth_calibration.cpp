@@ -25,7 +25,7 @@ constexpr int range_parts = 128;
 /// The functions that the camera's model says, in the table's own form.
 MeasuredTable nominal_table(const ForwardModel& model, const CodeSet& code, const Camera& camera) {
   MeasuredTable table;
-  table.differences = camera.sensor.readout == Readout::difference;
+  table.differences = camera.sensor.subtracts();
   table.taps = table.differences ? 1 : code.taps();
   table.correlation = model.correlation_table(code.samples());
   table.ambient_gain = model.ambient_gain();

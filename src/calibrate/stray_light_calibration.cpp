@@ -150,7 +150,7 @@ Eigen::MatrixXd made_by_nodes(const Scene& scene, const std::vector<double>& nod
 }
 
 double limit_of(const Camera& camera) {
-  if (camera.sensor.readout == Readout::difference) return INFINITY;
+  if (camera.sensor.subtracts()) return INFINITY;
   return static_cast<double>(saturation_level_of(camera.sensor).value_or(INFINITY));
 }
 

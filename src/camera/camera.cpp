@@ -59,6 +59,22 @@ void validate_rows(const Sensor& sensor) {
   require_none(!sensor.adc_bits, "sensor.adc_bits", "a converter");
 }
 
+/// A mixer has one number of either sign, and throws nothing away but by its weight.
+void validate_mixer(const Sensor& sensor) {
+  const char* const beside = "sensor.demodulation = \"signed\"";
+  require(sensor.taps == 1, "sensor.taps", sensor.taps,
+          fmt::format("must be 1 with {}: a mixer delivers one number per exposure", beside));
+  require(sensor.readout == Readout::separate, "sensor.readout",
+          sensor.readout == Readout::rows ? "rows" : "difference",
+          fmt::format("must be \"separate\" with {}: {}", beside,
+                      sensor.readout == Readout::rows
+                          ? "rows of one exposure have weights of any sign already"
+                          : "a mixer's number is the difference already"));
+  require(!sensor.adc_bits || !sensor.black_level_dn || *sensor.black_level_dn > 0.0,
+          "sensor.black_level_dn", 0.0,
+          fmt::format("must be > 0 with {}, or left out for counts of both signs", beside));
+}
+
 void validate_sensor(const Sensor& sensor) {
   require(sensor.taps >= 1 && sensor.taps <= 16, "sensor.taps", sensor.taps, "must be in [1, 16]");
   sensor.impulse_response.validate("sensor.impulse_response");
@@ -70,7 +86,7 @@ void validate_sensor(const Sensor& sensor) {
   const double contrast = sensor.modulation_contrast;
   require(contrast > 0.0 && contrast <= 1.0, "sensor.modulation_contrast", contrast,
           "must be in (0, 1]");
-  require(contrast == 1.0 || sensor.taps >= 2, "sensor.modulation_contrast", contrast,
+  require(contrast == 1.0 || sensor.taps >= 2 || sensor.is_signed(), "sensor.modulation_contrast", contrast,
           "must be 1 for one tap: contrast mixes taps");
   if (sensor.full_well_e) require_positive(*sensor.full_well_e, "sensor.full_well_e");
   validate_adc(sensor);
@@ -83,6 +99,7 @@ void validate_sensor(const Sensor& sensor) {
   require(sensor.readout != Readout::difference || sensor.taps == 2, "sensor.readout", "difference",
           "needs sensor.taps = 2");
   if (sensor.readout == Readout::rows) validate_rows(sensor);
+  if (sensor.is_signed()) validate_mixer(sensor);
 }
 
 void validate_depths(const OperatingRange& range, double range_m) {
@@ -299,6 +316,13 @@ std::optional<BrokenRule> what_does_not_fit(const CodeSet& code, const Camera& c
     return broken(what + " receiver", "taps of exposures",
                   "is not for a camera with sensor.readout = \"rows\", which needs rows of one "
                   "exposure");
+  if (code.is_signed() && !camera.sensor.is_signed())
+    return broken(what + " receiver", "a mixer",
+                  "needs a camera with sensor.demodulation = \"signed\"");
+  if (!code.is_signed() && camera.sensor.is_signed() && !code.is_rows())
+    return broken(what + " receiver", "taps with gains in [0, 1]",
+                  "is not for a camera with sensor.demodulation = \"signed\", which needs weights "
+                  "in [-1, 1]: a family by its name, or a file of signed demodulations");
   if (!is_of_rows && code.taps() != camera.sensor.taps)
     return broken(what + " taps", code.taps(),
                   fmt::format("must equal the camera's sensor.taps = {}", camera.sensor.taps));
@@ -366,6 +390,7 @@ CodeSet build_family(std::string_view name, const Camera& camera) {
   require(taps_beyond_families(camera));
   if (camera.sensor.readout == Readout::rows) code = rows_of(code);
   if (code.is_rows()) require_fits(code, camera);
+  if (camera.sensor.is_signed()) code = code.with_signed_weights();
   if (camera.sensor.taps == 2) code = code.with_two_buckets();
   code.provenance.camera = camera.name;
   return code;

@@ -3,7 +3,10 @@
 #include "tofsmith/camera/forward_model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "camera/shared/actual_code.hpp"
 #include "camera/shared/ambient_leak.hpp"
@@ -31,7 +34,26 @@ Eigen::VectorXd sensitivities(const CodeSet& code, const Sensor& sensor) {
     const int place = code.taps() == 1 ? i : i % code.taps();
     sensitivity[i] += (place % 2 == 0 ? 0.5 : -0.5) * sensor.tap_mismatch;
   }
-  return sensitivity;
+  if (!code.is_signed()) return sensitivity;
+  return sensitivity.transpose().replicate(2, 1).reshaped();  // both signs of an exposure
+}
+
+/// The two taps of a mixer that is driven by x, of the weight w = 2 x - 1: (w^2 + w) / 2 and
+/// (w^2 - w) / 2.
+std::array<Waveform, 2> taps_of_weight(const Waveform& drive) {
+  if (drive.is_binary()) return {drive, drive.complement()};
+  const Eigen::ArrayXd x = drive.samples();
+  return {Waveform::sampled(x * (2.0 * x - 1.0)),
+          Waveform::sampled((1.0 - x) * (1.0 - 2.0 * x))};
+}
+
+/// Demodulation functions of the tap values.
+std::vector<Waveform> tap_functions(const CodeSet& code, std::vector<Waveform> demodulation) {
+  if (!code.is_signed()) return demodulation;
+  std::vector<Waveform> taps;
+  for (const Waveform& drive : demodulation)
+    for (Waveform& tap : taps_of_weight(drive)) taps.push_back(std::move(tap));
+  return taps;
 }
 
 }  // namespace
@@ -59,14 +81,14 @@ double constant_variance_e2_of(const Sensor& sensor) {
 
 ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
     : samples_(code.samples()),
-      taps_(code.taps()),
+      taps_(code.is_signed() ? 2 : code.taps()),
       contrast_(camera.sensor.modulation_contrast),
-      sensitivity_(sensitivities(code, camera.sensor)),
-      tap_dark_e_per_s_(camera.sensor.dark_current_e_per_s),
-      readout_variance_e2_(constant_variance_e2_of(camera.sensor)) {
+      sensitivity_(sensitivities(code, camera.sensor)) {
   camera.validate();
   require_fits(code, camera);
-  const int tap_values = code.measurements();
+  const Sensor sensor = in_buckets(camera).sensor;
+  tap_dark_e_per_s_ = sensor.dark_current_e_per_s;
+  readout_variance_e2_ = constant_variance_e2_of(sensor);
 
   const Eigen::VectorXcd transfer =
       camera.band_limited() ? camera.transfer(harmonics_kept(code.samples())) : Eigen::VectorXcd();
@@ -76,22 +98,25 @@ ForwardModel::ForwardModel(const CodeSet& code, const Camera& camera)
   const double moved = -offset_m / camera.range_m();
   const bool reversed = camera.playback && camera.playback->reversed;
   if (camera.temperature) signal_gain_ = camera.temperature->signal_gain();
+  const std::vector<Waveform> demodulation = tap_functions(code, actual.demodulation);
+  const auto tap_values = static_cast<int>(demodulation.size());
   Eigen::RowVectorXd gain(tap_values);
   tap_exposure_s_.resize(tap_values);
   for (int i = 0; i < tap_values; ++i) {
-    const Waveform& d = actual.demodulation[static_cast<std::size_t>(i)];
-    const Waveform& m = actual.modulation[static_cast<std::size_t>(code.exposure_of(i))];
+    const int exposure = i / taps_;
+    const Waveform& d = demodulation[static_cast<std::size_t>(i)];
+    const Waveform& m = actual.modulation[static_cast<std::size_t>(exposure)];
     functions_.push_back(camera.band_limited() ? CorrelationFunction(d, m, transfer)
                                                : CorrelationFunction(d, m));
     if (offset_m != 0.0 || reversed) functions_.back() = functions_.back().moved(moved, reversed);
     gain[i] = d.mean();
-    tap_exposure_s_[i] = camera.exposure_s.of(code.exposure_of(i), code.exposures());
+    tap_exposure_s_[i] = camera.exposure_s.of(exposure, code.exposures());
   }
   if (code.is_rows()) {
     read_rows(code, actual.modulation.front(), transfer, moved);
     return;
   }
-  readout_ = readout_matrix(tap_values, camera.sensor.readout);
+  readout_ = readout_matrix(tap_values, sensor.readout);
   mix_taps(gain, taps_, contrast_);
   tap_ambient_gain_ = gain.transpose().cwiseProduct(sensitivity_);
   ambient_gain_ = readout_ * tap_ambient_gain_;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tofsmith/core/error.hpp"
 
@@ -99,6 +100,25 @@ CodeSet CodeSet::create_rows(std::string name, const Eigen::VectorXd& light, Eig
   return create_rows(std::move(name), Waveform::sampled(light / light.mean()), rows);
 }
 
+CodeSet CodeSet::create_signed(std::string name, std::vector<Waveform> modulation,
+                               const Eigen::MatrixXd& weights) {
+  std::vector<Waveform> drive;
+  for (Eigen::Index i = 0; i < weights.cols(); ++i) {
+    const Eigen::ArrayXd w = weights.col(i);
+    for (Eigen::Index n = 0; n < w.size(); ++n)
+      require(std::abs(w[n]) <= 1.0 + tolerance, fmt::format("demodulation {}[{}]", i, n), w[n],
+              "must be a weight in [-1, 1]");
+    const bool switches = ((w.abs() - 1.0).abs() <= tolerance).all();
+    const Eigen::VectorXd x = (0.5 * (w + 1.0)).max(0.0).min(1.0);
+    drive.push_back(!switches          ? Waveform::sampled(x)
+                    : x.maxCoeff() > 0.5 ? Waveform::binary_from_samples(x, 1.0)
+                                         : Waveform::constant(0.0));
+  }
+  return create(std::move(name), static_cast<int>(weights.rows()), 1, std::move(modulation),
+                std::move(drive))
+      .with_signed_weights();
+}
+
 double CodeSet::peak() const {
   double peak = 0.0;
   for (const Waveform& m : modulation_) peak = std::max(peak, m.peak());
@@ -114,6 +134,7 @@ Eigen::MatrixXd CodeSet::modulation_samples() const {
 Eigen::MatrixXd CodeSet::demodulation_samples() const {
   Eigen::MatrixXd columns(samples_, measurements());
   for (int i = 0; i < measurements(); ++i) columns.col(i) = demodulation(i).cell_averages(samples_);
+  if (is_signed_) columns = (2.0 * columns.array() - 1.0).matrix().eval();
   return columns;
 }
 
@@ -140,7 +161,8 @@ CodeSet CodeSet::rotated(int rotation_bin) const {
 }
 
 CodeSet CodeSet::with_two_buckets() const {
-  require(taps_ == 1, "taps", taps_, "only a code for one tap can be given a second bucket");
+  require(taps_ == 1 && !is_signed_, "taps", is_signed_ ? "of a mixer" : fmt::format("{}", taps_),
+          "only a code for one tap can be given a second bucket");
   std::vector<Waveform> demodulation;
   for (const Waveform& d : demodulation_) {
     demodulation.push_back(d);
@@ -149,6 +171,42 @@ CodeSet CodeSet::with_two_buckets() const {
   CodeSet code = create(name_, samples_, 2, modulation_, std::move(demodulation));
   code.provenance = provenance;
   return code;
+}
+
+CodeSet CodeSet::with_signed_weights() const {
+  require(taps_ == 1 && !is_rows_, "taps", taps_,
+          "only a code for one tap can be played by a mixer");
+  for (int i = 0; i < measurements(); ++i)
+    require(!demodulation(i).is_binary() || demodulation(i).on_intervals().empty() ||
+                std::abs(demodulation(i).level() - 1.0) <= tolerance,
+            fmt::format("demodulation {} level", i), demodulation(i).level(),
+            "must be 1 to be played by a mixer, which switches between -1 and 1");
+  CodeSet code = *this;
+  code.is_signed_ = true;
+  return code;
+}
+
+CodeSet CodeSet::signed_of_buckets() const {
+  require(taps_ == 2, "taps", taps_, "only a code for two buckets can be played by a mixer");
+  std::vector<Waveform> drive;
+  for (int i = 0; i < measurements(); i += 2) {
+    const Eigen::VectorXd sum =
+        demodulation(i).cell_averages(samples_) + demodulation(i + 1).cell_averages(samples_);
+    const double farthest = (sum.array() - 1.0).abs().maxCoeff();
+    require(farthest <= 1e-6, fmt::format("sum over taps of exposure {}", i / 2), 1.0 - farthest,
+            "must be 1 to be played by a mixer");
+    drive.push_back(demodulation(i));
+  }
+  CodeSet code = create(name_, samples_, 1, modulation_, std::move(drive)).with_signed_weights();
+  code.provenance = provenance;
+  return code;
+}
+
+CodeSet CodeSet::buckets_of_signed() const {
+  require(is_signed_, "code", name_, "must be one of a mixer");
+  CodeSet code = *this;
+  code.is_signed_ = false;
+  return code.with_two_buckets();
 }
 
 }  // namespace tofsmith

@@ -164,11 +164,12 @@ DecodingTable make_decoding_table(const ForwardModel& model, const Camera& camer
   const double gain_e_per_raw = sensor.gain_e_per_dn.value_or(1.0);
   table.gain_e_per_raw = Eigen::VectorXd::Constant(table.measurements(), gain_e_per_raw);
   table.black_level = Eigen::VectorXd::Zero(table.measurements());
-  if (sensor.readout == Readout::difference) {
+  if (sensor.subtracts()) {
     const Eigen::MatrixXd sums = model.readout().cwiseAbs();
     table.shot_correlation = model.tap_correlation_table(model.samples()) * sums.transpose();
     table.shot_ambient_gain = sums * model.tap_ambient_gain();
-    table.shot_dark_electrons = sums * (sensor.dark_current_e_per_s * model.tap_exposure_s());
+    table.shot_dark_electrons = sums * (model.tap_dark_e_per_s() * model.tap_exposure_s());
+    if (sensor.is_signed()) table.black_level.setConstant(sensor.black_level_dn.value_or(0.0));
     return table;
   }
   table.black_level.setConstant(sensor.black_level_dn.value_or(0.0));

@@ -118,9 +118,11 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   const int columns = measured.columns();
   require(sensor.readout != Readout::rows, "sensor.readout", "rows",
           "must be separate or difference: what a measured table says of noise is that of taps");
-  const bool differs = sensor.readout == Readout::difference;
+  const bool differs = sensor.subtracts();
   require(!measured.differences || differs, "readout", "separate",
           "must be difference: the measured table is one of differences of taps");
+  require(!sensor.is_signed() || measured.differences, "differences of the measured table", 0,
+          "must be 1 with sensor.demodulation = \"signed\": its columns are of both signs");
   const bool subtracts = differs && !measured.differences;
   require(!subtracts || measured.taps == 2, "taps of the measured table", measured.taps,
           "must be 2 where the camera reads differences");
@@ -128,7 +130,7 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
       readout_matrix(columns, subtracts ? Readout::difference : Readout::separate);
   const Eigen::MatrixXd sums = readout.cwiseAbs();
   // A difference that was read out holds the dark electrons and the read noise of two taps.
-  const double taps_read = measured.differences ? 2.0 : 1.0;
+  const double taps_read = measured.differences && !sensor.is_signed() ? 2.0 : 1.0;
 
   const Eigen::VectorXd exposure_s = exposure_s_of(measured, camera.exposure_s);
   const Eigen::VectorXd ambient_gain =
@@ -144,7 +146,9 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
       measured.black_level.size() > 0
           ? measured.black_level
           : Eigen::VectorXd::Constant(
-                columns, measured.differences ? 0.0 : sensor.black_level_dn.value_or(0.0));
+                columns, measured.differences && !sensor.is_signed()
+                             ? 0.0
+                             : sensor.black_level_dn.value_or(0.0));
   const Eigen::VectorXd dark_e = sensor.dark_current_e_per_s * exposure_s;
 
   DecodingTable table = make_decoding_table(measured.correlation * readout.transpose(),

@@ -65,7 +65,10 @@ std::string why_so_many_exposures(const Camera& camera, const DesignResult& resu
       "With {} and {} per exposure it takes {} exposure{}{}: more of them, or more taps, resolve "
       "more "
       "depths, but share the same light and add read noise.",
-      band, winner.taps == 1 ? std::string("one tap") : fmt::format("{} taps", winner.taps),
+      band,
+      camera.sensor.is_signed() ? std::string("one number of a mixer")
+      : winner.taps == 1        ? std::string("one tap")
+                                : fmt::format("{} taps", winner.taps),
       winner.exposures, winner.exposures == 1 ? "" : "s",
       others.empty() ? std::string() : fmt::format(" ({})", others));
 }

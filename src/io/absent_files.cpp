@@ -38,7 +38,7 @@ CodeSet parse_code_npz(std::span<const std::byte> /*content*/, std::string_view 
   refuse_file(std::string(file), "the text of a .json file");
 }
 
-CodeSet parse_code_csv(std::string_view /*text*/, std::string_view file) {
+CodeSet parse_code_csv(std::string_view /*text*/, std::string_view file, bool /*is_signed*/) {
   refuse_file(std::string(file), "the text of a .json file");
 }
 

@@ -68,7 +68,8 @@ Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camer
   const double frequency_hz = camera.fundamental_frequency_hz;
   const ForwardModel model(code, camera);
   const ActualCode actual = actual_code(code, camera);
-  const Eigen::MatrixXd table = model.tap_correlation_table(curve_points);
+  const Eigen::MatrixXd table = code.is_signed() ? model.correlation_table(curve_points)
+                                                 : model.tap_correlation_table(curve_points);
   const double range_m = camera.range_m();
 
   std::vector<PanelRow> rows;
@@ -85,17 +86,19 @@ Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camer
                               .y = to_values(target.col(target_column)),
                               .period = range_m,
                               .style = reference_style()});
+    std::vector<Series> gates =
+        arm_series(code.demodulation(i), actual.demodulation[static_cast<std::size_t>(i)],
+                   camera.sensor.impulse_response, frequency_hz, sensor);
+    if (code.is_signed()) gates = weight_series(std::move(gates));
     rows.push_back(
         {.title = fmt::format("{}", i + 1),
          .panels = {
              arm_series(code.modulation_of(i),
                         actual.modulation[static_cast<std::size_t>(code.exposure_of(i))],
                         camera.light.impulse_response, frequency_hz, light),
-             arm_series(code.demodulation(i), actual.demodulation[static_cast<std::size_t>(i)],
-                        camera.sensor.impulse_response, frequency_hz, sensor),
-             std::move(correlations)}});
+             std::move(gates), std::move(correlations)}});
   }
-  return small_multiples(std::move(text), waveform_columns(), rows);
+  return small_multiples(std::move(text), waveform_columns(code.is_signed()), rows);
 }
 
 Figure coding_curve_figure(FigureText text, const std::vector<CodeSet>& codes,
@@ -134,8 +137,11 @@ KeyValueList camera_description(const Camera& camera) {
                           "; response: " + response_text(camera.light.impulse_response) +
                           jitter_text(camera.light.edge_jitter_s) +
                           generator_text(camera.light.generator, camera.fundamental_frequency_hz));
-  add("sensor", fmt::format("{} tap{}, {}; response: {}", camera.sensor.taps,
-                            camera.sensor.taps > 1 ? "s" : "", arm_text(camera.sensor.binary),
+  const std::string receiver =
+      camera.sensor.is_signed() ? "a mixer of weights from -1 to 1"
+                                : fmt::format("{} tap{}", camera.sensor.taps,
+                                              camera.sensor.taps > 1 ? "s" : "");
+  add("sensor", fmt::format("{}, {}; response: {}", receiver, arm_text(camera.sensor.binary),
                             response_text(camera.sensor.impulse_response)) +
                     jitter_text(camera.sensor.edge_jitter_s) +
                     generator_text(camera.sensor.generator, camera.fundamental_frequency_hz));

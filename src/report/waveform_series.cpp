@@ -51,13 +51,19 @@ std::vector<Series> arm_series(const Waveform& nominal, const Waveform& actual,
   return series;
 }
 
-std::vector<PanelColumn> waveform_columns() {
+std::vector<Series> weight_series(std::vector<Series> drive) {
+  for (Series& series : drive)
+    for (auto& value : series.y) value = 2 * value - 1;
+  return drive;
+}
+
+std::vector<PanelColumn> waveform_columns(bool is_signed) {
   return {{.title = "Modulation",
            .x = {.label = "time", .unit = "ns"},
            .y = {.label = "power / average", .from_zero = true}},
           {.title = "Demodulation",
            .x = {.label = "time", .unit = "ns"},
-           .y = {.label = "gain", .from_zero = true}},
+           .y = {.label = is_signed ? "weight" : "gain", .from_zero = true}},
           {.title = "Correlation",
            .x = {.label = "depth", .unit = "m"},
            .y = {.label = "chi", .from_zero = true}}};

@@ -97,7 +97,7 @@ CramerRaoBound::CramerRaoBound(const ForwardModel& model, const Camera& camera,
   shot_ambient_ = sums * tap_ambient;
   // What differences of buckets leave of ambient light is rounding, not a direction to take out.
   ambient_ = (ambient_.array().abs() > 1e-9 * shot_ambient_.array()).select(ambient_, 0.0);
-  constant_variance_e2_ += sums * (camera.sensor.dark_current_e_per_s * model.tap_exposure_s());
+  constant_variance_e2_ += sums * (model.tap_dark_e_per_s() * model.tap_exposure_s());
 }
 
 HistogramBound::HistogramBound(const ForwardModel& model, const Camera& camera)

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/shared/whole_vectors.hpp"
+#include "simulate/noise.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -66,12 +67,15 @@ DepthTrials::DepthTrials(const ForwardModel& model, const Camera& camera,
     rows_.emplace(model, camera);
     return;
   }
+  require(!camera.sensor.is_signed() || 2 * model_.taps() <= max_measurements, "measurements",
+          model_.taps(), "must be at most 32 with sensor.demodulation = \"signed\"");
   const PlaneMap* map = decoder_.plane_map();
   const bool in_plane = map != nullptr && model_.is_linear() && !options_.clip_to_open_sensor &&
                         !options_.draw_every_measurement;
   for (const OperatingPoint& point : points_) {
     if (in_plane) plane_noise_.emplace_back(model_, *map, point.ambient_e_per_s);
     mean_floor_e_.push_back(in_floats(model_.mean_floor_e(point.ambient_e_per_s)));
+    shot_floor_e2_.push_back(in_floats(model_.shot_floor_e2(point.ambient_e_per_s)));
     max_e_.emplace_back();
     if (options_.clip_to_open_sensor)
       max_e_.back() =
@@ -151,11 +155,31 @@ void DepthTrials::draw_signal(const TrialStreams& streams, std::size_t point, in
     tile.signal[i] = static_cast<float>((tile.words[i] + 0.5) * 0x1p-32 * signal_e_per_s);
 }
 
+/// Electrons of both signs of every number of a mixer.
+void DepthTrials::draw_signed(const TrialStreams& streams, int trials, TrialTile& tile) const {
+  const int numbers = model_.taps();
+  for (int k = 0; k < numbers; ++k) {
+    float* const row = tile.taps + k * trials_per_tile;
+    const float* const shot = row + numbers * trials_per_tile;
+    std::array<double, trials_per_tile> plus, minus, size, drawn_plus, drawn_minus;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(trials); ++i) {
+      const SignedElectrons e = SignedElectrons::of(double{row[i]}, double{shot[i]});
+      plus[i] = e.plus, minus[i] = e.minus, size[i] = e.size;
+    }
+    draw_poisson(streams, 2 * k, trials, plus.data(), drawn_plus.data());
+    draw_poisson(streams, 2 * k + 1, trials, minus.data(), drawn_minus.data());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(trials); ++i)
+      row[i] = static_cast<float>(size[i] * (drawn_plus[i] - drawn_minus[i]));
+  }
+}
+
 void DepthTrials::draw_measurements(const TrialStreams& streams, std::size_t point, int trials,
                                     TrialTile& tile) const {
   if (rows_) return rows_->draw(streams, points_[point].ambient_e_per_s, trials, tile);
-  expect_electrons(model_, mean_floor_e_[point], trials, tile);
-  if (model_.conversion().is_poisson)
+  expect_electrons(model_, mean_floor_e_[point], shot_floor_e2_[point], trials, tile);
+  if (model_.conversion().is_poisson && model_.conversion().is_signed)
+    draw_signed(streams, trials, tile);
+  else if (model_.conversion().is_poisson)
     for (int k = 0; k < model_.taps(); ++k) {
       std::array<double, trials_per_tile> mean, count;
       float* const row = tile.taps + k * trials_per_tile;

@@ -70,6 +70,7 @@ class DepthTrials {
   void draw_signal(const TrialStreams& streams, std::size_t point, int trials,
                    TrialTile& tile) const;
   void draw_normals(const TrialStreams& streams, int count, int trials, TrialTile& tile) const;
+  void draw_signed(const TrialStreams& streams, int trials, TrialTile& tile) const;
   void draw_measurements(const TrialStreams& streams, std::size_t point, int trials,
                          TrialTile& tile) const;
 
@@ -82,7 +83,7 @@ class DepthTrials {
   std::optional<RowTrials> rows_;  // where they are read out
   TrialDecoder decoder_;
   std::vector<PlaneNoise> plane_noise_;  // of every point; none where it is not exact
-  std::vector<std::vector<float>> mean_floor_e_, max_e_;  // of every point: (taps)
+  std::vector<std::vector<float>> mean_floor_e_, shot_floor_e2_, max_e_;  // of every point: (taps)
 };
 
 template <typename Sums, typename Add>

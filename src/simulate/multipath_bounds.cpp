@@ -42,7 +42,7 @@ MultipathBound::MultipathBound(const ForwardModel& model, const Camera& camera)
   const Eigen::MatrixXd sums = readout_.cwiseAbs();
   shot_ambient_ = sums * model.tap_exposure_s().cwiseProduct(model.tap_ambient_gain());
   floor_variance_e2_ = model.constant_variance_e2() +
-                       sums * (camera.sensor.dark_current_e_per_s * model.tap_exposure_s());
+                       sums * (model.tap_dark_e_per_s() * model.tap_exposure_s());
 }
 
 Eigen::VectorXd MultipathBound::sigma_of(const OperatingPoint& point, double ratio,

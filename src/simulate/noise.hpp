@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/shared/random.hpp"
 #include "tofsmith/camera/camera.hpp"
 
@@ -14,6 +17,8 @@ namespace tofsmith {
 ///   3. count  round(electrons / gain_e_per_dn + black_level_dn), held to [0, 2^bits - 1], only if
 ///             adc_bits is set; else the raw number is electrons;
 ///   4. read   every tap by itself, or the difference of each pair of buckets.
+/// Of a mixer the difference of its two taps is drawn, and that is clipped, on both sides, counted
+/// and read: see draw_difference().
 /// Of rows, every time bin is drawn without read noise, which comes to the rows.
 class PixelNoise {
  public:
@@ -24,6 +29,11 @@ class PixelNoise {
   double draw_electrons(double expected_e, RandomStream& random) const;
   /// The same without read noise.
   double draw_count(double expected_e, RandomStream& random) const;
+  /// What a mixer gathers, of the expected electrons of its two taps: a number of mean a - b and
+  /// variance a + b, and read noise. Poisson electrons of the two where neither is negative, which
+  /// is exact for a weight that switches. A weight in between makes smaller steps: where b < 0,
+  /// (a - b) / s Poisson electrons of s = (a + b) / (a - b) each, and the other way round.
+  double draw_difference(double a, double b, RandomStream& random) const;
   double read_noise_e() const { return read_noise_e_; }
   /// Steps 2 and 3: the raw number of one tap, [e] or [DN].
   double convert(double electrons) const;
@@ -32,16 +42,29 @@ class PixelNoise {
   void read_out(double* raw, int tap_values) const;
   /// Measurements that leave the sensor for that many tap values.
   int measurements(int tap_values) const {
-    return readout_ == Readout::difference ? tap_values / 2 : tap_values;
+    return subtracts_ ? tap_values / 2 : tap_values;
   }
 
  private:
   NoiseModel model_;
-  Readout readout_;
+  bool subtracts_, is_signed_;
   double read_noise_e_;
   double full_well_e_;  // infinite: none
   bool has_adc_;
-  double gain_e_per_dn_ = 1.0, black_level_dn_ = 0.0, max_dn_ = 0.0;
+  double gain_e_per_dn_ = 1.0, black_level_dn_ = 0.0, min_dn_ = 0.0, max_dn_ = 0.0;
+};
+
+/// Poisson electrons of a mixer: so many of either sign are expected, of that size each.
+struct SignedElectrons {
+  double plus = 0.0, minus = 0.0, size = 1.0;
+
+  /// Of mean and variance (PixelNoise::draw_difference()).
+  static SignedElectrons of(double mean, double variance) {
+    if (std::abs(mean) <= variance) return {0.5 * (variance + mean), 0.5 * (variance - mean), 1.0};
+    const double size = std::max(variance, 0.0) / std::abs(mean);
+    if (size < 1e-12) return {0.0, 0.0, 0.0};
+    return {std::max(mean, 0.0) / size, std::max(-mean, 0.0) / size, size};
+  }
 };
 
 }  // namespace tofsmith

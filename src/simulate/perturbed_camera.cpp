@@ -234,8 +234,9 @@ CodeSet perturbed_code(const CodeSet& code, const PerturbedCamera& perturbed) {
   for (int i = 0; i < code.measurements(); ++i)
     demodulation.push_back(
         on_samples(on_clock(code.demodulation(i), perturbed.clock_s, camera), code.samples()));
-  return CodeSet::create(code.name(), code.samples(), code.taps(), std::move(modulation),
-                         std::move(demodulation));
+  CodeSet changed = CodeSet::create(code.name(), code.samples(), code.taps(), std::move(modulation),
+                                    std::move(demodulation));
+  return code.is_signed() ? changed.with_signed_weights() : changed;
 }
 
 }  // namespace tofsmith

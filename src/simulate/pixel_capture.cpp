@@ -11,7 +11,8 @@ namespace tofsmith {
 PixelCapture::PixelCapture(const ForwardModel& model, const Camera& camera)
     : range_m_(camera.range_m()),
       bin_m_(camera.bin_m()),
-      dark_e_per_s_(camera.sensor.dark_current_e_per_s / (model.has_rows() ? model.samples() : 1)),
+      dark_e_per_s_(model.tap_dark_e_per_s()),
+      is_signed_(camera.sensor.is_signed()),
       correlation_(model),
       noise_(camera.sensor),
       exposure_s_(model.tap_exposure_s()),
@@ -33,9 +34,14 @@ void PixelCapture::expose(double ambient_e_per_s, RandomStream& random, std::vec
     const auto i = static_cast<Eigen::Index>(j);
     const double expected_e =
         exposure_s_[i] * (light[j] + ambient_e_per_s * ambient_gain_[i] + dark_e_per_s_);
-    light[j] = rows_ ? noise_.draw_count(expected_e, random)
-                     : noise_.convert(noise_.draw_electrons(expected_e, random));
+    light[j] = rows_        ? noise_.draw_count(expected_e, random)
+               : is_signed_ ? expected_e
+                            : noise_.convert(noise_.draw_electrons(expected_e, random));
   }
+  if (is_signed_)
+    for (std::size_t k = 0; k < light.size() / 2; ++k)
+      light[k] =
+          noise_.convert(noise_.draw_difference(light[2 * k], light[2 * k + 1], random));
   if (rows_) {
     const Eigen::Map<const Eigen::VectorXd> counts(light.data(), rows_->cols());
     for (int i = 0; i < measurements(); ++i)

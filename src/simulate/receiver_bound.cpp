@@ -28,13 +28,13 @@ double largest_gated(double b, double c, int taps, bool may_be_shorter) {
 
 ReceiverBound::ReceiverBound(const Camera& camera, int exposures)
     : range_m_(camera.range_m()),
-      taps_(camera.sensor.taps),
+      taps_(in_buckets(camera).sensor.taps),
       has_rows_(camera.sensor.readout == Readout::rows),
-      drain_(camera.sensor.drain),
+      drain_(in_buckets(camera).sensor.drain),
       peak_factor_(camera.light.peak_factor),
       sensitivity_(1.0 + 0.5 * std::abs(camera.sensor.tap_mismatch)),
-      dark_e_per_s_(camera.sensor.dark_current_e_per_s),
-      constant_variance_e2_(has_rows_ ? 0.0 : constant_variance_e2_of(camera.sensor)),
+      dark_e_per_s_(in_buckets(camera).sensor.dark_current_e_per_s),
+      constant_variance_e2_(has_rows_ ? 0.0 : constant_variance_e2_of(in_buckets(camera).sensor)),
       max_density_(DepthPrior(camera).max_density()) {
   camera.validate();
   require(exposures >= 1, "exposures", exposures, "must be >= 1");
@@ -48,7 +48,9 @@ ReceiverBound::ReceiverBound(const Camera& camera, int exposures)
                         camera.sensor.impulse_response.kind == Kind::file;
   const Eigen::VectorXcd transfer = camera.transfer(harmonics_kept(camera.samples));
   photons_.emplace(transfer, may_ring);
-  if (!has_rows_ && !may_ring) gates_.emplace(transfer);
+  // Weights of a mixer that need not switch can weigh photons by when they come.
+  const bool weighs = camera.sensor.is_signed() && !camera.sensor.binary;
+  if (!has_rows_ && !may_ring && !weighs) gates_.emplace(transfer);
   transfer_power_ = transfer.tail(transfer.size() - 1).cwiseAbs2();
 }
 

@@ -150,19 +150,30 @@ void plane(const TrialModel& model, const PlaneNoise& noise, int trials, TrialTi
   }
 }
 
-void expect(const TrialModel& model, const float* mean_floor_e, int trials, TrialTile& tile) {
+/// Of a mixer its numbers' means, and behind them all their shot noise.
+void expect(const TrialModel& model, const float* mean_floor_e, const float* shot_floor_e2,
+            int trials, TrialTile& tile) {
   const Floats d;
   RecordChunk chunk;
+  const int taps = model.taps();
+  const bool is_signed = model.conversion().is_signed;
   for (int first = 0; first < trials; first += pixels_per_chunk) {
     const int count = std::min(pixels_per_chunk, trials - first);
     chunk.read(model, tile, first, count);
     for (int i = 0; i < count; i += lanes_of(d)) {
       const Vector share = hn::Load(d, tile.share + first + i);
       const Vector signal = hn::Load(d, tile.signal + first + i);
-      for (int k = 0; k < model.taps(); ++k) {
-        const Vector mean =
-            hn::MulAdd(signal, chunk.between(k, model.taps(), share, i), all(mean_floor_e[k]));
-        hn::Store(hn::Max(mean, hn::Zero(d)), d, tile.taps + k * trials_per_tile + first + i);
+      for (int k = 0; k < taps; ++k) {
+        Vector mean = hn::MulAdd(signal, chunk.between(k, taps, share, i), all(mean_floor_e[k]));
+        if (is_signed) {
+          const Vector shot = hn::MulAdd(signal, chunk.between(2 * taps + k, taps, share, i),
+                                         all(shot_floor_e2[k]));
+          hn::Store(hn::Max(shot, hn::Zero(d)), d,
+                    tile.taps + (taps + k) * trials_per_tile + first + i);
+        } else {
+          mean = hn::Max(mean, hn::Zero(d));
+        }
+        hn::Store(mean, d, tile.taps + k * trials_per_tile + first + i);
       }
     }
   }
@@ -171,22 +182,26 @@ void expect(const TrialModel& model, const float* mean_floor_e, int trials, Tria
 void read_out(const TapConversion& sensor, const float* max_e, int taps, int trials,
               TrialTile& tile) {
   const Floats d;
-  const Vector zero = hn::Zero(d), sigma = all(sensor.read_noise_e);
+  const Vector sigma = all(sensor.read_noise_e), min_dn = all(sensor.min_dn);
+  const Vector sign = all(sensor.is_signed ? -1.0f : 0.0f);  // of the lower limits
   for (int i = 0; i < trials; i += lanes_of(d))
     for (int k = 0; k < taps; ++k) {
       float* const value = tile.taps + k * trials_per_tile + i;
       Vector e = hn::Load(d, value), deviation = sigma;
       if (!sensor.is_poisson) {
-        const Vector variance = hn::MulAdd(sigma, sigma, e);
+        const Vector shot =
+            sensor.is_signed ? hn::Load(d, value + taps * trials_per_tile) : e;
+        const Vector variance = hn::MulAdd(sigma, sigma, shot);
         deviation = hn::Mul(variance, reciprocal_sqrt(variance));
       }
       e = hn::MulAdd(deviation, hn::Load(d, tile.normals + k * trials_per_tile + i), e);
-      if (max_e) e = hn::Min(hn::Max(e, zero), all(max_e[k]));
+      if (max_e) e = hn::Min(hn::Max(e, hn::Mul(sign, all(max_e[k]))), all(max_e[k]));
       e = hn::Min(e, all(sensor.full_well_e));
+      if (sensor.is_signed) e = hn::Max(e, all(-sensor.full_well_e));
       if (sensor.has_adc) {
         const Vector dn =
             hn::Round(hn::MulAdd(e, all(sensor.dn_per_e), all(sensor.black_level_dn)));
-        e = hn::Min(hn::Max(dn, zero), all(sensor.max_dn));
+        e = hn::Min(hn::Max(dn, min_dn), all(sensor.max_dn));
       }
       hn::Store(e, d, value);
     }
@@ -295,9 +310,10 @@ void draw_plane(const TrialModel& model, const PlaneNoise& noise, int trials, Tr
   HWY_DYNAMIC_DISPATCH(plane)(model, noise, trials, tile);
 }
 
-void expect_electrons(const TrialModel& model, const std::vector<float>& mean_floor_e, int trials,
-                      TrialTile& tile) {
-  HWY_DYNAMIC_DISPATCH(expect)(model, mean_floor_e.data(), trials, tile);
+void expect_electrons(const TrialModel& model, const std::vector<float>& mean_floor_e,
+                      const std::vector<float>& shot_floor_e2, int trials, TrialTile& tile) {
+  HWY_DYNAMIC_DISPATCH(expect)
+  (model, mean_floor_e.data(), shot_floor_e2.data(), trials, tile);
 }
 
 void read_out_taps(const TrialModel& model, const std::vector<float>& max_e, int trials,

@@ -55,12 +55,14 @@ void place_depths(const TrialModel& model, const DepthSlices& slices, int trials
 /// Fills pixels.plane from row, share, signal and `rank` rows of normals.
 void draw_plane(const TrialModel& model, const PlaneNoise& noise, int trials, TrialTile& tile);
 
-/// Fills taps with expected electrons.
-void expect_electrons(const TrialModel& model, const std::vector<float>& mean_floor_e, int trials,
-                      TrialTile& tile);
+/// Fills taps with expected electrons; of a mixer then with as many rows of their shot noise
+/// [e^2].
+void expect_electrons(const TrialModel& model, const std::vector<float>& mean_floor_e,
+                      const std::vector<float>& shot_floor_e2, int trials, TrialTile& tile);
 
 /// Adds normal noise to expected electrons, or read noise to Poisson counts; clips and converts.
-/// @param max_e  electrons beyond [0, max_e] are clipped first (taps); empty: none are
+/// @param max_e  electrons beyond [0, max_e], of a mixer [-max_e, max_e], are clipped first (taps);
+///               empty: none are
 void read_out_taps(const TrialModel& model, const std::vector<float>& max_e, int trials,
                    TrialTile& tile);
 

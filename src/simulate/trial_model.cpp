@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "camera/shared/raw_numbers.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 
 namespace tofsmith {
@@ -18,6 +19,7 @@ TapConversion conversion_of(const Sensor& sensor) {
       .is_poisson = sensor.noise == NoiseModel::poisson,
       .has_adc = sensor.adc_bits.has_value(),
       .is_difference = sensor.readout == Readout::difference,
+      .is_signed = sensor.is_signed(),
       .read_noise_e = static_cast<float>(sensor.read_noise_e),
       .full_well_e =
           static_cast<float>(sensor.full_well_e.value_or(std::numeric_limits<double>::infinity())),
@@ -25,7 +27,9 @@ TapConversion conversion_of(const Sensor& sensor) {
   if (c.has_adc) {
     c.dn_per_e = static_cast<float>(1.0 / *sensor.gain_e_per_dn);
     c.black_level_dn = static_cast<float>(sensor.black_level_dn.value_or(0.0));
-    c.max_dn = static_cast<float>(std::exp2(*sensor.adc_bits) - 1.0);
+    const RawNumbers numbers = raw_numbers(sensor);
+    c.min_dn = static_cast<float>(numbers.min_dn);
+    c.max_dn = static_cast<float>(numbers.max_dn);
   }
   return c;
 }
@@ -33,22 +37,36 @@ TapConversion conversion_of(const Sensor& sensor) {
 }  // namespace
 
 TrialModel::TrialModel(const ForwardModel& model, const Camera& camera)
-    : taps_(model.tap_values()),
+    : TrialModel(model, camera,
+                 camera.sensor.is_signed()
+                     ? model.readout()
+                     : Eigen::MatrixXd::Identity(model.tap_values(), model.tap_values())) {}
+
+/// @param sums  of tap values that are drawn as one: each by itself, or the number of a mixer
+TrialModel::TrialModel(const ForwardModel& model, const Camera& camera, const Eigen::MatrixXd& sums)
+    : taps_(static_cast<int>(sums.rows())),
       samples_(model.samples()),
       rows_per_bin_(rows_per_bin_of_codes),
-      has_own_shot_noise_(false),
-      exposure_s_(model.tap_exposure_s()),
-      ambient_e_(exposure_s_.cwiseProduct(model.tap_ambient_gain())),
-      dark_e_(camera.sensor.dark_current_e_per_s * exposure_s_),
-      shot_ambient_e_(ambient_e_),
-      shot_dark_e_(dark_e_),
+      has_own_shot_noise_(camera.sensor.is_signed()),
+      exposure_s_(camera.sensor.is_signed() ? model.exposure_s() : model.tap_exposure_s()),
+      ambient_e_(sums * model.tap_exposure_s().cwiseProduct(model.tap_ambient_gain())),
+      dark_e_(sums * (model.tap_dark_e_per_s() * model.tap_exposure_s())),
+      shot_ambient_e_(sums.cwiseAbs() *
+                      model.tap_exposure_s().cwiseProduct(model.tap_ambient_gain())),
+      shot_dark_e_(sums.cwiseAbs() * (model.tap_dark_e_per_s() * model.tap_exposure_s())),
       constant_variance_e2_(Eigen::VectorXd::Constant(
           taps_, camera.sensor.read_noise_e * camera.sensor.read_noise_e)),
-      raw_per_e_(model.readout()),
+      raw_per_e_(camera.sensor.is_signed() ? Eigen::MatrixXd::Identity(taps_, taps_)
+                                           : model.readout()),
       raw_at_zero_(Eigen::VectorXd::Zero(raw_per_e_.rows())),
       conversion_(conversion_of(camera.sensor)),
-      records_(rows(), 2 * taps_) {
-  fill_records(model.tap_correlation_table(rows()) * exposure_s_.asDiagonal(), {});
+      records_(rows(), (has_own_shot_noise_ ? 4 : 2) * taps_) {
+  const Eigen::MatrixXd light =
+      model.tap_correlation_table(rows()) * model.tap_exposure_s().asDiagonal();
+  if (has_own_shot_noise_)
+    fill_records(light * sums.transpose(), light * sums.cwiseAbs().transpose());
+  else
+    fill_records(light, {});
 }
 
 TrialModel::TrialModel(const ForwardModel& model)

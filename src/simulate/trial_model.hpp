@@ -16,10 +16,12 @@ struct TapConversion {
   bool is_poisson = false;
   bool has_adc = false;
   bool is_difference = false;  ///< neighbours leave as A - B
+  bool is_signed = false;      ///< of a mixer: both signs are clipped
   float read_noise_e = 0.0f;
   float full_well_e = 0.0f;  ///< infinite: none
   float dn_per_e = 0.0f;
   float black_level_dn = 0.0f;
+  float min_dn = 0.0f;
   float max_dn = 0.0f;
 };
 
@@ -27,7 +29,8 @@ struct TapConversion {
 ///   mean     S x_j(z) + A a_j + d_j     [e]
 ///   variance S x'_j(z) + A a'_j + d'_j + c_j  [e^2]
 /// with x = T chi in records of many rows per bin, linear between rows. A code's shot noise is that
-/// of its means, and both are held to be >= 0; a table of differences has its own.
+/// of its means, and both are held to be >= 0; a table of differences has its own, and so has a
+/// mixer, each of whose numbers counts as a tap here.
 class TrialModel {
  public:
   /// Of a code on a camera, 16 rows per bin.
@@ -63,6 +66,7 @@ class TrialModel {
   const Eigen::VectorXd& exposure_s() const { return exposure_s_; }
 
  private:
+  TrialModel(const ForwardModel& model, const Camera& camera, const Eigen::MatrixXd& sums);
   void fill_records(const Eigen::MatrixXd& mean, const Eigen::MatrixXd& shot);
 
   int taps_, samples_, rows_per_bin_;

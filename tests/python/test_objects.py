@@ -170,3 +170,25 @@ def test_what_is_meant_otherwise_is_told(call, error, text):
     with pytest.raises(error) as caught:
         call()
     assert text in str(caught.value)
+
+
+def test_a_mixer_plays_weights_of_both_signs():
+    camera = ts.Camera("paper-10f0", sensor={"demodulation": "signed"})
+    assert camera.sensor.demodulation == "signed"
+    family = ts.build_family("hamiltonian-k4", camera)
+    assert family.is_signed and set(family.demodulation.flat) == {-1.0, 1.0}
+    turns = 2 * np.pi * (np.arange(240) + 0.5) / 240
+    weights = np.stack([np.cos(turns - k * np.pi / 2) for k in range(4)], axis=1)
+    code = ts.CodeSet.from_arrays(1 + weights, weights, signed=True, name="analog")
+    assert np.allclose(code.demodulation, weights)
+    again = pickle.loads(pickle.dumps(code))
+    assert again.is_signed and np.allclose(again.demodulation, weights)
+    scene = ts.Scene(np.full((4, 5), 2.0, np.float32))
+    for played in (family, code):
+        frame = ts.capture(scene, played, camera, signal_e_per_s=1e7, falloff=False)
+        assert frame.shape == (4, 5, 4) and frame.min() < 0
+        assert np.allclose(ts.Decoder(played, camera).decode(frame).depth_m, 2.0, atol=0.05)
+    with pytest.raises(ValueError, match="sensor.demodulation"):
+        ts.ForwardModel(code, "paper-10f0")
+    with pytest.raises(ValueError, match="in \\[-1, 1\\]"):
+        ts.CodeSet.from_arrays(1 + weights, 1.5 * weights, signed=True)

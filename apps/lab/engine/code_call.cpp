@@ -171,6 +171,7 @@ CodeSet with_edge_moved(const CodeSet& code, const Camera& camera, const EdgePla
   const std::string name =
       code.name().ends_with(mark) ? code.name() : code.name() + std::string(mark);
   CodeSet edited = CodeSet::create(name, code.samples(), code.taps(), light, gates);
+  if (code.is_signed()) edited = edited.with_signed_weights();
   edited.provenance = code.provenance;
   edited.provenance.method = "edited";
   edited.provenance.residuals.clear();

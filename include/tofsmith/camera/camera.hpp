@@ -159,6 +159,14 @@ enum class Readout {
   rows,
 };
 
+/// What the sensor multiplies the light by.
+enum class Demodulation {
+  gain,  ///< a share in [0, 1]: taps gather charge while their gates are open
+  /// A weight in [-1, 1]: a mixer, which delivers one signed number per exposure. All light that it
+  /// detects makes shot noise, by the square of its weight; it is read once.
+  weight,
+};
+
 /// The modulated light source.
 struct LightSource {
   double peak_factor = 15.0;  ///< p = P_max / P_ave, >= 1
@@ -191,8 +199,15 @@ struct Sensor {
   std::optional<double> shortest_pulse_s;  ///< shortest pulse or gap a design may use [s], > 0
   bool drain = true;                       ///< charge may be thrown away; else taps add to 1
   Readout readout = Readout::separate;     ///< how taps leave the sensor
+  Demodulation demodulation = Demodulation::gain;  ///< of taps, or of a mixer
   std::optional<double> readout_gap_s;     ///< dark time after each exposure [s], >= 0; none: 0
   std::optional<double> frame_period_s;    ///< from frame to frame [s], > 0; none: no pause
+
+  /// Whether measurements are numbers of a mixer.
+  bool is_signed() const { return demodulation == Demodulation::weight; }
+  /// Whether measurements have both signs by the light itself, as of two buckets or a mixer, so
+  /// that ambient light may cancel, but not its noise.
+  bool subtracts() const { return is_signed() || readout == Readout::difference; }
 
   friend bool operator==(const Sensor&, const Sensor&) = default;
 };
@@ -442,11 +457,17 @@ std::optional<std::string> why_not_playable(const CodeSet& code, const Camera& c
 /// @throws InvalidArgument with the text of why_not_playable(), if there is one
 void require_fits(const CodeSet& code, const Camera& camera);
 
+/// The camera of two buckets, read as their difference and without a drain, that measures with the
+/// two gates of a binary weight, open where it is 1 and where it is -1, what a camera of a mixer
+/// does with the weight: half of its noise without light is that of each bucket. Full well,
+/// converter and mismatch of exposures are left out. Other cameras as they are.
+Camera in_buckets(Camera camera);
+
 /// Why no family `name` can be built for the camera; none: build_family() does.
 std::optional<std::string> why_no_family(std::string_view name, const Camera& camera);
 
 /// The family `name`, built for the camera: within its peak, on its samples, with the second bucket
-/// of every measurement where the sensor has two taps.
+/// of every measurement where the sensor has two taps, and from -1 to 1 where it is a mixer.
 /// @throws InvalidArgument with the text of why_no_family(), if there is one
 CodeSet build_family(std::string_view name, const Camera& camera);
 

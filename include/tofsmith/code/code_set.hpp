@@ -107,6 +107,8 @@ struct Provenance {
 ///
 /// Modulation is emitted over average power: values >= 0, mean at most 1.
 /// Demodulation is sensor gain: values in [0, 1]; the taps of an exposure never add to more than 1.
+/// Of a signed code it is the weight of a mixer, in [-1, 1], one in an exposure. It is kept as the
+/// mixer's drive x in [0, 1], which chooses between the signs: the weight is 2 x - 1.
 /// Or it is the weights of rows of one exposure, K weighted sums of the light in N time bins: any
 /// values, constant over a bin.
 class CodeSet {
@@ -125,11 +127,19 @@ class CodeSet {
   /// (N, K) or (K, N).
   static CodeSet create_rows(std::string name, const Eigen::VectorXd& light, Eigen::MatrixXd rows);
 
+  /// A signed code: weights of a mixer, (N, E), of which those that are -1 or 1 throughout become
+  /// switching times.
+  /// @throws std::invalid_argument naming the waveform and the rule it breaks
+  static CodeSet create_signed(std::string name, std::vector<Waveform> modulation,
+                               const Eigen::MatrixXd& weights);
+
   const std::string& name() const { return name_; }
   int samples() const { return samples_; }
   int taps() const { return taps_; }  ///< or rows
   /// Whether the measurements are rows of one exposure.
   bool is_rows() const { return is_rows_; }
+  /// Whether the demodulation is that of a mixer.
+  bool is_signed() const { return is_signed_; }
   int exposures() const { return static_cast<int>(modulation_.size()); }
   int measurements() const { return static_cast<int>(demodulation_.size()); }
   int exposure_of(int measurement) const { return measurement / taps_; }
@@ -138,7 +148,7 @@ class CodeSet {
   const Waveform& modulation(int exposure) const {
     return modulation_[static_cast<std::size_t>(exposure)];
   }
-  /// Demodulation function of one measurement.
+  /// Demodulation function of one measurement; of a signed code its drive, in [0, 1].
   const Waveform& demodulation(int measurement) const {
     return demodulation_[static_cast<std::size_t>(measurement)];
   }
@@ -151,7 +161,7 @@ class CodeSet {
   double peak() const;
   /// Cell averages of the modulation functions, (N, E).
   Eigen::MatrixXd modulation_samples() const;
-  /// Cell averages of the demodulation functions, (N, K).
+  /// Cell averages of the demodulation functions, (N, K): gains, weights in [-1, 1], or rows.
   Eigen::MatrixXd demodulation_samples() const;
 
   CodeSet renamed(std::string name) const;
@@ -163,6 +173,13 @@ class CodeSet {
   /// For a two-bucket sensor: the complement of every demodulation is read out of the same
   /// exposure. @throws std::invalid_argument unless taps() == 1
   CodeSet with_two_buckets() const;
+  /// For a mixer: every gain d becomes the drive of the weight 2 d - 1, which is what two buckets
+  /// with d and 1 - d measure as their difference. @throws std::invalid_argument unless taps() == 1
+  CodeSet with_signed_weights() const;
+  /// The code of two buckets of which each second is what the first leaves, as one of a mixer, and
+  /// back. @throws std::invalid_argument unless it is such a code
+  CodeSet signed_of_buckets() const;
+  CodeSet buckets_of_signed() const;
 
   Provenance provenance;
 
@@ -171,7 +188,7 @@ class CodeSet {
   std::string name_;
   int samples_ = 0;
   int taps_ = 1;
-  bool is_rows_ = false;
+  bool is_rows_ = false, is_signed_ = false;
   std::vector<Waveform> modulation_;
   std::vector<Waveform> demodulation_;
 };

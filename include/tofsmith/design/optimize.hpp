@@ -69,16 +69,21 @@ auto fields_of(ConstOrNot<OptimizeOptions> auto& o) {
 /// soft decoder, from a pool of starts (all families, random codes and the codes given);
 /// the best are changed and go downhill again; the best of all are refined, made to switch where
 /// arms are binary, and their edges polished. Light may use less than its peak. Taps: one; two
-/// buckets that share all charge; more, exclusive, with a drain where the camera has one. Every
-/// pulse and gap of binary waveforms is at least sensor.shortest_pulse_s long.
+/// buckets that share all charge; more, exclusive, with a drain where the camera has one; a mixer.
+/// Every pulse and gap of binary waveforms is at least sensor.shortest_pulse_s long.
+///
+/// Where an arm need not switch the whole search is made for arms that do, too, and then begins
+/// with what it found. From twice the default effort on (with_effort()) a search begins with all of
+/// that of half the effort. Candidates of both join: what contains more never loses by it.
 /// @param exposures  1 .. 8, with at least 3 measurements in all (2 differences)
 /// @param also  codes that join the starts, where they have as many exposures
 /// @return codes that the camera can play, each named "optimized-k<exposures>", those first that
 /// the
 ///         search likes better: the best of the pool with switching times on the grid, then with
-///         polished edges. They are not judged: Candidate::error is empty, and which one is best,
-///         at which origin, and whether it beats the codes given, is for judge() of
-///         design/design.hpp, with random numbers that nothing was chosen by. design() does both.
+///         polished edges; those of arms that switch and of less effort before. They are not
+///         judged: Candidate::error is empty, and which one is best, at which origin, and whether
+///         it beats the codes given, is for judge() of design/design.hpp, with random numbers that
+///         nothing was chosen by. design() does both.
 /// @throws std::invalid_argument for bad options, an invalid camera, too few measurements, a camera
 ///         without band limit and without sensor.shortest_pulse_s; Interrupted
 /// @note same bits for any number of threads

@@ -38,6 +38,7 @@ struct TapLayout {
   int taps = 1;
   std::optional<TapOrder> order;  ///< must be given for several taps of several exposures: it
                                   ///< is never guessed
+  bool is_signed = false;         ///< demodulations are weights of a mixer, in [-1, 1]
 };
 
 /// Reads the arrays `modfs` and `demodfs`, each (N, K), in the layout that other time-of-flight
@@ -65,7 +66,8 @@ struct CodeFileOptions {
   std::optional<TapOrder> tap_order;  ///< never guessed
 };
 
-/// Reads a code by extension: .json or .npz. `layout` is for .npz; .json says it itself.
+/// Reads a code by extension: .json, .npz or .csv. `layout` is for .npz, and whether weights are
+/// signed for .csv too; .json says it itself.
 /// @throws IoError as parse_code_json() and parse_code_npz(), or if the file cannot be read
 CodeSet read_code(const std::filesystem::path& path, const TapLayout& layout = {});
 
@@ -85,7 +87,8 @@ CodeSet read_rows(const std::filesystem::path& light, const std::filesystem::pat
 CodeSet read_rows(const std::filesystem::path& archive);
 
 /// A built-in family, built for the camera, or a code from a file as it is there. A camera that
-/// reads rows takes an .npz file as rows; LIGHT.npy,ROWS.npy are rows on any.
+/// reads rows takes an .npz file as rows; LIGHT.npy,ROWS.npy are rows on any. A camera of a mixer
+/// takes the demodulations of .npz and .csv files as weights in [-1, 1].
 /// @throws IoError as read_code(), or if `name_or_path` is neither;
 ///         std::invalid_argument for a family that the camera cannot play
 CodeSet load_code(const std::string& name_or_path, const Camera& camera,

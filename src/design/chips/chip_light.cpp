@@ -18,6 +18,9 @@ std::optional<BrokenRule> why_not_plain(const Camera& camera) {
   if (camera.sensor.modulation_contrast != 1.0)
     return broken("sensor.modulation_contrast", camera.sensor.modulation_contrast,
                   "must be 1 to search codes on a chip clock");
+  if (camera.sensor.is_signed())
+    return broken("sensor.demodulation", "signed",
+                  "must be \"gain\" to search codes of exclusive taps");
   if (camera.sensor.readout != Readout::separate)
     return broken("sensor.readout", camera.sensor.readout == Readout::rows ? "rows" : "difference",
                   "must be separate to search codes on a chip clock");

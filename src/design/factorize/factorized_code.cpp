@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <utility>
 
 #include "code/shared/family_rules.hpp"
 #include "code/shared/hamiltonian.hpp"
@@ -34,7 +35,11 @@ std::vector<int> factorizable_exposures(const Camera& camera, const DesignOption
 FamilyOptions ideal_on(const Camera& camera) { return {.samples = camera.samples}; }
 
 /// Why codes for these targets cannot be played at all, before time is spent on them.
-std::optional<BrokenRule> why_not_designable(const TargetSet& targets, const Camera& camera) {
+std::optional<BrokenRule> why_not_designable(const TargetSet& targets, const Camera& on) {
+  if (on.sensor.is_signed() && on.sensor.tap_mismatch != 0.0)
+    return broken("sensor.tap_mismatch", on.sensor.tap_mismatch,
+                  "must be 0 to factorize for sensor.demodulation = \"signed\"");
+  const Camera camera = in_buckets(on);
   if (camera.sensor.readout == Readout::rows)
     return broken("sensor.readout", "rows",
                   "must be separate or difference to factorize correlation functions");
@@ -118,6 +123,10 @@ std::vector<TargetSet> targets_for(const Camera& camera, const DesignOptions& op
 }
 
 std::optional<CodeSet> naive_code(const TargetSet& targets, const Camera& camera) {
+  if (camera.sensor.is_signed()) {
+    const auto code = naive_code(targets, in_buckets(camera));
+    return code ? std::optional(code->signed_of_buckets()) : std::nullopt;
+  }
   std::vector<Factorization> pairs;
   for (const CorrelationTarget& target : targets.measurements) {
     pairs.push_back({.candidates = naive_start(PairModel(target, camera))});
@@ -129,8 +138,9 @@ std::optional<CodeSet> naive_code(const TargetSet& targets, const Camera& camera
   return code;
 }
 
-Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
+Candidate factorized_candidate(const TargetSet& targets, const Camera& on,
                                const DesignOptions& options, const Progress& progress) {
+  const Camera camera = in_buckets(on);
   const ProgressParts parts(progress, {40, 60});  // factorizing, choosing pairs
   const auto begin = std::chrono::steady_clock::now();
   // 1. Factorize every measurement by itself.
@@ -149,11 +159,11 @@ Candidate factorized_candidate(const TargetSet& targets, const Camera& camera,
   const PairChoice choice =
       choose_by_depth_error(factorizations, camera, search, rotates(camera, options), parts[1]);
   // 3. Put the code together and say how near its target it is.
-  Candidate candidate{
-      .code = signed_by(assemble(targets.name + "-factorized", factorizations, choice, camera),
-                        "factorize", camera, options.seed),
-      .method = "factorize",
-      .target = target_table(targets)};
+  CodeSet code = assemble(targets.name + "-factorized", factorizations, choice, camera);
+  if (on.sensor.is_signed()) code = code.signed_of_buckets();
+  Candidate candidate{.code = signed_by(std::move(code), "factorize", camera, options.seed),
+                      .method = "factorize",
+                      .target = target_table(targets)};
   for (std::size_t k = 0; k < choice.size(); ++k) {
     const Factorization& f = factorizations[k];
     candidate.per_measurement.push_back(measurement_report(f, f.candidates[choice[k]]));

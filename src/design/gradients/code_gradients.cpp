@@ -21,6 +21,9 @@ const Camera& without_what_has_no_gradient(const Camera& camera, int samples, in
   const char* const needs = "must be left out where gradients are asked for";
   require(camera.sensor.readout != Readout::rows, "sensor.readout", "rows",
           "must be separate or difference where gradients are asked for");
+  require(!camera.sensor.is_signed(), "sensor.demodulation", "signed",
+          "must be \"gain\" where gradients are asked for; two buckets read as their difference "
+          "measure what a mixer that switches does");
   require(!camera.light.generator, "light.generator", "set", needs);
   require(!camera.sensor.generator, "sensor.generator", "set", needs);
   require(!camera.playback, "playback", "set", needs);

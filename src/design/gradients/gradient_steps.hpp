@@ -14,7 +14,7 @@ namespace tofsmith {
 struct CodeGradients::Steps {
   Steps(const Camera& its, int samples, int exposures);
 
-  bool has_shot() const { return !sampled.ambient_unknown(); }
+  bool has_shot() const { return sampled.subtracts(); }
   /// Of all measurements and, where they are differences, of the light behind them: (K) or (2 K).
   BetweenBins::Functions functions_of(const MeasurementTable& table) const;
   void pull_back_functions(const BetweenBins::Functions& gradient,

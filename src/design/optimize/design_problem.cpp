@@ -105,20 +105,24 @@ std::vector<LightLevel> levels_of(const Camera& camera,
 
 }  // namespace
 
-std::optional<BrokenRule> why_not_optimizable(const Camera& camera, int exposures) {
+std::optional<BrokenRule> why_not_optimizable(const Camera& on, int exposures) {
+  if (on.sensor.is_signed() && on.sensor.tap_mismatch != 0.0)
+    return broken("sensor.tap_mismatch", on.sensor.tap_mismatch,
+                  "must be 0 to optimize codes for sensor.demodulation = \"signed\"");
+  const Camera camera = in_buckets(on);
   if (exposures < 1 || exposures > 8) return broken("exposures", exposures, "must be in [1, 8]");
   if (camera.sensor.readout == Readout::rows)
     return broken("sensor.readout", "rows", "must be separate or difference to optimize codes");
   const bool difference = camera.sensor.readout == Readout::difference;
   const int measurements = difference ? exposures : exposures * camera.sensor.taps;
-  const int fewest = difference ? 2 : 3;
+  const int fewest = sees_ambient(camera, exposures) ? 3 : 2;
   if (measurements < fewest)
     return broken(
         "exposures", exposures,
         fmt::format("must give at least {} measurements; with sensor.taps = {} that takes "
                     "{}",
                     fewest, camera.sensor.taps,
-                    difference ? 2 : (2 + camera.sensor.taps) / camera.sensor.taps));
+                    difference ? fewest : (2 + camera.sensor.taps) / camera.sensor.taps));
   if (camera.light.peak_factor <= 1.0)
     return broken("light.peak_factor", camera.light.peak_factor,
                   "must be > 1 to optimize: light that never changes carries no depth");
@@ -187,8 +191,8 @@ DesignProblem make_design_problem(std::span<const Camera> given, int exposures, 
   require(!given.empty(), "variants", given.size(), "must hold at least one camera");
   std::vector<Camera> variants;
   for (const Camera& variant : given) variants.push_back(judged_camera(variant));
-  const Camera& camera = variants.front();
-  require(why_not_optimizable(camera, exposures));
+  require(why_not_optimizable(variants.front(), exposures));
+  const Camera camera = in_buckets(variants.front());
   DesignProblem problem;
   problem.space = waveform_space(camera, exposures, samples);
   problem.operating = camera.operating;
@@ -202,9 +206,11 @@ DesignProblem make_design_problem(std::span<const Camera> given, int exposures, 
   if (problem.later && two_return_weight > 0.0)
     problem.multipath_as_two = decoded_as_two(*problem.later, problem.space.samples());
   for (const Camera& variant : variants) {
-    require(variant.sensor.taps == camera.sensor.taps &&
-                variant.sensor.readout == camera.sensor.readout,
-            "variants", variant.name, "must have the taps and the readout of the first");
+    const Sensor &its = variant.sensor, &first = variants.front().sensor;
+    require(its.taps == first.taps && its.readout == first.readout &&
+                its.demodulation == first.demodulation,
+            "variants", variant.name,
+            "must have the taps, the readout and the demodulation of the first");
     const int samples_here = problem.space.samples();
     const int finer = camera.band_limited() ? 1 : std::clamp(camera.samples / samples_here, 1, 4);
     problem.variants.push_back({SampledCamera(variant, samples_here, exposures),

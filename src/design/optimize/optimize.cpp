@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <utility>
 
 #include "core/shared/shared_progress.hpp"
 #include "design/designed_code.hpp"
@@ -16,6 +18,7 @@
 #include "design/optimize/optimize_pool.hpp"
 #include "design/optimize/optimize_starts.hpp"
 #include "design/optimize/optimized_code.hpp"
+#include "tofsmith/camera/forward_model.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/decode/multipath_decoder.hpp"
@@ -51,6 +54,20 @@ std::vector<PoolEntry> playable_entries(const DesignProblem& problem, const Opti
   return chosen;
 }
 
+/// A search of twice the usual effort begins with all of the usual one, and so on by factors of
+/// two: more effort never finds less.
+std::vector<PoolStage> stages_of(const OptimizeOptions& options) {
+  const OptimizeOptions usual;
+  std::vector<PoolStage> stages;
+  for (int times = 1;
+       options.starts >= 2 * times * usual.starts && options.hops >= 2 * times * usual.hops &&
+       options.refinement_steps >= 2 * times * usual.refinement_steps;
+       times *= 2)
+    stages.push_back({times * usual.starts, times * usual.hops, times * usual.refinement_steps});
+  stages.push_back({options.starts, options.hops, options.refinement_steps});
+  return stages;
+}
+
 /// How the codes were searched for.
 SearchRecord record_of(const OptimizePool& pool, std::int64_t steps) {
   return {.work_unit = "descents",
@@ -60,9 +77,10 @@ SearchRecord record_of(const OptimizePool& pool, std::int64_t steps) {
 }
 
 /// The best of the pool as codes that can be played: switched, and with polished edges too.
+/// @param before  codes that stages before this one polished
 std::vector<Candidate> playable_candidates(const DesignProblem& problem, OptimizePool& pool,
                                            const Camera& camera, const OptimizeOptions& options,
-                                           const Progress& progress) {
+                                           std::uint64_t before, const Progress& progress) {
   const WaveformSpace& space = problem.space;
   Sharpness sharpness{6.0, 8.0};
   if (!problem.binary_modulation) sharpness.modulation = 1.0;
@@ -80,7 +98,7 @@ std::vector<Candidate> playable_candidates(const DesignProblem& problem, Optimiz
     if (options.polish)
       codes[2 * k + 1] = polish_edges(
           problem, codes[2 * k], options.polish_steps, options.trials_per_step, options.seed,
-          combine_keys(polish_key, static_cast<std::uint64_t>(i)), &shared);
+          combine_keys(polish_key, before + static_cast<std::uint64_t>(i)), &shared);
   });
   const std::string name = optimized_name(space.exposures);
   std::vector<Candidate> candidates;
@@ -105,24 +123,34 @@ std::vector<Candidate> playable_candidates(const DesignProblem& problem, Optimiz
 
 void OptimizeOptions::validate() const { check_fields(*this, "OptimizeOptions::"); }
 
-std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
-                                const OptimizeOptions& options, std::span<const CodeSet> also,
-                                const Progress& progress) {
+namespace {
+
+/// All of the search, for arms as they are.
+std::vector<Candidate> search_codes(std::span<const Camera> variants, int exposures,
+                                    const OptimizeOptions& options, std::span<const CodeSet> also,
+                                    const Progress& progress) {
   const auto begin = std::chrono::steady_clock::now();
-  options.validate();
   const DesignProblem problem =
       make_design_problem(variants, exposures, options.samples, options.two_return_weight);
-  const Camera& camera = variants.front();
+  const Camera camera = in_buckets(variants.front());  // whose codes are searched
 
-  // 1. Go downhill from many codes, from changed copies of the best, and once more from the best.
+  // 1. Go downhill from many codes, from changed copies of the best, and once more from the best;
+  // 2. make the best of them playable; and again with more of all, where more is asked for.
   OptimizePool pool(problem, options, camera.range_m() / problem.space.samples());
-  const ProgressParts parts(progress, {40, 35, 10, 15});
-  pool.run_starts(also, parts[0]);
-  pool.run_hops(parts[1]);
-  pool.refine(parts[2]);
-
-  // 2. Make the best of them playable.
-  std::vector<Candidate> candidates = playable_candidates(problem, pool, camera, options, parts[3]);
+  const std::vector<PoolStage> stages = stages_of(options);
+  std::vector<double> weights;
+  for (const PoolStage& stage : stages) weights.push_back(stage.starts);
+  const ProgressParts of_stages(progress, weights);
+  std::vector<Candidate> candidates;
+  for (std::size_t s = 0; s < stages.size(); ++s) {
+    const ProgressParts parts(of_stages[s], {40, 35, 10, 15});
+    pool.run_starts(stages[s], also, parts[0]);
+    pool.run_hops(stages[s], parts[1]);
+    pool.refine(stages[s], parts[2]);
+    std::vector<Candidate> made =
+        playable_candidates(problem, pool, camera, options, candidates.size(), parts[3]);
+    std::move(made.begin(), made.end(), std::back_inserter(candidates));
+  }
 
   // 3. Say how they were found.
   const std::int64_t polished =
@@ -135,6 +163,50 @@ std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
     c.seconds = seconds;
     c.search = record_of(pool, steps);
   }
+  return candidates;
+}
+
+/// Of arms that need not switch: what is found where they do competes, and is where one more
+/// descent begins.
+std::vector<Candidate> search_analog(std::span<const Camera> variants, int exposures,
+                                     const OptimizeOptions& options, std::span<const CodeSet> also,
+                                     const Progress& progress) {
+  const ProgressParts parts(progress, {50, 50});
+  std::vector<Camera> switching(variants.begin(), variants.end());
+  for (Camera& camera : switching) camera.light.binary = camera.sensor.binary = true;
+  std::vector<Candidate> switched = search_codes(switching, exposures, options, also, parts[0]);
+  std::vector<CodeSet> starts{switched.back().code.renamed("what switches")};
+  starts.insert(starts.end(), also.begin(), also.end());
+  std::vector<Candidate> analog = search_codes(variants, exposures, options, starts, parts[1]);
+  std::vector<Candidate> candidates = std::move(switched);
+  std::move(analog.begin(), analog.end(), std::back_inserter(candidates));
+  return candidates;
+}
+
+}  // namespace
+
+std::vector<Candidate> optimize(std::span<const Camera> variants, int exposures,
+                                const OptimizeOptions& options, std::span<const CodeSet> also,
+                                const Progress& progress) {
+  options.validate();
+  require(!variants.empty(), "variants", variants.size(), "must hold at least one camera");
+  const Camera& camera = variants.front();
+  const bool is_signed = camera.sensor.is_signed();
+  std::vector<CodeSet> starts;
+  for (const CodeSet& code : also)
+    starts.push_back(code.is_signed() ? code.buckets_of_signed() : code);
+  const bool switches = camera.light.binary && camera.sensor.binary;
+  std::vector<Candidate> candidates =
+      switches ? search_codes(variants, exposures, options, starts, progress)
+               : search_analog(variants, exposures, options, starts, progress);
+  if (is_signed)
+    for (Candidate& c : candidates) {
+      c.code = c.code.signed_of_buckets();
+      std::vector<MeasurementReport> of_first_buckets;
+      for (std::size_t k = 0; k < c.per_measurement.size(); k += 2)
+        of_first_buckets.push_back(std::move(c.per_measurement[k]));
+      c.per_measurement = std::move(of_first_buckets);
+    }
   report(progress, 1.0, "done");
   return candidates;
 }

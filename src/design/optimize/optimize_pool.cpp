@@ -76,7 +76,9 @@ constexpr std::uint32_t noise_in_store = 0xffffffffu;
 WaveformParameters descend(const DesignProblem& problem, WaveformParameters parameters,
                            const DescentSchedule& schedule, std::uint64_t seed,
                            std::uint64_t work_item, SharedProgress* progress) {
-  constexpr double largest_modulation = 4.0, largest_demodulation = 3.0;
+  // What sharpens switches far inside; other waveforms come near to switching only out there.
+  const double largest_modulation = schedule.final_sharpness.modulation > 1.0 ? 4.0 : 8.0;
+  const double largest_demodulation = schedule.final_sharpness.demodulation > 1.0 ? 3.0 : 6.0;
   StochasticGradient objective(problem, schedule.trials_per_step,
                                RandomStream(seed, work_item, noise_in_store));
   Adam modulation, demodulation;
@@ -186,10 +188,12 @@ void OptimizePool::keep(std::vector<PoolEntry> entries) {
   if (entries_.size() > max_pool) entries_.resize(max_pool);
 }
 
-void OptimizePool::run_starts(std::span<const CodeSet> also, const Progress& progress) {
-  const auto count = static_cast<std::size_t>(options_.starts);
-  SharedProgress shared(progress, static_cast<double>(count) * options_.steps_per_start, "starts");
-  for (std::size_t first = 0; first < count; first += together) {
+void OptimizePool::run_starts(const PoolStage& stage, std::span<const CodeSet> also,
+                              const Progress& progress) {
+  const auto count = static_cast<std::size_t>(stage.starts);
+  SharedProgress shared(
+      progress, static_cast<double>(count - starts_done_) * options_.steps_per_start, "starts");
+  for (std::size_t first = starts_done_; first < count; first += together) {
     std::vector<PoolEntry> entries;
     for (std::size_t i = first; i < std::min(count, first + together); ++i) {
       RandomStream random(options_.seed, work_item(Phase::drawing_starts, i));
@@ -200,13 +204,16 @@ void OptimizePool::run_starts(std::span<const CodeSet> also, const Progress& pro
     steps_ += std::ssize(entries) * options_.steps_per_start;
     keep(std::move(entries));
   }
+  starts_done_ = count;
 }
 
-void OptimizePool::run_hops(const Progress& progress) {
-  const auto count = static_cast<std::size_t>(options_.hops);
+void OptimizePool::run_hops(const PoolStage& stage, const Progress& progress) {
+  const auto count = static_cast<std::size_t>(stage.hops);
   int without_gain = 0;
-  SharedProgress shared(progress, static_cast<double>(count) * options_.steps_per_hop, "hops");
-  for (std::size_t first = 0; first < count; first += hops_together) {
+  ended_early_ = false;
+  SharedProgress shared(progress, static_cast<double>(count - hops_done_) * options_.steps_per_hop,
+                        "hops");
+  for (std::size_t first = hops_done_; first < count; first += hops_together) {
     std::vector<PoolEntry> entries;
     for (std::size_t i = first; i < std::min(count, first + hops_together); ++i) {
       RandomStream random(options_.seed, work_item(Phase::hopping, i), 1u << 30);
@@ -224,19 +231,21 @@ void OptimizePool::run_hops(const Progress& progress) {
       break;
     }
   }
+  hops_done_ = count;
 }
 
-void OptimizePool::refine(const Progress& progress) {
-  if (options_.refinement_steps == 0) return;
+void OptimizePool::refine(const PoolStage& stage, const Progress& progress) {
+  if (stage.refinement_steps == 0) return;
   std::vector<PoolEntry> entries(
       entries_.begin(),
       entries_.begin() + std::min<std::ptrdiff_t>(options_.refined, std::ssize(entries_)));
   for (PoolEntry& entry : entries)
     entry.parameters = softened(std::move(entry.parameters), refinement_softness);
-  SharedProgress shared(progress, static_cast<double>(entries.size()) * options_.refinement_steps,
+  SharedProgress shared(progress, static_cast<double>(entries.size()) * stage.refinement_steps,
                         "refinement");
-  descend_all(entries, options_.refinement_steps, 0.03, Phase::refining, 0, shared);
-  steps_ += std::ssize(entries) * options_.refinement_steps;
+  descend_all(entries, stage.refinement_steps, 0.03, Phase::refining, refinements_done_, shared);
+  steps_ += std::ssize(entries) * stage.refinement_steps;
+  refinements_done_ += entries.size();
   keep(std::move(entries));
 }
 

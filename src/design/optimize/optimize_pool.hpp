@@ -66,17 +66,24 @@ PoolEntry hop(const DesignProblem& problem, const std::vector<PoolEntry>& pool,
 /// Parameters no further from soft than `limit`, so that a descent can change them again.
 WaveformParameters softened(WaveformParameters parameters, double limit);
 
-/// Codes that descents from many starts lead to, best first, with what happened on the way.
+/// How much is tried of one stage of a search: in all, with the stages before it.
+struct PoolStage {
+  int starts = 0, hops = 0;
+  int refinement_steps = 0;  ///< of this stage alone
+};
+
+/// Codes that descents from many starts lead to, best first, with what happened on the way. A stage
+/// after others goes on where they ended.
 class OptimizePool {
  public:
   OptimizePool(const DesignProblem& problem, const OptimizeOptions& options, double bin_m);
 
   /// Descends from all starts.
-  void run_starts(std::span<const CodeSet> also, const Progress& progress);
+  void run_starts(const PoolStage& stage, std::span<const CodeSet> also, const Progress& progress);
   /// Descends from changed copies of the best, until hops or patience end.
-  void run_hops(const Progress& progress);
+  void run_hops(const PoolStage& stage, const Progress& progress);
   /// Descends once more, from softened copies of the best; keeps the better of each.
-  void refine(const Progress& progress);
+  void refine(const PoolStage& stage, const Progress& progress);
 
   const std::vector<PoolEntry>& entries() const { return entries_; }
   /// The least error so far after every descent.
@@ -99,6 +106,7 @@ class OptimizePool {
   std::vector<PoolEntry> entries_;
   std::vector<SearchStep> history_;
   std::int64_t steps_ = 0;
+  std::size_t starts_done_ = 0, hops_done_ = 0, refinements_done_ = 0;
   bool ended_early_ = false;
 };
 

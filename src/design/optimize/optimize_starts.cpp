@@ -120,9 +120,14 @@ std::vector<CodeSet> families_of(const WaveformSpace& space) {
   return codes;
 }
 
-OptimizeStart start_at(const WaveformSpace& space, const CodeSet& code, double noise,
+/// Near the code: waveforms that stay as soft as they begin, so much nearer.
+OptimizeStart start_at(const DesignProblem& problem, const CodeSet& code, double noise,
                        RandomStream& random) {
+  constexpr double nearer = 2.0;
+  const WaveformSpace& space = problem.space;
   OptimizeStart start{code.name(), parameters_near(space, sampled_on(space, code), start_scale)};
+  if (!problem.binary_modulation) start.parameters.modulation *= nearer;
+  if (!problem.binary_demodulation) start.parameters.demodulation *= nearer;
   add_noise(start.parameters, noise, random);
   return start;
 }
@@ -212,12 +217,12 @@ OptimizeStart optimize_start(const DesignProblem& problem, std::span<const CodeS
       codes.push_back(std::move(family));
   const auto count = static_cast<int>(codes.size());
   if (index < count)
-    return start_at(space, codes[static_cast<std::size_t>(index)], start_noise, random);
+    return start_at(problem, codes[static_cast<std::size_t>(index)], start_noise, random);
 
   const int kind = (index - count) % 5, cycle = (index - count) / 5;
   if (kind == 4 && count > 0) {
     OptimizeStart start =
-        start_at(space, codes[static_cast<std::size_t>(cycle % count)], rough_noise, random);
+        start_at(problem, codes[static_cast<std::size_t>(cycle % count)], rough_noise, random);
     start.name += " with noise";
     return start;
   }

@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "design/optimize/sampled_camera.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "camera/shared/ambient_leak.hpp"
 #include "design/grid_transfer.hpp"
 #include "tofsmith/camera/forward_model.hpp"
 
@@ -19,17 +24,48 @@ Eigen::MatrixXd mixing_matrix(int exposures, int taps, double contrast) {
   return mixing;
 }
 
+/// Sensitivity of every tap value beside the mean of its pixel.
+Eigen::VectorXd sensitivities(int exposures, int taps, double mismatch) {
+  Eigen::VectorXd sensitivity = Eigen::VectorXd::Ones(exposures * taps);
+  for (int i = 0; i < exposures * taps; ++i)
+    sensitivity[i] += ((taps == 1 ? i : i % taps) % 2 == 0 ? 0.5 : -0.5) * mismatch;
+  return sensitivity;
+}
+
 }  // namespace
 
+bool sees_ambient(const Camera& camera, int exposures) {
+  if (camera.sensor.readout != Readout::difference) return true;
+  if (camera.sensor.tap_mismatch == 0.0) return false;
+  const double leak = 0.5 * std::abs(camera.sensor.tap_mismatch);  // of gates open half the time
+  // The longest exposure counts: light grows with time, and its noise as the root of that.
+  const std::vector<double>& each_s = camera.exposure_s.each_s;
+  const double exposure_s = each_s.empty() ? camera.exposure_s.total_s / exposures
+                                           : *std::max_element(each_s.begin(), each_s.end());
+  const double light_e = exposure_s * brightest_ambient_e_per_s(camera);
+  const double variance_e2 = light_e + 2.0 * exposure_s * camera.sensor.dark_current_e_per_s +
+                             2.0 * constant_variance_e2_of(camera.sensor);
+  return !ambient_cancels(camera, Eigen::VectorXd::Constant(1, leak * light_e),
+                          Eigen::VectorXd::Constant(1, variance_e2));
+}
+
 SampledCamera::SampledCamera(const Camera& camera, int samples, int exposures)
+    : SampledCamera(in_buckets(camera), samples, exposures,
+                    camera.sensor.is_signed() && !camera.sensor.binary) {}
+
+SampledCamera::SampledCamera(const Camera& camera, int samples, int exposures, bool squares)
     : transform_(samples),
       exposures_(exposures),
       taps_(camera.sensor.taps),
       difference_(camera.sensor.readout == Readout::difference),
+      ambient_unknown_(sees_ambient(camera, exposures)),
+      squares_(squares),
       transfer_(grid_transfer(camera, samples) / static_cast<double>(samples)) {
   const int tap_values = exposures * taps_;
   const Eigen::MatrixXd readout = readout_matrix(tap_values, camera.sensor.readout);
-  const Eigen::MatrixXd mixing = mixing_matrix(exposures, taps_, camera.sensor.modulation_contrast);
+  const Eigen::MatrixXd mixing =
+      sensitivities(exposures, taps_, camera.sensor.tap_mismatch).asDiagonal() *
+      mixing_matrix(exposures, taps_, camera.sensor.modulation_contrast);
   combination_ = readout * mixing;
   shot_combination_ = readout.cwiseAbs() * mixing;
   exposure_s_.resize(measurements());
@@ -71,14 +107,32 @@ SampledCamera::Measured SampledCamera::measure(const SampledCode& code) const {
     measured.table.shot_correlation = correlation * shot_combination_.transpose();
     measured.table.shot_ambient_gain = shot_combination_ * gain;
   }
+  if (squares_) measure_squares(code, measured);
   return measured;
+}
+
+/// The light behind the noise of a mixer.
+void SampledCamera::measure_squares(const SampledCode& code, Measured& measured) const {
+  measured.weight.resize(samples(), exposures_);
+  measured.square.resize(static_cast<std::size_t>(exposures_));
+  Eigen::VectorXd signal;
+  for (int e = 0; e < exposures_; ++e) {
+    measured.weight.col(e) = code.demodulation.col(2 * e) - code.demodulation.col(2 * e + 1);
+    signal = measured.weight.col(e).cwiseAbs2();
+    measured.table.shot_ambient_gain[e] = signal.mean();
+    Eigen::VectorXcd& square = measured.square[static_cast<std::size_t>(e)];
+    transform_.forward(signal, square);
+    const Eigen::VectorXcd& m = measured.modulation[static_cast<std::size_t>(e)];
+    transform_.inverse(square.cwiseProduct(m.conjugate()).cwiseProduct(transfer_), signal);
+    measured.table.shot_correlation.col(e) = signal;
+  }
 }
 
 SampledCode SampledCamera::pull_back(const Measured& measured,
                                      const MeasurementTable& gradient) const {
   Eigen::MatrixXd by_tap = gradient.correlation * combination_;
   Eigen::VectorXd by_gain = combination_.transpose() * gradient.ambient_gain;
-  if (difference_) {
+  if (difference_ && !squares_) {
     by_tap += gradient.shot_correlation * shot_combination_;
     by_gain += shot_combination_.transpose() * gradient.shot_ambient_gain;
   }
@@ -98,6 +152,19 @@ SampledCode SampledCamera::pull_back(const Measured& measured,
       by_modulation += spectrum.conjugate().cwiseProduct(d).cwiseProduct(transfer_);
       transform_.inverse(spectrum.cwiseProduct(m).cwiseProduct(transfer_.conjugate()), signal);
       result.demodulation.col(i) = signal.array() + by_gain[i] / samples();
+    }
+    if (squares_) {
+      signal = gradient.shot_correlation.col(e);
+      transform_.forward(signal, spectrum);
+      by_modulation += spectrum.conjugate()
+                           .cwiseProduct(measured.square[static_cast<std::size_t>(e)])
+                           .cwiseProduct(transfer_);
+      transform_.inverse(spectrum.cwiseProduct(m).cwiseProduct(transfer_.conjugate()), signal);
+      const Eigen::VectorXd by_weight =
+          2.0 * measured.weight.col(e).array() *
+          (signal.array() + gradient.shot_ambient_gain[e] / samples());
+      result.demodulation.col(2 * e) += by_weight;
+      result.demodulation.col(2 * e + 1) -= by_weight;
     }
     transform_.inverse(by_modulation, signal);
     result.modulation.col(e) = signal;

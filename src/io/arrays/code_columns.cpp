@@ -53,15 +53,15 @@ void require_same_shape(const NamedMatrix& matrix, const NamedMatrix& other) {
                                           other.values.rows(), other.values.cols(), other.place));
 }
 
-/// Draws rounding noise back into [0, highest] and refuses what is farther out.
-void limit(NamedMatrix& matrix, double highest, std::string_view expected) {
+/// Draws rounding noise back into [lowest, highest] and refuses what is farther out.
+void limit(NamedMatrix& matrix, double lowest, double highest, std::string_view expected) {
   for (Eigen::Index n = 0; n < matrix.values.rows(); ++n)
     for (Eigen::Index i = 0; i < matrix.values.cols(); ++i) {
       double& value = matrix.values(n, i);
-      if (value < -transform_noise || value > highest + transform_noise)
+      if (value < lowest - transform_noise || value > highest + transform_noise)
         throw IoError(fmt::format("{}[{}, {}]", matrix.place, n, i),
                       fmt::format("found {}; expected {}", value, expected));
-      value = std::clamp(value, 0.0, highest);
+      value = std::clamp(value, lowest, highest);
     }
 }
 
@@ -75,15 +75,25 @@ Waveform waveform_of(const Eigen::VectorXd& samples) {
 
 constexpr std::string_view modulation_rule = "power over average power, >= 0";
 constexpr std::string_view demodulation_rule = "a gain in [0, 1]";
+constexpr std::string_view weight_rule = "a weight in [-1, 1]";
+
+/// Demodulations, column by column: gains, or the weights of a mixer.
+struct Demodulations {
+  std::vector<Waveform> gains;
+  std::optional<Eigen::MatrixXd> weights = {};
+};
 
 /// A code called like its file. @throws IoError for what no code can be
 CodeSet created(std::string_view file, Eigen::Index samples, int taps,
-                std::vector<Waveform> modulation, std::vector<Waveform> demodulation) {
+                std::vector<Waveform> modulation, Demodulations demodulation) {
   if (samples < 2 || samples > max_rows)
     throw IoError(file, fmt::format("found {} samples; expected 2 .. {}", samples, max_rows));
+  const std::string name = std::filesystem::path(file).stem().string();
   try {
-    return CodeSet::create(std::filesystem::path(file).stem().string(), static_cast<int>(samples),
-                           taps, std::move(modulation), std::move(demodulation));
+    if (demodulation.weights)
+      return CodeSet::create_signed(name, std::move(modulation), *demodulation.weights);
+    return CodeSet::create(name, static_cast<int>(samples), taps, std::move(modulation),
+                           std::move(demodulation.gains));
   } catch (const std::invalid_argument& error) {
     throw IoError(file, error.what());
   }
@@ -114,7 +124,7 @@ bool holds_code_columns(const std::filesystem::path& path) {
   return line.find("modulation_") != std::string::npos;
 }
 
-CodeSet parse_code_csv(std::string_view text, std::string_view file) {
+CodeSet parse_code_csv(std::string_view text, std::string_view file, bool is_signed) {
   const CsvTable table = parse_csv(text, file);
   std::vector<Eigen::Index> modulations, demodulations;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
@@ -134,19 +144,27 @@ CodeSet parse_code_csv(std::string_view text, std::string_view file) {
                                     "expected one or more of each, as many demodulations as taps "
                                     "for each modulation",
                                     modulations.size(), demodulations.size()));
-  const auto waveforms = [&](const std::vector<Eigen::Index>& columns, double highest,
-                             std::string_view expected) {
+  const auto values = [&](const std::vector<Eigen::Index>& columns, double lowest, double highest,
+                          std::string_view expected) {
     NamedMatrix matrix{fmt::format("{}: values", file), table.values(Eigen::all, columns)};
-    limit(matrix, highest, expected);
+    limit(matrix, lowest, highest, expected);
+    return matrix.values;
+  };
+  const auto waveforms = [](const Eigen::MatrixXd& columns) {
     std::vector<Waveform> list;
-    for (Eigen::Index i = 0; i < matrix.values.cols(); ++i)
-      list.push_back(waveform_of(matrix.values.col(i)));
+    for (Eigen::Index i = 0; i < columns.cols(); ++i) list.push_back(waveform_of(columns.col(i)));
     return list;
   };
+  Demodulations demodulation;
+  if (is_signed)
+    demodulation.weights = values(demodulations, -1.0, 1.0, weight_rule);
+  else
+    demodulation.gains = waveforms(values(demodulations, 0.0, 1.0, demodulation_rule));
   return created(file, table.values.rows(),
                  static_cast<int>(demodulations.size() / modulations.size()),
-                 waveforms(modulations, std::numeric_limits<double>::infinity(), modulation_rule),
-                 waveforms(demodulations, 1.0, demodulation_rule));
+                 waveforms(values(modulations, 0.0, std::numeric_limits<double>::infinity(),
+                                  modulation_rule)),
+                 std::move(demodulation));
 }
 
 CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file,
@@ -161,11 +179,20 @@ CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file
   require_same_shape(demodulation, modulation);
   if (reader.contains("corrfs"))
     require_same_shape(read_matrix(reader, file, "corrfs"), modulation);
-  limit(modulation, std::numeric_limits<double>::infinity(), modulation_rule);
-  limit(demodulation, 1.0, demodulation_rule);
+  limit(modulation, 0.0, std::numeric_limits<double>::infinity(), modulation_rule);
+  if (layout.is_signed)
+    limit(demodulation, -1.0, 1.0, weight_rule);
+  else
+    limit(demodulation, 0.0, 1.0, demodulation_rule);
 
   const int exposures = exposures_of(modulation.values.cols(), layout, file);
   std::vector<Waveform> light, gains;
+  if (layout.is_signed) {  // a column of each for every exposure
+    for (Eigen::Index e = 0; e < modulation.values.cols(); ++e)
+      light.push_back(waveform_of(modulation.values.col(e)));
+    return created(file, modulation.values.rows(), 1, std::move(light),
+                   {{}, std::move(demodulation.values)});
+  }
   for (int e = 0; e < exposures; ++e) {
     const Eigen::Index first = column_of(e, 0, exposures, layout.taps, layout.order);
     light.push_back(waveform_of(modulation.values.col(first)));
@@ -175,7 +202,8 @@ CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file
       gains.push_back(waveform_of(demodulation.values.col(column)));
     }
   }
-  return created(file, modulation.values.rows(), layout.taps, std::move(light), std::move(gains));
+  return created(file, modulation.values.rows(), layout.taps, std::move(light),
+                 {std::move(gains)});
 }
 
 std::vector<std::byte> serialize_code_npz(const CodeSet& code, std::optional<TapOrder> order) {

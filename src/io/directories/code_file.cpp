@@ -36,7 +36,7 @@ constexpr EnumWords<TapOrder, 2> tap_order_words("TapOrder", "tap order", "block
 CodeSet read_code(const std::filesystem::path& path, const TapLayout& layout) {
   const std::string extension = known_extension(path, {".json", ".npz", ".csv"});
   if (extension == ".json") return parse_code_json(read_text_file(path), path.string());
-  if (extension == ".csv") return parse_code_csv(read_text_file(path), path.string());
+  if (extension == ".csv") return parse_code_csv(read_text_file(path), path.string(), layout.is_signed);
   return parse_code_npz(read_binary_file(path), path.string(), layout);
 }
 
@@ -64,7 +64,8 @@ CodeSet load_code(const std::string& name_or_path, const Camera& camera,
                                             near_family(name_or_path)));
   if (camera.sensor.readout == Readout::rows && lower_extension(name_or_path) == ".npz")
     return read_rows(name_or_path);
-  return read_code(name_or_path, {options.taps.value_or(camera.sensor.taps), options.tap_order});
+  return read_code(name_or_path, {options.taps.value_or(camera.sensor.taps), options.tap_order,
+                                  camera.sensor.is_signed()});
 }
 
 TapOrder parse_tap_order(std::string_view word) { return tap_order_words.parse(word); }

@@ -19,6 +19,8 @@ inline constexpr EnumWords<NoiseModel, 2> noise_models("NoiseModel", "noise", "p
                                                        "gaussian");
 inline constexpr EnumWords<Readout, 3> readouts("Readout", "readout", "separate", "difference",
                                                 "rows");
+inline constexpr EnumWords<Demodulation, 2> demodulations("Demodulation", "demodulation", "gain",
+                                                          "signed");
 inline constexpr EnumWords<LensBlur::Kind, 3> blurs("LensBlur::Kind", "blur", "none", "gaussian",
                                                     "disc");
 
@@ -82,6 +84,7 @@ void visit_sensor(Table& table, Field<Table, Sensor>& sensor) {
   table.value("shortest_pulse_s", sensor.shortest_pulse_s);
   table.value("drain", sensor.drain);
   table.choice("readout", sensor.readout, readouts);
+  table.choice("demodulation", sensor.demodulation, demodulations);
   table.value("readout_gap_s", sensor.readout_gap_s);
   table.value("frame_period_s", sensor.frame_period_s);
 }

@@ -24,9 +24,10 @@ constexpr int max_samples = 65536;    // as a camera's
 constexpr int max_measurements = 64;  // as decoders take
 constexpr double tolerance = 1e-9;    // as CodeSet's
 
-OrderedJson waveform_to_json(const Waveform& waveform) {
+OrderedJson waveform_to_json(const Waveform& waveform, bool is_signed = false) {
   if (!waveform.is_binary()) {
-    const Eigen::VectorXd& samples = waveform.samples();
+    Eigen::VectorXd samples = waveform.samples();
+    if (is_signed) samples = 2.0 * samples.array() - 1.0;
     return {{"kind", "sampled"}, {"values", std::vector<double>(samples.begin(), samples.end())}};
   }
   OrderedJson on = OrderedJson::array();
@@ -79,6 +80,15 @@ Waveform read_waveform(const JsonReader& json, int samples, double highest) {
   if (kind.text() == "binary") return read_binary(json, highest);
   if (kind.text() == "sampled") return read_sampled(json, samples, 0.0, highest);
   kind.mistyped("\"binary\" or \"sampled\"");
+}
+
+/// The drive of a mixer: of sampled weights, or 1 while the weight is 1 and else 0.
+Waveform read_drive(const JsonReader& json, int samples) {
+  const JsonReader kind = json.member("kind");
+  if (kind.text() == "sampled")
+    return Waveform::sampled(
+        (0.5 * (read_sampled(json, samples, -1.0, 1.0).samples().array() + 1.0)).max(0.0).min(1.0));
+  return read_waveform(json, samples, 1.0);
 }
 
 /// Weights of the rows of one exposure, (N, K).
@@ -140,8 +150,9 @@ std::string code_to_json(const CodeSet& code) {
   for (int e = 0; e < code.exposures(); ++e)
     modulation.push_back(waveform_to_json(code.modulation(e)));
   for (int i = 0; i < code.measurements(); ++i)
-    demodulation.push_back(waveform_to_json(code.demodulation(i)));
+    demodulation.push_back(waveform_to_json(code.demodulation(i), code.is_signed()));
   if (code.is_rows()) json["rows"] = true;
+  if (code.is_signed()) json["signed"] = true;
   json["modulation"] = std::move(modulation);
   json["demodulation"] = std::move(demodulation);
   json["provenance"] = provenance_to_json(code.provenance);
@@ -152,8 +163,8 @@ CodeSet parse_code_json(std::string_view text, std::string_view file) {
   const nlohmann::json document = parse_json(text, file);
   const JsonReader json(document, file);
   check_format(json);
-  json.only({"format", "version", "name", "samples", "exposures", "taps", "rows", "modulation",
-             "demodulation", "provenance"});
+  json.only({"format", "version", "name", "samples", "exposures", "taps", "rows", "signed",
+             "modulation", "demodulation", "provenance"});
   const std::string name = json.member("name").text();
   const int samples = json.member("samples").integer(2, max_samples);
   const int exposures = json.member("exposures").integer(1, max_measurements);
@@ -170,11 +181,20 @@ CodeSet parse_code_json(std::string_view text, std::string_view file) {
   auto modulation = read_list("modulation", exposures, "as many as /exposures says", any);
   const auto rows = json.optional_member("rows");
   const bool is_rows = rows && rows->boolean();
+  const auto weights_of_both_signs = json.optional_member("signed");
+  const bool is_signed = weights_of_both_signs && weights_of_both_signs->boolean();
+  if (is_signed && is_rows) weights_of_both_signs->fail("rows have weights of any sign already");
+  if (is_signed && taps != 1) json.member("taps").mistyped("1, as of a mixer");
   std::vector<Waveform> demodulation;
   Eigen::MatrixXd weights;
   if (is_rows) {
     if (exposures != 1) json.member("exposures").mistyped("1, as of rows");
     weights = read_rows(json.member("demodulation"), samples, taps);
+  } else if (is_signed) {
+    for (const JsonReader& item : json.member("demodulation")
+                                      .elements(static_cast<std::size_t>(exposures),
+                                                "as many as /exposures says"))
+      demodulation.push_back(read_drive(item, samples));
   } else {
     demodulation = read_list("demodulation", exposures * taps, "/exposures x /taps functions", 1.0);
   }
@@ -182,6 +202,7 @@ CodeSet parse_code_json(std::string_view text, std::string_view file) {
     CodeSet code = is_rows ? CodeSet::create_rows(name, std::move(modulation.front()), weights)
                            : CodeSet::create(name, samples, taps, std::move(modulation),
                                              std::move(demodulation));
+    if (is_signed) code = code.with_signed_weights();
     if (const auto provenance = json.optional_member("provenance"))
       code.provenance = read_provenance(*provenance);
     return code;

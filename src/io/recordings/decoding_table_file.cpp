@@ -75,7 +75,8 @@ LoadedDecodingTable load_measured(const std::string& path, const Camera& camera,
   measured.range_m = options.range_m;
   if (options.ambient)
     measured.ambient_gain = ambient_gain_of(measured.correlation, *options.ambient);
-  else if (measured.ambient_gain.size() == 0 && camera.sensor.readout == Readout::separate)
+  else if (measured.ambient_gain.size() == 0 && camera.sensor.readout == Readout::separate &&
+           !camera.sensor.is_signed())
     if (const auto note = duty_note(path, measured)) notes.push_back(*note);
   try {
     LoadedDecodingTable loaded{.name = std::filesystem::path(path).stem().string(),

@@ -22,7 +22,10 @@ std::vector<Series> arm_series(const Waveform& nominal, const Waveform& actual,
                                const ImpulseResponse& response, double fundamental_frequency_hz,
                                const LineStyle& style);
 
+/// The same of a mixer by its drives x: the weights 2 x - 1.
+std::vector<Series> weight_series(std::vector<Series> drive);
+
 /// The columns of a grid of pairs: modulation, demodulation, correlation function.
-std::vector<PanelColumn> waveform_columns();
+std::vector<PanelColumn> waveform_columns(bool is_signed = false);
 
 }  // namespace tofsmith

@@ -43,6 +43,7 @@ class PixelCapture {
  private:
   double range_m_, bin_m_;
   double dark_e_per_s_;
+  bool is_signed_;
   FineCorrelation correlation_;
   PixelNoise noise_;
   Eigen::VectorXd exposure_s_, ambient_gain_;  // of the tap values

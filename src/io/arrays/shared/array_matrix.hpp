@@ -29,7 +29,7 @@ bool holds_code_columns(const std::filesystem::path& path);
 /// levels become binary, as in parse_code_npz().
 /// @throws IoError naming the file for columns of other names or numbers, and values that no code
 ///         can have
-CodeSet parse_code_csv(std::string_view text, std::string_view file);
+CodeSet parse_code_csv(std::string_view text, std::string_view file, bool is_signed);
 
 /// Fewest samples of a period, as of a camera.
 inline constexpr Eigen::Index min_samples = 8;

@@ -1,0 +1,319 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// Mixers: weights from -1 to 1, from the model to depth errors.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/shared/random.hpp"
+#include "simulate/noise.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/core/statistics.hpp"
+#include "tofsmith/core/units.hpp"
+#include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/decode/likelihood_decoder.hpp"
+#include "tofsmith/simulate/bounds.hpp"
+#include "tofsmith/simulate/capture.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
+
+namespace tofsmith {
+namespace {
+
+using testing::HasSubstr;
+
+Camera mixer_camera() {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.sensor.demodulation = Demodulation::weight;
+  return camera;
+}
+
+/// E sampled weights, mean `mean`, and pulses of light of 5 cells.
+CodeSet analog_code(int samples, double mean = 0.0) {
+  constexpr int exposures = 4;
+  std::vector<Waveform> light;
+  Eigen::MatrixXd weights(samples, exposures);
+  for (int e = 0; e < exposures; ++e) {
+    light.push_back(rectangular_pulse(5.0 / samples));
+    for (int n = 0; n < samples; ++n)
+      weights(n, e) =
+          mean + (1.0 - mean) * std::cos(2 * std::numbers::pi * ((n + 0.5) / samples - e / 4.0));
+  }
+  return CodeSet::create_signed("analog", std::move(light), weights);
+}
+
+SceneImage random_depths(int height, int width, double range_m) {
+  SceneImage scene(height, width);
+  RandomStream random(4, 0);
+  for (float& depth_m : scene.depth_m.pixels)
+    depth_m = static_cast<float>(range_m * random.uniform());
+  return scene;
+}
+
+TEST(Mixer, AWeightThatSwitchesMeasuresWhatTwoBucketsDo) {
+  Camera camera = mixer_camera();
+  camera.sensor.modulation_contrast = 0.8;
+  camera.sensor.dark_current_e_per_s = 700.0;
+  camera.sensor.edge_jitter_s = 2e-10;
+  const Camera buckets = in_buckets(camera);
+  EXPECT_EQ(buckets.sensor.taps, 2);
+  for (const char* name : {"hamiltonian-k4", "square-k4", "gray-k4", "multifrequency-k5"}) {
+    SCOPED_TRACE(name);
+    const CodeSet code = build_family(name, camera);
+    ASSERT_TRUE(code.is_signed());
+    const ForwardModel one(code, camera), two(code.buckets_of_signed(), buckets);
+    ASSERT_EQ(one.measurements(), two.measurements());
+    const std::vector<Return> light{{1e4, 31.7}, {2e3, 80.2}};
+    EXPECT_LT((one.expected_electrons(light, 3e3) - two.expected_electrons(light, 3e3)).norm(),
+              1e-9);
+    if (!code.demodulation(0).is_binary()) continue;  // the noise is less, below
+    EXPECT_LT((one.variance_e2(light, 3e3) - two.variance_e2(light, 3e3)).norm(), 1e-8);
+    EXPECT_LT((one.covariance_e2(light, 3e3) - two.covariance_e2(light, 3e3)).norm(), 1e-8);
+    const OperatingPoint point{1e4, 3e3};
+    EXPECT_NEAR(CramerRaoBound(one, camera).mae_m(point), CramerRaoBound(two, buckets).mae_m(point),
+                1e-9);
+    EXPECT_NEAR(ReceiverBound(camera, code.exposures()).mae_m(point),
+                ReceiverBound(buckets, code.exposures()).mae_m(point), 1e-9);
+    const DecodingTable a = make_decoding_table(one, camera), b = make_decoding_table(two, buckets);
+    EXPECT_LT((a.correlation - b.correlation).norm(), 1e-9);
+    EXPECT_LT((a.shot() - b.shot()).norm(), 1e-9);
+    EXPECT_LT((a.constant_variance_e2 - b.constant_variance_e2).norm(), 1e-9);
+  }
+}
+
+TEST(Mixer, ErrsAsTwoBucketsDo) {
+  for (const NoiseModel noise : {NoiseModel::poisson, NoiseModel::gaussian}) {
+    Camera camera = mixer_camera();
+    camera.sensor.noise = noise;
+    camera.sensor.dark_current_e_per_s = 700.0;
+    camera.operating.signal_e_per_s = {3e3, 1e5};
+    camera.operating.ambient_e_per_s = {1e2, 1e4};
+    const CodeSet code = build_family("hamiltonian-k4", camera);
+    const EvaluateOptions options{.trials = 20000};
+    const Estimate one = evaluate(code, camera, options).circular.geometric_mean_m;
+    const Estimate two =
+        evaluate(code.buckets_of_signed(), in_buckets(camera), {.trials = 20000, .seed = 2})
+            .circular.geometric_mean_m;
+    EXPECT_NEAR(one.value, two.value, 4 * std::hypot(one.standard_error, two.standard_error));
+  }
+}
+
+TEST(Mixer, NoiseIsThatOfTheSquareOfItsWeight) {
+  Camera camera = mixer_camera();
+  camera.light.peak_factor = 60.0;
+  camera.light.impulse_response = camera.sensor.impulse_response = {};
+  for (const double mean : {0.0, 0.4}) {
+    const CodeSet code = analog_code(camera.samples, mean);
+    const ForwardModel model(code, camera);
+    const double S = 2e4, A = 5e3, T = camera.exposure_s.total_s / 4;
+    const Eigen::MatrixXd m = code.modulation_samples(), w = code.demodulation_samples();
+    for (const int depth : {0, 17, 200}) {
+      const Return light{S, static_cast<double>(depth)};
+      const Eigen::VectorXd expected = model.expected_electrons({&light, 1}, A);
+      const Eigen::VectorXd variance = model.variance_e2({&light, 1}, A);
+      for (int e = 0; e < 4; ++e) {
+        double sum = 0.0, squares = 0.0;
+        for (int n = 0; n < camera.samples; ++n) {
+          const double rate = S * m((n - depth + camera.samples) % camera.samples, e) + A;
+          sum += T * rate * w(n, e) / camera.samples;
+          squares += T * rate * w(n, e) * w(n, e) / camera.samples;
+        }
+        EXPECT_NEAR(expected[e], sum, 1e-7);
+        EXPECT_NEAR(variance[e], squares + 400.0, 1e-7) << "read once";
+      }
+    }
+    EXPECT_NEAR(model.ambient_gain()[0], mean, 1e-12);
+  }
+}
+
+TEST(Mixer, CapturesHaveMeanAndVarianceOfTheModel) {
+  Camera camera = mixer_camera();
+  camera.light.peak_factor = 60.0;
+  camera.light.impulse_response = camera.sensor.impulse_response = {};
+  camera.sensor.dark_current_e_per_s = 100.0;
+  for (const NoiseModel noise : {NoiseModel::poisson, NoiseModel::gaussian})
+    for (const bool switches : {false, true}) {
+      camera.sensor.noise = noise;
+      const CodeSet code =
+          switches ? build_family("hamiltonian-k4", camera) : analog_code(camera.samples, 0.1);
+      // Next to no ambient light: the weight of all light may be small.
+      const double S = 2e3, A = 10.0, depth_bin = 47.0;
+      SceneImage scene(100, 100);
+      for (float& depth_m : scene.depth_m.pixels)
+        depth_m = static_cast<float>(depth_bin * camera.bin_m());
+      const RawFrames raw = capture(scene, code, camera,
+                                    {.signal_e_per_s = S, .ambient_e_per_s = A, .falloff = false});
+      ASSERT_EQ(raw.measurements, 4);
+      const ForwardModel model(code, camera);
+      const Return light{S, depth_bin};
+      const Eigen::VectorXd mean = model.expected_electrons({&light, 1}, A);
+      const Eigen::VectorXd variance = model.variance_e2({&light, 1}, A);
+      for (int e = 0; e < 4; ++e) {
+        RunningStatistics seen;
+        for (std::size_t i = static_cast<std::size_t>(e); i < raw.values.size(); i += 4)
+          seen.add(raw.values[i]);
+        EXPECT_NEAR(seen.mean(), mean[e], 4 * seen.standard_error());
+        EXPECT_NEAR(seen.variance() / variance[e], 1.0, 4 * std::sqrt(2.0 / 1e4));
+      }
+    }
+}
+
+TEST(Mixer, PoissonElectronsOfAnyWeightHaveItsMeanAndVariance) {
+  Sensor sensor;
+  sensor.demodulation = Demodulation::weight;
+  sensor.read_noise_e = 0.0;
+  const PixelNoise noise(sensor);
+  // a = (w^2 + w) / 2, b = (w^2 - w) / 2 of 8 electrons, some of w = 1/4.
+  for (const auto& [mean, variance] :
+       {std::pair{8.0, 8.0}, {2.0, 8.0}, {-2.0, 0.5}, {3.0, 1.0}, {0.0, 5.0}, {0.0, 0.0}}) {
+    RandomStream random(7, 1);
+    RunningStatistics drawn;
+    for (int i = 0; i < 40000; ++i)
+      drawn.add(noise.draw_difference(0.5 * (variance + mean), 0.5 * (variance - mean), random));
+    EXPECT_NEAR(drawn.mean(), mean, 4 * drawn.standard_error() + 1e-12);
+    EXPECT_NEAR(drawn.variance(), variance, 0.05 * variance);
+  }
+}
+
+TEST(Mixer, TrialsOfEveryMeasurementErrAsThoseInThePlane) {
+  Camera camera = mixer_camera();
+  camera.light.peak_factor = 60.0;
+  camera.sensor.noise = NoiseModel::gaussian;
+  camera.operating.signal_e_per_s = {1e4};
+  camera.operating.ambient_e_per_s = {1e3};
+  for (const double mean : {0.0, 0.3}) {
+    const CodeSet code = analog_code(camera.samples, mean);
+    EvaluateOptions options{.trials = 20000};
+    const Estimate plane = evaluate(code, camera, options).circular.geometric_mean_m;
+    options.draw_every_measurement = true;
+    options.seed = 2;
+    const Estimate drawn = evaluate(code, camera, options).circular.geometric_mean_m;
+    EXPECT_NEAR(plane.value, drawn.value,
+                4 * std::hypot(plane.standard_error, drawn.standard_error));
+    camera.sensor.noise = NoiseModel::poisson;
+    const Estimate counted = evaluate(code, camera, options).circular.geometric_mean_m;
+    EXPECT_NEAR(plane.value, counted.value,
+                4 * std::hypot(plane.standard_error, counted.standard_error));
+    camera.sensor.noise = NoiseModel::gaussian;
+  }
+}
+
+TEST(Mixer, CapturedDepthsAreDecodedWhateverTheAmbientLight) {
+  Camera camera = mixer_camera();
+  camera.light.peak_factor = 60.0;
+  camera.exposure_s.total_s = 3000.0;  // next to no noise
+  const SceneImage scene = random_depths(20, 30, camera.range_m());
+  for (const CodeSet& code :
+       {build_family("hamiltonian-k4", camera), build_family("sinusoid-k4", camera),
+        build_family("multifrequency-k5", camera), analog_code(camera.samples, 0.3)}) {
+    SCOPED_TRACE(code.name());
+    const RawFrames raw = capture(scene, code, camera, {.ambient_e_per_s = 1e5, .falloff = false});
+    const DecodingTable table = make_decoding_table(ForwardModel(code, camera), camera);
+    for (const DepthImage& image :
+         {Decoder(table).decode(raw), LikelihoodDecoder(table).decode(raw)})
+      for (std::size_t i = 0; i < scene.depth_m.size(); ++i)
+        ASSERT_LT(std::abs(circular_difference(image.depth_m.pixels[i], scene.depth_m.pixels[i],
+                                               camera.range_m())),
+                  0.02);
+  }
+}
+
+TEST(Mixer, ClipsAndCountsBothSigns) {
+  Sensor sensor;
+  sensor.demodulation = Demodulation::weight;
+  sensor.full_well_e = 1000.0;
+  EXPECT_EQ(PixelNoise(sensor).convert(-1500.0), -1000.0);
+  EXPECT_EQ(PixelNoise(sensor).convert(1500.0), 1000.0);
+  sensor.full_well_e.reset();
+  sensor.adc_bits = 8;
+  sensor.gain_e_per_dn = 10.0;
+  EXPECT_EQ(PixelNoise(sensor).convert(-234.0), -23.0);
+  EXPECT_EQ(PixelNoise(sensor).convert(-5000.0), -128.0);
+  EXPECT_EQ(PixelNoise(sensor).convert(5000.0), 127.0);
+  sensor.black_level_dn = 128.0;
+  EXPECT_EQ(PixelNoise(sensor).convert(-234.0), 105.0);
+  EXPECT_EQ(PixelNoise(sensor).convert(-5000.0), 0.0);
+
+  Camera camera = mixer_camera();
+  camera.exposure_s.total_s = 30.0;
+  for (const std::optional<double> black_dn : {std::optional<double>(), std::optional(32768.0)}) {
+    camera.sensor.adc_bits = 16;
+    camera.sensor.gain_e_per_dn = 20.0;
+    camera.sensor.black_level_dn = black_dn;
+    const CodeSet code = build_family("hamiltonian-k4", camera);
+    const SceneImage scene = random_depths(10, 10, camera.range_m());
+    const RawFrames raw = capture(scene, code, camera, {.falloff = false});
+    const DepthImage image =
+        Decoder(make_decoding_table(ForwardModel(code, camera), camera)).decode(raw);
+    for (std::size_t i = 0; i < scene.depth_m.size(); ++i)
+      ASSERT_LT(std::abs(circular_difference(image.depth_m.pixels[i], scene.depth_m.pixels[i],
+                                             camera.range_m())),
+                0.3);
+    // Trials clip as captures do: coarse counts err more.
+    camera.operating.signal_e_per_s = {1e5};
+    camera.operating.ambient_e_per_s = {1e3};
+    const double fine_m = evaluate(code, camera, {.trials = 2000}).circular.geometric_mean_m.value;
+    camera.sensor.gain_e_per_dn = 2e4;
+    EXPECT_GT(evaluate(code, camera, {.trials = 2000}).circular.geometric_mean_m.value, fine_m);
+  }
+}
+
+std::string refusal_of(const Camera& camera) {
+  try {
+    camera.validate();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Mixer, RefusesWhatIsOfTaps) {
+  Camera camera = mixer_camera();
+  EXPECT_EQ(refusal_of(camera), "");
+  camera.sensor.taps = 2;
+  EXPECT_THAT(refusal_of(camera), HasSubstr("sensor.taps = 2; must be 1 with sensor.demodulation"));
+  camera.sensor.readout = Readout::difference;
+  EXPECT_THAT(refusal_of(camera), HasSubstr("must be 1 with sensor.demodulation"));
+  camera = mixer_camera();
+  camera.sensor.readout = Readout::rows;
+  EXPECT_THAT(refusal_of(camera), HasSubstr("rows of one exposure have weights of any sign"));
+  camera = mixer_camera();
+  camera.sensor.adc_bits = 8;
+  camera.sensor.gain_e_per_dn = 1.0;
+  camera.sensor.black_level_dn = 0.0;
+  EXPECT_THAT(refusal_of(camera), HasSubstr("sensor.black_level_dn = 0; must be > 0"));
+
+  const Camera gains = built_in_camera("paper-10f0");
+  camera = mixer_camera();
+  const CodeSet of_gains = build_family("hamiltonian-k4", gains),
+                of_weights = build_family("hamiltonian-k4", camera);
+  EXPECT_THAT(why_not_playable(of_gains, camera).value_or(""), HasSubstr("weights in [-1, 1]"));
+  EXPECT_THAT(why_not_playable(of_weights, gains).value_or(""),
+              HasSubstr("needs a camera with sensor.demodulation = \"signed\""));
+  EXPECT_THROW(of_weights.with_two_buckets(), std::invalid_argument);
+  EXPECT_THROW(of_gains.with_two_buckets().with_signed_weights(), std::invalid_argument);
+  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(8, 1);
+  weights(3, 0) = 1.1;
+  EXPECT_THROW(CodeSet::create_signed("too much", {Waveform::constant(1.0)}, weights),
+               std::invalid_argument);
+}
+
+TEST(Mixer, CodesKeepTheirWeights) {
+  const Camera camera = mixer_camera();
+  const CodeSet code = build_family("hamiltonian-k4", camera);
+  EXPECT_EQ(code.demodulation_samples().minCoeff(), -1.0);
+  EXPECT_EQ(code.demodulation_samples().maxCoeff(), 1.0);
+  for (const CodeSet& changed : {code.rotated(7), code.resampled(480), code.renamed("x")})
+    EXPECT_TRUE(changed.is_signed());
+  const CodeSet back = code.buckets_of_signed().signed_of_buckets();
+  ASSERT_TRUE(back.is_signed());
+  for (int e = 0; e < code.exposures(); ++e) EXPECT_EQ(back.demodulation(e), code.demodulation(e));
+  std::vector<Waveform> light;
+  for (int e = 0; e < code.exposures(); ++e) light.push_back(code.modulation(e));
+  const CodeSet read = CodeSet::create_signed("read", light, code.demodulation_samples());
+  for (int e = 0; e < code.exposures(); ++e) EXPECT_TRUE(read.demodulation(e).is_binary());
+}
+
+}  // namespace
+}  // namespace tofsmith
