@@ -33,8 +33,13 @@ std::string what_it_beats(const Camera& camera, const DesignResult& result, Dept
   const Estimate gain = gain_over(result, *baseline, kind);
   text += fmt::format(", {:.2f} ± {:.2f} times less than {}", gain.value, gain.standard_error,
                       baseline->code.name());
+  const bool any_designed = std::any_of(result.candidates.begin(), result.candidates.end(),
+                                        [](const Candidate& c) { return c.is_designed(); });
   if (!winner.is_designed())
-    return text + ": a standard code, which nothing that was designed here improves on.";
+    return text + fmt::format(": a {}, {}.",
+                              winner.method == "atlas" ? "code of the atlas" : "standard code",
+                              any_designed ? "which nothing that was designed here improves on"
+                                           : "and nothing was designed");
   return text + ", the best of the codes here that were not designed for this camera.";
 }
 

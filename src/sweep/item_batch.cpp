@@ -11,6 +11,18 @@
 
 namespace tofsmith {
 
+namespace {
+
+/// What is to be stored of an item.
+std::string computed(const WorkItem& item, const Progress& progress) {
+  if (!item.design)
+    return item_result_json(evaluate(*item.code, item.camera, item.options, progress));
+  const DesignResult result = design(item.camera, *item.design, progress);
+  return item_result_json(result.winner().error, &result.winner().code);
+}
+
+}  // namespace
+
 ItemBatch::ItemBatch(const WorkList& list, std::vector<ClaimedItem> items)
     : list_(list), items_(std::move(items)), thread_([this] { compute_all(); }) {}
 
@@ -52,7 +64,7 @@ void ItemBatch::compute(const ClaimedItem& claimed) {
     if (item.key != claimed.key)
       throw IoError(list_.spec().source_name,
                     "a file that the sweep reads has changed since it started");
-    outcome.result = item_result_json(evaluate(item.code, item.camera, item.options, progress));
+    outcome.result = computed(item, progress);
   } catch (const Interrupted&) {
     return;
   } catch (const std::exception& error) {

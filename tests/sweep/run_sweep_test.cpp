@@ -24,7 +24,7 @@ TEST(RunSweep, FindsWhatEvaluateFinds) {
   const auto results = sweep_results(list, list.keys(), store);
   ASSERT_EQ(results.size(), 12u);
   const WorkItem item = list.item(7);
-  const DepthErrorReport expected = evaluate(item.code, item.camera, item.options);
+  const DepthErrorReport expected = evaluate(*item.code, item.camera, item.options);
   EXPECT_EQ(results[7].item, 7);
   EXPECT_EQ(results[7].error.code, "hamiltonian-k3");
   ASSERT_EQ(results[7].error.points.size(), 1u);

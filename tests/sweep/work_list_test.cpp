@@ -66,7 +66,7 @@ TEST(WorkList, AKeyDependsOnNothingElse) {
 TEST(WorkList, ACodeCountsByItsWaveformsAndNotByItsName) {
   const TemporaryDirectory directory;
   const WorkList family(parse_sweep_toml(base + "code = \"square-k4\"\n"));
-  const CodeSet code = family.item(0).code;
+  const CodeSet code = *family.item(0).code;
   const auto key_of_file = [&](const CodeSet& written) {
     write_code(directory / "mine.code.json", written, OutputPolicy::overwrite);
     return WorkList(parse_sweep_toml(base + "code = \"mine.code.json\"\n",
@@ -130,7 +130,7 @@ TEST(WorkList, ExposuresGoIntoTheNameOfAFamily) {
   const WorkList list(
       parse_sweep_toml(base + "code = \"hamiltonian-k{exposures}\"\n" + axis("exposures", "4, 3")));
   EXPECT_EQ(list.code_name(1), "hamiltonian-k3");
-  EXPECT_EQ(list.item(1).code.exposures(), 3);
+  EXPECT_EQ(list.item(1).code->exposures(), 3);
   EXPECT_EQ(list.settings_json(0), R"({"code":"hamiltonian-k4","exposures":4})");
 }
 
