@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sweep/item_batch.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
+#include <stdexcept>
 #include <utility>
 
 #include "sweep/item_result.hpp"
@@ -17,8 +20,12 @@ namespace {
 std::string computed(const WorkItem& item, const Progress& progress) {
   if (!item.design)
     return item_result_json(evaluate(*item.code, item.camera, item.options, progress));
+  // Standard codes of three taps or more compete, too, with other numbers of exposures.
   const DesignResult result = design(item.camera, *item.design, progress);
-  return item_result_json(result.winner().error, &result.winner().code);
+  const int exposures = item.design->exposures.front();
+  for (const Candidate* c : by_geometric_mean_error(result, item.camera.operating.error))
+    if (c->code.exposures() == exposures) return item_result_json(c->error, &c->code);
+  throw std::runtime_error(fmt::format("no code of {} exposures was found", exposures));
 }
 
 }  // namespace

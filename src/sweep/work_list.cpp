@@ -108,6 +108,7 @@ DesignOptions design_options(const SweepSpec& spec, const EvaluateOptions& optio
   design.method = DesignMethod::optimize;
   design.exposures = {exposures};
   design.baselines.emplace();
+  design.atlas_cameras = 0;  // of another atlas the item would be another
   design.trials = static_cast<int>(options.trials);
   design.seed = options.seed;
   design.validate();

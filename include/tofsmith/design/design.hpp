@@ -198,23 +198,22 @@ const AtlasEntry* find_atlas_entry(std::string_view code);
 /// @throws IoError "file:line: .." for one of another version, and for what is damaged
 std::vector<AtlasEntry> parse_atlas(std::string_view text, std::string_view file = "atlas.txt");
 
-/// A power law through errors of the atlas:
-///   error = at_ones_m bandwidth^-a peak^-b exposures^-c.
+/// Of entries that differ in their exposures alone, those with the least error.
+std::vector<AtlasEntry> best_by_exposures(const std::vector<AtlasEntry>& entries);
+
+/// A power law through errors of the atlas: error = at_ones_m bandwidth^-a peak^-b.
 struct AtlasLaw {
-  int taps = 1;
-  DepthErrorKind error = DepthErrorKind::linear;
   double at_ones_m = 0.0;
-  double bandwidth_power = 0.0, peak_power = 0.0, exposures_power = 0.0;
-  double rms_residual = 0.0, max_residual = 0.0;  ///< of log error
-  int entries = 0;                                ///< that it was fitted to
-  /// The law for a camera of its taps and error [m].
+  double bandwidth_power = 0.0, peak_power = 0.0;  ///< a and b
+  double rms_residual = 0.0, max_residual = 0.0;   ///< of log error
+  int entries = 0;                                 ///< that it was fitted to
+  /// What it says of a camera with a bandwidth [m].
   double error_m(const AtlasCamera& camera) const;
 };
 
-/// Fits a law to those of the entries that have such taps, error, and bandwidths that are limited;
-/// none: fewer than 8, or all alike in one of the three.
-std::optional<AtlasLaw> fit_atlas_law(const std::vector<AtlasEntry>& entries, int taps,
-                                      DepthErrorKind error);
+/// Fits a law to those of the entries that have a bandwidth; none: they are fewer than 6, or all of
+/// one bandwidth or peak.
+std::optional<AtlasLaw> fit_atlas_law(const std::vector<AtlasEntry>& entries);
 
 /// What a requirement can vary of a camera.
 enum class CameraQuantity {

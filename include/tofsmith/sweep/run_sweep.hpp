@@ -210,7 +210,7 @@ struct WorkItem {
   std::optional<CodeSet> code;  ///< none: it is to be designed
   EvaluateOptions options;
   /// How the code is designed, for this item's camera alone: one of the name "optimized-k4", the
-  /// best that optimize() finds with 4 exposures.
+  /// best of 4 exposures that design() finds by optimizing, without families.
   std::optional<DesignOptions> design = {};
 };
 

@@ -17,7 +17,7 @@ namespace tofsmith {
 namespace {
 
 constexpr double parts_per_period = 100'000.0;
-constexpr std::string_view head = "tofsmith atlas ";
+constexpr std::string_view atlas_head = "tofsmith atlas ";
 
 /// "10", or "0.0075".
 std::string short_number(double value) { return fmt::format("{:.6g}", value); }
@@ -187,11 +187,11 @@ AtlasEntry read_entry(AtlasLines& lines) {
 
 std::vector<AtlasEntry> parse_atlas(std::string_view text, std::string_view file) {
   AtlasLines lines(text, file);
-  const bool has_head = lines.next() && lines.rest_of_line().starts_with(head);
+  const bool has_head = lines.next() && lines.rest_of_line().starts_with(atlas_head);
   if (!has_head)
     lines.refuse(fmt::format("found \"{}\"; expected \"{}{}\"", lines.rest_of_line().substr(0, 40),
-                             head, atlas_version));
-  if (const std::string_view version = lines.rest_of_line().substr(head.size());
+                             atlas_head, atlas_version));
+  if (const std::string_view version = lines.rest_of_line().substr(atlas_head.size());
       version != fmt::format("{}", atlas_version))
     lines.refuse(
         fmt::format("found an atlas of version {}; expected version {}, as "

@@ -34,12 +34,12 @@ AtlasPlace place_of(const AtlasCamera& of) {
   return place_of(of.peak_factor, std::min(band, pulse));
 }
 
-double distance(const AtlasPlace& a, const AtlasPlace& b) {
+double place_distance(const AtlasPlace& a, const AtlasPlace& b) {
   return std::hypot(a.log_peak - b.log_peak, a.log_bandwidth - b.log_bandwidth);
 }
 
 /// The place, moved to the edge of what entries cover if it is beyond.
-AtlasPlace within(const std::vector<const AtlasEntry*>& entries, AtlasPlace place) {
+AtlasPlace clamped_to(const std::vector<const AtlasEntry*>& entries, AtlasPlace place) {
   AtlasPlace low{infinity, infinity}, high{-infinity, -infinity};
   for (const AtlasEntry* entry : entries) {
     const AtlasPlace its = place_of(entry->of);
@@ -51,11 +51,11 @@ AtlasPlace within(const std::vector<const AtlasEntry*>& entries, AtlasPlace plac
 }
 
 /// The entries of one number of exposures of the nearest cameras, the nearest first.
-std::vector<const AtlasEntry*> nearest(std::vector<const AtlasEntry*> entries,
-                                       const AtlasPlace& camera, int cameras) {
-  const AtlasPlace place = within(entries, camera);
+std::vector<const AtlasEntry*> nearest_entries(std::vector<const AtlasEntry*> entries,
+                                               const AtlasPlace& camera, int cameras) {
+  const AtlasPlace place = clamped_to(entries, camera);
   std::stable_sort(entries.begin(), entries.end(), [&](const AtlasEntry* a, const AtlasEntry* b) {
-    return distance(place_of(a->of), place) < distance(place_of(b->of), place);
+    return place_distance(place_of(a->of), place) < place_distance(place_of(b->of), place);
   });
   std::set<std::pair<double, double>> places;
   std::vector<const AtlasEntry*> kept;
@@ -94,7 +94,7 @@ std::vector<OnInterval> stretched(const std::vector<OnInterval>& on, double fact
   return longer;
 }
 
-Waveform fitted(const Waveform& light, double from_peak_factor, double to_peak_factor) {
+Waveform fitted_light(const Waveform& light, double from_peak_factor, double to_peak_factor) {
   constexpr double whole = 0.98;  // of the peak: what uses less does so for a reason
   const double level = light.level();
   const double wanted = level >= whole * from_peak_factor
@@ -125,7 +125,7 @@ double effective_bandwidth_f0(const Camera& camera) {
 CodeSet fitted_to_peak(const CodeSet& code, double from_peak_factor, double to_peak_factor) {
   std::vector<Waveform> modulation, demodulation;
   for (int e = 0; e < code.exposures(); ++e)
-    modulation.push_back(fitted(code.modulation(e), from_peak_factor, to_peak_factor));
+    modulation.push_back(fitted_light(code.modulation(e), from_peak_factor, to_peak_factor));
   for (int i = 0; i < code.measurements(); ++i) demodulation.push_back(code.demodulation(i));
   CodeSet result = CodeSet::create(code.name(), code.samples(), code.taps(), std::move(modulation),
                                    std::move(demodulation));
@@ -148,7 +148,7 @@ std::vector<CodeSet> nearest_atlas_codes(const std::vector<AtlasEntry>& atlas, c
     if (!why_not_playable(code, camera) && keeps_shortest_run(code, camera)) codes.push_back(code);
   };
   for (const auto& [of_exposures, entries] : by_exposures) {
-    std::vector<const AtlasEntry*> near = nearest(entries, place, cameras);
+    std::vector<const AtlasEntry*> near = nearest_entries(entries, place, cameras);
     std::stable_partition(near.begin(), near.end(), [&](const AtlasEntry* entry) {
       return entry->of.error == camera.operating.error;
     });
