@@ -81,8 +81,9 @@ nlohmann::ordered_json atlas_document(const std::vector<AtlasEntry>& entries) {
 
 /// The same as a table.
 std::string csv_of(const std::vector<AtlasEntry>& entries) {
+  const nlohmann::ordered_json document = atlas_document(entries);
   std::string text;
-  for (const auto& code : atlas_document(entries)["codes"]) {
+  for (const auto& code : document["codes"]) {
     std::vector<std::string> names, values;
     for (const auto& [name, value] : code.items()) {
       names.push_back(name);
