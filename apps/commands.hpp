@@ -11,6 +11,7 @@ namespace tofsmith::apps {
 void add_demo_command(CLI::App& app, Session& session);
 void add_cameras_command(CLI::App& app, Session& session);
 void add_codes_command(CLI::App& app, Session& session);
+void add_atlas_command(CLI::App& app, Session& session);
 void add_design_command(CLI::App& app, Session& session);
 void add_evaluate_command(CLI::App& app, Session& session);
 void add_multipath_command(CLI::App& app, Session& session);

@@ -113,6 +113,7 @@ struct DesignArguments {
   bool normalize = false;
   std::vector<int> exposures;  // none: those of DesignOptions
   double effort = 1.0;
+  int atlas_cameras = DesignOptions{}.atlas_cameras;
   bool robust = false;
   OperatingMultipathArguments multipath;
   std::uint64_t seed = 1;
@@ -139,8 +140,15 @@ DesignOptions options_for(const DesignArguments& arguments, const Camera& camera
         "--robust: found beside multipath (--multipath or [operating.multipath]); "
         "expected one of them");
   options.exposures = arguments.exposures;
+  if (arguments.effort == 0.0 && !arguments.target.empty())
+    throw UsageError("--effort 0 designs nothing: it goes without --target");
+  if (arguments.effort == 0.0 && options.method != DesignMethod::best &&
+      options.method != DesignMethod::atlas)
+    throw UsageError(
+        fmt::format("--effort 0 searches nothing: it goes without --method {}", arguments.method));
   options = with_effort(std::move(options), arguments.effort);
   arguments.multipath.apply_to(options.optimize, camera);
+  options.atlas_cameras = arguments.atlas_cameras;
   options.seed = arguments.seed;
   options.trials = arguments.trials;
   if (!arguments.target.empty())
@@ -191,8 +199,9 @@ void add_design_command(CLI::App& app, Session& session) {
       ->add_option("--method", arguments->method,
                    "factorize: factorize correlation functions; optimize: minimize depth error "
                    "itself; search: all codes on a chip clock, with proof; best: all that suit the "
-                   "camera, with every baseline as a competitor")
-      ->check(one_of({"factorize", "optimize", "search", "best"}))
+                   "camera, with every baseline as a competitor; atlas: nothing is searched, "
+                   "codes of the atlas and standard codes are judged")
+      ->check(one_of({"factorize", "optimize", "search", "best", "atlas"}))
       ->capture_default_str();
   command->add_option("--target", arguments->target,
                       "correlation functions to factorize: a family, a code file, or a table "
@@ -206,6 +215,12 @@ void add_design_command(CLI::App& app, Session& session) {
       ->delimiter(',')
       ->check(CLI::Range(1, 16));
   add_effort(*command, arguments->effort);
+  command
+      ->add_option("--atlas-cameras", arguments->atlas_cameras,
+                   "how many of the nearest cameras of the atlas lend codes, which compete and are "
+                   "where searches start; 0: none")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
   command->add_flag("--robust", arguments->robust,
                     "optimize for the worst of ±20 % bandwidth, ±10 % peak, 50 ps edge jitter "
                     "and 2 % tap mismatch");

@@ -175,6 +175,7 @@ int run(int argc, char** argv) {
   add_cameras_command(app, session);
   add_codes_command(app, session);
   add_design_command(app, session);
+  add_atlas_command(app, session);
   add_evaluate_command(app, session);
   add_multipath_command(app, session);
   add_require_command(app, session);

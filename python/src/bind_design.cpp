@@ -22,6 +22,7 @@ DesignOptions design_options(const py::dict& values, const std::optional<TargetS
   options = with_effort(std::move(options), effort);
   OptionReader reader(values, "");
   reader.value("effort", effort).fields(options, {"target"}).finish();
+  if (effort == 0.0) options = with_effort(std::move(options), effort);  // whatever the method
   options.target = target;
   options.validate();
   return options;
@@ -144,6 +145,24 @@ void write_found(const FoundRequirements& asked, const std::string& path, bool o
                         policy_of(overwrite));
 }
 
+py::list atlas_list() {
+  py::list entries;
+  for (const AtlasEntry& entry : code_atlas()) {
+    py::dict dict;
+    dict["code"] = entry.code;
+    dict["taps"] = entry.of.taps;
+    dict["exposures"] = entry.of.exposures;
+    dict["peak_factor"] = entry.of.peak_factor;
+    dict["bandwidth_f0"] = entry.of.bandwidth_f0;
+    dict["shortest_pulse_periods"] = entry.of.shortest_pulse_periods;
+    dict["error"] = name_of(entry.of.error);
+    dict["linear_m"] = entry.linear_m.value;
+    dict["circular_m"] = entry.circular_m.value;
+    entries.append(dict);
+  }
+  return entries;
+}
+
 }  // namespace
 
 void bind_design(py::module_& module) {
@@ -161,6 +180,7 @@ void bind_design(py::module_& module) {
     return suggested_exposures(camera, parse_design_method(word));
   });
   module.def("design", &design_dict);
+  module.def("atlas", &atlas_list);
   py::class_<FoundRequirements>(module, "FoundRequirements").def("write", &write_found);
   module.def("find_requirements", &requirements_dict);
 }

@@ -58,6 +58,7 @@ from ._decode import Decoder, decode
 from ._decoding_table import DecodingTable
 from ._depth_image import DepthImage, PixelStatus, ReturnStatus
 from ._design import (
+    AtlasEntry,
     Candidate,
     DesignResult,
     RequirementMap,
@@ -65,6 +66,7 @@ from ._design import (
     Sufficiency,
     MeasurementReport,
     SearchRecord,
+    atlas,
     design,
     find_requirements,
     suggested_exposures,
@@ -186,6 +188,7 @@ def set_threads(threads: int) -> None:
 
 
 __all__ = [
+    "AtlasEntry",
     "CalibratedCorrelation",
     "CalibratedDepth",
     "CalibratedResponse",
@@ -262,6 +265,7 @@ __all__ = [
     "UploadScript",
     "Waveform",
     "WaveformFormat",
+    "atlas",
     "best_rotation",
     "bounced_light",
     "build_family",

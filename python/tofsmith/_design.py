@@ -57,7 +57,7 @@ class Candidate:
     ----------
     code : CodeSet
     method : str
-        family, naive, reference, factorize, optimize or search.
+        family, naive, reference, atlas, factorize, optimize or search.
     ranking_error_m : float
         What candidates are ranked by [m]: depth error, robustness and multipath weighed in.
     error : DepthErrorReport
@@ -222,6 +222,7 @@ def design(
     search_trials: Optional[int] = None,
     seed: Optional[int] = None,
     effort: Optional[float] = None,
+    atlas_cameras: Optional[int] = None,
     factorize: Optional[Mapping[str, Any]] = None,
     optimize: Optional[Mapping[str, Any]] = None,
     search: Optional[Mapping[str, Any]] = None,
@@ -232,10 +233,11 @@ def design(
     Parameters
     ----------
     camera : Camera or its name
-    method : {"best", "factorize", "optimize", "search"}, optional
+    method : {"best", "factorize", "optimize", "search", "atlas"}, optional
         factorize: waveforms whose correlation functions come close to given ones, as in the paper;
         optimize: all waveforms together, by depth error itself; search: all codes on a chip clock,
-        with proof where that is possible; best (the default): all that suit the camera.
+        with proof where that is possible; best (the default): all that suit the camera; atlas: no
+        search, codes of the atlas and standard codes are judged.
     exposures : int, or sequence of int, optional
         Numbers of exposures to design for, 1 .. 8, or of rows, 3 .. 16; None: what suits
         method and camera.
@@ -257,8 +259,11 @@ def design(
     seed : int, optional
         Of every random choice (1).
     effort : float, optional
-        How long to search, 0.01 .. 100 (1): 0.1 for a first look, 3 for the last percent; options
-        of the methods below are not scaled.
+        How long to search, 0.01 .. 100 (1): 0.1 for a first look, 3 for the last percent; 0: not at
+        all, method "atlas". Options of the methods below are not scaled.
+    atlas_cameras : int, optional
+        How many of the nearest cameras of the atlas lend codes that compete and that searches start
+        from (4); 0: none.
     factorize, optimize, search : dict, optional
         Options of the methods by the names of FactorizeOptions, OptimizeOptions and
         ChipSearchOptions, such as `optimize={"starts": 4, "hops": 0}` for a quick look.
@@ -284,6 +289,7 @@ def design(
         "search_trials": search_trials,
         "seed": seed,
         "effort": effort,
+        "atlas_cameras": atlas_cameras,
         "factorize": None if factorize is None else dict(factorize),
         "optimize": None if optimize is None else dict(optimize),
         "search": None if search is None else dict(search),
@@ -292,6 +298,43 @@ def design(
     result = _tofsmith.design(camera._handle, options, targets, _check.progress(progress))
     result["candidates"] = [_candidate(c, camera) for c in result["candidates"]]
     return DesignResult(**result)
+
+
+@dataclass(frozen=True)
+class AtlasEntry:
+    """The best code found for a camera of the atlas: 15 MHz, 0.3 s in all, read noise of 20 e, the
+    paper's light levels.
+
+    Attributes
+    ----------
+    code : CodeSet
+    taps, exposures : int
+    peak_factor : float
+    bandwidth_f0 : float
+        Of both arms [f0]; 0: no limit.
+    shortest_pulse_periods : float
+        Of the period; 0: any.
+    error : str
+        That it was designed for, linear or circular.
+    linear_m, circular_m : float
+        Geometric means over the light levels [m].
+    """
+
+    code: CodeSet
+    taps: int
+    exposures: int
+    peak_factor: float
+    bandwidth_f0: float
+    shortest_pulse_periods: float
+    error: str
+    linear_m: float
+    circular_m: float
+
+
+def atlas() -> list[AtlasEntry]:
+    """The atlas of best codes, as `tofsmith atlas` lists it. `design(camera, effort=0)` takes the best
+    of the nearest for a camera."""
+    return [AtlasEntry(**{**entry, "code": CodeSet._of(entry["code"])}) for entry in _tofsmith.atlas()]
 
 
 @dataclass(frozen=True)

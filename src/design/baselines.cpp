@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "code/shared/family_rules.hpp"
+#include "design/atlas/nearest_codes.hpp"
 #include "design/chips/standard_chip_codes.hpp"
 #include "design/factorize/factorized_code.hpp"
 #include "design/judge.hpp"
@@ -30,7 +31,7 @@ constexpr const char* short_runs = "has pulses or gaps below sensor.shortest_pul
 /// many stay.
 constexpr int min_trials_per_point = 1000, trials_of_all_points = 25000;
 constexpr double contending = 1.12;
-constexpr std::size_t max_contenders = 8;
+constexpr std::size_t max_contenders = 8, max_atlas_codes = 4;
 
 int trials_per_point(const Camera& camera) {
   const auto points = static_cast<int>(camera.operating.points().size());
@@ -45,6 +46,17 @@ double first_error_m(const CodeSet& code, const Camera& camera, std::uint64_t se
   const std::vector<double> of_rotation =
       best_rotation(code, camera, options).linear_geometric_mean_m;
   return *std::min_element(of_rotation.begin(), of_rotation.end());
+}
+
+/// That of each code; infinite where it cannot compete.
+std::vector<double> first_errors_m(const std::vector<CodeSet>& codes, const Camera& camera,
+                                   std::uint64_t seed) {
+  std::vector<double> errors_m(codes.size(), infinity);
+  parallel_for(std::ssize(codes), [&](std::int64_t i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (!why_no_depth(codes[at], camera)) errors_m[at] = first_error_m(codes[at], camera, seed);
+  });
+  return errors_m;
 }
 
 /// Why a code cannot compete on a camera; none: it can.
@@ -119,6 +131,31 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
     else
       found.codes.push_back(std::move(*codes[i]));
   return found;
+}
+
+std::vector<CodeSet> contending_atlas_codes(const Camera& camera, const DesignOptions& options) {
+  constexpr std::size_t max_of_exposures = 3;
+  if (options.atlas_cameras == 0 || options.method == DesignMethod::factorize ||
+      options.method == DesignMethod::search)
+    return {};
+  const std::vector<CodeSet> codes =
+      nearest_atlas_codes(code_atlas(), camera, options.exposures, options.atlas_cameras);
+  const std::vector<double> errors_m = first_errors_m(codes, camera, search_seed(options));
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < codes.size(); ++i)
+    if (errors_m[i] < infinity) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return errors_m[a] < errors_m[b]; });
+  std::map<int, std::size_t> of_exposures;
+  std::vector<CodeSet> contenders;
+  for (const std::size_t i : order)
+    if (of_exposures[codes[i].exposures()]++ < max_of_exposures) contenders.push_back(codes[i]);
+  return contenders;
+}
+
+void add_atlas_codes(const std::vector<CodeSet>& contenders, DesignResult& result) {
+  for (std::size_t i = 0; i < std::min(max_atlas_codes, contenders.size()); ++i)
+    result.candidates.push_back({.code = contenders[i], .method = "atlas"});
 }
 
 void add_baselines(const Camera& camera, const DesignOptions& options,

@@ -34,4 +34,11 @@ struct Contenders {
 Contenders contending_families(const std::vector<std::string>& names, const Camera& camera,
                                std::uint64_t seed);
 
+/// Of the codes that the nearest cameras of the atlas lend, by few trials those that err least,
+/// best first, three at most of each number of exposures; none where options want none.
+std::vector<CodeSet> contending_atlas_codes(const Camera& camera, const DesignOptions& options);
+
+/// Lets the best four of them compete.
+void add_atlas_codes(const std::vector<CodeSet>& contenders, DesignResult& result);
+
 }  // namespace tofsmith

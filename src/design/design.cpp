@@ -19,8 +19,8 @@
 namespace tofsmith {
 namespace {
 
-constexpr EnumWords<DesignMethod, 4> method_words("DesignMethod", "method", "factorize", "optimize",
-                                                  "search", "best");
+constexpr EnumWords<DesignMethod, 5> method_words("DesignMethod", "method", "factorize", "optimize",
+                                                  "search", "best", "atlas");
 constexpr EnumWords<Termination, 4> termination_words("Termination", "termination", "not_run",
                                                       "converged", "stalled", "iteration_limit");
 
@@ -51,10 +51,20 @@ bool serves(DesignMethod method, const std::optional<BrokenRule>& why_not,
   return !why_not;
 }
 
+/// Where the optimization starts: at codes of the atlas, then at all candidates there are.
+std::vector<CodeSet> starts_of(const std::vector<CodeSet>& atlas_codes,
+                               const DesignResult& result) {
+  std::vector<CodeSet> starts = atlas_codes;
+  for (const Candidate& c : result.candidates)
+    if (c.method != "atlas") starts.push_back(c.code);
+  return starts;
+}
+
 /// What to design: a code for every target, then for every number of exposures. Tasks refer to all
-/// four arguments.
+/// five arguments.
 std::vector<Task> tasks_for(const Camera& camera, const DesignOptions& options,
-                            const std::vector<TargetSet>& targets, DesignResult& result) {
+                            const std::vector<TargetSet>& targets,
+                            const std::vector<CodeSet>& atlas_codes, DesignResult& result) {
   std::vector<Task> tasks;
   for (const TargetSet& target : targets)
     tasks.push_back({DesignMethod::factorize, target.name + "-factorized", 1.0, std::nullopt,
@@ -85,11 +95,12 @@ std::vector<Task> tasks_for(const Camera& camera, const DesignOptions& options,
                        }});
   if (includes(options.method, DesignMethod::optimize))
     for (const int exposures : optimizable_exposures(camera, options))
-      tasks.push_back(
-          {DesignMethod::optimize, optimized_name(exposures), 3.0,
-           why_not_optimizable(camera, exposures), [&, exposures](const Progress& part) {
-             return optimized_candidates(camera, exposures, options, result.candidates, part);
-           }});
+      tasks.push_back({DesignMethod::optimize, optimized_name(exposures), 3.0,
+                       why_not_optimizable(camera, exposures),
+                       [&, exposures](const Progress& part) {
+                         return optimized_candidates(camera, exposures, options,
+                                                     starts_of(atlas_codes, result), part);
+                       }});
   std::erase_if(
       tasks, [&](const Task& task) { return !serves(task.method, task.why_not, options, result); });
   return tasks;
@@ -167,9 +178,11 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
       serves(DesignMethod::factorize, why_not_factorizable(camera, options), options, result))
     targets = targets_for(camera, options);
   add_baselines(camera, options, targets, result);
+  const std::vector<CodeSet> atlas_codes = contending_atlas_codes(camera, options);
+  add_atlas_codes(atlas_codes, result);
 
   // 2. Design codes. What is there by then is where the direct optimization starts.
-  const std::vector<Task> tasks = tasks_for(camera, options, targets, result);
+  const std::vector<Task> tasks = tasks_for(camera, options, targets, atlas_codes, result);
   std::vector<double> efforts;
   for (const Task& task : tasks) efforts.push_back(task.effort);
   const ProgressParts parts(progress, {80, 20});

@@ -27,7 +27,14 @@ void DesignOptions::validate() const {
 }
 
 DesignOptions with_effort(DesignOptions options, double effort) {
-  require(effort >= 0.01 && effort <= 100.0, "effort", effort, "must be in [0.01, 100]");
+  require(effort == 0.0 || (effort >= 0.01 && effort <= 100.0), "effort", effort,
+          "must be 0 or in [0.01, 100]");
+  if (effort == 0.0) {
+    require(options.method == DesignMethod::best || options.method == DesignMethod::atlas, "effort",
+            effort, "must be > 0 for methods that search: there is nothing else to them");
+    options.method = DesignMethod::atlas;
+    return options;
+  }
   scale_by_effort(options, effort);
   return options;
 }

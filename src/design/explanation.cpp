@@ -16,10 +16,11 @@ namespace {
 
 std::string length_mm(const Estimate& e) { return estimate_mm_text(e) + " mm"; }
 
-/// The baseline of the least error that is not the winner; null if there is none.
+/// The baseline of the least error that is not the winner; null if there is none. The atlas' codes
+/// are none: somebody designed them.
 const Candidate* best_baseline(const DesignResult& result, DepthErrorKind kind) {
   for (const Candidate* c : by_geometric_mean_error(result, kind))
-    if (c != &result.winner() && !c->is_designed()) return c;
+    if (c != &result.winner() && !c->is_designed() && c->method != "atlas") return c;
   return nullptr;
 }
 
@@ -29,13 +30,19 @@ std::string what_it_beats(const Camera& camera, const DesignResult& result, Dept
                                  camera.operating.multipath ? " where multipath counts too" : "",
                                  length_mm(winner.error.of(kind).geometric_mean_m), name_of(kind));
   const Candidate* baseline = best_baseline(result, kind);
-  if (!baseline) return text + ".";
-  const Estimate gain = gain_over(result, *baseline, kind);
-  text += fmt::format(", {:.2f} ± {:.2f} times less than {}", gain.value, gain.standard_error,
-                      baseline->code.name());
-  if (!winner.is_designed())
-    return text + ": a standard code, which nothing that was designed here improves on.";
-  return text + ", the best of the codes here that were not designed for this camera.";
+  if (baseline) {
+    const Estimate gain = gain_over(result, *baseline, kind);
+    text += fmt::format(", {:.2f} ± {:.2f} times less than {}", gain.value, gain.standard_error,
+                        baseline->code.name());
+  }
+  if (winner.is_designed())
+    return text + (baseline ? ", the best of the codes here that nobody designed." : ".");
+  const bool any_designed = std::any_of(result.candidates.begin(), result.candidates.end(),
+                                        [](const Candidate& c) { return c.is_designed(); });
+  return text + fmt::format(": a {}, {}.",
+                            winner.method == "atlas" ? "code of the atlas" : "standard code",
+                            any_designed ? "which nothing that was designed here improves on"
+                                         : "and nothing was designed");
 }
 
 /// The least error among codes of each number of exposures.

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sweep/item_batch.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
+#include <stdexcept>
 #include <utility>
 
 #include "sweep/item_result.hpp"
@@ -10,6 +13,22 @@
 #include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
+
+namespace {
+
+/// What is to be stored of an item.
+std::string computed(const WorkItem& item, const Progress& progress) {
+  if (!item.design)
+    return item_result_json(evaluate(*item.code, item.camera, item.options, progress));
+  // Standard codes of three taps or more compete, too, with other numbers of exposures.
+  const DesignResult result = design(item.camera, *item.design, progress);
+  const int exposures = item.design->exposures.front();
+  for (const Candidate* c : by_geometric_mean_error(result, item.camera.operating.error))
+    if (c->code.exposures() == exposures) return item_result_json(c->error, &c->code);
+  throw std::runtime_error(fmt::format("no code of {} exposures was found", exposures));
+}
+
+}  // namespace
 
 ItemBatch::ItemBatch(const WorkList& list, std::vector<ClaimedItem> items)
     : list_(list), items_(std::move(items)), thread_([this] { compute_all(); }) {}
@@ -52,7 +71,7 @@ void ItemBatch::compute(const ClaimedItem& claimed) {
     if (item.key != claimed.key)
       throw IoError(list_.spec().source_name,
                     "a file that the sweep reads has changed since it started");
-    outcome.result = item_result_json(evaluate(item.code, item.camera, item.options, progress));
+    outcome.result = computed(item, progress);
   } catch (const Interrupted&) {
     return;
   } catch (const std::exception& error) {

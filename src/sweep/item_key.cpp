@@ -12,6 +12,7 @@
 #include "core/shared/hash.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/sweep/run_sweep.hpp"
+#include "tofsmith/version.hpp"
 
 namespace tofsmith {
 
@@ -57,6 +58,20 @@ std::string setup_key(const Camera& camera, const CodeSet& code) {
                  code.taps());
   for (int e = 0; e < code.exposures(); ++e) append(text, code.modulation(e));
   for (int i = 0; i < code.measurements(); ++i) append(text, code.demodulation(i));
+  return fnv1a_128_hex(text);
+}
+
+std::string setup_key(const Camera& camera, const DesignOptions& options, double effort) {
+  std::string text = camera_text(camera);
+  fmt::format_to(std::back_inserter(text), "designed by {} with effort {}: {} exposures {}\n",
+                 TOFSMITH_VERSION, effort, name_of(options.method),
+                 fmt::join(options.exposures, ","));
+  // Nothing to evaluate(), and much to design().
+  if (const auto& later = camera.operating.multipath) {
+    append(text, "ratio ", later->ratio);
+    append(text, "delay ", later->delay_m);
+    append(text, "weight ", {&later->weight, 1});
+  }
   return fnv1a_128_hex(text);
 }
 

@@ -13,6 +13,7 @@
 #include "io/documents/shared/document_text.hpp"
 #include "io/documents/shared/result_json.hpp"
 #include "sweep/item_result.hpp"
+#include "tofsmith/io/code_file.hpp"
 #include "tofsmith/io/csv.hpp"
 #include "tofsmith/version.hpp"
 
@@ -108,9 +109,9 @@ std::vector<SweepResult> sweep_results(const WorkList& list, std::span<const std
     const auto item = static_cast<std::int64_t>(i);
     const auto stored = store.find(keys[i]);
     if (!stored || stored->status != ItemStatus::finished) continue;
-    results.push_back(
-        {item, keys[i],
-         parse_item_result(stored->result, list.code_name(item), fmt::format("item {}", keys[i]))});
+    ItemResult result =
+        parse_item_result(stored->result, list.code_name(item), fmt::format("item {}", keys[i]));
+    results.push_back({item, keys[i], std::move(result.error), std::move(result.designed)});
   }
   return results;
 }
@@ -155,6 +156,7 @@ std::string sweep_json(const WorkList& list, std::span<const SweepResult> result
                   {"trials", result.error.trials},
                   {"seed", result.error.seed}};
     entry.update(depth_error_json(result.error, 0));
+    if (result.code) entry["designed"] = Json::parse(code_to_json(*result.code));
     document["codes"].push_back(std::move(entry));
   }
   return document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -264,6 +264,12 @@ void read_options(TableReader& table, EvaluateOptions& options) {
   }
 }
 
+void read_effort(TableReader& table, double& effort) {
+  table.value("effort", effort);
+  if (!(effort >= 0.01 && effort <= 100.0))
+    table.fail("effort", fmt::format("found {}; expected a number in [0.01, 100]", effort));
+}
+
 /// `codes = [..]` is an axis that is crossed with all others.
 void read_codes(TableReader& table, SweepSpec& spec) {
   table.value("code", spec.code);
@@ -365,6 +371,7 @@ SweepSpec parse_sweep_toml(std::string_view text, std::string_view source_name) 
   table.value("set", spec.settings);
   table.choice("combine", spec.combine, combinations);
   read_options(table, spec.options);
+  read_effort(table, spec.effort);
   read_codes(table, spec);
   table.tables("axis", [&](TableReader& inner) {
     for (SweepAxis& axis : read_sweep_axes(inner)) spec.axes.push_back(std::move(axis));

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -85,6 +86,35 @@ Camera load_chosen_camera(const SweepSpec& spec, const Choice& choice) {
   return load_camera(resolved(spec, choice.camera, built_in), choice.settings);
 }
 
+/// The exposures of a code that is to be designed, "optimized-k4"; none: it is there.
+std::optional<int> designed_exposures(std::string_view code) {
+  constexpr std::string_view stem = "optimized-k";
+  int exposures = 0;
+  if (!code.starts_with(stem)) return std::nullopt;
+  const char* const end = code.data() + code.size();
+  const auto [rest, error] = std::from_chars(code.data() + stem.size(), end, exposures);
+  if (error != std::errc() || rest != end) return std::nullopt;
+  return exposures;
+}
+
+/// How the code of an item is designed: for its own camera, from nothing but the item.
+DesignOptions design_options(const SweepSpec& spec, const EvaluateOptions& options, int exposures) {
+  if (options.method != DecodeMethod::zncc)
+    reject("method", name_of(options.method), "must be zncc where codes are designed");
+  if (options.target_standard_error > 0.0)
+    reject("target_standard_error", fmt::format("{}", options.target_standard_error),
+           "must be 0 where codes are designed: those have a number of trials");
+  DesignOptions design;
+  design.method = DesignMethod::optimize;
+  design.exposures = {exposures};
+  design.baselines.emplace();
+  design.atlas_cameras = 0;  // of another atlas the item would be another
+  design.trials = static_cast<int>(options.trials);
+  design.seed = options.seed;
+  design.validate();
+  return with_effort(std::move(design), spec.effort);
+}
+
 CodeSet load_chosen_code(const SweepSpec& spec, const Choice& choice, const Camera& camera) {
   // What is no file is perhaps a family's name with a slip: load_camera_code() says so.
   const std::string file = resolved(spec, choice.code, is_family(choice.code));
@@ -124,7 +154,8 @@ class SetupCache {
   std::string key(std::int64_t item) {
     const SweepSpec& spec = list_.spec();
     const Choice choice = choose(spec, item);
-    const bool is_plain = !sets_light_twice_ && !(choice.signal_e_per_s <= 0.0);
+    const bool is_plain =
+        !sets_light_twice_ && !(choice.signal_e_per_s <= 0.0) && !designed_exposures(choice.code);
     const std::optional<Setup> setup = is_plain ? setup_of(item) : std::nullopt;
     if (!setup) return list_.item(item).key;
     OperatingRange light = setup->light;
@@ -153,7 +184,7 @@ class SetupCache {
       if (setups_.size() >= max_kept) return std::nullopt;
     }
     const WorkItem built = list_.item(item);
-    const Setup setup{setup_key(built.camera, built.code), built.camera.operating};
+    const Setup setup{setup_key(built.camera, *built.code), built.camera.operating};
     const std::lock_guard lock(mutex_);
     return setups_.emplace(std::move(own), setup).first->second;
   }
@@ -187,6 +218,12 @@ WorkItem WorkList::item(std::int64_t item) const {
   const Choice choice = choose(spec_, item);
   try {
     const Camera camera = load_chosen_camera(spec_, choice);
+    if (const auto exposures = designed_exposures(choice.code)) {
+      DesignOptions options = design_options(spec_, choice.options, *exposures);
+      std::string key =
+          item_key(setup_key(camera, options, spec_.effort), camera.operating, choice.options);
+      return {std::move(key), camera, std::nullopt, choice.options, std::move(options)};
+    }
     CodeSet code = load_chosen_code(spec_, choice, camera);
     std::string key = item_key(setup_key(camera, code), camera.operating, choice.options);
     return {std::move(key), camera, std::move(code), choice.options};

@@ -99,6 +99,10 @@ const char* const scene_toml =
     "[view]\nwidth = 4\nheight = 3\nfield_of_view_deg = 60\n[[plane]]\n"
     "point_m = [0, 0, 2]\nnormal = [0, 0, -1]\nalbedo = 0.5\n[[sphere]]\n"
     "center_m = [0, 0, 1]\nradius_m = 0.2\n[[box]]\nmin_m = [0, 0, 1]\nmax_m = [1, 1, 2]\n";
+const char* const atlas =
+    "tofsmith atlas 1\ncode taps 1 exposures 3 peak 4 bandwidth 10 shortest 0 error linear "
+    "linear_m 0.2 0.001 circular_m 0.1 0.0005\nlight 0 25000\ngate 0 50000\n"
+    "light 0 25000\ngate 33333 83333\nlight 90000 115000\ngate 66667 116667\n";
 const char* const ply_square =
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
     "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
@@ -120,6 +124,7 @@ std::vector<Reader> text_readers() {
              return std::vector<Bytes>{bytes_of(code_to_json(small_code("hamiltonian-k3"))),
                                        bytes_of(code_to_json(small_code("sinusoid-k3")))};
            }},
+          {"atlas", [](Input bytes) { parse_atlas(text_of(bytes)); }, seeds({bytes_of(atlas)})},
           {"csv", [](Input bytes) { parse_csv(text_of(bytes), "a.csv"); },
            seeds({bytes_of("a,b\n1,2.5\n\"x, y\",-3e9\n")})}};
 }

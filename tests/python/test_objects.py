@@ -137,6 +137,20 @@ def test_only_what_draws_is_listed():
     assert drawing == set(plot.__all__)
 
 
+def test_the_atlas_lends_codes_where_nothing_is_searched():
+    entries = ts.atlas()
+    assert entries
+    for entry in entries:
+        assert (entry.code.taps, entry.code.exposures) == (entry.taps, entry.exposures)
+        assert 0 < entry.circular_m and 0 < entry.linear_m
+    levels = {"signal_e_per_s": [1e4], "ambient_e_per_s": [1e4]}
+    camera = ts.Camera("paper-10f0", operating=levels)
+    methods = {c.method for c in ts.design(camera, effort=0, trials=1000).candidates}
+    assert methods == {"atlas", "family"}
+    alone = ts.design(camera, effort=0, trials=1000, atlas_cameras=0)
+    assert {c.method for c in alone.candidates} == {"family"}
+
+
 def test_one_number_will_do_where_a_list_is_asked_for():
     found = ts.design("paper-10f0", exposures=3, effort=0.01, trials=1000, method="factorize")
     designed = [c for c in found.candidates if c.method == "factorize"]

@@ -24,7 +24,7 @@ TEST(RunSweep, FindsWhatEvaluateFinds) {
   const auto results = sweep_results(list, list.keys(), store);
   ASSERT_EQ(results.size(), 12u);
   const WorkItem item = list.item(7);
-  const DepthErrorReport expected = evaluate(item.code, item.camera, item.options);
+  const DepthErrorReport expected = evaluate(*item.code, item.camera, item.options);
   EXPECT_EQ(results[7].item, 7);
   EXPECT_EQ(results[7].error.code, "hamiltonian-k3");
   ASSERT_EQ(results[7].error.points.size(), 1u);
@@ -33,6 +33,31 @@ TEST(RunSweep, FindsWhatEvaluateFinds) {
   EXPECT_EQ(found.linear_mde_m.value, is.linear_mde_m.value);
   EXPECT_EQ(found.circular_mde_m.standard_error, is.circular_mde_m.standard_error);
   EXPECT_EQ(found.cramer_rao_mae_m, is.cramer_rao_mae_m);
+}
+
+TEST(RunSweep, DesignsCodesAndKeepsThem) {
+  const TemporaryDirectory directory;
+  const WorkList list(parse_sweep_toml(
+      "set = [\"samples=24\"]\ncode = \"optimized-k{exposures}\"\neffort = 0.01\ntrials = 1000\n"
+      "[[axis]]\nkey = \"exposures\"\nvalues = [3, 4]\n"
+      "[[axis]]\nkey = \"signal_e_per_s\"\nvalues = [1e5]\n"
+      "[[axis]]\nkey = \"ambient_e_per_s\"\nvalues = [1e4]\n"));
+  const std::string text = swept(directory / "s.sqlite", list);
+  EXPECT_THAT(text, HasSubstr("\"designed\""));
+  SweepStore store = SweepStore::read(directory / "s.sqlite");
+  const auto results = sweep_results(list, list.keys(), store);
+  ASSERT_EQ(results.size(), 2u);
+  for (const SweepResult& result : results) {
+    const WorkItem item = list.item(result.item);
+    ASSERT_TRUE(result.code);
+    EXPECT_EQ(result.code->exposures(), result.item == 0 ? 3 : 4);
+    EXPECT_EQ(result.error.code, result.code->name());
+    EXPECT_EQ(evaluate(*result.code, item.camera, item.options).linear.geometric_mean_m.value,
+              result.error.linear.geometric_mean_m.value);
+  }
+  std::int64_t computed = 0;
+  EXPECT_EQ(swept(directory / "s.sqlite", list, &computed), text);
+  EXPECT_EQ(computed, 0);
 }
 
 TEST(RunSweep, NeverComputesAFinishedItemAgain) {

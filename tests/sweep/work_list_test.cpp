@@ -54,6 +54,28 @@ TEST(WorkList, AKeyDependsOnAllThatDeterminesTheResult) {
   EXPECT_EQ(keys.size(), texts.size());
 }
 
+TEST(WorkList, ACodeToBeDesignedCountsByAllThatItIsDesignedFor) {
+  const std::string designed = "set = [\"samples=24\"]\ntrials = 1000\n";
+  const std::vector<std::string> texts = {
+      "code = \"optimized-k3\"\n",
+      "code = \"optimized-k4\"\n",
+      "code = \"optimized-k3\"\neffort = 0.1\n",
+      "code = \"optimized-k3\"\n" + axis("seed", "2"),
+      "code = \"optimized-k3\"\n" + axis("operating.error", "\"circular\""),
+      "code = \"optimized-k3\"\n" + axis("operating.multipath", "{ratio = [0.1, 0.2]}"),
+      "code = \"optimized-k3\"\n" + axis("sensor.taps", "2")};
+  std::set<std::string> keys;
+  for (const std::string& text : texts) {
+    const WorkList list(parse_sweep_toml(designed + text));
+    const WorkItem item = list.item(0);
+    EXPECT_FALSE(item.code);
+    ASSERT_TRUE(item.design);
+    EXPECT_EQ(list.keys().front(), item.key);
+    keys.insert(item.key);
+  }
+  EXPECT_EQ(keys.size(), texts.size());
+}
+
 TEST(WorkList, AKeyDependsOnNothingElse) {
   EXPECT_EQ(key_of(""), key_of("camera = \"paper-10f0\"\nseed = 1\n"));
   EXPECT_EQ(key_of(""), key_of(axis("name", "\"other\"")));
@@ -66,7 +88,7 @@ TEST(WorkList, AKeyDependsOnNothingElse) {
 TEST(WorkList, ACodeCountsByItsWaveformsAndNotByItsName) {
   const TemporaryDirectory directory;
   const WorkList family(parse_sweep_toml(base + "code = \"square-k4\"\n"));
-  const CodeSet code = family.item(0).code;
+  const CodeSet code = *family.item(0).code;
   const auto key_of_file = [&](const CodeSet& written) {
     write_code(directory / "mine.code.json", written, OutputPolicy::overwrite);
     return WorkList(parse_sweep_toml(base + "code = \"mine.code.json\"\n",
@@ -130,7 +152,7 @@ TEST(WorkList, ExposuresGoIntoTheNameOfAFamily) {
   const WorkList list(
       parse_sweep_toml(base + "code = \"hamiltonian-k{exposures}\"\n" + axis("exposures", "4, 3")));
   EXPECT_EQ(list.code_name(1), "hamiltonian-k3");
-  EXPECT_EQ(list.item(1).code.exposures(), 3);
+  EXPECT_EQ(list.item(1).code->exposures(), 3);
   EXPECT_EQ(list.settings_json(0), R"({"code":"hamiltonian-k4","exposures":4})");
 }
 
@@ -143,6 +165,10 @@ TEST(WorkList, RefusesImpossibleItemsAndSaysWhichValueIsToBlame) {
   refuse(code + axis("light.peak_factor", "5, 0.5"), "s.toml:4:14", "(in item 2 of 2: ");
   refuse(code + axis("samples", "\"many\""), "s.toml:4:11", "expected an integer");
   refuse("code = \"sqare-k4\"\n", "s.toml: ", "did you mean square-k4?");
+  refuse("code = \"optimized-k4\"\ntrials = 10\n", "s.toml: ", "must be >= 1000");
+  refuse("code = \"optimized-k4\"\nmethod = \"ml\"\n", "s.toml: ", "zncc where codes are designed");
+  refuse("code = \"optimized-k0\"\n", "s.toml: ", "must be in [1, 16]");
+  refuse(code + "effort = 0\n", "s.toml:2:10", "expected a number in [0.01, 100]");
   refuse("camera = \"paper\"\n" + code, "s.toml: ", "no built-in camera");
   refuse(code + "set = [\"samles=24\"]\n", "s.toml: setting 'samles=24'", "did you mean samples?");
 }

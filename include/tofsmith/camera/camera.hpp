@@ -200,8 +200,8 @@ struct Sensor {
   bool drain = true;                       ///< charge may be thrown away; else taps add to 1
   Readout readout = Readout::separate;     ///< how taps leave the sensor
   Demodulation demodulation = Demodulation::gain;  ///< of taps, or of a mixer
-  std::optional<double> readout_gap_s;     ///< dark time after each exposure [s], >= 0; none: 0
-  std::optional<double> frame_period_s;    ///< from frame to frame [s], > 0; none: no pause
+  std::optional<double> readout_gap_s;   ///< dark time after each exposure [s], >= 0; none: 0
+  std::optional<double> frame_period_s;  ///< from frame to frame [s], > 0; none: no pause
 
   /// Whether measurements are numbers of a mixer.
   bool is_signed() const { return demodulation == Demodulation::weight; }
@@ -442,9 +442,8 @@ OperatingPoint capture_light(const Camera& camera, double reference_distance_m);
 
 /// The camera whose single pixels measure what sums of `operating.neighbours` = n pixels do, and
 /// what its codes are judged on: exposures n times as long, read noise sqrt(n) times as large with
-/// quantization in it, full well and saturation of the converter n times as high, one neighbour.
-/// The camera itself for n = 1. Counts cut off at 0 are not known any more: a converter's black
-/// level is taken as high enough.
+/// quantization in it, full well and saturation of the converter n times as high, one neighbour. A
+/// converter's black level is taken as high enough. The camera itself for n = 1.
 /// @throws std::invalid_argument if the camera is invalid
 Camera judged_camera(const Camera& camera);
 
@@ -457,10 +456,10 @@ std::optional<std::string> why_not_playable(const CodeSet& code, const Camera& c
 /// @throws InvalidArgument with the text of why_not_playable(), if there is one
 void require_fits(const CodeSet& code, const Camera& camera);
 
-/// The camera of two buckets, read as their difference and without a drain, that measures with the
-/// two gates of a binary weight, open where it is 1 and where it is -1, what a camera of a mixer
-/// does with the weight: half of its noise without light is that of each bucket. Full well,
-/// converter and mismatch of exposures are left out. Other cameras as they are.
+/// A mixer's camera as one of two buckets, read as their difference and without a drain, that does
+/// with the gates of a binary weight, open where it is 1 and where it is -1, what the mixer does:
+/// each has half of the noise without light. Without full well, converter and mismatch. Others as
+/// they are.
 Camera in_buckets(Camera camera);
 
 /// Why no family `name` can be built for the camera; none: build_family() does.
@@ -481,8 +480,7 @@ struct NumberSource {
 struct BuiltInCamera {
   std::string name;
   std::string description;  ///< one line
-  /// The family that its raw frames are of, or that suits it (list_families()); "": its taps play
-  /// none.
+  /// The family that its raw frames are of, or that suits it (list_families()); "": none does.
   std::string code;
   std::vector<NumberSource> sources;
 
@@ -497,8 +495,7 @@ std::vector<std::string> built_in_camera_names();
 /// @throws std::invalid_argument for an unknown name, with the nearest known one
 Camera built_in_camera(const std::string& name);
 
-/// Light levels of the paper's grid: the 25 pairs of S in {1e3, 10^3.5, 1e4, 10^4.5, 1e5} and
-/// A in {1e2, 1e3, 1e4, 10^4.5, 1e5} e/s.
+/// The paper's 25 pairs of S in {1e3, 10^3.5, 1e4, 10^4.5, 1e5}, A in {1e2, 1e3, 1e4, 10^4.5, 1e5}.
 OperatingRange paper_operating_range();
 
 }  // namespace tofsmith

@@ -65,7 +65,8 @@ auto fields_of(ConstOrNot<SearchRecord> auto& s) {
 /// and robustness are the judge's (judge() in design/design.hpp).
 struct Candidate {
   CodeSet code;
-  std::string method;      ///< "family", "naive", "reference", "factorize", "optimize" or "search"
+  /// "family", "naive", "reference", "atlas", "factorize", "optimize" or "search".
+  std::string method;
   DepthErrorReport error;  ///< what evaluate() says of the code with the design's seed and trials
   int rotation_bin = 0;    ///< how far the origin was moved
   int iterations = 0;      ///< convex or gradient steps over all starts that led to it
@@ -81,7 +82,8 @@ struct Candidate {
   /// Error in the operating multipath; on cameras with operating.multipath.
   std::optional<OperatingMultipathReport> multipath;
 
-  /// Made for this camera, by any method; not a family, a reference or a naive code.
+  /// Made for this camera, by any method; not a family, a reference, a naive code or one
+  /// of the atlas.
   bool is_designed() const { return !per_measurement.empty(); }
 };
 

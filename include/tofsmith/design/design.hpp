@@ -32,6 +32,7 @@ enum class DesignMethod {
   optimize,   ///< all waveforms together, by depth error itself
   search,     ///< all codes on the grid of a chip clock, with proof where that is possible
   best,       ///< all of these that suit the camera
+  atlas,      ///< none: codes of the atlas and standard codes are judged, nothing is searched
 };
 /// The enumerator's name.
 std::string_view name_of(DesignMethod method);
@@ -58,6 +59,10 @@ struct DesignOptions {
   /// left out. None: suggested_baselines() and, unless only factorization is asked for, all other
   /// built-in codes that few trials find near the best (eight at most).
   std::optional<std::vector<std::string>> baselines;
+  /// How many of the nearest cameras of the atlas (code_atlas()) lend their codes, fitted to this
+  /// camera's peak: the best few compete, unless only factorization or search is asked for, and are
+  /// where the optimization starts; 0: none.
+  int atlas_cameras = 4;
   bool best_rotation = true;  ///< for the linear error: give every candidate its best origin
   int search_trials = 600;    ///< per operating point, while pairs are chosen; >= 100
   int trials = 20000;         ///< per operating point, for the final figures; >= 1000
@@ -68,18 +73,19 @@ struct DesignOptions {
 };
 /// Its fields (core/fields.hpp).
 auto fields_of(ConstOrNot<DesignOptions> auto& o) {
-  return std::tuple(Field("method", o.method), Field("exposures", o.exposures, "in [1, 16]"),
-                    Field("target", o.target, FieldMark::apart), Field("factorize", o.factorize),
-                    Field("optimize", o.optimize), Field("search", o.search),
-                    Field("robust", o.robust), Field("baselines", o.baselines),
-                    Field("best_rotation", o.best_rotation),
-                    Field("search_trials", o.search_trials, ">= 100"),
-                    Field("trials", o.trials, ">= 1000"), Field("seed", o.seed));
+  return std::tuple(
+      Field("method", o.method), Field("exposures", o.exposures, "in [1, 16]"),
+      Field("target", o.target, FieldMark::apart), Field("factorize", o.factorize),
+      Field("optimize", o.optimize), Field("search", o.search), Field("robust", o.robust),
+      Field("baselines", o.baselines), Field("atlas_cameras", o.atlas_cameras, ">= 0"),
+      Field("best_rotation", o.best_rotation), Field("search_trials", o.search_trials, ">= 100"),
+      Field("trials", o.trials, ">= 1000"), Field("seed", o.seed));
 }
 
 /// The options to search longer, or shorter, by the factor `effort`: 0.1 for a first look, 3 for
-/// the last percent.
-/// @throws std::invalid_argument unless effort is in [0.01, 100]
+/// the last percent; 0 for none at all, DesignMethod::atlas.
+/// @throws std::invalid_argument unless effort is 0 or in [0.01, 100], or for 0 and a method other
+///         than best or atlas
 DesignOptions with_effort(DesignOptions options, double effort);
 
 /// All candidates of a camera, each name once, and which one is best.
@@ -152,6 +158,62 @@ DesignResult judge(const Camera& camera, std::vector<Candidate> candidates,
 /// @see Gutierrez-Barragan et al., CVPR 2019, Sec. 4 and 5
 DesignResult design(const Camera& camera, const DesignOptions& options = {},
                     const Progress& progress = {}, const DesignStore& store = {});
+
+/// A camera of the atlas of best codes, in terms that do not depend on its frequency. All else is
+/// as in the paper's simulations: 15 MHz, 0.3 s in all, read noise of 20 e, its 5 x 5 light levels.
+struct AtlasCamera {
+  double peak_factor = 15.0;
+  double bandwidth_f0 = 0.0;            ///< f_max of both arms' Hann responses [f0]; 0: no limit
+  double shortest_pulse_periods = 0.0;  ///< of the period, pulses and gaps; 0: any
+  int taps = 1;
+  int exposures = 4;
+  DepthErrorKind error = DepthErrorKind::linear;
+
+  /// All of it.
+  Camera camera() const;
+
+  friend bool operator==(const AtlasCamera&, const AtlasCamera&) = default;
+};
+
+/// The best code that was found for a camera of the atlas.
+struct AtlasEntry {
+  AtlasCamera of;
+  CodeSet code;  ///< "atlas-t1-k4-p15-b10-linear": taps, exposures, peak, bandwidth
+  Estimate linear_m, circular_m;  ///< its errors there, geometric means over the light levels
+  const Estimate& error_m() const {
+    return of.error == DepthErrorKind::linear ? linear_m : circular_m;
+  }
+};
+
+/// Changes whenever older files are read no more.
+inline constexpr int atlas_version = 1;
+
+/// The atlas of best codes that is built in: by taps, exposures, peak, bandwidth and kind of error.
+const std::vector<AtlasEntry>& code_atlas();
+/// The entry whose code has that name, or null.
+const AtlasEntry* find_atlas_entry(std::string_view code);
+
+/// Reads an atlas as scripts/atlas.sh writes it.
+/// @param file  what errors call it
+/// @throws IoError "file:line: .." for one of another version, and for what is damaged
+std::vector<AtlasEntry> parse_atlas(std::string_view text, std::string_view file = "atlas.txt");
+
+/// Of entries that differ in their exposures alone, those with the least error.
+std::vector<AtlasEntry> best_by_exposures(const std::vector<AtlasEntry>& entries);
+
+/// A power law through errors of the atlas: error = at_ones_m bandwidth^-a peak^-b.
+struct AtlasLaw {
+  double at_ones_m = 0.0;
+  double bandwidth_power = 0.0, peak_power = 0.0;  ///< a and b
+  double rms_residual = 0.0, max_residual = 0.0;   ///< of log error
+  int entries = 0;                                 ///< that it was fitted to
+  /// What it says of a camera with a bandwidth [m].
+  double error_m(const AtlasCamera& camera) const;
+};
+
+/// Fits a law to those of the entries that have a bandwidth; none: they are fewer than 6, or all of
+/// one bandwidth or peak.
+std::optional<AtlasLaw> fit_atlas_law(const std::vector<AtlasEntry>& entries);
 
 /// What a requirement can vary of a camera.
 enum class CameraQuantity {

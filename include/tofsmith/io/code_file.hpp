@@ -12,6 +12,7 @@
 
 #include "tofsmith/camera/camera.hpp"
 #include "tofsmith/code/code_set.hpp"
+#include "tofsmith/design/design.hpp"
 #include "tofsmith/io/atomic_file.hpp"
 
 namespace tofsmith {
@@ -86,9 +87,14 @@ CodeSet read_rows(const std::filesystem::path& light, const std::filesystem::pat
 /// The same of the arrays `modfs` and `demodfs` of an .npz file.
 CodeSet read_rows(const std::filesystem::path& archive);
 
-/// A built-in family, built for the camera, or a code from a file as it is there. A camera that
-/// reads rows takes an .npz file as rows; LIGHT.npy,ROWS.npy are rows on any. A camera of a mixer
-/// takes the demodulations of .npz and .csv files as weights in [-1, 1].
+/// Reads an atlas of best codes from a file.
+/// @throws IoError as parse_atlas(), or if the file cannot be read
+std::vector<AtlasEntry> read_atlas(const std::filesystem::path& path);
+
+/// A built-in family, built for the camera; a code of the built-in atlas, on the camera's samples;
+/// or a code from a file as it is there. A camera that reads rows takes an .npz file as rows;
+/// LIGHT.npy,ROWS.npy are rows on any. A camera of a mixer takes the demodulations of .npz and .csv
+/// files as weights in [-1, 1].
 /// @throws IoError as read_code(), or if `name_or_path` is neither;
 ///         std::invalid_argument for a family that the camera cannot play
 CodeSet load_code(const std::string& name_or_path, const Camera& camera,

@@ -15,6 +15,7 @@
 
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/progress.hpp"
+#include "tofsmith/design/design.hpp"
 #include "tofsmith/io/camera_toml.hpp"
 #include "tofsmith/io/npy.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
@@ -47,6 +48,7 @@ enum class SweepCombination {
 ///     method = "zncc"
 ///     trials = 20000               # or target_standard_error = 0.01, max_trials = 50000000
 ///     seed = 1
+///     effort = 0.1                 # of codes to be designed, such as "optimized-k{exposures}"
 ///     outlier_threshold_m = 0.5
 ///     combine = "product"
 ///
@@ -83,6 +85,7 @@ struct SweepSpec {
   std::vector<std::string> settings;  ///< of the camera, as for load_camera()
   std::string code;                   ///< when there is no axis of that name
   EvaluateOptions options;
+  double effort = 1.0;  ///< of designs, as of with_effort()
   SweepCombination combine = SweepCombination::product;
   std::vector<SweepAxis> axes;  ///< keys of one [[axis]] follow one another, all but one linked
   std::map<std::string, SweepCombination> groups = {};  ///< others are zipped
@@ -204,8 +207,11 @@ struct WorkItem {
   /// of results), and of nothing else: not of names, files or places in a list.
   std::string key;
   Camera camera;
-  CodeSet code;
+  std::optional<CodeSet> code;  ///< none: it is to be designed
   EvaluateOptions options;
+  /// How the code is designed, for this item's camera alone: one of the name "optimized-k4", the
+  /// best of 4 exposures that design() finds by optimizing, without families.
+  std::optional<DesignOptions> design = {};
 };
 
 /// The items of a sweep.
@@ -315,6 +321,7 @@ struct SweepResult {
   std::int64_t item = 0;
   std::string key;
   DepthErrorReport error;
+  std::optional<CodeSet> code = {};  ///< that was designed
 };
 
 /// The finished items, in the order of the list: whenever and by whomever they were computed, the
@@ -328,7 +335,7 @@ std::vector<SweepResult> sweep_results(const WorkList& list, std::span<const std
 std::string sweep_csv(const WorkList& list, std::span<const SweepResult> results);
 
 /// The axes, and one entry per item with its settings and its result as `tofsmith evaluate` gives
-/// them.
+/// them; `designed` is a code that was designed, as in its file.
 /// @param target  instruction set of the results
 std::string sweep_json(const WorkList& list, std::span<const SweepResult> results,
                        std::string_view target);

@@ -32,11 +32,11 @@ std::string optimized_name(int exposures) { return fmt::format("optimized-k{}", 
 
 std::vector<Candidate> optimized_candidates(const Camera& camera, int exposures,
                                             const DesignOptions& options,
-                                            const std::vector<Candidate>& starts,
+                                            const std::vector<CodeSet>& starts,
                                             const Progress& progress) {
   std::vector<CodeSet> also;
-  for (const Candidate& c : starts)
-    if (c.code.exposures() == exposures) also.push_back(c.code);
+  for (const CodeSet& code : starts)
+    if (code.exposures() == exposures) also.push_back(code);
   OptimizeOptions search = options.optimize;
   search.seed = search_seed(options);
   std::vector<Candidate> candidates =

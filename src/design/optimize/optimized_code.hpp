@@ -15,11 +15,11 @@ std::vector<int> optimizable_exposures(const Camera& camera, const DesignOptions
 /// "optimized-k5"
 std::string optimized_name(int exposures);
 
-/// What optimize() makes of so many exposures, from all candidates there are as starts.
+/// What optimize() makes of so many exposures, from those of the starts that have as many.
 /// @throws std::invalid_argument as optimize(); Interrupted
 std::vector<Candidate> optimized_candidates(const Camera& camera, int exposures,
                                             const DesignOptions& options,
-                                            const std::vector<Candidate>& starts,
+                                            const std::vector<CodeSet>& starts,
                                             const Progress& progress);
 
 }  // namespace tofsmith

@@ -48,11 +48,17 @@ void write_code(const std::filesystem::path& path, const CodeSet& code, OutputPo
     write_file_atomically(path, serialize_code_npz(code, order), policy);
 }
 
+std::vector<AtlasEntry> read_atlas(const std::filesystem::path& path) {
+  return parse_atlas(read_text_file(path), path.string());
+}
+
 CodeSet load_code(const std::string& name_or_path, const Camera& camera,
                   const CodeFileOptions& options) {
   if (name_or_path.empty())
     throw IoError("code", "found an empty name; expected a built-in family or a file");
   if (is_family(name_or_path)) return build_family(name_or_path, camera);
+  if (const AtlasEntry* entry = find_atlas_entry(name_or_path))
+    return entry->code.resampled(camera.samples);
   constexpr std::string_view between = ".npy,";
   if (const std::size_t at = name_or_path.find(between); at != std::string::npos)
     return read_rows(name_or_path.substr(0, at + between.size() - 1),

@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The tofsmith authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Makes the atlas of best codes, src/design/atlas/atlas.txt: designs a code for each of its cameras
+# by sweeps (scripts/atlas/*.toml) that keep what is finished, so stop it whenever you like and run
+# it again. Entries that are there stay where nothing better was found: another --seed is another
+# pass. MPI's ranks work together as in any sweep.
+#
+#   scripts/atlas.sh [--shard 3/8] [--seed 2] [STORES]       a folder; build-atlas without one
+#   scripts/atlas.sh --collect [STORES]                      write what is finished, compute nothing
+#   TOFSMITH='mpirun -n 64 tofsmith' scripts/atlas.sh        by many processes
+#
+# Shards have stores of their own; `tofsmith sweep merge` makes one of them.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+read -ra tofsmith <<<"${TOFSMITH:-$root/build-dev/apps/tofsmith}"
+
+shard='' seed=1 collect=false stores="$root/build-atlas"
+while (($#)); do
+  case "$1" in
+    -h | --help)
+      sed -n '/^# Makes/,/^set /{/^#/s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"
+      exit 0
+      ;;
+    --shard) shard=${2:?--shard needs i/n} && shift ;;
+    --seed) seed=${2:?--seed needs a number} && shift ;;
+    --collect) collect=true ;;
+    -*) echo "unknown option $1; see --help" >&2 && exit 2 ;;
+    *) stores=$1 ;;
+  esac
+  shift
+done
+mkdir -p "$stores"
+
+exports=()
+for sweep in "$root"/scripts/atlas/*.toml; do
+  name=$(basename "$sweep" .toml)-$seed
+  store="$stores/$name${shard:+-${shard/\//-of-}}.sqlite"
+  # The seed is the sweep's: another one is another store.
+  sed "1,/^trials/s/^trials.*/&\nseed = $seed/" "$sweep" >"$stores/$name.toml"
+  how=()
+  [[ -z "$shard" ]] || how+=(--shard "$shard")
+  ! $collect || how+=(--status)
+  "${tofsmith[@]}" sweep "$stores/$name.toml" --store "$store" "${how[@]}" \
+    --export "$stores/$name.json" --force
+  exports+=("$stores/$name.json")
+done
+[[ -z "$shard" ]] || exit 0 # the atlas is made of all shards together
+"$root/scripts/atlas/collect.py" "$root/src/design/atlas/atlas.txt" "${exports[@]}"

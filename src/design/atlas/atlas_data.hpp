@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+namespace tofsmith {
+
+/// The text of src/design/atlas/atlas.txt.
+extern const std::string_view atlas_data;
+
+}  // namespace tofsmith

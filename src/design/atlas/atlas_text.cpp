@@ -1,0 +1,223 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "design/atlas/atlas_data.hpp"
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/design/design.hpp"
+
+// An atlas is a text: its version, then for each code a line `code` with its camera and errors, and
+// a line `light` and `gate`s for each exposure, with switching times in parts of 100000 of the
+// period: rise, fall, rise, .. Comments begin with #.
+namespace tofsmith {
+namespace {
+
+constexpr double parts_per_period = 100'000.0;
+constexpr std::string_view atlas_head = "tofsmith atlas ";
+
+/// "10", or "0.0075".
+std::string short_number(double value) { return fmt::format("{:.6g}", value); }
+
+std::string entry_name(const AtlasCamera& of) {
+  std::string name =
+      fmt::format("atlas-t{}-k{}-p{}", of.taps, of.exposures, short_number(of.peak_factor));
+  if (of.bandwidth_f0 > 0.0) name += "-b" + short_number(of.bandwidth_f0);
+  if (of.shortest_pulse_periods > 0.0) name += "-s" + short_number(of.shortest_pulse_periods);
+  return name + "-" + std::string(name_of(of.error));
+}
+
+/// Goes through the words of the lines of an atlas.
+class AtlasLines {
+ public:
+  AtlasLines(std::string_view text, std::string_view file) : rest_(text), file_(file) {}
+
+  /// On to the next line that says something; whether there is one.
+  bool next() {
+    do {
+      if (rest_.empty()) {
+        ++number_;
+        words_ = {};
+        return false;
+      }
+      const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+      words_ = rest_.substr(0, end);
+      rest_.remove_prefix(std::min(end + 1, rest_.size()));
+      ++number_;
+    } while (words_.empty() || words_.front() == '#');
+    return true;
+  }
+  /// The rest of the line.
+  std::string_view rest_of_line() const { return words_; }
+  bool at_end_of_line() const { return words_.empty(); }
+
+  std::string_view word() {
+    const std::size_t end = std::min(words_.find(' '), words_.size());
+    const std::string_view word = words_.substr(0, end);
+    words_.remove_prefix(std::min(end + 1, words_.size()));
+    return word;
+  }
+  void expect(std::string_view expected) {
+    const std::string_view found = word();
+    if (found != expected) refuse(fmt::format("found \"{}\"; expected \"{}\"", found, expected));
+  }
+  double number(double min, double max) {
+    const std::string_view found = word();
+    double value = 0.0;
+    if (!read(found, value) || !(value >= min && value <= max))
+      refuse(fmt::format("found \"{}\"; expected a number in [{}, {}]", found, min, max));
+    return value;
+  }
+  int whole(int min, int max) {
+    const std::string_view found = word();
+    int value = 0;
+    if (!read(found, value) || value < min || value > max)
+      refuse(fmt::format("found \"{}\"; expected a whole number in [{}, {}]", found, min, max));
+    return value;
+  }
+  [[noreturn]] void refuse(std::string_view problem) const {
+    throw IoError(fmt::format("{}:{}", file_, number_), problem);
+  }
+
+ private:
+  /// Whole numbers by from_chars(); others too, which some standard libraries have not for doubles.
+  static bool read(std::string_view word, int& value) {
+    const char* const end = word.data() + word.size();
+    const auto [rest, error] = std::from_chars(word.data(), end, value);
+    return error == std::errc() && rest == end && !word.empty();
+  }
+  static bool read(std::string_view word, double& value) {
+    // strtod() reads more than plain numbers: blanks, hexadecimal, "inf".
+    if (word.empty() || word.find_first_not_of("0123456789.e-+") != std::string_view::npos)
+      return false;
+    const std::string text(word);
+    char* rest = nullptr;
+    value = std::strtod(text.c_str(), &rest);
+    return rest == text.c_str() + text.size() && std::isfinite(value);
+  }
+
+  std::string_view rest_, words_;
+  std::string_view file_;
+  std::int64_t number_ = 0;
+};
+
+std::vector<OnInterval> read_intervals(AtlasLines& lines, std::string_view kind) {
+  constexpr int period = static_cast<int>(parts_per_period);
+  if (!lines.next()) lines.refuse(fmt::format("found the end; expected a line \"{}\"", kind));
+  lines.expect(kind);
+  std::vector<OnInterval> on;
+  while (!lines.at_end_of_line()) {
+    const int rise = lines.whole(0, period - 1);
+    const int fall = lines.whole(rise + 1, rise + period);
+    on.push_back({rise / parts_per_period, fall / parts_per_period});
+  }
+  return on;
+}
+
+/// As much light as the average allows, no more than the peak.
+Waveform read_light(AtlasLines& lines, double peak_factor) {
+  std::vector<OnInterval> on = read_intervals(lines, "light");
+  if (on.empty()) lines.refuse("found light that is never on; expected a pulse");
+  const double duty = Waveform::binary(on).mean();
+  return Waveform::binary(std::move(on), std::min(peak_factor, 1.0 / duty));
+}
+
+Waveform read_gate(AtlasLines& lines) {
+  std::vector<OnInterval> on = read_intervals(lines, "gate");
+  return on.empty() ? Waveform::constant(0.0) : Waveform::binary(std::move(on));
+}
+
+AtlasCamera read_camera(AtlasLines& lines) {
+  AtlasCamera of;
+  lines.expect("code");
+  lines.expect("taps");
+  of.taps = lines.whole(1, 16);
+  lines.expect("exposures");
+  of.exposures = lines.whole(1, 16);
+  lines.expect("peak");
+  of.peak_factor = lines.number(1.0, 1e6);
+  lines.expect("bandwidth");
+  of.bandwidth_f0 = lines.number(0.0, 1e6);
+  lines.expect("shortest");
+  of.shortest_pulse_periods = lines.number(0.0, 0.25);
+  if (of.bandwidth_f0 == 0.0 && of.shortest_pulse_periods == 0.0)
+    lines.refuse("found bandwidth 0 and shortest 0; expected one of them > 0");
+  lines.expect("error");
+  const std::string_view kind = lines.word();
+  if (kind != "linear" && kind != "circular")
+    lines.refuse(fmt::format("found \"{}\"; expected \"linear\" or \"circular\"", kind));
+  of.error = kind == "linear" ? DepthErrorKind::linear : DepthErrorKind::circular;
+  return of;
+}
+
+Estimate read_estimate(AtlasLines& lines, std::string_view kind) {
+  lines.expect(kind);
+  const double value = lines.number(0.0, 1e6), standard_error = lines.number(0.0, 1e6);
+  return {value, standard_error};
+}
+
+/// A code from its line on.
+AtlasEntry read_entry(AtlasLines& lines) {
+  const AtlasCamera of = read_camera(lines);
+  const Estimate linear_m = read_estimate(lines, "linear_m");
+  const Estimate circular_m = read_estimate(lines, "circular_m");
+  if (!lines.at_end_of_line())
+    lines.refuse(fmt::format("found \"{}\"; expected the end of the line", lines.rest_of_line()));
+  try {
+    std::vector<Waveform> modulation, demodulation;
+    for (int e = 0; e < of.exposures; ++e) {
+      modulation.push_back(read_light(lines, of.peak_factor));
+      for (int t = 0; t < of.taps; ++t) demodulation.push_back(read_gate(lines));
+    }
+    CodeSet code = CodeSet::create(entry_name(of), of.camera().samples, of.taps,
+                                   std::move(modulation), std::move(demodulation));
+    code.provenance = {.method = "atlas", .depth_error_m = 0.0};
+    AtlasEntry entry{of, std::move(code), linear_m, circular_m};
+    entry.code.provenance.depth_error_m = entry.error_m().value;
+    return entry;
+  } catch (const std::invalid_argument& error) {  // intervals in disorder, taps that overlap
+    lines.refuse(error.what());
+  }
+}
+
+}  // namespace
+
+std::vector<AtlasEntry> parse_atlas(std::string_view text, std::string_view file) {
+  AtlasLines lines(text, file);
+  const bool has_head = lines.next() && lines.rest_of_line().starts_with(atlas_head);
+  if (!has_head)
+    lines.refuse(fmt::format("found \"{}\"; expected \"{}{}\"", lines.rest_of_line().substr(0, 40),
+                             atlas_head, atlas_version));
+  if (const std::string_view version = lines.rest_of_line().substr(atlas_head.size());
+      version != fmt::format("{}", atlas_version))
+    lines.refuse(
+        fmt::format("found an atlas of version {}; expected version {}, as "
+                    "scripts/atlas.sh makes it",
+                    version, atlas_version));
+  std::vector<AtlasEntry> entries;
+  while (lines.next()) {
+    AtlasEntry entry = read_entry(lines);
+    if (std::any_of(entries.begin(), entries.end(),
+                    [&](const AtlasEntry& other) { return other.of == entry.of; }))
+      lines.refuse(
+          fmt::format("found {} a second time; expected each code once", entry.code.name()));
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+const std::vector<AtlasEntry>& code_atlas() {
+  static const std::vector<AtlasEntry> entries = parse_atlas(atlas_data, "the built-in atlas");
+  return entries;
+}
+
+const AtlasEntry* find_atlas_entry(std::string_view code) {
+  for (const AtlasEntry& entry : code_atlas())
+    if (entry.code.name() == code) return &entry;
+  return nullptr;
+}
+
+}  // namespace tofsmith

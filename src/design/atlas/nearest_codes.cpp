@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#include "design/atlas/nearest_codes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "design/judge.hpp"
+#include "design/shortest_run.hpp"
+#include "design/suggested_exposures.hpp"
+#include "tofsmith/core/units.hpp"
+
+namespace tofsmith {
+namespace {
+
+/// Half of the width of a Hann response whose f_max is 1: the width is 1.444 / f_max, and half of
+/// it lies above half the height.
+constexpr double hann_half_width = 0.722;
+
+/// Where an entry's camera stands among others of as many taps and exposures.
+struct AtlasPlace {
+  double log_peak, log_bandwidth;
+};
+
+AtlasPlace place_of(double peak_factor, double bandwidth_f0) {
+  return {std::log(peak_factor), std::log(bandwidth_f0)};
+}
+AtlasPlace place_of(const AtlasCamera& of) {
+  const double band = of.bandwidth_f0 > 0.0 ? of.bandwidth_f0 : infinity;
+  const double pulse =
+      of.shortest_pulse_periods > 0.0 ? hann_half_width / of.shortest_pulse_periods : infinity;
+  return place_of(of.peak_factor, std::min(band, pulse));
+}
+
+double place_distance(const AtlasPlace& a, const AtlasPlace& b) {
+  return std::hypot(a.log_peak - b.log_peak, a.log_bandwidth - b.log_bandwidth);
+}
+
+/// The place, moved to the edge of what entries cover if it is beyond.
+AtlasPlace clamped_to(const std::vector<const AtlasEntry*>& entries, AtlasPlace place) {
+  AtlasPlace low{infinity, infinity}, high{-infinity, -infinity};
+  for (const AtlasEntry* entry : entries) {
+    const AtlasPlace its = place_of(entry->of);
+    low = {std::min(low.log_peak, its.log_peak), std::min(low.log_bandwidth, its.log_bandwidth)};
+    high = {std::max(high.log_peak, its.log_peak), std::max(high.log_bandwidth, its.log_bandwidth)};
+  }
+  return {std::clamp(place.log_peak, low.log_peak, high.log_peak),
+          std::clamp(place.log_bandwidth, low.log_bandwidth, high.log_bandwidth)};
+}
+
+/// The entries of one number of exposures of the nearest cameras, the nearest first.
+std::vector<const AtlasEntry*> nearest_entries(std::vector<const AtlasEntry*> entries,
+                                               const AtlasPlace& camera, int cameras) {
+  const AtlasPlace place = clamped_to(entries, camera);
+  std::stable_sort(entries.begin(), entries.end(), [&](const AtlasEntry* a, const AtlasEntry* b) {
+    return place_distance(place_of(a->of), place) < place_distance(place_of(b->of), place);
+  });
+  std::set<std::pair<double, double>> places;
+  std::vector<const AtlasEntry*> kept;
+  for (const AtlasEntry* entry : entries) {
+    const AtlasPlace its = place_of(entry->of);
+    places.emplace(its.log_peak, its.log_bandwidth);
+    if (std::ssize(places) > cameras) break;
+    kept.push_back(entry);
+  }
+  return kept;
+}
+
+/// Pulses `factor` times as long about their middles; those that meet become one.
+std::vector<OnInterval> stretched(const std::vector<OnInterval>& on, double factor) {
+  std::vector<OnInterval> longer;
+  for (const OnInterval& pulse : on) {
+    const double middle = 0.5 * (pulse.rise + pulse.fall);
+    const double half = 0.5 * factor * (pulse.fall - pulse.rise);
+    if (!longer.empty() && middle - half <= longer.back().fall)
+      longer.back().fall = std::max(longer.back().fall, middle + half);
+    else
+      longer.push_back({middle - half, middle + half});
+  }
+  // The last may reach the first of the next period.
+  while (longer.size() > 1 && longer.back().fall >= longer.front().rise + 1.0) {
+    longer.back().fall = std::max(longer.back().fall, longer.front().fall + 1.0);
+    longer.erase(longer.begin());
+  }
+  if (longer.front().fall - longer.front().rise >= 1.0) return {{0.0, 1.0}};
+  for (OnInterval& pulse : longer) {
+    const double periods = std::floor(pulse.rise);
+    pulse = {pulse.rise - periods, pulse.fall - periods};
+  }
+  std::sort(longer.begin(), longer.end(),
+            [](const OnInterval& a, const OnInterval& b) { return a.rise < b.rise; });
+  return longer;
+}
+
+Waveform fitted_light(const Waveform& light, double from_peak_factor, double to_peak_factor) {
+  constexpr double whole = 0.98;  // of the peak: what uses less does so for a reason
+  const double level = light.level();
+  const double wanted = level >= whole * from_peak_factor
+                            ? to_peak_factor * level / from_peak_factor
+                            : std::min(level, to_peak_factor);
+  if (std::abs(wanted / level - 1.0) < 1e-9) return light;
+  std::vector<OnInterval> on = stretched(light.on_intervals(), level / wanted);
+  const double duty = Waveform::binary(on).mean();
+  return Waveform::binary(std::move(on), std::min(wanted, 1.0 / duty));
+}
+
+}  // namespace
+
+double effective_bandwidth_f0(const Camera& camera) {
+  constexpr double end_of_band = (1.0 - 1e-9) / 25.0;
+  double bandwidth = infinity;
+  if (const int last = useful_harmonics(camera); last > 0) {
+    const Eigen::VectorXcd transfer = camera.transfer(last + 1);
+    const double inside = std::abs(transfer[last]), outside = std::abs(transfer[last + 1]);
+    bandwidth = last;
+    if (inside > end_of_band && outside < inside)
+      bandwidth += std::min(1.0, (inside - end_of_band) / (inside - outside));
+  }
+  const double pulse = shortest_run_periods(camera);
+  return pulse > 0.0 ? std::min(bandwidth, hann_half_width / pulse) : bandwidth;
+}
+
+CodeSet fitted_to_peak(const CodeSet& code, double from_peak_factor, double to_peak_factor) {
+  std::vector<Waveform> modulation, demodulation;
+  for (int e = 0; e < code.exposures(); ++e)
+    modulation.push_back(fitted_light(code.modulation(e), from_peak_factor, to_peak_factor));
+  for (int i = 0; i < code.measurements(); ++i) demodulation.push_back(code.demodulation(i));
+  CodeSet result = CodeSet::create(code.name(), code.samples(), code.taps(), std::move(modulation),
+                                   std::move(demodulation));
+  result.provenance = code.provenance;
+  return result;
+}
+
+std::vector<CodeSet> nearest_atlas_codes(const std::vector<AtlasEntry>& atlas, const Camera& camera,
+                                         const std::vector<int>& exposures, int cameras) {
+  std::vector<CodeSet> codes;
+  if (camera.sensor.readout == Readout::rows || camera.light.peak_factor <= 1.0) return codes;
+  std::map<int, std::vector<const AtlasEntry*>> by_exposures;
+  for (const AtlasEntry& entry : atlas)
+    if (entry.of.taps == camera.sensor.taps &&
+        (exposures.empty() ||
+         std::find(exposures.begin(), exposures.end(), entry.of.exposures) != exposures.end()))
+      by_exposures[entry.of.exposures].push_back(&entry);
+  const AtlasPlace place = place_of(camera.light.peak_factor, effective_bandwidth_f0(camera));
+  const auto add = [&](const CodeSet& code) {
+    if (!why_not_playable(code, camera) && keeps_shortest_run(code, camera)) codes.push_back(code);
+  };
+  for (const auto& [of_exposures, entries] : by_exposures) {
+    std::vector<const AtlasEntry*> near = nearest_entries(entries, place, cameras);
+    std::stable_partition(near.begin(), near.end(), [&](const AtlasEntry* entry) {
+      return entry->of.error == camera.operating.error;
+    });
+    for (const AtlasEntry* entry : near) {
+      const CodeSet code = entry->code.resampled(camera.samples);
+      const CodeSet to_peak = fitted_to_peak(code, entry->of.peak_factor, camera.light.peak_factor);
+      add(to_peak);
+      if (to_peak.peak() != code.peak()) add(code);
+    }
+  }
+  return codes;
+}
+
+}  // namespace tofsmith
