@@ -448,8 +448,7 @@ OperatingPoint capture_light(const Camera& camera, double reference_distance_m);
 Camera judged_camera(const Camera& camera);
 
 /// Why `code` cannot be played and read out on `camera`, a valid one: taps, samples, peak,
-/// exposures, what a sensor without drain leaves to no tap, or pulses too short for the light's
-/// generator. None: it can.
+/// exposures, light that no tap takes without a drain, pulses that are too short. None: it can.
 std::optional<std::string> why_not_playable(const CodeSet& code, const Camera& camera);
 
 /// The same as a check.

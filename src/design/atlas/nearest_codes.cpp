@@ -136,7 +136,9 @@ CodeSet fitted_to_peak(const CodeSet& code, double from_peak_factor, double to_p
 std::vector<CodeSet> nearest_atlas_codes(const std::vector<AtlasEntry>& atlas, const Camera& camera,
                                          const std::vector<int>& exposures, int cameras) {
   std::vector<CodeSet> codes;
-  if (camera.sensor.readout == Readout::rows || camera.light.peak_factor <= 1.0) return codes;
+  if (camera.sensor.readout == Readout::rows || camera.sensor.is_signed() ||
+      camera.light.peak_factor <= 1.0)
+    return codes;
   std::map<int, std::vector<const AtlasEntry*>> by_exposures;
   for (const AtlasEntry& entry : atlas)
     if (entry.of.taps == camera.sensor.taps &&
