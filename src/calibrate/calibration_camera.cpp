@@ -40,8 +40,8 @@ CorrelationCalibrationOptions sweep_options(const Camera& camera, const DelaySwe
     if (camera.sensor.adc_bits)
       options.saturation_level = static_cast<float>(std::exp2(*camera.sensor.adc_bits) - 1.0);
   }
-  options.exposure_s = column_exposures_s(camera, sweep.frames.measurements,
-                                          options.differences ? 1 : options.taps);
+  options.exposure_s =
+      column_exposures_s(camera, sweep.frames.measurements, options.differences ? 1 : options.taps);
   return options;
 }
 

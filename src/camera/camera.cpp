@@ -86,8 +86,8 @@ void validate_sensor(const Sensor& sensor) {
   const double contrast = sensor.modulation_contrast;
   require(contrast > 0.0 && contrast <= 1.0, "sensor.modulation_contrast", contrast,
           "must be in (0, 1]");
-  require(contrast == 1.0 || sensor.taps >= 2 || sensor.is_signed(), "sensor.modulation_contrast", contrast,
-          "must be 1 for one tap: contrast mixes taps");
+  require(contrast == 1.0 || sensor.taps >= 2 || sensor.is_signed(), "sensor.modulation_contrast",
+          contrast, "must be 1 for one tap: contrast mixes taps");
   if (sensor.full_well_e) require_positive(*sensor.full_well_e, "sensor.full_well_e");
   validate_adc(sensor);
   if (sensor.shortest_pulse_s)

@@ -43,8 +43,7 @@ Eigen::VectorXd sensitivities(const CodeSet& code, const Sensor& sensor) {
 std::array<Waveform, 2> taps_of_weight(const Waveform& drive) {
   if (drive.is_binary()) return {drive, drive.complement()};
   const Eigen::ArrayXd x = drive.samples();
-  return {Waveform::sampled(x * (2.0 * x - 1.0)),
-          Waveform::sampled((1.0 - x) * (1.0 - 2.0 * x))};
+  return {Waveform::sampled(x * (2.0 * x - 1.0)), Waveform::sampled((1.0 - x) * (1.0 - 2.0 * x))};
 }
 
 /// Demodulation functions of the tap values.

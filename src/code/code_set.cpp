@@ -110,7 +110,7 @@ CodeSet CodeSet::create_signed(std::string name, std::vector<Waveform> modulatio
               "must be a weight in [-1, 1]");
     const bool switches = ((w.abs() - 1.0).abs() <= tolerance).all();
     const Eigen::VectorXd x = (0.5 * (w + 1.0)).max(0.0).min(1.0);
-    drive.push_back(!switches          ? Waveform::sampled(x)
+    drive.push_back(!switches            ? Waveform::sampled(x)
                     : x.maxCoeff() > 0.5 ? Waveform::binary_from_samples(x, 1.0)
                                          : Waveform::constant(0.0));
   }

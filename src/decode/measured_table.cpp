@@ -145,10 +145,9 @@ DecodingTable make_decoding_table(const MeasuredTable& measured, const Camera& c
   const Eigen::VectorXd black_level =
       measured.black_level.size() > 0
           ? measured.black_level
-          : Eigen::VectorXd::Constant(
-                columns, measured.differences && !sensor.is_signed()
-                             ? 0.0
-                             : sensor.black_level_dn.value_or(0.0));
+          : Eigen::VectorXd::Constant(columns, measured.differences && !sensor.is_signed()
+                                                   ? 0.0
+                                                   : sensor.black_level_dn.value_or(0.0));
   const Eigen::VectorXd dark_e = sensor.dark_current_e_per_s * exposure_s;
 
   DecodingTable table = make_decoding_table(measured.correlation * readout.transpose(),

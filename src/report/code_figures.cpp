@@ -92,11 +92,10 @@ Figure waveform_figure(FigureText text, const CodeSet& code, const Camera& camer
     if (code.is_signed()) gates = weight_series(std::move(gates));
     rows.push_back(
         {.title = fmt::format("{}", i + 1),
-         .panels = {
-             arm_series(code.modulation_of(i),
-                        actual.modulation[static_cast<std::size_t>(code.exposure_of(i))],
-                        camera.light.impulse_response, frequency_hz, light),
-             std::move(gates), std::move(correlations)}});
+         .panels = {arm_series(code.modulation_of(i),
+                               actual.modulation[static_cast<std::size_t>(code.exposure_of(i))],
+                               camera.light.impulse_response, frequency_hz, light),
+                    std::move(gates), std::move(correlations)}});
   }
   return small_multiples(std::move(text), waveform_columns(code.is_signed()), rows);
 }
@@ -138,9 +137,9 @@ KeyValueList camera_description(const Camera& camera) {
                           jitter_text(camera.light.edge_jitter_s) +
                           generator_text(camera.light.generator, camera.fundamental_frequency_hz));
   const std::string receiver =
-      camera.sensor.is_signed() ? "a mixer of weights from -1 to 1"
-                                : fmt::format("{} tap{}", camera.sensor.taps,
-                                              camera.sensor.taps > 1 ? "s" : "");
+      camera.sensor.is_signed()
+          ? "a mixer of weights from -1 to 1"
+          : fmt::format("{} tap{}", camera.sensor.taps, camera.sensor.taps > 1 ? "s" : "");
   add("sensor", fmt::format("{}, {}; response: {}", receiver, arm_text(camera.sensor.binary),
                             response_text(camera.sensor.impulse_response)) +
                     jitter_text(camera.sensor.edge_jitter_s) +

@@ -41,8 +41,8 @@ MultipathBound::MultipathBound(const ForwardModel& model, const Camera& camera)
       masses_(DepthPrior(camera).masses(samples_)) {
   const Eigen::MatrixXd sums = readout_.cwiseAbs();
   shot_ambient_ = sums * model.tap_exposure_s().cwiseProduct(model.tap_ambient_gain());
-  floor_variance_e2_ = model.constant_variance_e2() +
-                       sums * (model.tap_dark_e_per_s() * model.tap_exposure_s());
+  floor_variance_e2_ =
+      model.constant_variance_e2() + sums * (model.tap_dark_e_per_s() * model.tap_exposure_s());
 }
 
 Eigen::VectorXd MultipathBound::sigma_of(const OperatingPoint& point, double ratio,

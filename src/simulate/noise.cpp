@@ -33,7 +33,7 @@ PixelNoise::PixelNoise(const Sensor& sensor)
   if (!has_adc_) return;
   gain_e_per_dn_ = *sensor.gain_e_per_dn;
   black_level_dn_ = sensor.black_level_dn.value_or(0.0);
-  const RawNumbers numbers = raw_numbers(sensor);
+  const ConverterNumbers numbers = raw_numbers(sensor);
   min_dn_ = numbers.min_dn;
   max_dn_ = numbers.max_dn;
 }

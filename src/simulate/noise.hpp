@@ -41,9 +41,7 @@ class PixelNoise {
   /// @param raw  (tap values) in, (measurements) out, in place
   void read_out(double* raw, int tap_values) const;
   /// Measurements that leave the sensor for that many tap values.
-  int measurements(int tap_values) const {
-    return subtracts_ ? tap_values / 2 : tap_values;
-  }
+  int measurements(int tap_values) const { return subtracts_ ? tap_values / 2 : tap_values; }
 
  private:
   NoiseModel model_;

@@ -40,8 +40,7 @@ void PixelCapture::expose(double ambient_e_per_s, RandomStream& random, std::vec
   }
   if (is_signed_)
     for (std::size_t k = 0; k < light.size() / 2; ++k)
-      light[k] =
-          noise_.convert(noise_.draw_difference(light[2 * k], light[2 * k + 1], random));
+      light[k] = noise_.convert(noise_.draw_difference(light[2 * k], light[2 * k + 1], random));
   if (rows_) {
     const Eigen::Map<const Eigen::VectorXd> counts(light.data(), rows_->cols());
     for (int i = 0; i < measurements(); ++i)

@@ -189,8 +189,7 @@ void read_out(const TapConversion& sensor, const float* max_e, int taps, int tri
       float* const value = tile.taps + k * trials_per_tile + i;
       Vector e = hn::Load(d, value), deviation = sigma;
       if (!sensor.is_poisson) {
-        const Vector shot =
-            sensor.is_signed ? hn::Load(d, value + taps * trials_per_tile) : e;
+        const Vector shot = sensor.is_signed ? hn::Load(d, value + taps * trials_per_tile) : e;
         const Vector variance = hn::MulAdd(sigma, sigma, shot);
         deviation = hn::Mul(variance, reciprocal_sqrt(variance));
       }

@@ -27,7 +27,7 @@ TapConversion conversion_of(const Sensor& sensor) {
   if (c.has_adc) {
     c.dn_per_e = static_cast<float>(1.0 / *sensor.gain_e_per_dn);
     c.black_level_dn = static_cast<float>(sensor.black_level_dn.value_or(0.0));
-    const RawNumbers numbers = raw_numbers(sensor);
+    const ConverterNumbers numbers = raw_numbers(sensor);
     c.min_dn = static_cast<float>(numbers.min_dn);
     c.max_dn = static_cast<float>(numbers.max_dn);
   }

@@ -162,8 +162,7 @@ enum class Readout {
 /// What the sensor multiplies the light by.
 enum class Demodulation {
   gain,  ///< a share in [0, 1]: taps gather charge while their gates are open
-  /// A weight in [-1, 1]: a mixer, which delivers one signed number per exposure. All light that it
-  /// detects makes shot noise, by the square of its weight; it is read once.
+  /// A weight in [-1, 1]: a mixer. Light makes shot noise by the square of its weight.
   weight,
 };
 
@@ -203,10 +202,8 @@ struct Sensor {
   std::optional<double> readout_gap_s;   ///< dark time after each exposure [s], >= 0; none: 0
   std::optional<double> frame_period_s;  ///< from frame to frame [s], > 0; none: no pause
 
-  /// Whether measurements are numbers of a mixer.
-  bool is_signed() const { return demodulation == Demodulation::weight; }
-  /// Whether measurements have both signs by the light itself, as of two buckets or a mixer, so
-  /// that ambient light may cancel, but not its noise.
+  bool is_signed() const { return demodulation == Demodulation::weight; }  ///< a mixer
+  /// Whether they are differences of light, so that ambient light may cancel, but not its noise.
   bool subtracts() const { return is_signed() || readout == Readout::difference; }
 
   friend bool operator==(const Sensor&, const Sensor&) = default;
@@ -455,10 +452,9 @@ std::optional<std::string> why_not_playable(const CodeSet& code, const Camera& c
 /// @throws InvalidArgument with the text of why_not_playable(), if there is one
 void require_fits(const CodeSet& code, const Camera& camera);
 
-/// A mixer's camera as one of two buckets, read as their difference and without a drain, that does
-/// with the gates of a binary weight, open where it is 1 and where it is -1, what the mixer does:
-/// each has half of the noise without light. Without full well, converter and mismatch. Others as
-/// they are.
+/// Of a mixer the camera whose two buckets, open where a binary weight is 1 and where it is -1,
+/// differ by what the mixer measures: each has half of its noise without light. Full well,
+/// converter and mismatch are left out. Other cameras as they are.
 Camera in_buckets(Camera camera);
 
 /// Why no family `name` can be built for the camera; none: build_family() does.

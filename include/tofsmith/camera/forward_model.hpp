@@ -53,10 +53,10 @@ struct Return {
 /// @see Gutierrez-Barragan et al., CVPR 2019, Eq. (4); several returns add.
 ///
 /// A *tap value* is what one tap collects (E x taps of them); a *measurement* is what leaves the
-/// sensor (the same, or the differences A - B of two-bucket pairs). Of a mixer with the weight w the
-/// two taps of an exposure are A = (w^2 + w) / 2 and B = (w^2 - w) / 2: A - B is what it measures,
-/// and A + B the light that makes its shot noise, the square of the weight. A weight that switches
-/// is that of two buckets; of others A and B may be negative. Where rows are read out, the
+/// sensor (the same, or the differences A - B of two-bucket pairs). Of a mixer with the weight w
+/// the two taps of an exposure are A = (w^2 + w) / 2 and B = (w^2 - w) / 2: A - B is what it
+/// measures, and A + B the light that makes its shot noise, the square of the weight. A weight that
+/// switches is that of two buckets; of others A and B may be negative. Where rows are read out, the
 /// taps are the N time bins of the one exposure, and measurements sums of them with the rows'
 /// weights: y = C^T h, of covariance C^T diag(E h) C and read noise.
 class ForwardModel {

@@ -21,7 +21,8 @@ inline bool ambient_cancels(const Camera& camera, const Eigen::VectorXd& leak_e,
                             const Eigen::VectorXd& variance_e2) {
   constexpr double share_of_noise = 0.05;
   const Sensor& sensor = camera.sensor;
-  return (sensor.subtracts() || sensor.readout == Readout::rows) && !camera.operating.ambient_e_per_s.empty() &&
+  return (sensor.subtracts() || sensor.readout == Readout::rows) &&
+         !camera.operating.ambient_e_per_s.empty() &&
          (leak_e.array().abs() <= share_of_noise * variance_e2.array().sqrt()).all();
 }
 

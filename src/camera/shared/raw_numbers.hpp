@@ -9,13 +9,13 @@
 namespace tofsmith {
 
 /// First and last number of a converter [DN].
-struct RawNumbers {
+struct ConverterNumbers {
   double min_dn = 0.0, max_dn = 0.0;
 };
 
 /// From 0 on; of a mixer without a black level, which would be its count without light, numbers of
 /// both signs. @param sensor  with adc_bits
-inline RawNumbers raw_numbers(const Sensor& sensor) {
+inline ConverterNumbers raw_numbers(const Sensor& sensor) {
   const double count = std::exp2(*sensor.adc_bits);
   if (sensor.is_signed() && !sensor.black_level_dn) return {-0.5 * count, 0.5 * count - 1.0};
   return {0.0, count - 1.0};

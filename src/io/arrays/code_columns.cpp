@@ -160,11 +160,10 @@ CodeSet parse_code_csv(std::string_view text, std::string_view file, bool is_sig
     demodulation.weights = values(demodulations, -1.0, 1.0, weight_rule);
   else
     demodulation.gains = waveforms(values(demodulations, 0.0, 1.0, demodulation_rule));
-  return created(file, table.values.rows(),
-                 static_cast<int>(demodulations.size() / modulations.size()),
-                 waveforms(values(modulations, 0.0, std::numeric_limits<double>::infinity(),
-                                  modulation_rule)),
-                 std::move(demodulation));
+  return created(
+      file, table.values.rows(), static_cast<int>(demodulations.size() / modulations.size()),
+      waveforms(values(modulations, 0.0, std::numeric_limits<double>::infinity(), modulation_rule)),
+      std::move(demodulation));
 }
 
 CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file,
@@ -202,8 +201,7 @@ CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file
       gains.push_back(waveform_of(demodulation.values.col(column)));
     }
   }
-  return created(file, modulation.values.rows(), layout.taps, std::move(light),
-                 {std::move(gains)});
+  return created(file, modulation.values.rows(), layout.taps, std::move(light), {std::move(gains)});
 }
 
 std::vector<std::byte> serialize_code_npz(const CodeSet& code, std::optional<TapOrder> order) {

@@ -36,7 +36,8 @@ constexpr EnumWords<TapOrder, 2> tap_order_words("TapOrder", "tap order", "block
 CodeSet read_code(const std::filesystem::path& path, const TapLayout& layout) {
   const std::string extension = known_extension(path, {".json", ".npz", ".csv"});
   if (extension == ".json") return parse_code_json(read_text_file(path), path.string());
-  if (extension == ".csv") return parse_code_csv(read_text_file(path), path.string(), layout.is_signed);
+  if (extension == ".csv")
+    return parse_code_csv(read_text_file(path), path.string(), layout.is_signed);
   return parse_code_npz(read_binary_file(path), path.string(), layout);
 }
 

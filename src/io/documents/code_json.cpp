@@ -191,9 +191,9 @@ CodeSet parse_code_json(std::string_view text, std::string_view file) {
     if (exposures != 1) json.member("exposures").mistyped("1, as of rows");
     weights = read_rows(json.member("demodulation"), samples, taps);
   } else if (is_signed) {
-    for (const JsonReader& item : json.member("demodulation")
-                                      .elements(static_cast<std::size_t>(exposures),
-                                                "as many as /exposures says"))
+    for (const JsonReader& item :
+         json.member("demodulation")
+             .elements(static_cast<std::size_t>(exposures), "as many as /exposures says"))
       demodulation.push_back(read_drive(item, samples));
   } else {
     demodulation = read_list("demodulation", exposures * taps, "/exposures x /taps functions", 1.0);
