@@ -114,7 +114,7 @@ class Bash(CommandLineTest):
                               "tofsmith design --method = o", "tofsmith evaluate --camera pap",
                               "tofsmith evaluate hamil", "tofsmith simulate table",
                               "tofsmith decode x.npy --method=z")
-        self.assertEqual(found[0], {"factorize", "optimize", "search", "best"})
+        self.assertEqual(found[0], {"factorize", "optimize", "search", "best", "atlas"})
         self.assertEqual(found[1:3], [{"search"}, {"optimize"}])
         self.assertIn("paper-10f0", found[3])
         self.assertIn("hamiltonian-k4", found[4])

@@ -218,7 +218,9 @@ TEST(Design, EffortScalesSearchesAndLeavesTheRest) {
   EXPECT_EQ(quick.trials, full.trials);
   EXPECT_EQ(longer.optimize.starts, 60);
   EXPECT_EQ(longer.factorize.random_starts, 90);
-  for (const double effort : {0.0, 101.0, std::nan("")})
+  EXPECT_EQ(with_effort(full, 0.0).method, DesignMethod::atlas);
+  EXPECT_THROW(with_effort({.method = DesignMethod::optimize}, 0.0), std::invalid_argument);
+  for (const double effort : {-1.0, 0.005, 101.0, std::nan("")})
     EXPECT_THROW(with_effort(full, effort), std::invalid_argument) << effort;
 }
 
