@@ -334,7 +334,11 @@ class AtlasEntry:
 def atlas() -> list[AtlasEntry]:
     """The atlas of best codes, as `tofsmith atlas` lists it. `design(camera, effort=0)` takes the best
     of the nearest for a camera."""
-    return [AtlasEntry(**{**entry, "code": CodeSet._of(entry["code"])}) for entry in _tofsmith.atlas()]
+    def entry_of(fields: dict[str, Any]) -> AtlasEntry:
+        code = CodeSet._of(fields.pop("code"))
+        return AtlasEntry(code=code, **fields)
+
+    return [entry_of(dict(fields)) for fields in _tofsmith.atlas()]
 
 
 @dataclass(frozen=True)

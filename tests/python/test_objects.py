@@ -193,7 +193,8 @@ def test_a_mixer_plays_weights_of_both_signs():
     assert family.is_signed and set(family.demodulation.round(9).flat) == {-1.0, 1.0}
     turns = 2 * np.pi * (np.arange(240) + 0.5) / 240
     weights = np.stack([np.cos(turns - k * np.pi / 2) for k in range(4)], axis=1)
-    code = ts.CodeSet.from_arrays(1 + weights, weights, signed=True, name="analog")
+    light = np.repeat(1 + weights[:, :1], 4, axis=1)
+    code = ts.CodeSet.from_arrays(light, weights, signed=True, name="analog")
     assert np.allclose(code.demodulation, weights)
     again = pickle.loads(pickle.dumps(code))
     assert again.is_signed and np.allclose(again.demodulation, weights)
@@ -205,4 +206,4 @@ def test_a_mixer_plays_weights_of_both_signs():
     with pytest.raises(ValueError, match="sensor.demodulation"):
         ts.ForwardModel(code, "paper-10f0")
     with pytest.raises(ValueError, match="in \\[-1, 1\\]"):
-        ts.CodeSet.from_arrays(1 + weights, 1.5 * weights, signed=True)
+        ts.CodeSet.from_arrays(light, 1.5 * weights, signed=True)
