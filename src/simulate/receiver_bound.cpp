@@ -24,6 +24,18 @@ double largest_gated(double b, double c, int taps, bool may_be_shorter) {
   return kappa * (1.0 - kappa) / (b * kappa + c);
 }
 
+/// Sum of what each exposure brings; those of the same length are asked for once.
+template <typename OfExposure>
+double sum_over(const std::vector<double>& exposure_s, OfExposure&& of_exposure) {
+  double sum = 0.0, last_s = 0.0, last = 0.0;
+  for (const double time_s : exposure_s) {
+    if (time_s != last_s) last = of_exposure(time_s);
+    last_s = time_s;
+    sum += last;
+  }
+  return sum;
+}
+
 }  // namespace
 
 ReceiverBound::ReceiverBound(const Camera& camera, int exposures)
@@ -83,17 +95,14 @@ double ReceiverBound::tap_information(const OperatingPoint& point) const {
 
 double ReceiverBound::recorded_information(const OperatingPoint& point, bool by_gates) const {
   if (!photons_) return infinity;
-  double information = 0.0;
-  for (const double time_s : exposure_s_) {
+  return sum_over(exposure_s_, [&](double time_s) {
     const double signal_e = time_s * sensitivity_ * point.signal_e_per_s;
     const double ambient_e = time_s * sensitivity_ * point.ambient_e_per_s;
     const double c = time_s * dark_e_per_s_ + constant_variance_e2_;
-    double largest = photons_->largest(signal_e, ambient_e + c, peak_factor_);
-    if (by_gates && gates_)
-      largest = std::min(largest, taps_ * gates_->at_any_depth(signal_e, ambient_e, c));
-    information += largest;
-  }
-  return information;
+    const double recorded = photons_->largest(signal_e, ambient_e + c, peak_factor_);
+    if (!by_gates || !gates_) return recorded;
+    return std::min(recorded, taps_ * gates_->at_any_depth(signal_e, ambient_e, c));
+  });
 }
 
 double ReceiverBound::photon_information(const OperatingPoint& point) const {
@@ -102,16 +111,11 @@ double ReceiverBound::photon_information(const OperatingPoint& point) const {
 
 double ReceiverBound::gate_information(const OperatingPoint& point) const {
   if (!gates_) return infinity;
-  double information = 0.0, last_s = 0.0, last = 0.0;
-  for (const double time_s : exposure_s_) {
-    if (time_s != last_s)
-      last = gates_->mean_over_depths(time_s * sensitivity_ * point.signal_e_per_s,
-                                      time_s * sensitivity_ * point.ambient_e_per_s,
-                                      time_s * dark_e_per_s_ + constant_variance_e2_);
-    last_s = time_s;
-    information += taps_ * last;
-  }
-  return max_density_ * information;
+  return max_density_ * taps_ * sum_over(exposure_s_, [&](double time_s) {
+           return gates_->mean_over_depths(time_s * sensitivity_ * point.signal_e_per_s,
+                                           time_s * sensitivity_ * point.ambient_e_per_s,
+                                           time_s * dark_e_per_s_ + constant_variance_e2_);
+         });
 }
 
 double ReceiverBound::information(const OperatingPoint& point) const {
