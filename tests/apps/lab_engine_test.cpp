@@ -149,6 +149,12 @@ TEST(LabEngine, AKeyWithoutValueIsNotSetAnyMore) {
             built_in_camera("paper-10f0"));
 }
 
+TEST(LabEngine, AValueOfNothingIsRefusedAtItsKey) {
+  EXPECT_EQ(error_of(R"({"call": "camera", "built_in": "paper-10f0",
+                        "changes": [{"key": "light.peak_factor", "value": " "}]})")["field"],
+            "light.peak_factor");
+}
+
 TEST(LabEngine, ACodeSavedIsTheCode) {
   const Json camera = {{"built_in", "paper-10f0"}};
   Json request = {

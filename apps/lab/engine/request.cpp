@@ -126,6 +126,9 @@ CodeSet Request::code(const Camera& camera) const {
 }
 
 std::pair<Camera, Change> changed(const Camera& camera, const Change& change) {
+  // Nothing written leaves a key out only where the page says so, by null.
+  require(!change.value || change.value->find_first_not_of(" \t") != std::string::npos, change.key,
+          "nothing", "expected a value");
   constexpr std::string_view kind = ".impulse_response.kind";
   Change told = change;
   if (change.value && change.key.ends_with(kind)) {
