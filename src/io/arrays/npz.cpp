@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
+#include <functional>
 #include <list>
 #include <utility>
 
@@ -197,11 +199,88 @@ struct Entries {
   }
 };
 
-/// Packs arrays into what an archive is opened on.
-void pack(const NpzArrays& arrays, NpzCompression compression, Source target,
+/// Where the bytes of a new archive go: libzip's own file goes by a name drawn by OpenSSL, which
+/// crashes where it finds no memory.
+class ArchiveTarget {
+ public:
+  /// Writes bytes over earlier ones or at the end, never beyond it.
+  using WriteAt = std::function<void(std::uint64_t offset, std::span<const std::byte>)>;
+  explicit ArchiveTarget(WriteAt write_at) : write_at_(std::move(write_at)) {}
+
+  /// For one archive, which owns it. This must outlive the archive.
+  Source source() {
+    return Source(zip_source_function_create(&ArchiveTarget::call, this, nullptr));
+  }
+
+  /// What a write threw, behind libzip's back.
+  void rethrow() const {
+    if (thrown_) std::rethrow_exception(thrown_);
+  }
+
+ private:
+  static zip_int64_t call(void* self, void* data, zip_uint64_t size, zip_source_cmd_t command) {
+    return static_cast<ArchiveTarget*>(self)->answer(data, size, command);
+  }
+
+  zip_int64_t answer(void* data, zip_uint64_t size, zip_source_cmd_t command) {
+    switch (command) {
+      case ZIP_SOURCE_SUPPORTS:
+        return ZIP_SOURCE_SUPPORTS_WRITABLE;
+      case ZIP_SOURCE_STAT:
+        zip_stat_init(static_cast<zip_stat_t*>(data));
+        return sizeof(zip_stat_t);
+      case ZIP_SOURCE_WRITE:
+        return write({static_cast<const std::byte*>(data), size});
+      case ZIP_SOURCE_SEEK_WRITE: {
+        const zip_int64_t to = zip_source_seek_compute_offset(offset_, end_, data, size, nullptr);
+        if (to >= 0) offset_ = static_cast<std::uint64_t>(to);
+        return to < 0 ? -1 : 0;
+      }
+      case ZIP_SOURCE_TELL_WRITE:
+        return static_cast<zip_int64_t>(offset_);
+      case ZIP_SOURCE_ERROR:
+        return zip_error_to_data(&error_, data, size);
+      case ZIP_SOURCE_OPEN:
+      case ZIP_SOURCE_CLOSE:
+      case ZIP_SOURCE_READ:
+      case ZIP_SOURCE_SEEK:
+      case ZIP_SOURCE_TELL:
+      case ZIP_SOURCE_BEGIN_WRITE:
+      case ZIP_SOURCE_COMMIT_WRITE:
+      case ZIP_SOURCE_ROLLBACK_WRITE:
+      case ZIP_SOURCE_REMOVE:
+      case ZIP_SOURCE_FREE:
+        return 0;  // nothing is read: the archive is new
+      default:
+        return -1;
+    }
+  }
+
+  zip_int64_t write(std::span<const std::byte> bytes) {
+    try {
+      write_at_(offset_, bytes);
+    } catch (...) {
+      thrown_ = std::current_exception();
+      zip_error_set(&error_, ZIP_ER_WRITE, 0);
+      return -1;
+    }
+    offset_ += bytes.size();
+    end_ = std::max(end_, offset_);
+    return static_cast<zip_int64_t>(bytes.size());
+  }
+
+  WriteAt write_at_;
+  std::uint64_t offset_ = 0, end_ = 0;
+  zip_error_t error_{};
+  std::exception_ptr thrown_;
+};
+
+/// Packs arrays into a new archive.
+void pack(const NpzArrays& arrays, NpzCompression compression, ArchiveTarget& target,
           std::string_view file) {
-  Archive archive = open_archive(std::move(target), ZIP_CREATE | ZIP_TRUNCATE, file);
+  Archive archive = open_archive(target.source(), ZIP_CREATE | ZIP_TRUNCATE, file);
   const auto check = [&](bool good) {
+    target.rethrow();
     if (!good) throw IoError(file, zip_strerror(archive.get()));
   };
   Entries entries;  // libzip reads them at zip_close
@@ -230,17 +309,6 @@ void check_names(const NpzArrays& arrays) {
   require(!arrays.contains(""), "array name", "''", "must not be empty");
 }
 
-/// Copies the archive out of the source that libzip wrote it to.
-std::vector<std::byte> written_bytes(zip_source_t* source) {
-  zip_stat_t stat;
-  if (zip_source_stat(source, &stat) != 0 || zip_source_open(source) != 0) return {};
-  std::vector<std::byte> bytes(stat.size);
-  const zip_int64_t got = zip_source_read(source, bytes.data(), bytes.size());
-  zip_source_close(source);
-  bytes.resize(got < 0 ? 0 : static_cast<std::size_t>(got));
-  return bytes;
-}
-
 }  // namespace
 
 NpzArrays parse_npz(std::span<const std::byte> content, std::string_view file) {
@@ -251,19 +319,27 @@ NpzArrays read_npz(const std::filesystem::path& path) { return read_all(NpzReade
 
 std::vector<std::byte> serialize_npz(const NpzArrays& arrays, NpzCompression compression) {
   check_names(arrays);
-  Source buffer(zip_source_buffer_create(nullptr, 0, 0, nullptr));
-  if (!buffer) throw std::bad_alloc();
-  zip_source_keep(buffer.get());  // one for the archive, one for reading the result
-  pack(arrays, compression, Source(buffer.get()), "NPZ archive");
-  return written_bytes(buffer.get());
+  std::vector<std::byte> bytes;
+  ArchiveTarget target([&](std::uint64_t offset, std::span<const std::byte> more) {
+    bytes.resize(std::max<std::size_t>(bytes.size(), offset + more.size()));
+    std::copy(more.begin(), more.end(), bytes.begin() + static_cast<std::ptrdiff_t>(offset));
+  });
+  pack(arrays, compression, target, "NPZ archive");
+  return bytes;
 }
 
 void write_npz(const std::filesystem::path& path, const NpzArrays& arrays, OutputPolicy policy,
                NpzCompression compression) {
   AtomicFile file(path, policy);  // before the work of packing, so that a bad path fails at once
   check_names(arrays);
-  Source target(zip_source_file_create(file.temporary_path().c_str(), 0, -1, nullptr));
-  pack(arrays, compression, std::move(target), path.string());
+  std::uint64_t end = 0;
+  ArchiveTarget target([&](std::uint64_t offset, std::span<const std::byte> bytes) {
+    const std::size_t over = std::min<std::uint64_t>(end - offset, bytes.size());
+    if (over > 0) file.write_at(offset, bytes.first(over));
+    if (over < bytes.size()) file.write(bytes.subspan(over));
+    end = std::max(end, offset + bytes.size());
+  });
+  pack(arrays, compression, target, path.string());
   file.commit();
 }
 
