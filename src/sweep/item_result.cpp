@@ -22,6 +22,7 @@ std::string item_result_json(const DepthErrorReport& report, const CodeSet* desi
 ItemResult parse_item_result(const std::string& json, const std::string& code,
                              std::string_view file) {
   nlohmann::json entry = parse_json(json, file);
+  if (!entry.is_object()) JsonReader(entry, file).mistyped("the result of an item");
   entry["name"] = code;
   const JsonReader reader(entry, file);
   ItemResult result{depth_error_from_json(reader, reader), {}};

@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "sweep/file_system.hpp"
+#include "sweep/item_result.hpp"
 #include "sweep/sqlite.hpp"
 #include "sweep/worker_identity.hpp"
 #include "temporary_directory.hpp"
@@ -181,6 +182,13 @@ TEST(SweepStore, RefusesADamagedStore) {
     } catch (const IoError&) {
     }
   }
+}
+
+TEST(SweepStore, RefusesAResultThatIsNoObject) {
+  for (const char* const damaged : {"1", "[]", "\"a\"", "null"})
+    EXPECT_THAT([&] { parse_item_result(damaged, "code", "item aa"); },
+                ThrowsMessage<IoError>(
+                    AllOf(HasSubstr("item aa"), HasSubstr("expected the result of an item"))));
 }
 
 TEST(SweepStore, AFullDiskLosesNothing) {

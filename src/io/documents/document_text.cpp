@@ -90,6 +90,9 @@ nlohmann::json parse_json(std::string_view text, std::string_view file) {
                                       deepest));
     return true;
   };
+  // The parser takes it as the end of the text, whatever follows.
+  if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
+    throw IoError(place_of(text, zero, file), "found a byte of 0; expected a document in JSON");
   try {
     return nlohmann::json::parse(text, check_depth);
   } catch (const nlohmann::json::parse_error& error) {
