@@ -44,11 +44,12 @@ class Faults(unittest.TestCase):
             with self.subTest(command=command.name, call=call, at=at):
                 self.rig.kill(command, call, at)
 
-    def test_outputs_of_a_calibration_that_was_killed_are_completed(self):
-        command = next(c for c in QUICK if c.name.startswith("calibrate correlation"))
-        for at in range(2, self.rig.clean(command)[2]["rename"] + 1):
-            with self.subTest(at=at):
-                self.rig.kill(command, "rename", at)
+    def test_of_several_outputs_those_that_miss_are_made(self):
+        for command in QUICK:
+            renames = self.rig.clean(command)[2]["rename"]
+            for at in range(2, min(renames, 5) + 1):
+                with self.subTest(command=command.name, at=at):
+                    self.rig.kill(command, "rename", at)
 
     def test_two_processes_write_one_output(self):
         for command in QUICK[::8]:

@@ -62,7 +62,8 @@ COMMANDS = (
     _command("scene flat.npy -o look", "look"),
     _command(f"simulate flat.npy --code sinusoid-k4 {_CAMERA} -o raw.npy --truth t.pfm", "raw.npy",
              "t.pfm"),
-    _command(f"simulate flat.npy --code sinusoid-k4 {_CAMERA} --frames 3 -o raw.npz", "raw.npz"),
+    _command(f"simulate flat.npy --code sinusoid-k4 {_CAMERA} --frames 3 -o raw.npz", "raw.npz",
+             "raw.camera.toml"),
     _command(f"simulate scenes --code sinusoid-k4 {_CAMERA} -o set", "set"),
     _command(f"decode frames.npy --code sinusoid-k4 {_CAMERA} -o d.npy --stack "
              "--outputs depth,signal", "d.npy", "d-signal.npy"),
