@@ -5,12 +5,21 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <memory>
+#include <new>
 
 namespace tofsmith {
 
 ThinSvd thin_svd(const Eigen::MatrixXd& matrix) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  return {svd.matrixU(), svd.singularValues(), svd.matrixV()};
+  auto svd = std::make_unique<Eigen::JacobiSVD<Eigen::MatrixXd>>();
+  try {
+    svd->compute(matrix, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  } catch (const std::bad_alloc&) {
+    // It builds a part of itself anew in place, and would free it twice: better lost than that.
+    (void)svd.release();
+    throw;
+  }
+  return {svd->matrixU(), svd->singularValues(), svd->matrixV()};
 }
 
 PseudoInverse pseudo_inverse(const Eigen::MatrixXd& matrix, double threshold) {
