@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tofsmith/io/atomic_file.hpp"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -15,6 +16,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <system_error>
@@ -50,8 +52,12 @@ const std::string& hidden_prefix() {
   return prefix;
 }
 
+struct CloseDirectory {
+  void operator()(DIR* directory) const { ::closedir(directory); }
+};
+
 /// The process that a hidden file of this machine is of; 0: it is none.
-pid_t owner_of(const std::string& name) {
+pid_t owner_of(std::string_view name) {
   if (!name.starts_with(hidden_prefix())) return 0;
   pid_t owner = 0;
   const char* const begin = name.data() + hidden_prefix().size();
@@ -68,14 +74,14 @@ void remove_leftovers(const fs::path& directory) {
     const std::lock_guard lock(mutex);
     if (!seen.insert(fs::absolute(directory, ignored)).second) return;
   }
-  try {
-    // Not it.increment(error), which ends the process where memory is short.
-    for (fs::directory_iterator it(directory), end; it != end; ++it) {
-      const pid_t owner = owner_of(it->path().filename().string());
-      if (owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH) fs::remove(it->path(), ignored);
-    }
-  } catch (const fs::filesystem_error&) {
-    // What cannot be listed keeps what is left in it.
+  // Not a directory_iterator, whose increments end the process where memory is short. What cannot
+  // be listed keeps what is left in it.
+  const std::unique_ptr<DIR, CloseDirectory> listing(::opendir(directory.c_str()));
+  if (!listing) return;
+  while (const dirent* const entry = ::readdir(listing.get())) {
+    const pid_t owner = owner_of(entry->d_name);
+    if (owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH)
+      fs::remove(directory / entry->d_name, ignored);
   }
 }
 
