@@ -38,8 +38,8 @@ struct Sums {
   Sums() {
     for (int n = 0; n < samples; ++n)
       for (int k = 0; k < planes; ++k)
-        points[static_cast<std::size_t>(n * planes + k)] =
-            static_cast<float>(std::cos(2 * std::numbers::pi * (n / double{samples} + 0.2 * k)) + 0.3 * k);
+        points[static_cast<std::size_t>(n * planes + k)] = static_cast<float>(
+            std::cos(2 * std::numbers::pi * (n / double{samples} + 0.2 * k)) + 0.3 * k);
     RandomStream random(3, 0);
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
