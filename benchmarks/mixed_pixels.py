@@ -9,7 +9,8 @@ The table-top scene of 320 x 240 pixels behind a lens that blurs by half a pixel
 is known from nine times as many rays. It flies if its depth is off the nearest of them, the
 farthest, and the one through its middle by more than 30 mm and three predicted standard deviations;
 it is of a true surface if what it sees differs by less than 30 mm. A pixel of a true surface that
-flies is far out in its noise: those at edges are counted alone, too.
+flies is far out in its noise: those at edges are counted alone, too. With a filter, one that is not
+marked may have its own depth once those beside it are: it is right after.
 """
 
 import subprocess
@@ -59,6 +60,7 @@ def main():
         directory = Path(name)
         near, far, middle = rays_seen(program, code, directory)
         print(f"{'S':>7} {'':18} {'flying':>7} {'of them marked':>15} {'at edges':>9} "
+              f"{'or right after':>15} "
               f"{'of surface lost':>16} "
               f"{'of edges that lie on one':>25} {'snapped right':>14}")
         for signal in [float(level) for level in levels] or [1e5]:
@@ -80,6 +82,10 @@ def main():
                 marked = planes["label"]["status"] == STATUS_MIXED
                 off = [np.abs(depth - seen) > limit for seen in (near, far, middle)]
                 flying = decoded & off[0] & off[1] & off[2]
+                after = planes["label"]["depth"]
+                limit_after = np.maximum(LEAST_M, 3 * planes["label"]["deviation"])
+                right_after = np.any([np.abs(after - seen) <= limit_after
+                                      for seen in (near, far, middle)], axis=0)
                 edge = decoded & (far - near >= LEAST_M)
                 surface = decoded & (far - near < LEAST_M)
                 on_one = edge & ~(off[0] & off[1])
@@ -88,6 +94,7 @@ def main():
                                    np.abs(snapped - far[marked])) < SNAPPED_M
                 print(f"{signal:7.0e} {title:18} {flying.sum():7} "
                       f"{marked[flying].mean():15.1%} {marked[flying & edge].mean():9.1%} "
+                      f"{(marked | right_after)[flying].mean():15.1%} "
                       f"{marked[surface].mean():16.4%} "
                       f"{marked[on_one].mean():25.1%} {right.mean():14.1%}", flush=True)
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/device_frame.hpp"
 
+#include <algorithm>
+
 #include <utility>
 
 namespace tofsmith {
@@ -43,7 +45,7 @@ int DeviceFrame::reach(const FilterOptions& options) {
   for (int window = 0; window < options.windows; ++window) {
     const int of_window = window_reach * window_step(window);
     similar += of_window + (window == 0 ? patch_reach : patch_reach - 1);
-    along_slopes += of_window + (window == 0 ? 0 : compared_reach);
+    along_slopes += of_window + (window == 0 ? 0 : std::max(compared_reach, line_reach));
   }
   return patch_reach + similar + options.slope_rounds * along_slopes + own_light_reach;
 }

@@ -65,7 +65,15 @@ std::string constants_of(const Filter::Plan& plan, bool fuses) {
   c.add("COMPARED_REACH", compared_reach);
   c.add("COMPARED_STEP", compared_step);
   c.add("LEAST_NOISE_SHARE", least_noise_share);
+  c.add("LINE_SIDE", line_side);
+  c.add("LINE_STEP", line_step);
+  c.add("LINE_DIRECTIONS", static_cast<int>(line_directions.size()));
+  c.add_steps("line_direction", line_directions);
   c.add("EXPLAINED_BY_NOISE", explained_by_noise);
+  c.add("EXPLAINED_ALONG_LINES", explained_along_lines);
+  c.add("HALF_KEPT", half_kept);
+  c.add("HALF_KEPT_ALONG_LINES", half_kept_along_lines);
+  c.add("KEPT_NOISE", kept_noise);
   c.add("LEAST_ENERGY", least_energy);
   c.add("EVIDENT_SIGMA", evident_sigma);
   c.add("OWN_LIGHT_REACH", own_light_reach);

@@ -137,6 +137,11 @@ float on_curve(const struct CurvePlace* place, Floats tables, int k) {
   return product_plus(place->share, b - a, a);
 }
 
+/// How much farther the curve is a bin beyond.
+float per_bin(const struct CurvePlace* place, Floats tables, int k) {
+  return tables[place->to + k] - tables[place->from + k];
+}
+
 /// Light into signal along its depth and the rest; without a depth all is rest.
 kernel void split(const struct FilterParameters p, const struct SlopeParameters w, Floats tables,
                   global float* planes) {
@@ -253,26 +258,29 @@ kernel void add_along_slopes(const struct FilterParameters p, const struct Slope
 
 // ---- Near sums that are kept.
 
-/// Chi^2 of the directions of the sums before a window, whose light is made whole again, and after.
+/// How much the depths of the sums before a window, whose light is made whole again, and after it
+/// differ, in standard deviations.
 kernel void compare_sums(const struct FilterParameters p, const struct SlopeParameters w,
                          Floats tables, global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
   if (x >= p.width || y >= p.height) return;
   const int at = y * p.stride + x;
   join(&p, tables, planes, w.rest, at, plane_of(&p, planes, PLANE_SIGNAL)[at], 0.0f);
+  const struct CurvePlace place = place_of(&p, plane_of(&p, planes, PLANE_DEPTH)[at]);
   float far2 = 0.0f, dot_product = 0.0f;
   for (int j = 0; j < RANK; ++j) {
     const float far = plane_of(&p, planes, w.to + j)[at];
     far2 = product_plus(far, far, far2);
-    dot_product = product_plus(plane_of(&p, planes, w.rest + j)[at], far, dot_product);
+    dot_product = product_plus(per_bin(&place, tables, j), far, dot_product);
   }
-  // What of the near sum is not along the far one.
-  const float along = LARGER(dot_product, 0.0f) / LARGER(far2, 1e-30f);
-  float across = 0.0f;
+  // What of the near sum lies where the far one would go if its depth changed.
+  const float along = dot_product / LARGER(far2, 1e-30f);
+  float moved = 0.0f, move2 = 1e-30f;
   for (int j = 0; j < RANK; ++j) {
-    const float beside = product_plus(-along, plane_of(&p, planes, w.to + j)[at],
-                                      plane_of(&p, planes, w.rest + j)[at]);
-    across = product_plus(beside, beside, across);
+    const float far = plane_of(&p, planes, w.to + j)[at];
+    const float move = product_plus(-along, far, per_bin(&place, tables, j));
+    moved = product_plus(move, plane_of(&p, planes, w.rest + j)[at], moved);
+    move2 = product_plus(move, move, move2);
   }
   // The far sum holds the near one, so their difference has less noise than that has.
   const float variance = plane_of(&p, planes, w.variance_in)[at];
@@ -281,7 +289,7 @@ kernel void compare_sums(const struct FilterParameters p, const struct SlopePara
   const float least = near_variance * LEAST_NOISE_SHARE, noise = LARGER(less, least);
   const bool is_told = plane_of(&p, planes, PLANE_USABLE)[at] > 0.0f &&
                        far2 > near_variance * LEAST_ENERGY;
-  plane_of(&p, planes, PLANE_SHIFT)[at] = is_told ? across / noise : 0.0f;
+  plane_of(&p, planes, PLANE_SHIFT)[at] = is_told ? moved / sqrt(move2 * noise) : 0.0f;
 }
 
 kernel void keep_near(const struct FilterParameters p, const struct SlopeParameters w,
@@ -291,16 +299,32 @@ kernel void keep_near(const struct FilterParameters p, const struct SlopeParamet
   const int at = y * p.stride + x;
   const Plane usable = plane_of(&p, planes, PLANE_USABLE);
   const Plane difference = plane_of(&p, planes, PLANE_SHIFT);
-  float chi2 = 0.0f, count = 0.0f;
+  float squares = 0.0f, count = 0.0f;
   for (int dy = -COMPARED_REACH; dy <= COMPARED_REACH; dy += COMPARED_STEP)
     for (int dx = -COMPARED_REACH; dx <= COMPARED_REACH; dx += COMPARED_STEP) {
       const int pixel = at + dy * p.stride + dx;
-      chi2 = product_plus(usable[pixel], difference[pixel], chi2);
+      const float d = difference[pixel];
+      squares = product_plus(usable[pixel] * d, d, squares);
       count += usable[pixel];
     }
-  const float noise = EXPLAINED_BY_NOISE * (float)(RANK - 1);
-  const float any = product_plus(-noise, count / LARGER(chi2, 1e-30f), 1.0f);
-  const float kept = LARGER(any, 0.0f);
+  const float around = squares / LARGER(count, 1.0f) - EXPLAINED_BY_NOISE;
+  // At a silhouette or a crease the pixels of a thin line alone differ, all in the same way.
+  float best = 0.0f;
+  for (int i = 0; i < LINE_DIRECTIONS; ++i) {
+    const int away = LINE_STEP * (line_direction_rows[i] * p.stride + line_direction_columns[i]);
+    float sum = 0.0f, on_line = 0.0f;
+    for (int place = -LINE_SIDE; place <= LINE_SIDE; ++place) {
+      const int pixel = at + place * away;
+      sum = product_plus(usable[pixel], difference[pixel], sum);
+      on_line += usable[pixel];
+    }
+    const float inverse = 1.0f / LARGER(on_line, 1.0f), mean = sum * inverse;
+    const float excess = product_plus(-inverse, EXPLAINED_ALONG_LINES, mean * mean);
+    best = LARGER(best, excess);
+  }
+  const float excess = LARGER(around, 0.0f);
+  const float by_all = excess / (excess + HALF_KEPT), by_line = best / (best + HALF_KEPT_ALONG_LINES);
+  const float kept = LARGER(by_all, by_line);
   plane_of(&p, planes, PLANE_SIGNAL)[at] = kept;
   if (kept <= 0.0f) return;
   for (int k = 0; k < MEASUREMENTS; ++k) {
@@ -313,7 +337,7 @@ kernel void keep_near(const struct FilterParameters p, const struct SlopeParamet
   const Plane far_variance = plane_of(&p, planes, w.variance_out);
   const float far = far_variance[at];
   const float more = plane_of(&p, planes, w.variance_in)[at] - far;
-  const float beyond = LARGER(more, 0.0f), share2 = kept * kept * EXPLAINED_BY_NOISE;
+  const float beyond = LARGER(more, 0.0f), share2 = kept * kept * KEPT_NOISE;
   far_variance[at] = product_plus(share2, beyond, far);
 }
 

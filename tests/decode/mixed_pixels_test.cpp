@@ -87,6 +87,19 @@ TEST(MixedPixels, SumsOfTwoSurfacesAreLabelledAndKeepTheirDepth) {
   EXPECT_LE(elsewhere, height * width / 200);
 }
 
+TEST(MixedPixels, TheMiddleOfARibbonFivePixelsWideIsFound) {
+  const DecodeSetup setup = setup_of();
+  const DepthImage image = marked(setup, frame_seen(setup.decoder.table(), [](int, int x) {
+                                    const double share = 0.5 + 0.1 * (x - edge);
+                                    if (x < edge - 2) return Seen{70.0};
+                                    if (x > edge + 2) return Seen{120.0};
+                                    return Seen{70.0, (1 - share) * 1e5, 120.0, share * 1e5};
+                                  }));
+  int found = 0;
+  for (int y = 0; y < height; ++y) found += image.status(y, edge) == PixelStatus::mixed ? 1 : 0;
+  EXPECT_GE(found, height * 8 / 10);
+}
+
 TEST(MixedPixels, ALittleLightOfAnotherSurfaceIsFoundThoughTheDepthIsThatOfOne) {
   const DecodeSetup setup = setup_of();
   const DepthImage image =

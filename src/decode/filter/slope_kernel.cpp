@@ -180,6 +180,11 @@ struct CurvePlaces {
     const auto size = hn::Set(di, curve.coordinates);
     from = hn::Mul(at, size), to = hn::Mul(next, size);
   }
+  /// How much farther the curve is a bin beyond.
+  HWY_INLINE Vector per_bin(const CurvePoints& curve, int k) const {
+    return hn::Sub(hn::GatherIndex(Floats(), curve.points + k, to),
+                   hn::GatherIndex(Floats(), curve.points + k, from));
+  }
   HWY_INLINE Vector on(const CurvePoints& curve, int k) const {
     const Vector a = hn::GatherIndex(Floats(), curve.points + k, from);
     const Vector b = hn::GatherIndex(Floats(), curve.points + k, to);
@@ -224,50 +229,75 @@ void join_row(const CurvePoints& curve, const JoinRow& row, int width) {
   }
 }
 
-void compare_sums(const NearAndFar& sums, const FilterGrid& grid, int row) {
+void compare_sums(const CurvePoints& curve, const NearAndFar& sums, const FilterGrid& grid,
+                  int row) {
   const Vector zero = hn::Zero(Floats()), tiny = all(1e-30f);
   for (int x = 0; x < grid.width; x += lanes_of()) {
     const std::ptrdiff_t at = row * grid.stride + x;
+    const CurvePlaces places(curve, load(sums.depth + at));
+    Vector per_bin[max_measurements];
     Vector far2 = zero, dot = zero;
-    for (int j = 0; j < sums.rank; ++j) {
+    for (int j = 0; j < curve.rank; ++j) {
       const Vector far = load(sums.far.data()[j] + at);
+      per_bin[j] = places.per_bin(curve, j);
       far2 = hn::MulAdd(far, far, far2);
-      dot = hn::MulAdd(load(sums.near.data()[j] + at), far, dot);
+      dot = hn::MulAdd(per_bin[j], far, dot);
     }
-    // What of the near sum is not along the far one.
-    const Vector along = hn::Div(hn::Max(dot, zero), hn::Max(far2, tiny));
-    Vector across = zero;
-    for (int j = 0; j < sums.rank; ++j) {
-      const Vector beside =
-          hn::NegMulAdd(along, load(sums.far.data()[j] + at), load(sums.near.data()[j] + at));
-      across = hn::MulAdd(beside, beside, across);
+    // What of the near sum lies where the far one would go if its depth changed.
+    const Vector along = hn::Div(dot, hn::Max(far2, tiny));
+    Vector moved = zero, move2 = tiny;
+    for (int j = 0; j < curve.rank; ++j) {
+      const Vector move = hn::NegMulAdd(along, load(sums.far.data()[j] + at), per_bin[j]);
+      moved = hn::MulAdd(move, load(sums.near.data()[j] + at), moved);
+      move2 = hn::MulAdd(move, move, move2);
     }
     // The far sum holds the near one, so their difference has less noise than that has.
     const Vector near_variance = hn::Max(load(sums.near_variance + at), all(1e-12f));
     const Vector noise = hn::Max(hn::Sub(near_variance, load(sums.far_variance + at)),
                                  hn::Mul(near_variance, all(least_noise_share)));
-    const Vector chi2 = hn::Div(across, noise);
+    const Vector difference = hn::Div(moved, hn::Sqrt(hn::Mul(move2, noise)));
     const Mask is_told = hn::And(hn::Gt(load(sums.usable + at), zero),
                                  hn::Gt(far2, hn::Mul(near_variance, all(least_energy))));
-    store(hn::IfThenElseZero(is_told, chi2), sums.difference + at);
+    store(hn::IfThenElseZero(is_told, difference), sums.difference + at);
   }
+}
+
+/// How much of the near sums bias and noise are least with, beyond what noise explains.
+HWY_INLINE Vector kept_of(Vector excess, float half) {
+  return hn::Div(excess, hn::Add(excess, all(half)));
 }
 
 void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row) {
   const Vector zero = hn::Zero(Floats()), one = all(1.0f);
-  const Vector noise = all(explained_by_noise * static_cast<float>(sums.rank - 1));
   for (int x = 0; x < grid.width; x += lanes_of()) {
     const std::ptrdiff_t at = row * grid.stride + x;
-    Vector chi2 = zero, count = zero;
+    Vector squares = zero, count = zero;
     for (int dy = -compared_reach; dy <= compared_reach; dy += compared_step)
       for (int dx = -compared_reach; dx <= compared_reach; dx += compared_step) {
         const std::ptrdiff_t pixel = at + dy * grid.stride + dx;
-        const Vector usable = load(sums.usable + pixel);
-        chi2 = hn::MulAdd(usable, load(sums.difference + pixel), chi2);
+        const Vector usable = load(sums.usable + pixel), d = load(sums.difference + pixel);
+        squares = hn::MulAdd(hn::Mul(usable, d), d, squares);
         count = hn::Add(count, usable);
       }
+    const Vector around = hn::Sub(hn::Div(squares, hn::Max(count, one)), all(explained_by_noise));
+    // At a silhouette or a crease the pixels of a thin line alone differ, all in the same way.
+    Vector best = zero;
+    for (std::size_t i = 0; i < std::size(line_directions); ++i) {
+      const WindowStep& step = line_directions.data()[i];
+      const std::ptrdiff_t away = line_step * (step.rows * grid.stride + step.columns);
+      Vector sum = zero, on_line = zero;
+      for (int place = -line_side; place <= line_side; ++place) {
+        const std::ptrdiff_t pixel = at + place * away;
+        const Vector usable = load(sums.usable + pixel);
+        sum = hn::MulAdd(usable, load(sums.difference + pixel), sum);
+        on_line = hn::Add(on_line, usable);
+      }
+      const Vector inverse = hn::Div(one, hn::Max(on_line, one));
+      const Vector mean = hn::Mul(sum, inverse);
+      best = hn::Max(best, hn::NegMulAdd(inverse, all(explained_along_lines), hn::Mul(mean, mean)));
+    }
     const Vector kept =
-        hn::Max(hn::NegMulAdd(noise, hn::Div(count, hn::Max(chi2, all(1e-30f))), one), zero);
+        hn::Max(kept_of(hn::Max(around, zero), half_kept), kept_of(best, half_kept_along_lines));
     store(kept, sums.kept + at);
     if (hn::AllTrue(Floats(), hn::Le(kept, zero))) continue;
     for (int k = 0; k < sums.planes; ++k) {
@@ -279,7 +309,7 @@ void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row) {
     // noise alone has some of the near sum kept, it was so much larger than usual.
     const Vector far = load(sums.far_variance + at);
     const Vector beyond = hn::Max(hn::Sub(load(sums.near_variance + at), far), zero);
-    const Vector share2 = hn::Mul(hn::Mul(kept, kept), all(explained_by_noise));
+    const Vector share2 = hn::Mul(hn::Mul(kept, kept), all(kept_noise));
     store(hn::MulAdd(share2, beyond, far), sums.far_variance + at);
   }
 }
@@ -317,8 +347,9 @@ void join_row(const CurvePoints& curve, const JoinRow& row, int width) {
   HWY_DYNAMIC_DISPATCH(join_row)(curve, row, width);
 }
 
-void compare_sums(const NearAndFar& sums, const FilterGrid& grid, int row) {
-  HWY_DYNAMIC_DISPATCH(compare_sums)(sums, grid, row);
+void compare_sums(const CurvePoints& curve, const NearAndFar& sums, const FilterGrid& grid,
+                  int row) {
+  HWY_DYNAMIC_DISPATCH(compare_sums)(curve, sums, grid, row);
 }
 
 void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row) {

@@ -74,14 +74,22 @@ struct JoinRow {
 };
 void join_row(const CurvePoints& curve, const JoinRow& row, int width);
 
-/// Pixels around one that are looked at together: 5 x 5, every other one, because near sums of
+/// Pixels around one that are looked at together: 7 x 7, every other one, because near sums of
 /// pixels side by side share most of their measurements.
-inline constexpr int compared_reach = 4, compared_step = 2;
+inline constexpr int compared_reach = 6, compared_step = 2;
+/// And 9 in a row, every third one, through the pixel in each of four directions.
+inline constexpr int line_side = 4, line_step = 3, line_reach = line_side * line_step;
+inline constexpr std::array<WindowStep, 4> line_directions = {{{0, 1}, {1, 0}, {1, 1}, {1, -1}}};
 /// Of the near sum's variance, so much is the least that its difference from the far one has.
 inline constexpr float least_noise_share = 0.25f;
-/// Chi^2 of a direction per degree of freedom that noise is taken to make.
-inline constexpr float explained_by_noise = 1.6f;
-/// Near sums of fewer standard deviations, squared, tell too little of their direction.
+/// Mean square of differences in deviations that noise is taken to make, of the pixels around; and
+/// square of their mean along the best of the lines, times 1 / 9 where all 9 count.
+inline constexpr float explained_by_noise = 2.3f, explained_along_lines = 18.0f;
+/// What exceeds it is kept as excess / (excess + this).
+inline constexpr float half_kept = 0.2f, half_kept_along_lines = 0.3f;
+/// How much larger than usual the noise of a near sum is where noise alone has some of it kept.
+inline constexpr float kept_noise = 1.6f;
+/// Near sums of fewer standard deviations, squared, tell too little of their depth.
 inline constexpr float least_energy = 25.0f;
 
 /// Two sums for each pixel: of near neighbours, and of these and far ones.
@@ -89,18 +97,20 @@ struct NearAndFar {
   std::array<const float*, max_measurements> near{};
   std::array<float*, max_measurements> far{};  ///< and then what is kept of both
   int planes = 0;
-  int rank = 0;                   ///< of the planes, those of the decoding plane
   const float* usable = nullptr;  ///< 1 or 0
+  const float* depth = nullptr;   ///< of both [bin], in [0, N)
   const float* near_variance = nullptr;
   float* far_variance = nullptr;  ///< and then that of what is kept
-  float* difference = nullptr;    ///< chi^2 of the two directions
+  float* difference = nullptr;    ///< of the two depths [standard deviations]
   float* kept = nullptr;          ///< and the share of the near sum that is kept
 };
 /// `difference` of a row.
-void compare_sums(const NearAndFar& sums, const FilterGrid& grid, int row);
-/// Far neighbours may be of another surface by less than the test of a pair sees. Where the sums
-/// with them, of pixels around one, have other directions than the near sums by more than noise
-/// explains, so much of the near sum is kept. Needs `difference` of the rows around.
+void compare_sums(const CurvePoints& curve, const NearAndFar& sums, const FilterGrid& grid,
+                  int row);
+/// Far neighbours may be of another surface, or of one that bends, by less than the test of a pair
+/// sees. Where the sums with them, of pixels around one or along a line through it, have other
+/// depths than the near sums by more than noise explains, so much of the near sum is kept that the
+/// bias and the noise that it leaves are least. Needs `difference` of the rows around.
 void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row);
 
 /// What the noise of slopes adds to the variance of a sum along them,

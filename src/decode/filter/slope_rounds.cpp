@@ -91,8 +91,8 @@ void Filter::Plan::join(FilterPlanes& frame, int set, int row) const {
 void Filter::Plan::keep_near_sums(FilterPlanes& frame, int rest, int to, int window) const {
   const WindowVariances variances(window);
   NearAndFar sums{.planes = measurements,
-                  .rank = rank,
                   .usable = frame.scalar(FilterPlanes::usable),
+                  .depth = frame.scalar(FilterPlanes::depth),
                   .near_variance = frame.scalar(variances.in),
                   .far_variance = frame.scalar(variances.out),
                   .difference = frame.scalar(FilterPlanes::shift),
@@ -109,7 +109,7 @@ void Filter::Plan::keep_near_sums(FilterPlanes& frame, int rest, int to, int win
     for (int k = 0; k < measurements; ++k)
       unmoved.light[static_cast<std::size_t>(k)] = frame.light(rest, k) + at;
     join_row(points(), unmoved, frame.grid.width);
-    compare_sums(sums, frame.grid, row);
+    compare_sums(points(), sums, frame.grid, row);
   });
   for_each_row(frame, [&](int row) { keep_near(sums, frame.grid, row); });
 }

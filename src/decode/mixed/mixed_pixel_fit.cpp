@@ -17,7 +17,7 @@ namespace {
 /// surfaces are likely.
 constexpr double better = 3.0, little_worse = 25.0;
 /// By so much they must beat the single return where its depth is that of a surface.
-constexpr double far_better = 6.0;
+constexpr double far_better = 20.0;
 /// Surfaces are not flat and lenses not the same for all that is added: so much of the chi^2 of one
 /// alone may remain.
 constexpr double may_remain = 0.25;

@@ -26,7 +26,7 @@ namespace {
 constexpr EnumWords<MixedPixels, all_mixed_pixels.size()> mixed_words("MixedPixels", "mixed",
                                                                       "label", "snap", "drop");
 
-constexpr int reach = 3;
+constexpr int reach = 4;
 constexpr int window_pixels = (2 * reach + 1) * (2 * reach + 1);
 /// A pixel is of a surface if so many of the 8 around it have its depth: more than
 /// in a ribbon of mixed pixels, or on an object one pixel wide.
@@ -35,7 +35,9 @@ constexpr int least_pixels = 2;
 constexpr int most_surfaces = 4;
 /// Depths are the same within so many standard deviations, and within this share of the range: less
 /// is no edge.
-constexpr double same_sigma = 2.0, same_share = 0.002;
+constexpr double same_sigma = 1.3, same_share = 0.002;
+/// Steps to both sides that differ by more are not of one slope.
+constexpr double slope_sigma = 2.0, parts_sigma = 1.7;
 /// Standard deviation of a surface's slope where its pixels do not tell, as a share of the range
 /// for each pixel.
 constexpr double slope_share = 0.0025;
@@ -152,7 +154,7 @@ class Surroundings {
     const float ends = std::hypot(deviation_[before], deviation_[after]);
     float step = (up + down) / 2.0f, noise = ends / 2.0f;
     if (std::abs(up - down) >
-        static_cast<float>(same_sigma) * std::hypot(ends, 2.0f * deviation_[i])) {
+        static_cast<float>(slope_sigma) * std::hypot(ends, 2.0f * deviation_[i])) {
       const bool is_up = std::abs(up) < std::abs(down);
       step = is_up ? up : down;
       noise = std::hypot(deviation_[i], deviation_[is_up ? after : before]);
@@ -213,7 +215,7 @@ class Surroundings {
   /// Whether nothing joins two depths, one after the other.
   bool parts(const WindowPixel& a, const WindowPixel& b) const {
     return b.here_m - a.here_m >
-           std::max(2 * same_m_, same_sigma * std::sqrt(a.variance_m2 + b.variance_m2));
+           std::max(2 * same_m_, parts_sigma * std::sqrt(a.variance_m2 + b.variance_m2));
   }
 
   /// A plane through some pixels, where the window's own pixel is.
