@@ -261,6 +261,19 @@ TEST_F(DeviceFramesOf, AreMeansThatAreAddedUp) {
   }
 }
 
+TEST_F(DeviceFramesOf, GoToTheDecodersDeviceWhereItCanAddThemUp) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  const TimeFilter filter(table), looks_ahead(table, {.look_ahead = 1});
+  const DeviceDecoder after(device(), setup.decoder);
+  EXPECT_FALSE(device_frames("0", table, nullptr, false, after));
+  EXPECT_FALSE(device_frames("0", table, &looks_ahead, true, after));
+  EXPECT_TRUE(device_frames("0", table, &filter, false, after)->takes(1));
+  EXPECT_FALSE(device_frames("auto", table, &filter, false, after)->takes(1));
+  EXPECT_EQ(device_frames("0", table, nullptr, true, after).has_value(),
+            device().info().has_doubles);
+}
+
 TEST_F(DeviceFramesOf, AreRefusedWhereTheyDoNotFit) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();
