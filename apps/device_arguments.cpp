@@ -50,7 +50,8 @@ void DeviceArguments::add_to(CLI::App& command) {
             list_devices(json && json->count() > 0);
             throw CLI::Success();
           },
-          "what adds frames up, filters and decodes: cpu; gpu, the first one; auto, that or else cpu, which small "
+          "what adds frames up, filters and decodes: cpu; gpu, the first one; auto, that or else "
+          "cpu, which small "
           "frames are left to; a number or part of a name from list, which prints the devices of "
           "OpenCL. The same numbers come out, of zncc alone")
       ->default_str(name_)

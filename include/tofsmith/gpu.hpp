@@ -3,7 +3,8 @@
 #pragma once
 
 /// @file
-/// All of tofsmith::gpu: means, filters and decoding on devices of OpenCL. Includes tofsmith/core.hpp.
+/// All of tofsmith::gpu: means, filters and decoding on devices of OpenCL. Includes
+/// tofsmith/core.hpp.
 
 #include <array>
 #include <cstdint>
