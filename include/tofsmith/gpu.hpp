@@ -183,7 +183,8 @@ class DeviceFilter {
 /// the device rounds quotients and roots correctly, else they differ in the last ones, and where a
 /// threshold lies between, by more.
 ///
-/// Keeps the frames so far, whole; not for several threads at once.
+/// Keeps what was added up whole, whatever DeviceOptions::memory_mb says. Not for several threads
+/// at once.
 class DeviceFrames {
  public:
   /// Compiles kernels for the table.
