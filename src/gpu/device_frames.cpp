@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string>
 
+#include "decode/output/shared/decoder_parts.hpp"
 #include "gpu/device_past.hpp"
 #include "gpu/frame_source.hpp"
 #include "tofsmith/core/error.hpp"

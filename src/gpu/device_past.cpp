@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "gpu/table_words.hpp"
 
 namespace tofsmith {
