@@ -50,7 +50,8 @@ void DeviceArguments::add_to(CLI::App& command) {
             list_devices(json && json->count() > 0);
             throw CLI::Success();
           },
-          "what filters and decodes: cpu; gpu, the first one; auto, that or else cpu, which small "
+          "what adds frames up, filters and decodes: cpu; gpu, the first one; auto, that or else "
+          "cpu, which small "
           "frames are left to; a number or part of a name from list, which prints the devices of "
           "OpenCL. The same numbers come out, of zncc alone")
       ->default_str(name_)
@@ -61,9 +62,17 @@ RecordingDevice::RecordingDevice(DeviceDecoder on_device, const Decoder& decoder
     : on_device_(std::move(on_device)), decoder_(decoder), name_(std::move(name)) {}
 
 void RecordingDevice::take(DecodeRequest& request) {
+  if (const std::optional<TimeFilterOptions> options = time_filter_of(request))
+    time_filter_ = std::make_unique<const TimeFilter>(decoder_.table(), *options);
+  frames_ =
+      device_frames(name_, decoder_.table(), time_filter_.get(), request.average > 1, on_device_);
+  if (frames_) request.frames_by = FramesElsewhere::of(*frames_);
   request.decode_by = [this](const RawView& raw, const DecodedView& decoded,
                              const Progress& progress) {
-    on_device_.decode(raw, decoded, progress);
+    if (frames_ && frames_->has_frame())
+      frames_->decode(on_device_, decoded, progress);
+    else
+      on_device_.decode(raw, decoded, progress);
   };
   if (!request.filter) return;
   filter_ = std::make_unique<const Filter>(decoder_.table(), *request.filter);
@@ -71,7 +80,10 @@ void RecordingDevice::take(DecodeRequest& request) {
   request.filter_by = [this](const RawView& raw, const DecodedView& decoded,
                              FilteredFrame* filtered, const Progress& progress,
                              const Image<std::uint8_t>& left_out) {
-    filter_on_device_->decode(raw, on_device_, decoded, filtered, progress, left_out);
+    if (frames_ && frames_->has_frame())
+      frames_->decode(*filter_on_device_, on_device_, decoded, filtered, progress, left_out);
+    else
+      filter_on_device_->decode(raw, on_device_, decoded, filtered, progress, left_out);
   };
 }
 

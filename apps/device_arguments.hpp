@@ -12,14 +12,14 @@
 
 namespace tofsmith::apps {
 
-/// A device that decodes recordings and filters them.
+/// A device that decodes recordings, and adds their frames up and filters them before.
 class RecordingDevice {
  public:
   /// @param decoder  of the request's recording; outlives this
   /// @param name     of the device, for its filter
   RecordingDevice(DeviceDecoder on_device, const Decoder& decoder, std::string name);
 
-  /// Has it do the work of a request, while this lives.
+  /// Has it do the work of a request, while this lives and stays where it is.
   void take(DecodeRequest& request);
   const DeviceInfo& info() const { return on_device_.device().info(); }
 
@@ -29,6 +29,8 @@ class RecordingDevice {
   std::string name_;
   std::unique_ptr<const Filter> filter_;
   std::optional<DeviceFilter> filter_on_device_;
+  std::unique_ptr<const TimeFilter> time_filter_;
+  std::optional<DeviceFrames> frames_;  // where frames are added up on the device
 };
 
 /// What decodes: `--device`. Nothing of OpenCL is loaded unless another one than cpu is named.

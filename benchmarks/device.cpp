@@ -37,7 +37,7 @@ double copy_rate(const Device& device, std::size_t bytes, int runs) {
   const DeviceMemory from = queue.allocate(bytes), to = queue.allocate(bytes);
   const double seconds = seconds_of(
       [&] {
-        queue.copy(from, to, bytes);
+        queue.copy(from, 0, to, 0, bytes);
         queue.finish();
       },
       runs);

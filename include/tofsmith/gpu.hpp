@@ -3,7 +3,8 @@
 #pragma once
 
 /// @file
-/// All of tofsmith::gpu: filtering and decoding on devices of OpenCL. Includes tofsmith/core.hpp.
+/// All of tofsmith::gpu: means, filters and decoding on devices of OpenCL. Includes
+/// tofsmith/core.hpp.
 
 #include <array>
 #include <cstdint>
@@ -86,6 +87,8 @@ auto fields_of(ConstOrNot<DeviceOptions> auto& o) {
 /// any GPU, and rather too large than too small.
 inline constexpr int auto_min_pixels_to_decode = 300'000, auto_min_pixels_to_filter = 75'000;
 
+struct FrameSource;  ///< of the implementation
+
 /// A Decoder whose work a device does. Bins and statuses are those of the Decoder, everywhere: what
 /// single precision does not prove on the device, the Decoder decides here. Planes of floats are
 /// the same bits where the device rounds quotients and roots correctly and has doubles, else they
@@ -121,6 +124,9 @@ class DeviceDecoder {
 
  private:
   friend class DeviceFilter;
+  friend class DeviceFrames;
+  std::int64_t decode_source(const FrameSource& frame, const Device& its_device,
+                             const DecodedView& decoded, const Progress& progress) const;
   std::unique_ptr<Plan> plan_;
 };
 
@@ -163,6 +169,67 @@ class DeviceFilter {
                       const Image<std::uint8_t>& left_out = {}) const;
 
  private:
+  friend class DeviceFrames;
+  std::int64_t decode_source(const FrameSource& frame, const Device& its_device,
+                             const DeviceDecoder& decoder, const DecodedView& decoded,
+                             FilteredFrame* filtered, const Progress& progress,
+                             const Image<std::uint8_t>& left_out) const;
+  struct Plan;
+  std::unique_ptr<Plan> plan_;
+};
+
+/// Means of frames, and frames added up in time as a TimeFilter does, on a device, where they stay
+/// for the filter in space and the decoder. Numbers are those of the processor: the same bits where
+/// the device rounds quotients and roots correctly, else they differ in the last ones, and where a
+/// threshold lies between, by more.
+///
+/// Keeps what was added up whole, whatever DeviceOptions::memory_mb says. Not for several threads
+/// at once.
+class DeviceFrames {
+ public:
+  /// Compiles kernels for the table.
+  /// @param table        must outlive this one; says from where on raw numbers are clipped
+  /// @param time_filter  must outlive this one and look at no later frames; null: means alone
+  /// @throws std::invalid_argument for options and such filters; IoError if the device fails
+  DeviceFrames(const Device& device, const DecodingTable& table, const TimeFilter* time_filter,
+               const DeviceOptions& options = {});
+  ~DeviceFrames();
+  DeviceFrames(DeviceFrames&&) noexcept;
+  DeviceFrames& operator=(DeviceFrames&&) noexcept;
+
+  /// Whether frames so large are not to be left to the processor.
+  bool takes(std::int64_t pixels) const;
+
+  /// Adds a frame to those of which the next mean is. What is invalid or saturated in one is so in
+  /// the mean.
+  /// @throws std::invalid_argument if the measurements or sizes differ, or the device has no
+  ///         doubles; IoError if the device fails, after which the next frame is the first
+  void add(const RawView& raw);
+  /// The mean of those is the next frame.
+  /// @param averaged  of how many measurements the numbers of one are the mean
+  /// @throws as add(); std::invalid_argument if there are none
+  void take_mean(double averaged = 1.0);
+  /// The next frame, without a mean, of a time filter. @throws as add()
+  void take(const RawView& raw);
+  /// The next frame is the first again, of any size.
+  void forget();
+
+  /// Whether there is a frame to decode.
+  bool has_frame() const;
+  /// Brings the frame back, until the next one: what TimeFilter::add() gives, or the mean in
+  /// doubles.
+  /// @throws std::invalid_argument if there is none; IoError if the device fails
+  RawView numbers();
+  /// Decodes the frame, as DeviceDecoder::decode, and filters it before, as DeviceFilter::decode.
+  /// @param decoder, filter  on the same device
+  /// @return how many pixels were left to the Decoder
+  std::int64_t decode(const DeviceDecoder& decoder, const DecodedView& decoded,
+                      const Progress& progress = {});
+  std::int64_t decode(const DeviceFilter& filter, const DeviceDecoder& decoder,
+                      const DecodedView& decoded, FilteredFrame* filtered = nullptr,
+                      const Progress& progress = {}, const Image<std::uint8_t>& left_out = {});
+
+ private:
   struct Plan;
   std::unique_ptr<Plan> plan_;
 };
@@ -181,5 +248,15 @@ std::optional<DeviceDecoder> device_decoder(std::string_view device, const AnyDe
 /// @param after   null: none follows
 std::optional<DeviceFilter> device_filter(std::string_view device, const Filter& filter,
                                           const DeviceDecoder* after = nullptr);
+
+/// What makes means of frames and adds them up in time on the device of the decoder that follows;
+/// none where there is nothing to do, or that device cannot: filters that look at later frames, and
+/// means without doubles, stay on the processor. `auto` leaves small frames to the processor, as
+/// device_decoder().
+/// @param table, time_filter  must outlive what comes; the filter may be null
+/// @param makes_means         of several frames each
+std::optional<DeviceFrames> device_frames(std::string_view device, const DecodingTable& table,
+                                          const TimeFilter* time_filter, bool makes_means,
+                                          const DeviceDecoder& after);
 
 }  // namespace tofsmith

@@ -48,6 +48,21 @@ class BoundDecoder {
   DeviceFilter on_its_device(const Filter& filter) const {
     return std::move(*device_filter(name_, filter, &*on_device_));
   }
+  /// What adds frames up on its device, if it has one and there is something to add.
+  std::optional<DeviceFrames> frames_on_its_device(const DecodeRequest& request,
+                                                   const TimeFilter* time_filter) const {
+    if (!on_device_) return std::nullopt;
+    return device_frames(name_, std::get<Decoder>(*any_).table(), time_filter, request.average > 1,
+                         *on_device_);
+  }
+  void decode(DeviceFrames& frames, const DecodedView& decoded, const Progress& progress) const {
+    frames.decode(*on_device_, decoded, progress);
+  }
+  void decode(DeviceFrames& frames, const DeviceFilter& filter, const DecodedView& decoded,
+              FilteredFrame* filtered, const Progress& progress,
+              const Image<std::uint8_t>& left_out) const {
+    frames.decode(filter, *on_device_, decoded, filtered, progress, left_out);
+  }
   void decode(const DeviceFilter& filter, const RawView& raw, const DecodedView& decoded,
               FilteredFrame* filtered, const Progress& progress,
               const Image<std::uint8_t>& left_out) const {
@@ -187,6 +202,10 @@ void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_p
 struct BoundRequest : DecodeRequest {
   std::unique_ptr<const Filter> its_filter;
   std::optional<DeviceFilter> on_device;
+  std::unique_ptr<const TimeFilter> its_time_filter;
+  std::optional<DeviceFrames> frames;
+
+  bool has_frame() const { return frames && frames->has_frame(); }
 };
 
 std::unique_ptr<BoundRequest> request_of(const BoundDecoder& decoder,
@@ -195,9 +214,12 @@ std::unique_ptr<BoundRequest> request_of(const BoundDecoder& decoder,
                                          const py::dict& values) {
   auto bound = std::make_unique<BoundRequest>();
   BoundRequest& request = *bound;
-  request.decode_by = [&decoder](const RawView& view, const DecodedView& decoded,
-                                 const Progress& progress) {
-    decoder.decode(view, decoded, progress);
+  request.decode_by = [&](const RawView& view, const DecodedView& decoded,
+                          const Progress& progress) {
+    if (request.has_frame())
+      decoder.decode(*request.frames, decoded, progress);
+    else
+      decoder.decode(view, decoded, progress);
   };
   std::string raw_format, mixed, offset_map, gain_map, stray_light, rays;
   std::vector<std::string> outputs;
@@ -239,13 +261,22 @@ std::unique_ptr<BoundRequest> request_of(const BoundDecoder& decoder,
   request.policy = policy_of(overwrite);
   for (const std::string& plane : outputs) request.outputs.push_back(parse_decoded_plane(plane));
   request.lens = rays.empty() ? to_optional_lens(lens) : std::optional(Lens{.rays = rays});
+  if (decoder.is_on_device()) {
+    if (const std::optional<TimeFilterOptions> options = time_filter_of(request))
+      request.its_time_filter = std::make_unique<const TimeFilter>(table_of(decoder), *options);
+    request.frames = decoder.frames_on_its_device(request, request.its_time_filter.get());
+    if (request.frames) request.frames_by = FramesElsewhere::of(*request.frames);
+  }
   if (request.filter && decoder.is_on_device()) {
     request.its_filter = std::make_unique<const Filter>(table_of(decoder), *request.filter);
     request.on_device.emplace(decoder.on_its_device(*request.its_filter));
     request.filter_by = [&](const RawView& view, const DecodedView& decoded,
                             FilteredFrame* filtered, const Progress& progress,
                             const Image<std::uint8_t>& left_out) {
-      decoder.decode(*request.on_device, view, decoded, filtered, progress, left_out);
+      if (request.has_frame())
+        decoder.decode(*request.frames, *request.on_device, decoded, filtered, progress, left_out);
+      else
+        decoder.decode(*request.on_device, view, decoded, filtered, progress, left_out);
     };
   }
   return bound;

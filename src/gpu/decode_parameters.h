@@ -12,7 +12,8 @@ enum RawNumber {
   raw_float,
   raw_uint16,
   raw_uint8,
-  raw_rounded  ///< floats that were doubles
+  raw_rounded,  ///< floats that were doubles
+  raw_double    ///< of which means are made, no more
 };
 
 /// The pixels of a tile: number k of pixel i stands at i pixel_stride + k measurement_stride.

@@ -52,42 +52,61 @@ DeviceDecoder::Plan::Plan(const Device& device_, const Decoder& decoder_,
                  static_cast<double>(min_tile_pixels), most));
 }
 
-std::int64_t DeviceDecoder::Plan::pixels_of_part(const RawView& raw) const {
+std::int64_t DeviceDecoder::Plan::pixels_of_part(std::int64_t pixels) const {
   constexpr std::int64_t parts = 4;  // the first copy and the last are beside no kernel
-  const std::int64_t pixels = raw.pixels();
   const std::int64_t part = pixels <= 2 * min_overlapped_pixels
                                 ? pixels
                                 : std::max((pixels + parts - 1) / parts, min_overlapped_pixels);
   return std::min(part, tile_pixels);
 }
 
-void DeviceDecoder::Plan::start(DeviceTile& in, const RawView& raw, const FramePart& part,
+void DeviceDecoder::Plan::start(DeviceTile& in, const FrameSource& frame, const FramePart& part,
                                 const DecodedView& planes) {
-  in.upload(raw, part.first, part.count);
+  in.bring(frame, part.first, part.count);
   in.decode(planes);
   in.queue().flush();
 }
 
-std::int64_t DeviceDecoder::Plan::finish(DeviceTile& in, const RawView& raw, const FramePart& part,
-                                         const DecodedView& decoded) {
+std::int64_t DeviceDecoder::Plan::finish(DeviceTile& in, const FrameSource& frame,
+                                         const FramePart& part, const DecodedView& decoded) {
   const DecodedView planes = decoded.from(static_cast<std::size_t>(part.first));
   in.fetch(planes);
   const std::vector<std::int32_t> open = in.open_pixels();
-  // From where they came: doubles are floats on the device.
-  if (!open.empty())
-    std::visit(
-        [&](const auto* data) {
-          with_numbers_of<std::remove_cvref_t<decltype(*data)>>(
-              raw, part.first, open,
-              [&](const RawView& numbers) { decode_open_pixels(numbers, open, planes); });
-        },
-        raw.data);
+  if (!open.empty()) decode_open_pixels_of(in, frame, part, open, planes);
   return std::ssize(open);
 }
 
-void DeviceDecoder::Plan::decode_from(FrameDone& done, const RawView& raw,
+/// With numbers from where they came: doubles are floats on the device.
+void DeviceDecoder::Plan::decode_open_pixels_of(DeviceTile& in, const FrameSource& frame,
+                                                const FramePart& part,
+                                                const std::vector<std::int32_t>& open,
+                                                const DecodedView& planes) {
+  if (!frame.on_device)
+    return std::visit(
+        [&](const auto* data) {
+          with_numbers_of<std::remove_cvref_t<decltype(*data)>>(
+              frame.raw, part.first, open,
+              [&](const RawView& numbers) { decode_open_pixels(numbers, open, planes); });
+        },
+        frame.raw.data);
+  const int measurements = decoder.measurements();
+  const OpenNumbers there(in.numbers_of(open), measurements);
+  RawView view = there.view();
+  std::vector<double> exact;
+  if (frame.means) {
+    std::vector<std::int32_t> in_frame = open;
+    for (std::int32_t& pixel : in_frame) pixel += static_cast<std::int32_t>(part.first);
+    exact = frame.means->numbers_of(in_frame);
+    const float* const averaged = view.averaged;
+    view = RawView::interleaved(exact.data(), 1, static_cast<int>(open.size()), measurements);
+    view.averaged = averaged;
+  }
+  decode_open_pixels(view, open, planes);
+}
+
+void DeviceDecoder::Plan::decode_from(FrameDone& done, const FrameSource& frame,
                                       const DecodedView& planes, const Progress& progress) {
-  const std::int64_t all = raw.pixels(), at_a_time = pixels_of_part(raw);
+  const std::int64_t all = frame.pixels(), at_a_time = pixels_of_part(all);
   if (all - done.pixels > at_a_time && !other_tile)
     other_tile = std::make_unique<DeviceTile>(device, decoder, options.use_doubles);
   std::int64_t next = done.pixels;
@@ -97,14 +116,32 @@ void DeviceDecoder::Plan::decode_from(FrameDone& done, const RawView& raw,
     const std::optional<FramePart> before = std::exchange(under_way, std::nullopt);
     if (next < all) {
       under_way = FramePart{next, std::min(all - next, at_a_time)};
-      start(*here, raw, *under_way, planes);
+      start(*here, frame, *under_way, planes);
       next += under_way->count;
     }
     if (!before) continue;
-    done.by_decoder += finish(*there, raw, *before, planes);
+    done.by_decoder += finish(*there, frame, *before, planes);
     done.pixels = before->first + before->count;
     report(progress, static_cast<double>(done.pixels) / static_cast<double>(all), "decoding");
   }
+}
+
+std::int64_t DeviceDecoder::Plan::decode_all(const FrameSource& frame, const DecodedView& planes,
+                                             const Progress& progress) {
+  FrameDone done;
+  while (done.pixels < frame.pixels()) {
+    const std::int64_t before = tile_pixels;
+    try {
+      decode_from(done, frame, planes, progress);
+    } catch (const OutOfDeviceMemory&) {
+      if (before <= min_tile_pixels) throw;
+      tile.release();
+      other_tile.reset();
+      const std::int64_t tried = std::min(before, frame.pixels() - done.pixels);
+      tile_pixels = std::max(tried / 2, min_tile_pixels);
+    }
+  }
+  return done.by_decoder;
 }
 
 std::int64_t DeviceDecoder::Plan::decode_what_is_there(const DecodedView& planes) {
@@ -164,20 +201,17 @@ std::int64_t DeviceDecoder::decode(const RawView& raw, const DecodedView& decode
     return raw.pixels();
   }
   const std::lock_guard lock(plan_->mutex);
-  FrameDone done;
-  while (done.pixels < raw.pixels()) {
-    const std::int64_t before = plan_->tile_pixels;
-    try {
-      plan_->decode_from(done, raw, decoded, progress);
-    } catch (const OutOfDeviceMemory&) {
-      if (before <= min_tile_pixels) throw;
-      plan_->tile.release();
-      plan_->other_tile.reset();
-      const std::int64_t tried = std::min(before, raw.pixels() - done.pixels);
-      plan_->tile_pixels = std::max(tried / 2, min_tile_pixels);
-    }
-  }
-  return done.by_decoder;
+  return plan_->decode_all({.raw = raw}, decoded, progress);
+}
+
+std::int64_t DeviceDecoder::decode_source(const FrameSource& frame, const Device& its_device,
+                                          const DecodedView& decoded,
+                                          const Progress& progress) const {
+  require(&its_device.state() == &device().state(), "decoder's device", device().info().name,
+          "must be that of the frame, or a copy");
+  require_frame(frame.raw, plan_->decoder.measurements());
+  const std::lock_guard lock(plan_->mutex);
+  return plan_->decode_all(frame, decoded, progress);
 }
 
 DepthImage DeviceDecoder::decode(const RawFrames& raw, int frame, const Progress& progress) const {

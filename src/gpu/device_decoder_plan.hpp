@@ -32,8 +32,12 @@ struct DeviceDecoder::Plan {
   /// Decodes pixels of a frame from those that are done on, in parts: while one is decoded in its
   /// tile, the next is brought to another.
   /// @param done  how far it came, also when it throws
-  void decode_from(FrameDone& done, const RawView& raw, const DecodedView& planes,
+  void decode_from(FrameDone& done, const FrameSource& frame, const DecodedView& planes,
                    const Progress& progress);
+  /// Decodes a frame, in smaller parts where the device lacks memory.
+  /// @return how many pixels the decoder decoded
+  std::int64_t decode_all(const FrameSource& frame, const DecodedView& planes,
+                          const Progress& progress);
   /// Decodes pixels that are in the tile. @param planes  from the first of them on
   /// @return how many the decoder decoded
   std::int64_t decode_what_is_there(const DecodedView& planes);
@@ -51,10 +55,13 @@ struct DeviceDecoder::Plan {
   std::int64_t tile_pixels;                // of each, at most
 
  private:
-  std::int64_t pixels_of_part(const RawView& raw) const;
-  void start(DeviceTile& in, const RawView& raw, const FramePart& part, const DecodedView& planes);
-  std::int64_t finish(DeviceTile& in, const RawView& raw, const FramePart& part,
+  std::int64_t pixels_of_part(std::int64_t pixels) const;
+  void start(DeviceTile& in, const FrameSource& frame, const FramePart& part,
+             const DecodedView& planes);
+  std::int64_t finish(DeviceTile& in, const FrameSource& frame, const FramePart& part,
                       const DecodedView& planes);
+  void decode_open_pixels_of(DeviceTile& in, const FrameSource& frame, const FramePart& part,
+                             const std::vector<std::int32_t>& open, const DecodedView& planes);
 };
 
 }  // namespace tofsmith

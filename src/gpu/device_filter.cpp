@@ -51,13 +51,13 @@ struct DeviceFilter::Plan {
 
   /// Rows that come out at a time so that all fits into the memory there is to be.
   int rows_at_a_time(const RawView& raw) const;
-  std::int64_t run(const RawView& raw, DeviceDecoder::Plan* after, const DecodedView& decoded,
-                   FilteredFrame* filtered, const Progress& progress,
+  std::int64_t run(const FrameSource& source, DeviceDecoder::Plan* after,
+                   const DecodedView& decoded, FilteredFrame* filtered, const Progress& progress,
                    const Image<std::uint8_t>& left_out);
   std::int64_t run_here(const RawView& raw, const DeviceDecoder::Plan* after,
                         const DecodedView& decoded, FilteredFrame* filtered,
                         const Progress& progress, const Image<std::uint8_t>& left_out);
-  std::int64_t run_band(const RawView& raw, IndexRange rows, DeviceDecoder::Plan* after,
+  std::int64_t run_band(const FrameSource& source, IndexRange rows, DeviceDecoder::Plan* after,
                         const DecodedView& decoded, FilteredRows* filtered,
                         const Progress& progress, const Image<std::uint8_t>& left_out);
 
@@ -81,10 +81,11 @@ int DeviceFilter::Plan::rows_at_a_time(const RawView& raw) const {
 }
 
 /// Filters the rows with those that they depend on, which have been filtered or will be.
-std::int64_t DeviceFilter::Plan::run_band(const RawView& raw, IndexRange rows,
+std::int64_t DeviceFilter::Plan::run_band(const FrameSource& source, IndexRange rows,
                                           DeviceDecoder::Plan* after, const DecodedView& decoded,
                                           FilteredRows* filtered, const Progress& progress,
                                           const Image<std::uint8_t>& left_out) {
+  const RawView& raw = source.raw;
   const int reach = DeviceFrame::reach(filter.options());
   const auto first = static_cast<int>(rows.begin), count = static_cast<int>(rows.end) - first;
   const int from = std::max(0, first - reach),
@@ -92,7 +93,7 @@ std::int64_t DeviceFilter::Plan::run_band(const RawView& raw, IndexRange rows,
   const FilterOptions& steps = filter.options();
   const double all_steps = steps.windows * (1 + steps.slope_rounds) + 1;
   int done = 0;
-  frame.filter(raw, from, to - from, left_out.empty() ? nullptr : left_out.pixels.data(), [&] {
+  frame.filter(source, from, to - from, left_out.empty() ? nullptr : left_out.pixels.data(), [&] {
     if (!progress) return;
     frame.queue().finish();
     report(progress, ++done / all_steps, "filtering");
@@ -108,11 +109,12 @@ std::int64_t DeviceFilter::Plan::run_band(const RawView& raw, IndexRange rows,
   return after ? after->decode_what_is_there(decoded.from(first_pixel)) : 0;
 }
 
-std::int64_t DeviceFilter::Plan::run(const RawView& raw, DeviceDecoder::Plan* after,
+std::int64_t DeviceFilter::Plan::run(const FrameSource& source, DeviceDecoder::Plan* after,
                                      const DecodedView& decoded, FilteredFrame* filtered,
                                      const Progress& progress,
                                      const Image<std::uint8_t>& left_out) {
-  if (raw.pixels() < options.min_pixels)
+  const RawView& raw = source.raw;
+  if (raw.pixels() < options.min_pixels && !source.on_device)
     return run_here(raw, after, decoded, filtered, progress, left_out);
   std::optional<FilteredRows> wanted;
   if (filtered) wanted.emplace(raw, *filtered);
@@ -127,7 +129,8 @@ std::int64_t DeviceFilter::Plan::run(const RawView& raw, DeviceDecoder::Plan* af
       return progress(done / height, step);
     };
     try {
-      left_open += run_band(raw, band, after, decoded, wanted ? &*wanted : nullptr, here, left_out);
+      left_open +=
+          run_band(source, band, after, decoded, wanted ? &*wanted : nullptr, here, left_out);
       first = band.end;
     } catch (const OutOfDeviceMemory&) {
       if (rows <= min_band_rows) throw;
@@ -168,7 +171,7 @@ void DeviceFilter::apply(const RawView& raw, FilteredFrame& filtered, const Prog
                          const Image<std::uint8_t>& left_out) const {
   require_filterable(plan_of(plan_->filter), raw, left_out);
   const std::lock_guard lock(plan_->mutex);
-  plan_->run(raw, nullptr, {}, &filtered, progress, left_out);
+  plan_->run({.raw = raw}, nullptr, {}, &filtered, progress, left_out);
 }
 
 FilteredFrame DeviceFilter::apply(const RawFrames& raw, int frame, const Progress& progress) const {
@@ -181,13 +184,22 @@ std::int64_t DeviceFilter::decode(const RawView& raw, const DeviceDecoder& decod
                                   const DecodedView& decoded, FilteredFrame* filtered,
                                   const Progress& progress,
                                   const Image<std::uint8_t>& left_out) const {
-  require_filterable(plan_of(plan_->filter), raw, left_out);
+  return decode_source({.raw = raw}, device(), decoder, decoded, filtered, progress, left_out);
+}
+
+std::int64_t DeviceFilter::decode_source(const FrameSource& frame, const Device& its_device,
+                                         const DeviceDecoder& decoder, const DecodedView& decoded,
+                                         FilteredFrame* filtered, const Progress& progress,
+                                         const Image<std::uint8_t>& left_out) const {
+  require_filterable(plan_of(plan_->filter), frame.raw, left_out);
+  require(&its_device.state() == &device().state(), "filter's device", device().info().name,
+          "must be that of the frame, or a copy");
   require(&decoder.device().state() == &device().state(), "decoder's device",
           decoder.device().info().name, "must be that of the filter, or a copy");
-  require(decoder.plan_->decoder.measurements() == raw.measurements, "decoder's measurements",
+  require(decoder.plan_->decoder.measurements() == frame.raw.measurements, "decoder's measurements",
           decoder.plan_->decoder.measurements(), "must be those of the frame");
   const std::scoped_lock lock(plan_->mutex, decoder.plan_->mutex);
-  return plan_->run(raw, decoder.plan_.get(), decoded, filtered, progress, left_out);
+  return plan_->run(frame, decoder.plan_.get(), decoded, filtered, progress, left_out);
 }
 
 std::optional<DeviceFilter> device_filter(std::string_view device, const Filter& filter,

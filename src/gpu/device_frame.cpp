@@ -93,13 +93,13 @@ ResultParameters DeviceFrame::result(int set, int measured) const {
           .rows = parameters_.height};
 }
 
-void DeviceFrame::filter(const RawView& raw, int first_row, int rows, const std::uint8_t* left_out,
-                         const StepDone& step_done) {
+void DeviceFrame::filter(const FrameSource& frame, int first_row, int rows,
+                         const std::uint8_t* left_out, const StepDone& step_done) {
   const int windows = plan_.options.windows;
-  const std::int64_t first = std::int64_t{first_row} * raw.width,
-                     pixels = std::int64_t{rows} * raw.width;
-  resize(rows, raw.width);
-  raw_.upload(queue(), raw, first, pixels);
+  const std::int64_t first = std::int64_t{first_row} * frame.raw.width,
+                     pixels = std::int64_t{rows} * frame.raw.width;
+  resize(rows, frame.raw.width);
+  frame.bring(queue(), raw_, first, pixels);
   has_left_out_ = left_out != nullptr;
   if (has_left_out_)
     queue().upload(left_out + first, static_cast<std::size_t>(pixels),

@@ -29,7 +29,7 @@ class DeviceFrame {
   /// Filters rows of a frame as if there were no others. Step by step, it does not wait for the
   /// device.
   /// @param left_out  (H, W) of the whole frame, or null
-  void filter(const RawView& raw, int first_row, int rows, const std::uint8_t* left_out,
+  void filter(const FrameSource& frame, int first_row, int rows, const std::uint8_t* left_out,
               const StepDone& step_done);
   /// Writes filtered numbers of some of the rows, counted from the first of them.
   void write(int first_row, int rows, const DeviceRaw& to) const;

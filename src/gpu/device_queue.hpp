@@ -53,7 +53,9 @@ class DeviceQueue {
   void upload(const void* from, std::size_t bytes, const DeviceMemory& to) const;
   /// @param bytes  of the first of `from`
   void download(const DeviceMemory& from, std::size_t bytes, void* to) const;
-  void copy(const DeviceMemory& from, const DeviceMemory& to, std::size_t bytes) const;
+  /// @param first  byte of `from`, which goes to `first_there`
+  void copy(const DeviceMemory& from, std::size_t first, const DeviceMemory& to,
+            std::size_t first_there, std::size_t bytes) const;
   /// Zeroes all of it.
   void clear(const DeviceMemory& memory) const;
   /// Compiled once for a device and these options.

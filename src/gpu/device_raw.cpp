@@ -11,10 +11,10 @@ namespace tofsmith {
 
 namespace {
 
-/// Numbers of pixels first .. first + count - 1 side by side, doubles as floats.
-template <typename Number>
+/// Numbers of pixels first .. first + count - 1 side by side, doubles as floats unless exactly.
+template <bool exactly, typename Number>
 auto packed(const RawView& raw, std::int64_t first, std::int64_t count) {
-  using Packed = std::conditional_t<std::is_same_v<Number, double>, float, Number>;
+  using Packed = std::conditional_t<std::is_same_v<Number, double> && !exactly, float, Number>;
   std::vector<Packed> values(static_cast<std::size_t>(count * raw.measurements));
   for_each_run(raw, first, count, [&](const auto* from, std::int64_t length, std::int64_t done) {
     Packed* to = &values[static_cast<std::size_t>(done * raw.measurements)];
@@ -30,11 +30,12 @@ bool is_packed(const RawView& raw) {
          raw.row_stride == raw.width * raw.column_stride;
 }
 
-template <typename Number>
+template <bool exactly, typename Number>
 constexpr RawNumber raw_number_of() {
   if (std::is_same_v<Number, std::uint16_t>) return raw_uint16;
   if (std::is_same_v<Number, std::uint8_t>) return raw_uint8;
-  return std::is_same_v<Number, double> ? raw_rounded : raw_float;
+  if (std::is_same_v<Number, double>) return exactly ? raw_double : raw_rounded;
+  return raw_float;
 }
 
 }  // namespace
@@ -47,8 +48,9 @@ DeviceMemory* reserve(const DeviceQueue& queue, DeviceMemory& memory, std::int64
   return &memory;
 }
 
-void DeviceRaw::upload(const DeviceQueue& queue, const RawView& view, std::int64_t first,
-                       std::int64_t count) {
+template <bool exactly>
+void DeviceRaw::upload_numbers(const DeviceQueue& queue, const RawView& view, std::int64_t first,
+                               std::int64_t count) {
   tile_ = {.pixels = static_cast<int>(count),
            .pixel_stride = view.measurements,
            .measurement_stride = 1,
@@ -56,17 +58,22 @@ void DeviceRaw::upload(const DeviceQueue& queue, const RawView& view, std::int64
   std::visit(
       [&](const auto* data) {
         using Number = std::remove_cvref_t<decltype(*data)>;
-        const auto upload_numbers = [&](const auto* numbers) {
+        const auto upload = [&](const auto* numbers) {
           const std::int64_t bytes = count * view.measurements * std::int64_t{sizeof(*numbers)};
           queue.upload(numbers, static_cast<std::size_t>(bytes), *reserve(queue, numbers_, bytes));
         };
-        tile_.number = raw_number_of<Number>();
-        if (is_packed(view) && !std::is_same_v<Number, double>)
-          upload_numbers(data + first * view.measurements);
+        tile_.number = raw_number_of<exactly, Number>();
+        if (is_packed(view) && tile_.number != raw_rounded)
+          upload(data + first * view.measurements);
         else
-          upload_numbers(packed<Number>(view, first, count).data());
+          upload(packed<exactly, Number>(view, first, count).data());
       },
       view.data);
+}
+
+void DeviceRaw::upload(const DeviceQueue& queue, const RawView& view, std::int64_t first,
+                       std::int64_t count) {
+  upload_numbers<false>(queue, view, first, count);
   has_averaged_ = view.averaged != nullptr;
   const std::int64_t bytes = count * std::int64_t{sizeof(float)};
   if (has_averaged_)
@@ -74,11 +81,28 @@ void DeviceRaw::upload(const DeviceQueue& queue, const RawView& view, std::int64
                  *reserve(queue, averaged_, bytes));
 }
 
-void DeviceRaw::reserve_planes(const DeviceQueue& queue, std::int64_t pixels, int measurements) {
+void DeviceRaw::upload_exactly(const DeviceQueue& queue, const RawView& view) {
+  upload_numbers<true>(queue, view, 0, view.pixels());
+  has_averaged_ = false;
+}
+
+void DeviceRaw::copy(const DeviceQueue& queue, const DeviceRaw& frame, int measurements,
+                     std::int64_t first, std::int64_t count) {
+  reserve_planes(queue, count, measurements, frame.tile_.number == raw_rounded);
+  const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(float),
+                    from = static_cast<std::size_t>(first) * sizeof(float),
+                    plane = static_cast<std::size_t>(frame.tile_.pixels) * sizeof(float);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(measurements); ++k)
+    queue.copy(frame.numbers_, k * plane + from, numbers_, k * bytes, bytes);
+  queue.copy(frame.averaged_, from, averaged_, 0, bytes);
+}
+
+void DeviceRaw::reserve_planes(const DeviceQueue& queue, std::int64_t pixels, int measurements,
+                               bool are_rounded) {
   tile_ = {.pixels = static_cast<int>(pixels),
            .pixel_stride = 1,
            .measurement_stride = static_cast<int>(pixels),
-           .number = raw_float};
+           .number = are_rounded ? raw_rounded : raw_float};
   has_averaged_ = true;
   const std::int64_t bytes = pixels * std::int64_t{sizeof(float)};
   reserve(queue, numbers_, bytes * measurements);

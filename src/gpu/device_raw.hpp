@@ -19,17 +19,29 @@ class DeviceRaw {
   /// Brings pixels first .. first + count - 1 of a frame, row by row.
   void upload(const DeviceQueue& queue, const RawView& view, std::int64_t first,
               std::int64_t count);
+  /// The same with doubles as they are, of which means are made.
+  void upload_exactly(const DeviceQueue& queue, const RawView& view);
+  /// Copies pixels first .. first + count - 1 of a frame that is on the device.
+  void copy(const DeviceQueue& queue, const DeviceRaw& frame, int measurements, std::int64_t first,
+            std::int64_t count);
   /// Makes room for floats, measurement after measurement, that a kernel writes; all of them are
   /// means.
-  void reserve_planes(const DeviceQueue& queue, std::int64_t pixels, int measurements);
+  /// @param are_rounded  they were doubles
+  void reserve_planes(const DeviceQueue& queue, std::int64_t pixels, int measurements,
+                      bool are_rounded = false);
   void release();
 
+  std::int64_t pixels() const { return tile_.pixels; }
   const TileParameters& tile() const { return tile_; }
   const DeviceMemory* numbers() const { return &numbers_; }
   /// Null where they are no means.
   const DeviceMemory* averaged() const { return has_averaged_ ? &averaged_ : nullptr; }
 
  private:
+  template <bool exactly>
+  void upload_numbers(const DeviceQueue& queue, const RawView& view, std::int64_t first,
+                      std::int64_t count);
+
   TileParameters tile_{};
   bool has_averaged_ = false;
   DeviceMemory numbers_, averaged_;

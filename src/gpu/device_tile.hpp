@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gpu/decode_tables.hpp"
-#include "gpu/device_raw.hpp"
+#include "gpu/frame_source.hpp"
 
 namespace tofsmith {
 
@@ -33,8 +33,8 @@ class DeviceTile {
   std::int64_t bytes_per_pixel() const;
 
   /// Brings pixels first .. first + count - 1 of a frame, row by row.
-  void upload(const RawView& view, std::int64_t first, std::int64_t count) {
-    raw_.upload(queue_, view, first, count);
+  void bring(const FrameSource& frame, std::int64_t first, std::int64_t count) {
+    frame.bring(queue_, raw_, first, count);
   }
   /// Makes room for so many pixels whose numbers, and of how many they are the mean, a kernel
   /// writes: DeviceRaw::reserve_planes().

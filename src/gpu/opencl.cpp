@@ -214,9 +214,10 @@ void DeviceQueue::download(const DeviceMemory& from, std::size_t bytes, void* to
         place_of(device_.info()), "copying from the device");
 }
 
-void DeviceQueue::copy(const DeviceMemory& from, const DeviceMemory& to, std::size_t bytes) const {
-  check(clEnqueueCopyBuffer(queue_of(handle_), memory_of(from), memory_of(to), 0, 0, bytes, 0,
-                            nullptr, nullptr),
+void DeviceQueue::copy(const DeviceMemory& from, std::size_t first, const DeviceMemory& to,
+                       std::size_t first_there, std::size_t bytes) const {
+  check(clEnqueueCopyBuffer(queue_of(handle_), memory_of(from), memory_of(to), first, first_there,
+                            bytes, 0, nullptr, nullptr),
         place_of(device_.info()), "copying on the device");
 }
 

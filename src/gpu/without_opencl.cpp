@@ -22,7 +22,10 @@ DeviceQueue::DeviceQueue(const Device& device) : device_(device) { refuse(); }
 DeviceMemory DeviceQueue::allocate(std::size_t) const { refuse(); }
 void DeviceQueue::upload(const void*, std::size_t, const DeviceMemory&) const { refuse(); }
 void DeviceQueue::download(const DeviceMemory&, std::size_t, void*) const { refuse(); }
-void DeviceQueue::copy(const DeviceMemory&, const DeviceMemory&, std::size_t) const { refuse(); }
+void DeviceQueue::copy(const DeviceMemory&, std::size_t, const DeviceMemory&, std::size_t,
+                       std::size_t) const {
+  refuse();
+}
 void DeviceQueue::clear(const DeviceMemory&) const { refuse(); }
 DeviceKernel DeviceQueue::kernel(std::string_view, const std::string&, const char*) const {
   refuse();

@@ -48,7 +48,13 @@ class Device(CommandLineTest):
     def test_a_device_writes_the_files_that_the_processor_writes(self):
         for more in ((), ("--filter", "normal"), ("--memory-mb", "4"), ("--average", "2"),
                      ("--filter", "light", "--mixed", "snap", "--outputs", "depth,status,averaged"),
-                     ("--filter", "strong", "--time-filter", "2", "--outputs", "averaged,bin")):
+                     ("--filter", "strong", "--time-filter", "2", "--outputs", "averaged,bin"),
+                     ("--time-filter", "9"), ("--time-filter", "9", "--filter", "light"),
+                     ("--time-filter", "9", "--mixed", "snap", "--outputs", "depth,averaged"),
+                     ("--time-filter", "9", "--look-ahead", "1"),
+                     ("--average", "2", "--averaged", "3", "--memory-mb", "4"),
+                     ("--average", "2", "--time-filter", "9", "--mixed", "label"),
+                     ("--average", "2", "--filter", "light", "--mixed", "label")):
             for device in ("cpu", "auto", "0"):
                 code, _, error = self.decode(device, *more, "-o", device + ".npz", "--force")
                 self.assertEqual((code, error), (0, ""))

@@ -142,6 +142,62 @@ TEST_F(FailingDevice, IsAnErrorWhereverItFailsAndWorksAgainWhenItIsBack) {
     }
 }
 
+TEST_F(FailingDevice, ForgetsFramesThatItAddedUpAndStartsAnewWhenItIsBack) {
+  const TimeFilter time_filter(setup_.decoder.table(), {.before_filter = true});
+  const DeviceDecoder decoder(device(), setup_.decoder);
+  DeviceFrames frames(device(), setup_.decoder.table(), &time_filter);
+  const auto add_up = [&](Outputs& outputs) {
+    frames.forget();
+    frames.take(view());
+    if (device().info().has_doubles) {
+      frames.add(view());
+      frames.add(view());
+      frames.take_mean();
+    } else {
+      frames.take(view());
+    }
+    frames.decode(decoder, outputs.view());
+  };
+  Outputs expected(expected_.bin.size());
+  add_up(expected);
+  for (const cl_int error :
+       {CL_DEVICE_NOT_AVAILABLE, CL_OUT_OF_RESOURCES, CL_MEM_OBJECT_ALLOCATION_FAILURE})
+    for (int first = 0;; ++first) {
+      Outputs outputs(expected.bin.size());
+      failure = {.first = first, .error = error};
+      bool has_failed = false;
+      try {
+        add_up(outputs);
+      } catch (const IoError& lost) {
+        EXPECT_NE(std::string(lost.what()).find(device().info().name), std::string::npos);
+        has_failed = true;
+      }
+      ASSERT_EQ(has_failed, failure.calls > first);
+      failure = {};
+      if (!has_failed) break;
+      add_up(outputs);
+      expect_same(outputs, expected);
+    }
+}
+
+TEST_F(FailingDevice, HasNoFrameWhereOneWasLost) {
+  const TimeFilter time_filter(setup_.decoder.table());
+  DeviceFrames frames(device(), setup_.decoder.table(), &time_filter);
+  frames.take(view());
+  EXPECT_TRUE(frames.has_frame());
+  failure = {.first = 0, .error = CL_DEVICE_NOT_AVAILABLE};
+  EXPECT_THROW(frames.take(view()), IoError);
+  EXPECT_THROW(DeviceFrames(device(), setup_.decoder.table(), &time_filter), IoError);
+  failure = {};
+  EXPECT_FALSE(frames.has_frame());
+  EXPECT_THROW(frames.numbers(), InvalidArgument);
+  frames.take(view());  // the first again, which comes as it is
+  const RawView first = frames.numbers();
+  std::vector<float> numbers(raw_.size());
+  copy_pixels(first, 0, first.pixels(), numbers.data());
+  EXPECT_EQ(numbers, raw_);
+}
+
 TEST_F(FailingDevice, DecodesWhatItDecodedInPartsWhereverItFails) {
   setup_.decoder.decode(view(), expected_.view());
   const DeviceDecoder decoder(device(), setup_.decoder, {.memory_mb = 1e-3});

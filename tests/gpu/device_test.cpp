@@ -63,7 +63,7 @@ TEST_F(DeviceQueues, BringBackWhatTheyTook) {
   const std::vector<std::int32_t> sent = {3, 1, 4, 1, 5};
   const DeviceMemory a = queue.allocate(20), b = queue.allocate(20);
   queue.upload(sent.data(), 20, a);
-  queue.copy(a, b, 20);
+  queue.copy(a, 0, b, 0, 20);
   std::vector<std::int32_t> back(5);
   queue.download(b, 20, back.data());
   EXPECT_EQ(back, sent);

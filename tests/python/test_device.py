@@ -62,6 +62,20 @@ def test_a_device_filters_as_the_processor(decoders, tmp_path):
                                    np.load(tmp_path / f"here{plane}.npy"), rtol=1e-5)
 
 
+def test_a_device_adds_frames_up_as_the_processor(decoders, tmp_path):
+    np.save(tmp_path / "raw.npy", np.concatenate([raw_frames(), raw_frames()]))
+    cases = [{"time_filter": 8}, {"time_filter": 8, "filter": "light"}, {"average": 2},
+             {"average": 2, "time_filter": 8, "mixed": "label"},
+             {"time_filter": {"max_frames": 8, "look_ahead": 1}}]
+    for number, case in enumerate(cases):
+        for name, decoder in zip(("here", "there"), decoders):
+            decoder.decode_recording(tmp_path / "raw.npy", tmp_path / f"{name}{number}.npy",
+                                     stack=True, outputs=["depth", "averaged"], **case)
+        for plane in ("", "-averaged"):
+            np.testing.assert_allclose(np.load(tmp_path / f"there{number}{plane}.npy"),
+                                       np.load(tmp_path / f"here{number}{plane}.npy"), rtol=1e-5)
+
+
 def test_a_filter_has_a_device_of_its_own(decoders):
     here = ts.Filter("hamiltonian-k4", "paper-10f0")
     there = ts.Filter("hamiltonian-k4", "paper-10f0", device="0")

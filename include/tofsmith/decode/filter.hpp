@@ -246,6 +246,7 @@ class TimeFilter {
   struct State;  ///< of the implementation
 
  private:
+  friend const State& state_of(const TimeFilter& filter);
   std::unique_ptr<State> state_;
 };
 

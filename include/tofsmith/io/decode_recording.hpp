@@ -65,6 +65,28 @@ DepthKind parse_depth_kind(std::string_view name);
 /// Whether an output of this name holds points: .ply, .pcd.
 bool holds_points(const std::filesystem::path& path);
 
+/// What makes means of frames and adds them up in time in place of this computer's processor, as it
+/// does, and keeps what comes of that for DecodeRequest::decode_by and filter_by, which then read
+/// no raw numbers here: a DeviceFrames. Empty: nothing does.
+struct FramesElsewhere {
+  std::function<bool(std::int64_t pixels)> takes;  ///< whether frames so large, for a recording
+  std::function<void(const RawView& raw)> add;     ///< to those of which the next mean is
+  std::function<void(double averaged)> take_mean;  ///< of those; of so many measurements one is
+  std::function<void(const RawView& raw)> take;    ///< one that is no mean
+  std::function<RawView()> numbers;  ///< of what comes of it, where they are asked for
+
+  explicit operator bool() const { return static_cast<bool>(takes); }
+  /// @param frames  a DeviceFrames; must outlive what comes
+  template <typename Frames>
+  static FramesElsewhere of(Frames& frames) {
+    return {.takes = [&frames](std::int64_t pixels) { return frames.takes(pixels); },
+            .add = [&frames](const RawView& raw) { frames.add(raw); },
+            .take_mean = [&frames](double averaged) { frames.take_mean(averaged); },
+            .take = [&frames](const RawView& raw) { frames.take(raw); },
+            .numbers = [&frames] { return frames.numbers(); }};
+  }
+};
+
 /// A recording to be decoded into files.
 struct DecodeRequest {
   /// .npy, .npz or .h5, (H, W, K) or (F, H, W, K), of any size; or K files, one a measurement in
@@ -123,9 +145,14 @@ struct DecodeRequest {
   std::function<void(const RawView& raw, const DecodedView& decoded, FilteredFrame* filtered,
                      const Progress& progress, const Image<std::uint8_t>& left_out)>
       filter_by;
+  /// Makes means of frames and filters them in time, where decode_by and filter_by are too.
+  FramesElsewhere frames_by;
   OutputPolicy policy = OutputPolicy::refuse_existing;
   std::vector<std::string> other_inputs;  ///< files that were read too: no output replaces them
 };
+
+/// The request's filter in time as it is used: before a filter in space, if there is one.
+std::optional<TimeFilterOptions> time_filter_of(const DecodeRequest& request);
 
 /// How many pixels have which status.
 class StatusCounts {

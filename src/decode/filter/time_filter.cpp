@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "decode/filter/time_filter_state.hpp"
+#include "decode/filter/shared/time_filter_parts.hpp"
 #include "decode/output/pixel_output.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -20,6 +20,8 @@ TimeFilter::TimeFilter(const DecodingTable& table, const TimeFilterOptions& opti
 TimeFilter::~TimeFilter() = default;
 TimeFilter::TimeFilter(TimeFilter&&) noexcept = default;
 TimeFilter& TimeFilter::operator=(TimeFilter&&) noexcept = default;
+
+const TimeFilter::State& state_of(const TimeFilter& filter) { return *filter.state_; }
 
 const DecodingTable& TimeFilter::table() const { return state_->table; }
 const TimeFilterOptions& TimeFilter::options() const { return state_->options; }

@@ -15,15 +15,6 @@ namespace tofsmith {
 
 namespace {
 
-/// Side of the cells whose sums show what many pixels share, and how far cells around one count.
-constexpr int cell_side = 8, cell_reach = 1;
-static_assert(compared_strip_rows % cell_side == 0, "a strip is of whole cells");
-
-/// The weight of a pixel that is no measurement, before those around it are compared with it.
-constexpr float tells_nothing = -1.0f;
-/// Shares of the past above this are left by chance, and those beside a pixel say nothing about it.
-constexpr float telling_share = 0.5f;
-
 int cells_of(int pixels) { return (pixels + cell_side - 1) / cell_side; }
 
 }  // namespace

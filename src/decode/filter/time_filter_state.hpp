@@ -17,6 +17,15 @@ namespace tofsmith {
 /// Rows of a frame that one thread compares at a time.
 inline constexpr int compared_strip_rows = 32;
 
+/// Side of the cells whose sums show what many pixels share, and how far cells around one count.
+inline constexpr int cell_side = 8, cell_reach = 1;
+static_assert(compared_strip_rows % cell_side == 0, "a strip is of whole cells");
+
+/// The weight of a pixel that is no measurement, before those around it are compared with it.
+inline constexpr float tells_nothing = -1.0f;
+/// Shares of the past above this are left by chance, and those beside a pixel say nothing about it.
+inline constexpr float telling_share = 0.5f;
+
 /// Frames of one side of another, added up.
 struct AddedFrames {
   bool is_empty = true;

@@ -123,19 +123,28 @@ std::vector<DecodedPlane> planes_to_write(const DecodeRequest& request, const An
   return planes;
 }
 
+std::optional<TimeFilterOptions> time_filter_of(const DecodeRequest& request) {
+  std::optional<TimeFilterOptions> options = request.time_filter;
+  if (options && request.filter) options->before_filter = true;
+  return options;
+}
+
 Preparation preparation_of(const DecodeRequest& request) {
+  const bool wants_averaged =
+      std::ranges::find(request.outputs, DecodedPlane::averaged) != request.outputs.end();
   Preparation preparation{.average = request.average,
                           .averaged = request.averaged,
-                          .time_filter = request.time_filter,
+                          .time_filter = time_filter_of(request),
                           .filter = request.filter,
                           .filters_with_decoder = static_cast<bool>(request.filter_by),
                           .find_mixed = request.mixed.has_value(),
                           .undistort = request.undistort,
                           .stray_kernel = {},
-                          .hdr = request.hdr};
+                          .hdr = request.hdr,
+                          .elsewhere = request.frames_by,
+                          .wants_numbers = request.mixed || wants_averaged};
   if (!request.stray_light.empty())
     preparation.stray_kernel = read_stray_light(request.stray_light);
-  if (preparation.time_filter && preparation.filter) preparation.time_filter->before_filter = true;
   return preparation;
 }
 

@@ -183,15 +183,37 @@ std::optional<RawView> PreparedFrames::measured(int frame, const Progress& progr
   if (!preparation_.hdr.empty()) return bracketed(progress);
   if (preparation_.average == 1) return read();
   const int frames = frames_of_mean(preparation_, recorded_, frame);
+  RawView last;
   for (int i = 0; i < frames; ++i) {
     report(progress, static_cast<double>(i) / frames, "averaging");
     std::optional<RawView> raw = read();
     if (!raw && i == 0) return std::nullopt;
     if (!raw) break;
-    if (i == 0) sums_.start(*raw, table_.saturation_level);
-    sums_.add(*raw);
+    last = *raw;
+    if (is_elsewhere(last)) {
+      preparation_.elsewhere.add(last);
+      continue;
+    }
+    if (i == 0) sums_.start(last, table_.saturation_level);
+    sums_.add(last);
   }
-  return sums_.means(preparation_.averaged);
+  if (!is_elsewhere(last)) return sums_.means(preparation_.averaged);
+  preparation_.elsewhere.take_mean(preparation_.averaged);
+  return frame_elsewhere(last);
+}
+
+/// All frames of a recording are, or none.
+bool PreparedFrames::is_elsewhere(const RawView& raw) {
+  if (!is_elsewhere_)
+    is_elsewhere_ = preparation_.elsewhere && preparation_.elsewhere.takes(raw.pixels());
+  return *is_elsewhere_;
+}
+
+/// The numbers that came of it, or none, where nobody reads them here.
+RawView PreparedFrames::frame_elsewhere(const RawView& raw) const {
+  if (preparation_.wants_numbers) return preparation_.elsewhere.numbers();
+  return RawView::interleaved(static_cast<const float*>(nullptr), raw.height, raw.width,
+                              raw.measurements);
 }
 
 /// Frame `frame` with what is the same in those around it.
@@ -204,9 +226,16 @@ std::optional<RawView> PreparedFrames::added_up(int frame, const Progress& progr
   for (std::size_t step = 0; frames_added_ <= frame; ++step) {
     const Progress here = parts[std::min(step, steps - 1)];
     const std::optional<RawView> raw = has_ended_ ? std::nullopt : measured(frames_read_, here);
-    if (raw) {
+    if (raw && is_elsewhere(*raw)) {
+      ++frames_read_;
+      const bool is_mean = preparation_.average > 1;  // those were added there as they were made
+      if (!is_mean) preparation_.elsewhere.take(*raw);
+      added = is_mean ? raw : frame_elsewhere(*raw);
+    } else if (raw) {
       ++frames_read_;
       added = time_filter_->add(*raw);
+    } else if (is_elsewhere_.value_or(false)) {
+      return std::nullopt;
     } else {
       has_ended_ = true;
       added = time_filter_->add_end();

@@ -10,6 +10,7 @@
 #include "tofsmith/core/image.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/decode/filter.hpp"
+#include "tofsmith/io/decode_recording.hpp"
 
 namespace tofsmith {
 
@@ -24,6 +25,8 @@ struct Preparation {
   bool undistort = false;                        ///< last of all, in whole frames
   Image<float> stray_kernel;                     ///< of StrayLight, taken off first; empty: none
   std::vector<double> hdr;                       ///< exposures of frames that make one; empty: none
+  FramesElsewhere elsewhere;                     ///< means and frames added in time; none: here
+  bool wants_numbers = false;                    ///< of those that are elsewhere, here too
 
   bool needs_frames() const {
     return time_filter || filter || find_mixed || undistort || !stray_kernel.empty();
@@ -105,6 +108,8 @@ class PreparedFrames {
   std::optional<RawView> read();
   std::optional<RawView> bracketed(const Progress& progress);
   std::optional<RawView> added_up(int frame, const Progress& progress);
+  bool is_elsewhere(const RawView& raw);
+  RawView frame_elsewhere(const RawView& raw) const;
 
   const DecodingTable& table_;
   Preparation preparation_;
@@ -119,6 +124,7 @@ class PreparedFrames {
   std::optional<TimeFilter> time_filter_;
   int frames_read_ = 0, frames_added_ = 0;  // into time_filter_, and that came out of it
   bool has_ended_ = false;
+  std::optional<bool> is_elsewhere_;  // once the first frame is there
   std::optional<Filter> filter_;
   FilteredFrame filtered_;
 };

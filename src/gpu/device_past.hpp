@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "decode/filter/shared/time_filter_parts.hpp"
+#include "gpu/device_raw.hpp"
+#include "gpu/time_parameters.h"
+
+namespace tofsmith {
+
+/// decode_parameters.h, numbers.cl, time_parameters.h and time.cl, one behind the other.
+extern const std::string_view time_kernels;
+
+/// Frames added up in time on a device, as TimeFilter::State adds them to its past; the past stays
+/// there. Its memory there grows with the largest frame.
+class DevicePast {
+ public:
+  /// @param state  of a filter that looks at no later frames; must outlive this
+  DevicePast(const Device& device, const TimeFilter::State& state);
+
+  /// Brings the next frame, of `height` rows as the others.
+  void add(const RawView& raw);
+  /// The same of one that is on the device, and is not changed until this was finished.
+  void add(const DeviceRaw& raw, int height, int width);
+  /// The next frame is the first.
+  void forget() { is_empty_ = true; }
+  bool is_empty() const { return is_empty_; }
+
+  /// What was added up; its work is done once the queue's is.
+  const DeviceRaw& result() const { return past_; }
+  const DeviceQueue& queue() const { return queue_; }
+
+ private:
+  void resize(int height, int width);
+  void weigh(const DeviceRaw& raw);
+  template <typename... Arguments>
+  void run(const DeviceKernel& kernel, int rows, int columns, const Arguments&... arguments) const {
+    queue_.run(kernel, {static_cast<std::size_t>(columns), static_cast<std::size_t>(rows)}, group,
+               parameters_, arguments...);
+  }
+
+  static constexpr DeviceQueue::Extent group = {32, 8};
+
+  const TimeFilter::State& state_;
+  DeviceQueue queue_;
+  DeviceKernel compare_frames_, weigh_past_, add_to_cells_, find_cell_changes_, weigh_by_cells_,
+      find_shares_, weigh_by_shares_, add_frame_;
+  TimeParameters parameters_{};
+  DeviceRaw now_, past_;
+  DeviceMemory words_, planes_, cells_, cell_changes_;
+  bool is_empty_ = true;
+};
+
+}  // namespace tofsmith

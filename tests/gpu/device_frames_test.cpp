@@ -1,0 +1,302 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// What a device makes of several frames against what this computer makes of them.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "device_setup.hpp"
+#include "each_target.hpp"
+#include "random_codes.hpp"
+#include "tofsmith/core/error.hpp"
+
+namespace tofsmith {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// Frame f of a scene in which an edge moves, one part drifts slowly, and one gets brighter.
+RawFrames frame_of_motion(const DecodingTable& table, int height, int width, int f) {
+  const double samples = table.samples();
+  return frame_by_pixel(
+      table.measurements(), height, width, static_cast<std::uint64_t>(f + 1),
+      [&](int y, int x, RandomStream& random, std::vector<float>& raw) {
+        const bool is_near = 3 * x<width + 3 * f, drifts = 2 * y> height;
+        const double bin = (is_near ? 0.2 : 0.7) * samples + (drifts ? 0.001 * f * samples : 0.0);
+        const double signal = is_near ? 2e4 : f > 3 && 4 * y < height ? 3e4 : 5e3;
+        append_noisy_pixel(table, signal, 1e4, std::fmod(bin, samples), random, raw);
+      });
+}
+
+/// Pixels that are saturated or no numbers, others in every frame.
+void spoil(RawFrames& raw, float saturated, int f) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto frame = static_cast<std::size_t>(f);
+  for (std::size_t i = 0; i < raw.values.size(); ++i)
+    if ((i + frame) % 97 == 5) raw.values[i] = i % 3 == 0 ? nan : i % 3 == 1 ? saturated : infinity;
+}
+
+class DeviceFramesOf : public OnDevice {
+ protected:
+  /// The same bits where the device divides as the processor does.
+  void expect_same_numbers(const RawView& a, const RawView& b, bool has_thresholds) const {
+    std::vector<float> x(static_cast<std::size_t>(a.pixels() * a.measurements)), y(x.size());
+    copy_pixels(a, 0, a.pixels(), x.data());
+    copy_pixels(b, 0, b.pixels(), y.data());
+    x.insert(x.end(), a.averaged, a.averaged + a.pixels());
+    y.insert(y.end(), b.averaged, b.averaged + b.pixels());
+    if (device().info().divides_as_processor || !has_thresholds)
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        if (std::isnan(x[i]) && std::isnan(y[i])) continue;
+        ASSERT_EQ(x[i], y[i]) << "number " << i;
+      }
+  }
+  /// Frames one after another, with what comes of each and of its planes.
+  void expect_what_the_time_filter_gives(const DecodingTable& table,
+                                         const TimeFilterOptions& options,
+                                         const std::vector<RawView>& frames) const {
+    TimeFilter here(table, options);
+    const TimeFilter filter(table, options);
+    DeviceFrames there(device(), table, &filter);
+    const Decoder decoder(table);
+    const DeviceDecoder after(device(), decoder);
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+      SCOPED_TRACE(f);
+      const RawView expected = *here.add(frames[f]);
+      there.take(frames[f]);
+      expect_same_numbers(there.numbers(), expected, true);
+      if (!device().info().divides_as_processor) continue;
+      Outputs outputs(static_cast<std::size_t>(expected.pixels())), expected_outputs = outputs;
+      there.decode(after, outputs.view());
+      decoder.decode(expected, expected_outputs.view());
+      expect_alike(device().info(), true, outputs, expected_outputs, 1e6);
+    }
+  }
+};
+
+std::vector<RawView> views_of(const std::vector<RawFrames>& frames) {
+  std::vector<RawView> views;
+  for (const RawFrames& frame : frames) views.push_back(view_of_frame(frame, 0));
+  return views;
+}
+
+std::vector<RawFrames> frames_of_motion(const DecodingTable& table, int height, int width,
+                                        int count) {
+  std::vector<RawFrames> frames;
+  for (int f = 0; f < count; ++f) {
+    frames.push_back(frame_of_motion(table, height, width, f));
+    spoil(frames.back(), 5e4f, f);
+  }
+  return frames;
+}
+
+TEST_F(DeviceFramesOf, AreAddedUpAsTheTimeFilterDoes) {
+  Camera counts = camera_with("paper-10f0");
+  counts.sensor.adc_bits = 12;
+  counts.sensor.gain_e_per_dn = 2.0;
+  counts.sensor.black_level_dn = 40.0;
+  const std::vector<std::pair<const char*, Camera>> cases = {
+      {"hamiltonian-k4", camera_with("paper-10f0")},
+      {"hamiltonian-k3", camera_with("paper-10f0")},
+      {"multifrequency-k5", counts},
+      {"square-k4", camera_with("paper-10f0", 2, Readout::difference)}};
+  for (const auto& [code, camera] : cases) {
+    const DecodeSetup setup(code, camera);
+    DecodingTable table = setup.decoder.table();
+    table.saturation_level = 5e4f;
+    const std::vector<RawFrames> frames = frames_of_motion(table, 43, 61, 7);
+    for (const bool before_filter : {false, true}) {
+      SCOPED_TRACE(testing::Message() << code << (before_filter ? " before a filter" : ""));
+      for (const int max_frames : {1, 4, 64})
+        expect_what_the_time_filter_gives(
+            table, {.max_frames = max_frames, .before_filter = before_filter}, views_of(frames));
+    }
+  }
+}
+
+TEST_F(DeviceFramesOf, AreAddedUpAsByEveryInstructionSet) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const std::vector<RawFrames> frames = frames_of_motion(setup.decoder.table(), 30, 41, 4);
+  for_each_target([&] {
+    expect_what_the_time_filter_gives(setup.decoder.table(), {.before_filter = true},
+                                      views_of(frames));
+  });
+}
+
+TEST_F(DeviceFramesOf, MayBeMeansOfAnyTypeAndLayout) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  std::vector<float> averaged;
+  for (int i = 0; i < 20 * 31; ++i)
+    averaged.push_back(i % 31 == 0 ? 0.0f : 0.5f * static_cast<float>(2 + i % 4));
+  std::vector<std::vector<std::uint16_t>> words;
+  std::vector<std::vector<double>> doubles;
+  for (int f = 0; f < 3; ++f) {
+    RawFrames raw = frame_of_motion(table, 20, 31, f);
+    for (float& value : raw.values) value = std::clamp(std::round(value), 0.0f, 65535.0f);
+    words.emplace_back(raw.values.begin(), raw.values.end());
+    doubles.emplace_back(raw.values.begin(), raw.values.end());
+    doubles.back()[7] += 1e-3;
+  }
+  std::vector<RawView> views;
+  for (std::size_t f = 0; f < 3; ++f) {
+    views.push_back(RawView::interleaved(words[f].data(), 20, 31, 4));
+    views.push_back(RawView::planar(doubles[f].data(), 20, 31, 4));
+    views.back().averaged = averaged.data();
+  }
+  expect_what_the_time_filter_gives(table, {}, views);
+  expect_what_the_time_filter_gives(table, {.before_filter = true}, views);
+}
+
+TEST_F(DeviceFramesOf, ThatAreAddedUpStayForTheFilterAndTheDecoder) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  if (!device().info().divides_as_processor) GTEST_SKIP() << "it rounds otherwise";
+  const std::vector<RawFrames> frames = frames_of_motion(table, 130, 40, 3);
+  const TimeFilterOptions options{.before_filter = true};
+  const TimeFilter time_filter(table, options);
+  const Filter filter(table);
+  Image<std::uint8_t> left_out(130, 40);
+  for (std::size_t i = 0; i < left_out.pixels.size(); ++i) left_out.pixels[i] = i % 17 == 0;
+  for (const double memory_mb : {0.001, 512.0}) {  // in bands, and whole
+    TimeFilter here(table, options);
+    DeviceFrames there(device(), table, &time_filter);
+    const DeviceDecoder decoder(device(), setup.decoder, {.memory_mb = memory_mb});
+    const DeviceFilter on_device(device(), filter, {.memory_mb = memory_mb});
+    for (const RawFrames& raw : frames) {
+      FilteredFrame filtered, expected;
+      Outputs outputs(130 * 40), expected_outputs = outputs;
+      there.take(view_of_frame(raw, 0));
+      there.decode(on_device, decoder, outputs.view(), &filtered, {}, left_out);
+      filter.apply(*here.add(view_of_frame(raw, 0)), expected, {}, left_out);
+      EXPECT_EQ(filtered.averaged().pixels, expected.averaged().pixels);
+      setup.decoder.decode(expected.view(), expected_outputs.view());
+      expect_alike(device().info(), true, outputs, expected_outputs, 1e6);
+    }
+  }
+}
+
+TEST_F(DeviceFramesOf, ForgetWhatWasWhenTheyAreTold) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  const std::vector<RawFrames> frames = frames_of_motion(table, 20, 30, 2);
+  const TimeFilter filter(table);
+  DeviceFrames there(device(), table, &filter);
+  there.take(view_of_frame(frames[0], 0));
+  there.forget();
+  EXPECT_THROW(there.numbers(), InvalidArgument);
+  there.take(view_of_frame(frames[1], 0));
+  expect_same_numbers(there.numbers(), *TimeFilter(table).add(view_of_frame(frames[1], 0)), true);
+  there.forget();
+  const RawFrames smaller = frame_of_motion(table, 9, 7, 0);
+  there.take(view_of_frame(smaller, 0));
+  EXPECT_EQ(there.numbers().height, 9);
+}
+
+TEST_F(DeviceFramesOf, HaveMeansWithoutRounding) {
+  if (!device().info().has_doubles) GTEST_SKIP() << "it has no doubles";
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  DecodingTable table = setup.decoder.table();
+  table.saturation_level = 5e4f;
+  const Decoder decoder(table);
+  const DeviceDecoder after(device(), decoder, {.memory_mb = 0.1});
+  DeviceFrames there(device(), table, nullptr);
+  for (int round = 0; round < 2; ++round) {
+    std::vector<std::vector<double>> frames;
+    std::vector<double> means(60 * 50 * 4, 0.0);
+    for (int f = 0; f < 3; ++f) {
+      RawFrames raw = frame_of_motion(table, 60, 50, f);
+      spoil(raw, 5e4f, f);
+      frames.emplace_back(raw.values.begin(), raw.values.end());
+      for (std::size_t i = 0; i < means.size(); ++i) {
+        double& value = frames.back()[i];
+        value += 1e-5 * static_cast<double>(i % 1000);
+        means[i] = !std::isfinite(value) || std::isnan(means[i])
+                       ? std::numeric_limits<double>::quiet_NaN()
+                   : value >= 5e4 ? std::numeric_limits<double>::infinity()
+                                  : means[i] + value;
+      }
+      there.add(RawView::interleaved(frames.back().data(), 60, 50, 4));
+    }
+    for (double& mean : means) mean = std::isinf(mean) ? 5e4 : mean / 3;
+    there.take_mean(2.0);
+    RawView expected = RawView::interleaved(means.data(), 60, 50, 4);
+    const std::vector<float> averaged(60 * 50, 6.0f);
+    expected.averaged = averaged.data();
+    const RawView found = there.numbers();
+    for (std::size_t i = 0; i < means.size(); ++i) {
+      const double value = std::get<const double*>(found.data)[(i % 4) * 60 * 50 + i / 4];
+      ASSERT_TRUE(value == means[i] || (std::isnan(value) && std::isnan(means[i]))) << i;
+    }
+    expect_same_numbers(found, expected, false);
+    Outputs outputs(60 * 50), expected_outputs = outputs;
+    EXPECT_GT(there.decode(after, outputs.view()), 0) << "no pixel was open";
+    decoder.decode(expected, expected_outputs.view());
+    expect_alike(device().info(), true, outputs, expected_outputs, 1e6);
+  }
+}
+
+TEST_F(DeviceFramesOf, AreMeansThatAreAddedUp) {
+  if (!device().info().has_doubles) GTEST_SKIP() << "it has no doubles";
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  const TimeFilter filter(table);
+  TimeFilter here(table);
+  DeviceFrames there(device(), table, &filter);
+  for (int f = 0; f < 4; ++f) {
+    const RawFrames a = frame_of_motion(table, 20, 30, f), b = frame_of_motion(table, 20, 30, f);
+    std::vector<double> means(a.values.begin(), a.values.end());
+    for (std::size_t i = 0; i < means.size(); ++i) means[i] = (means[i] + double{b.values[i]}) / 2;
+    const std::vector<float> averaged(20 * 30, 2.0f);
+    RawView mean = RawView::interleaved(means.data(), 20, 30, 4);
+    mean.averaged = averaged.data();
+    there.add(view_of_frame(a, 0));
+    there.add(view_of_frame(b, 0));
+    there.take_mean();
+    expect_same_numbers(there.numbers(), *here.add(mean), true);
+  }
+}
+
+TEST_F(DeviceFramesOf, GoToTheDecodersDeviceWhereItCanAddThemUp) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  const TimeFilter filter(table), looks_ahead(table, {.look_ahead = 1});
+  const DeviceDecoder after(device(), setup.decoder);
+  EXPECT_FALSE(device_frames("0", table, nullptr, false, after));
+  EXPECT_FALSE(device_frames("0", table, &looks_ahead, true, after));
+  EXPECT_TRUE(device_frames("0", table, &filter, false, after)->takes(1));
+  EXPECT_FALSE(device_frames("auto", table, &filter, false, after)->takes(1));
+  EXPECT_EQ(device_frames("0", table, nullptr, true, after).has_value(),
+            device().info().has_doubles);
+}
+
+TEST_F(DeviceFramesOf, AreRefusedWhereTheyDoNotFit) {
+  const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
+  const DecodingTable& table = setup.decoder.table();
+  const TimeFilter looks_ahead(table, {.look_ahead = 2}), filter(table);
+  EXPECT_THAT([&] { DeviceFrames(device(), table, &looks_ahead); },
+              ThrowsMessage<InvalidArgument>(HasSubstr("look_ahead = 2; must be 0 on a device")));
+  EXPECT_THROW(DeviceFrames(device(), table, &filter, {.min_pixels = -1}), InvalidArgument);
+  DeviceFrames there(device(), table, &filter, {.min_pixels = 100});
+  EXPECT_TRUE(there.takes(100));
+  EXPECT_FALSE(there.takes(99));
+  const std::vector<float> raw(400);
+  EXPECT_THROW(there.take_mean(), InvalidArgument);
+  EXPECT_THROW(there.take(RawView::interleaved(raw.data(), 2, 4, 5)), InvalidArgument);
+  there.take(RawView::interleaved(raw.data(), 10, 10, 4));
+  EXPECT_THAT(
+      [&] { there.take(RawView::interleaved(raw.data(), 5, 10, 4)); },
+      ThrowsMessage<InvalidArgument>(HasSubstr("must equal that of the frames before, 10")));
+  const DeviceDecoder elsewhere(Device::all().front(), setup.decoder);
+  Outputs outputs(100);
+  EXPECT_THROW(there.decode(elsewhere, outputs.view()), InvalidArgument);
+  DeviceFrames means(device(), table, nullptr);
+  EXPECT_THROW(means.take(RawView::interleaved(raw.data(), 10, 10, 4)), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace tofsmith
