@@ -320,6 +320,10 @@ TEST(Mixer, RefusesWhatIsOfTaps) {
   camera.sensor.readout = Readout::rows;
   EXPECT_THAT(refusal_of(camera), HasSubstr("rows of one exposure have weights of any sign"));
   camera = mixer_camera();
+  camera.sensor.drain = false;
+  EXPECT_THAT(refusal_of(camera), HasSubstr("sensor.drain = false; must be left out with "
+                                            "sensor.demodulation = \"signed\""));
+  camera = mixer_camera();
   camera.sensor.adc_bits = 8;
   camera.sensor.gain_e_per_dn = 1.0;
   camera.sensor.black_level_dn = 0.0;
