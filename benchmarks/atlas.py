@@ -19,7 +19,7 @@ ASKED = 1.03
 #: taps, peak factor, bandwidth (f0), kind of error
 CAMERAS = ((1, 6, 7, "circular"), (1, 11, 14, "circular"), (1, 11, 7, "linear"), (1, 20, 4, "circular"),
            (2, 6, 14, "circular"), (2, 11, 7, "linear"), (2, 3, 7, "circular"),
-           (3, 11, 7, "circular"), (4, 6, 7, "circular"), (4, 11, 14, "circular"))
+           (3, 11, 7, "circular"), (4, 6, 7, "circular"), (4, 11, 14, "circular"), (4, 11, 17, "circular"))
 
 
 def run(*words):
