@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Cameras between those of the atlas: the code of `design --effort 0`, which searches nothing, against
 that of a full design (`--effort 1` without the atlas), both judged by other random numbers and at
-their best origins. Prints their errors and their ratio; asked: at most 1.03.
+their best origins. Prints their errors and their ratio; exits 1 where one is above 1.03.
 
     atlas.py TOFSMITH [EFFORT]       EFFORT of the full design in place of 1
 """
@@ -19,7 +19,7 @@ ASKED = 1.03
 #: taps, peak factor, bandwidth (f0), kind of error
 CAMERAS = ((1, 6, 7, "circular"), (1, 11, 14, "circular"), (1, 11, 7, "linear"), (1, 20, 4, "circular"),
            (2, 6, 14, "circular"), (2, 11, 7, "linear"), (2, 3, 7, "circular"),
-           (3, 11, 7, "circular"), (4, 6, 7, "circular"), (4, 11, 14, "circular"))
+           (3, 11, 7, "circular"), (4, 6, 7, "circular"), (4, 11, 14, "circular"), (4, 11, 17, "circular"))
 
 
 def run(*words):
@@ -52,6 +52,7 @@ def main():
         worst = max(worst, ratio)
         print(f"{taps}  {peak}  {band}  {kind}  {words[0]}  {words[1]}  {ratio:.3f}", flush=True)
     print(f"worst {worst:.3f}; asked: at most {ASKED}")
+    sys.exit(worst > ASKED)
 
 
 if __name__ == "__main__":

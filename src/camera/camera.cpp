@@ -70,6 +70,10 @@ void validate_mixer(const Sensor& sensor) {
                       sensor.readout == Readout::rows
                           ? "rows of one exposure have weights of any sign already"
                           : "a mixer's number is the difference already"));
+  require(sensor.drain, "sensor.drain", "false",
+          fmt::format("must be left out with {}: a mixer weighs all light, and has no taps that "
+                      "could throw charge away",
+                      beside));
   require(!sensor.adc_bits || !sensor.black_level_dn || *sensor.black_level_dn > 0.0,
           "sensor.black_level_dn", 0.0,
           fmt::format("must be > 0 with {}, or left out for counts of both signs", beside));
@@ -94,7 +98,7 @@ void validate_sensor(const Sensor& sensor) {
     require_positive(*sensor.shortest_pulse_s, "sensor.shortest_pulse_s");
   if (sensor.readout_gap_s) require_not_negative(*sensor.readout_gap_s, "sensor.readout_gap_s");
   if (sensor.frame_period_s) require_positive(*sensor.frame_period_s, "sensor.frame_period_s");
-  require(sensor.drain || sensor.taps >= 2, "sensor.drain", "false",
+  require(sensor.drain || sensor.taps >= 2 || sensor.is_signed(), "sensor.drain", "false",
           "needs sensor.taps >= 2: one tap that is always open measures nothing");
   require(sensor.readout != Readout::difference || sensor.taps == 2, "sensor.readout", "difference",
           "needs sensor.taps = 2");

@@ -96,7 +96,7 @@ CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Wav
   // grid that both share.
   const double pairs =
       static_cast<double>(d.breakpoints.size()) * static_cast<double>(m.breakpoints.size());
-  constexpr double many_pairs = 1 << 18, max_pairs = 1 << 27;
+  constexpr double many_pairs = 1 << 12, max_pairs = 1 << 27;
   if (pairs > many_pairs)
     if (const int cells = common_cells(d, m); cells > 0) {
       const Eigen::VectorXd of_d = cell_values(d, cells), of_m = cell_values(m, cells);

@@ -28,9 +28,9 @@ constexpr int samples_of_standard_codes = 360;
 constexpr const char* short_runs = "has pulses or gaps below sensor.shortest_pulse_s";
 
 /// Preselection: trials per operating point, how far from the least error a code may be, and how
-/// many stay.
-constexpr int min_trials_per_point = 1000, trials_of_all_points = 25000;
-constexpr double contending = 1.12;
+/// many stay. A look at a share of the trials, which err by some per cent, leaves out what is far.
+constexpr int min_trials_per_point = 1000, trials_of_all_points = 25000, share_looked_at = 5;
+constexpr double contending = 1.12, far = 1.5;
 constexpr std::size_t max_contenders = 8, max_atlas_codes = 4;
 
 int trials_per_point(const Camera& camera) {
@@ -39,8 +39,8 @@ int trials_per_point(const Camera& camera) {
 }
 
 /// By the camera's choice, at the best origin [m].
-double first_error_m(const CodeSet& code, const Camera& camera, std::uint64_t seed) {
-  const EvaluateOptions options{.trials = trials_per_point(camera), .seed = seed, .bounds = false};
+double first_error_m(const CodeSet& code, const Camera& camera, int trials, std::uint64_t seed) {
+  const EvaluateOptions options{.trials = trials, .seed = seed, .bounds = false};
   if (!rotates(camera, {}))
     return geometric_mean_error_m(evaluate(code, camera, options), DepthErrorKind::circular);
   const std::vector<double> of_rotation =
@@ -48,14 +48,32 @@ double first_error_m(const CodeSet& code, const Camera& camera, std::uint64_t se
   return *std::min_element(of_rotation.begin(), of_rotation.end());
 }
 
-/// That of each code; infinite where it cannot compete.
-std::vector<double> first_errors_m(const std::vector<CodeSet>& codes, const Camera& camera,
-                                   std::uint64_t seed) {
+/// That of each code of those asked for, infinite of others.
+std::vector<double> first_errors_m(const std::vector<const CodeSet*>& codes, const Camera& camera,
+                                   int trials, std::uint64_t seed) {
   std::vector<double> errors_m(codes.size(), infinity);
-  parallel_for(std::ssize(codes), [&](std::int64_t i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (!why_no_depth(codes[at], camera)) errors_m[at] = first_error_m(codes[at], camera, seed);
+  parallel_for_blocks(std::ssize(codes), 1, [&](IndexRange block) {
+    for (auto i = static_cast<std::size_t>(block.begin); i < static_cast<std::size_t>(block.end);
+         ++i)
+      if (codes[i]) errors_m[i] = first_error_m(*codes[i], camera, trials, seed);
   });
+  return errors_m;
+}
+
+/// The first errors of codes: by all trials where they may contend, by a share of them where they
+/// are far from it. Pointers to nothing have infinite ones.
+std::vector<double> errors_of_contenders_m(std::vector<const CodeSet*> codes, const Camera& camera,
+                                           std::uint64_t seed) {
+  const int trials = trials_per_point(camera);
+  std::vector<double> errors_m =
+      first_errors_m(codes, camera, std::max(1, trials / share_looked_at), seed);
+  if (errors_m.empty()) return errors_m;
+  const double least = *std::min_element(errors_m.begin(), errors_m.end());
+  for (std::size_t i = 0; i < codes.size(); ++i)
+    if (!(errors_m[i] <= far * least)) codes[i] = nullptr;
+  const std::vector<double> by_all_m = first_errors_m(codes, camera, trials, seed);
+  for (std::size_t i = 0; i < codes.size(); ++i)
+    if (codes[i]) errors_m[i] = by_all_m[i];
   return errors_m;
 }
 
@@ -101,16 +119,18 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
   Contenders found;
   std::vector<std::optional<std::string>> reasons(names.size());
   std::vector<std::optional<CodeSet>> codes(names.size());
-  std::vector<double> errors_m(names.size(), infinity);
   parallel_for_blocks(std::ssize(names), 1, [&](IndexRange block) {
     for (auto i = static_cast<std::size_t>(block.begin); i < static_cast<std::size_t>(block.end);
          ++i) {
       if ((reasons[i] = why_no_family(names[i], camera))) continue;
       codes[i] = build_family(names[i], camera);
       reasons[i] = why_not_comparable(*codes[i], camera);
-      if (!reasons[i]) errors_m[i] = first_error_m(*codes[i], camera, seed);
     }
   });
+  std::vector<const CodeSet*> comparable(names.size(), nullptr);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (!reasons[i]) comparable[i] = &*codes[i];
+  const std::vector<double> errors_m = errors_of_contenders_m(std::move(comparable), camera, seed);
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < names.size(); ++i)
     if (reasons[i])
@@ -119,9 +139,9 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
       order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return errors_m[a] < errors_m[b]; });
-  const std::string worse =
-      fmt::format("by {} trials per operating point err more than {} times as much as the best",
-                  trials_per_point(camera), contending);
+  const std::string worse = fmt::format(
+      "by {} or {} trials per operating point err more than {} times as much as the best",
+      trials_per_point(camera) / share_looked_at, trials_per_point(camera), contending);
   const std::string beside = fmt::format("{} others err less", max_contenders);
   for (const std::size_t i : order)
     if (!(errors_m[i] <= contending * errors_m[order.front()]))
@@ -140,7 +160,13 @@ std::vector<CodeSet> contending_atlas_codes(const Camera& camera, const DesignOp
     return {};
   const std::vector<CodeSet> codes =
       nearest_atlas_codes(code_atlas(), camera, options.exposures, options.atlas_cameras);
-  const std::vector<double> errors_m = first_errors_m(codes, camera, search_seed(options));
+  std::vector<const CodeSet*> comparable(codes.size(), nullptr);
+  parallel_for(std::ssize(codes), [&](std::int64_t i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (!why_no_depth(codes[at], camera)) comparable[at] = &codes[at];
+  });
+  const std::vector<double> errors_m =
+      first_errors_m(comparable, camera, trials_per_point(camera), search_seed(options));
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < codes.size(); ++i)
     if (errors_m[i] < infinity) order.push_back(i);

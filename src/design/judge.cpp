@@ -11,6 +11,7 @@
 #include "camera/shared/depth_prior.hpp"
 #include "design/explanation.hpp"
 #include "design/optimize/two_return_limit.hpp"
+#include "simulate/shared/camera_bounds.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/decode/decoding_table.hpp"
 
@@ -33,7 +34,7 @@ void leave_out_what_tells_no_depth(const Camera& camera, DesignResult& result) {
 
 /// Judges a candidate with random numbers it was not chosen by, at its best origin if asked.
 void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& options,
-               const Progress& progress) {
+               CameraBounds& bounds, const Progress& progress) {
   EvaluateOptions judging;
   judging.trials = options.trials;
   judging.seed = options.seed;
@@ -46,7 +47,7 @@ void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& 
     candidate.code = candidate.code.rotated(moved_bin);
     candidate.rotation_bin = (candidate.rotation_bin + moved_bin) % camera.samples;
   }
-  candidate.error = evaluate(candidate.code, camera, judging, parts[1]);
+  candidate.error = evaluate(candidate.code, camera, judging, bounds, parts[1]);
   if (later)
     candidate.multipath =
         operating_multipath_report(candidate.code, camera, *later, judging, parts[2]);
@@ -124,11 +125,12 @@ std::optional<std::string> why_no_depth(const CodeSet& code, const Camera& camer
 void judge_candidates(const Camera& camera, const DesignOptions& options, DesignResult& result,
                       const Progress& progress) {
   leave_out_what_tells_no_depth(camera, result);
+  CameraBounds bounds(camera);
   const ProgressParts parts(progress, {90, options.robust ? 0.0 : 10.0});  // the winner: at last
   const ProgressParts of_candidates(parts[0], result.candidates.size());
   for (std::size_t i = 0; i < result.candidates.size(); ++i) {
     const ProgressParts its(of_candidates[i], {15, options.robust ? 85.0 : 0.0});
-    judge_one(result.candidates[i], camera, options, its[0]);
+    judge_one(result.candidates[i], camera, options, bounds, its[0]);
     if (options.robust) judge_robustness(result.candidates[i], camera, options, its[1]);
   }
   keep_best_of_each_name(ranking_of(result.candidates, camera, options), result);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,6 +13,21 @@ namespace tofsmith {
 
 /// Mean absolute value of a normal deviation over its standard deviation.
 inline double mae_per_sigma() { return std::sqrt(2.0 / std::numbers::pi); }
+
+/// A transfer function without the harmonics that are rounding in the response's second derivative,
+/// but with enough of them to sample what is made of it.
+inline Eigen::VectorXcd without_rounding(const Eigen::VectorXcd& transfer) {
+  constexpr Eigen::Index least_kept = 256;
+  constexpr double rounding = 1e-7;  // of the largest
+  const Eigen::ArrayXd curvature =
+      Eigen::ArrayXd::LinSpaced(transfer.size(), 0.0, static_cast<double>(transfer.size() - 1))
+          .square() *
+      transfer.array().abs();
+  const double least = rounding * curvature.maxCoeff();
+  Eigen::Index kept = transfer.size();
+  while (kept > least_kept + 1 && curvature[kept - 1] <= least) --kept;
+  return transfer.head(kept);
+}
 
 /// Mean over albedo uniform in (0, 1) of min(mae(albedo), largest). Nodes crowd towards albedo 0,
 /// where the error grows.

@@ -41,7 +41,8 @@ DirectTofBound::DirectTofBound(const Camera& camera)
   camera.validate();
   if (!camera.light_is_band_limited()) return;
   transfer_ = camera.light_transfer(harmonics_kept(camera.samples));
-  photons_.emplace(transfer_, camera.light.impulse_response.kind == ImpulseResponse::Kind::file);
+  photons_.emplace(without_rounding(transfer_),
+                   camera.light.impulse_response.kind == ImpulseResponse::Kind::file);
 }
 
 double DirectTofBound::photon_information(const OperatingPoint& point) const {

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "simulate/shared/camera_bounds.hpp"
 #include "simulate/trial_errors.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/simulate/bounds.hpp"
@@ -29,8 +30,22 @@ Estimate table_depth_error_m(const DecodingTable& table, const OperatingPoint& l
 
 void EvaluateOptions::validate() const { check_fields(*this); }
 
+CameraBounds::CameraBounds(const Camera& camera) : camera_(judged_camera(camera)) {}
+
+const std::vector<CameraBounds::Level>& CameraBounds::of(int exposures) {
+  const auto [found, is_new] = levels_.try_emplace(exposures);
+  if (!is_new) return found->second;
+  const ReceiverBound receiver(camera_, exposures);
+  const DirectTofBound direct_tof(camera_);
+  const bool has_rows = camera_.sensor.readout == Readout::rows;  // bounded by their own light
+  for (const OperatingPoint& point : camera_.operating.points())
+    found->second.push_back({has_rows ? 0.0 : bound_mae_m(receiver, camera_, point),
+                             bound_mae_m(direct_tof, camera_, point)});
+  return found->second;
+}
+
 DepthErrorReport evaluate(const CodeSet& code, const Camera& on, const EvaluateOptions& options,
-                          const Progress& progress) {
+                          CameraBounds& bounds, const Progress& progress) {
   const Camera camera = judged_camera(on);
   const ForwardModel model(code, camera);
   const DepthTrials trials(model, camera, options);
@@ -40,18 +55,24 @@ DepthErrorReport evaluate(const CodeSet& code, const Camera& on, const EvaluateO
     return result;
   }
   const CramerRaoBound cramer_rao(model, camera);
-  const ReceiverBound receiver(camera, code.exposures());
-  const DirectTofBound direct_tof(camera);
   std::optional<HistogramBound> histogram;
   if (model.has_rows()) histogram.emplace(model, camera);
-  for (PointDepthError& error : result.points) {
+  const std::vector<CameraBounds::Level>& levels = bounds.of(code.exposures());
+  for (std::size_t i = 0; i < result.points.size(); ++i) {
+    PointDepthError& error = result.points[i];
     error.cramer_rao_mae_m = bound_mae_m(cramer_rao, camera, error.point);
-    error.receiver_bound_mae_m = histogram ? bound_mae_m(*histogram, camera, error.point)
-                                           : bound_mae_m(receiver, camera, error.point);
-    error.direct_tof_bound_mae_m = bound_mae_m(direct_tof, camera, error.point);
+    error.receiver_bound_mae_m =
+        histogram ? bound_mae_m(*histogram, camera, error.point) : levels[i].receiver_mae_m;
+    error.direct_tof_bound_mae_m = levels[i].direct_tof_mae_m;
   }
   report(progress, 1.0, "depth error");
   return result;
+}
+
+DepthErrorReport evaluate(const CodeSet& code, const Camera& camera, const EvaluateOptions& options,
+                          const Progress& progress) {
+  CameraBounds bounds(camera);
+  return evaluate(code, camera, options, bounds, progress);
 }
 
 }  // namespace tofsmith

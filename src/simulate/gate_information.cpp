@@ -13,29 +13,61 @@
 namespace tofsmith {
 namespace {
 
-constexpr int min_points = 512;
+constexpr int min_points = 4096;
 /// Of the largest value: what the harmonics left out may make of a response that is 0.
 constexpr double rounding = 1e-7;
 constexpr int cells = 64;
 
 /// x and the largest integral of d times a derivative of the light at it: the corners of a concave
-/// polygon from (0, 0) to (all light, 0).
+/// polygon from (0, 0) to (all light, 0), nowhere below.
 struct Profile {
   std::vector<double> passed{0.0}, largest{0.0};
+
+  void go_on(double more_passed, double more_gained) {
+    passed.push_back(passed.back() + more_passed);
+    largest.push_back(largest.back() + more_gained);
+  }
 };
 
+/// Gates open where derivative / light is largest. Nothing is sorted by it: points go into bins of
+/// it. What a gate holds that is open down to the edge of a bin is exact, and in between the curve
+/// bends from the ratio of one edge to that of the other, below both tangents.
 Profile profile_of(const Eigen::ArrayXd& light, const Eigen::ArrayXd& derivative) {
-  std::vector<std::pair<double, Eigen::Index>> order;
-  order.reserve(static_cast<std::size_t>(light.size()));
-  for (Eigen::Index j = 0; j < light.size(); ++j) order.emplace_back(-derivative[j] / light[j], j);
-  std::sort(order.begin(), order.end());
-  Profile profile;
-  profile.passed.reserve(order.size() + 1);
-  profile.largest.reserve(order.size() + 1);
+  constexpr int half = 512;  // bins of either sign
   const double width = 1.0 / static_cast<double>(light.size());
-  for (const auto& [ratio, j] : order) {
-    profile.passed.push_back(profile.passed.back() + light[j] * width);
-    profile.largest.push_back(profile.largest.back() + derivative[j] * width);
+  const double scale = derivative.abs().sum() / light.sum();  // of ratios: half of the bins below
+  Profile profile;
+  if (!(scale > 0.0)) {
+    profile.go_on(light.sum() * width, 0.0);
+    return profile;
+  }
+  const auto edge = [&](int bin) {
+    const double share = 1.0 - static_cast<double>(bin) / half;
+    return scale * share / (1.0 - std::abs(share));
+  };
+  struct Bin {
+    double passed = 0.0, gained = 0.0;
+  };
+  std::vector<Bin> bins(2 * half);
+  double steepest = 0.0, lowest = 0.0;
+  for (Eigen::Index j = 0; j < light.size(); ++j) {
+    const double ratio = derivative[j] / light[j];
+    const double share = ratio / (scale + std::abs(ratio));
+    Bin& bin = bins[std::min(static_cast<std::size_t>((1.0 - share) * half), bins.size() - 1)];
+    bin.passed += light[j] * width;
+    bin.gained += derivative[j] * width;
+    steepest = std::max(steepest, ratio);
+    lowest = std::min(lowest, ratio);
+  }
+  for (int j = 0; j < 2 * half; ++j) {
+    const auto [passed, gained] = bins[static_cast<std::size_t>(j)];
+    if (passed == 0.0) continue;
+    const double above = std::min(edge(j), steepest), below = std::max(edge(j + 1), lowest);
+    const double to_bend =
+        above > below ? std::clamp((gained - below * passed) / (above - below), 0.0, passed)
+                      : passed;
+    profile.go_on(to_bend, above * to_bend);
+    profile.go_on(passed - to_bend, gained - above * to_bend);
   }
   return profile;
 }

@@ -43,6 +43,7 @@ ReceiverBound::ReceiverBound(const Camera& camera, int exposures)
       taps_(in_buckets(camera).sensor.taps),
       has_rows_(camera.sensor.readout == Readout::rows),
       drain_(in_buckets(camera).sensor.drain),
+      read_outs_(camera.sensor.subtracts() ? 2 : 1),
       peak_factor_(camera.light.peak_factor),
       sensitivity_(1.0 + 0.5 * std::abs(camera.sensor.tap_mismatch)),
       dark_e_per_s_(in_buckets(camera).sensor.dark_current_e_per_s),
@@ -58,7 +59,8 @@ ReceiverBound::ReceiverBound(const Camera& camera, int exposures)
   using Kind = ImpulseResponse::Kind;
   const bool may_ring = camera.light.impulse_response.kind == Kind::file ||
                         camera.sensor.impulse_response.kind == Kind::file;
-  const Eigen::VectorXcd transfer = camera.transfer(harmonics_kept(camera.samples));
+  const Eigen::VectorXcd transfer =
+      without_rounding(camera.transfer(harmonics_kept(camera.samples)));
   photons_.emplace(transfer, may_ring);
   // Weights of a mixer that need not switch can weigh photons by when they come.
   const bool weighs = camera.sensor.is_signed() && !camera.sensor.binary;
@@ -99,7 +101,7 @@ double ReceiverBound::recorded_information(const OperatingPoint& point, bool by_
     const double signal_e = time_s * sensitivity_ * point.signal_e_per_s;
     const double ambient_e = time_s * sensitivity_ * point.ambient_e_per_s;
     const double c = time_s * dark_e_per_s_ + constant_variance_e2_;
-    const double recorded = photons_->largest(signal_e, ambient_e + c, peak_factor_);
+    const double recorded = photons_->largest(signal_e, ambient_e + read_outs_ * c, peak_factor_);
     if (!by_gates || !gates_) return recorded;
     return std::min(recorded, taps_ * gates_->at_any_depth(signal_e, ambient_e, c));
   });

@@ -8,7 +8,10 @@
 #include <cmath>
 
 #include "core/shared/random.hpp"
+#include "tofsmith/calibrate/calibration_camera.hpp"
 #include "tofsmith/camera/forward_model.hpp"
+#include "tofsmith/decode/decoder.hpp"
+#include "tofsmith/decode/decoding_table.hpp"
 
 namespace tofsmith {
 namespace {
@@ -107,6 +110,38 @@ TEST(CorrelationCalibration, RecoversTheTableWithinFourStandardErrorsAtEverySamp
   }
   EXPECT_GT(mean_square, 0.6);
   EXPECT_LT(mean_square, 1.5);
+}
+
+TEST(CorrelationCalibration, OfAMixerFindsItsTableOfBothSigns) {
+  Camera camera = camera_of({});
+  camera.sensor.demodulation = Demodulation::weight;
+  camera.sensor.adc_bits = 12;
+  camera.sensor.gain_e_per_dn = 1.0;
+  camera.sensor.black_level_dn = level;
+  const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
+  const DelaySweep sweep = sweep_of({}, model);
+  const CorrelationCalibrationOptions options = sweep_options(camera, sweep);
+  EXPECT_TRUE(options.differences);
+  EXPECT_EQ(options.black_level, level);
+  EXPECT_FALSE(options.saturation_level);
+  const CalibratedCorrelation found = calibrate_correlation(sweep, options);
+  EXPECT_TRUE(found.table.differences);
+  EXPECT_LT(found.table.correlation.minCoeff(), 0.0);
+  EXPECT_GT(found.table.correlation.maxCoeff(), 0.0);
+  const Eigen::ArrayXXd off =
+      found.table.correlation - scale * model.correlation_table(found.table.samples());
+  EXPECT_LT((off / found.standard_error.array()).abs().maxCoeff(), 4.0);
+  // What is calibrated decodes depths of the mixer.
+  const Decoder decoder(make_decoding_table(found.table, camera));
+  for (int bin = 0; bin < model.samples(); bin += 7) {
+    const Eigen::VectorXf raw =
+        ((scale * model.correlation(bin)).array() + level).cast<float>().matrix();
+    double found_bin = 0.0;
+    decoder.decode_depth_bins(raw.data(), 1, &found_bin);
+    const double apart =
+        std::remainder(found_bin / found.table.samples() - bin / double(model.samples()), 1.0);
+    EXPECT_LT(std::abs(apart), 0.01) << bin;
+  }
 }
 
 TEST(CorrelationCalibration, TakesOutDriftThatRepeatsTell) {

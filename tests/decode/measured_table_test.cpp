@@ -52,6 +52,37 @@ TEST(MeasuredTable, ASweepOfACodeDecodesAsTheCodeDoes) {
   }
 }
 
+TEST(MeasuredTable, ASweepOfAMixerDecodesAsItsCodeDoes) {
+  Camera camera = camera_with("paper-10f0");
+  camera.sensor.demodulation = Demodulation::weight;
+  camera.sensor.dark_current_e_per_s = 300.0;
+  camera.sensor.adc_bits = 12;
+  camera.sensor.gain_e_per_dn = 10.0;
+  camera.sensor.black_level_dn = 2048.0;
+  camera.exposure_s.each_s = {0.05, 0.1, 0.15};
+  const ForwardModel model(build_family("hamiltonian-k3", camera), camera);
+  const DecodingTable code = make_decoding_table(model, camera);
+  MeasuredTable measured;
+  measured.correlation = model.correlation_table(model.samples());
+  EXPECT_LT(measured.correlation.minCoeff(), 0.0);
+  EXPECT_THAT([&] { make_decoding_table(measured, camera); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("its columns are of both signs")));
+  measured.differences = true;
+  const DecodingTable table = make_decoding_table(measured, camera);
+  EXPECT_TRUE(table.correlation.isApprox(code.correlation, 1e-12));
+  EXPECT_EQ(table.exposure_s, code.exposure_s);
+  EXPECT_EQ(table.gain_e_per_raw, code.gain_e_per_raw);
+  EXPECT_EQ(table.black_level, code.black_level);
+  EXPECT_LT((table.dark_electrons - code.dark_electrons).norm(), 1e-9);
+  // One read-out and its dark electrons, where a difference of buckets has two.
+  EXPECT_TRUE(table.constant_variance_e2.isApprox(code.constant_variance_e2, 1e-12));
+  EXPECT_TRUE(table.shot_dark_electrons.isApprox(code.shot_dark_electrons, 1e-9));
+  // The light behind a column of both signs is its largest at least.
+  EXPECT_TRUE((table.shot_correlation.array() >= measured.correlation.array().abs() - 1e-12).all());
+  const std::vector<float> raw = noisy_pixels(code, 3e4, 0.0, 2000, 8);
+  EXPECT_EQ(bins_of(Decoder(table), raw), bins_of(Decoder(code), raw));
+}
+
 TEST(MeasuredTable, ConstantsAlongAmbientLightChangeNoDepth) {
   const Camera camera = camera_with("paper-10f0");
   const ForwardModel model(build_family("hamiltonian-k4", camera), camera);

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core/shared/random.hpp"
+#include "simulate/shared/camera_bounds.hpp"
 #include "tofsmith/code/families.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 
@@ -255,6 +256,30 @@ TEST(ReceiverBound, HoldsForDifferencesAndUniformAlbedo) {
   for (const PointDepthError& error : evaluate(code, camera, {.trials = 2000}).points)
     EXPECT_GE(error.circular_mde_m.value + 4 * error.circular_mde_m.standard_error,
               error.receiver_bound_mae_m);
+}
+
+TEST(CameraBounds, AreThoseOfEachCodeAlone) {
+  Camera camera = built_in_camera("paper-10f0");
+  camera.samples = 60;
+  camera.operating.signal_e_per_s = {1e3, 1e5};
+  camera.operating.ambient_e_per_s = {1e2, 1e5};
+  for (const bool uniform_albedo : {false, true}) {
+    camera.operating.uniform_albedo = uniform_albedo;
+    camera.operating.neighbours = 3.0;
+    CameraBounds shared(camera);
+    for (const char* name : {"hamiltonian-k4", "sinusoid-k3", "sinusoid-k4"}) {
+      const CodeSet code = build_family(name, camera);
+      const DepthErrorReport alone = evaluate(code, camera, {.trials = 100});
+      const DepthErrorReport together = evaluate(code, camera, {.trials = 100}, shared, {});
+      for (std::size_t i = 0; i < alone.points.size(); ++i) {
+        EXPECT_GT(alone.points[i].receiver_bound_mae_m, 0.0);
+        EXPECT_EQ(alone.points[i].receiver_bound_mae_m, together.points[i].receiver_bound_mae_m);
+        EXPECT_EQ(alone.points[i].direct_tof_bound_mae_m,
+                  together.points[i].direct_tof_bound_mae_m);
+        EXPECT_EQ(alone.points[i].circular_mde_m.value, together.points[i].circular_mde_m.value);
+      }
+    }
+  }
 }
 
 TEST(ReceiverBound, IsAGuessWithoutLightAndByInformationInBrightLight) {

@@ -104,6 +104,53 @@ TEST(GateInformation, NoGateOfNoLightHasMoreAndSquareWavesComeNear) {
   }
 }
 
+/// at_any_depth() by gates that open at the points of the period in the order of slope over light.
+double of_sorted_points(const Eigen::VectorXcd& transfer, const Light& of) {
+  constexpr int fine = 8192;
+  Eigen::VectorXd response(fine), slope(fine);
+  for (int j = 0; j < fine; ++j) {
+    std::complex<double> value = 0.0, by_turn = 0.0;
+    for (int n = 0; n < transfer.size(); ++n) {
+      const double turn = 2 * std::numbers::pi * n;
+      const std::complex<double> part =
+          (n == 0 ? 1.0 : 2.0) * transfer[n] * std::polar(1.0, turn * j / fine);
+      value += part;
+      by_turn += turn * std::complex<double>(0.0, 1.0) * part;
+    }
+    response[j] = value.real();
+    slope[j] = of.signal_e * by_turn.real();
+  }
+  const double least = 1e-7 * response.maxCoeff();
+  const Eigen::VectorXd light = of.signal_e * response.cwiseMax(least).array() + of.ambient_e;
+  std::vector<int> order(fine);
+  for (int j = 0; j < fine; ++j) order[static_cast<std::size_t>(j)] = j;
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return slope[a] / light[a] > slope[b] / light[b]; });
+  double passed = 0.0, gained = 0.0, largest = 0.0;
+  for (const int j : order) {
+    passed += light[j] / fine;
+    gained += slope[j] / fine;
+    for (const double x : {passed, light.mean() - passed})
+      largest = std::max(largest, gained * gained / (x + of.other_e2));
+  }
+  return largest;
+}
+
+TEST(GateInformation, IsThatOfSortedPointsAndNeverBelow) {
+  for (const ImpulseResponse::Kind kind :
+       {ImpulseResponse::Kind::hann, ImpulseResponse::Kind::gaussian,
+        ImpulseResponse::Kind::lowpass}) {
+    const Eigen::VectorXcd transfer = transfer_of(kind);
+    const GateInformation bound(transfer);
+    for (const Light& light : lights) {
+      const double any = bound.at_any_depth(light.signal_e, light.ambient_e, light.other_e2);
+      const double sorted = of_sorted_points(transfer, light);
+      EXPECT_GE(any / sorted, 1 - 1e-5) << light.signal_e;
+      EXPECT_LE(any / sorted, 1 + 5e-4) << light.signal_e;
+    }
+  }
+}
+
 TEST(GateInformation, NeedsLightAndGrowsWithIt) {
   const GateInformation bound(transfer_of(ImpulseResponse::Kind::hann));
   EXPECT_EQ(bound.mean_over_depths(0.0, 100.0, 400.0), 0.0);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -96,6 +97,46 @@ TEST(Mixer, ErrsAsTwoBucketsDo) {
         evaluate(code.buckets_of_signed(), in_buckets(camera), {.trials = 20000, .seed = 2})
             .circular.geometric_mean_m;
     EXPECT_NEAR(one.value, two.value, 4 * std::hypot(one.standard_error, two.standard_error));
+  }
+}
+
+TEST(Mixer, PhotonsTellNoMoreThanWithAllOfItsNoise) {
+  Camera analog = mixer_camera();
+  analog.sensor.binary = false;
+  Camera taps = built_in_camera("paper-10f0");  // so many that they know when photons came
+  taps.sensor.taps = 16;
+  for (const double read_noise_e : {0.0, 20.0, 2000.0}) {
+    analog.sensor.read_noise_e = taps.sensor.read_noise_e = read_noise_e;
+    const ReceiverBound bound(analog, 4), of_taps(taps, 4);
+    // In much noise gates of one tap each gather less.
+    for (const OperatingPoint& point : {OperatingPoint{1e5, 1e3}, OperatingPoint{1e3, 1e5}})
+      if (read_noise_e < 100.0) {
+        EXPECT_NEAR(bound.photon_information(point) / of_taps.photon_information(point), 1.0, 1e-9)
+            << read_noise_e;
+      }
+    // Weights of any size against all of the light of the shortest pulse that responses let pass.
+    const Eigen::VectorXcd transfer = analog.transfer(120);
+    Eigen::VectorXd light, slope;
+    sample_with_slope(transfer, light, slope);
+    const double time_s = 0.3 / 4, c = read_noise_e * read_noise_e;
+    const OperatingPoint point{1e5, 1e3};
+    const Eigen::ArrayXd rate = time_s * (1e5 * light.array().max(0.0) + 1e3);
+    const Eigen::ArrayXd rate_slope = time_s * 1e5 * slope.array();
+    double nearest = 0.0;
+    for (std::uint64_t item = 0; item < 40; ++item) {
+      RandomStream random(9, item);
+      // Near the best weights, which go as the slope over the light, and away from them.
+      const double steep = std::pow(10.0, 4.0 * random.uniform() - 3.0), noise = random.uniform();
+      Eigen::ArrayXd weight = steep * rate_slope / (rate + c);
+      for (double& w : weight) w = std::clamp(w + 0.3 * noise * noise * random.normal(), -1.0, 1.0);
+      const double mean = (weight * rate_slope).mean();
+      const double found = mean * mean / ((weight.square() * rate).mean() + c);
+      EXPECT_LE(4.0 * found, bound.photon_information(point) * (1 + 1e-9)) << read_noise_e;
+      nearest = std::max(nearest, 4.0 * found / bound.photon_information(point));
+    }
+    if (read_noise_e == 0.0) {
+      EXPECT_GT(nearest, 0.9);
+    }
   }
 }
 
@@ -278,6 +319,10 @@ TEST(Mixer, RefusesWhatIsOfTaps) {
   camera = mixer_camera();
   camera.sensor.readout = Readout::rows;
   EXPECT_THAT(refusal_of(camera), HasSubstr("rows of one exposure have weights of any sign"));
+  camera = mixer_camera();
+  camera.sensor.drain = false;
+  EXPECT_THAT(refusal_of(camera), HasSubstr("sensor.drain = false; must be left out with "
+                                            "sensor.demodulation = \"signed\""));
   camera = mixer_camera();
   camera.sensor.adc_bits = 8;
   camera.sensor.gain_e_per_dn = 1.0;

@@ -39,7 +39,7 @@ TEST(RunSweep, DesignsCodesAndKeepsThem) {
   const TemporaryDirectory directory;
   const WorkList list(parse_sweep_toml(
       "set = [\"samples=24\"]\ncode = \"optimized-k{exposures}\"\neffort = 0.01\ntrials = 1000\n"
-      "[[axis]]\nkey = \"exposures\"\nvalues = [3, 4]\n"
+      "outlier_threshold_m = 0.01\n[[axis]]\nkey = \"exposures\"\nvalues = [3, 4]\n"
       "[[axis]]\nkey = \"signal_e_per_s\"\nvalues = [1e5]\n"
       "[[axis]]\nkey = \"ambient_e_per_s\"\nvalues = [1e4]\n"));
   const std::string text = swept(directory / "s.sqlite", list);
@@ -52,8 +52,11 @@ TEST(RunSweep, DesignsCodesAndKeepsThem) {
     ASSERT_TRUE(result.code);
     EXPECT_EQ(result.code->exposures(), result.item == 0 ? 3 : 4);
     EXPECT_EQ(result.error.code, result.code->name());
-    EXPECT_EQ(evaluate(*result.code, item.camera, item.options).linear.geometric_mean_m.value,
-              result.error.linear.geometric_mean_m.value);
+    const DepthErrorReport again = evaluate(*result.code, item.camera, item.options);
+    EXPECT_EQ(again.linear.geometric_mean_m.value, result.error.linear.geometric_mean_m.value);
+    EXPECT_EQ(result.error.outlier_threshold_m, 0.01);
+    EXPECT_EQ(again.points[0].outlier_rate.value, result.error.points[0].outlier_rate.value);
+    EXPECT_GT(result.error.points[0].outlier_rate.value, 0.1) << "most err by more than 1 cm";
   }
   std::int64_t computed = 0;
   EXPECT_EQ(swept(directory / "s.sqlite", list, &computed), text);

@@ -159,9 +159,9 @@ class ReceiverBound {
   /// the largest harmonic the arms let through and from how much a gate of duty kappa can hold.
   /// Where depths are not alike, as many times that as the most frequent occur more often.
   double tap_information(const OperatingPoint& point) const;
-  /// The same for photons recorded one by one behind both arms, one read-out per exposure, from the
-  /// arms' response itself or from the largest ripple within the peak, and for those that any gate
-  /// makes of them: the least of these.
+  /// The same for photons recorded one by one behind both arms, one read-out per exposure (two
+  /// where each measurement is a difference of two), from the arms' response itself or from the
+  /// largest ripple within the peak, and for those that any gate makes of them: the least of these.
   double photon_information(const OperatingPoint& point) const;
   /// The mean over depth of what any gate makes of photons while the light passes it: infinite for
   /// rows and for measured responses, which may ring.
@@ -182,6 +182,7 @@ class ReceiverBound {
   int taps_;
   bool has_rows_;
   bool drain_;
+  int read_outs_;  // of an exposure that no measurement is without
   double peak_factor_;
   double sensitivity_;  // of the most sensitive tap
   double dark_e_per_s_;
