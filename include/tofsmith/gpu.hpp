@@ -220,11 +220,15 @@ class DeviceFrames {
   /// doubles.
   /// @throws std::invalid_argument if there is none; IoError if the device fails
   RawView numbers();
-  /// Decodes the frame, as DeviceDecoder::decode, and filters it before, as DeviceFilter::decode.
-  /// @param decoder, filter  on the same device
+  /// Decodes the frame, as DeviceDecoder::decode.
+  /// @param decoder  on the same device
   /// @return how many pixels were left to the Decoder
   std::int64_t decode(const DeviceDecoder& decoder, const DecodedView& decoded,
                       const Progress& progress = {});
+  /// Filters the frame, as DeviceFilter::decode, and decodes it.
+  /// @param filter   on the same device
+  /// @param decoder  likewise
+  /// @return how many pixels were left to the Decoder
   std::int64_t decode(const DeviceFilter& filter, const DeviceDecoder& decoder,
                       const DecodedView& decoded, FilteredFrame* filtered = nullptr,
                       const Progress& progress = {}, const Image<std::uint8_t>& left_out = {});
@@ -239,8 +243,7 @@ class DeviceFrames {
 /// `auto` leaves frames of fewer than auto_min_pixels_to_decode to the processor.
 /// @param decoder  must outlive what comes
 /// @throws InvalidArgument if a device is named and the decoder is no Decoder; IoError if there is
-/// no
-///         such device, or it fails
+///         no such device, or it fails
 std::optional<DeviceDecoder> device_decoder(std::string_view device, const AnyDecoder& decoder);
 
 /// The same of a filter; on the device of a decoder that follows it, if there is one.
