@@ -133,6 +133,7 @@ class Rig:
                 calls = {line.split()[0]: int(line.split()[1]) for line in file}
             require(runs[0].keys() == runs[1].keys(), "two clean runs make different files")
             differ = {name for name in runs[0] if runs[0][name] != runs[1][name]}
+            differ.update(command.timed)  # two runs may take equally long
             self.cleans[command.name, force] = (runs[0], differ, calls, seconds)
         return self.cleans[command.name, force]
 

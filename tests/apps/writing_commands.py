@@ -39,6 +39,7 @@ class Command:
     arguments: tuple
     outputs: tuple  # files and directories that it makes
     is_slow: bool = False  # takes a second or more
+    timed: tuple = ()  # outputs that say how long the work took, so that two runs may differ
     also: str = ""  # files besides those of a whole run that may be there: what their paths begin with
 
 
@@ -79,7 +80,7 @@ COMMANDS = (
              name="export keysight-arb"),
     _command("export square-k4 --format c-header --samples 60 --no-loss -o w.h", "w.h"),
     _command("sweep sweep.toml --store s.sqlite --export s.csv --export s.npz --report s.html",
-             "s.sqlite", "s.csv", "s.npz", "s.html"),
+             "s.sqlite", "s.csv", "s.npz", "s.html", timed=("s.html",)),
     _command("sweep merge both.sqlite one.sqlite two.sqlite", "both.sqlite"),
     _command(f"calibrate impulse-response scope.csv {_CAMERA} -o c.toml --report c.html", "c.toml",
              "c-response.csv", "c.html"),
