@@ -51,8 +51,8 @@ void DeviceArguments::add_to(CLI::App& command) {
             throw CLI::Success();
           },
           "what adds frames up, filters and decodes: cpu; gpu, the first one; auto, that or else "
-          "cpu, which small "
-          "frames are left to; a number or part of a name from list, which prints the devices of "
+          "cpu, which small frames are left to; a number or part of a name from list, which prints "
+          "the devices of "
           "OpenCL. The same numbers come out, of zncc alone")
       ->default_str(name_)
       ->group(for_experts);

@@ -272,18 +272,15 @@ void leave_camera(const SimulateArguments& arguments, Camera camera, const CodeS
 
 /// Before the work: no output is an input, or there already.
 OutputPolicy check_outputs(const SimulateArguments& arguments, const Session& session) {
+  const std::filesystem::path camera = camera_beside(arguments.output);
   std::vector<std::filesystem::path> outputs{arguments.output};  // in the order of writing
-  if (leaves_camera(arguments)) {
-    const std::filesystem::path camera = camera_beside(arguments.output);
-    session.check_output(camera, camera_policy(arguments, session));
-    outputs.push_back(camera);
-  }
+  if (leaves_camera(arguments)) outputs.push_back(camera);
   for (const std::string& truth :
        {arguments.truth, arguments.truth_near, arguments.truth_far, arguments.returns.truth()})
     if (!truth.empty()) outputs.emplace_back(truth);
   const OutputPolicy policy = policy_to_go_on(outputs, session.output_policy());
   for (const std::filesystem::path& output : outputs)
-    if (output != camera_beside(arguments.output)) session.check_output(output, policy);
+    session.check_output(output, output == camera ? camera_policy(arguments, session) : policy);
   return policy;
 }
 

@@ -13,7 +13,8 @@ struct DeviceFrames::Plan {
   Plan(const Device& device_, const DecodingTable& table_, const TimeFilter* time_filter,
        const DeviceOptions& options_);
 
-  void check_size(const RawView& raw, bool is_first) const;
+  /// A frame comes, of the size of those before; the one that is there is no more.
+  void begin_frame(const RawView& raw, bool is_first);
   /// Does work of a queue, all of it. What fails half-way is forgotten.
   template <typename Steps>
   void do_all(const DeviceQueue& queue, const Steps& steps);
@@ -44,13 +45,15 @@ DeviceFrames::Plan::Plan(const Device& device_, const DecodingTable& table_,
   past.emplace(device, state_of(*time_filter));
 }
 
-void DeviceFrames::Plan::check_size(const RawView& raw, bool is_first) const {
+void DeviceFrames::Plan::begin_frame(const RawView& raw, bool is_first) {
   require_frame(raw, table.measurements());
-  if (is_first) return;
-  require(raw.height == size.height, "raw height", raw.height,
+  require(is_first || raw.height == size.height, "raw height", raw.height,
           "must equal that of the frames before, " + std::to_string(size.height));
-  require(raw.width == size.width, "raw width", raw.width,
+  require(is_first || raw.width == size.width, "raw width", raw.width,
           "must equal that of the frames before, " + std::to_string(size.width));
+  size = RawView::interleaved(static_cast<const float*>(nullptr), raw.height, raw.width,
+                              raw.measurements);
+  has_frame = false;
 }
 
 void DeviceFrames::Plan::forget() {
@@ -91,11 +94,8 @@ bool DeviceFrames::takes(std::int64_t pixels) const { return pixels >= plan_->op
 void DeviceFrames::add(const RawView& raw) {
   Plan& plan = *plan_;
   const bool is_first = plan.frames_added == 0 && !(plan.past && !plan.past->is_empty());
-  plan.check_size(raw, is_first);
-  plan.size = RawView::interleaved(static_cast<const float*>(nullptr), raw.height, raw.width,
-                                   raw.measurements);
+  plan.begin_frame(raw, is_first);
   if (!plan.means) plan.means.emplace(plan.device, plan.table.saturation_level);
-  plan.has_frame = false;
   plan.do_all(plan.means->queue(), [&] { plan.means->add(raw); });
   ++plan.frames_added;
 }
@@ -116,10 +116,7 @@ void DeviceFrames::take(const RawView& raw) {
   Plan& plan = *plan_;
   require(plan.past.has_value(), "time filter", "none",
           "is needed to take frames that are no means");
-  plan.check_size(raw, plan.past->is_empty());
-  plan.size = RawView::interleaved(static_cast<const float*>(nullptr), raw.height, raw.width,
-                                   raw.measurements);
-  plan.has_frame = false;
+  plan.begin_frame(raw, plan.past->is_empty());
   plan.do_all(plan.past->queue(), [&] { plan.past->add(raw); });
   plan.has_frame = true;
 }

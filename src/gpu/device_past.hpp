@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "decode/filter/shared/time_filter_parts.hpp"
+#include "decode/filter/shared/filter_parts.hpp"
 #include "gpu/device_raw.hpp"
 #include "gpu/time_parameters.h"
 

@@ -166,7 +166,7 @@ void AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes
   if (end < 0 || ::lseek(descriptor_, static_cast<off_t>(offset), SEEK_SET) < 0)
     throw IoError(target_.string(), fmt::format("cannot seek: {}", system_message(errno)));
   write(bytes);
-  ::lseek(descriptor_, end, SEEK_SET);
+  ::lseek(descriptor_, std::max(end, static_cast<off_t>(offset + bytes.size())), SEEK_SET);
 }
 
 void AtomicFile::commit() {

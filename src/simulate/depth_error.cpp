@@ -30,17 +30,16 @@ Estimate table_depth_error_m(const DecodingTable& table, const OperatingPoint& l
 
 void EvaluateOptions::validate() const { check_fields(*this); }
 
-CameraBounds::CameraBounds(const Camera& camera) : camera_(judged_camera(camera)) {}
-
 const std::vector<CameraBounds::Level>& CameraBounds::of(int exposures) {
   const auto [found, is_new] = levels_.try_emplace(exposures);
   if (!is_new) return found->second;
-  const ReceiverBound receiver(camera_, exposures);
-  const DirectTofBound direct_tof(camera_);
-  const bool has_rows = camera_.sensor.readout == Readout::rows;  // bounded by their own light
-  for (const OperatingPoint& point : camera_.operating.points())
-    found->second.push_back({has_rows ? 0.0 : bound_mae_m(receiver, camera_, point),
-                             bound_mae_m(direct_tof, camera_, point)});
+  const Camera camera = judged_camera(camera_);
+  const ReceiverBound receiver(camera, exposures);
+  const DirectTofBound direct_tof(camera);
+  const bool has_rows = camera.sensor.readout == Readout::rows;  // bounded by their own light
+  for (const OperatingPoint& point : camera.operating.points())
+    found->second.push_back({has_rows ? 0.0 : bound_mae_m(receiver, camera, point),
+                             bound_mae_m(direct_tof, camera, point)});
   return found->second;
 }
 

@@ -43,6 +43,16 @@ TEST(AtomicFile, ReplacesBytesWrittenEarlierAndGoesOnAtTheEnd) {
   EXPECT_EQ(read_text_file(directory / "a.txt"), "Mars, world!");
 }
 
+TEST(AtomicFile, WritesOverTheEndAndGoesOnBehindIt) {
+  const TemporaryDirectory directory;
+  AtomicFile file(directory / "a.txt", refuse);
+  file.write("Hello, w");
+  file.write_at(7, std::as_bytes(std::span("Mars", 4)));
+  file.write("!");
+  file.commit();
+  EXPECT_EQ(read_text_file(directory / "a.txt"), "Hello, Mars!");
+}
+
 TEST(AtomicFile, RefusesAnExistingFileAndSuggestsForce) {
   const TemporaryDirectory directory;
   write_file_atomically(directory / "a.txt", std::string_view("old"), refuse);

@@ -57,7 +57,8 @@ class AtomicFile {
   /// Appends bytes. @throws IoError if the disk is full or fails
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
-  /// Replaces bytes written earlier, `offset` bytes from the start. @throws IoError as write()
+  /// Writes bytes over those `offset` bytes from the start, and on beyond the last of them.
+  /// @throws IoError as write()
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
 
   /// Flushes to disk and gives the file its name. Call it once, last.

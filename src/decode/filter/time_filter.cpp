@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "decode/filter/shared/time_filter_parts.hpp"
+#include "decode/filter/shared/filter_parts.hpp"
 #include "decode/output/pixel_output.hpp"
 #include "tofsmith/core/error.hpp"
 

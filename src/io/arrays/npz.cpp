@@ -332,12 +332,8 @@ void write_npz(const std::filesystem::path& path, const NpzArrays& arrays, Outpu
                NpzCompression compression) {
   AtomicFile file(path, policy);  // before the work of packing, so that a bad path fails at once
   check_names(arrays);
-  std::uint64_t end = 0;
   ArchiveTarget target([&](std::uint64_t offset, std::span<const std::byte> bytes) {
-    const std::size_t over = std::min<std::uint64_t>(end - offset, bytes.size());
-    if (over > 0) file.write_at(offset, bytes.first(over));
-    if (over < bytes.size()) file.write(bytes.subspan(over));
-    end = std::max(end, offset + bytes.size());
+    file.write_at(offset, bytes);
   });
   pack(arrays, compression, target, path.string());
   file.commit();

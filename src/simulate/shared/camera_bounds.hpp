@@ -18,14 +18,14 @@ class CameraBounds {
     double receiver_mae_m = 0.0, direct_tof_mae_m = 0.0;
   };
 
-  /// @param camera  as for evaluate(), with albedo and neighbours
-  explicit CameraBounds(const Camera& camera);
+  /// @param camera  as for evaluate(), with albedo and neighbours; must outlive this
+  explicit CameraBounds(const Camera& camera) : camera_(camera) {}
 
   /// In the order of camera.operating.points(); the receiver's is 0 where the camera reads rows.
   const std::vector<Level>& of(int exposures);
 
  private:
-  Camera camera_;
+  const Camera& camera_;
   std::map<int, std::vector<Level>> levels_;
 };
 
