@@ -5,7 +5,9 @@
 # Compares the decoder's bins with brute force in NumPy, on random codes and raw numbers. What was
 # compared is kept in build-dev/differential.json, and the next run goes on behind it.
 #
-#   scripts/differential.sh [--pixels N] [--seed S]     1e7 pixels more of seed 1, about 5 min
+#   scripts/differential.sh [--pixels N] [--seed S]     1e7 pixels more of seed 1, about a minute
+#
+# NumPy multiplies six times faster where libopenblas0-serial is installed.
 #
 # A wrong bin ends it with its code and pixel: exit code 1.
 set -euo pipefail

@@ -26,7 +26,7 @@ def test_a_bin_that_is_wrong_is_found():
     unit = table - table.mean(axis=1, keepdims=True)
     unit /= np.linalg.norm(unit, axis=1, keepdims=True)
     best = (centred.astype(float) @ unit.T).argmax(axis=1)[None]
-    assert not decode_bins.wrong_bins(table, raw, best)
+    assert decode_bins.wrong_bins(table, raw, best).size == 0
     best[0, 17] = (best[0, 17] + 1) % 50
     best[0, 40] = -1
-    assert decode_bins.wrong_bins(table, raw, best) == [17, 40]
+    assert list(decode_bins.wrong_bins(table, raw, best)) == [17, 40]
