@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
@@ -19,6 +20,11 @@ namespace tofsmith {
 namespace {
 
 bool is_integer(PlyType type) { return type != PlyType::float32 && type != PlyType::float64; }
+
+/// Whether it is whole, and of the size that an integer of a PLY may have.
+bool is_index(double number) {
+  return number >= -0x1p31 && number < 0x1p32 && number == std::floor(number);
+}
 
 enum class PlyFormat { ascii, little_endian, big_endian };
 
@@ -242,7 +248,14 @@ void read_text_row(ByteCursor& cursor, const Element& element, SoupFiller& fille
                                           "as the line has",
                                           count));
     }
-    for (double i = 0; i < count; ++i) filler.take(property, column, take("a number"));
+    for (double i = 0; i < count; ++i) {
+      const double number = take("a number");
+      if (property.count && is_integer(property.type) && !is_index(number))
+        cursor.fail_at(start, fmt::format("found {} in a list of whole numbers; expected a whole "
+                                          "number that 32 bits hold",
+                                          number));
+      filler.take(property, column, number);
+    }
     filler.end_list(property);
   }
   if (words.size() != next)
