@@ -34,6 +34,8 @@ if(TOFSMITH_HARDEN AND CMAKE_SYSTEM_NAME STREQUAL "Linux" AND CMAKE_CXX_COMPILER
   set(hardening -fstack-protector-strong)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     list(APPEND hardening -fcf-protection)
+  elseif(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
+    list(APPEND hardening -mbranch-protection=standard)
   endif()
   if(NOT CMAKE_CXX_FLAGS MATCHES "FORTIFY")  # a distribution's own level
     list(APPEND hardening -D_FORTIFY_SOURCE=2)

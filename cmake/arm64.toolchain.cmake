@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
 # Builds for 64-bit Arm by Debian's cross compiler. Libraries are those of a Debian root for arm64 in
-# TOFSMITH_ARM64_ROOT, which scripts/arm64.sh makes; what is built runs here by qemu-user.
+# TOFSMITH_ARM64_ROOT, which scripts/arm64.sh makes, or without it those of this system, as packages
+# like libfmt-dev:arm64 bring them; what is built runs here by qemu-user.
 
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
@@ -9,6 +10,9 @@ set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
 set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
 
+if(NOT TOFSMITH_ARM64_ROOT)
+  return()
+endif()
 list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES TOFSMITH_ARM64_ROOT)
 set(CMAKE_SYSROOT "${TOFSMITH_ARM64_ROOT}")
 set(CMAKE_FIND_ROOT_PATH "${TOFSMITH_ARM64_ROOT}")

@@ -8,9 +8,12 @@
 # in whatever directory it is built (scripts/reproduce_build.sh). What is packed must be hardened
 # (scripts/check_elf.py).
 #
-#   scripts/package.sh [--component NAME] [--without-lab] [DIR]   build there instead of in build-package
+#   scripts/package.sh [--component NAME | --arch arm64] [--without-lab] [DIR]
+#                                                     build there instead of in build-package
 #
 #   --component NAME   only this one and what it stands on: no command line, no Python
+#   --arch arm64       core for 64-bit Arm, by Debian's cross compiler and libraries: adds arm64 to the
+#                      architectures that dpkg knows, if it is not there
 #   --without-lab      leave out the page of `tofsmith lab`, which needs emscripten
 set -euo pipefail
 
@@ -18,7 +21,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # shellcheck source=scripts/packages.sh
 source "$root/scripts/packages.sh"
 
-component='' directory='' lab=yes
+component='' directory='' lab=yes arch=''
 while (($#)); do
   case "$1" in
     -h | --help)
@@ -26,6 +29,10 @@ while (($#)); do
       exit 0
       ;;
     --component) component=${2:?--component needs a name} && shift ;;
+    --arch)
+      arch=${2:?--arch needs a name} && shift
+      [[ "$arch" == arm64 ]] || tofsmith_die "--arch: found '$arch'; expected arm64, or no option for this computer's own"
+      ;;
     --without-lab) lab='' ;;
     -*) tofsmith_die "unknown option $1; see --help" ;;
     *) directory=$1 ;;
@@ -33,6 +40,10 @@ while (($#)); do
   shift
 done
 build=$(realpath -m "${directory:-$root/build-package}")
+if [[ -n "$arch" ]]; then
+  [[ "${component:-core}" == core ]] || tofsmith_die "--arch $arch: found --component $component; only core has been built for it"
+  component=core
+fi
 programs=(-DTOFSMITH_BUILD_APPS=ON -DTOFSMITH_BUILD_PYTHON=REQUIRED)
 if [[ -n "$component" ]]; then
   programs=(-DTOFSMITH_BUILD_APPS=OFF -DTOFSMITH_BUILD_PYTHON=OFF)
@@ -40,7 +51,8 @@ elif [[ -n "$lab" ]]; then
   programs+=(-DTOFSMITH_LAB_PAGE="$build/lab.html")
 fi
 
-install_packages package
+[[ -z "$arch" ]] || programs+=(-DCMAKE_TOOLCHAIN_FILE="$root/cmake/$arch.toolchain.cmake" -DCMAKE_INSTALL_LIBDIR=lib/aarch64-linux-gnu)
+install_packages "package${arch:+_$arch}"
 use_debian_tools
 
 mkdir -p "$build"

@@ -98,6 +98,11 @@ packages_fuzz=(
 packages_arm64=(
   crossbuild-essential-arm64 qemu-user-static cmake ninja-build dpkg-dev
 )
+# scripts/package.sh --arch arm64.
+packages_package_arm64=(
+  crossbuild-essential-arm64 cmake ninja-build pkgconf dpkg-dev file python3 libeigen3-dev
+  librandom123-dev libtbb-dev:arm64 libhwy-dev:arm64 libfmt-dev:arm64
+)
 packages_arm64_libraries=(
   libc6-dev libstdc++-12-dev libeigen3-dev libtbb-dev libhwy-dev libfmt-dev librandom123-dev
   libgtest-dev libgmock-dev nlohmann-json3-dev
@@ -124,6 +129,7 @@ packages_of() {
     check) printf '%s\n' "${packages_check[@]}" ;;
     fuzz) printf '%s\n' "${packages_fuzz[@]}" ;;
     arm64) printf '%s\n' "${packages_arm64[@]}" ;;
+    package_arm64) printf '%s\n' "${packages_package_arm64[@]}" ;;
     arm64_libraries) printf '%s\n' "${packages_arm64_libraries[@]}" ;;
     *) tofsmith_die "no package group '$1'; there are core, gpu, design, build, python, lab, package, test, docs, benchmark, check, fuzz and arm64" ;;
   esac
@@ -161,6 +167,8 @@ apt-get install --no-install-recommends ${missing[*]}"
   # A machine just started may be updating itself: wait for its lock.
   local -a apt=("${as_root[@]}" apt-get -q -y -o DPkg::Lock::Timeout=600)
 
+  # Packages of another architecture are found once dpkg knows of it.
+  [[ " ${missing[*]}" != *:arm64* ]] || "${as_root[@]}" dpkg --add-architecture arm64
   printf 'Installing %d Debian packages: %s\n' "${#missing[@]}" "${missing[*]}"
   # One broken third-party source fails the update but need not hide our packages.
   "${apt[@]}" update </dev/null ||

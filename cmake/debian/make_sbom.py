@@ -84,26 +84,45 @@ def owners(files):
                                  capture_output=True, text=True).stdout
         for line in listing.splitlines():
             if not line.startswith("diversion "):
-                names.add(line.split(": ")[0].split(",")[0].split(":")[0])
+                names.add(line.split(": ")[0].split(",")[0])  # such as libfmt9:arm64
     versions = {}
     for name in sorted(names):
         fields = run("dpkg-query", "-W", "-f=${Version}\t${source:Package}\n", name)
-        versions[name] = fields.splitlines()[0].split("\t")
+        versions[name.split(":")[0]] = fields.splitlines()[0].split("\t")
     return versions
 
 
-def libraries_of(elf_files):
-    """Paths of the shared libraries that ELF files name; ours are not found, and left out."""
-    needed = set()
-    for file in elf_files:
-        if pathlib.Path(file).is_symlink():  # of a library that another package has
-            continue
-        needed |= set(re.findall(r"\(NEEDED\).*\[(.*)\]", run("readelf", "-dW", file)))
+def native(name):
+    """A package's name on its own architecture."""
+    return name.removesuffix("-arm64-cross")
+
+
+def installed_libraries():
+    """Paths of the shared libraries of this system, by their names."""
     paths = {}
     for line in run("/sbin/ldconfig", "-p").splitlines():
         match = re.match(r"\s*(\S+) \(.*\) => (.*)", line)
         if match:
             paths.setdefault(match[1], match[2])
+    return paths
+
+
+def arm_libraries():
+    """The same of those for arm64, which ldconfig does not list on another processor."""
+    return {file.name: str(file) for folder in ("/usr/lib", "/lib")
+            for file in pathlib.Path(folder, "aarch64-linux-gnu").glob("*.so.*")}
+
+
+def libraries_of(elf_files):
+    """Paths of the shared libraries that ELF files name; ours are not found, and left out."""
+    needed, paths = set(), installed_libraries()
+    for file in elf_files:
+        if pathlib.Path(file).is_symlink():  # of a library that another package has
+            continue
+        described = run("readelf", "-hdW", file)
+        if "AArch64" in described:
+            paths |= arm_libraries()
+        needed |= set(re.findall(r"\(NEEDED\).*\[(.*)\]", described))
     # Debian's dpkg knows files below /usr/lib or /lib, as they were packed.
     found = [paths[name] for name in sorted(needed) if name in paths]
     return sorted({name for path in found
@@ -133,7 +152,7 @@ def bill_of_materials(arguments):
         compiled_in["python3-plotly"] = [version, "python-plotly"]
         licences["python3-plotly"] = licences["plotly.js"]
     unknown = [name for name in compiled_in
-               if name not in licences and not DECLARATIONS.fullmatch(name)]
+               if native(name) not in licences and not DECLARATIONS.fullmatch(native(name))]
     if unknown:
         sys.exit(f"make_sbom.py: {arguments.component} is compiled from headers of "
                  f"{', '.join(unknown)}; name each in cmake/debian/copyright, with its licence, or "
@@ -142,11 +161,11 @@ def bill_of_materials(arguments):
     packages, relationships = [own], [("SPDXRef-DOCUMENT", "DESCRIBES", own)]
     for relation, found in (("CONTAINS", compiled_in), ("DEPENDS_ON", owners(libraries_of(arguments.elf)))):
         for name, (version, source) in found.items():
-            if relation == "CONTAINS" and name not in licences:
+            if relation == "CONTAINS" and native(name) not in licences:
                 continue
             identifier = f"{relation.lower().replace('_', '-')}-{name.replace('+', 'p')}"
             packages.append(package(identifier, name, version,
-                                    licences.get(name, "NOASSERTION"), source))
+                                    licences.get(native(name), "NOASSERTION"), source))
             relationships.append(("SPDXRef-Package", relation, packages[-1]))
     document = {
         "spdxVersion": "SPDX-2.3", "dataLicense": "CC0-1.0", "SPDXID": "SPDXRef-DOCUMENT",
