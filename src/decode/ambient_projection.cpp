@@ -64,6 +64,8 @@ AmbientProjection::AmbientProjection(const DecodingTable& table) {
   while (kept < svd.values.size() && svd.values[kept] > no_dimension * whole) ++kept;
   noise_basis = svd.v.leftCols(kept);
   settle(noise_basis, svd.values);
+  // The decomposition leaves some of it in, which of much ambient light would decide ties.
+  if (!ambient.isZero(0.0)) noise_basis -= direction * (direction.transpose() * noise_basis).eval();
   basis = noise_basis;
   if (table.has_rows()) basis = table.whitening.transpose() * noise_basis;
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/shared/random.hpp"
 #include "each_target.hpp"
@@ -37,6 +38,20 @@ TEST(DecoderOfRandomCodes, FindsTheBinsOfTheDefinition) {
   }
 }
 
+/// Raw numbers are electrons, of equal light and noise.
+DecodingTable measured_table_of(Eigen::MatrixXd correlation) {
+  DecodingTable table;
+  const auto every = [&](double value) {
+    return Eigen::VectorXd::Constant(correlation.cols(), value);
+  };
+  table.ambient_gain = table.exposure_s = table.gain_e_per_raw = every(1.0);
+  table.dark_electrons = table.black_level = every(0.0);
+  table.constant_variance_e2 = every(1.0);
+  table.range_m = 1.0;
+  table.correlation = std::move(correlation);
+  return table;
+}
+
 /// Of numbers that every processor computes alike: triangle waves, and raw numbers that are whole.
 struct WholeNumbers {
   WholeNumbers(int measurements, int samples, int pixels, RandomStream& random) {
@@ -49,11 +64,7 @@ struct WholeNumbers {
                                   0.5 * std::abs(2 * (twice - std::floor(twice)) - 1);
       }
     }
-    const auto every = [&](double value) { return Eigen::VectorXd::Constant(measurements, value); };
-    table.ambient_gain = table.exposure_s = table.gain_e_per_raw = every(1.0);
-    table.dark_electrons = table.black_level = every(0.0);
-    table.constant_variance_e2 = every(1.0);
-    table.range_m = 1.0;
+    table = measured_table_of(std::move(table.correlation));
     for (int i = 0; i < pixels; ++i) {
       const int n =
           i < pixels / 2 ? i * samples / pixels : static_cast<int>(random.uniform() * samples);
@@ -82,6 +93,34 @@ TEST(DecoderOfRandomCodes, FindsTheSameBinsOnEveryProcessor) {
     }
   // As an x86 processor with AVX-512 found them.
   EXPECT_EQ(hash, 11286135160687803514u);
+}
+
+/// A code of few directions, each of many bins: small whole numbers often tie between two.
+DecodingTable table_of_steps(RandomStream& random) {
+  constexpr int samples = 3000, steps = 35, measurements = 4;
+  Eigen::MatrixXd levels(steps, measurements);
+  for (double& level : levels.reshaped()) level = std::floor(4.0 * random.uniform());
+  Eigen::MatrixXd correlation(samples, measurements);
+  for (int n = 0; n < samples; ++n) correlation.row(n) = levels.row(n * steps / samples);
+  return measured_table_of(correlation);
+}
+
+TEST(DecoderOfRandomCodes, LeavesTiesToTheLowestBinInBrightAmbientLightToo) {
+  RandomStream random(37, 0);
+  for (int code = 0; code < 20; ++code) {
+    const Decoder decoder(table_of_steps(random));
+    constexpr int pixels = 500, measurements = 4;
+    std::vector<float> raw(pixels * measurements), brighter(raw.size());
+    for (float& number : raw) number = static_cast<float>(std::floor(8.0 * random.uniform()));
+    std::vector<std::int32_t> expected(pixels), bin(pixels);
+    decoder.decode_bins(raw.data(), pixels, expected.data());
+    for (const float ambient : {1000.0f, 8004.0f, 16000.0f}) {
+      std::ranges::transform(raw, brighter.begin(), [&](float number) { return number + ambient; });
+      decoder.decode_bins(brighter.data(), pixels, bin.data());
+      for (int i = 0; i < pixels; ++i)
+        ASSERT_EQ(bin[i], expected[i]) << "pixel " << i << " of code " << code << ", " << ambient;
+    }
+  }
 }
 
 TEST(DecoderOfRandomCodes, FindsTheBinOfAPixelWhateverStandsBesideIt) {
