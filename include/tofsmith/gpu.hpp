@@ -3,7 +3,7 @@
 #pragma once
 
 /// @file
-/// All of tofsmith::gpu: means, filters and decoding on devices of OpenCL. Includes
+/// All of tofsmith::gpu: captures, means, filters and decoding on devices of OpenCL. Includes
 /// tofsmith/core.hpp.
 
 #include <array>
@@ -61,7 +61,7 @@ class Device {
   std::shared_ptr<State> state_;
 };
 
-/// How a decoder or filter uses its device.
+/// How a decoder, filter or capture uses its device.
 struct DeviceOptions {
   /// For the pixels under way and their planes [MB], > 0; larger frames go in parts. Where the
   /// device has less, parts become smaller. Filters take as many rows as a result depends on, at
@@ -83,9 +83,10 @@ auto fields_of(ConstOrNot<DeviceOptions> auto& o) {
                     Field("use_doubles", o.use_doubles), Field("min_pixels", o.min_pixels, ">= 0"));
 }
 
-/// DeviceOptions::min_pixels of the device `auto`, of decoding and of filtering: not measured on
-/// any GPU, and rather too large than too small.
-inline constexpr int auto_min_pixels_to_decode = 300'000, auto_min_pixels_to_filter = 75'000;
+/// DeviceOptions::min_pixels of the device `auto`, of decoding, of filtering and of captures: not
+/// measured on any GPU, and rather too large than too small.
+inline constexpr int auto_min_pixels_to_decode = 300'000, auto_min_pixels_to_filter = 75'000,
+                     auto_min_pixels_to_capture = 75'000;
 
 struct FrameSource;  ///< of the implementation
 
@@ -238,6 +239,35 @@ class DeviceFrames {
   std::unique_ptr<Plan> plan_;
 };
 
+/// Draws the noise of captures on a device that has doubles. Frames are those of capture(), bit by
+/// bit: the words that random numbers are made of are the same, and of a pixel in which a number
+/// hangs on the last bits of a logarithm, an exponential, a sine or a cosine, the processor draws
+/// the noise. Light comes from a scene's direct returns on the device; of longer ways, lenses that
+/// blur and scenes that move it is collected by the processor and exposed on the device.
+///
+/// Safe to use from many threads, which wait for one another.
+class DeviceCapture {
+ public:
+  /// Compiles kernels.
+  /// @throws std::invalid_argument for options, and if the device has no doubles; IoError if it
+  ///         fails, with what its compiler says of kernels
+  explicit DeviceCapture(const Device& device, const DeviceOptions& options = {});
+  ~DeviceCapture();
+  DeviceCapture(DeviceCapture&&) noexcept;
+  DeviceCapture& operator=(DeviceCapture&&) noexcept;
+
+  const Device& device() const;
+
+  /// What capture(), StagedSetup and write_training_set() take, while this lives. Throws IoError if
+  /// the device fails, and Interrupted if progress says so.
+  ExposeBy expose_by() const;
+
+  struct Plan;  ///< of the implementation
+
+ private:
+  std::unique_ptr<Plan> plan_;
+};
+
 /// What decodes in place of a decoder on the device that a user names: "cpu", nothing; "auto": the
 /// first GPU, or nothing where there is none or the decoder is no Decoder; else Device::named().
 /// `auto` leaves frames of fewer than auto_min_pixels_to_decode to the processor.
@@ -261,5 +291,12 @@ std::optional<DeviceFilter> device_filter(std::string_view device, const Filter&
 std::optional<DeviceFrames> device_frames(std::string_view device, const DecodingTable& table,
                                           const TimeFilter* time_filter, bool makes_means,
                                           const DeviceDecoder& after);
+
+/// What draws the noise of captures on the device that a user names, as device_decoder(): `auto`
+/// leaves scenes of fewer than auto_min_pixels_to_capture, and all where the GPU has no doubles, to
+/// the processor.
+/// @throws InvalidArgument if a device is named that has no doubles; IoError if there is no such
+///         device, or it fails
+std::optional<DeviceCapture> device_capture(std::string_view device);
 
 }  // namespace tofsmith
