@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The tofsmith authors
 # SPDX-License-Identifier: Apache-2.0
-"""`decode --device`: the same files by a device of OpenCL, and drivers loaded when asked for alone."""
+"""`decode --device` and `simulate --device`: the same files by a device of OpenCL, and drivers loaded when asked for alone."""
 
 import json
 import os
@@ -64,6 +64,60 @@ class Device(CommandLineTest):
                 self.assertEqual(self.bytes_of(f"auto{frame}.npz"), expected)
                 if DEVICES[0]["doubles"]:
                     self.assertEqual(self.bytes_of(f"0{frame}.npz"), expected, more)
+
+    def simulate(self, device, output, *more, **options):
+        return self.run_tool("simulate", *more, "--code", "hamiltonian-k4", "--device", device,
+                             "-o", output, **options)
+
+    @needs_device
+    def test_a_device_captures_the_frames_that_the_processor_captures(self):
+        if not DEVICES[0]["doubles"]:
+            self.skipTest("the device has no doubles")
+        for more in ((), ("--frames", "3", "--seed", "9"), ("--tail", "0.5"), ("--bounces", "1"),
+                     ("--set", "sensor.noise=poisson", "--set", "sensor.adc_bits=12", "--set",
+                      "sensor.gain_e_per_dn=4"),
+                     ("--set", "lens.blur=gaussian", "--set", "lens.blur_sigma_px=0.7")):
+            for device in ("cpu", "auto", "0"):
+                code, _, error = self.simulate(device, device + ".npy", "table-top", "--width",
+                                               "80", "--height", "60", *more, "--force")
+                self.assertEqual((code, error), (0, ""))
+            for device in ("auto", "0"):
+                self.assertEqual(self.bytes_of(device + ".npy"), self.bytes_of("cpu.npy"), more)
+
+    @needs_device
+    def test_a_device_captures_the_training_set_that_the_processor_captures(self):
+        if not DEVICES[0]["doubles"]:
+            self.skipTest("the device has no doubles")
+
+        def content(folder):
+            return {name[len(folder):]: self.bytes_of(name) for name in self.files()
+                    if name.startswith(folder + "/") and os.path.isfile(self.path(name))}
+
+        for device in ("cpu", "0"):
+            code, _, error = self.simulate(device, device, "table-top", "corner", "ball", "--width",
+                                           "40", "--height", "30", "--signal-range", "1e4:1e6")
+            self.assertEqual((code, error), (0, ""))
+        self.assertEqual(len(content("cpu")), 7)
+        self.assertEqual(content("0"), content("cpu"))
+
+    @needs_device
+    def test_says_which_device_captured(self):
+        if not DEVICES[0]["doubles"]:
+            self.skipTest("the device has no doubles")
+        out = self.simulate("0", "a.npy", "ball")[1]
+        self.assertIn("device " + DEVICES[0]["name"], out.decode())
+        out = self.simulate("0", "b.npy", "ball", "--json")[1]
+        self.assertEqual(json.loads(out)["device"], DEVICES[0]["name"])
+        self.assertIn("0  " + DEVICES[0]["name"], self.do("simulate", "--device", "list"))
+
+    @needs_device
+    def test_a_capture_on_a_device_that_is_not_there_writes_nothing(self):
+        before = self.files()
+        for inputs, output in ((("ball",), "a.npy"), (("ball", "corner"), "set")):
+            code, out, error = self.simulate("7000", output, *inputs)
+            self.assertEqual((code, out), (1, b""))
+            self.assertIn("0 " + DEVICES[0]["name"], error)
+            self.assertEqual(self.files(), before)
 
     @needs_device
     def test_says_which_device_decoded(self):
