@@ -70,6 +70,22 @@ void DeviceArguments::add_capture_to(CLI::App& command) {
          "OpenCL. The same frames come out, of devices that have doubles");
 }
 
+void DeviceArguments::add_trials_to(CLI::App& command) {
+  add_to(command,
+         "what runs the trials: cpu; gpu, the first one; auto, that or else cpu, which few trials "
+         "are left to; a number or part of a name from list, which prints the devices of OpenCL. "
+         "The same figures but for rounding, of normal noise, zncc and devices that have doubles");
+}
+
+std::optional<DeviceTrials> DeviceArguments::trials(const Camera& camera,
+                                                    const EvaluateOptions& options) const {
+  try {
+    return device_trials(name_, camera, options);
+  } catch (const std::invalid_argument& error) {
+    throw wrong_option(error);
+  }
+}
+
 std::optional<DeviceCapture> DeviceArguments::capture() const {
   try {
     return device_capture(name_);

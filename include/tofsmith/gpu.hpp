@@ -3,8 +3,8 @@
 #pragma once
 
 /// @file
-/// All of tofsmith::gpu: captures, means, filters and decoding on devices of OpenCL. Includes
-/// tofsmith/core.hpp.
+/// All of tofsmith::gpu: captures, trials, means, filters and decoding on devices of OpenCL.
+/// Includes tofsmith/core.hpp.
 
 #include <array>
 #include <cstdint>
@@ -87,6 +87,8 @@ auto fields_of(ConstOrNot<DeviceOptions> auto& o) {
 /// measured on any GPU, and rather too large than too small.
 inline constexpr int auto_min_pixels_to_decode = 300'000, auto_min_pixels_to_filter = 75'000,
                      auto_min_pixels_to_capture = 75'000;
+/// The same of evaluations: the fewest trials per operating point that `auto` leaves to a device.
+inline constexpr std::int64_t auto_min_trials_to_evaluate = 10'000'000;
 
 struct FrameSource;  ///< of the implementation
 
@@ -268,6 +270,33 @@ class DeviceCapture {
   std::unique_ptr<Plan> plan_;
 };
 
+/// Draws and decodes the Monte Carlo trials of evaluate() on a device that has doubles: trials with
+/// normal noise that ZNCC decodes, drawn in the plane that it looks at. From the same random words,
+/// in single precision as there: positions are those of the processor to 2e-6 of the range, to 2e-5
+/// where noise all but cancels the signal, but where two depths are as likely to the last bits.
+/// Bins that single precision does not prove are the processor's.
+class DeviceTrials {
+ public:
+  /// @throws std::invalid_argument for options, and if the device has no doubles
+  explicit DeviceTrials(const Device& device, const DeviceOptions& options = {});
+  ~DeviceTrials();
+  DeviceTrials(DeviceTrials&&) noexcept;
+  DeviceTrials& operator=(DeviceTrials&&) noexcept;
+
+  const Device& device() const;
+
+  /// What evaluate() takes, while this lives; of trials of other kinds, nothing, and the processor
+  /// runs them. Throws IoError if the device fails.
+  TrialsBy trials_by() const;
+
+ private:
+  struct Plan;
+  std::unique_ptr<Plan> plan_;
+};
+
+/// Why the trials of a camera are the processor's, whatever the code; none: a device runs them.
+std::optional<BrokenRule> why_not_on_device(const Camera& camera, const EvaluateOptions& options);
+
 /// What decodes in place of a decoder on the device that a user names: "cpu", nothing; "auto": the
 /// first GPU, or nothing where there is none or the decoder is no Decoder; else Device::named().
 /// `auto` leaves frames of fewer than auto_min_pixels_to_decode to the processor.
@@ -298,5 +327,12 @@ std::optional<DeviceFrames> device_frames(std::string_view device, const Decodin
 /// @throws InvalidArgument if a device is named that has no doubles; IoError if there is no such
 ///         device, or it fails
 std::optional<DeviceCapture> device_capture(std::string_view device);
+
+/// What runs the trials of evaluate() on the device that a user names, as device_decoder(): `auto`
+/// leaves fewer than auto_min_trials_to_evaluate, and what no device runs, to the processor.
+/// @throws InvalidArgument if a device is named that has no doubles, or cannot, as
+///         why_not_on_device(); IoError if there is no such device, or it fails
+std::optional<DeviceTrials> device_trials(std::string_view device, const Camera& camera,
+                                          const EvaluateOptions& options);
 
 }  // namespace tofsmith

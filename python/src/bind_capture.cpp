@@ -43,17 +43,6 @@ BoundCapture::BoundCapture(const std::string& device) {
 
 namespace {
 
-/// `device` out of a dict of options, where it stands no more.
-std::string taken_device(const py::dict& options) {
-  std::string device = "cpu";
-  if (const py::object name = options.attr("pop")("device", py::none()); !name.is_none()) {
-    py::dict alone;
-    alone["device"] = name;
-    OptionReader(alone, "").value("device", device);
-  }
-  return device;
-}
-
 std::vector<MultipathReturn> multipath_returns(const Floats& distance_m, const Floats& ratio) {
   if (distance_m.size() != ratio.size())
     refuse("returns.ratio", "shape " + shape_of(ratio),

@@ -119,6 +119,33 @@ class Device(CommandLineTest):
             self.assertIn("0 " + DEVICES[0]["name"], error)
             self.assertEqual(self.files(), before)
 
+    def evaluate(self, device, *more):
+        return self.run_tool("evaluate", "hamiltonian-k4", "sinusoid-k4", "--device", device,
+                             "--trials", "4000", *more)
+
+    @needs_device
+    def test_a_device_evaluates_as_the_processor(self):
+        if not DEVICES[0]["doubles"]:
+            self.skipTest("the device has no doubles")
+        found, expected = (json.loads(self.evaluate(device, "--json")[1]) for device in ("0", "cpu"))
+        for a, b in zip(found["codes"], expected["codes"]):
+            for kind in ("linear", "circular"):
+                near = b[kind]["geometric_mean_m"]
+                self.assertAlmostEqual(a[kind]["geometric_mean_m"], near, delta=1e-3 * near)
+        self.assertIn("device " + DEVICES[0]["name"], self.evaluate("0")[1].decode())
+        self.assertEqual(json.loads(self.evaluate("auto", "--json")[1]), expected)
+
+    @needs_device
+    def test_trials_that_a_device_does_not_run_are_refused_and_run_by_auto(self):
+        for more, said in ((("--method", "ml"), "zncc"),
+                           (("--set", "sensor.noise=poisson"), "sensor.noise"),
+                           (("--clip-to-open-sensor",), "clip_to_open_sensor")):
+            code, out, error = self.evaluate("0", *more)
+            self.assertEqual((code, out), (2, b""))
+            self.assertIn(said, error)
+            self.assertEqual(self.evaluate("auto", *more)[0], 0)
+        self.assertIn("0 " + DEVICES[0]["name"], self.evaluate("7000")[2])
+
     @needs_device
     def test_says_which_device_decoded(self):
         code, out, _ = self.decode("0", "-o", "d.npz")

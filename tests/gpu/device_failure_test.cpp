@@ -9,6 +9,7 @@
 
 #include "device_setup.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
 namespace {
@@ -305,6 +306,70 @@ TEST_F(FailingCapture, ThatLacksMemoryForAllIsAnError) {
   EXPECT_FALSE(tried(true, there));
   failure = {};
   EXPECT_EQ(tried(true, there)->values, captured(true, {}).values);
+}
+
+/// Trials of a code, and what the processor finds.
+class FailingTrials : public FailingDevice {
+ protected:
+  void SetUp() override {
+    FailingDevice::SetUp();
+    if (!IsSkipped() && !device().info().has_doubles) GTEST_SKIP() << "the device has no doubles";
+  }
+
+  /// Nothing where the device failed.
+  std::optional<DepthErrorReport> tried(const DeviceTrials& there) const {
+    try {
+      return evaluate(code_, camera_, options_, {}, there.trials_by());
+    } catch (const IoError& error) {
+      EXPECT_NE(std::string(error.what()).find(device().info().name), std::string::npos);
+      return std::nullopt;
+    }
+  }
+  void expect_right(const DepthErrorReport& report) const {
+    EXPECT_NEAR(report.linear.geometric_mean_m.value, expected_,
+                1e-3 * expected_);  // one trial in thousands may be apart
+  }
+
+  const Camera camera_ = [] {
+    Camera camera = camera_with("paper-10f0");
+    camera.operating.signal_e_per_s = {1e5};
+    camera.operating.ambient_e_per_s = {1e4};
+    return camera;
+  }();
+  const CodeSet code_ = build_family("hamiltonian-k4", camera_);
+  const EvaluateOptions options_{.trials = 5000, .bounds = false};
+  const double expected_ = evaluate(code_, camera_, options_).linear.geometric_mean_m.value;
+};
+
+TEST_F(FailingTrials, AreAnErrorWhereverItFailsAndRunAgainWhenItIsBack) {
+  const DeviceTrials there(device(), {.memory_mb = 1e-3});
+  for (const cl_int error : {CL_DEVICE_NOT_AVAILABLE, CL_INVALID_COMMAND_QUEUE})
+    for (int first = 0;; ++first) {
+      failure = {.first = first, .error = error};
+      const std::optional<DepthErrorReport> made = tried(there);
+      ASSERT_EQ(made.has_value(), failure.calls <= first);
+      failure = {};
+      expect_right(*tried(there));
+      if (made) break;
+    }
+}
+
+TEST_F(FailingTrials, ThatLackMemoryOnceAreRunInPartsOrAnError) {
+  const DeviceTrials there(device());
+  for (const cl_int error : {CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_OUT_OF_RESOURCES}) {
+    int failed = 0;
+    for (int call = 0;; ++call) {
+      failure = {.first = call, .last = call, .error = error};
+      const std::optional<DepthErrorReport> made = tried(there);
+      if (made) expect_right(*made);
+      failed += made ? 0 : 1;
+      if (failure.calls <= call) break;
+    }
+    EXPECT_LE(failed, 8);  // the tables', without which there is no trial
+    failure = {.first = 0, .error = error};
+    EXPECT_FALSE(tried(there));
+    failure = {};
+  }
 }
 
 TEST_F(FailingDevice, ThatLacksMemoryForAllIsAnError) {

@@ -107,6 +107,20 @@ def test_a_device_captures_as_the_processor(decoders, tmp_path):
         ts.capture(scene, "hamiltonian-k4", camera, device=0)
 
 
+def test_a_device_evaluates_as_the_processor(decoders):
+    camera = ts.Camera("paper-10f0", operating={"signal_e_per_s": [1e5], "ambient_e_per_s": [1e4]})
+    here = ts.evaluate("hamiltonian-k4", camera, trials=5000)
+    there = ts.evaluate("hamiltonian-k4", camera, trials=5000, device="0")
+    for kind in ("linear", "circular"):
+        np.testing.assert_allclose(float(getattr(there, kind).geometric_mean_m),
+                                   float(getattr(here, kind).geometric_mean_m), rtol=1e-3)
+    with pytest.raises(ValueError, match="sensor.noise"):
+        ts.evaluate("hamiltonian-k4", ts.Camera("paper-10f0", sensor={"noise": "poisson"}),
+                    device="0")
+    with pytest.raises(OSError, match="expected one of"):
+        ts.evaluate("hamiltonian-k4", camera, device="7000")
+
+
 def test_a_filter_has_a_device_of_its_own(decoders):
     here = ts.Filter("hamiltonian-k4", "paper-10f0")
     there = ts.Filter("hamiltonian-k4", "paper-10f0", device="0")
