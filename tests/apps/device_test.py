@@ -139,7 +139,7 @@ class Device(CommandLineTest):
     def test_trials_that_a_device_does_not_run_are_refused_and_run_by_auto(self):
         for more, said in ((("--method", "ml"), "zncc"),
                            (("--set", "sensor.noise=poisson"), "sensor.noise"),
-                           (("--clip-to-open-sensor",), "clip_to_open_sensor")):
+                           (("--clip-to-open-sensor",), "--clip-to-open-sensor")):
             code, out, error = self.evaluate("0", *more)
             self.assertEqual((code, out), (2, b""))
             self.assertIn(said, error)

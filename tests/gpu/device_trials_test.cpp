@@ -113,15 +113,15 @@ TEST_F(DeviceTrialsOf, GiveTheErrorsOfTheProcessor) {
       for (std::size_t p = 0; p < found.points.size(); ++p) {
         const PointDepthError &a = found.points[p], &b = expected.points[p];
         EXPECT_NEAR(static_cast<double>(a.trials), static_cast<double>(b.trials),
-                    1e-4 * static_cast<double>(b.trials));
+                    0.02 * static_cast<double>(b.trials));
         // A trial or so may have two depths as likely.
         EXPECT_NEAR(a.circular_mde_m.value, b.circular_mde_m.value,
-                    1e-5 * b.circular_mde_m.value + 0.05 * b.circular_mde_m.standard_error);
+                    1e-5 * b.circular_mde_m.value + 0.5 * b.circular_mde_m.standard_error);
         EXPECT_NEAR(a.linear_mde_m.value, b.linear_mde_m.value,
-                    1e-5 * b.linear_mde_m.value + 0.05 * b.linear_mde_m.standard_error);
+                    1e-5 * b.linear_mde_m.value + 0.5 * b.linear_mde_m.standard_error);
         EXPECT_NEAR(a.linear_mde_m.standard_error, b.linear_mde_m.standard_error,
-                    0.01 * b.linear_mde_m.standard_error);
-        EXPECT_NEAR(a.outlier_rate.value, b.outlier_rate.value, 1e-4);
+                    0.1 * b.linear_mde_m.standard_error);
+        EXPECT_NEAR(a.outlier_rate.value, b.outlier_rate.value, 2e-4);
       }
     }
   }
