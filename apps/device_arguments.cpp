@@ -39,7 +39,7 @@ void list_devices(bool as_json) {
 
 }  // namespace
 
-void DeviceArguments::add_to(CLI::App& command) {
+void DeviceArguments::add_to(CLI::App& command, const std::string& help) {
   command
       .add_option_function<std::string>(
           "--device",
@@ -50,12 +50,48 @@ void DeviceArguments::add_to(CLI::App& command) {
             list_devices(json && json->count() > 0);
             throw CLI::Success();
           },
-          "what adds frames up, filters and decodes: cpu; gpu, the first one; auto, that or else "
-          "cpu, which small frames are left to; a number or part of a name from list, which prints "
-          "the devices of "
-          "OpenCL. The same numbers come out, of zncc alone")
+          help)
       ->default_str(name_)
       ->group(for_experts);
+}
+
+void DeviceArguments::add_to(CLI::App& command) {
+  add_to(command,
+         "what adds frames up, filters and decodes: cpu; gpu, the first one; auto, that or else "
+         "cpu, which small frames are left to; a number or part of a name from list, which prints "
+         "the devices of "
+         "OpenCL. The same numbers come out, of zncc alone");
+}
+
+void DeviceArguments::add_capture_to(CLI::App& command) {
+  add_to(command,
+         "what draws the noise: cpu; gpu, the first one; auto, that or else cpu, which small "
+         "scenes are left to; a number or part of a name from list, which prints the devices of "
+         "OpenCL. The same frames come out, of devices that have doubles");
+}
+
+void DeviceArguments::add_trials_to(CLI::App& command) {
+  add_to(command,
+         "what runs the trials: cpu; gpu, the first one; auto, that or else cpu, which few trials "
+         "are left to; a number or part of a name from list, which prints the devices of OpenCL. "
+         "The same figures but for rounding, of normal noise, zncc and devices that have doubles");
+}
+
+std::optional<DeviceTrials> DeviceArguments::trials(const Camera& camera,
+                                                    const EvaluateOptions& options) const {
+  try {
+    return device_trials(name_, camera, options);
+  } catch (const std::invalid_argument& error) {
+    throw wrong_option(error);
+  }
+}
+
+std::optional<DeviceCapture> DeviceArguments::capture() const {
+  try {
+    return device_capture(name_);
+  } catch (const std::invalid_argument& error) {
+    throw wrong_option(error);
+  }
 }
 
 RecordingDevice::RecordingDevice(DeviceDecoder on_device, const Decoder& decoder, std::string name)

@@ -33,16 +33,29 @@ class RecordingDevice {
   std::optional<DeviceFrames> frames_;  // where frames are added up on the device
 };
 
-/// What decodes: `--device`. Nothing of OpenCL is loaded unless another one than cpu is named.
+/// What computes: `--device`. Nothing of OpenCL is loaded unless another one than cpu is named.
 class DeviceArguments {
  public:
+  /// Of a command that decodes.
   void add_to(CLI::App& command);
+  /// Of one that captures.
+  void add_capture_to(CLI::App& command);
+  /// Of one that evaluates.
+  void add_trials_to(CLI::App& command);
   /// What decodes in place of `decoder`, which must outlive it; none: it does so itself.
   /// @throws UsageError if a device is named and no device decodes by this method; IoError if there
   ///         is no such device, or it fails
   std::optional<RecordingDevice> device_for(const AnyDecoder& decoder) const;
+  /// What draws the noise of captures; none: the processor.
+  /// @throws UsageError if a device is named that has no doubles; IoError as device_for()
+  std::optional<DeviceCapture> capture() const;
+  /// What runs trials; none: the processor.
+  /// @throws UsageError if a device is named that cannot; IoError as device_for()
+  std::optional<DeviceTrials> trials(const Camera& camera, const EvaluateOptions& options) const;
 
  private:
+  void add_to(CLI::App& command, const std::string& help);
+
   std::string name_ = "cpu";
 };
 

@@ -6,6 +6,7 @@
 #include "options.hpp"
 #include "progress.hpp"
 #include "reports.hpp"
+#include "tofsmith/gpu.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
@@ -30,11 +31,14 @@ Options options_of(const py::dict& values) {
 }  // namespace
 
 void bind_simulate(py::module_& module) {
-  module.def("evaluate", [](const CodeSet& code, const Camera& camera, const py::dict& values,
+  module.def("evaluate", [](const CodeSet& code, const Camera& camera, const py::dict& given,
                             const py::object& callback) {
+    const py::dict values = given.attr("copy")();
+    const std::string device = taken_device(values);
     const EvaluateOptions options = options_of<EvaluateOptions>(values);
     return report_dict(without_gil(callback, [&](const Progress& progress) {
-      return evaluate(code, camera, options, progress);
+      const std::optional<DeviceTrials> there = device_trials(device, camera, options);
+      return evaluate(code, camera, options, progress, there ? there->trials_by() : TrialsBy());
     }));
   });
   module.def("best_rotation", [](const CodeSet& code, const Camera& camera, const py::dict& values,

@@ -212,6 +212,7 @@ def capture(
     transients: Optional[Transients] = None,
     bounces: int = 0,
     bounce_rays: int = 256,
+    device: str = "cpu",
     progress: Progress = None,
 ) -> npt.NDArray[np.float32]:
     """Raw measurements of a scene.
@@ -249,12 +250,23 @@ def capture(
     bounces, bounce_rays : int, optional
         1: also light that one other surface sends on, gathered by so many rays a pixel, as
         bounced_light() says; of a name or file. (0)
+    device : str, optional
+        What draws the noise: "cpu"; "gpu", the first one; "auto", that or else the processor, which
+        small scenes are left to; a number or part of a name of the devices of OpenCL, which must
+        have doubles. The same bits. See docs/gpu.md.
     progress : callable, optional
 
     Returns
     -------
     ndarray of float32, shape (H, W, K), or (F, H, W, K) if `frames` is given
         Electrons, or counts if the sensor has an ADC.
+
+    Raises
+    ------
+    ValueError
+        Naming what does not fit.
+    OSError
+        For what is no scene; if there is no such device, or it fails.
     """
     options: dict[str, Any] = {
         "signal_e_per_s": signal_e_per_s,
@@ -264,6 +276,7 @@ def capture(
         "seed": seed,
         "frames": frames,
         "stray_light": stray_light,
+        "device": device,
     }
     raw: npt.NDArray[np.float32]
     if isinstance(scene, (str, os.PathLike)):
@@ -344,8 +357,8 @@ def capture_staged(
     returns, tail, transients, bounces, bounce_rays, progress
         As in capture(); lists are of rays: `lens.pixel_samples` squared for each pixel.
     **options
-        signal_e_per_s, ambient_e_per_s, reference_distance_m, falloff, seed, frames, stray_light
-        as in capture().
+        signal_e_per_s, ambient_e_per_s, reference_distance_m, falloff, seed, frames, stray_light,
+        device as in capture().
 
     Examples
     --------

@@ -4,11 +4,9 @@
 
 #include <cmath>
 
-#include "core/shared/shared_progress.hpp"
 #include "simulate/lens_light.hpp"
 #include "simulate/shared/row_capture.hpp"
 #include "tofsmith/core/error.hpp"
-#include "tofsmith/core/parallel.hpp"
 
 namespace tofsmith {
 
@@ -27,17 +25,22 @@ void SceneLight::validate(const SceneImage& scene, const Camera& camera) const {
 }
 
 RawFrames capture(const SceneImage& scene, const SceneLight& light, const CodeSet& code,
-                  const Camera& camera, const CaptureOptions& options, const Progress& progress) {
+                  const Camera& camera, const CaptureOptions& options, const Progress& progress,
+                  const ExposeBy& expose_by) {
   light.validate(scene, camera);
   const RowCapture source(scene, light, ForwardModel(code, camera), camera, options);
   const LensBlur blur = camera.blur.value_or(LensBlur());
-  if (blur.kind == LensBlur::Kind::none && light.stray_light.empty())
-    return captured_rows(source, scene.height(), scene.width(), options.frames, progress);
+  // Elsewhere, light of longer ways is that of this computer, collected before.
+  const bool by_rows = !expose_by || light.is_direct_only();
+  if (blur.kind == LensBlur::Kind::none && light.stray_light.empty() && by_rows)
+    return captured_frames(source, nullptr, scene.height(), scene.width(), options.frames, progress,
+                           expose_by);
   // An image has one ray a pixel, whatever the lens would like.
   CollectedLight blurred(scene.height(), scene.width(), source.tap_values());
   add_light(source, blur, 1, {0, source.tap_values()}, blurred);
   scatter_light(light.stray_light, options.ambient_e_per_s, blurred);
-  return captured_frames(source, blurred, options.frames, progress);
+  return captured_frames(source, &blurred, scene.height(), scene.width(), options.frames, progress,
+                         expose_by);
 }
 
 MultipathTruth multipath_truth(const SceneImage& scene, const SceneLight& light,
@@ -71,29 +74,10 @@ double pixel_signal_e_per_s(const SceneImage& scene, int row, int column,
   return reflected * scene.cosine(row, column) / (distance * distance);
 }
 
-RawFrames captured_rows(const RowCapture& source, int height, int width, int frames,
-                        const Progress& progress) {
-  RawFrames raw = empty_frames(frames, height, width, source.measurements());
-  const auto row_values =
-      static_cast<std::size_t>(raw.width) * static_cast<std::size_t>(raw.measurements);
-
-  const auto capture_row = [&](int frame, int row) {
-    source.row(frame, row, raw.frame(frame) + static_cast<std::size_t>(row) * row_values);
-  };
-
-  SharedProgress shared(progress, static_cast<double>(raw.frames) * raw.height, "capture");
-  for (int frame = 0; frame < raw.frames; ++frame)
-    parallel_for(raw.height, [&](std::int64_t row) {
-      capture_row(frame, static_cast<int>(row));
-      shared.add();
-    });
-  report(progress, 1.0, "capture");
-  return raw;
-}
-
 RawFrames capture(const SceneImage& scene, const CodeSet& code, const Camera& camera,
-                  const CaptureOptions& options, const Progress& progress) {
-  return capture(scene, SceneLight(), code, camera, options, progress);
+                  const CaptureOptions& options, const Progress& progress,
+                  const ExposeBy& expose_by) {
+  return capture(scene, SceneLight(), code, camera, options, progress, expose_by);
 }
 
 }  // namespace tofsmith

@@ -44,10 +44,12 @@ const std::vector<CameraBounds::Level>& CameraBounds::of(int exposures) {
 }
 
 DepthErrorReport evaluate(const CodeSet& code, const Camera& on, const EvaluateOptions& options,
-                          CameraBounds& bounds, const Progress& progress) {
+                          CameraBounds& bounds, const Progress& progress,
+                          const TrialsBy& trials_by) {
   const Camera camera = judged_camera(on);
   const ForwardModel model(code, camera);
-  const DepthTrials trials(model, camera, options);
+  DepthTrials trials(model, camera, options);
+  trials.have_run_by(trials_by);
   DepthErrorReport result = trial_errors(trials, code, camera, options, progress);
   if (!options.bounds) {
     report(progress, 1.0, "depth error");
@@ -69,9 +71,9 @@ DepthErrorReport evaluate(const CodeSet& code, const Camera& on, const EvaluateO
 }
 
 DepthErrorReport evaluate(const CodeSet& code, const Camera& camera, const EvaluateOptions& options,
-                          const Progress& progress) {
+                          const Progress& progress, const TrialsBy& trials_by) {
   CameraBounds bounds(camera);
-  return evaluate(code, camera, options, bounds, progress);
+  return evaluate(code, camera, options, bounds, progress, trials_by);
 }
 
 }  // namespace tofsmith

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-#include "simulate/depth_trials.hpp"
+#include "simulate/shared/depth_trials.hpp"
 
 #include <array>
 #include <cmath>
@@ -59,7 +59,8 @@ DepthTrials::DepthTrials(const ForwardModel& model, const Camera& camera,
       depths_(camera),
       points_(camera.operating.points()),
       model_(model.has_rows() ? TrialModel(model) : TrialModel(model, camera)),
-      decoder_(options.method, std::move(believed), options.unwrap_weights,
+      believed_(std::move(believed)),
+      decoder_(options.method, believed_, options.unwrap_weights,
                all_trials(options_, points_.size())) {
   if (model.has_rows()) {
     require(!options_.clip_to_open_sensor, "clip_to_open_sensor", "true",
@@ -88,6 +89,7 @@ DepthTrials::DepthTrials(const DecodingTable& table, const OperatingPoint& light
     : options_(with_even_trials(options)),
       points_{light},
       model_(table),
+      believed_(table),
       decoder_(DecodeMethod::zncc, table, options.unwrap_weights, options_.trials) {
   plane_noise_.emplace_back(model_, *decoder_.plane_map(), light.ambient_e_per_s);
 }

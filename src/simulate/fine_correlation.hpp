@@ -25,6 +25,10 @@ class FineCorrelation {
   int tap_values() const { return tap_values_; }
   /// Rows of the table in one period.
   int points() const { return points_; }
+  double points_per_bin() const { return points_per_bin_; }
+  /// The rows of the table and the first once more, (points + 1, tap values); of rows of an
+  /// exposure one column, of time bin 0: bin n sees what is n bins nearer.
+  const std::vector<double>& table() const { return table_; }
   /// chi at a depth in [0, N], written to `chi` (tap values).
   void at(double depth_bin, double* chi) const;
   /// Largest distance from the model's exact function, at the middle of every cell of the table.
@@ -34,8 +38,8 @@ class FineCorrelation {
   int tap_values_;
   int points_;
   double points_per_bin_;
-  bool is_time_bin_ = false;   // one column, of time bin 0: bin n sees what is n bins nearer
-  std::vector<double> table_;  // (points + 1, tap values), last row = first row
+  bool is_time_bin_ = false;  // one column
+  std::vector<double> table_;
 };
 
 }  // namespace tofsmith

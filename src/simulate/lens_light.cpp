@@ -196,24 +196,6 @@ void add_by(const Kernel& kernel, int reach_rays, const RowCapture& rays, int sa
 
 }  // namespace
 
-RawFrames empty_frames(int frames, int height, int width, int measurements) {
-  RawFrames raw{frames, height, width, measurements, {}};
-  raw.values.resize(raw.pixels_per_frame() * static_cast<std::size_t>(measurements) *
-                    static_cast<std::size_t>(frames));
-  return raw;
-}
-
-RawFrames captured_frames(const RowCapture& source, const CollectedLight& light, int frames,
-                          const Progress& progress) {
-  RawFrames raw = empty_frames(frames, light.height, light.width, source.measurements());
-  for (int frame = 0; frame < frames; ++frame) {
-    report(progress, static_cast<double>(frame) / frames, "capture");
-    expose_pixels(source, light, frame, raw.frame(frame));
-  }
-  report(progress, 1.0, "capture");
-  return raw;
-}
-
 CollectedLight::CollectedLight(int height_, int width_, int tap_values_)
     : height(height_),
       width(width_),
@@ -257,21 +239,6 @@ void scatter_light(const Image<float>& kernel, double ambient_e_per_s, Collected
   for (int t = 0; t < light.tap_values; ++t)
     scatter(light.taps.data() + t, static_cast<std::size_t>(light.tap_values));
   scatter(light.ambient.data(), 1);
-}
-
-void expose_pixels(const RowCapture& source, const CollectedLight& light, int frame, float* raw) {
-  const auto taps = static_cast<std::ptrdiff_t>(light.tap_values);
-  parallel_for(light.height, [&](std::int64_t row) {
-    std::vector<double> values(static_cast<std::size_t>(taps));
-    for (std::int64_t pixel = row * light.width; pixel < (row + 1) * light.width; ++pixel) {
-      std::copy_n(light.taps.begin() + pixel * taps, taps, values.begin());
-      const double ambient_e_per_s = light.ambient.empty()
-                                         ? source.ambient_e_per_s()
-                                         : light.ambient[static_cast<std::size_t>(pixel)];
-      source.expose(frame, static_cast<std::uint64_t>(pixel), ambient_e_per_s, values,
-                    raw + pixel * source.measurements());
-    }
-  });
 }
 
 }  // namespace tofsmith

@@ -2,23 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "simulate/shared/row_capture.hpp"
 
 namespace tofsmith {
-
-/// Light on the pixels of one frame before noise [e/s], and the depths it comes from.
-struct CollectedLight {
-  int height = 0, width = 0;
-  int tap_values = 0;
-  std::vector<double> taps;     ///< (H, W, tap values): S chi
-  std::vector<double> ambient;  ///< (H, W); empty: the same everywhere
-  Image<float> near_m, far_m;   ///< of what brings a pixel light; NaN: nothing does
-
-  CollectedLight(int height_, int width_, int tap_values_);
-};
 
 /// Tap values first .. first + count - 1, those of one exposure or of all.
 struct TapRange {
@@ -43,13 +29,5 @@ void scatter_light(const Image<float>& kernel, double ambient_e_per_s, Collected
 
 /// Raw frames of that size, all 0.
 RawFrames empty_frames(int frames, int height, int width, int measurements);
-
-/// Frames under one light, each with noise of its own.
-/// @throws Interrupted if progress says so
-RawFrames captured_frames(const RowCapture& source, const CollectedLight& light, int frames,
-                          const Progress& progress);
-
-/// One frame of pixels under that light, (H, W, K).
-void expose_pixels(const RowCapture& source, const CollectedLight& light, int frame, float* raw);
 
 }  // namespace tofsmith

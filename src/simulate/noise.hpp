@@ -44,12 +44,33 @@ class PixelNoise {
   int measurements(int tap_values) const { return subtracts_ ? tap_values / 2 : tap_values; }
 
  private:
+  friend struct NoiseParts;
   NoiseModel model_;
   bool subtracts_, is_signed_;
   double read_noise_e_;
   double full_well_e_;  // infinite: none
   bool has_adc_;
   double gain_e_per_dn_ = 1.0, black_level_dn_ = 0.0, min_dn_ = 0.0, max_dn_ = 0.0;
+};
+
+/// What a PixelNoise computes with, for other processors.
+struct NoiseParts {
+  explicit NoiseParts(const PixelNoise& noise)
+      : is_gaussian(noise.model_ == NoiseModel::gaussian),
+        subtracts(noise.subtracts_),
+        is_signed(noise.is_signed_),
+        has_adc(noise.has_adc_),
+        read_noise_e(noise.read_noise_e_),
+        full_well_e(noise.full_well_e_),
+        gain_e_per_dn(noise.gain_e_per_dn_),
+        black_level_dn(noise.black_level_dn_),
+        min_dn(noise.min_dn_),
+        max_dn(noise.max_dn_) {}
+
+  bool is_gaussian, subtracts, is_signed, has_adc;
+  double read_noise_e;
+  double full_well_e;  ///< infinite: none
+  double gain_e_per_dn, black_level_dn, min_dn, max_dn;
 };
 
 /// Poisson electrons of a mixer: so many of either sign are expected, of that size each.

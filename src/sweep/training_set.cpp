@@ -101,12 +101,14 @@ struct SceneOutcome {
 class TrainingSet {
  public:
   TrainingSet(fs::path directory, const CodeSet& code, const Camera& camera,
-              const TrainingSceneLoader& load, const TrainingSetOptions& options)
+              const TrainingSceneLoader& load, const TrainingSetOptions& options,
+              const ExposeBy& expose_by)
       : directory_(std::move(directory)),
         code_(code),
         camera_(camera),
         load_(load),
         options_(options),
+        expose_by_(expose_by),
         setup_(setup_key(camera, code)),
         decoder_(make_decoding_table(ForwardModel(code, camera), camera)) {}
 
@@ -149,7 +151,8 @@ class TrainingSet {
       return entry;
     }
     make_output_directory(arrays.parent_path());
-    const RawFrames raw = capture(example.scene.image, code_, camera_, example.capture);
+    const RawFrames raw =
+        capture(example.scene.image, code_, camera_, example.capture, {}, expose_by_);
     write_npz(arrays, arrays_of(example, raw, decoder_), OutputPolicy::overwrite);
     // Last: it says that all is there.
     write_file_atomically(parameters,
@@ -199,6 +202,7 @@ class TrainingSet {
   const Camera& camera_;
   const TrainingSceneLoader& load_;
   const TrainingSetOptions& options_;
+  const ExposeBy& expose_by_;
   std::string setup_;
   Decoder decoder_;
   std::atomic<std::int64_t> written_ = 0, kept_ = 0;
@@ -233,12 +237,13 @@ void TrainingSetOptions::validate() const {
 TrainingSetRun write_training_set(const fs::path& directory, std::span<const TrainingScene> scenes,
                                   const CodeSet& code, const Camera& camera,
                                   const TrainingSceneLoader& load,
-                                  const TrainingSetOptions& options, const Progress& progress) {
+                                  const TrainingSetOptions& options, const Progress& progress,
+                                  const ExposeBy& expose_by) {
   options.validate();
   std::vector<TrainingScene> ours;
   for (const TrainingScene& scene : scenes)
     if (options.shard.holds(fnv1a_128_hex(scene.name))) ours.push_back(scene);
-  TrainingSet set(directory, code, camera, load, options);
+  TrainingSet set(directory, code, camera, load, options, expose_by);
   TrainingSetRun run{.scenes = static_cast<std::int64_t>(ours.size())};
   Json index = {{"tofsmith", TOFSMITH_VERSION}, {"training_set", training_set_version},
                 {"setup", set.setup()},         {"camera", Json::parse(camera_to_json(camera))},

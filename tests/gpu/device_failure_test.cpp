@@ -9,6 +9,7 @@
 
 #include "device_setup.hpp"
 #include "tofsmith/core/error.hpp"
+#include "tofsmith/simulate/depth_error.hpp"
 
 namespace tofsmith {
 namespace {
@@ -230,6 +231,145 @@ TEST_F(FailingDevice, ThatLacksMemoryOnceHasTheRestInParts) {
       failure = {};
       expect_alike(device().info(), true, outputs, expected_, 1e6);
     }
+}
+
+/// A scene and what the processor captures of it.
+class FailingCapture : public FailingDevice {
+ protected:
+  FailingCapture() : scene_(height, width) {
+    RandomStream random(1, 0);
+    for (float& depth_m : scene_.depth_m.pixels)
+      depth_m = static_cast<float>(1.0 + 8.0 * random.uniform());
+    longer_.tail = ExponentialTail{1.0, 0.3};
+  }
+  void SetUp() override {
+    FailingDevice::SetUp();
+    if (!IsSkipped() && !device().info().has_doubles) GTEST_SKIP() << "the device has no doubles";
+  }
+
+  /// Of direct light, and of light that is collected before.
+  RawFrames captured(bool is_direct, const ExposeBy& expose_by) const {
+    return capture(scene_, is_direct ? SceneLight() : longer_, code_, setup_.camera, {.frames = 2},
+                   {}, expose_by);
+  }
+  /// Nothing where the device failed.
+  std::optional<RawFrames> tried(bool is_direct, const DeviceCapture& there) const {
+    try {
+      return captured(is_direct, there.expose_by());
+    } catch (const IoError& error) {
+      EXPECT_NE(std::string(error.what()).find(device().info().name), std::string::npos);
+      return std::nullopt;
+    }
+  }
+
+  CodeSet code_ = build_family("hamiltonian-k4", setup_.camera);
+  SceneImage scene_;
+  SceneLight longer_;
+};
+
+TEST_F(FailingCapture, IsAnErrorWhereverItFailsAndWorksAgainWhenItIsBack) {
+  for (const bool is_direct : {true, false}) {
+    const std::vector<float> expected = captured(is_direct, {}).values;
+    for (const cl_int error : {CL_DEVICE_NOT_AVAILABLE, CL_INVALID_COMMAND_QUEUE})
+      for (int first = 0;; ++first) {
+        const DeviceCapture there(device(), {.memory_mb = 1e-3});
+        failure = {.first = first, .error = error};
+        const std::optional<RawFrames> made = tried(is_direct, there);
+        ASSERT_EQ(made.has_value(), failure.calls <= first);
+        failure = {};
+        EXPECT_EQ(captured(is_direct, there.expose_by()).values, expected) << first;
+        if (made) break;
+      }
+  }
+}
+
+TEST_F(FailingCapture, ThatLacksMemoryOnceHasTheRestInParts) {
+  for (const bool is_direct : {true, false}) {
+    const std::vector<float> expected = captured(is_direct, {}).values;
+    for (const cl_int error : {CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_OUT_OF_RESOURCES})
+      for (int call = 0;; ++call) {
+        const DeviceCapture there(device());
+        failure = {.first = call, .last = call, .error = error};
+        const std::optional<RawFrames> made = tried(is_direct, there);
+        ASSERT_TRUE(made) << call;
+        EXPECT_EQ(made->values, expected) << call;
+        if (failure.calls <= call) break;
+      }
+  }
+}
+
+TEST_F(FailingCapture, ThatLacksMemoryForAllIsAnError) {
+  const DeviceCapture there(device());
+  failure = {.first = 0, .error = CL_OUT_OF_RESOURCES};
+  EXPECT_FALSE(tried(true, there));
+  failure = {.first = 0, .error = CL_DEVICE_NOT_AVAILABLE};
+  EXPECT_FALSE(tried(true, there));
+  failure = {};
+  EXPECT_EQ(tried(true, there)->values, captured(true, {}).values);
+}
+
+/// Trials of a code, and what the processor finds.
+class FailingTrials : public FailingDevice {
+ protected:
+  void SetUp() override {
+    FailingDevice::SetUp();
+    if (!IsSkipped() && !device().info().has_doubles) GTEST_SKIP() << "the device has no doubles";
+  }
+
+  /// Nothing where the device failed.
+  std::optional<DepthErrorReport> tried(const DeviceTrials& there) const {
+    try {
+      return evaluate(code_, camera_, options_, {}, there.trials_by());
+    } catch (const IoError& error) {
+      EXPECT_NE(std::string(error.what()).find(device().info().name), std::string::npos);
+      return std::nullopt;
+    }
+  }
+  void expect_right(const DepthErrorReport& report) const {
+    EXPECT_NEAR(report.linear.geometric_mean_m.value, expected_,
+                1e-3 * expected_);  // one trial in thousands may be apart
+  }
+
+  const Camera camera_ = [] {
+    Camera camera = camera_with("paper-10f0");
+    camera.operating.signal_e_per_s = {1e5};
+    camera.operating.ambient_e_per_s = {1e4};
+    return camera;
+  }();
+  const CodeSet code_ = build_family("hamiltonian-k4", camera_);
+  const EvaluateOptions options_{.trials = 5000, .bounds = false};
+  const double expected_ = evaluate(code_, camera_, options_).linear.geometric_mean_m.value;
+};
+
+TEST_F(FailingTrials, AreAnErrorWhereverItFailsAndRunAgainWhenItIsBack) {
+  const DeviceTrials there(device(), {.memory_mb = 1e-3});
+  for (const cl_int error : {CL_DEVICE_NOT_AVAILABLE, CL_INVALID_COMMAND_QUEUE})
+    for (int first = 0;; ++first) {
+      failure = {.first = first, .error = error};
+      const std::optional<DepthErrorReport> made = tried(there);
+      ASSERT_EQ(made.has_value(), failure.calls <= first);
+      failure = {};
+      expect_right(*tried(there));
+      if (made) break;
+    }
+}
+
+TEST_F(FailingTrials, ThatLackMemoryOnceAreRunInPartsOrAnError) {
+  const DeviceTrials there(device());
+  for (const cl_int error : {CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_OUT_OF_RESOURCES}) {
+    int failed = 0;
+    for (int call = 0;; ++call) {
+      failure = {.first = call, .last = call, .error = error};
+      const std::optional<DepthErrorReport> made = tried(there);
+      if (made) expect_right(*made);
+      failed += made ? 0 : 1;
+      if (failure.calls <= call) break;
+    }
+    EXPECT_LE(failed, 8);  // the tables', without which there is no trial
+    failure = {.first = 0, .error = error};
+    EXPECT_FALSE(tried(there));
+    failure = {};
+  }
 }
 
 TEST_F(FailingDevice, ThatLacksMemoryForAllIsAnError) {

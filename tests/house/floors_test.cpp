@@ -35,7 +35,7 @@ const std::map<std::string, Folders> may_include = {
     {"camera", {"core", "code"}},
     {"decode", {"core", "code", "camera"}},
     {"simulate", {"core", "code", "scene", "camera", "decode"}},
-    {"gpu", {"core", "code", "camera", "decode"}},
+    {"gpu", {"core", "code", "scene", "camera", "decode", "simulate"}},
     {"design", {"core", "code", "scene", "camera", "decode", "simulate"}},
     {"io", data_types},
     {"waveforms", data_types + Folders{"io"}},

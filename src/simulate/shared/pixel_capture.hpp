@@ -41,6 +41,7 @@ class PixelCapture {
               float* raw) const;
 
  private:
+  friend struct CaptureParts;
   double range_m_, bin_m_;
   double dark_e_per_s_;
   bool is_signed_;
@@ -48,6 +49,25 @@ class PixelCapture {
   PixelNoise noise_;
   Eigen::VectorXd exposure_s_, ambient_gain_;  // of the tap values
   std::optional<Eigen::MatrixXd> rows_;        // (K, N), where they are read out
+};
+
+/// What a PixelCapture, which must outlive it, computes with, for other processors.
+struct CaptureParts {
+  explicit CaptureParts(const PixelCapture& pixel)
+      : range_m(pixel.range_m_),
+        bin_m(pixel.bin_m_),
+        dark_e_per_s(pixel.dark_e_per_s_),
+        correlation(pixel.correlation_),
+        noise(pixel.noise_),
+        exposure_s(pixel.exposure_s_),
+        ambient_gain(pixel.ambient_gain_),
+        rows(pixel.rows_) {}
+
+  double range_m, bin_m, dark_e_per_s;
+  const FineCorrelation& correlation;
+  NoiseParts noise;
+  const Eigen::VectorXd &exposure_s, &ambient_gain;  ///< of the tap values
+  const std::optional<Eigen::MatrixXd>& rows;        ///< (K, N), where they are read out
 };
 
 }  // namespace tofsmith

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+
 #include "simulate/shared/pixel_capture.hpp"
+#include "simulate/shared/unexposed_frames.hpp"
 #include "tofsmith/core/progress.hpp"
 #include "tofsmith/simulate/capture.hpp"
 
@@ -25,6 +28,8 @@ class RowCapture {
   int measurements() const { return pixel_.measurements(); }
   int tap_values() const { return pixel_.tap_values(); }
   const SceneImage& scene() const { return *scene_; }
+  const CaptureOptions& options() const { return options_; }
+  const PixelCapture& pixel() const { return pixel_; }
   /// Raw measurements of one row of one frame, (W, K).
   void row(int frame, int row, float* raw) const;
 
@@ -52,8 +57,18 @@ class RowCapture {
   std::optional<FineCorrelation> tail_, transient_;  // of what is the same for all pixels
 };
 
-/// All rows of all frames, on all threads.
-RawFrames captured_rows(const RowCapture& source, int height, int width, int frames,
-                        const Progress& progress);
+/// Frames under one light, each with noise of its own, drawn here or elsewhere.
+/// @param light  null: the direct light of the source's scene, a ray a pixel
+/// @throws Interrupted if progress says so
+RawFrames captured_frames(const RowCapture& source, const CollectedLight* light, int height,
+                          int width, int frames, const Progress& progress,
+                          const ExposeBy& expose_by);
+
+/// Exposes them here, on all threads.
+void expose_here(const UnexposedFrames& frames, const Progress& progress);
+
+/// Exposes pixels of one of the frames here. @param raw  of the first of them, (pixels, K)
+void expose_pixels(const UnexposedFrames& frames, int frame, std::span<const std::int64_t> pixels,
+                   float* raw);
 
 }  // namespace tofsmith
