@@ -194,8 +194,8 @@ void report_captures(const Device& device, int runs) {
     fmt::print(
         "captures, {} noise, VGA, K = 4: {:8.1f} frames/s with copies; here {:8.1f}; {} pixels of "
         "8 frames left to it, {} numbers differ (asked: 0)\n",
-        noise == NoiseModel::poisson ? "Poisson" : "normal", 8.0 / by_device, 8.0 / by_processor, left,
-        differences(on_it.values, here.values));
+        noise == NoiseModel::poisson ? "Poisson" : "normal", 8.0 / by_device, 8.0 / by_processor,
+        left, differences(on_it.values, here.values));
   }
 }
 
