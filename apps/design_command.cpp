@@ -10,6 +10,7 @@
 #include "design_effort.hpp"
 #include "design_output.hpp"
 #include "fresh_directory.hpp"
+#include "help_pages.hpp"
 #include "number_checks.hpp"
 #include "session.hpp"
 #include "tap_arguments.hpp"
@@ -118,6 +119,7 @@ struct DesignArguments {
   OperatingMultipathArguments multipath;
   std::uint64_t seed = 1;
   int trials = 20000;
+  double outlier_threshold_m = DesignOptions{}.outlier_threshold_m;
   std::string output;
 };
 
@@ -151,6 +153,7 @@ DesignOptions options_for(const DesignArguments& arguments, const Camera& camera
   options.atlas_cameras = arguments.atlas_cameras;
   options.seed = arguments.seed;
   options.trials = arguments.trials;
+  options.outlier_threshold_m = arguments.outlier_threshold_m;
   if (!arguments.target.empty())
     options.target = load_target(arguments.target, camera, arguments.normalize);
   return options;
@@ -230,6 +233,12 @@ void add_design_command(CLI::App& app, Session& session) {
   command->add_option("--trials", arguments->trials, "trials per operating point for final figures")
       ->check(CLI::Range(1000, 100000000))
       ->capture_default_str();
+  command
+      ->add_option("--outlier-threshold", arguments->outlier_threshold_m,
+                   "circular errors beyond this many metres are outliers in final figures")
+      ->check(number_from_0_on())
+      ->capture_default_str()
+      ->group(for_experts);
   command->add_option("-o,--output", arguments->output,
                       "directory for codes, figures and the report; an interrupted run resumes");
   command->callback([arguments, &session] {

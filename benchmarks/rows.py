@@ -7,6 +7,7 @@ no limit on the light or a peak of P of all photons in a bin (the response then 
 
     benchmarks/rows.py [--tofsmith build/apps/tofsmith] [--rows 8] [--trials 4000] [--cells 0,1,..]
                        [--codes FOLDER ..]
+    benchmarks/rows.py --least SIGMA    the least Cramer-Rao bounds of 4, 5 and 6 tones; needs NumPy
 
 Mean absolute circular errors [mm] by zero-mean normalized cross-correlation. `learned` and `gates`
 are what others measured of learned codes and of codes of separate exposures turned into rows;
@@ -81,6 +82,40 @@ def codes_of(folders, name):
     return pairs
 
 
+def least_bounds(sigma_bins):
+    """Of all sets of tones up to the 16th, with the shortest pulse, which is best without a limit
+    on the light: what rows of cosines and sines cannot fall below, as a mean absolute error."""
+    import itertools
+
+    import numpy as np
+
+    bins, range_mm = np.arange(SAMPLES), 1e3 * 299792458 / (2 * FREQUENCY_HZ)
+    light = np.exp(-(np.minimum(bins, SAMPLES - bins) / sigma_bins) ** 2.0)
+    light /= light.sum()
+    spectrum = np.fft.rfft(light)
+    slope = np.fft.irfft(spectrum * 2j * np.pi * np.arange(len(spectrum)), SAMPLES)
+    tones = np.arange(1, 17)
+    angle = 2 * np.pi * tones[:, None] * bins / SAMPLES
+    rows = np.stack([np.cos(angle), np.sin(angle)], 1).reshape(-1, SAMPLES)
+
+    def error_mm(information):
+        return range_mm * math.sqrt(2 / math.pi * np.linalg.inv(information)[0, 0])
+
+    for ratio in RATIOS:
+        counts = 1000 * light + 1000 / ratio / SAMPLES
+        columns = np.stack([1000 * slope, light, np.full(SAMPLES, 1 / SAMPLES)])
+        covariance, mean = (rows * counts) @ rows.T, rows @ columns[:2].T
+        print(f"S/B {ratio}: histogram {error_mm((columns / counts) @ columns.T):.2f} mm")
+        for number in (4, 5, 6):
+            found = []
+            for chosen in itertools.combinations(range(len(tones)), number):
+                at = [k for tone in chosen for k in (2 * tone, 2 * tone + 1)]
+                seen = np.linalg.solve(covariance[np.ix_(at, at)], mean[at])
+                found.append((error_mm(mean[at].T @ seen), tones[list(chosen)].tolist()))
+            least, best = min(found)
+            print(f"  {2 * number} rows: {least:.2f} mm, tones {best}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--tofsmith", default="build/apps/tofsmith")
@@ -91,7 +126,11 @@ def main():
     parser.add_argument("--method", default="zncc", choices=["zncc", "ml"])
     parser.add_argument("--cells", default="", help="numbers of cells, from 0; all")
     parser.add_argument("--codes", nargs="*", default=[], help="folders of codes of yours")
+    parser.add_argument("--least", type=float, metavar="SIGMA", help="bounds of all sets of tones")
     arguments = parser.parse_args()
+    if arguments.least:
+        least_bounds(arguments.least)
+        return
     tool = arguments.tofsmith
     chosen = [int(c) for c in arguments.cells.split(",") if c] or range(len(CELLS))
 

@@ -114,6 +114,7 @@ class Camera:
     """
 
     _handle: _tofsmith.Camera
+    _hash: Optional[int] = None
 
     def __init__(self, name_or_path: Optional[Path] = None, **keys: Any) -> None:
         settings = _settings(keys)
@@ -325,7 +326,9 @@ class Camera:
         return isinstance(other, Camera) and self._handle.is_equal(other._handle)
 
     def __hash__(self) -> int:
-        return hash(self.to_toml())
+        if self._hash is None:
+            self._hash = hash(self.to_toml())
+        return self._hash
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Camera.from_toml, (self.to_toml(), self.name)

@@ -220,6 +220,7 @@ def design(
     best_rotation: Optional[bool] = None,
     trials: Optional[int] = None,
     search_trials: Optional[int] = None,
+    outlier_threshold_m: Optional[float] = None,
     seed: Optional[int] = None,
     effort: Optional[float] = None,
     atlas_cameras: Optional[int] = None,
@@ -256,6 +257,8 @@ def design(
         Give every candidate its best origin of depth (True).
     trials, search_trials : int, optional
         Per operating point, for final figures (20000) and while pairs are chosen (600).
+    outlier_threshold_m : float, optional
+        Circular errors beyond are outliers in final figures [m] (0.5).
     seed : int, optional
         Of every random choice (1).
     effort : float, optional
@@ -287,6 +290,7 @@ def design(
         "best_rotation": best_rotation,
         "trials": trials,
         "search_trials": search_trials,
+        "outlier_threshold_m": outlier_threshold_m,
         "seed": seed,
         "effort": effort,
         "atlas_cameras": atlas_cameras,

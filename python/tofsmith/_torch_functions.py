@@ -22,21 +22,34 @@ def _tensors(arrays: Any, like: Tensor) -> Any:
     return tuple(None if a is None else torch.from_numpy(a).to(like.dtype) for a in arrays)
 
 
+def _codes_of(tensor: Tensor) -> Any:
+    """(.., N, columns) as an array (B, N, columns)."""
+    return tensor.detach().contiguous().numpy().reshape((-1,) + tuple(tensor.shape[-2:]))
+
+
 class Measure(torch.autograd.Function):
-    """Waveforms (B, N, E), (B, N, D) to the tensors of tables."""
+    """Waveforms (.., N, E), (.., N, D) to the tensors of tables (.., N, K), (.., K)."""
 
     @staticmethod
     def forward(ctx: Any, steps: Any, modulation: Tensor, demodulation: Tensor) -> Any:
         ctx.steps = steps
         ctx.save_for_backward(modulation, demodulation)
-        return _tensors(steps.measure(*_arrays((modulation, demodulation))), modulation)
+        made = steps.measure(_codes_of(modulation), _codes_of(demodulation))
+        lead = modulation.shape[:-2]
+        return _tensors((None if a is None else a.reshape(lead + a.shape[1:]) for a in made),
+                        modulation)
 
     @staticmethod
     @once_differentiable
     def backward(ctx: Any, *by_table: Optional[Tensor]) -> Any:
         modulation, demodulation = ctx.saved_tensors
-        arrays = ctx.steps.pull_back(*_arrays((modulation, demodulation)), _arrays(by_table))
-        return (None, *_tensors(arrays, modulation))
+        codes = modulation.shape[:-2].numel()
+        by_codes = (None if by is None else by.reshape((codes,) + by.shape[by.dim() - own:])
+                    for by, own in zip(by_table, (2, 1, 2, 1)))
+        arrays = ctx.steps.pull_back(
+            _codes_of(modulation), _codes_of(demodulation), _arrays(by_codes))
+        return (None, *(by.reshape(of.shape) for by, of in zip(
+            _tensors(arrays, modulation), (modulation, demodulation))))
 
 
 class Electrons(torch.autograd.Function):

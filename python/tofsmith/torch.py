@@ -18,6 +18,7 @@ and tables are codes, those of light are broadcast to them. Same bits for any nu
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from typing import Any, NamedTuple, Optional, Union
 
@@ -93,9 +94,9 @@ def measurement_table(
             f"{camera.sensor.taps} taps")
     lead = _broadcast("demodulation", demodulation.shape[:-2], modulation.shape[:-2])
     steps = _steps(camera, samples, exposures)
-    tables = Measure.apply(steps, _codes(modulation, lead, 2), _codes(demodulation, lead, 2))
-    return MeasurementTable(*(None if t is None else t.reshape(lead + t.shape[1:])
-                              for t in tables))
+    return MeasurementTable(*Measure.apply(
+        steps, *(waveforms if waveforms.shape[:-2] == lead else waveforms.expand(
+            lead + waveforms.shape[-2:]) for waveforms in (modulation, demodulation))))
 
 
 def expected_electrons(
@@ -260,10 +261,12 @@ def _tensor(value: Any, name: str, axes: str) -> Tensor:
         raise ValueError(f"{name}: got {value.dtype}; needs torch.float64 or torch.float32")
     if value.numel() == 0:
         raise ValueError(f"{name}: got shape {tuple(value.shape)}, which is empty; needs {axes}")
-    finite = torch.isfinite(value.detach())
-    if not finite.all():
-        place = tuple(int(i) for i in (~finite).nonzero()[0])
-        raise ValueError(f"{name}: got {value[place].item()} at {place}; needs finite numbers")
+    # One pass where all is well; a sum may be too large for its kind where no number is.
+    if not math.isfinite(value.detach().sum().item()):
+        infinite = (~torch.isfinite(value.detach())).nonzero()
+        if len(infinite):
+            place = tuple(int(i) for i in infinite[0])
+            raise ValueError(f"{name}: got {value[place].item()} at {place}; needs finite numbers")
     return value
 
 
@@ -318,6 +321,8 @@ def _light(value: TensorLike, name: str, like: Tensor, least: Optional[float] = 
 
 
 def _broadcast(name: str, *shapes: Any) -> tuple[int, ...]:
+    if all(shape == shapes[0] for shape in shapes):
+        return tuple(shapes[0])
     try:
         return tuple(torch.broadcast_shapes(*shapes))
     except RuntimeError:

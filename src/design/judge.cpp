@@ -38,6 +38,7 @@ void judge_one(Candidate& candidate, const Camera& camera, const DesignOptions& 
   EvaluateOptions judging;
   judging.trials = options.trials;
   judging.seed = options.seed;
+  judging.outlier_threshold_m = options.outlier_threshold_m;
   const auto& later = camera.operating.multipath;
   const ProgressParts parts(progress, {50, later ? 10.0 : 50.0, later ? 40.0 : 0.0});
   if (rotates(camera, options)) {

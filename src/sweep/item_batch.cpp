@@ -24,16 +24,7 @@ std::string computed(const WorkItem& item, const Progress& progress) {
   const DesignResult result = design(item.camera, *item.design, progress);
   const int exposures = item.design->exposures.front();
   for (const Candidate* c : by_geometric_mean_error(result, item.camera.operating.error))
-    if (c->code.exposures() == exposures) {
-      // Judged as designs are; by the same trials where the sweep counts other outliers.
-      const EvaluateOptions judged{.trials = item.options.trials,
-                                   .seed = item.options.seed,
-                                   .outlier_threshold_m = item.options.outlier_threshold_m};
-      return item_result_json(judged.outlier_threshold_m == c->error.outlier_threshold_m
-                                  ? c->error
-                                  : evaluate(c->code, item.camera, judged),
-                              &c->code);
-    }
+    if (c->code.exposures() == exposures) return item_result_json(c->error, &c->code);
   throw std::runtime_error(fmt::format("no code of {} exposures was found", exposures));
 }
 

@@ -111,6 +111,7 @@ DesignOptions design_options(const SweepSpec& spec, const EvaluateOptions& optio
   design.atlas_cameras = 0;  // of another atlas the item would be another
   design.trials = static_cast<int>(options.trials);
   design.seed = options.seed;
+  design.outlier_threshold_m = options.outlier_threshold_m;
   design.validate();
   return with_effort(std::move(design), spec.effort);
 }

@@ -16,6 +16,7 @@ namespace tofsmith {
 namespace {
 
 constexpr int samples = 24, exposures = 3, pixels = 70;
+constexpr int odd = 25;  // 100 depths fill no vectors of 8
 
 Camera camera_of(const char* name, Readout readout) {
   Camera camera = built_in_camera(name);
@@ -164,6 +165,40 @@ TEST(CodeGradients, AdjointsMatchDifferences) {
                     steps.pull_back_depth_deviation(setting.table, points, by_deviation).table,
                     bound);
   }
+}
+
+TEST(CodeGradients, DepthsThatFillNoVectorAreBoundedAlike) {
+  for_each_target([] {
+    Camera camera = built_in_camera("paper-10f0");
+    camera.samples = odd;
+    Eigen::MatrixXd modulation(odd, exposures), demodulation(odd, exposures);
+    std::vector<Waveform> of_light, of_sensor;
+    for (int e = 0; e < exposures; ++e) {
+      for (int n = 0; n < odd; ++n) {
+        const double turn = 2.0 * 3.14159265358979 * double(n) / odd;
+        modulation(n, e) = 1.0 + 0.9 * std::cos(turn);
+        demodulation(n, e) = 0.5 + 0.4 * std::cos(turn - 2.1 * e);
+      }
+      of_light.push_back(Waveform::sampled(modulation.col(e)));
+      of_sensor.push_back(Waveform::sampled(demodulation.col(e)));
+    }
+    const CodeGradients steps(camera, odd, exposures);
+    const MeasurementTable table = steps.measure(modulation, demodulation);
+    const CramerRaoBound bound(
+        ForwardModel(CodeSet::create("code", odd, 1, of_light, of_sensor), camera), camera);
+    const OperatingPoint points[] = {{1e5, 1e4}, {0.0, 1e4}};
+    const Eigen::MatrixXd deviation_m = steps.depth_deviation_m(table, points);
+    ASSERT_EQ(deviation_m.rows(), 4 * odd);
+    EXPECT_TRUE(deviation_m.col(0).isApprox(bound.sigma_m(points[0]), 1e-8));
+    EXPECT_TRUE((deviation_m.col(1).array() == INFINITY).all()) << "no light tells no depth";
+    const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(4 * odd, 2);
+    const PixelGradient by = steps.pull_back_depth_deviation(table, points, ones);
+    expect_gradient(table, by.table, [&](const MeasurementTable& moved) {
+      return steps.depth_deviation_m(moved, points).col(0).sum();
+    });
+    EXPECT_EQ(by.signal_e_per_s[1], 0.0);
+    EXPECT_EQ(by.ambient_e_per_s[1], 0.0);
+  });
 }
 
 TEST(CodeGradients, RefusesWhatHasNoGradient) {

@@ -238,6 +238,8 @@ TEST(Design, RefusesWhatCannotBeDesignedBeforeAnyWork) {
               HasSubstr("DesignOptions::baselines = gray-k4"));
   EXPECT_THAT(with([](auto& o) { o.trials = 3; }), HasSubstr("DesignOptions::trials = 3"));
   EXPECT_THAT(with([](auto& o) { o.search_trials = 3; }), HasSubstr("search_trials = 3"));
+  EXPECT_THAT(with([](auto& o) { o.outlier_threshold_m = -1; }),
+              HasSubstr("outlier_threshold_m = -1"));
   EXPECT_THAT(with([](auto& o) { o.factorize.kept = 0; }), HasSubstr("FactorizeOptions::kept"));
   EXPECT_THAT(with([](auto& o) {
                 o.target = TargetSet{"none", {}};

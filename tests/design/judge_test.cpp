@@ -76,6 +76,22 @@ TEST(Judge, RanksWhatDesignRanks) {
             from_design.error.linear.geometric_mean_m.value);
 }
 
+TEST(Judge, CountsOutliersBeyondTheThresholdOfTheOptions) {
+  const Camera camera = small_camera("paper-10f0", DepthErrorKind::circular);
+  DesignOptions options = small_options();
+  const DesignResult usual = judge(camera, families(camera), options);
+  options.outlier_threshold_m = 0.01;
+  const DesignResult strict = judge(camera, families(camera), options);
+  ASSERT_EQ(strict.candidates.size(), usual.candidates.size());
+  for (std::size_t c = 0; c < usual.candidates.size(); ++c) {
+    const DepthErrorReport &few = usual.candidates[c].error, &many = strict.candidates[c].error;
+    EXPECT_EQ(few.outlier_threshold_m, 0.5);
+    EXPECT_EQ(many.outlier_threshold_m, 0.01);
+    EXPECT_EQ(many.circular.geometric_mean_m.value, few.circular.geometric_mean_m.value);
+    EXPECT_GT(many.points[0].outlier_rate.value, few.points[0].outlier_rate.value);
+  }
+}
+
 TEST(Judge, KeepsTheBestOfThoseThatShareAName) {
   const Camera camera = small_camera("paper-10f0", DepthErrorKind::circular);
   std::vector<Candidate> attempts = {candidate_of("sinusoid-k4", camera, "mine"),

@@ -179,6 +179,7 @@ TEST(DesignStore, ReturnsWhatItSavedForTheSameInputsAlone) {
     return kept_in(place, other_camera, other).has_value();
   };
   EXPECT_TRUE(reused([](Camera&, DesignOptions& o) { o.trials *= 2; })) << "judged afresh";
+  EXPECT_TRUE(reused([](Camera&, DesignOptions& o) { o.outlier_threshold_m = 0.1; })) << "likewise";
   EXPECT_FALSE(reused([](Camera& c, DesignOptions&) { c.light.peak_factor = 14; }));
   EXPECT_FALSE(
       reused([](Camera& c, DesignOptions&) { c.sensor.impulse_response.samples[0] = 0.3; }));

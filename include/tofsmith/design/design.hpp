@@ -63,9 +63,10 @@ struct DesignOptions {
   /// camera's peak: the best few compete, unless only factorization or search is asked for, and are
   /// where the optimization starts; 0: none.
   int atlas_cameras = 4;
-  bool best_rotation = true;  ///< for the linear error: give every candidate its best origin
-  int search_trials = 600;    ///< per operating point, while pairs are chosen; >= 100
-  int trials = 20000;         ///< per operating point, for the final figures; >= 1000
+  bool best_rotation = true;         ///< for the linear error: give every candidate its best origin
+  int search_trials = 600;           ///< per operating point, while pairs are chosen; >= 100
+  int trials = 20000;                ///< per operating point, for the final figures; >= 1000
+  double outlier_threshold_m = 0.5;  ///< of the final figures, as of EvaluateOptions [m], >= 0
   std::uint64_t seed = 1;
 
   /// @throws std::invalid_argument naming field, value and rule
@@ -79,7 +80,8 @@ auto fields_of(ConstOrNot<DesignOptions> auto& o) {
       Field("optimize", o.optimize), Field("search", o.search), Field("robust", o.robust),
       Field("baselines", o.baselines), Field("atlas_cameras", o.atlas_cameras, ">= 0"),
       Field("best_rotation", o.best_rotation), Field("search_trials", o.search_trials, ">= 100"),
-      Field("trials", o.trials, ">= 1000"), Field("seed", o.seed));
+      Field("trials", o.trials, ">= 1000"),
+      Field("outlier_threshold_m", o.outlier_threshold_m, ">= 0"), Field("seed", o.seed));
 }
 
 /// The options to search longer, or shorter, by the factor `effort`: 0.1 for a first look, 3 for

@@ -100,7 +100,7 @@ MeasurementTable CodeGradients::measure(const Eigen::MatrixXd& modulation,
 std::pair<Eigen::MatrixXd, Eigen::MatrixXd> CodeGradients::pull_back(
     const Eigen::MatrixXd& modulation, const Eigen::MatrixXd& demodulation,
     const MeasurementTable& by_table) const {
-  const SampledCamera::Measured measured = steps_->sampled.measure({modulation, demodulation});
+  const SampledCamera::Measured measured = steps_->sampled.transformed({modulation, demodulation});
   SampledCode by_code = steps_->sampled.pull_back(measured, by_table);
   return {std::move(by_code.modulation), std::move(by_code.demodulation)};
 }

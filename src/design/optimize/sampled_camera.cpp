@@ -80,23 +80,32 @@ SampledCamera::SampledCamera(const Camera& camera, int samples, int exposures, b
       Eigen::VectorXd::Constant(measurements(), constant_variance_e2_of(camera.sensor)));
 }
 
-SampledCamera::Measured SampledCamera::measure(const SampledCode& code) const {
+SampledCamera::Measured SampledCamera::transformed(const SampledCode& code) const {
   Measured measured;
-  measured.modulation.resize(static_cast<std::size_t>(exposures_));
-  measured.demodulation.resize(static_cast<std::size_t>(exposures_) *
-                               static_cast<std::size_t>(taps_));
+  const auto spectra_of = [&](const Eigen::MatrixXd& columns,
+                              std::vector<Eigen::VectorXcd>& spectra) {
+    spectra.resize(static_cast<std::size_t>(columns.cols()));
+    Eigen::VectorXd signal;
+    for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+      signal = columns.col(i);
+      transform_.forward(signal, spectra[static_cast<std::size_t>(i)]);
+    }
+  };
+  spectra_of(code.modulation, measured.modulation);
+  spectra_of(code.demodulation, measured.demodulation);
+  return measured;
+}
+
+SampledCamera::Measured SampledCamera::measure(const SampledCode& code) const {
+  Measured measured = transformed(code);
   Eigen::MatrixXd correlation(samples(), exposures_ * taps_);
   Eigen::VectorXd signal;
   for (int e = 0; e < exposures_; ++e) {
-    Eigen::VectorXcd& m = measured.modulation[static_cast<std::size_t>(e)];
-    signal = code.modulation.col(e);
-    transform_.forward(signal, m);
-    const Eigen::VectorXcd seen = m.conjugate().cwiseProduct(transfer_);
+    const Eigen::VectorXcd seen =
+        measured.modulation[static_cast<std::size_t>(e)].conjugate().cwiseProduct(transfer_);
     for (int i = e * taps_; i < (e + 1) * taps_; ++i) {
-      Eigen::VectorXcd& d = measured.demodulation[static_cast<std::size_t>(i)];
-      signal = code.demodulation.col(i);
-      transform_.forward(signal, d);
-      transform_.inverse(d.cwiseProduct(seen), signal);
+      transform_.inverse(measured.demodulation[static_cast<std::size_t>(i)].cwiseProduct(seen),
+                         signal);
       correlation.col(i) = signal;
     }
   }

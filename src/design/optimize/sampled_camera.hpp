@@ -61,6 +61,8 @@ class SampledCamera {
   }
 
   Measured measure(const SampledCode& code) const;
+  /// The same without the table, which pull_back() does not look at. Not of mixers.
+  Measured transformed(const SampledCode& code) const;
 
   /// Gradient by the waveforms of a function whose gradient by the table is given.
   SampledCode pull_back(const Measured& measured, const MeasurementTable& gradient) const;
