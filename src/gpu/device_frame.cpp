@@ -53,9 +53,8 @@ int DeviceFrame::reach(const FilterOptions& options) {
 std::int64_t DeviceFrame::bytes(int rows, int width) const {
   const int step = window_step(plan_.options.windows - 1), k = plan_.measurements;
   const FilterGrid grid = FilterPlanes::grid_of(rows, width, step);
-  const std::int64_t planes = planes_of_frame(plan_) + weight_planes;
-  const std::int64_t of_planes =
-      4 * planes * grid.stride * (std::int64_t{rows} + 2 * margin_rows(step));
+  const auto of_planes = static_cast<std::int64_t>(
+      4 * (grid.floats(planes_of_frame(plan_)) + grid.floats(weight_planes)));
   // Raw numbers with what is left out, and a decoder's tile for depths and one for what comes out.
   return of_planes + std::int64_t{rows} * width * (4 * (k + 1) + 1 + 2 * tile_.bytes_per_pixel());
 }
@@ -64,17 +63,19 @@ void DeviceFrame::resize(int rows, int width) {
   FilterParameters& p = parameters_;
   if (has_margins_ && p.height == rows && p.width == width) return;
   has_margins_ = false;  // until all of this has been done
-  const int step = window_step(plan_.options.windows - 1), above = margin_rows(step);
-  const FilterGrid grid = FilterPlanes::grid_of(rows, width, step);
+  const FilterGrid grid =
+      FilterPlanes::grid_of(rows, width, window_step(plan_.options.windows - 1));
   p.height = rows;
   p.width = width;
   p.stride = static_cast<int>(grid.stride);
-  p.plane_floats = (rows + 2 * above) * p.stride;
-  p.origin = above * p.stride + grid.margin;
-  const std::int64_t plane_bytes = std::int64_t{sizeof(float)} * p.plane_floats;
+  p.plane_floats = static_cast<int>(grid.plane_floats());
+  p.origin = static_cast<int>(grid.origin());
+  const auto bytes = [&](int planes) {
+    return static_cast<std::int64_t>(sizeof(float) * grid.floats(planes));
+  };
   // Margins stay 0.
-  queue().clear(*reserve(queue(), planes_, plane_bytes * planes_of_frame(plan_)));
-  queue().clear(*reserve(queue(), weights_, plane_bytes * weight_planes));
+  queue().clear(*reserve(queue(), planes_, bytes(planes_of_frame(plan_))));
+  queue().clear(*reserve(queue(), weights_, bytes(weight_planes)));
   has_margins_ = true;
 }
 

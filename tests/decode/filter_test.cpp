@@ -414,6 +414,14 @@ TEST(Filter, TakesAnyCodeAndCamera) {
   }
 }
 
+TEST(Filter, TakesAtMostSixFramesOfMemory) {
+  constexpr int height = 480, width = 640, measurements = 4;
+  const double frame_bytes = sizeof(float) * double{measurements} * height * width;
+  const auto bytes =
+      Filter::memory_bytes(options_of(FilterStrength::normal), height, width, measurements, 1);
+  EXPECT_LE(static_cast<double>(bytes), 6 * frame_bytes);
+}
+
 TEST(Filter, RefusesWhatCannotBe) {
   const DecodeSetup setup("hamiltonian-k4", camera_with("paper-10f0"));
   const DecodingTable& table = setup.decoder.table();

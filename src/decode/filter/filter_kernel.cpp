@@ -318,7 +318,9 @@ namespace {
 /// A pair's own difference of more standard deviations is not of noise.
 constexpr double own_difference_sigma = 3.0;
 
-std::size_t row_floats(const FilterGrid& grid) { return static_cast<std::size_t>(grid.stride); }
+std::size_t row_floats(const FilterGrid& grid) {
+  return static_cast<std::size_t>(weight_stride(grid));
+}
 }  // namespace
 
 PatchScale::PatchScale(int rank, int patch_reach)

@@ -12,12 +12,22 @@
 namespace tofsmith {
 
 /// Planes of a frame, one float a pixel, with a margin all round where `usable` is 0. A plane's
-/// pointer is that of its first pixel.
+/// pointer is that of its first pixel. What lies right of a row is the margin left of the next, and
+/// what lies below a plane that above the next.
 struct FilterGrid {
   int height = 0;
   int width = 0;
   std::ptrdiff_t stride = 0;  ///< from row to row [floats]
-  int margin = 0;             ///< columns of the margin at either side
+  int margin = 0;             ///< columns of the margin left of a row
+  int rows_above = 0;         ///< of the margin
+
+  std::ptrdiff_t plane_floats() const { return (height + rows_above) * stride; }
+  /// Of a plane's first pixel, from where its margin begins.
+  std::ptrdiff_t origin() const { return rows_above * stride + margin; }
+  /// Of so many planes with all their margins.
+  std::size_t floats(int planes) const {
+    return static_cast<std::size_t>(planes * plane_floats() + rows_above * stride + margin);
+  }
 };
 inline constexpr int slope_reach = 12;  ///< of the pixels that tell a slope
 /// Rows that windows of a frame reach beyond it, and columns, with room for a whole vector.
@@ -63,6 +73,10 @@ struct PairWeights {
   float* scratch = nullptr;  ///< rows of the test, see scratch_floats()
   std::ptrdiff_t stride = 0;
 };
+/// From row to row of weights, whose margins are their own [floats].
+inline std::ptrdiff_t weight_stride(const FilterGrid& grid) {
+  return whole_vectors(grid.width + 2 * grid.margin);
+}
 std::size_t weight_floats(const FilterGrid& grid, const FilterStrip& strip);
 std::size_t scratch_floats(const FilterGrid& grid, const FilterStrip& strip);
 
@@ -71,7 +85,7 @@ std::size_t scratch_floats(const FilterGrid& grid, const FilterStrip& strip);
 inline void clear_margins(const FilterGrid& grid, float* row) {
   std::fill_n(row, grid.margin, 0.0f);
   const std::ptrdiff_t end = grid.margin + grid.width;
-  std::fill_n(row + end, grid.stride - end, 0.0f);
+  std::fill_n(row + end, weight_stride(grid) - end, 0.0f);
 }
 
 /// Whether products are added in one step on this processor, rounded once.

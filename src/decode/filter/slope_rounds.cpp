@@ -47,7 +47,7 @@ void Filter::Plan::find_depth(const RawView& raw, FilterPlanes& frame, int from,
                          .measurements = measurements,
                          .row_stride = grid.stride,
                          .column_stride = 1,
-                         .measurement_stride = frame.plane_floats,
+                         .measurement_stride = grid.plane_floats(),
                          .averaged = averaged - grid.margin};
   decoder.decode(filtered, {.depth_m = depth - grid.margin,
                             .predicted_standard_deviation_m = variance - grid.margin});
