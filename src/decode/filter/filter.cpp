@@ -92,7 +92,7 @@ void Filter::apply(const RawView& raw, FilteredFrame& filtered, const Progress& 
     step_done();
   }
   for (int round = 0; round < plan.options.slope_rounds; ++round) {
-    if (round > 0) plan.read_again(raw, frame, to, FilterPlanes::usable);
+    if (round == 0) plan.leave_dark(raw, frame, from, to);
     plan.find_depth(raw, frame, from, to);
     plan.read_again(raw, frame, to, FilterPlanes::signal);
     for (int window = 0; window < windows; ++window) {

@@ -113,6 +113,27 @@ struct PatchScale {
   float noise_limit;  ///< of a pair's own lambda: what noise can be
 };
 
+/// Of two opposite neighbours the brighter gives at most so many times the light of the other, if
+/// light is balanced.
+inline constexpr float balanced_light = 3.0f;
+/// Of the depth that what is added is moved by along the slope, so much may be wrong.
+inline constexpr float slope_error_share = 0.5f;
+/// Only sums of so many standard deviations, squared, are balanced.
+inline constexpr float balanced_energy = 25.0f;
+
+/// Slopes err. Where as much light comes from either side of a pixel, that cancels; at silhouettes,
+/// where pixels are ever darker, and beside edges it does not. There light is balanced, at the
+/// price of noise: each pixel takes both sums by as much as leaves the least of error and noise.
+struct LightBalance {
+  const float* depth = nullptr;  ///< [bin], in [0, N)
+  const float* slope_x = nullptr;
+  const float* slope_y = nullptr;
+  /// (N, 2): squares of how far light of signal 1 turns in a bin, and of its length.
+  const float* squares = nullptr;
+  int samples = 0;
+  int step = 0;  ///< of the window [pixels]
+};
+
 /// What is added with the weights: planes in, their weighted means out.
 struct WeightedSums {
   std::array<const float*, max_measurements + 1> in{};
@@ -122,14 +143,16 @@ struct WeightedSums {
   float* variance_out = nullptr;
   const float* shifted_in = nullptr;  ///< the plane whose shifted mean is wanted; may be null
   float* shifted_out = nullptr;
+  const LightBalance* balance = nullptr;  ///< of shifted_in; null where all is added
 };
+/// One row of a strip.
 void add_weighted(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,
-                  const PairWeights& weights);
+                  const PairWeights& weights, int row);
 
-/// The square of how far the middle of what is added of a plane lies from the pixel, in steps of
-/// the window: 0 where as much comes from either side.
-void find_offsets(const float* plane, const FilterGrid& grid, const FilterStrip& strip,
-                  const PairWeights& weights, float* offset2);
+/// The square of how far the middle of what was added of shifted_in lies from the pixel, in steps
+/// of the window: 0 where as much comes from either side. Of the row that was added last.
+void find_offsets(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,
+                  const PairWeights& weights, int row, float* offset2);
 
 /// energy and inverse_sigma of a SimilarityTest: variances below `floor` count as that.
 void find_energy(const std::array<const float*, max_measurements>& u, int rank,
