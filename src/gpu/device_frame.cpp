@@ -35,13 +35,16 @@ DeviceFrame::DeviceFrame(const Device& device, const Filter::Plan& plan, bool us
   add_along_slopes_ = kernel("add_along_slopes");
   compare_sums_ = kernel("compare_sums");
   keep_near_ = kernel("keep_near");
+  keep_bright_ = kernel("keep_bright");
+  find_own_light_ = kernel("find_own_light");
+  leave_dark_ = kernel("leave_dark");
   add_slope_noise_ = kernel("add_slope_noise");
   write_filtered_ = kernel("write_filtered");
   queue().upload(tables_.words.data(), words_.bytes, words_);
 }
 
 int DeviceFrame::reach(const FilterOptions& options) {
-  int similar = 0, along_slopes = slope_reach;
+  int similar = 0, along_slopes = slope_reach + own_light_reach;
   for (int window = 0; window < options.windows; ++window) {
     const int of_window = window_reach * window_step(window);
     similar += of_window + (window == 0 ? patch_reach : patch_reach - 1);
@@ -53,9 +56,8 @@ int DeviceFrame::reach(const FilterOptions& options) {
 std::int64_t DeviceFrame::bytes(int rows, int width) const {
   const int step = window_step(plan_.options.windows - 1), k = plan_.measurements;
   const FilterGrid grid = FilterPlanes::grid_of(rows, width, step);
-  const std::int64_t planes = planes_of_frame(plan_) + weight_planes;
-  const std::int64_t of_planes =
-      4 * planes * grid.stride * (std::int64_t{rows} + 2 * margin_rows(step));
+  const auto of_planes = static_cast<std::int64_t>(
+      4 * (grid.floats(planes_of_frame(plan_)) + grid.floats(weight_planes)));
   // Raw numbers with what is left out, and a decoder's tile for depths and one for what comes out.
   return of_planes + std::int64_t{rows} * width * (4 * (k + 1) + 1 + 2 * tile_.bytes_per_pixel());
 }
@@ -64,17 +66,19 @@ void DeviceFrame::resize(int rows, int width) {
   FilterParameters& p = parameters_;
   if (has_margins_ && p.height == rows && p.width == width) return;
   has_margins_ = false;  // until all of this has been done
-  const int step = window_step(plan_.options.windows - 1), above = margin_rows(step);
-  const FilterGrid grid = FilterPlanes::grid_of(rows, width, step);
+  const FilterGrid grid =
+      FilterPlanes::grid_of(rows, width, window_step(plan_.options.windows - 1));
   p.height = rows;
   p.width = width;
   p.stride = static_cast<int>(grid.stride);
-  p.plane_floats = (rows + 2 * above) * p.stride;
-  p.origin = above * p.stride + grid.margin;
-  const std::int64_t plane_bytes = std::int64_t{sizeof(float)} * p.plane_floats;
+  p.plane_floats = static_cast<int>(grid.plane_floats());
+  p.origin = static_cast<int>(grid.origin());
+  const auto bytes = [&](int planes) {
+    return static_cast<std::int64_t>(sizeof(float) * grid.floats(planes));
+  };
   // Margins stay 0.
-  queue().clear(*reserve(queue(), planes_, plane_bytes * planes_of_frame(plan_)));
-  queue().clear(*reserve(queue(), weights_, plane_bytes * weight_planes));
+  queue().clear(*reserve(queue(), planes_, bytes(planes_of_frame(plan_))));
+  queue().clear(*reserve(queue(), weights_, bytes(weight_planes)));
   has_margins_ = true;
 }
 
@@ -115,7 +119,7 @@ void DeviceFrame::filter(const FrameSource& frame, int first_row, int rows,
     step_done();
   }
   for (int round = 0; round < plan_.options.slope_rounds; ++round) {
-    if (round > 0) read(to, FilterPlanes::usable, false);
+    if (round == 0) leave_dark(from, to);
     find_depth(from);
     read(to, FilterPlanes::signal, false);
     for (int window = 0; window < windows; ++window) {
@@ -160,6 +164,14 @@ void DeviceFrame::add_similar(int from, int to, int window) const {
   run(find_energy_, parameters_, w, &planes_);
   run(weigh_similar_, parameters_, w, &planes_, &weights_);
   run(add_similar_, parameters_, w, &planes_, &weights_);
+  if (window > 0 && plan_.options.slope_rounds > 0) run(keep_bright_, parameters_, w, &planes_);
+}
+
+void DeviceFrame::leave_dark(int set, int other) const {
+  constexpr int is_own = FilterPlanes::signal;
+  read(other, FilterPlanes::usable, false);
+  run(find_own_light_, parameters_, result(set, other), &planes_, is_own);
+  run(leave_dark_, parameters_, &planes_, is_own);
 }
 
 void DeviceFrame::find_depth(int from) {
@@ -191,7 +203,8 @@ void DeviceFrame::add_along_slopes(int light_set, int rest, int to, int window) 
                           .variance_in = variances.in,
                           .variance_out = variances.out,
                           .step = window_step(window),
-                          .is_last = window + 1 == plan_.options.windows ? 1 : 0};
+                          .is_last = window + 1 == plan_.options.windows ? 1 : 0,
+                          .is_balanced = window > 0 ? 1 : 0};
   if (window == 0) run(find_slopes_, parameters_, &planes_);
   run(split_, parameters_, w, &words_, &planes_);
   run(add_along_slopes_, parameters_, w, &words_, &planes_);
@@ -203,6 +216,7 @@ void DeviceFrame::add_along_slopes(int light_set, int rest, int to, int window) 
 void DeviceFrame::add_slope_noise(int round) const {
   const SlopeNoise noise = slope_noise_of(plan_.options.windows, round);
   const SlopeNoiseParameters n{.variance = plan_.last_variance(),
+                               .near_variance = WindowVariances(plan_.options.windows - 1).in,
                                .sum = noise.sum,
                                .sum_offset = noise.sum_offset,
                                .before = noise.before,

@@ -50,6 +50,7 @@ class DeviceFrame {
   ResultParameters result(int set, int measured) const;
   void read(int set, FilterPlanes::Scalar usable, bool with_variance) const;
   void add_similar(int from, int to, int window) const;
+  void leave_dark(int set, int other) const;
   void find_depth(int from);
   void decide_open_pixels();
   void add_along_slopes(int light_set, int rest, int to, int window) const;
@@ -60,7 +61,7 @@ class DeviceFrame {
   DeviceTile tile_;  // that depths are found in
   DeviceKernel read_light_, find_hidden_noise_, find_energy_, weigh_similar_, add_similar_,
       write_raw_, take_depth_, find_slopes_, split_, add_along_slopes_, compare_sums_, keep_near_,
-      add_slope_noise_, write_filtered_;
+      keep_bright_, find_own_light_, leave_dark_, add_slope_noise_, write_filtered_;
   FilterParameters parameters_;
   DeviceMemory words_, planes_, weights_, left_out_;
   bool has_left_out_ = false;

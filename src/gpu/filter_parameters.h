@@ -17,6 +17,7 @@ struct FilterParameters {
   int origin;        ///< of a plane's first pixel in it
 
   int to_coordinates, to_measurements, curve;      ///< (K, K), (K, K), (samples, K)
+  int squares;                                      ///< of LightBalance (samples, 2)
   int dark_e, gain_e_per_raw, dark_raw, raw_per_e;  ///< of every measurement, as the filter has them
   int shot_share;                                   ///< of every measurement
   int samples;
@@ -42,12 +43,12 @@ struct SlopeParameters {
   int light, rest, to;  ///< the first planes of sets
   int variance_in, variance_out;
   int step;
-  int is_last;
+  int is_last, is_balanced;
 };
 
 /// What the noise of slopes adds, as SlopeNoise, and whether near sums were kept.
 struct SlopeNoiseParameters {
-  int variance;
+  int variance, near_variance;
   float sum, sum_offset, before, before_offset;
   int is_last, has_near_share;
 };

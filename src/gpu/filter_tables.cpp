@@ -75,6 +75,12 @@ std::string constants_of(const Filter::Plan& plan, bool fuses) {
   c.add("HALF_KEPT_ALONG_LINES", half_kept_along_lines);
   c.add("KEPT_NOISE", kept_noise);
   c.add("LEAST_ENERGY", least_energy);
+  c.add("SLOPE_NOISE_OF_NEAR", slope_noise_of_near);
+  c.add("BRIGHT_SIGMA", bright_sigma);
+  c.add("EXPLAINED_IN_PATCH", explained_in_patch);
+  c.add("BALANCED_LIGHT", balanced_light);
+  c.add("SLOPE_ERROR_SHARE", slope_error_share);
+  c.add("BALANCED_ENERGY", balanced_energy);
   c.add("EVIDENT_SIGMA", evident_sigma);
   c.add("OWN_LIGHT_REACH", own_light_reach);
   c.add("OWN_LIGHT_LEAST_SIGMA", own_light_least_sigma);
@@ -107,6 +113,7 @@ FilterTables::FilterTables(const Filter::Plan& plan, bool fuses)
   p.to_coordinates = tables.add(plan.to_coordinates);
   p.to_measurements = tables.add(plan.to_measurements);
   p.curve = tables.add(plan.curve);
+  p.squares = tables.add(plan.squares);
   p.dark_e = tables.add(dark_e);
   p.gain_e_per_raw = tables.add(gain_e_per_raw);
   p.dark_raw = tables.add(dark_raw);

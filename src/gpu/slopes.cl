@@ -70,6 +70,7 @@ kernel void find_slopes(const struct FilterParameters p, global float* planes) {
   const int at = y * p.stride + x;
   const float variance = plane_of(&p, planes, PLANE_DEPTH_VARIANCE)[at];
   const float inverse_max = 1.0f / (4.0f * p.same_depth_sigma2);
+  const float inverse_max_pair = 1.0f / (2.0f * p.same_depth_sigma2);
   // Opposite neighbours that differ from the pixel by as much in opposite ways, ..
   struct SlopeSums pairs = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   for (int i = 0; i < HALF_RINGS; ++i) {
@@ -79,7 +80,7 @@ kernel void find_slopes(const struct FilterParameters p, global float* planes) {
     const float both = ahead.usable * behind.usable;
     const float bend = ahead.difference + behind.difference, noise = ahead.noise + behind.noise;
     const float all_noise = product_plus(variance, 4.0f, noise);
-    const float w = weight_of(bend * bend / all_noise, inverse_max) * both / noise;
+    const float w = weight_of(bend * bend / all_noise, inverse_max_pair) * both / noise;
     add_slope(&pairs, w, (float)half_ring_columns[i], (float)half_ring_rows[i],
               (ahead.difference - behind.difference) * 0.5f);
   }
@@ -206,6 +207,76 @@ void join(const struct FilterParameters* p, Floats tables, global float* planes,
   }
 }
 
+/// As share_of_light().
+float share_of_light(float light, float opposite) {
+  const float share = BALANCED_LIGHT * opposite / LARGER(light, 1e-30f);
+  return SMALLER(share, 1.0f);
+}
+
+/// Of a pair, what of their weights stays where light is balanced.
+struct BalancedPair {
+  float ahead, behind;
+};
+
+struct BalancedPair balanced_pair(float light_ahead, float light_behind) {
+  const float ahead = LARGER(light_ahead, 0.0f), behind = LARGER(light_behind, 0.0f);
+  struct BalancedPair shares;
+  shares.ahead = share_of_light(ahead, behind);
+  shares.behind = share_of_light(behind, ahead);
+  return shares;
+}
+
+/// By how much a pixel takes the balanced sum, as balance_row().
+float balanced_part(const struct FilterParameters* p, const struct SlopeParameters* w,
+                    Floats tables, global float* planes, int at) {
+  const Plane variances = plane_of(p, planes, w->variance_in);
+  const Plane signals = plane_of(p, planes, PLANE_SIGNAL);
+  float light = signals[at], noise = variances[at], light_balanced = light, noise_balanced = noise;
+  float across = 0.0f, along = 0.0f;
+  for (int i = 0; i < HALF_WINDOW; ++i) {
+    const int down = half_window_rows[i] * w->step, right = half_window_columns[i] * w->step;
+    const int away = down * p->stride + right;
+    const float half_down = 0.5f * (float)down, half_right = 0.5f * (float)right;
+    const float ahead = pair_of(p, planes, at, away, half_down, half_right).weight;
+    const float behind = pair_of(p, planes, at - away, away, half_down, half_right).weight;
+    const float light_ahead = ahead * signals[at + away];
+    const float light_behind = behind * signals[at - away];
+    const struct BalancedPair shares = balanced_pair(light_ahead, light_behind);
+    const float apart = light_ahead - light_behind;
+    light += light_ahead + light_behind;
+    light_balanced = product_plus(shares.ahead, light_ahead, light_balanced);
+    light_balanced = product_plus(shares.behind, light_behind, light_balanced);
+    across = product_plus(apart, (float)half_window_columns[i], across);
+    along = product_plus(apart, (float)half_window_rows[i], along);
+    const float noise_ahead = ahead * ahead * variances[at + away];
+    const float noise_behind = behind * behind * variances[at - away];
+    noise += noise_ahead + noise_behind;
+    noise_balanced = product_plus(shares.ahead * shares.ahead, noise_ahead, noise_balanced);
+    noise_balanced = product_plus(shares.behind * shares.behind, noise_behind, noise_balanced);
+  }
+  const float light_square = light * light, balanced_square = light_balanced * light_balanced;
+  const float light2 = LARGER(light_square, 1e-30f), balanced2 = LARGER(balanced_square, 1e-30f);
+  const float squares = product_plus(across, across, along * along);
+  const float most = light2 * (float)(WINDOW_REACH * WINDOW_REACH);
+  const float offset2 = SMALLER(squares, most) / light2;
+  const float slope_x = plane_of(p, planes, PLANE_SLOPE_X)[at];
+  const float slope_y = plane_of(p, planes, PLANE_SLOPE_Y)[at];
+  const float slope2 = product_plus(slope_x, slope_x, slope_y * slope_y);
+  const int bin = clamp((int)plane_of(p, planes, PLANE_DEPTH)[at], 0, p->samples - 1);
+  const float step = (float)w->step;
+  const float by = SLOPE_ERROR_SHARE * SLOPE_ERROR_SHARE * step * step;
+  const float error2 = by * offset2 * slope2 * tables[p->squares + 2 * bin];
+  // Noise alone must not choose what is added.
+  const bool is_seen = light2 * tables[p->squares + 2 * bin + 1] > BALANCED_ENERGY * noise;
+  const float any_more = noise_balanced / balanced2 - noise / light2;
+  const float either = error2 + LARGER(any_more, 0.0f);
+  const float wanted = error2 / LARGER(either, 1e-30f);
+  const float of_balanced = wanted * light, of_all = (1.0f - wanted) * light_balanced;
+  const float of_both = of_balanced + of_all;
+  const bool is_lit = is_seen && light > 0.0f && light_balanced > 0.0f;
+  return is_lit ? of_balanced / LARGER(of_both, 1e-30f) : 0.0f;
+}
+
 /// One window along slopes: a pixel finds the weights of all 24 neighbours and adds them. After the
 /// last, `signal_next` says how far from the pixel the middle of what was added lies, squared.
 kernel void add_along_slopes(const struct FilterParameters p, const struct SlopeParameters w,
@@ -217,14 +288,25 @@ kernel void add_along_slopes(const struct FilterParameters p, const struct Slope
   const Plane signals = plane_of(&p, planes, PLANE_SIGNAL);
   float sum[MEASUREMENTS];
   for (int k = 0; k < MEASUREMENTS; ++k) sum[k] = plane_of(&p, planes, w.rest + k)[at];
+  const float part = w.is_balanced ? balanced_part(&p, &w, tables, planes, at) : 0.0f;
   float signal = signals[at], variance = variances[at], weight = 1.0f, shift = 0.0f;
   float middle = signal, across = 0.0f, along = 0.0f;
   for (int i = 0; i < HALF_WINDOW; ++i) {
     const int down = half_window_rows[i] * w.step, right = half_window_columns[i] * w.step;
     const int away = down * p.stride + right;
     const float half_down = 0.5f * (float)down, half_right = 0.5f * (float)right;
-    const struct SlopePair ahead = pair_of(&p, planes, at, away, half_down, half_right);
-    const struct SlopePair behind = pair_of(&p, planes, at - away, away, half_down, half_right);
+    struct SlopePair ahead = pair_of(&p, planes, at, away, half_down, half_right);
+    struct SlopePair behind = pair_of(&p, planes, at - away, away, half_down, half_right);
+    if (w.is_balanced) {
+      const struct BalancedPair shares = balanced_pair(ahead.weight * signals[at + away],
+                                                       behind.weight * signals[at - away]);
+      const float left_ahead = product_plus(-part, 1.0f - shares.ahead, 1.0f);
+      const float left_behind = product_plus(-part, 1.0f - shares.behind, 1.0f);
+      ahead.weight *= left_ahead;
+      ahead.shifted *= left_ahead;
+      behind.weight *= left_behind;
+      behind.shifted *= left_behind;
+    }
     weight += ahead.weight + behind.weight;
     variance = product_plus(ahead.weight * ahead.weight, variances[at + away], variance);
     variance = product_plus(behind.weight * behind.weight, variances[at - away], variance);
@@ -299,15 +381,19 @@ kernel void keep_near(const struct FilterParameters p, const struct SlopeParamet
   const int at = y * p.stride + x;
   const Plane usable = plane_of(&p, planes, PLANE_USABLE);
   const Plane difference = plane_of(&p, planes, PLANE_SHIFT);
-  float squares = 0.0f, count = 0.0f;
+  float squares = 0.0f, sum_around = 0.0f, count = 0.0f;
   for (int dy = -COMPARED_REACH; dy <= COMPARED_REACH; dy += COMPARED_STEP)
     for (int dx = -COMPARED_REACH; dx <= COMPARED_REACH; dx += COMPARED_STEP) {
       const int pixel = at + dy * p.stride + dx;
       const float d = difference[pixel];
       squares = product_plus(usable[pixel] * d, d, squares);
+      sum_around = product_plus(usable[pixel], d, sum_around);
       count += usable[pixel];
     }
   const float around = squares / LARGER(count, 1.0f) - EXPLAINED_BY_NOISE;
+  // Where a surface bends alike all around, all differ a little, in the same way.
+  const float per_pixel = 1.0f / LARGER(count, 1.0f), mean_around = sum_around * per_pixel;
+  const float bent = product_plus(-per_pixel, EXPLAINED_IN_PATCH, mean_around * mean_around);
   // At a silhouette or a crease the pixels of a thin line alone differ, all in the same way.
   float best = 0.0f;
   for (int i = 0; i < LINE_DIRECTIONS; ++i) {
@@ -322,6 +408,14 @@ kernel void keep_near(const struct FilterParameters p, const struct SlopeParamet
     const float excess = product_plus(-inverse, EXPLAINED_ALONG_LINES, mean * mean);
     best = LARGER(best, excess);
   }
+  float near_square = 0.0f;
+  for (int j = 0; j < RANK; ++j) {
+    const float u = plane_of(&p, planes, w.rest + j)[at];
+    near_square = product_plus(u, u, near_square);
+  }
+  const float bright = plane_of(&p, planes, w.variance_in)[at] * (BRIGHT_SIGMA * BRIGHT_SIGMA);
+  const float if_bright = near_square > bright ? bent : 0.0f;
+  best = LARGER(best, if_bright);
   const float excess = LARGER(around, 0.0f);
   const float by_all = excess / (excess + HALF_KEPT), by_line = best / (best + HALF_KEPT_ALONG_LINES);
   const float kept = LARGER(by_all, by_line);
@@ -352,9 +446,12 @@ kernel void add_slope_noise(const struct FilterParameters p, const struct SlopeN
       n.has_near_share ? 1.0f - plane_of(&p, planes, PLANE_SIGNAL)[at] : 1.0f;
   const float d2 = n.is_last ? plane_of(&p, planes, PLANE_SIGNAL_NEXT)[at] : 0.0f;
   const float of_sum = n.sum + n.sum_offset * d2;
-  const float of_before = n.is_last ? n.before + n.before_offset * d2 : 0.0f;
   const Plane variance = plane_of(&p, planes, n.variance);
   const float before = plane_of(&p, planes, PLANE_BEFORE)[at];
+  // Depths of near sums share less noise with those that tell the slope.
+  const float any_of_near = before / plane_of(&p, planes, n.near_variance)[at];
+  const float of_near = SLOPE_NOISE_OF_NEAR * (any_of_near < 1.0f ? any_of_near : 1.0f);
+  const float of_before = n.is_last ? n.before * (1.0f - of_near) + n.before_offset * d2 : 0.0f;
   variance[at] +=
       far_share * far_share * (of_sum * variance[at] + of_before * before);
 }

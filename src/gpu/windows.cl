@@ -246,6 +246,32 @@ float raw_of_light(const struct FilterParameters* p, const struct ResultParamete
   return n < 1e-3f ? 1e-3f : n;
 }
 
+/// Near sums that tell slopes well enough are kept, as keep_bright().
+kernel void keep_bright(const struct FilterParameters p, const struct SimilarParameters w,
+                        global float* planes) {
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1);
+  if (x >= p.width || y >= p.height) return;
+  const int at = y * p.stride + x;
+  float square = 0.0f;
+  for (int j = 0; j < RANK; ++j) {
+    const float u = plane_of(&p, planes, w.light + j)[at];
+    square = product_plus(u, u, square);
+  }
+  const float variance = plane_of(&p, planes, w.variance_in)[at];
+  const float near_variance = LARGER(variance, 1e-12f);
+  const float beyond_least = product_plus(sqrt(square / near_variance), 1.0f / BRIGHT_SIGMA, -1.0f);
+  const float above_none = LARGER(beyond_least, 0.0f), kept = SMALLER(above_none, 1.0f);
+  if (kept <= 0.0f) return;
+  for (int k = 0; k < MEASUREMENTS; ++k) {
+    const Plane to = plane_of(&p, planes, w.to + k);
+    const float far = to[at];
+    to[at] = product_plus(kept, plane_of(&p, planes, w.light + k)[at] - far, far);
+  }
+  const Plane far_variance = plane_of(&p, planes, w.variance_out);
+  const float far = far_variance[at], more = near_variance - far;
+  far_variance[at] = product_plus(kept * kept, LARGER(more, 0.0f), far);
+}
+
 /// All of a set of light as raw numbers, and their variance to where later steps find it.
 kernel void write_raw(const struct FilterParameters p, const struct ResultParameters r,
                       Floats tables, Floats averaged_before, global float* planes,
@@ -298,6 +324,23 @@ bool is_own_light(const struct FilterParameters* p, const struct ResultParameter
       below += along_added(p, r, planes, at, pixel) < least ? usable[pixel] : 0.0f;
     }
   return below <= OWN_LIGHT_SHARE * count;
+}
+
+/// Whether pixels have the light that was added to them, into a plane.
+kernel void find_own_light(const struct FilterParameters p, const struct ResultParameters r,
+                           global float* planes, const int to) {
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1);
+  if (x >= p.width || y >= p.height) return;
+  const int at = y * p.stride + x;
+  plane_of(&p, planes, to)[at] = is_own_light(&p, &r, planes, at) ? 1.0f : 0.0f;
+}
+
+/// Pixels that have none are usable no more.
+kernel void leave_dark(const struct FilterParameters p, global float* planes, const int is_own) {
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1);
+  if (x >= p.width || y >= p.height) return;
+  const int at = y * p.stride + x;
+  plane_of(&p, planes, PLANE_USABLE)[at] = plane_of(&p, planes, is_own)[at];
 }
 
 /// Filtered raw numbers of some rows; as measured where nothing was to be added.

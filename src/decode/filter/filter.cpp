@@ -67,7 +67,7 @@ std::size_t Filter::memory_bytes(const FilterOptions& options, int height, int w
       static_cast<std::size_t>(std::min(threads, (height + filter_rows - 1) / filter_rows));
   const std::size_t weights = options.slope_rounds > 0 ? 2 : 1;
   return sizeof(float) *
-         (FilterPlanes::floats(grid, measurements, step) +
+         (FilterPlanes::floats(grid, measurements) +
           static_cast<std::size_t>(height) * static_cast<std::size_t>(width) +
           strips * (weights * weight_floats(grid, strip) + scratch_floats(grid, strip)));
 }
@@ -92,7 +92,7 @@ void Filter::apply(const RawView& raw, FilteredFrame& filtered, const Progress& 
     step_done();
   }
   for (int round = 0; round < plan.options.slope_rounds; ++round) {
-    if (round > 0) plan.read_again(raw, frame, to, FilterPlanes::usable);
+    if (round == 0) plan.leave_dark(raw, frame, from, to);
     plan.find_depth(raw, frame, from, to);
     plan.read_again(raw, frame, to, FilterPlanes::signal);
     for (int window = 0; window < windows; ++window) {

@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "decode/filter/pair_weight-inl.hpp"
+#include "decode/filter/row_pairs-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tofsmith {
@@ -94,28 +95,6 @@ void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const Fil
   }
 }
 
-/// Where a row's pairs and their weights are.
-struct RowPairs {
-  std::array<const float*, half_window.size()> ahead, behind;  // weights
-  std::array<std::ptrdiff_t, half_window.size()> away;         // of the neighbour ahead
-};
-
-RowPairs pairs_of_row(const FilterGrid& grid, const FilterStrip& strip, const float* weights,
-                      std::ptrdiff_t stride, int row) {
-  RowPairs pairs;
-  const int rows = strip.rows + strip.rows_above();
-  for (std::size_t i = 0; i < half_window.size(); ++i) {
-    const int down = half_window[i].rows * strip.step, right = half_window[i].columns * strip.step;
-    const float* const own =
-        weights + (static_cast<std::ptrdiff_t>(i) * rows + row + strip.rows_above()) * stride +
-        grid.margin;
-    pairs.ahead[i] = own;
-    pairs.behind[i] = own - down * stride - right;
-    pairs.away[i] = down * grid.stride + right;
-  }
-  return pairs;
-}
-
 /// Weighted means of `Count` planes, once their inverse sums of weights are known.
 template <int Count>
 HWY_INLINE void add_planes(const WeightedSums& sums, int first, const RowPairs& pairs, int width,
@@ -175,51 +154,61 @@ HWY_INLINE void add_shifted(const WeightedSums& sums, const RowPairs& pairs, int
   }
 }
 
-void add_weighted(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,
-                  const PairWeights& weights) {
-  float* const inverse_sum = weights.scratch;
-  for (int r = 0; r < strip.rows; ++r) {
-    const std::ptrdiff_t row = (strip.first_row + r) * grid.stride;
-    const RowPairs pairs = pairs_of_row(grid, strip, weights.weight, weights.stride, r);
-    add_variances(sums, pairs, grid.width, row, inverse_sum);
-    int k = 0;
-    for (; k + 5 <= sums.planes; k += 5)
-      add_planes<5>(sums, k, pairs, grid.width, row, inverse_sum);
-    for (; k + 4 <= sums.planes; k += 4)
-      add_planes<4>(sums, k, pairs, grid.width, row, inverse_sum);
-    for (; k + 2 <= sums.planes; k += 2)
-      add_planes<2>(sums, k, pairs, grid.width, row, inverse_sum);
-    for (; k < sums.planes; ++k) add_planes<1>(sums, k, pairs, grid.width, row, inverse_sum);
-    if (!sums.shifted_in) continue;
-    add_shifted(sums, pairs_of_row(grid, strip, weights.shifted, weights.stride, r), grid.width,
-                row, inverse_sum);
-  }
+/// Rows of the scratch: inverse sums, then a row's own weights and how far they shift.
+BalancedRow balanced_row(const FilterGrid& grid, const FilterStrip& strip,
+                         const PairWeights& weights, int r) {
+  constexpr auto both_ways = static_cast<std::ptrdiff_t>(2 * half_window.size());
+  float* const own = weights.scratch + weights.stride;
+  return {pairs_of_row(grid, strip, weights.weight, weights.stride, r),
+          pairs_of_row(grid, strip, weights.shifted, weights.stride, r), own,
+          own + both_ways * weights.stride, weights.stride};
 }
 
-void find_offsets(const float* plane, const FilterGrid& grid, const FilterStrip& strip,
-                  const PairWeights& weights, float* offset2) {
+void add_weighted(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,
+                  const PairWeights& weights, int r) {
+  const std::ptrdiff_t row = (strip.first_row + r) * grid.stride;
+  float* const inverse_sum = weights.scratch;
+  RowPairs pairs = pairs_of_row(grid, strip, weights.weight, weights.stride, r), shifted = pairs;
+  if (sums.shifted_in) shifted = pairs_of_row(grid, strip, weights.shifted, weights.stride, r);
+  if (sums.balance) {
+    const BalancedRow balanced = balanced_row(grid, strip, weights, r);
+    balance_row(sums, balanced, grid.width, row);
+    pairs = own_pairs(pairs, balanced.own_weights, balanced.stride);
+    shifted = own_pairs(shifted, balanced.own_shifted, balanced.stride);
+  }
+  add_variances(sums, pairs, grid.width, row, inverse_sum);
+  int k = 0;
+  for (; k + 5 <= sums.planes; k += 5) add_planes<5>(sums, k, pairs, grid.width, row, inverse_sum);
+  for (; k + 4 <= sums.planes; k += 4) add_planes<4>(sums, k, pairs, grid.width, row, inverse_sum);
+  for (; k + 2 <= sums.planes; k += 2) add_planes<2>(sums, k, pairs, grid.width, row, inverse_sum);
+  for (; k < sums.planes; ++k) add_planes<1>(sums, k, pairs, grid.width, row, inverse_sum);
+  if (sums.shifted_in) add_shifted(sums, shifted, grid.width, row, inverse_sum);
+}
+
+void find_offsets(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,
+                  const PairWeights& weights, int r, float* offset2) {
   constexpr float farthest2 = window_reach * window_reach;
-  for (int r = 0; r < strip.rows; ++r) {
-    const std::ptrdiff_t row = (strip.first_row + r) * grid.stride;
-    const RowPairs pairs = pairs_of_row(grid, strip, weights.weight, weights.stride, r);
-    for (int x = 0; x < grid.width; x += lanes_of()) {
-      const float* const at = plane + row + x;
-      Vector sum = load(at), across = hn::Zero(Floats()), along = across;
-      for (std::size_t i = 0; i < half_window.size(); ++i) {
-        const WindowStep& step = half_window.data()[i];
-        const std::ptrdiff_t away = pairs.away.data()[i];
-        const Vector ahead = hn::Mul(load(pairs.ahead.data()[i] + x), load(at + away));
-        const Vector behind = hn::Mul(load(pairs.behind.data()[i] + x), load(at - away));
-        const Vector apart = hn::Sub(ahead, behind);
-        sum = hn::Add(sum, hn::Add(ahead, behind));
-        across = hn::MulAdd(apart, all(static_cast<float>(step.columns)), across);
-        along = hn::MulAdd(apart, all(static_cast<float>(step.rows)), along);
-      }
-      const Vector squares = hn::MulAdd(across, across, hn::Mul(along, along));
-      const Vector most = hn::Mul(hn::Mul(sum, sum), all(farthest2));
-      const Vector least = hn::Max(hn::Mul(sum, sum), all(1e-30f));
-      store(hn::Div(hn::Min(squares, most), least), offset2 + row + x);
+  const std::ptrdiff_t row = (strip.first_row + r) * grid.stride;
+  RowPairs pairs = pairs_of_row(grid, strip, weights.weight, weights.stride, r);
+  if (sums.balance)
+    pairs = own_pairs(pairs, balanced_row(grid, strip, weights, r).own_weights, weights.stride);
+  for (int x = 0; x < grid.width; x += lanes_of()) {
+    const float* const at = sums.shifted_in + row + x;
+    Vector sum = load(at), across = hn::Zero(Floats()), along = across;
+    for (std::size_t i = 0; i < half_window.size(); ++i) {
+      const WindowStep& step = half_window.data()[i];
+      const std::ptrdiff_t away = pairs.away.data()[i];
+      const Vector ahead = hn::Mul(load(pairs.ahead.data()[i] + x), load(at + away));
+      const Vector behind = hn::Mul(load(pairs.behind.data()[i] + x), load(at - away));
+      const Vector apart = hn::Sub(ahead, behind);
+      sum = hn::Add(sum, hn::Add(ahead, behind));
+      across = hn::MulAdd(apart, all(static_cast<float>(step.columns)), across);
+      along = hn::MulAdd(apart, all(static_cast<float>(step.rows)), along);
     }
+    const Vector squares = hn::MulAdd(across, across, hn::Mul(along, along));
+    const Vector most = hn::Mul(hn::Mul(sum, sum), all(farthest2));
+    const Vector least = hn::Max(hn::Mul(sum, sum), all(1e-30f));
+    store(hn::Div(hn::Min(squares, most), least), offset2 + row + x);
   }
 }
 
@@ -318,7 +307,9 @@ namespace {
 /// A pair's own difference of more standard deviations is not of noise.
 constexpr double own_difference_sigma = 3.0;
 
-std::size_t row_floats(const FilterGrid& grid) { return static_cast<std::size_t>(grid.stride); }
+std::size_t row_floats(const FilterGrid& grid) {
+  return static_cast<std::size_t>(weight_stride(grid));
+}
 }  // namespace
 
 PatchScale::PatchScale(int rank, int patch_reach)
@@ -339,8 +330,9 @@ std::size_t weight_floats(const FilterGrid& grid, const FilterStrip& strip) {
 }
 
 std::size_t scratch_floats(const FilterGrid& grid, const FilterStrip& strip) {
-  return static_cast<std::size_t>(2 * (strip.rows + strip.rows_above() + 2 * patch_reach)) *
-         row_floats(grid);
+  const int of_test = 2 * (strip.rows + strip.rows_above() + 2 * patch_reach);
+  constexpr auto of_sums = static_cast<int>(1 + 4 * half_window.size());
+  return static_cast<std::size_t>(std::max(of_test, of_sums)) * row_floats(grid);
 }
 
 void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const FilterStrip& strip,
@@ -349,13 +341,13 @@ void weigh_similar(const SimilarityTest& test, const FilterGrid& grid, const Fil
 }
 
 void add_weighted(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,
-                  const PairWeights& weights) {
-  HWY_DYNAMIC_DISPATCH(add_weighted)(sums, grid, strip, weights);
+                  const PairWeights& weights, int row) {
+  HWY_DYNAMIC_DISPATCH(add_weighted)(sums, grid, strip, weights, row);
 }
 
-void find_offsets(const float* plane, const FilterGrid& grid, const FilterStrip& strip,
-                  const PairWeights& weights, float* offset2) {
-  HWY_DYNAMIC_DISPATCH(find_offsets)(plane, grid, strip, weights, offset2);
+void find_offsets(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,
+                  const PairWeights& weights, int row, float* offset2) {
+  HWY_DYNAMIC_DISPATCH(find_offsets)(sums, grid, strip, weights, row, offset2);
 }
 
 void find_energy(const std::array<const float*, max_measurements>& u, int rank,

@@ -12,12 +12,22 @@
 namespace tofsmith {
 
 /// Planes of a frame, one float a pixel, with a margin all round where `usable` is 0. A plane's
-/// pointer is that of its first pixel.
+/// pointer is that of its first pixel. What lies right of a row is the margin left of the next, and
+/// what lies below a plane that above the next.
 struct FilterGrid {
   int height = 0;
   int width = 0;
   std::ptrdiff_t stride = 0;  ///< from row to row [floats]
-  int margin = 0;             ///< columns of the margin at either side
+  int margin = 0;             ///< columns of the margin left of a row
+  int rows_above = 0;         ///< of the margin
+
+  std::ptrdiff_t plane_floats() const { return (height + rows_above) * stride; }
+  /// Of a plane's first pixel, from where its margin begins.
+  std::ptrdiff_t origin() const { return rows_above * stride + margin; }
+  /// Of so many planes with all their margins.
+  std::size_t floats(int planes) const {
+    return static_cast<std::size_t>(planes * plane_floats() + rows_above * stride + margin);
+  }
 };
 inline constexpr int slope_reach = 12;  ///< of the pixels that tell a slope
 /// Rows that windows of a frame reach beyond it, and columns, with room for a whole vector.
@@ -63,6 +73,10 @@ struct PairWeights {
   float* scratch = nullptr;  ///< rows of the test, see scratch_floats()
   std::ptrdiff_t stride = 0;
 };
+/// From row to row of weights, whose margins are their own [floats].
+inline std::ptrdiff_t weight_stride(const FilterGrid& grid) {
+  return whole_vectors(grid.width + 2 * grid.margin);
+}
 std::size_t weight_floats(const FilterGrid& grid, const FilterStrip& strip);
 std::size_t scratch_floats(const FilterGrid& grid, const FilterStrip& strip);
 
@@ -71,7 +85,7 @@ std::size_t scratch_floats(const FilterGrid& grid, const FilterStrip& strip);
 inline void clear_margins(const FilterGrid& grid, float* row) {
   std::fill_n(row, grid.margin, 0.0f);
   const std::ptrdiff_t end = grid.margin + grid.width;
-  std::fill_n(row + end, grid.stride - end, 0.0f);
+  std::fill_n(row + end, weight_stride(grid) - end, 0.0f);
 }
 
 /// Whether products are added in one step on this processor, rounded once.
@@ -99,6 +113,27 @@ struct PatchScale {
   float noise_limit;  ///< of a pair's own lambda: what noise can be
 };
 
+/// Of two opposite neighbours the brighter gives at most so many times the light of the other, if
+/// light is balanced.
+inline constexpr float balanced_light = 3.0f;
+/// Of the depth that what is added is moved by along the slope, so much may be wrong.
+inline constexpr float slope_error_share = 0.5f;
+/// Only sums of so many standard deviations, squared, are balanced.
+inline constexpr float balanced_energy = 25.0f;
+
+/// Slopes err. Where as much light comes from either side of a pixel, that cancels; at silhouettes,
+/// where pixels are ever darker, and beside edges it does not. There light is balanced, at the
+/// price of noise: each pixel takes both sums by as much as leaves the least of error and noise.
+struct LightBalance {
+  const float* depth = nullptr;  ///< [bin], in [0, N)
+  const float* slope_x = nullptr;
+  const float* slope_y = nullptr;
+  /// (N, 2): squares of how far light of signal 1 turns in a bin, and of its length.
+  const float* squares = nullptr;
+  int samples = 0;
+  int step = 0;  ///< of the window [pixels]
+};
+
 /// What is added with the weights: planes in, their weighted means out.
 struct WeightedSums {
   std::array<const float*, max_measurements + 1> in{};
@@ -108,14 +143,16 @@ struct WeightedSums {
   float* variance_out = nullptr;
   const float* shifted_in = nullptr;  ///< the plane whose shifted mean is wanted; may be null
   float* shifted_out = nullptr;
+  const LightBalance* balance = nullptr;  ///< of shifted_in; null where all is added
 };
+/// One row of a strip.
 void add_weighted(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,
-                  const PairWeights& weights);
+                  const PairWeights& weights, int row);
 
-/// The square of how far the middle of what is added of a plane lies from the pixel, in steps of
-/// the window: 0 where as much comes from either side.
-void find_offsets(const float* plane, const FilterGrid& grid, const FilterStrip& strip,
-                  const PairWeights& weights, float* offset2);
+/// The square of how far the middle of what was added of shifted_in lies from the pixel, in steps
+/// of the window: 0 where as much comes from either side. Of the row that was added last.
+void find_offsets(const WeightedSums& sums, const FilterGrid& grid, const FilterStrip& strip,
+                  const PairWeights& weights, int row, float* offset2);
 
 /// energy and inverse_sigma of a SimilarityTest: variances below `floor` count as that.
 void find_energy(const std::array<const float*, max_measurements>& u, int rank,

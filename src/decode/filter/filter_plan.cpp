@@ -52,6 +52,20 @@ Eigen::MatrixXd whole_basis(const Eigen::MatrixXd& plane) {
   return basis;
 }
 
+/// Of a LightBalance.
+std::vector<float> curve_squares(const Eigen::MatrixXd& curve) {
+  std::vector<float> squares;
+  for (Eigen::Index n = 0; n < curve.rows(); ++n) {
+    const Eigen::VectorXd here = curve.row(n);
+    const Eigen::VectorXd on = curve.row((n + 1) % curve.rows()).transpose() - here;
+    const double along = on.dot(here), length2 = std::max(here.squaredNorm(), 1e-300);
+    const double turn2 = std::max(0.0, on.squaredNorm() - along * along / length2);
+    squares.push_back(static_cast<float>(turn2));
+    squares.push_back(static_cast<float>(length2));
+  }
+  return squares;
+}
+
 std::vector<float> row_by_row(const RowMajorMatrix& matrix) {
   return {matrix.data(), matrix.data() + matrix.size()};
 }
@@ -96,6 +110,7 @@ Filter::Plan::Plan(DecodingTable table, const FilterOptions& options_,
   RowMajorMatrix points = projection.gated * basis;
   points.leftCols(rank) = projection.curve;
   curve = row_by_row(points);
+  squares = curve_squares(projection.curve);
 }
 
 void Filter::Plan::read(const RawView& raw, FilterPlanes& frame) const {
@@ -194,6 +209,23 @@ WeightedSums Filter::Plan::sums_of(FilterPlanes& frame, int from, int to, int wi
   return sums;
 }
 
+NearAndFar Filter::Plan::near_and_far(FilterPlanes& frame, int near, int far, int window) const {
+  const WindowVariances variances(window);
+  NearAndFar sums{.planes = measurements,
+                  .rank = rank,
+                  .usable = frame.scalar(FilterPlanes::usable),
+                  .depth = frame.scalar(FilterPlanes::depth),
+                  .near_variance = frame.scalar(variances.in),
+                  .far_variance = frame.scalar(variances.out),
+                  .difference = frame.scalar(FilterPlanes::shift),
+                  .kept = frame.scalar(FilterPlanes::signal)};
+  for (int k = 0; k < measurements; ++k) {
+    sums.near[static_cast<std::size_t>(k)] = frame.light(near, k);
+    sums.far[static_cast<std::size_t>(k)] = frame.light(far, k);
+  }
+  return sums;
+}
+
 void Filter::Plan::add_similar(FilterPlanes& frame, int from, int to, int window) const {
   SimilarityTest test{.rank = rank,
                       .energy = frame.scalar(FilterPlanes::energy),
@@ -209,11 +241,17 @@ void Filter::Plan::add_similar(FilterPlanes& frame, int from, int to, int window
                 row, 1, frame.scalar(FilterPlanes::energy),
                 frame.scalar(FilterPlanes::inverse_sigma));
   });
+  const WeightedSums sums = sums_of(frame, from, to, window);
   for_each_strip(frame, window_step(window), false,
                  [&](const FilterStrip& strip, const PairWeights& weights) {
                    weigh_similar(test, frame.grid, strip, weights);
-                   add_weighted(sums_of(frame, from, to, window), frame.grid, strip, weights);
+                   for (int r = 0; r < strip.rows; ++r)
+                     add_weighted(sums, frame.grid, strip, weights, r);
                  });
+  if (window > 0 && options.slope_rounds > 0) {
+    const NearAndFar both = near_and_far(frame, from, to, window);
+    for_each_row(frame, [&](int row) { keep_bright(both, frame.grid, row); });
+  }
 }
 
 /// @param averaged  of the row's pixels: of how many measurements the raw numbers are the mean
@@ -248,16 +286,35 @@ void Filter::Plan::write_raw_row(const RawView& raw, FilterPlanes& frame, int fr
   });
 }
 
-void Filter::Plan::finish(const RawView& raw, FilterPlanes& frame, int set, int other) const {
-  read_again(raw, frame, other, FilterPlanes::usable);
+OwnLightTest Filter::Plan::own_light_test(FilterPlanes& frame, int added, int measured) const {
   OwnLightTest test{.rank = rank,
                     .usable = frame.scalar(FilterPlanes::usable),
                     .variance = frame.scalar(FilterPlanes::variance),
                     .limit_sigma = static_cast<float>(options.own_light_sigma)};
   for (int j = 0; j < rank; ++j) {
-    test.added[static_cast<std::size_t>(j)] = frame.light(set, j);
-    test.measured[static_cast<std::size_t>(j)] = frame.light(other, j);
+    test.added[static_cast<std::size_t>(j)] = frame.light(added, j);
+    test.measured[static_cast<std::size_t>(j)] = frame.light(measured, j);
   }
+  return test;
+}
+
+void Filter::Plan::leave_dark(const RawView& raw, FilterPlanes& frame, int set, int other) const {
+  read_again(raw, frame, other, FilterPlanes::usable);
+  const OwnLightTest test = own_light_test(frame, set, other);
+  const float* const is_own = frame.scalar(FilterPlanes::signal);
+  for_each_row(frame, [&](int row) {
+    find_own_light(test, frame.grid, row,
+                   frame.scalar(FilterPlanes::signal) + row * frame.grid.stride);
+  });
+  for_each_row(frame, [&](int row) {
+    const std::ptrdiff_t start = row * frame.grid.stride;
+    std::copy_n(is_own + start, frame.grid.width, frame.scalar(FilterPlanes::usable) + start);
+  });
+}
+
+void Filter::Plan::finish(const RawView& raw, FilterPlanes& frame, int set, int other) const {
+  read_again(raw, frame, other, FilterPlanes::usable);
+  const OwnLightTest test = own_light_test(frame, set, other);
   for_each_row(frame, [&](int row) {
     const std::ptrdiff_t start = row * frame.grid.stride;
     float* const is_filtered = frame.scalar(FilterPlanes::signal) + start;

@@ -38,6 +38,7 @@ struct Filter::Plan {
   std::vector<float> to_coordinates;   // (K, K): coordinate j of measurement k at j * K + k
   std::vector<float> to_measurements;  // and back, k * K + j
   std::vector<float> curve;            // x = T o chi in coordinates (N, K)
+  std::vector<float> squares;          // of LightBalance (N, 2)
   HiddenSignal hidden;
   bool has_own_shot_noise = false;  // light that cancels in the measurements still makes noise
 
@@ -52,6 +53,9 @@ struct Filter::Plan {
                   FilterPlanes::Scalar usable) const;
   /// One window of the round that adds neighbours whose vectors are parallel.
   void add_similar(FilterPlanes& frame, int from, int to, int window) const;
+  /// Pixels that have none of the light that a set gives them are usable no more: that tells no
+  /// slope. The other set is needed for that.
+  void leave_dark(const RawView& raw, FilterPlanes& frame, int set, int other) const;
   /// Depth of a set of light, by way of raw numbers in another set.
   void find_depth(const RawView& raw, FilterPlanes& frame, int from, int into) const;
   /// One window of a round that adds neighbours of the same surface: `light` is split into signal
@@ -65,6 +69,8 @@ struct Filter::Plan {
 
  private:
   WeightedSums sums_of(FilterPlanes& frame, int from, int to, int window) const;
+  NearAndFar near_and_far(FilterPlanes& frame, int near, int far, int window) const;
+  OwnLightTest own_light_test(FilterPlanes& frame, int added, int measured) const;
   void read_row(const RawView& raw, FilterPlanes& frame, int row, int set, float* usable,
                 float* variance) const;
   void find_hidden_noise(const RawView& raw, FilterPlanes& frame, int row) const;

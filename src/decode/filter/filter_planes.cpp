@@ -18,7 +18,7 @@ PairWeights StripBuffers::weights(const FilterGrid& grid, const FilterStrip& str
   return {.weight = room_for(weight_floats(grid, strip), weight),
           .shifted = with_shifts ? room_for(weight_floats(grid, strip), shifted) : nullptr,
           .scratch = room_for(scratch_floats(grid, strip), scratch),
-          .stride = grid.stride};
+          .stride = weight_stride(grid)};
 }
 
 std::unique_ptr<StripBuffers> StripBufferPool::take() {
@@ -37,14 +37,13 @@ void StripBufferPool::give_back(std::unique_ptr<StripBuffers> buffers) {
 FilterGrid FilterPlanes::grid_of(int height, int width, int largest_step) {
   FilterGrid grid{.height = height, .width = width};
   grid.margin = margin_columns(largest_step);
-  grid.stride = whole_vectors(width + 2 * grid.margin);
+  grid.rows_above = margin_rows(largest_step);
+  grid.stride = whole_vectors(width + grid.margin);
   return grid;
 }
 
-std::size_t FilterPlanes::floats(const FilterGrid& grid, int measurements, int largest_step) {
-  return static_cast<std::size_t>(scalars + light_sets * measurements) *
-         static_cast<std::size_t>(grid.height + 2 * margin_rows(largest_step)) *
-         static_cast<std::size_t>(grid.stride);
+std::size_t FilterPlanes::floats(const FilterGrid& grid, int measurements) {
+  return grid.floats(scalars + light_sets * measurements);
 }
 
 void FilterPlanes::resize(int height, int width, int measurements_, int largest_step) {
@@ -54,10 +53,8 @@ void FilterPlanes::resize(int height, int width, int measurements_, int largest_
   if (fits) return;
   grid = wanted;
   measurements = measurements_;
-  rows_above = margin_rows(largest_step);
-  plane_floats = (height + 2 * rows_above) * grid.stride;
   // Margins stay 0.
-  storage.assign(floats(grid, measurements, largest_step), 0.0f);
+  storage.assign(floats(grid, measurements), 0.0f);
   averaged = Image<float>(height, width, 1.0f);
 }
 
@@ -78,7 +75,7 @@ RawView FilteredFrame::view() const {
           .measurements = p.measurements,
           .row_stride = p.grid.stride,
           .column_stride = 1,
-          .measurement_stride = p.plane_floats,
+          .measurement_stride = p.grid.plane_floats(),
           .averaged = p.averaged.pixels.data()};
 }
 

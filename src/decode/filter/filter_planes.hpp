@@ -53,8 +53,6 @@ struct FilterPlanes {
 
   FilterGrid grid;
   int measurements = 0;
-  int rows_above = 0;  ///< of the margin
-  std::ptrdiff_t plane_floats = 0;
   std::vector<float> storage;
   Image<float>
       averaged;  ///< along slopes: variance of a coordinate that depth was found from [e^2]
@@ -63,12 +61,10 @@ struct FilterPlanes {
   StripBufferPool buffers;
 
   static FilterGrid grid_of(int height, int width, int largest_step);
-  static std::size_t floats(const FilterGrid& grid, int measurements, int largest_step);
+  static std::size_t floats(const FilterGrid& grid, int measurements);
   /// Makes room for a frame; keeps what there is if it fits.
   void resize(int height, int width, int measurements_, int largest_step);
-  float* plane(int index) {
-    return storage.data() + index * plane_floats + rows_above * grid.stride + grid.margin;
-  }
+  float* plane(int index) { return storage.data() + index * grid.plane_floats() + grid.origin(); }
   const float* plane(int index) const { return const_cast<FilterPlanes*>(this)->plane(index); }
   float* scalar(Scalar which) { return plane(which); }
   float* light(int set, int k) { return plane(scalars + set * measurements + k); }

@@ -110,7 +110,8 @@ void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, i
   const auto places = ring_places(grid.stride);
   const Vector samples = all(test.samples), per_sample = all(1.0f / test.samples);
   const Vector tiny = all(min_depth_variance), zero = hn::Zero(Floats());
-  const Vector inverse_max = all(1.0f / (4 * test.same_depth_sigma2));
+  const Vector inverse_max = all(1.0f / (4 * test.same_depth_sigma2)),
+               inverse_max_pair = all(1.0f / (2 * test.same_depth_sigma2));
   for (int y = first_row; y < first_row + rows; ++y)
     for (int x = 0; x < grid.width; x += lanes_of()) {
       const std::ptrdiff_t p = y * grid.stride + x;
@@ -131,7 +132,8 @@ void find_slopes(const SlopeTest& test, const FilterGrid& grid, int first_row, i
         const Vector bend = hn::Add(ahead, behind), noise = hn::Add(noise_ahead, noise_behind);
         const Vector all_noise = hn::MulAdd(variance, all(4.0f), noise);
         const Vector w = hn::Div(
-            hn::Mul(weight_of(hn::Div(hn::Mul(bend, bend), all_noise), inverse_max), both), noise);
+            hn::Mul(weight_of(hn::Div(hn::Mul(bend, bend), all_noise), inverse_max_pair), both),
+            noise);
         pairs.add(w, place, hn::Mul(hn::Sub(ahead, behind), all(0.5f)));
       }
       Vector across, along;
@@ -262,6 +264,16 @@ void compare_sums(const CurvePoints& curve, const NearAndFar& sums, const Filter
   }
 }
 
+/// Of a near sum's light.
+HWY_INLINE Vector near_square(const NearAndFar& sums, std::ptrdiff_t at) {
+  Vector square = hn::Zero(Floats());
+  for (int j = 0; j < sums.rank; ++j) {
+    const Vector u = load(sums.near.data()[j] + at);
+    square = hn::MulAdd(u, u, square);
+  }
+  return square;
+}
+
 /// How much of the near sums bias and noise are least with, beyond what noise explains.
 HWY_INLINE Vector kept_of(Vector excess, float half) {
   return hn::Div(excess, hn::Add(excess, all(half)));
@@ -271,15 +283,21 @@ void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row) {
   const Vector zero = hn::Zero(Floats()), one = all(1.0f);
   for (int x = 0; x < grid.width; x += lanes_of()) {
     const std::ptrdiff_t at = row * grid.stride + x;
-    Vector squares = zero, count = zero;
+    Vector squares = zero, sum_around = zero, count = zero;
     for (int dy = -compared_reach; dy <= compared_reach; dy += compared_step)
       for (int dx = -compared_reach; dx <= compared_reach; dx += compared_step) {
         const std::ptrdiff_t pixel = at + dy * grid.stride + dx;
         const Vector usable = load(sums.usable + pixel), d = load(sums.difference + pixel);
         squares = hn::MulAdd(hn::Mul(usable, d), d, squares);
+        sum_around = hn::MulAdd(usable, d, sum_around);
         count = hn::Add(count, usable);
       }
+    const Vector per_pixel = hn::Div(one, hn::Max(count, one));
     const Vector around = hn::Sub(hn::Div(squares, hn::Max(count, one)), all(explained_by_noise));
+    // Where a surface bends alike all around, all differ a little, in the same way.
+    const Vector mean_around = hn::Mul(sum_around, per_pixel);
+    const Vector bent =
+        hn::NegMulAdd(per_pixel, all(explained_in_patch), hn::Mul(mean_around, mean_around));
     // At a silhouette or a crease the pixels of a thin line alone differ, all in the same way.
     Vector best = zero;
     for (std::size_t i = 0; i < std::size(line_directions); ++i) {
@@ -296,6 +314,8 @@ void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row) {
       const Vector mean = hn::Mul(sum, inverse);
       best = hn::Max(best, hn::NegMulAdd(inverse, all(explained_along_lines), hn::Mul(mean, mean)));
     }
+    const Vector bright = hn::Mul(load(sums.near_variance + at), all(bright_sigma * bright_sigma));
+    best = hn::Max(best, hn::IfThenElseZero(hn::Gt(near_square(sums, at), bright), bent));
     const Vector kept =
         hn::Max(kept_of(hn::Max(around, zero), half_kept), kept_of(best, half_kept_along_lines));
     store(kept, sums.kept + at);
@@ -314,6 +334,26 @@ void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row) {
   }
 }
 
+void keep_bright(const NearAndFar& sums, const FilterGrid& grid, int row) {
+  const Vector zero = hn::Zero(Floats()), one = all(1.0f);
+  for (int x = 0; x < grid.width; x += lanes_of()) {
+    const std::ptrdiff_t at = row * grid.stride + x;
+    const Vector near_variance = hn::Max(load(sums.near_variance + at), all(1e-12f));
+    const Vector sigmas = hn::Sqrt(hn::Div(near_square(sums, at), near_variance));
+    const Vector kept =
+        hn::Min(hn::Max(hn::MulSub(sigmas, all(1.0f / bright_sigma), one), zero), one);
+    if (hn::AllTrue(Floats(), hn::Le(kept, zero))) continue;
+    for (int k = 0; k < sums.planes; ++k) {
+      float* const light = sums.far.data()[k] + at;
+      const Vector far = load(light);
+      store(hn::MulAdd(kept, hn::Sub(load(sums.near.data()[k] + at), far), far), light);
+    }
+    const Vector far = load(sums.far_variance + at);
+    const Vector beyond = hn::Max(hn::Sub(near_variance, far), zero);
+    store(hn::MulAdd(hn::Mul(kept, kept), beyond, far), sums.far_variance + at);
+  }
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith
@@ -328,6 +368,7 @@ HWY_EXPORT(split_row);
 HWY_EXPORT(join_row);
 HWY_EXPORT(compare_sums);
 HWY_EXPORT(keep_near);
+HWY_EXPORT(keep_bright);
 
 void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const FilterStrip& strip,
                         const PairWeights& weights) {
@@ -354,6 +395,10 @@ void compare_sums(const CurvePoints& curve, const NearAndFar& sums, const Filter
 
 void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row) {
   HWY_DYNAMIC_DISPATCH(keep_near)(sums, grid, row);
+}
+
+void keep_bright(const NearAndFar& sums, const FilterGrid& grid, int row) {
+  HWY_DYNAMIC_DISPATCH(keep_bright)(sums, grid, row);
 }
 
 }  // namespace tofsmith

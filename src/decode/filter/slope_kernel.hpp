@@ -39,7 +39,7 @@ struct SlopeTest {
 void weigh_along_slopes(const SlopeTest& test, const FilterGrid& grid, const FilterStrip& strip,
                         const PairWeights& weights);
 
-/// Slopes of the plane through the depths of pixels 2 and 4 away that are of the same surface; 0
+/// Slopes of the plane through the depths of pixels 3 to 12 away that are of the same surface; 0
 /// where there are too few.
 /// @param excess  of depth's variance, >= 1: how much more the depths of far pixels of the surface
 ///                scatter about the plane
@@ -83,20 +83,23 @@ inline constexpr std::array<WindowStep, 4> line_directions = {{{0, 1}, {1, 0}, {
 /// Of the near sum's variance, so much is the least that its difference from the far one has.
 inline constexpr float least_noise_share = 0.25f;
 /// Mean square of differences in deviations that noise is taken to make, of the pixels around; and
-/// square of their mean along the best of the lines, times 1 / 9 where all 9 count.
+/// square of their mean along the best of the lines and around, divided by how many count.
 inline constexpr float explained_by_noise = 2.3f, explained_along_lines = 18.0f;
+inline constexpr float explained_in_patch = 12.0f;
 /// What exceeds it is kept as excess / (excess + this).
 inline constexpr float half_kept = 0.2f, half_kept_along_lines = 0.3f;
 /// How much larger than usual the noise of a near sum is where noise alone has some of it kept.
 inline constexpr float kept_noise = 1.6f;
 /// Near sums of fewer standard deviations, squared, tell too little of their depth.
 inline constexpr float least_energy = 25.0f;
+/// From so many standard deviations on near sums alone tell slopes, and little bends.
+inline constexpr float bright_sigma = 50.0f;
 
 /// Two sums for each pixel: of near neighbours, and of these and far ones.
 struct NearAndFar {
   std::array<const float*, max_measurements> near{};
   std::array<float*, max_measurements> far{};  ///< and then what is kept of both
-  int planes = 0;
+  int planes = 0, rank = 0;
   const float* usable = nullptr;  ///< 1 or 0
   const float* depth = nullptr;   ///< of both [bin], in [0, N)
   const float* near_variance = nullptr;
@@ -112,11 +115,17 @@ void compare_sums(const CurvePoints& curve, const NearAndFar& sums, const Filter
 /// depths than the near sums by more than noise explains, so much of the near sum is kept that the
 /// bias and the noise that it leaves are least. Needs `difference` of the rows around.
 void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row);
+/// Before there are slopes: from bright_sigma on the less noise a near sum has, the more of it is
+/// kept, and all from twice that on. Its depth tells slopes well enough, and far neighbours, which
+/// lie along slopes that are not known yet, would bias it.
+void keep_bright(const NearAndFar& sums, const FilterGrid& grid, int row);
 
 /// What the noise of slopes adds to the variance of a sum along them,
 ///   v (sum + sum_offset d^2) + v' (before + before_offset d^2),
 /// where v is the variance of the sum without it, v' that of the depth that slopes were taken from,
 /// and d how far the middle of what was added lies from the pixel, in steps of the last window.
+/// Inside a plane depths of near sums alone count less by this share, measured.
+inline constexpr float slope_noise_of_near = 0.67f;
 struct SlopeNoise {
   float sum, sum_offset, before, before_offset;
 };

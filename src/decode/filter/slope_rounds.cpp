@@ -47,7 +47,7 @@ void Filter::Plan::find_depth(const RawView& raw, FilterPlanes& frame, int from,
                          .measurements = measurements,
                          .row_stride = grid.stride,
                          .column_stride = 1,
-                         .measurement_stride = frame.plane_floats,
+                         .measurement_stride = grid.plane_floats(),
                          .averaged = averaged - grid.margin};
   decoder.decode(filtered, {.depth_m = depth - grid.margin,
                             .predicted_standard_deviation_m = variance - grid.margin});
@@ -89,18 +89,7 @@ void Filter::Plan::join(FilterPlanes& frame, int set, int row) const {
 }
 
 void Filter::Plan::keep_near_sums(FilterPlanes& frame, int rest, int to, int window) const {
-  const WindowVariances variances(window);
-  NearAndFar sums{.planes = measurements,
-                  .usable = frame.scalar(FilterPlanes::usable),
-                  .depth = frame.scalar(FilterPlanes::depth),
-                  .near_variance = frame.scalar(variances.in),
-                  .far_variance = frame.scalar(variances.out),
-                  .difference = frame.scalar(FilterPlanes::shift),
-                  .kept = frame.scalar(FilterPlanes::signal)};
-  for (int k = 0; k < measurements; ++k) {
-    sums.near[static_cast<std::size_t>(k)] = frame.light(rest, k);
-    sums.far[static_cast<std::size_t>(k)] = frame.light(to, k);
-  }
+  const NearAndFar sums = near_and_far(frame, rest, to, window);
   for_each_row(frame, [&](int row) {
     const std::ptrdiff_t at = row * frame.grid.stride;
     JoinRow unmoved{.depth = frame.scalar(FilterPlanes::depth) + at,
@@ -125,13 +114,17 @@ void Filter::Plan::add_slope_noise(FilterPlanes& frame, int round) const {
     const float* const offset2 = frame.scalar(FilterPlanes::signal_next) + at;
     const float* const near_share = frame.scalar(FilterPlanes::signal) + at;
     const float* const before = &frame.averaged(row, 0);
+    const float* const near = frame.scalar(WindowVariances(window).in) + at;
     float* const variance = frame.scalar(last_variance()) + at;
     for (int x = 0; x < frame.grid.width; ++x) {
       if (!(guided[x] > 0.0f)) continue;
       const float far_share = window > 0 ? 1.0f - near_share[x] : 1.0f;
       const float d2 = is_last ? offset2[x] : 0.0f;
       const float of_sum = noise.sum + noise.sum_offset * d2;
-      const float of_before = is_last ? noise.before + noise.before_offset * d2 : 0.0f;
+      // Depths of near sums share less noise with those that tell the slope.
+      const float of_near = slope_noise_of_near * std::min(1.0f, before[x] / near[x]);
+      const float of_before =
+          is_last ? noise.before * (1.0f - of_near) + noise.before_offset * d2 : 0.0f;
       variance[x] += far_share * far_share * (of_sum * variance[x] + of_before * before[x]);
     }
   });
@@ -162,14 +155,23 @@ void Filter::Plan::add_along_slopes(FilterPlanes& frame, int light, int rest, in
   sums.out[static_cast<std::size_t>(sums.planes++)] = frame.scalar(FilterPlanes::signal_next);
   sums.shifted_in = frame.scalar(FilterPlanes::signal);
   sums.shifted_out = frame.scalar(FilterPlanes::shift);
+  const LightBalance balance{.depth = test.depth,
+                             .slope_x = test.slope_x,
+                             .slope_y = test.slope_y,
+                             .squares = squares.data(),
+                             .samples = samples(),
+                             .step = window_step(window)};
+  if (window > 0) sums.balance = &balance;
   for_each_strip(frame, window_step(window), true,
                  [&](const FilterStrip& strip, const PairWeights& weights) {
                    weigh_along_slopes(test, frame.grid, strip, weights);
-                   add_weighted(sums, frame.grid, strip, weights);
-                   for (int r = 0; r < strip.rows; ++r) join(frame, to, strip.first_row + r);
-                   if (window + 1 == options.windows)
-                     find_offsets(frame.scalar(FilterPlanes::signal), frame.grid, strip, weights,
-                                  frame.scalar(FilterPlanes::signal_next));
+                   for (int r = 0; r < strip.rows; ++r) {
+                     add_weighted(sums, frame.grid, strip, weights, r);
+                     join(frame, to, strip.first_row + r);
+                     if (window + 1 == options.windows)
+                       find_offsets(sums, frame.grid, strip, weights, r,
+                                    frame.scalar(FilterPlanes::signal_next));
+                   }
                  });
   if (window > 0) keep_near_sums(frame, rest, to, window);
 }
