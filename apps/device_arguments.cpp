@@ -37,9 +37,19 @@ void list_devices(bool as_json) {
     fmt::print("{}\n", Device::none_found());
 }
 
+/// What is refused of a device is a wrong option.
+template <typename Make>
+auto made(const Make& make) {
+  try {
+    return make();
+  } catch (const std::invalid_argument& error) {
+    throw wrong_option(error);
+  }
+}
+
 }  // namespace
 
-void DeviceArguments::add_to(CLI::App& command, const std::string& help) {
+void DeviceArguments::add_to(CLI::App& command, const OptionText& text) {
   command
       .add_option_function<std::string>(
           "--device",
@@ -50,48 +60,37 @@ void DeviceArguments::add_to(CLI::App& command, const std::string& help) {
             list_devices(json && json->count() > 0);
             throw CLI::Success();
           },
-          help)
+          fmt::format("what {}: cpu; gpu, the first one; auto, that or else cpu, which {} are left "
+                      "to; a number or part of a name from list, which prints the devices of "
+                      "OpenCL. {}",
+                      text.does, text.left_to_cpu, text.promise))
       ->default_str(name_)
       ->group(for_experts);
 }
 
 void DeviceArguments::add_to(CLI::App& command) {
-  add_to(command,
-         "what adds frames up, filters and decodes: cpu; gpu, the first one; auto, that or else "
-         "cpu, which small frames are left to; a number or part of a name from list, which prints "
-         "the devices of "
-         "OpenCL. The same numbers come out, of zncc alone");
+  add_to(command, {"adds frames up, filters and decodes", "small frames",
+                   "The same numbers come out, of zncc alone"});
 }
 
 void DeviceArguments::add_capture_to(CLI::App& command) {
-  add_to(command,
-         "what draws the noise: cpu; gpu, the first one; auto, that or else cpu, which small "
-         "scenes are left to; a number or part of a name from list, which prints the devices of "
-         "OpenCL. The same frames come out, of devices that have doubles");
+  add_to(command, {"draws the noise", "small scenes",
+                   "The same frames come out, of devices that have doubles"});
 }
 
 void DeviceArguments::add_trials_to(CLI::App& command) {
-  add_to(command,
-         "what runs the trials: cpu; gpu, the first one; auto, that or else cpu, which few trials "
-         "are left to; a number or part of a name from list, which prints the devices of OpenCL. "
-         "The same figures but for rounding, of normal noise, zncc and devices that have doubles");
+  add_to(command, {"runs the trials", "few trials",
+                   "The same figures but for rounding, of normal noise, zncc and devices that have "
+                   "doubles"});
 }
 
 std::optional<DeviceTrials> DeviceArguments::trials(const Camera& camera,
                                                     const EvaluateOptions& options) const {
-  try {
-    return device_trials(name_, camera, options);
-  } catch (const std::invalid_argument& error) {
-    throw wrong_option(error);
-  }
+  return made([&] { return device_trials(name_, camera, options); });
 }
 
 std::optional<DeviceCapture> DeviceArguments::capture() const {
-  try {
-    return device_capture(name_);
-  } catch (const std::invalid_argument& error) {
-    throw wrong_option(error);
-  }
+  return made([&] { return device_capture(name_); });
 }
 
 RecordingDevice::RecordingDevice(DeviceDecoder on_device, const Decoder& decoder, std::string name)
@@ -124,13 +123,9 @@ void RecordingDevice::take(DecodeRequest& request) {
 }
 
 std::optional<RecordingDevice> DeviceArguments::device_for(const AnyDecoder& decoder) const {
-  try {
-    std::optional<DeviceDecoder> on_device = device_decoder(name_, decoder);
-    if (!on_device) return std::nullopt;
-    return RecordingDevice(std::move(*on_device), std::get<Decoder>(decoder), name_);
-  } catch (const std::invalid_argument& error) {
-    throw wrong_option(error);
-  }
+  std::optional<DeviceDecoder> on_device = made([&] { return device_decoder(name_, decoder); });
+  if (!on_device) return std::nullopt;
+  return RecordingDevice(std::move(*on_device), std::get<Decoder>(decoder), name_);
 }
 
 }  // namespace tofsmith::apps

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "tofsmith/gpu.hpp"
 #include "tofsmith/io/decode_recording.hpp"
@@ -54,7 +55,11 @@ class DeviceArguments {
   std::optional<DeviceTrials> trials(const Camera& camera, const EvaluateOptions& options) const;
 
  private:
-  void add_to(CLI::App& command, const std::string& help);
+  /// In its help: what a device does, what `auto` leaves to the processor, and what holds.
+  struct OptionText {
+    std::string_view does, left_to_cpu, promise;
+  };
+  void add_to(CLI::App& command, const OptionText& text);
 
   std::string name_ = "cpu";
 };

@@ -70,7 +70,7 @@ void DeviceCapture::Plan::set_parameters(const UnexposedFrames& frames, const Ca
                  .is_collected = flag(frames.light != nullptr),
                  .has_ambient = flag(has_ambient),
                  .has_falloff = flag(light.falloff),
-                 .is_gaussian = flag(noise.is_gaussian),
+                 .is_gaussian = flag(noise.model == NoiseModel::gaussian),
                  .subtracts = flag(noise.subtracts),
                  .is_signed = flag(noise.is_signed),
                  .has_adc = flag(noise.has_adc),

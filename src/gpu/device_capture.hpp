@@ -9,7 +9,6 @@
 #include "gpu/capture_parameters.h"
 #include "gpu/device_queue.hpp"
 #include "simulate/shared/row_capture.hpp"
-#include "simulate/shared/unexposed_frames.hpp"
 
 namespace tofsmith {
 

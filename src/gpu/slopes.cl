@@ -408,31 +408,18 @@ kernel void keep_near(const struct FilterParameters p, const struct SlopeParamet
     const float excess = product_plus(-inverse, EXPLAINED_ALONG_LINES, mean * mean);
     best = LARGER(best, excess);
   }
-  float near_square = 0.0f;
-  for (int j = 0; j < RANK; ++j) {
-    const float u = plane_of(&p, planes, w.rest + j)[at];
-    near_square = product_plus(u, u, near_square);
-  }
-  const float bright = plane_of(&p, planes, w.variance_in)[at] * (BRIGHT_SIGMA * BRIGHT_SIGMA);
-  const float if_bright = near_square > bright ? bent : 0.0f;
+  const float near_variance = plane_of(&p, planes, w.variance_in)[at];
+  const float bright = near_variance * (BRIGHT_SIGMA * BRIGHT_SIGMA);
+  const float if_bright = near_square(&p, planes, w.rest, at) > bright ? bent : 0.0f;
   best = LARGER(best, if_bright);
   const float excess = LARGER(around, 0.0f);
   const float by_all = excess / (excess + HALF_KEPT), by_line = best / (best + HALF_KEPT_ALONG_LINES);
   const float kept = LARGER(by_all, by_line);
   plane_of(&p, planes, PLANE_SIGNAL)[at] = kept;
-  if (kept <= 0.0f) return;
-  for (int k = 0; k < MEASUREMENTS; ++k) {
-    const Plane to = plane_of(&p, planes, w.to + k);
-    const float far = to[at];
-    to[at] = product_plus(kept, plane_of(&p, planes, w.rest + k)[at] - far, far);
-  }
-  // The far sum is a mean of all: its covariance with the near one is its own variance. Where noise
-  // alone has some of the near sum kept, it was so much larger than usual.
-  const Plane far_variance = plane_of(&p, planes, w.variance_out);
-  const float far = far_variance[at];
-  const float more = plane_of(&p, planes, w.variance_in)[at] - far;
-  const float beyond = LARGER(more, 0.0f), share2 = kept * kept * KEPT_NOISE;
-  far_variance[at] = product_plus(share2, beyond, far);
+  // Where noise alone has some of the near sum kept, it was so much larger than usual.
+  if (kept > 0.0f)
+    keep_share(&p, planes, w.rest, w.to, w.variance_out, at, kept, kept * kept * KEPT_NOISE,
+               near_variance);
 }
 
 /// What the noise of slopes adds to the variance of the sums of a round.

@@ -246,30 +246,43 @@ float raw_of_light(const struct FilterParameters* p, const struct ResultParamete
   return n < 1e-3f ? 1e-3f : n;
 }
 
+/// Of a near sum's light, as near_square().
+float near_square(const struct FilterParameters* p, global float* planes, int near, int at) {
+  float square = 0.0f;
+  for (int j = 0; j < RANK; ++j) {
+    const float u = plane_of(p, planes, near + j)[at];
+    square = product_plus(u, u, square);
+  }
+  return square;
+}
+
+/// As keep_share().
+void keep_share(const struct FilterParameters* p, global float* planes, int near, int far_light,
+                int far_variance, int at, float kept, float share2, float near_variance) {
+  for (int k = 0; k < MEASUREMENTS; ++k) {
+    const Plane light = plane_of(p, planes, far_light + k);
+    const float far = light[at];
+    light[at] = product_plus(kept, plane_of(p, planes, near + k)[at] - far, far);
+  }
+  const Plane variance = plane_of(p, planes, far_variance);
+  const float far = variance[at], more = near_variance - far;
+  const float beyond = LARGER(more, 0.0f);
+  variance[at] = product_plus(share2, beyond, far);
+}
+
 /// Near sums that tell slopes well enough are kept, as keep_bright().
 kernel void keep_bright(const struct FilterParameters p, const struct SimilarParameters w,
                         global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
   if (x >= p.width || y >= p.height) return;
   const int at = y * p.stride + x;
-  float square = 0.0f;
-  for (int j = 0; j < RANK; ++j) {
-    const float u = plane_of(&p, planes, w.light + j)[at];
-    square = product_plus(u, u, square);
-  }
+  const float square = near_square(&p, planes, w.light, at);
   const float variance = plane_of(&p, planes, w.variance_in)[at];
   const float near_variance = LARGER(variance, 1e-12f);
   const float beyond_least = product_plus(sqrt(square / near_variance), 1.0f / BRIGHT_SIGMA, -1.0f);
   const float above_none = LARGER(beyond_least, 0.0f), kept = SMALLER(above_none, 1.0f);
-  if (kept <= 0.0f) return;
-  for (int k = 0; k < MEASUREMENTS; ++k) {
-    const Plane to = plane_of(&p, planes, w.to + k);
-    const float far = to[at];
-    to[at] = product_plus(kept, plane_of(&p, planes, w.light + k)[at] - far, far);
-  }
-  const Plane far_variance = plane_of(&p, planes, w.variance_out);
-  const float far = far_variance[at], more = near_variance - far;
-  far_variance[at] = product_plus(kept * kept, LARGER(more, 0.0f), far);
+  if (kept > 0.0f)
+    keep_share(&p, planes, w.light, w.to, w.variance_out, at, kept, kept * kept, near_variance);
 }
 
 /// All of a set of light as raw numbers, and their variance to where later steps find it.

@@ -24,51 +24,53 @@ const Sensor& validated(const Sensor& sensor) {
 }  // namespace
 
 PixelNoise::PixelNoise(const Sensor& sensor)
-    : model_(validated(sensor).noise),
-      subtracts_(sensor.subtracts()),
-      is_signed_(sensor.is_signed()),
-      read_noise_e_(sensor.read_noise_e),
-      full_well_e_(sensor.full_well_e.value_or(std::numeric_limits<double>::infinity())),
-      has_adc_(sensor.adc_bits.has_value()) {
-  if (!has_adc_) return;
-  gain_e_per_dn_ = *sensor.gain_e_per_dn;
-  black_level_dn_ = sensor.black_level_dn.value_or(0.0);
+    : parts_{.model = validated(sensor).noise,
+             .subtracts = sensor.subtracts(),
+             .is_signed = sensor.is_signed(),
+             .read_noise_e = sensor.read_noise_e,
+             .full_well_e = sensor.full_well_e.value_or(std::numeric_limits<double>::infinity()),
+             .has_adc = sensor.adc_bits.has_value()} {
+  if (!parts_.has_adc) return;
+  parts_.gain_e_per_dn = *sensor.gain_e_per_dn;
+  parts_.black_level_dn = sensor.black_level_dn.value_or(0.0);
   const ConverterNumbers numbers = raw_numbers(sensor);
-  min_dn_ = numbers.min_dn;
-  max_dn_ = numbers.max_dn;
+  parts_.min_dn = numbers.min_dn;
+  parts_.max_dn = numbers.max_dn;
 }
 
 double PixelNoise::draw_electrons(double expected_e, RandomStream& random) const {
   const double mean = std::max(expected_e, 0.0);
-  if (model_ == NoiseModel::gaussian)
-    return mean + std::sqrt(mean + read_noise_e_ * read_noise_e_) * random.normal();
-  return random.poisson(mean) + read_noise_e_ * random.normal();
+  if (parts_.model == NoiseModel::gaussian)
+    return mean + std::sqrt(mean + parts_.read_noise_e * parts_.read_noise_e) * random.normal();
+  return random.poisson(mean) + parts_.read_noise_e * random.normal();
 }
 
 double PixelNoise::draw_count(double expected_e, RandomStream& random) const {
   const double mean = std::max(expected_e, 0.0);
-  if (model_ == NoiseModel::gaussian) return mean + std::sqrt(mean) * random.normal();
+  if (parts_.model == NoiseModel::gaussian) return mean + std::sqrt(mean) * random.normal();
   return random.poisson(mean);
 }
 
 double PixelNoise::draw_difference(double a, double b, RandomStream& random) const {
   const double variance = std::max(a + b, 0.0);
-  if (model_ == NoiseModel::gaussian)
-    return a - b + std::sqrt(variance + read_noise_e_ * read_noise_e_) * random.normal();
+  if (parts_.model == NoiseModel::gaussian)
+    return a - b +
+           std::sqrt(variance + parts_.read_noise_e * parts_.read_noise_e) * random.normal();
   const SignedElectrons electrons = SignedElectrons::of(a - b, variance);
   const double plus = random.poisson(electrons.plus), minus = random.poisson(electrons.minus);
-  return electrons.size * (plus - minus) + read_noise_e_ * random.normal();
+  return electrons.size * (plus - minus) + parts_.read_noise_e * random.normal();
 }
 
 double PixelNoise::convert(double electrons) const {
-  double kept = std::min(electrons, full_well_e_);
-  if (is_signed_) kept = std::max(kept, -full_well_e_);
-  if (!has_adc_) return kept;
-  return std::clamp(std::round(kept / gain_e_per_dn_ + black_level_dn_), min_dn_, max_dn_);
+  double kept = std::min(electrons, parts_.full_well_e);
+  if (parts_.is_signed) kept = std::max(kept, -parts_.full_well_e);
+  if (!parts_.has_adc) return kept;
+  return std::clamp(std::round(kept / parts_.gain_e_per_dn + parts_.black_level_dn), parts_.min_dn,
+                    parts_.max_dn);
 }
 
 void PixelNoise::read_out(double* raw, int tap_values) const {
-  if (!subtracts_ || is_signed_) return;
+  if (!parts_.subtracts || parts_.is_signed) return;
   for (int i = 0; i < tap_values / 2; ++i) raw[i] = raw[2 * i] - raw[2 * i + 1];
 }
 

@@ -10,6 +10,16 @@
 
 namespace tofsmith {
 
+/// What the noise of a sensor is computed with, here and on other processors.
+struct NoiseParts {
+  NoiseModel model;
+  bool subtracts, is_signed;
+  double read_noise_e;
+  double full_well_e;  ///< infinite: none
+  bool has_adc;
+  double gain_e_per_dn = 1.0, black_level_dn = 0.0, min_dn = 0.0, max_dn = 0.0;
+};
+
 /// From the electrons a tap is expected to collect to the raw number that leaves the sensor:
 ///   1. draw   Poisson electrons plus Gaussian read noise, or, with NoiseModel::gaussian, one
 ///             Gaussian of the same mean and variance, mu + sigma_r^2; both may come out negative;
@@ -34,43 +44,18 @@ class PixelNoise {
   /// is exact for a weight that switches. A weight in between makes smaller steps: where b < 0,
   /// (a - b) / s Poisson electrons of s = (a + b) / (a - b) each, and the other way round.
   double draw_difference(double a, double b, RandomStream& random) const;
-  double read_noise_e() const { return read_noise_e_; }
+  double read_noise_e() const { return parts_.read_noise_e; }
   /// Steps 2 and 3: the raw number of one tap, [e] or [DN].
   double convert(double electrons) const;
   /// Step 4: raw measurements of a pixel from the raw numbers of its taps.
   /// @param raw  (tap values) in, (measurements) out, in place
   void read_out(double* raw, int tap_values) const;
+  const NoiseParts& parts() const { return parts_; }
   /// Measurements that leave the sensor for that many tap values.
-  int measurements(int tap_values) const { return subtracts_ ? tap_values / 2 : tap_values; }
+  int measurements(int tap_values) const { return parts_.subtracts ? tap_values / 2 : tap_values; }
 
  private:
-  friend struct NoiseParts;
-  NoiseModel model_;
-  bool subtracts_, is_signed_;
-  double read_noise_e_;
-  double full_well_e_;  // infinite: none
-  bool has_adc_;
-  double gain_e_per_dn_ = 1.0, black_level_dn_ = 0.0, min_dn_ = 0.0, max_dn_ = 0.0;
-};
-
-/// What a PixelNoise computes with, for other processors.
-struct NoiseParts {
-  explicit NoiseParts(const PixelNoise& noise)
-      : is_gaussian(noise.model_ == NoiseModel::gaussian),
-        subtracts(noise.subtracts_),
-        is_signed(noise.is_signed_),
-        has_adc(noise.has_adc_),
-        read_noise_e(noise.read_noise_e_),
-        full_well_e(noise.full_well_e_),
-        gain_e_per_dn(noise.gain_e_per_dn_),
-        black_level_dn(noise.black_level_dn_),
-        min_dn(noise.min_dn_),
-        max_dn(noise.max_dn_) {}
-
-  bool is_gaussian, subtracts, is_signed, has_adc;
-  double read_noise_e;
-  double full_well_e;  ///< infinite: none
-  double gain_e_per_dn, black_level_dn, min_dn, max_dn;
+  NoiseParts parts_;
 };
 
 /// Poisson electrons of a mixer: so many of either sign are expected, of that size each.

@@ -274,6 +274,21 @@ HWY_INLINE Vector near_square(const NearAndFar& sums, std::ptrdiff_t at) {
   return square;
 }
 
+/// Keeps a share of the near sum in place of the far one: of its light, and, by `share2`, of the
+/// variance that it has beyond. The far sum is a mean of all: its covariance with the near one is
+/// its own variance.
+HWY_INLINE void keep_share(const NearAndFar& sums, std::ptrdiff_t at, Vector kept, Vector share2,
+                           Vector near_variance) {
+  for (int k = 0; k < sums.planes; ++k) {
+    float* const light = sums.far.data()[k] + at;
+    const Vector far = load(light);
+    store(hn::MulAdd(kept, hn::Sub(load(sums.near.data()[k] + at), far), far), light);
+  }
+  const Vector far = load(sums.far_variance + at);
+  const Vector beyond = hn::Max(hn::Sub(near_variance, far), hn::Zero(Floats()));
+  store(hn::MulAdd(share2, beyond, far), sums.far_variance + at);
+}
+
 /// How much of the near sums bias and noise are least with, beyond what noise explains.
 HWY_INLINE Vector kept_of(Vector excess, float half) {
   return hn::Div(excess, hn::Add(excess, all(half)));
@@ -314,23 +329,15 @@ void keep_near(const NearAndFar& sums, const FilterGrid& grid, int row) {
       const Vector mean = hn::Mul(sum, inverse);
       best = hn::Max(best, hn::NegMulAdd(inverse, all(explained_along_lines), hn::Mul(mean, mean)));
     }
-    const Vector bright = hn::Mul(load(sums.near_variance + at), all(bright_sigma * bright_sigma));
+    const Vector near_variance = load(sums.near_variance + at);
+    const Vector bright = hn::Mul(near_variance, all(bright_sigma * bright_sigma));
     best = hn::Max(best, hn::IfThenElseZero(hn::Gt(near_square(sums, at), bright), bent));
     const Vector kept =
         hn::Max(kept_of(hn::Max(around, zero), half_kept), kept_of(best, half_kept_along_lines));
     store(kept, sums.kept + at);
     if (hn::AllTrue(Floats(), hn::Le(kept, zero))) continue;
-    for (int k = 0; k < sums.planes; ++k) {
-      float* const light = sums.far.data()[k] + at;
-      const Vector far = load(light);
-      store(hn::MulAdd(kept, hn::Sub(load(sums.near.data()[k] + at), far), far), light);
-    }
-    // The far sum is a mean of all: its covariance with the near one is its own variance. Where
-    // noise alone has some of the near sum kept, it was so much larger than usual.
-    const Vector far = load(sums.far_variance + at);
-    const Vector beyond = hn::Max(hn::Sub(load(sums.near_variance + at), far), zero);
-    const Vector share2 = hn::Mul(hn::Mul(kept, kept), all(kept_noise));
-    store(hn::MulAdd(share2, beyond, far), sums.far_variance + at);
+    // Where noise alone has some of the near sum kept, it was so much larger than usual.
+    keep_share(sums, at, kept, hn::Mul(hn::Mul(kept, kept), all(kept_noise)), near_variance);
   }
 }
 
@@ -342,15 +349,8 @@ void keep_bright(const NearAndFar& sums, const FilterGrid& grid, int row) {
     const Vector sigmas = hn::Sqrt(hn::Div(near_square(sums, at), near_variance));
     const Vector kept =
         hn::Min(hn::Max(hn::MulSub(sigmas, all(1.0f / bright_sigma), one), zero), one);
-    if (hn::AllTrue(Floats(), hn::Le(kept, zero))) continue;
-    for (int k = 0; k < sums.planes; ++k) {
-      float* const light = sums.far.data()[k] + at;
-      const Vector far = load(light);
-      store(hn::MulAdd(kept, hn::Sub(load(sums.near.data()[k] + at), far), far), light);
-    }
-    const Vector far = load(sums.far_variance + at);
-    const Vector beyond = hn::Max(hn::Sub(near_variance, far), zero);
-    store(hn::MulAdd(hn::Mul(kept, kept), beyond, far), sums.far_variance + at);
+    if (!hn::AllTrue(Floats(), hn::Le(kept, zero)))
+      keep_share(sums, at, kept, hn::Mul(kept, kept), near_variance);
   }
 }
 

@@ -58,14 +58,14 @@ struct CaptureParts {
         bin_m(pixel.bin_m_),
         dark_e_per_s(pixel.dark_e_per_s_),
         correlation(pixel.correlation_),
-        noise(pixel.noise_),
+        noise(pixel.noise_.parts()),
         exposure_s(pixel.exposure_s_),
         ambient_gain(pixel.ambient_gain_),
         rows(pixel.rows_) {}
 
   double range_m, bin_m, dark_e_per_s;
   const FineCorrelation& correlation;
-  NoiseParts noise;
+  const NoiseParts& noise;
   const Eigen::VectorXd &exposure_s, &ambient_gain;  ///< of the tap values
   const std::optional<Eigen::MatrixXd>& rows;        ///< (K, N), where they are read out
 };
