@@ -290,7 +290,7 @@ void add_evaluate_command(CLI::App& app, Session& session) {
       "evaluate", "depth error of codes at every operating point of a camera, with bounds");
   command
       ->add_option("CODE", arguments->codes,
-                   "families, or code files (.code.json .npz .csv; rows as LIGHT.npy,ROWS.npy)")
+                   "families, or code files (.code.json .npz .csv; a pair LIGHT.npy,GATES.npy)")
       ->required();
   arguments->camera.add_to(*command);
   const CLI::Range trials(std::int64_t{2}, std::int64_t{4'000'000'000});

@@ -55,6 +55,49 @@ TEST(LoadCode, ReadsAFileWithTheTapsOfTheCamera) {
   expect_same_samples(load_code(path, camera, {.tap_order = TapOrder::interleaved}), code);
 }
 
+/// A pair of array files as load_code() takes it, with errors in place of a code.
+struct ArrayPair {
+  ArrayPair(const Eigen::MatrixXd& light, const Eigen::MatrixXd& gates) {
+    write_npy(directory / "light.npy", array_of(light), OutputPolicy::overwrite);
+    write_npy(directory / "gates.npy", array_of(gates), OutputPolicy::overwrite);
+    name = (directory / "light.npy").string() + "," + (directory / "gates.npy").string();
+  }
+  std::string refusal(const Camera& camera) const {
+    return io_error_of([&] { load_code(name, camera); });
+  }
+
+  TemporaryDirectory directory;
+  std::string name;
+};
+
+TEST(LoadCode, ReadsPairsOfArraysOfAnyScaleEitherWayRound) {
+  const Camera camera = built_in_camera("paper-10f0");
+  const CodeSet code = make_family("square-k4", {.samples = 24});
+  const Eigen::MatrixXd light = code.modulation_samples(), gates = code.demodulation_samples();
+  expect_same_samples(load_code(ArrayPair(light, gates).name, camera), code);
+  expect_same_samples(
+      load_code(ArrayPair(255 * light.transpose(), 255 * gates.transpose()).name, camera), code);
+  // One light for all exposures, and gates that are not open all the way.
+  expect_same_samples(load_code(ArrayPair(light.col(0), gates).name, camera), code);
+  const CodeSet half = load_code(ArrayPair(light, 0.5 * gates).name, camera);
+  EXPECT_LT((half.demodulation_samples() - 0.5 * gates).norm(), 1e-12);
+}
+
+TEST(LoadCode, PairsOfArraysThatNoExposuresAreAreRefusedWithTheirPlace) {
+  const Camera camera = built_in_camera("paper-10f0");
+  Eigen::MatrixXd light = Eigen::MatrixXd::Ones(24, 3), gates = light;
+  EXPECT_THAT(ArrayPair(0 * light, gates).refusal(camera),
+              HasSubstr("light.npy: found nothing but zeros; expected light"));
+  EXPECT_THAT(ArrayPair(light, gates.topRows(23)).refusal(camera),
+              HasSubstr("gates.npy: found the shape (23, 3); expected (24, 3) as of "));
+  gates(5, 2) = -2.0;
+  EXPECT_THAT(ArrayPair(light, gates).refusal(camera),
+              HasSubstr("gates.npy[5, 2]: found -1; expected a gain in [0, 1]; weights of both "
+                        "signs need a camera with sensor.readout"));
+  light(7, 1) = -1.0;
+  EXPECT_THAT(ArrayPair(light, gates).refusal(camera), HasSubstr("light.npy[7, 1]: found -1"));
+}
+
 TEST(LoadCode, SaysWhatANameCouldHaveMeant) {
   const Camera camera = built_in_camera("paper-10f0");
   EXPECT_EQ(io_error_of([&] { load_code("hamiltonain-k4", camera); }),

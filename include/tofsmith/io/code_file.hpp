@@ -72,6 +72,15 @@ struct CodeFileOptions {
 /// @throws IoError as parse_code_json() and parse_code_npz(), or if the file cannot be read
 CodeSet read_code(const std::filesystem::path& path, const TapLayout& layout = {});
 
+/// A code of exposures from the arrays of others: light (N, K), or one for all exposures (N), and
+/// gates (N, K), in this order or with time along the second axis, and of any scale: the brightest
+/// light gets a mean of 1, and gates above 1 are divided by the largest. Columns as in
+/// parse_code_npz().
+/// @param light, gates  .npy files; the stem of `gates` becomes the code's name
+/// @throws IoError as parse_code_npz(), or if all light is zero
+CodeSet read_code_arrays(const std::filesystem::path& light, const std::filesystem::path& gates,
+                         const TapLayout& layout = {});
+
 /// Writes a code by extension: .json or .npz. `order` is for .npz.
 /// @throws IoError as AtomicFile, std::invalid_argument as code_to_json(), serialize_code_npz()
 void write_code(const std::filesystem::path& path, const CodeSet& code, OutputPolicy policy,
@@ -92,9 +101,9 @@ CodeSet read_rows(const std::filesystem::path& archive);
 std::vector<AtlasEntry> read_atlas(const std::filesystem::path& path);
 
 /// A built-in family, built for the camera; a code of the built-in atlas, on the camera's samples;
-/// or a code from a file as it is there. A camera that reads rows takes an .npz file as rows;
-/// LIGHT.npy,ROWS.npy are rows on any. A camera of a mixer takes the demodulations of .npz and .csv
-/// files as weights in [-1, 1].
+/// or a code from a file as it is there. A camera that reads rows takes an .npz file, and the pair
+/// LIGHT.npy,ROWS.npy, as rows; others take LIGHT.npy,GATES.npy as exposures. A camera of a mixer
+/// takes the demodulations of .npz, .npy and .csv files as weights in [-1, 1].
 /// @throws IoError as read_code(), or if `name_or_path` is neither;
 ///         std::invalid_argument for a family that the camera cannot play
 CodeSet load_code(const std::string& name_or_path, const Camera& camera,

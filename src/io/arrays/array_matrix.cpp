@@ -36,12 +36,7 @@ Eigen::MatrixXd correlation_matrix_of(const std::filesystem::path& path) {
   if (extension == ".npz")
     return matrix_of(NpzReader(path).read("corrfs"), path.string() + ": corrfs");
   if (extension != ".npy") return read_csv(path).values;
-  NpyArray array = read_npy(path);
-  if (array.axes() == 1) {
-    const std::vector<double> column = array.to_doubles();
-    array = NpyArray::of<double>({column.size(), 1}, column);
-  }
-  return matrix_of(array, path.string());
+  return columns_of(read_npy(path), path.string());
 }
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -60,6 +55,14 @@ Eigen::MatrixXd matrix_of(const NpyArray& array, std::string_view place) {
         throw IoError(fmt::format("{}[{}, {}]", place, n, i),
                       fmt::format("found {}; expected a finite number", matrix(n, i)));
   return matrix;
+}
+
+Eigen::MatrixXd columns_of(NpyArray array, std::string_view place) {
+  if (array.axes() == 1) {
+    const std::vector<double> column = array.to_doubles();
+    array = NpyArray::of<double>({column.size(), 1}, column);
+  }
+  return matrix_of(array, place);
 }
 
 NpyArray array_of(const Eigen::MatrixXd& matrix) {

@@ -75,6 +75,9 @@ Waveform waveform_of(const Eigen::VectorXd& samples) {
 
 constexpr std::string_view modulation_rule = "power over average power, >= 0";
 constexpr std::string_view demodulation_rule = "a gain in [0, 1]";
+constexpr std::string_view gate_rule =
+    "a gain in [0, 1]; weights of both signs need a camera with sensor.readout = \"rows\" or "
+    "sensor.demodulation = \"signed\"";
 constexpr std::string_view weight_rule = "a weight in [-1, 1]";
 
 /// Demodulations, column by column: gains, or the weights of a mixer.
@@ -99,6 +102,14 @@ CodeSet created(std::string_view file, Eigen::Index samples, int taps,
   }
 }
 
+/// A matrix of an array file, time along the longer of its axes, which is made that of the rows.
+NamedMatrix read_columns(const std::filesystem::path& path) {
+  const std::string place = path.string();
+  NamedMatrix matrix{place, columns_of(read_npy(path), place)};
+  if (matrix.values.cols() > matrix.values.rows()) matrix.values.transposeInPlace();
+  return matrix;
+}
+
 /// All taps of an exposure see the same light.
 void require_same_light(const NamedMatrix& modulation, Eigen::Index column, Eigen::Index first) {
   for (Eigen::Index n = 0; n < modulation.values.rows(); ++n) {
@@ -108,6 +119,35 @@ void require_same_light(const NamedMatrix& modulation, Eigen::Index column, Eige
                   fmt::format("found {}; expected {} as in column {}, a tap of the same exposure",
                               value, expected, first));
   }
+}
+
+/// The code of (N, K) light and demodulations, called like `file`.
+CodeSet code_of_columns(std::string_view file, NamedMatrix modulation, NamedMatrix demodulation,
+                        const TapLayout& layout) {
+  limit(modulation, 0.0, std::numeric_limits<double>::infinity(), modulation_rule);
+  if (layout.is_signed)
+    limit(demodulation, -1.0, 1.0, weight_rule);
+  else
+    limit(demodulation, 0.0, 1.0, demodulation_rule);
+
+  const int exposures = exposures_of(modulation.values.cols(), layout, file);
+  std::vector<Waveform> light, gains;
+  if (layout.is_signed) {  // a column of each for every exposure
+    for (Eigen::Index e = 0; e < modulation.values.cols(); ++e)
+      light.push_back(waveform_of(modulation.values.col(e)));
+    return created(file, modulation.values.rows(), 1, std::move(light),
+                   {{}, std::move(demodulation.values)});
+  }
+  for (int e = 0; e < exposures; ++e) {
+    const Eigen::Index first = column_of(e, 0, exposures, layout.taps, layout.order);
+    light.push_back(waveform_of(modulation.values.col(first)));
+    for (int t = 0; t < layout.taps; ++t) {
+      const Eigen::Index column = column_of(e, t, exposures, layout.taps, layout.order);
+      require_same_light(modulation, column, first);
+      gains.push_back(waveform_of(demodulation.values.col(column)));
+    }
+  }
+  return created(file, modulation.values.rows(), layout.taps, std::move(light), {std::move(gains)});
 }
 
 }  // namespace
@@ -178,30 +218,23 @@ CodeSet parse_code_npz(std::span<const std::byte> content, std::string_view file
   require_same_shape(demodulation, modulation);
   if (reader.contains("corrfs"))
     require_same_shape(read_matrix(reader, file, "corrfs"), modulation);
-  limit(modulation, 0.0, std::numeric_limits<double>::infinity(), modulation_rule);
-  if (layout.is_signed)
-    limit(demodulation, -1.0, 1.0, weight_rule);
-  else
-    limit(demodulation, 0.0, 1.0, demodulation_rule);
+  return code_of_columns(file, std::move(modulation), std::move(demodulation), layout);
+}
 
-  const int exposures = exposures_of(modulation.values.cols(), layout, file);
-  std::vector<Waveform> light, gains;
-  if (layout.is_signed) {  // a column of each for every exposure
-    for (Eigen::Index e = 0; e < modulation.values.cols(); ++e)
-      light.push_back(waveform_of(modulation.values.col(e)));
-    return created(file, modulation.values.rows(), 1, std::move(light),
-                   {{}, std::move(demodulation.values)});
-  }
-  for (int e = 0; e < exposures; ++e) {
-    const Eigen::Index first = column_of(e, 0, exposures, layout.taps, layout.order);
-    light.push_back(waveform_of(modulation.values.col(first)));
-    for (int t = 0; t < layout.taps; ++t) {
-      const Eigen::Index column = column_of(e, t, exposures, layout.taps, layout.order);
-      require_same_light(modulation, column, first);
-      gains.push_back(waveform_of(demodulation.values.col(column)));
-    }
-  }
-  return created(file, modulation.values.rows(), layout.taps, std::move(light), {std::move(gains)});
+CodeSet read_code_arrays(const std::filesystem::path& light, const std::filesystem::path& gates,
+                         const TapLayout& layout) {
+  NamedMatrix modulation = read_columns(light), demodulation = read_columns(gates);
+  if (modulation.values.cols() == 1)
+    modulation.values = modulation.values.replicate(1, demodulation.values.cols()).eval();
+  require_same_shape(demodulation, modulation);
+  limit(modulation, 0.0, std::numeric_limits<double>::infinity(), modulation_rule);
+  const double brightest = modulation.values.colwise().mean().maxCoeff();
+  if (brightest == 0.0) throw IoError(modulation.place, "found nothing but zeros; expected light");
+  modulation.values /= brightest;
+  const double most = demodulation.values.cwiseAbs().maxCoeff();
+  if (most > 1.0) demodulation.values /= most;
+  if (!layout.is_signed) limit(demodulation, 0.0, 1.0, gate_rule);
+  return code_of_columns(gates.string(), std::move(modulation), std::move(demodulation), layout);
 }
 
 std::vector<std::byte> serialize_code_npz(const CodeSet& code, std::optional<TapOrder> order) {

@@ -17,15 +17,6 @@ namespace {
 constexpr double noise_share = 1e-9;
 constexpr Eigen::Index max_time_bins = 65536;  // as a camera's samples
 
-/// Two axes, of which a missing one has length 1.
-Eigen::MatrixXd columns_of(NpyArray array, const std::string& place) {
-  if (array.axes() == 1) {
-    const std::vector<double> column = array.to_doubles();
-    array = NpyArray::of<double>({column.size(), 1}, column);
-  }
-  return matrix_of(array, place);
-}
-
 /// One light for all rows from (N), (N, 1), (1, N) or columns that are all the same.
 Eigen::VectorXd light_of(Eigen::MatrixXd light, const std::string& place) {
   if (light.rows() == 1) light.transposeInPlace();

@@ -60,19 +60,22 @@ CodeSet load_code(const std::string& name_or_path, const Camera& camera,
   if (is_family(name_or_path)) return build_family(name_or_path, camera);
   if (const AtlasEntry* entry = find_atlas_entry(name_or_path))
     return entry->code.resampled(camera.samples);
+  const TapLayout layout{options.taps.value_or(camera.sensor.taps), options.tap_order,
+                         camera.sensor.is_signed()};
+  const bool reads_rows = camera.sensor.readout == Readout::rows;
   constexpr std::string_view between = ".npy,";
-  if (const std::size_t at = name_or_path.find(between); at != std::string::npos)
-    return read_rows(name_or_path.substr(0, at + between.size() - 1),
-                     name_or_path.substr(at + between.size()));
+  if (const std::size_t at = name_or_path.find(between); at != std::string::npos) {
+    const std::string light = name_or_path.substr(0, at + between.size() - 1);
+    const std::string gates = name_or_path.substr(at + between.size());
+    return reads_rows ? read_rows(light, gates) : read_code_arrays(light, gates, layout);
+  }
   std::error_code ignored;
   if (!std::filesystem::exists(name_or_path, ignored))
     throw IoError(name_or_path, fmt::format("there is no such file and no built-in family of that "
                                             "name{}",
                                             near_family(name_or_path)));
-  if (camera.sensor.readout == Readout::rows && lower_extension(name_or_path) == ".npz")
-    return read_rows(name_or_path);
-  return read_code(name_or_path, {options.taps.value_or(camera.sensor.taps), options.tap_order,
-                                  camera.sensor.is_signed()});
+  if (reads_rows && lower_extension(name_or_path) == ".npz") return read_rows(name_or_path);
+  return read_code(name_or_path, layout);
 }
 
 TapOrder parse_tap_order(std::string_view word) { return tap_order_words.parse(word); }

@@ -43,6 +43,8 @@ Eigen::MatrixXd correlation_matrix_of(const std::filesystem::path& path);
 /// @param place  what errors call it, such as "code.npz: modfs"
 /// @throws IoError if it has another number of axes, an empty one, or a value that is not finite
 Eigen::MatrixXd matrix_of(const NpyArray& array, std::string_view place);
+/// The same of one or two axes; a single one is a column.
+Eigen::MatrixXd columns_of(NpyArray array, std::string_view place);
 
 /// The matrix as a float64 array of shape (rows, columns).
 NpyArray array_of(const Eigen::MatrixXd& matrix);
