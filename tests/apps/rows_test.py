@@ -67,7 +67,7 @@ class Rows(CommandLineTest):
         self.refuse(["evaluate", "dark.npy,weights.npy", "--camera", "rows.toml"],
                     "dark.npy[0, 0]", "expected light")
         self.refuse(["evaluate", "light.npy,weights.npy", "--camera", "paper-10f0"],
-                    "needs a camera with sensor.readout")
+                    "weights.npy[6, 2]", "need a camera with sensor.readout")
 
 
 if __name__ == "__main__":
