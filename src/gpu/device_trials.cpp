@@ -199,6 +199,7 @@ void TrialDevice::run(const TrialRun& run) {
       if (count <= min_part_trials) throw;
       tile_.release();
       true_bins_ = DeviceMemory();
+      open_ = DeviceMemory();
       part_trials_ = std::max(count / 2, min_part_trials);
     }
   }

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "device_setup.hpp"
+#include "each_target.hpp"
 #include "rows_setup.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -195,6 +196,27 @@ TEST_F(DeviceTrialsOf, HaveTheBitsOfTheProcessor) {
       EXPECT_LT(there->decoded_here(), count / 50);
     }
   }
+}
+
+TEST_F(DeviceTrialsOf, HaveTheBitsOfEveryInstructionSet) {
+  if (!device().info().has_doubles) GTEST_SKIP() << "the device has no doubles";
+  std::vector<TrialSetup> setups = measured_setups();
+  setups.push_back(linear_setups().front());
+  setups.push_back(row_setups().front());
+  for_each_target([&] {
+    for (const TrialSetup& setup : setups) {
+      const DepthTrials trials(ForwardModel(setup.built(), setup.camera), setup.camera,
+                               setup.options);
+      const auto there = std::make_unique<TrialDevice>(device(), trials, DeviceOptions());
+      for_both(setup, trials, *there, 500, [&](double found, double expected) {
+        if (device().info().divides_as_processor) {
+          EXPECT_EQ(found, expected);
+        } else {
+          EXPECT_NEAR(found, expected, 1e-6);
+        }
+      });
+    }
+  });
 }
 
 TEST_F(DeviceTrialsOf, AreTheSameHoweverManyTheProcessorDraws) {
