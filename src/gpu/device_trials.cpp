@@ -27,7 +27,7 @@ std::string options_of_trials(const DepthTrials& trials) {
 int flag(bool is_so) { return is_so ? 1 : 0; }
 
 /// What is the same at all points.
-TrialParameters parameters_of(const DepthTrials& trials, TableWords& tables) {
+TrialParameters trial_parameters_of(const DepthTrials& trials, TableWords& tables) {
   const TrialModel& model = trials.model();
   const TapConversion& sensor = model.conversion();
   const EvaluateOptions& asked = trials.options();
@@ -108,7 +108,7 @@ TrialDevice::TrialDevice(const Device& device, const DepthTrials& trials,
                      min_part_trials, max_part_trials)) {
   std::vector<std::uint32_t> words;
   TableWords tables(words);
-  const TrialParameters all = parameters_of(trials, tables);
+  const TrialParameters all = trial_parameters_of(trials, tables);
   for (std::size_t point = 0; point < trials.points().size(); ++point)
     add_point(trials, point, tables, of_point_.emplace_back(all));
   const std::size_t bytes = words.size() * sizeof(std::uint32_t);
