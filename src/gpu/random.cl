@@ -3,8 +3,9 @@
 // Random numbers of the processor's words, in doubles. Compiled behind numbers.cl.
 //
 // Words are the same, and so is the arithmetic, each step of which is rounded correctly here and
-// there; vectors there may take two steps in one. Beside that only logarithms, exponentials, sines and cosines may differ in their last bits: by 3 or 4
-// units here (OpenCL 1.2, 7.4) and by 1 there. What hangs on those bits is marked as open.
+// there; vectors there may take two steps in one. Beside that only logarithms, exponentials, sines
+// and cosines may differ in their last bits: by 3 or 4 units here (OpenCL 1.2, 7.4) and by 1 there,
+// of vectors by 4. What hangs on those bits is marked as open.
 
 /// What numbers hang on that are compared or counted.
 struct Doubt {
@@ -81,9 +82,8 @@ double attempted_poisson(struct Doubt* doubt, double mean, uint2 words) {
   if (k < 0.0 || (us < 0.013 && v > us)) return -1.0;
   const double inverse_alpha = 1.1239 + 1.1328 / (b - 3.4);
   const double bound = 4e-15 * (mean + k) + 1e-12;  // terms of that size cancel
-  return is_less(doubt, log_probability(k, mean), log(v * inverse_alpha / (a / (us * us) + b)), bound)
-             ? -1.0
-             : k;
+  const double log_height = log(v * inverse_alpha / (a / (us * us) + b));
+  return is_less(doubt, log_probability(k, mean), log_height, bound) ? -1.0 : k;
 }
 
 /// As inverted_poisson() there.
