@@ -200,8 +200,9 @@ TEST_F(DeviceTrialsOf, HaveTheBitsOfTheProcessor) {
 
 TEST_F(DeviceTrialsOf, HaveTheBitsOfEveryInstructionSet) {
   if (!device().info().has_doubles) GTEST_SKIP() << "the device has no doubles";
-  std::vector<TrialSetup> setups = measured_setups();
-  setups.push_back(linear_setups().front());
+  std::vector<TrialSetup> setups{linear_setups().front()};
+  const std::vector<TrialSetup> measured = measured_setups();
+  for (std::size_t i = 0; i < measured.size(); i += 3) setups.push_back(measured[i]);
   setups.push_back(row_setups().front());
   for_each_target([&] {
     for (const TrialSetup& setup : setups) {
