@@ -356,7 +356,7 @@ class FailingTrials : public FailingDevice {
     EXPECT_NEAR(report.linear.geometric_mean_m.value, kind.expected_m, rounding * kind.expected_m);
   }
 
-  static constexpr EvaluateOptions options{.trials = 5000, .bounds = false};
+  static constexpr EvaluateOptions options{.trials = 2500, .bounds = false};
 };
 
 TEST_F(FailingTrials, AreAnErrorWhereverItFailsAndRunAgainWhenItIsBack) {
