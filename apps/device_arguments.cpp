@@ -80,13 +80,11 @@ void DeviceArguments::add_capture_to(CLI::App& command) {
 
 void DeviceArguments::add_trials_to(CLI::App& command) {
   add_to(command, {"runs the trials", "few trials",
-                   "The same figures but for rounding, of normal noise, zncc and devices that have "
-                   "doubles"});
+                   "The same figures come out, of zncc and devices that have doubles"});
 }
 
-std::optional<DeviceTrials> DeviceArguments::trials(const Camera& camera,
-                                                    const EvaluateOptions& options) const {
-  return made([&] { return device_trials(name_, camera, options); });
+std::optional<DeviceTrials> DeviceArguments::trials(const EvaluateOptions& options) const {
+  return made([&] { return device_trials(name_, options); });
 }
 
 std::optional<DeviceCapture> DeviceArguments::capture() const {

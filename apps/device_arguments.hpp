@@ -52,7 +52,7 @@ class DeviceArguments {
   std::optional<DeviceCapture> capture() const;
   /// What runs trials; none: the processor.
   /// @throws UsageError if a device is named that cannot; IoError as device_for()
-  std::optional<DeviceTrials> trials(const Camera& camera, const EvaluateOptions& options) const;
+  std::optional<DeviceTrials> trials(const EvaluateOptions& options) const;
 
  private:
   /// In its help: what a device does, what `auto` leaves to the processor, and what holds.

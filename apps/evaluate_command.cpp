@@ -265,7 +265,7 @@ void run(EvaluateArguments& arguments, const Session& session) {
   if (arguments.robustness) perturbed.emplace();
   if (!arguments.perturb.empty()) perturbed = parse_perturbations(arguments.perturb);
   if (perturbed) static_cast<void>(perturbations(camera, *perturbed));  // refused before long work
-  const std::optional<DeviceTrials> on_device = arguments.device.trials(camera, arguments.options);
+  const std::optional<DeviceTrials> on_device = arguments.device.trials(arguments.options);
   std::vector<CodeSet> codes;
   for (const std::string& name : arguments.codes)
     codes.push_back(load_camera_code(name, camera, arguments.taps.file_options()));

@@ -270,11 +270,12 @@ class DeviceCapture {
   std::unique_ptr<Plan> plan_;
 };
 
-/// Draws and decodes the Monte Carlo trials of evaluate() on a device that has doubles: trials with
-/// normal noise that ZNCC decodes, drawn in the plane that it looks at. From the same random words,
-/// in single precision as there: positions are those of the processor to 2e-6 of the range, to 2e-5
-/// where noise all but cancels the signal, but where two depths are as likely to the last bits.
-/// Bins that single precision does not prove are the processor's.
+/// Draws and decodes the Monte Carlo trials of evaluate() on a device that has doubles: of all
+/// cameras, by ZNCC. From the same random words by the same steps: trials are those of the
+/// processor, bit by bit, where the device rounds quotients correctly; elsewhere positions differ
+/// in the last bits. Of a trial in which a count hangs on the last bits of a logarithm or an
+/// exponential, the processor draws the noise, and it decodes trials whose bin single precision
+/// does not prove.
 class DeviceTrials {
  public:
   /// @throws std::invalid_argument for options, and if the device has no doubles
@@ -294,8 +295,8 @@ class DeviceTrials {
   std::unique_ptr<Plan> plan_;
 };
 
-/// Why the trials of a camera are the processor's, whatever the code; none: a device runs them.
-std::optional<BrokenRule> why_not_on_device(const Camera& camera, const EvaluateOptions& options);
+/// Why trials are the processor's, whatever the code and the camera; none: a device runs them.
+std::optional<BrokenRule> why_not_on_device(const EvaluateOptions& options);
 
 /// What decodes in place of a decoder on the device that a user names: "cpu", nothing; "auto": the
 /// first GPU, or nothing where there is none or the decoder is no Decoder; else Device::named().
@@ -332,7 +333,6 @@ std::optional<DeviceCapture> device_capture(std::string_view device);
 /// leaves fewer than auto_min_trials_to_evaluate, and what no device runs, to the processor.
 /// @throws InvalidArgument if a device is named that has no doubles, or cannot, as
 ///         why_not_on_device(); IoError if there is no such device, or it fails
-std::optional<DeviceTrials> device_trials(std::string_view device, const Camera& camera,
-                                          const EvaluateOptions& options);
+std::optional<DeviceTrials> device_trials(std::string_view device, const EvaluateOptions& options);
 
 }  // namespace tofsmith

@@ -37,7 +37,7 @@ void bind_simulate(py::module_& module) {
     const std::string device = taken_device(values);
     const EvaluateOptions options = options_of<EvaluateOptions>(values);
     return report_dict(without_gil(callback, [&](const Progress& progress) {
-      const std::optional<DeviceTrials> there = device_trials(device, camera, options);
+      const std::optional<DeviceTrials> there = device_trials(device, options);
       return evaluate(code, camera, options, progress, there ? there->trials_by() : TrialsBy());
     }));
   });

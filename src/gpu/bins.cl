@@ -12,23 +12,35 @@
 #define HALF_BLOCK 8   // rows from one of its windows to the next
 #define TO_WHOLE 12582912.0f  // 1.5 * 2^23, as cell_place-inl.hpp
 
-// ---- The vector of a pixel, as tile_projection.cpp.
+// ---- The vector of a pixel, as tile_projection.cpp, where outputs follow without FUSES_PRODUCTS.
 
 float project(const struct ProjectionParameters* p, int number, Floats tables, const float* raw,
               float* q) {
   const float reference = raw[p->reference];
-  float error = fabs(reference) * p->error_of_reference + p->error_of_offset;
+  float error = product_plus(fabs(reference), p->error_of_reference, p->error_of_offset);
   for (int j = 0; j < RANK; ++j) q[j] = tables[p->offsets + j];
   for (int k = 0; k < MEASUREMENTS; ++k) {
-    const float difference = raw[k] - reference * tables[p->ratios + k];
-    error = fabs(difference) * tables[p->errors_of_difference + k] + error;
+    const float difference = product_plus(-reference, tables[p->ratios + k], raw[k]);
+    error = product_plus(fabs(difference), tables[p->errors_of_difference + k], error);
     for (int j = 0; j < RANK; ++j)
-      q[j] = difference * tables[p->weights + j * MEASUREMENTS + k] + q[j];
+      q[j] = product_plus(difference, tables[p->weights + j * MEASUREMENTS + k], q[j]);
   }
   if (number == raw_rounded)
     for (int k = 0; k < MEASUREMENTS; ++k)
       error += tables[p->errors_of_rounding + k] * fabs(raw[k]);
   return error;
+}
+
+/// Reads the numbers of a pixel, and its vector. @return what that may be off by
+float vector_of(const struct ProjectionParameters* p, const struct TileParameters* tile,
+                Floats tables, global const uchar* raw_numbers, int pixel, float* raw, float* q) {
+  if (tile->number == raw_plane) {
+    for (int k = 0; k < MEASUREMENTS; ++k) raw[k] = 0.0f;
+    for (int j = 0; j < RANK; ++j) raw[j] = q[j] = raw_number(tile, raw_numbers, pixel, j);
+    return 0.0f;
+  }
+  for (int k = 0; k < MEASUREMENTS; ++k) raw[k] = raw_number(tile, raw_numbers, pixel, k);
+  return project(p, tile->number, tables, raw, q);
 }
 
 float largest_of(const float* q) {
@@ -313,14 +325,11 @@ kernel void match(const struct MatchParameters p, const struct TileParameters ti
   const int pixel = (int)get_global_id(0);
   if (pixel >= tile.pixels) return;
   float raw[MEASUREMENTS], q[RANK];
+  const float error = vector_of(&p.projection, &tile, tables, raw_numbers, pixel, raw, q);
   bool is_number = true;
-  for (int k = 0; k < MEASUREMENTS; ++k) {
-    raw[k] = raw_number(&tile, raw_numbers, pixel, k);
-    is_number = is_number && isfinite(raw[k]);
-  }
+  for (int k = 0; k < MEASUREMENTS; ++k) is_number = is_number && isfinite(raw[k]);
   int bin = UNPROVEN, second_peak = UNPROVEN;
   if (!is_number && tile.number != raw_rounded) bin = second_peak = -1;
-  const float error = project(&p.projection, tile.number, tables, raw, q);
   const float largest = largest_of(q);
   if (is_number && largest > 1e-12f && largest < 1e12f) {
     if (p.way == by_arcs) bin = search_arcs(&p, tables, q, error);

@@ -1,8 +1,90 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Captures, as PixelCapture makes them, one item a pixel. Compiled behind random.cl.
+// Captures, as PixelCapture makes them, one item a pixel. Compiled behind random.cl and
+// capture_parameters.h.
 
-typedef global const double* Doubles;
+/// A number and what it may differ by from that of the processor.
+struct Drawn {
+  double value, error;
+};
+
+/// As RandomStream.
+struct Stream {
+  uint4 counter;  ///< block, frame, pixel
+  uint2 key;
+  uint2 kept_words;
+  double kept_normal, kept_error;
+  int has_words, has_normal;
+  struct Doubt doubt;
+};
+
+struct Stream stream_of(const struct CaptureStream* of, int pixel, double margin) {
+  const ulong number = (((ulong)of->first_high << 32) | of->first_low) + (ulong)pixel;
+  struct Stream s;
+  s.counter = (uint4)(0u, of->frame, (uint)number, (uint)(number >> 32));
+  s.key = (uint2)(of->seed_low, of->seed_high);
+  s.kept_words = (uint2)(0u, 0u);
+  s.kept_normal = s.kept_error = 0.0;
+  s.has_words = s.has_normal = s.doubt.is_open = 0;
+  s.doubt.margin = margin;
+  s.doubt.step = 0.0;
+  return s;
+}
+
+/// All that is drawn takes two words.
+uint2 next_words(struct Stream* s) {
+  if (s->has_words) {
+    s->has_words = 0;
+    return s->kept_words;
+  }
+  const uint4 words = philox(s->counter, s->key);
+  s->counter.x += 1u;
+  s->kept_words = words.zw;
+  s->has_words = 1;
+  return words.xy;
+}
+
+/// Standard normal numbers, in pairs: of them the length is off by 3 units of the last bit, the
+/// cosine or sine by 5, and their product is rounded.
+struct Drawn next_normal(struct Stream* s) {
+  struct Drawn normal;
+  if (s->has_normal) {
+    s->has_normal = 0;
+    normal.value = s->kept_normal;
+    normal.error = s->kept_error;
+    return normal;
+  }
+  const double radius = sqrt(-2.0 * log(1.0 - uniform_of(next_words(s))));
+  const double angle = 2.0 * M_PI * uniform_of(next_words(s));
+  s->kept_normal = radius * sin(angle);
+  s->kept_error = 4e-15 * s->doubt.margin * fabs(s->kept_normal);
+  s->has_normal = 1;
+  normal.value = radius * cos(angle);
+  normal.error = 4e-15 * s->doubt.margin * fabs(normal.value);
+  return normal;
+}
+
+/// The number that lies nearest, if all within the bound have the same.
+double whole(struct Stream* s, double value, double bound) {
+  if (round(value - bound) != round(value + bound)) s->doubt.is_open = 1;
+  return round(value);
+}
+
+double next_poisson(struct Stream* s, double mean) {
+  if (!(mean > 0.0)) return 0.0;
+  if (mean > 1e9) {
+    const struct Drawn normal = next_normal(s);
+    const double root = sqrt(mean);
+    return whole(s, mean + root * normal.value,
+                 root * normal.error + 1e-15 * s->doubt.margin * mean);
+  }
+  for (;;) {
+    const uint2 words = next_words(s);
+    if (mean < 10.0) return inverted_poisson(&s->doubt, mean, words);
+    const double k = attempted_poisson(&s->doubt, mean, words);
+    if (k >= 0.0 || s->doubt.is_open) return k;
+  }
+}
 
 /// Light of a pixel before noise.
 struct PixelLight {
@@ -72,7 +154,7 @@ struct Drawn with_noise(struct Stream* s, double number, double deviation) {
   drawn.value = number + noise;
   drawn.error = noise == 0.0 ? 0.0
                              : fabs(deviation) * normal.error +
-                                   1e-15 * s->margin * (fabs(number) + fabs(noise));
+                                   1e-15 * s->doubt.margin * (fabs(number) + fabs(noise));
   return drawn;
 }
 
@@ -96,22 +178,15 @@ struct Drawn draw_count(const struct CaptureParameters* p, struct Stream* s, dou
   return count;
 }
 
-/// As PixelNoise::draw_difference(), and SignedElectrons::of() in it.
+/// As PixelNoise::draw_difference().
 struct Drawn draw_difference(const struct CaptureParameters* p, struct Stream* s, double a,
                              double b) {
   const double mean = a - b, variance = a + b < 0.0 ? 0.0 : a + b;
   if (p->is_gaussian)
     return with_noise(s, mean, sqrt(variance + p->read_noise_e * p->read_noise_e));
-  double plus = 0.5 * (variance + mean), minus = 0.5 * (variance - mean), size = 1.0;
-  if (!(fabs(mean) <= variance)) {
-    size = variance / fabs(mean);
-    plus = size < 1e-12 ? 0.0 : (mean < 0.0 ? 0.0 : mean) / size;
-    minus = size < 1e-12 ? 0.0 : (-mean < 0.0 ? 0.0 : -mean) / size;
-    if (size < 1e-12) size = 0.0;
-  }
-  const double drawn_plus = next_poisson(s, plus);
-  const double drawn_minus = next_poisson(s, minus);
-  return with_noise(s, size * (drawn_plus - drawn_minus), p->read_noise_e);
+  const struct SignedElectrons e = signed_electrons(mean, variance);
+  const double plus = next_poisson(s, e.plus), minus = next_poisson(s, e.minus);
+  return with_noise(s, e.size * (plus - minus), p->read_noise_e);
 }
 
 /// As PixelNoise::convert(), which does not fall.
@@ -138,7 +213,7 @@ struct Number converted(const struct CaptureParameters* p, struct Drawn e) {
 
 /// The float that it is; open where it may be another.
 float rounded(struct Stream* s, struct Number number) {
-  if (!((float)number.least == (float)number.most)) s->is_open = 1;
+  if (!((float)number.least == (float)number.most)) s->doubt.is_open = 1;
   return (float)number.value;
 }
 
@@ -153,7 +228,7 @@ void expose_rows(const struct CaptureParameters* p, const struct PixelLight* lig
         draw_count(p, s, expected(p, light, chi, exposure_s, ambient_gain, n));
     for (int k = 0; k < p->measurements; ++k)
       sums[k] += rows[(size_t)n * (size_t)p->measurements + (size_t)k] * count.value;
-    error += count.error + 2.3e-16 * s->margin * (double)p->taps * fabs(count.value);
+    error += count.error + 2.3e-16 * s->doubt.margin * (double)p->taps * fabs(count.value);
   }
   for (int k = 0; k < p->measurements; ++k) {
     struct Drawn read = with_noise(s, sums[k], p->read_noise_e);
@@ -206,5 +281,5 @@ kernel void capture(const struct CaptureParameters parameters, const struct Capt
       raw[first + (size_t)k] = rounded(&s, number);
     }
   }
-  if (s.is_open) open[atomic_inc(opened)] = pixel;
+  if (s.doubt.is_open) open[atomic_inc(opened)] = pixel;
 }

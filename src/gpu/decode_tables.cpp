@@ -187,7 +187,7 @@ std::string options_of(const RecordLayout& layout, bool has_doubles) {
 
 }  // namespace
 
-DecodeTables::DecodeTables(const Decoder& decoder, bool has_doubles) {
+DecodeTables::DecodeTables(const Decoder& decoder, bool has_doubles, bool fuses) {
   const auto [matcher, kernel] = parts_of(decoder);
   Words words_at(words);
   is_coarse = matcher.is_coarse();
@@ -200,6 +200,7 @@ DecodeTables::DecodeTables(const Decoder& decoder, bool has_doubles) {
   outputs = parameters_of(decoder, kernel, matcher.bins().exact().scale(), has_doubles, words_at);
   outputs.projection = points.projection;
   options = options_of(kernel.records().layout, has_doubles);
+  if (fuses) options += " -D FUSES_PRODUCTS";
 }
 
 }  // namespace tofsmith

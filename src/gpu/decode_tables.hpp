@@ -18,7 +18,8 @@ extern const std::string_view decode_kernels;
 /// All that a decoder decides by, as a device reads it.
 struct DecodeTables {
   /// @param has_doubles  whether the device computes with them
-  DecodeTables(const Decoder& decoder, bool has_doubles);
+  /// @param fuses        whether vectors are found by product_plus() in one step
+  DecodeTables(const Decoder& decoder, bool has_doubles, bool fuses);
 
   MatchParameters points;  ///< beside which the planes' best points on the chords lie
   MatchParameters bins;    ///< of a coarse table; else as `points`

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "gpu/device_raw.hpp"
-#include "tofsmith/core/error.hpp"
+#include "gpu/doubles.hpp"
 
 namespace tofsmith {
 
@@ -20,9 +20,7 @@ std::uint32_t high_half(std::uint64_t number) { return static_cast<std::uint32_t
 }  // namespace
 
 DeviceCapture::Plan::Plan(const Device& device_, const DeviceOptions& options_)
-    : device((require(device_.info().has_doubles, "device", device_.info().name,
-                      "must have doubles for captures"),
-              device_)),
+    : device(with_doubles(device_, "captures")),
       options(options_),
       queue_(device),
       capture_(queue_.kernel(capture_kernels, "-DHAS_DOUBLES", "capture")) {}
@@ -34,18 +32,18 @@ DeviceMemory* DeviceCapture::Plan::bring(DeviceMemory& memory, const void* from,
   return there;
 }
 
-void DeviceCapture::Plan::bring_tables(const CaptureParts& parts) {
+void DeviceCapture::Plan::bring_tables(const PixelCapture& pixel) {
   const auto bring_all = [&](DeviceMemory& memory, const auto& values) {
     bring(memory, values.data(), static_cast<std::size_t>(values.size()) * sizeof(double));
   };
-  bring_all(chi_, parts.correlation.table());
-  bring_all(exposure_, parts.exposure_s);
-  bring_all(ambient_gain_, parts.ambient_gain);
-  if (parts.rows) bring_all(rows_, *parts.rows);  // (K, N), column by column
+  bring_all(chi_, pixel.correlation().table());
+  bring_all(exposure_, pixel.exposure_s());
+  bring_all(ambient_gain_, pixel.ambient_gain());
+  if (pixel.rows()) bring_all(rows_, *pixel.rows());  // (K, N), column by column
 }
 
-void DeviceCapture::Plan::set_parameters(const UnexposedFrames& frames, const CaptureParts& parts) {
-  const NoiseParts& noise = parts.noise;
+void DeviceCapture::Plan::set_parameters(const UnexposedFrames& frames, const PixelCapture& pixel) {
+  const NoiseParts& noise = pixel.noise();
   const auto flag = [](bool is_so) { return is_so ? 1 : 0; };
   const CaptureOptions& light = frames.source.options();
   const bool has_ambient =
@@ -53,10 +51,10 @@ void DeviceCapture::Plan::set_parameters(const UnexposedFrames& frames, const Ca
   parameters_ = {.signal_e_per_s = light.signal_e_per_s,
                  .ambient_e_per_s = light.ambient_e_per_s,
                  .reference_distance_m = light.reference_distance_m,
-                 .range_m = parts.range_m,
-                 .bin_m = parts.bin_m,
-                 .dark_e_per_s = parts.dark_e_per_s,
-                 .points_per_bin = parts.correlation.points_per_bin(),
+                 .range_m = pixel.range_m(),
+                 .bin_m = pixel.bin_m(),
+                 .dark_e_per_s = pixel.dark_e_per_s(),
+                 .points_per_bin = pixel.correlation().points_per_bin(),
                  .read_noise_e = noise.read_noise_e,
                  .full_well_e = noise.full_well_e,
                  .gain_e_per_dn = noise.gain_e_per_dn,
@@ -64,8 +62,8 @@ void DeviceCapture::Plan::set_parameters(const UnexposedFrames& frames, const Ca
                  .min_dn = noise.min_dn,
                  .max_dn = noise.max_dn,
                  .margin = margin,
-                 .points = parts.correlation.points(),
-                 .taps = parts.correlation.tap_values(),
+                 .points = pixel.correlation().points(),
+                 .taps = pixel.correlation().tap_values(),
                  .measurements = frames.source.measurements(),
                  .is_collected = flag(frames.light != nullptr),
                  .has_ambient = flag(has_ambient),
@@ -74,7 +72,7 @@ void DeviceCapture::Plan::set_parameters(const UnexposedFrames& frames, const Ca
                  .subtracts = flag(noise.subtracts),
                  .is_signed = flag(noise.is_signed),
                  .has_adc = flag(noise.has_adc),
-                 .has_rows = flag(parts.rows.has_value())};
+                 .has_rows = flag(pixel.rows().has_value())};
 }
 
 void DeviceCapture::Plan::bring_light(const UnexposedFrames& frames, const Part& part) {
@@ -162,8 +160,8 @@ std::int64_t DeviceCapture::Plan::expose(const UnexposedFrames& frames, const Pr
     return pixels * frames.frames;
   }
   const std::lock_guard lock(mutex_);
-  const CaptureParts parts(frames.source.pixel());
-  set_parameters(frames, parts);
+  const PixelCapture& pixel = frames.source.pixel();
+  set_parameters(frames, pixel);
   const auto each = static_cast<double>(bytes_per_pixel(frames));
   const auto most = static_cast<double>(
       std::min(max_part_pixels, std::int64_t{std::numeric_limits<int>::max()} /
@@ -177,7 +175,7 @@ std::int64_t DeviceCapture::Plan::expose(const UnexposedFrames& frames, const Pr
     part.count = std::min(pixels - part.first, at_a_time);
     try {
       std::int64_t here = 0;
-      if (!has_tables) bring_tables(parts);
+      if (!has_tables) bring_tables(pixel);
       has_tables = true;
       bring_light(frames, part);
       for (int frame = 0; frame < frames.frames; ++frame) {
@@ -218,8 +216,8 @@ ExposeBy DeviceCapture::expose_by() const {
 std::optional<DeviceCapture> device_capture(std::string_view device) {
   if (device == "cpu") return std::nullopt;
   if (device != "auto") return std::optional<DeviceCapture>(std::in_place, Device::named(device));
-  const std::optional<Device> gpu = Device::first_gpu();
-  if (!gpu || !gpu->info().has_doubles) return std::nullopt;
+  const std::optional<Device> gpu = gpu_with_doubles();
+  if (!gpu) return std::nullopt;
   const DeviceOptions options{.min_pixels = auto_min_pixels_to_capture};
   return std::optional<DeviceCapture>(std::in_place, *gpu, options);
 }

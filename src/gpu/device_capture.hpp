@@ -12,7 +12,7 @@
 
 namespace tofsmith {
 
-/// decode_parameters.h, numbers.cl, capture_parameters.h, random.cl and capture.cl, one behind the
+/// decode_parameters.h, numbers.cl, random.cl, capture_parameters.h and capture.cl, one behind the
 /// other.
 extern const std::string_view capture_kernels;
 
@@ -31,8 +31,8 @@ struct DeviceCapture::Plan {
   struct Part {
     std::int64_t first = 0, count = 0;
   };
-  void set_parameters(const UnexposedFrames& frames, const CaptureParts& parts);
-  void bring_tables(const CaptureParts& parts);
+  void set_parameters(const UnexposedFrames& frames, const PixelCapture& pixel);
+  void bring_tables(const PixelCapture& pixel);
   void bring_light(const UnexposedFrames& frames, const Part& part);
   std::int64_t expose_part(const UnexposedFrames& frames, int frame, const Part& part);
   std::int64_t bytes_per_pixel(const UnexposedFrames& frames) const;

@@ -31,7 +31,7 @@ void DeviceMeans::add(const RawView& raw) {
 void DeviceMeans::finish(double averaged) {
   frames_of_mean_ = frames_;
   frames_ = 0;
-  result_.reserve_planes(queue_, pixels_, measurements_, true);
+  result_.reserve_planes(queue_, pixels_, measurements_, raw_rounded);
   queue_.run(write_means_, pixels_, pixels_, measurements_, frames_of_mean_, clipped_,
              static_cast<float>(averaged * frames_of_mean_), &sums_, result_.numbers(),
              result_.averaged());

@@ -88,7 +88,7 @@ void DeviceRaw::upload_exactly(const DeviceQueue& queue, const RawView& view) {
 
 void DeviceRaw::copy(const DeviceQueue& queue, const DeviceRaw& frame, int measurements,
                      std::int64_t first, std::int64_t count) {
-  reserve_planes(queue, count, measurements, frame.tile_.number == raw_rounded);
+  reserve_planes(queue, count, measurements, static_cast<RawNumber>(frame.tile_.number));
   const std::size_t bytes = static_cast<std::size_t>(count) * sizeof(float),
                     from = static_cast<std::size_t>(first) * sizeof(float),
                     plane = static_cast<std::size_t>(frame.tile_.pixels) * sizeof(float);
@@ -98,11 +98,11 @@ void DeviceRaw::copy(const DeviceQueue& queue, const DeviceRaw& frame, int measu
 }
 
 void DeviceRaw::reserve_planes(const DeviceQueue& queue, std::int64_t pixels, int measurements,
-                               bool are_rounded) {
+                               RawNumber number) {
   tile_ = {.pixels = static_cast<int>(pixels),
            .pixel_stride = 1,
            .measurement_stride = static_cast<int>(pixels),
-           .number = are_rounded ? raw_rounded : raw_float};
+           .number = number};
   has_averaged_ = true;
   const std::int64_t bytes = pixels * std::int64_t{sizeof(float)};
   reserve(queue, numbers_, bytes * measurements);

@@ -26,9 +26,9 @@ class DeviceRaw {
             std::int64_t count);
   /// Makes room for floats, measurement after measurement, that a kernel writes; all of them are
   /// means.
-  /// @param are_rounded  they were doubles
+  /// @param number  what they are: raw_float, raw_rounded or raw_plane
   void reserve_planes(const DeviceQueue& queue, std::int64_t pixels, int measurements,
-                      bool are_rounded = false);
+                      RawNumber number = raw_float);
   void release();
 
   std::int64_t pixels() const { return tile_.pixels; }

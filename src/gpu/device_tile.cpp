@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "decode/filter/shared/filter_parts.hpp"
+
 namespace tofsmith {
 
 OpenNumbers::OpenNumbers(std::vector<float> numbers, int measurements)
@@ -22,12 +24,14 @@ RawView OpenNumbers::view() const {
   return view;
 }
 
-DeviceTile::DeviceTile(const Device& device, const Decoder& decoder, bool use_doubles)
+DeviceTile::DeviceTile(const Device& device, const Decoder& decoder, bool use_doubles,
+                       bool as_trials)
     : outputs_(parts_of(decoder).outputs),
-      tables_(decoder, use_doubles && device.info().has_doubles),
+      tables_(decoder, use_doubles && device.info().has_doubles, as_trials && fuses_products()),
       queue_(device),
       match_(queue_.kernel(decode_kernels, tables_.options, "match")),
       write_(queue_.kernel(decode_kernels, tables_.options, "write_planes")),
+      write_offsets_(queue_.kernel(decode_kernels, tables_.options, "write_offsets")),
       gather_(queue_.kernel(decode_kernels, tables_.options, "gather_numbers")),
       scatter_(queue_.kernel(decode_kernels, tables_.options, "scatter_values")),
       words_(queue_.allocate(tables_.words.size() * sizeof(std::uint32_t))),
@@ -40,8 +44,8 @@ std::int64_t DeviceTile::bytes_per_pixel() const {
   return 4 * (outputs_.records().layout.measurements + words);
 }
 
-const DeviceRaw& DeviceTile::reserve_planes(std::int64_t pixels) {
-  raw_.reserve_planes(queue_, pixels, outputs_.records().layout.measurements);
+const DeviceRaw& DeviceTile::reserve_planes(std::int64_t pixels, RawNumber number) {
+  raw_.reserve_planes(queue_, pixels, outputs_.records().layout.measurements, number);
   return raw_;
 }
 
@@ -51,11 +55,15 @@ void DeviceTile::find_bins(const MatchParameters& parameters, const DeviceMemory
              second_peaks ? 1 : 0, &bins, second_peaks, &opened_, &open_);
 }
 
-void DeviceTile::decode(const DecodedView& wanted) {
-  const std::int64_t of_words = raw_.tile().pixels * std::int64_t{sizeof(std::int32_t)};
+void DeviceTile::start_list_of_open() {
   constexpr std::int32_t none = 0;
   queue_.upload(&none, sizeof none, opened_);
-  room(open_, 2 * of_words);
+  room(open_, 2 * raw_.tile().pixels * std::int64_t{sizeof(std::int32_t)});
+}
+
+void DeviceTile::decode(const DecodedView& wanted) {
+  const std::int64_t of_words = raw_.tile().pixels * std::int64_t{sizeof(std::int32_t)};
+  start_list_of_open();
   if (wanted.bin && (wanted.wants_bins_only() || tables_.is_coarse))
     find_bins(tables_.bins, *room(best_bins_, of_words), nullptr);
   if (wanted.wants_bins_only()) return;
@@ -87,6 +95,30 @@ void DeviceTile::fetch(const DecodedView& to) const {
   fetch_plane(confidence_, to.confidence);
   fetch_plane(deviation_, to.predicted_standard_deviation_m);
   fetch_plane(status_, to.status);
+}
+
+void DeviceTile::find_positions(bool between_bins, double* depth_bin) {
+  const std::int64_t pixels = raw_.tile().pixels;
+  const auto count = static_cast<std::size_t>(pixels);
+  const double samples = outputs_.constants().samples;
+  start_list_of_open();
+  find_bins(between_bins ? tables_.points : tables_.bins,
+            *room(bins_, pixels * std::int64_t{sizeof(std::int32_t)}), nullptr);
+  offsets_here_.assign(count, 0.0f);
+  if (between_bins) {
+    room(depth_, pixels * std::int64_t{sizeof(float)});
+    queue_.run(write_offsets_, pixels, tables_.outputs, raw_.tile(), &words_, raw_.numbers(),
+               &bins_, &depth_);
+    queue_.download(depth_, count * sizeof(float), offsets_here_.data());
+  }
+  bins_here_.resize(count);
+  queue_.download(bins_, count * sizeof(std::int32_t), bins_here_.data());
+  for (std::size_t i = 0; i < count; ++i) {
+    double at = static_cast<double>(bins_here_[i]) + static_cast<double>(offsets_here_[i]);
+    if (at < 0.0) at += samples;
+    if (at >= samples) at -= samples;
+    depth_bin[i] = bins_here_[i] < 0 ? -1.0 : at;
+  }
 }
 
 void DeviceTile::release() {

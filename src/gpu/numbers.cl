@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
 // What all kernels begin with. Compiled behind decode_parameters.h, with MEASUREMENTS (K) and RANK.
-// Products and sums are rounded one by one, as on the processor, so that numbers are the same.
+// Products and sums are rounded one by one, as on the processor, so that numbers are the same; with
+// FUSES_PRODUCTS those of product_plus() in one step, where this computer's processor has one.
 #pragma OPENCL FP_CONTRACT OFF
 #ifdef HAS_DOUBLES
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
@@ -9,8 +10,20 @@
 
 typedef global const float* Floats;
 typedef global const int* Ints;
+#ifdef HAS_DOUBLES
+typedef global const double* Doubles;
+#endif
 
 Ints ints_at(Floats tables, int at) { return (Ints)(tables + at); }
+
+/// a b + c, rounded as vectors of the processor do.
+float product_plus(float a, float b, float c) {
+#ifdef FUSES_PRODUCTS
+  return fma(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
 
 float raw_number(const struct TileParameters* tile, global const uchar* raw, int pixel, int k) {
   const size_t at =

@@ -70,6 +70,46 @@ float confidence_of(const struct OutputParameters* p, Floats tables, const float
   return logistic(fmin(product * square / (variance * share), p->sure_log_odds));
 }
 
+/// Best point on the chords left and right of a bin.
+struct ChordPoint {
+  bool has_depth, is_left;
+  float t;       ///< share of the chord from the bin on
+  float inside;  ///< signal, if there is depth
+};
+
+struct ChordPoint best_point(const float* q, Floats record, int bin) {
+  const float at_bin = along_record(q, record + RECORD_POINT);
+  const float to_left = along_record(q, record + RECORD_LEFT);
+  const float to_right = along_record(q, record + RECORD_RIGHT);
+  const float turn_left = record[RECORD_TURN], turn_right = record[RECORD_TURN + 1];
+  const float reach_left = record[RECORD_REACH], reach_right = record[RECORD_REACH + 1];
+  const bool left_is_on = to_left > 0.0f && !(to_left * (reach_left + turn_left) > at_bin);
+  const bool right_is_on = to_right > 0.0f && !(to_right * (reach_right + turn_right) > at_bin);
+  struct ChordPoint point;
+  point.is_left = left_is_on == right_is_on ? to_left >= to_right : left_is_on;
+  const float rise = fmax(point.is_left ? to_left : to_right, 0.0f);
+  point.inside = at_bin - rise * (point.is_left ? turn_left : turn_right);
+  point.has_depth = bin >= 0 && at_bin > 0.0f && point.inside > 0.0f;
+  const float reach = point.is_left ? reach_left : reach_right;
+  point.t = point.has_depth ? fmin(rise * reach / point.inside, 1.0f) : 0.0f;
+  return point;
+}
+
+/// How far from its bin each pixel is [bin], -1 .. 1.
+kernel void write_offsets(const struct OutputParameters p, const struct TileParameters tile,
+                          Floats tables, global const uchar* raw_numbers,
+                          global const int* bins, global float* offsets) {
+  const int pixel = (int)get_global_id(0);
+  if (pixel >= tile.pixels) return;
+  const int bin = bins[pixel];
+  if (bin == UNPROVEN) return;
+  float raw[MEASUREMENTS], q[RANK];
+  vector_of(&p.projection, &tile, tables, raw_numbers, pixel, raw, q);
+  const struct ChordPoint point =
+      best_point(q, tables + p.records + (bin + 1) * p.record_stride, bin);
+  offsets[pixel] = point.is_left ? -point.t : point.t;
+}
+
 /// Planes that are null are not wanted. Pixels without proven bin are left to the host.
 kernel void write_planes(const struct OutputParameters p, const struct TileParameters tile,
                          Floats tables, global const uchar* raw_numbers, Floats averaged,
@@ -82,25 +122,12 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
   const int bin = bins[pixel];
   if (bin == UNPROVEN) return;
   float raw[MEASUREMENTS], q[RANK];
-  for (int k = 0; k < MEASUREMENTS; ++k) raw[k] = raw_number(&tile, raw_numbers, pixel, k);
-  project(&p.projection, tile.number, tables, raw, q);
+  vector_of(&p.projection, &tile, tables, raw_numbers, pixel, raw, q);
   Floats record = tables + p.records + (bin + 1) * p.record_stride;
-
-  // Best point on the chords left and right.
-  const float at_bin = along_record(q, record + RECORD_POINT);
-  const float to_left = along_record(q, record + RECORD_LEFT);
-  const float to_right = along_record(q, record + RECORD_RIGHT);
-  const float turn_left = record[RECORD_TURN], turn_right = record[RECORD_TURN + 1];
-  const float reach_left = record[RECORD_REACH], reach_right = record[RECORD_REACH + 1];
-  const bool left_is_on = to_left > 0.0f && !(to_left * (reach_left + turn_left) > at_bin);
-  const bool right_is_on = to_right > 0.0f && !(to_right * (reach_right + turn_right) > at_bin);
-  const bool is_left = left_is_on == right_is_on ? to_left >= to_right : left_is_on;
-  const float rise = fmax(is_left ? to_left : to_right, 0.0f);
-  const float inside = at_bin - rise * (is_left ? turn_left : turn_right);
-  const bool has_depth = bin >= 0 && at_bin > 0.0f && inside > 0.0f;
-  const float reach = is_left ? reach_left : reach_right;
-  const float t = has_depth ? fmin(rise * reach / inside, 1.0f) : 0.0f;
-  const float signal = has_depth ? inside : 0.0f, offset = is_left ? -t : t;
+  const struct ChordPoint point = best_point(q, record, bin);
+  const bool has_depth = point.has_depth;
+  const float t = point.t, signal = has_depth ? point.inside : 0.0f,
+              offset = point.is_left ? -t : t;
 
   if (depth_m) {
     const float whole = bin == 0 && offset < 0.0f ? (float)p.samples : (float)bin;
@@ -111,7 +138,7 @@ kernel void write_planes(const struct OutputParameters p, const struct TileParam
   if (signal_e_per_s) signal_e_per_s[pixel] = has_depth ? signal : NO_VALUE;
 
   const int quarter = min((int)(t * (float)p.chord_quarters), p.chord_quarters - 1) + 1;
-  const int steps = t == 0.0f ? 0 : is_left ? -quarter : quarter;
+  const int steps = t == 0.0f ? 0 : point.is_left ? -quarter : quarter;
   Floats chord = tables + p.chords +
                  ((bin + 1) * p.chord_blocks + p.chord_quarters + steps) * CHORD_FIELDS;
   float ambient = 0.0f;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Monte Carlo trials with normal noise in the plane that ZNCC looks at, as DepthTrials draws them:
-// from the same words, in single precision as there. Compiled behind random.cl, with RANK and
-// MEASUREMENTS.
+// Monte Carlo trials as DepthTrials draws them: depth, light, and noise in the plane that ZNCC looks
+// at. From the same words, step by step: the same bits. Compiled behind random.cl, vector_math.cl
+// and trial_parameters.h, ahead of trial_measurements.cl, with RANK, MEASUREMENTS and TAPS.
 
 /// As draw_words().
 uint4 trial_words(const struct TrialParameters* p, uint block, int trial) {
@@ -11,16 +11,45 @@ uint4 trial_words(const struct TrialParameters* p, uint block, int trial) {
   return philox(counter, (uint2)(p->seed_low, p->seed_high));
 }
 
-/// Two normals, as normals_of().
-float2 normals_of(uint radius, uint angle) {
-  const float u = ((float)(radius >> 1) + 0.5f) * 0x1p-31f;
-  const float length = sqrt(fmax(-2.0f * log(u), 0.0f));
-  const float turn = ((float)((angle >> 8) & 0x3fffffu) + 0.5f) * 0x1p-22f;
-  const float x = (turn - 0.5f) * 1.57079632679f;
-  const float s = sin(x), c = cos(x);
-  const bool is_odd = ((angle >> 30) & 1u) != 0;
-  const float2 point = is_odd ? (float2)(-s, c) : (float2)(c, s);
-  return ((angle >> 31) != 0 ? -length : length) * point;
+/// As DepthTrials::draw_normals(). @param words  of block 0
+void draw_normals(const struct TrialParameters* p, int trial, uint4 words, int count,
+                  float* normals) {
+  for (int pair = 0; 2 * pair < count; ++pair) {
+    if (pair > 0 && pair % 2 == 0) words = trial_words(p, (uint)(pair / 2), trial);
+    const float2 two =
+        pair % 2 == 0 ? normals_of(words.x, words.y) : normals_of(words.z, words.w);
+    normals[2 * pair] = two.x;
+    normals[2 * pair + 1] = two.y;
+  }
+}
+
+/// As DepthTrials::draw_signal().
+float draw_signal(const struct TrialParameters* p, int trial) {
+  if (!p->has_uniform_albedo) return p->signal;
+  return (float)(((double)trial_words(p, 1u << 29, trial).x + 0.5) * 0x1p-32 *
+                 p->signal_e_per_s);
+}
+
+double begin_of_part(const struct TrialParameters* p, int part) {
+  return p->prior_begin +
+         (p->prior_end - p->prior_begin) * ((double)part / (double)p->prior_parts);
+}
+
+/// As DepthPrior::quantile().
+double depth_quantile(const struct TrialParameters* p, Floats tables, double share) {
+  Doubles masses = (Doubles)(tables + p->prior_masses), below = (Doubles)(tables + p->prior_below);
+  int part = 0;
+  for (int end = p->prior_parts; end - part > 1;) {
+    const int middle = (part + end) / 2;
+    if (below[middle] > share)
+      end = middle;
+    else
+      part = middle;
+  }
+  while (masses[part] == 0.0) --part;
+  const double within = fmin(fmax((share - below[part]) / masses[part], 0.0), 1.0);
+  const double begin = begin_of_part(p, part);
+  return fmin(begin + within * (begin_of_part(p, part + 1) - begin), 1.0 - 0x1p-53);
 }
 
 /// The place of a depth in the records.
@@ -30,20 +59,51 @@ struct Place {
   double bin;
 };
 
-/// As place_depths().
-struct Place place_depth(const struct TrialParameters* p, uint4 words, int trial) {
+/// As place_depths(), and move_depths(). @param words  of block 0
+struct Place place_depth(const struct TrialParameters* p, Floats tables, uint4 words, int trial) {
   const double bins_per_row = 1.0 / p->rows_per_bin;
   const double within =
       ((double)(((words.y & 0xffu) << 8) | (words.w & 0xffu)) + 0.5) * 0x1p-16;
   double at = (p->first + (double)trial + within) * p->rows_per_trial;
   at = fmin(at, p->rows * (1.0 - 0x1p-50));
-  if (p->on_bins) at = floor(at * bins_per_row) * p->rows_per_bin;
-  const double row = floor(at);
   struct Place place;
+  if (p->prior_parts == 0) {
+    if (p->on_bins) at = floor(at * bins_per_row) * p->rows_per_bin;
+    place.bin = at * bins_per_row;
+  } else {
+    const double samples = p->rows * bins_per_row;
+    place.bin = depth_quantile(p, tables, at * bins_per_row / samples) * samples;
+    if (p->on_bins) place.bin = floor(place.bin);
+    place.bin = fmin(place.bin, nextafter(samples, 0.0));
+    at = place.bin * p->rows_per_bin;
+  }
+  const double row = floor(at);
   place.row = (int)row;
   place.share = (float)(at - row);
-  place.bin = at * bins_per_row;
   return place;
+}
+
+/// Electrons that a tap is expected to gather, and their shot noise.
+struct Electrons {
+  float mean, shot;
+};
+
+/// As draw_plane() and expect_electrons().
+struct Electrons electrons_of_tap(const struct TrialParameters* p, Floats tables,
+                                  struct Place place, float signal, int k) {
+  Floats record = tables + p->records + (size_t)(place.row + 1) * (size_t)p->record_stride;
+  struct Electrons e;
+  const float chi = product_plus(place.share, record[p->taps + k], record[k]);
+  e.mean = product_plus(signal, chi, tables[p->mean_floors + k]);
+  if (p->has_own_shot_noise) {
+    const float shot_chi =
+        product_plus(place.share, record[3 * p->taps + k], record[2 * p->taps + k]);
+    e.shot = fmax(product_plus(signal, shot_chi, tables[p->shot_floors + k]), 0.0f);
+  } else {
+    e.mean = fmax(e.mean, 0.0f);
+    e.shot = e.mean;
+  }
+  return e;
 }
 
 /// Adds L times normals, for the covariance with rows one after the other, as add_noise().
@@ -51,69 +111,48 @@ void add_plane_noise(float* covariance, const float* normals, float* q) {
   float inverse[RANK];
   for (int j = 0; j < RANK; ++j) {
     float* row = covariance + j * (j + 1) / 2;
-    const float whole = row[j];
-    float rest = whole;
+    const float all = row[j];
+    float rest = all;
     for (int l = 0; l < j; ++l) {
       const float* other = covariance + l * (l + 1) / 2;
       float sum = row[l];
-      for (int m = 0; m < l; ++m) sum -= row[m] * other[m];
+      for (int m = 0; m < l; ++m) sum = product_plus(-row[m], other[m], sum);
       row[l] = sum * inverse[l];
-      rest -= row[l] * row[l];
+      rest = product_plus(-row[l], row[l], rest);
     }
-    inverse[j] = rest > whole * 1e-6f + 1e-30f ? 1.0f / sqrt(rest) : 0.0f;
+    const bool is_seen = rest > product_plus(all, 1e-6f, 1e-30f);
+    inverse[j] = is_seen ? reciprocal_sqrt(fmax(rest, 1e-30f)) : 0.0f;
     row[j] = rest * inverse[j];
-    for (int l = 0; l <= j; ++l) q[j] += row[l] * normals[l];
+    for (int l = 0; l <= j; ++l) q[j] = product_plus(row[l], normals[l], q[j]);
   }
 }
 
-/// True positions [bin] and raw numbers of trials, measurement after measurement, that lie in the
-/// plane where the trial does.
-kernel void draw_trials(const struct TrialParameters parameters, Floats tables,
-                        global double* true_bins, global float* numbers, global float* averaged) {
+/// True positions [bin] of trials, and where their measurements lie in the plane, coordinate after
+/// coordinate. Each is of one measurement.
+kernel void draw_in_plane(const struct TrialParameters parameters, Floats tables,
+                          global double* true_bins, global float* plane, global float* averaged) {
   const int trial = (int)get_global_id(0);
   const struct TrialParameters* p = &parameters;
   if (trial >= p->trials) return;
-  uint4 words = trial_words(p, 0u, trial);
-  const struct Place place = place_depth(p, words, trial);
+  const uint4 words = trial_words(p, 0u, trial);
+  const struct Place place = place_depth(p, tables, words, trial);
   true_bins[trial] = place.bin;
-
   float normals[RANK + 1];
-  for (int pair = 0; 2 * pair < RANK; ++pair) {
-    if (pair > 0 && pair % 2 == 0) words = trial_words(p, (uint)(pair / 2), trial);
-    const float2 two =
-        pair % 2 == 0 ? normals_of(words.x, words.y) : normals_of(words.z, words.w);
-    normals[2 * pair] = two.x;
-    normals[2 * pair + 1] = two.y;
-  }
-  float signal = p->signal;
-  if (p->has_uniform_albedo)
-    signal = (float)(((double)trial_words(p, 1u << 29, trial).x + 0.5) * 0x1p-32 *
-                     p->signal_e_per_s);
+  draw_normals(p, trial, words, RANK, normals);
+  const float signal = draw_signal(p, trial);
 
+  const int pairs = RANK * (RANK + 1) / 2;
   float q[RANK], covariance[RANK * (RANK + 1) / 2];
   for (int j = 0; j < RANK; ++j) q[j] = tables[p->offsets + j];
-  for (int i = 0; i < RANK * (RANK + 1) / 2; ++i) covariance[i] = tables[p->covariances + i];
-  Floats record = tables + p->records + (size_t)(place.row + 1) * (size_t)p->record_stride;
+  for (int i = 0; i < pairs; ++i) covariance[i] = tables[p->covariances + i];
   for (int k = 0; k < p->taps; ++k) {
-    const float chi = place.share * record[p->taps + k] + record[k];
-    float mean = signal * chi + tables[p->mean_floors + k], shot = mean;
-    if (p->has_own_shot_noise) {
-      const float shot_chi = place.share * record[3 * p->taps + k] + record[2 * p->taps + k];
-      shot = signal * shot_chi + tables[p->shot_floors + k];
-    } else {
-      mean = fmax(mean, 0.0f);
-    }
-    shot = fmax(shot, 0.0f);
-    for (int j = 0; j < RANK; ++j) q[j] += mean * tables[p->weights + k * RANK + j];
-    for (int i = 0; i < RANK * (RANK + 1) / 2; ++i)
-      covariance[i] += shot * tables[p->products + k * (RANK * (RANK + 1) / 2) + i];
+    const struct Electrons e = electrons_of_tap(p, tables, place, signal, k);
+    for (int j = 0; j < RANK; ++j)
+      q[j] = product_plus(e.mean, tables[p->weights + k * RANK + j], q[j]);
+    for (int i = 0; i < pairs; ++i)
+      covariance[i] = product_plus(e.shot, tables[p->products + k * pairs + i], covariance[i]);
   }
   add_plane_noise(covariance, normals, q);
-
-  for (int k = 0; k < MEASUREMENTS; ++k) {
-    float number = tables[p->numbers_of_plane + MEASUREMENTS * RANK + k];
-    for (int j = 0; j < RANK; ++j) number += q[j] * tables[p->numbers_of_plane + k * RANK + j];
-    numbers[(size_t)k * (size_t)p->trials + (size_t)trial] = number;
-  }
+  for (int j = 0; j < RANK; ++j) plane[(size_t)j * (size_t)p->trials + (size_t)trial] = q[j];
   averaged[trial] = 1.0f;
 }

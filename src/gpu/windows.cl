@@ -9,15 +9,6 @@
 #define LARGER(a, b) ((a) > (b) ? (a) : (b))
 #define SMALLER(a, b) ((a) < (b) ? (a) : (b))
 
-/// a b + c, rounded as the processor does.
-float product_plus(float a, float b, float c) {
-#ifdef FUSES_PRODUCTS
-  return fma(a, b, c);
-#else
-  return a * b + c;
-#endif
-}
-
 typedef global float* Plane;
 
 /// A plane's first pixel.

@@ -14,12 +14,25 @@ namespace tofsmith {
 /// factor. Light and covariance are linear between 16 points per bin.
 class RowTrials {
  public:
+  static constexpr int points_per_bin = 16;  // as TrialModel's
+
   RowTrials(const ForwardModel& model, const Camera& camera);
 
   int measurements() const { return measurements_; }
   /// Fills `taps` with raw numbers, [K][trials_per_tile], from row, share, signal and K rows of
   /// normals.
   void draw(const TrialStreams& streams, double ambient_e_per_s, int trials, TrialTile& tile) const;
+
+  // What it computes with, for other processors.
+  bool is_poisson() const { return is_poisson_; }
+  double read_noise_e() const { return read_noise_e_; }
+  /// What signal of 1 e/s brings at every point of depth: of Poisson noise electrons of time bin 0,
+  /// (points + 1); of normal noise [points][K + pairs_of(K)], means and covariance of the rows.
+  const std::vector<double>& of_signal() const { return of_signal_; }
+  /// What stands beside it, of as many numbers.
+  std::vector<double> beside_signal(double ambient_e_per_s) const;
+  /// Of Poisson noise: [N][K].
+  const std::vector<float>& weights() const { return weights_; }
 
  private:
   void draw_poisson_rows(const TrialStreams& streams, double ambient_e_per_s, int trials,
@@ -29,13 +42,9 @@ class RowTrials {
   int measurements_, samples_, points_;
   bool is_poisson_;
   double read_noise_e_;
-  std::vector<double> bin_e_;   // electrons in time bin 0 per unit of S, (points + 1)
-  double bin_ambient_e_ = 0.0;  // per unit of A
-  double bin_dark_e_ = 0.0;
-  std::vector<float> weights_;                    // [N][K]
-  Eigen::MatrixXd mean_e_;                        // of the rows per unit of S, (K, points)
-  Eigen::VectorXd mean_ambient_e_, mean_dark_e_;  // (K)
-  RowCovariance covariance_;                      // of normal noise alone
+  std::vector<double> of_signal_;
+  std::vector<double> of_ambient_, of_dark_;  // per unit of A, and without light
+  std::vector<float> weights_;
 };
 
 }  // namespace tofsmith

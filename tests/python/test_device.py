@@ -108,15 +108,17 @@ def test_a_device_captures_as_the_processor(decoders, tmp_path):
 
 
 def test_a_device_evaluates_as_the_processor(decoders):
-    camera = ts.Camera("paper-10f0", operating={"signal_e_per_s": [1e5], "ambient_e_per_s": [1e4]})
-    here = ts.evaluate("hamiltonian-k4", camera, trials=5000)
-    there = ts.evaluate("hamiltonian-k4", camera, trials=5000, device="0")
-    for kind in ("linear", "circular"):
-        np.testing.assert_allclose(float(getattr(there, kind).geometric_mean_m),
-                                   float(getattr(here, kind).geometric_mean_m), rtol=1e-3)
-    with pytest.raises(ValueError, match="sensor.noise"):
-        ts.evaluate("hamiltonian-k4", ts.Camera("paper-10f0", sensor={"noise": "poisson"}),
-                    device="0")
+    light = {"signal_e_per_s": [1e5], "ambient_e_per_s": [1e4]}
+    for sensor in ({}, {"noise": "poisson"}, {"noise": "poisson", "adc_bits": 12,
+                                              "gain_e_per_dn": 4.0}):
+        camera = ts.Camera("paper-10f0", operating=light, sensor=sensor)
+        here = ts.evaluate("hamiltonian-k4", camera, trials=5000)
+        there = ts.evaluate("hamiltonian-k4", camera, trials=5000, device="0")
+        for kind in ("linear", "circular"):
+            np.testing.assert_allclose(float(getattr(there, kind).geometric_mean_m),
+                                       float(getattr(here, kind).geometric_mean_m), rtol=1e-6)
+    with pytest.raises(ValueError, match="must be zncc"):
+        ts.evaluate("sinusoid-k4", camera, method="unwrap", device="0")
     with pytest.raises(OSError, match="expected one of"):
         ts.evaluate("hamiltonian-k4", camera, device="7000")
 

@@ -32,6 +32,13 @@ class DepthPrior {
   double below(double share) const;
   /// Depth below which so many lie, `part` in [0, 1); part itself where all depths are alike.
   double quantile(double part) const;
+  // The interval, and of its parts what share of depths lies in each, and below each and 1; none
+  // where all depths are alike.
+  double begin() const { return begin_; }
+  double end() const { return end_; }
+  const std::vector<double>& part_masses() const { return mass_; }
+  const std::vector<double>& below_parts() const { return below_; }
+
   /// Share of depths in each of so many equal parts of the range; none: all depths are alike.
   Eigen::VectorXd masses(Eigen::Index parts) const;
 

@@ -77,8 +77,25 @@ class DepthTrials {
   /// workspace.
   TrialBlock run(const TrialRound& round, IndexRange trials, TrialTile& tile) const;
 
+  // What it computes with, for other processors.
+  const EvaluateOptions& options() const { return options_; }
+  bool has_uniform_albedo() const { return uniform_albedo_; }
+  double albedo() const { return albedo_; }
+  const DepthPrior& depths() const { return depths_; }
+  const TrialModel& model() const { return model_; }
+  /// Null where taps are read out.
+  const RowTrials* rows() const { return rows_ ? &*rows_ : nullptr; }
+  const DecodingTable& believed() const { return believed_; }
+  const TrialDecoder& decoder() const { return decoder_; }
+  /// Of every point; none where draws_in_plane() is not so.
+  const std::vector<PlaneNoise>& plane_noise() const { return plane_noise_; }
+  /// Electrons of every tap at a point without signal, their shot noise, and where clipping to an
+  /// open sensor begins; that is empty where there is none.
+  const std::vector<float>& mean_floor_e(std::size_t point) const { return mean_floor_e_[point]; }
+  const std::vector<float>& shot_floor_e2(std::size_t point) const { return shot_floor_e2_[point]; }
+  const std::vector<float>& max_e(std::size_t point) const { return max_e_[point]; }
+
  private:
-  friend struct TrialParts;
   static constexpr std::int64_t trials_per_run = 4 * trials_per_tile;
 
   /// What `sum` adds, of trials that `runner_` runs.
@@ -105,29 +122,6 @@ class DepthTrials {
   std::vector<PlaneNoise> plane_noise_;  // of every point; none where it is not exact
   std::vector<std::vector<float>> mean_floor_e_, shot_floor_e2_, max_e_;  // of every point: (taps)
   TrialRunner runner_;                                                    // none: here
-};
-
-/// What DepthTrials that are drawn in the plane compute with, for other processors; they must
-/// outlive it.
-struct TrialParts {
-  explicit TrialParts(const DepthTrials& trials)
-      : options(trials.options_),
-        uniform_albedo(trials.uniform_albedo_),
-        albedo(trials.albedo_),
-        depths(trials.depths_),
-        model(trials.model_),
-        believed(trials.believed_),
-        plane_map(*trials.decoder_.plane_map()),
-        plane_noise(trials.plane_noise_) {}
-
-  const EvaluateOptions& options;
-  bool uniform_albedo;
-  double albedo;
-  const DepthPrior& depths;
-  const TrialModel& model;
-  const DecodingTable& believed;  ///< by the decoder
-  const PlaneMap& plane_map;
-  const std::vector<PlaneNoise>& plane_noise;  ///< of every point
 };
 
 template <typename Sums, typename Add>

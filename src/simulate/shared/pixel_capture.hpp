@@ -40,8 +40,19 @@ class PixelCapture {
   void expose(double ambient_e_per_s, RandomStream& random, std::vector<double>& light,
               float* raw) const;
 
+  // What it computes with, for other processors.
+  double range_m() const { return range_m_; }
+  double bin_m() const { return bin_m_; }
+  double dark_e_per_s() const { return dark_e_per_s_; }
+  const FineCorrelation& correlation() const { return correlation_; }
+  const NoiseParts& noise() const { return noise_.parts(); }
+  /// Of the tap values.
+  const Eigen::VectorXd& exposure_s() const { return exposure_s_; }
+  const Eigen::VectorXd& ambient_gain() const { return ambient_gain_; }
+  /// (K, N), where they are read out.
+  const std::optional<Eigen::MatrixXd>& rows() const { return rows_; }
+
  private:
-  friend struct CaptureParts;
   double range_m_, bin_m_;
   double dark_e_per_s_;
   bool is_signed_;
@@ -49,25 +60,6 @@ class PixelCapture {
   PixelNoise noise_;
   Eigen::VectorXd exposure_s_, ambient_gain_;  // of the tap values
   std::optional<Eigen::MatrixXd> rows_;        // (K, N), where they are read out
-};
-
-/// What a PixelCapture, which must outlive it, computes with, for other processors.
-struct CaptureParts {
-  explicit CaptureParts(const PixelCapture& pixel)
-      : range_m(pixel.range_m_),
-        bin_m(pixel.bin_m_),
-        dark_e_per_s(pixel.dark_e_per_s_),
-        correlation(pixel.correlation_),
-        noise(pixel.noise_.parts()),
-        exposure_s(pixel.exposure_s_),
-        ambient_gain(pixel.ambient_gain_),
-        rows(pixel.rows_) {}
-
-  double range_m, bin_m, dark_e_per_s;
-  const FineCorrelation& correlation;
-  const NoiseParts& noise;
-  const Eigen::VectorXd &exposure_s, &ambient_gain;  ///< of the tap values
-  const std::optional<Eigen::MatrixXd>& rows;        ///< (K, N), where they are read out
 };
 
 }  // namespace tofsmith
