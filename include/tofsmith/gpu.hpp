@@ -186,14 +186,15 @@ class DeviceFilter {
 /// the device rounds quotients and roots correctly, else they differ in the last ones, and where a
 /// threshold lies between, by more.
 ///
-/// Keeps what was added up whole, whatever DeviceOptions::memory_mb says. Not for several threads
-/// at once.
+/// Keeps what was added up, and frames that wait, whole, whatever DeviceOptions::memory_mb says.
+/// Not for several threads at once.
 class DeviceFrames {
  public:
   /// Compiles kernels for the table.
   /// @param table        must outlive this one; says from where on raw numbers are clipped
-  /// @param time_filter  must outlive this one and look at no later frames; null: means alone
-  /// @throws std::invalid_argument for options and such filters; IoError if the device fails
+  /// @param time_filter  must outlive this one; null: means alone
+  /// @throws std::invalid_argument for options, and a filter of other measurements; IoError if the
+  ///         device fails
   DeviceFrames(const Device& device, const DecodingTable& table, const TimeFilter* time_filter,
                const DeviceOptions& options = {});
   ~DeviceFrames();
@@ -208,12 +209,17 @@ class DeviceFrames {
   /// @throws std::invalid_argument if the measurements or sizes differ, or the device has no
   ///         doubles; IoError if the device fails, after which the next frame is the first
   void add(const RawView& raw);
-  /// The mean of those is the next frame.
+  /// The mean of those is the next frame, which comes out or waits as that of take().
   /// @param averaged  of how many measurements the numbers of one are the mean
   /// @throws as add(); std::invalid_argument if there are none
   void take_mean(double averaged = 1.0);
-  /// The next frame, without a mean, of a time filter. @throws as add()
+  /// The next frame, without a mean, of a time filter. One that looks ahead has it wait for later
+  /// ones, and the frame that is there then is the one so many before, or none. @throws as add()
   void take(const RawView& raw);
+  /// After the last frame: the next of those that wait, as TimeFilter::add_end().
+  /// @return whether there is one; after the last, the next frame is the first again
+  /// @throws IoError if the device fails, after which none waits
+  bool take_end();
   /// The next frame is the first again, of any size.
   void forget();
 
@@ -312,9 +318,8 @@ std::optional<DeviceFilter> device_filter(std::string_view device, const Filter&
                                           const DeviceDecoder* after = nullptr);
 
 /// What makes means of frames and adds them up in time on the device of the decoder that follows;
-/// none where there is nothing to do, or that device cannot: filters that look at later frames, and
-/// means without doubles, stay on the processor. `auto` leaves small frames to the processor, as
-/// device_decoder().
+/// none where there is nothing to do, or that device cannot: means without doubles stay on the
+/// processor. `auto` leaves small frames to the processor, as device_decoder().
 /// @param table, time_filter  must outlive what comes; the filter may be null
 /// @param makes_means         of several frames each
 std::optional<DeviceFrames> device_frames(std::string_view device, const DecodingTable& table,

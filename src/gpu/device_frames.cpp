@@ -3,7 +3,7 @@
 #include <string>
 
 #include "decode/output/shared/decoder_parts.hpp"
-#include "gpu/device_past.hpp"
+#include "gpu/device_time_filter.hpp"
 #include "gpu/frame_source.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -26,7 +26,7 @@ struct DeviceFrames::Plan {
   const DecodingTable& table;
   DeviceOptions options;
   std::optional<DeviceMeans> means;  // once there are any
-  std::optional<DevicePast> past;
+  std::optional<DeviceTimeFilter> filter;
   RawView size;          // of the frames, no more
   int frames_added = 0;  // to the next mean
   bool has_frame = false;
@@ -38,11 +38,9 @@ DeviceFrames::Plan::Plan(const Device& device_, const DecodingTable& table_,
                          const TimeFilter* time_filter, const DeviceOptions& options_)
     : device(device_), table(table_), options(options_) {
   if (!time_filter) return;
-  require(time_filter->options().look_ahead == 0, "TimeFilterOptions::look_ahead",
-          time_filter->options().look_ahead, "must be 0 on a device");
   require(time_filter->measurements() == table.measurements(), "time filter's measurements",
           time_filter->measurements(), "must be those of the table");
-  past.emplace(device, state_of(*time_filter));
+  filter.emplace(device, state_of(*time_filter));
 }
 
 void DeviceFrames::Plan::begin_frame(const RawView& raw, bool is_first) {
@@ -58,7 +56,7 @@ void DeviceFrames::Plan::begin_frame(const RawView& raw, bool is_first) {
 
 void DeviceFrames::Plan::forget() {
   if (means) means->forget();
-  if (past) past->forget();
+  if (filter) filter->forget();
   frames_added = 0;
   has_frame = false;
 }
@@ -76,7 +74,7 @@ void DeviceFrames::Plan::do_all(const DeviceQueue& queue, const Steps& steps) {
 
 FrameSource DeviceFrames::Plan::source() {
   require(has_frame, "frame on the device", "none", "must be taken before");
-  if (past) return {.raw = size, .on_device = &past->result()};
+  if (filter) return {.raw = size, .on_device = &filter->result()};
   return {.raw = size, .on_device = &means->result(), .means = &*means};
 }
 
@@ -93,7 +91,7 @@ bool DeviceFrames::takes(std::int64_t pixels) const { return pixels >= plan_->op
 
 void DeviceFrames::add(const RawView& raw) {
   Plan& plan = *plan_;
-  const bool is_first = plan.frames_added == 0 && !(plan.past && !plan.past->is_empty());
+  const bool is_first = plan.frames_added == 0 && !(plan.filter && !plan.filter->is_empty());
   plan.begin_frame(raw, is_first);
   if (!plan.means) plan.means.emplace(plan.device, plan.table.saturation_level);
   plan.do_all(plan.means->queue(), [&] { plan.means->add(raw); });
@@ -106,19 +104,28 @@ void DeviceFrames::take_mean(double averaged) {
   require(averaged > 0.0, "averaged", averaged, "must be > 0");
   plan.do_all(plan.means->queue(), [&] { plan.means->finish(averaged); });
   plan.frames_added = 0;
-  if (plan.past)
-    plan.do_all(plan.past->queue(),
-                [&] { plan.past->add(plan.means->result(), plan.size.height, plan.size.width); });
-  plan.has_frame = true;
+  if (plan.filter)
+    plan.do_all(plan.filter->queue(), [&] {
+      plan.has_frame = plan.filter->add(plan.means->result(), plan.size.height, plan.size.width);
+    });
+  else
+    plan.has_frame = true;
 }
 
 void DeviceFrames::take(const RawView& raw) {
   Plan& plan = *plan_;
-  require(plan.past.has_value(), "time filter", "none",
+  require(plan.filter.has_value(), "time filter", "none",
           "is needed to take frames that are no means");
-  plan.begin_frame(raw, plan.past->is_empty());
-  plan.do_all(plan.past->queue(), [&] { plan.past->add(raw); });
-  plan.has_frame = true;
+  plan.begin_frame(raw, plan.filter->is_empty());
+  plan.do_all(plan.filter->queue(), [&] { plan.has_frame = plan.filter->add(raw); });
+}
+
+bool DeviceFrames::take_end() {
+  Plan& plan = *plan_;
+  plan.has_frame = false;
+  if (plan.filter)
+    plan.do_all(plan.filter->queue(), [&] { plan.has_frame = plan.filter->add_end(); });
+  return plan.has_frame;
 }
 
 void DeviceFrames::forget() { plan_->forget(); }
@@ -130,7 +137,7 @@ RawView DeviceFrames::numbers() {
   const FrameSource source = plan.source();
   const auto pixels = static_cast<std::size_t>(source.pixels()),
              count = pixels * static_cast<std::size_t>(plan.size.measurements);
-  const DeviceQueue& queue = source.means ? source.means->queue() : plan.past->queue();
+  const DeviceQueue& queue = source.means ? source.means->queue() : plan.filter->queue();
   plan.averaged.resize(pixels);
   queue.download(*source.on_device->averaged(), pixels * sizeof(float), plan.averaged.data());
   const int height = plan.size.height, width = plan.size.width, k = plan.size.measurements;
@@ -162,8 +169,7 @@ std::int64_t DeviceFrames::decode(const DeviceFilter& filter, const DeviceDecode
 std::optional<DeviceFrames> device_frames(std::string_view device, const DecodingTable& table,
                                           const TimeFilter* time_filter, bool makes_means,
                                           const DeviceDecoder& after) {
-  const bool cannot = (time_filter && time_filter->options().look_ahead > 0) ||
-                      (makes_means && !after.device().info().has_doubles);
+  const bool cannot = makes_means && !after.device().info().has_doubles;
   if ((!time_filter && !makes_means) || cannot) return std::nullopt;
   DeviceOptions options;
   if (device == "auto") options.min_pixels = auto_min_pixels_to_decode;

@@ -144,41 +144,64 @@ TEST_F(FailingDevice, IsAnErrorWhereverItFailsAndWorksAgainWhenItIsBack) {
 }
 
 TEST_F(FailingDevice, ForgetsFramesThatItAddedUpAndStartsAnewWhenItIsBack) {
-  const TimeFilter time_filter(setup_.decoder.table(), {.before_filter = true});
   const DeviceDecoder decoder(device(), setup_.decoder);
-  DeviceFrames frames(device(), setup_.decoder.table(), &time_filter);
-  const auto add_up = [&](Outputs& outputs) {
-    frames.forget();
-    frames.take(view());
-    if (device().info().has_doubles) {
-      frames.add(view());
-      frames.add(view());
-      frames.take_mean();
-    } else {
+  for (const int look_ahead : {0, 2}) {
+    const TimeFilter time_filter(setup_.decoder.table(),
+                                 {.before_filter = true, .look_ahead = look_ahead});
+    DeviceFrames frames(device(), setup_.decoder.table(), &time_filter);
+    const auto add_up = [&](Outputs& outputs) {
+      frames.forget();
       frames.take(view());
-    }
-    frames.decode(decoder, outputs.view());
-  };
-  Outputs expected(expected_.bin.size());
-  add_up(expected);
-  for (const cl_int error :
-       {CL_DEVICE_NOT_AVAILABLE, CL_OUT_OF_RESOURCES, CL_MEM_OBJECT_ALLOCATION_FAILURE})
-    for (int first = 0;; ++first) {
-      Outputs outputs(expected.bin.size());
-      failure = {.first = first, .error = error};
-      bool has_failed = false;
-      try {
-        add_up(outputs);
-      } catch (const IoError& lost) {
-        EXPECT_NE(std::string(lost.what()).find(device().info().name), std::string::npos);
-        has_failed = true;
+      if (device().info().has_doubles) {
+        frames.add(view());
+        frames.add(view());
+        frames.take_mean();
+      } else {
+        frames.take(view());
       }
-      ASSERT_EQ(has_failed, failure.calls > first);
-      failure = {};
-      if (!has_failed) break;
-      add_up(outputs);
-      expect_same(outputs, expected);
-    }
+      for (int waits = 0; waits < look_ahead; ++waits) EXPECT_TRUE(frames.take_end());
+      frames.decode(decoder, outputs.view());
+    };
+    Outputs expected(expected_.bin.size());
+    add_up(expected);
+    for (const cl_int error :
+         {CL_DEVICE_NOT_AVAILABLE, CL_OUT_OF_RESOURCES, CL_MEM_OBJECT_ALLOCATION_FAILURE})
+      for (int first = 0;; ++first) {
+        Outputs outputs(expected.bin.size());
+        failure = {.first = first, .error = error};
+        bool has_failed = false;
+        try {
+          add_up(outputs);
+        } catch (const IoError& lost) {
+          EXPECT_NE(std::string(lost.what()).find(device().info().name), std::string::npos);
+          has_failed = true;
+        }
+        ASSERT_EQ(has_failed, failure.calls > first);
+        failure = {};
+        if (!has_failed) break;
+        add_up(outputs);
+        expect_same(outputs, expected);
+      }
+  }
+}
+
+TEST_F(FailingDevice, HasNoFrameWaitingWhereOneWasLost) {
+  const TimeFilter time_filter(setup_.decoder.table(), {.look_ahead = 2});
+  DeviceFrames frames(device(), setup_.decoder.table(), &time_filter);
+  const auto expect_none = [&] {
+    EXPECT_FALSE(frames.has_frame());
+    failure = {};
+    EXPECT_FALSE(frames.take_end());
+  };
+  frames.take(view());
+  frames.take(view());
+  failure = {.first = 0, .error = CL_DEVICE_NOT_AVAILABLE};
+  EXPECT_THROW(frames.take_end(), IoError);
+  expect_none();
+  frames.take(view());
+  failure = {.first = 1, .error = CL_DEVICE_NOT_AVAILABLE};
+  EXPECT_THROW(frames.take(view()), IoError);
+  expect_none();
 }
 
 TEST_F(FailingDevice, HasNoFrameWhereOneWasLost) {

@@ -23,6 +23,11 @@ struct KeptFrames {
   void add(const RawView&) { ++added; }
   void take_mean(double averaged) { mean_of = averaged * std::exchange(added, 0); }
   void take(const RawView& raw) { frame = filter.add(raw); }
+  bool has_frame() const { return frame.has_value(); }
+  bool take_end() {
+    frame = filter.add_end();
+    return has_frame();
+  }
   RawView numbers() {
     ++asked;
     return *frame;
@@ -55,6 +60,47 @@ TEST_F(FramesElsewhereTest, AddsFramesUpWhereTheRequestSays) {
     const std::string name = added.output.filename();
     for (std::size_t f = 0; f < 3; ++f) EXPECT_EQ(plane(name.c_str(), f), plane("added.npy", f));
   }
+}
+
+TEST_F(FramesElsewhereTest, HasFramesWaitThatLookAhead) {
+  const Decoder& decoder = std::get<Decoder>(decoder_);
+  for (const int ahead : {1, 2, 9}) {
+    for (const std::optional<int> frame : {std::optional<int>(), std::optional(1)}) {
+      DecodeRequest added = request("here.npy");
+      added.policy = OutputPolicy::overwrite;
+      added.time_filter = TimeFilterOptions{.max_frames = 5, .look_ahead = ahead};
+      added.frame = frame;
+      added.stack = true;
+      added.outputs = {DecodedPlane::depth};
+      decode_recording(added, decoder_);
+      KeptFrames kept{.filter = TimeFilter(decoder.table(), *time_filter_of(added))};
+      added.frames_by = FramesElsewhere::of(kept);
+      added.decode_by = [&](const RawView& raw, const DecodedView& decoded, const Progress&) {
+        EXPECT_EQ(std::get<const float*>(raw.data), nullptr);
+        decoder.decode(*kept.frame, decoded);
+      };
+      added.output = added.output.parent_path() / "there.npy";
+      EXPECT_EQ(decode_recording(added, decoder_).frames.size(), frame ? 1u : 3u);
+      for (std::size_t f = 0; f < (frame ? 1u : 3u); ++f)
+        EXPECT_EQ(plane("there.npy", f), plane("here.npy", f));
+    }
+  }
+}
+
+TEST_F(FramesElsewhereTest, TakesNoMemoryHereForWhatIsAddedUpThere) {
+  const Decoder& decoder = std::get<Decoder>(decoder_);
+  DecodeRequest added = request("there.npy");
+  added.time_filter = TimeFilterOptions{.look_ahead = 2};
+  added.outputs = {DecodedPlane::depth};
+  added.stack = true;
+  added.memory_mb = 3e-3;  // 27 floats a pixel, or 9
+  EXPECT_THROW(decode_recording(added, decoder_), IoError);
+  KeptFrames kept{.filter = TimeFilter(decoder.table(), *time_filter_of(added))};
+  added.frames_by = FramesElsewhere::of(kept);
+  added.decode_by = [&](const RawView&, const DecodedView& decoded, const Progress&) {
+    decoder.decode(*kept.frame, decoded);
+  };
+  EXPECT_EQ(decode_recording(added, decoder_).frames.size(), 3u);
 }
 
 TEST_F(FramesElsewhereTest, BringsFramesBackThatWereAddedUpElsewhereWhereTheyAreRead) {

@@ -66,7 +66,9 @@ def test_a_device_adds_frames_up_as_the_processor(decoders, tmp_path):
     np.save(tmp_path / "raw.npy", np.concatenate([raw_frames(), raw_frames()]))
     cases = [{"time_filter": 8}, {"time_filter": 8, "filter": "light"}, {"average": 2},
              {"average": 2, "time_filter": 8, "mixed": "label"},
-             {"time_filter": {"max_frames": 8, "look_ahead": 1}}]
+             {"time_filter": {"max_frames": 8, "look_ahead": 1}},
+             {"time_filter": {"max_frames": 8, "look_ahead": 2}, "filter": "light"},
+             {"average": 2, "time_filter": {"max_frames": 8, "look_ahead": 9}}]
     for number, case in enumerate(cases):
         for name, decoder in zip(("here", "there"), decoders):
             decoder.decode_recording(tmp_path / "raw.npy", tmp_path / f"{name}{number}.npy",

@@ -73,7 +73,9 @@ struct FramesElsewhere {
   std::function<void(const RawView& raw)> add;     ///< to those of which the next mean is
   std::function<void(double averaged)> take_mean;  ///< of those; of so many measurements one is
   std::function<void(const RawView& raw)> take;    ///< one that is no mean
-  std::function<RawView()> numbers;  ///< of what comes of it, where they are asked for
+  std::function<bool()> has_frame;   ///< whether one came of it: others wait for later ones
+  std::function<bool()> take_end;    ///< after the last: whether there is another one that waited
+  std::function<RawView()> numbers;  ///< of what came of it, where they are asked for
 
   explicit operator bool() const { return static_cast<bool>(takes); }
   /// @param frames  a DeviceFrames; must outlive what comes
@@ -83,6 +85,8 @@ struct FramesElsewhere {
             .add = [&frames](const RawView& raw) { frames.add(raw); },
             .take_mean = [&frames](double averaged) { frames.take_mean(averaged); },
             .take = [&frames](const RawView& raw) { frames.take(raw); },
+            .has_frame = [&frames] { return frames.has_frame(); },
+            .take_end = [&frames] { return frames.take_end(); },
             .numbers = [&frames] { return frames.numbers(); }};
   }
 };
