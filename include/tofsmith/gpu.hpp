@@ -91,6 +91,8 @@ inline constexpr int auto_min_pixels_to_decode = 300'000, auto_min_pixels_to_fil
 inline constexpr std::int64_t auto_min_trials_to_evaluate = 10'000'000;
 
 struct FrameSource;  ///< of the implementation
+class DeviceRaw;
+class DeviceTile;
 
 /// A Decoder whose work a device does. Bins and statuses are those of the Decoder, everywhere: what
 /// single precision does not prove on the device, the Decoder decides here. Planes of floats are
@@ -128,6 +130,7 @@ class DeviceDecoder {
  private:
   friend class DeviceFilter;
   friend class DeviceFrames;
+  friend class DeviceFramesUnderWay;
   std::int64_t decode_source(const FrameSource& frame, const Device& its_device,
                              const DecodedView& decoded, const Progress& progress) const;
   std::unique_ptr<Plan> plan_;
@@ -173,6 +176,9 @@ class DeviceFilter {
 
  private:
   friend class DeviceFrames;
+  friend class DeviceFramesUnderWay;
+  bool start(const FrameSource& frame, DeviceRaw& brought, DeviceTile& decoded_in,
+             const DecodedView& decoded) const;
   std::int64_t decode_source(const FrameSource& frame, const Device& its_device,
                              const DeviceDecoder& decoder, const DecodedView& decoded,
                              FilteredFrame* filtered, const Progress& progress,
@@ -241,6 +247,43 @@ class DeviceFrames {
   std::int64_t decode(const DeviceFilter& filter, const DeviceDecoder& decoder,
                       const DecodedView& decoded, FilteredFrame* filtered = nullptr,
                       const Progress& progress = {}, const Image<std::uint8_t>& left_out = {});
+
+ private:
+  friend class DeviceFramesUnderWay;
+  struct Plan;
+  std::unique_ptr<Plan> plan_;
+};
+
+/// Filters and decodes frames of a recording on a device, two at a time: while kernels of one run,
+/// the next is brought there, and planes of the one before are brought back. Numbers are those of
+/// DeviceFilter::decode and DeviceFrames::decode. Frames that go in bands, or that are left to the
+/// processor, or are only decoded, go one after another.
+///
+/// Takes a frame's planes and raw numbers more on the device. Not for several threads at once; what
+/// it is made of may be used beside it.
+class DeviceFramesUnderWay {
+ public:
+  /// @param decoder  must outlive this one, as the others
+  /// @param filter   on the same device; null: none
+  /// @param frames   likewise, of which the frames come; null: as they are
+  /// @throws std::invalid_argument for other devices
+  DeviceFramesUnderWay(const DeviceDecoder& decoder, const DeviceFilter* filter,
+                       DeviceFrames* frames);
+  ~DeviceFramesUnderWay();
+  DeviceFramesUnderWay(DeviceFramesUnderWay&&) noexcept;
+  DeviceFramesUnderWay& operator=(DeviceFramesUnderWay&&) noexcept;
+
+  /// Begins with the frame that `frames` has, else with `raw`, which is read no more after this.
+  /// @param decoded  must stay until finish() of this frame
+  /// @throws std::invalid_argument if two are under way, and as decode(); IoError if the device
+  ///         fails, after which none is, and the next is the first
+  void start(const RawView& raw, const DecodedView& decoded);
+  /// Has the planes of the frame that was started first written.
+  /// @return how many pixels were left to the Decoder
+  /// @throws std::invalid_argument if none is under way; IoError as start()
+  std::int64_t finish();
+  /// None is under way any more, and the next one is the first; planes are left as they are.
+  void forget();
 
  private:
   struct Plan;

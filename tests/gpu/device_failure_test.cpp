@@ -77,6 +77,18 @@ cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t bytes, void
   return *error ? nullptr : REAL(clCreateBuffer)(context, flags, bytes, from, error);
 }
 
+cl_int clEnqueueMarkerWithWaitList(cl_command_queue queue, cl_uint waits, const cl_event* list,
+                                   cl_event* event) {
+  if (const cl_int error = tofsmith::failure.next()) return error;
+  return REAL(clEnqueueMarkerWithWaitList)(queue, waits, list, event);
+}
+
+cl_int clEnqueueBarrierWithWaitList(cl_command_queue queue, cl_uint waits, const cl_event* list,
+                                    cl_event* event) {
+  if (const cl_int error = tofsmith::failure.next()) return error;
+  return REAL(clEnqueueBarrierWithWaitList)(queue, waits, list, event);
+}
+
 cl_int clFinish(cl_command_queue queue) {
   if (const cl_int error = tofsmith::failure.next()) return error;
   return REAL(clFinish)(queue);
@@ -199,7 +211,8 @@ TEST_F(FailingDevice, HasNoFrameWaitingWhereOneWasLost) {
   EXPECT_THROW(frames.take_end(), IoError);
   expect_none();
   frames.take(view());
-  failure = {.first = 1, .error = CL_DEVICE_NOT_AVAILABLE};
+  frames.take(view());
+  failure = {.first = 9, .error = CL_DEVICE_NOT_AVAILABLE};
   EXPECT_THROW(frames.take(view()), IoError);
   expect_none();
 }

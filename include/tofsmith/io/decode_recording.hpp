@@ -91,6 +91,25 @@ struct FramesElsewhere {
   }
 };
 
+/// What filters and decodes frames in place of DecodeRequest::decode_by and filter_by, as they do,
+/// and begins with one before the one before it is finished: a DeviceFramesUnderWay. Empty: nothing
+/// does.
+struct FramesUnderWay {
+  std::function<void(const RawView& raw, const DecodedView& decoded)> start;
+  std::function<void()> finish;  ///< the frame that was started first
+  std::function<void()> forget;  ///< those that are under way
+
+  explicit operator bool() const { return static_cast<bool>(start); }
+  /// @param frames  a DeviceFramesUnderWay; must outlive what comes
+  template <typename Frames>
+  static FramesUnderWay of(Frames& frames) {
+    return {.start = [&frames](const RawView& raw,
+                               const DecodedView& decoded) { frames.start(raw, decoded); },
+            .finish = [&frames] { frames.finish(); },
+            .forget = [&frames] { frames.forget(); }};
+  }
+};
+
 /// A recording to be decoded into files.
 struct DecodeRequest {
   /// .npy, .npz or .h5, (H, W, K) or (F, H, W, K), of any size; or K files, one a measurement in
@@ -151,6 +170,10 @@ struct DecodeRequest {
       filter_by;
   /// Makes means of frames and filters them in time, where decode_by and filter_by are too.
   FramesElsewhere frames_by;
+  /// Does so with two frames at a time where they are added up there or filtered, whole, nobody
+  /// asks for numbers that were filtered, and planes of two fit into memory_mb. Streams, of which
+  /// each frame is written before the next is read, go without.
+  FramesUnderWay overlapped_by;
   OutputPolicy policy = OutputPolicy::refuse_existing;
   std::vector<std::string> other_inputs;  ///< files that were read too: no output replaces them
 };

@@ -69,13 +69,13 @@ double Preparation::frame_bytes(int recorded, int height, int width, int measure
   constexpr double bytes_to_find_mixed = 4 * sizeof(float) + 3;
   const int threads = working_threads();
   std::size_t bytes = 0;
-  const bool is_elsewhere = elsewhere && elsewhere.takes(std::int64_t{height} * width);
-  if (time_filter && !is_elsewhere) {
+  const bool is_there = is_elsewhere(std::int64_t{height} * width);
+  if (time_filter && !is_there) {
     TimeFilterOptions within = *time_filter;  // never more frames wait than there are
     within.look_ahead = std::min(within.look_ahead, frames_of(recorded) - 1);
     bytes += TimeFilter::memory_bytes(within, height, width, measurements, threads);
   }
-  if (time_filter && is_elsewhere && wants_numbers)
+  if (time_filter && is_there && wants_numbers)
     bytes += sizeof(float) * static_cast<std::size_t>(height) * static_cast<std::size_t>(width) *
              static_cast<std::size_t>(measurements + 1);
   if (filter) bytes += Filter::memory_bytes(*filter, height, width, measurements, threads);
@@ -210,8 +210,7 @@ std::optional<RawView> PreparedFrames::measured(int frame, const Progress& progr
 
 /// All frames of a recording are, or none.
 bool PreparedFrames::is_elsewhere(const RawView& raw) {
-  if (!is_elsewhere_)
-    is_elsewhere_ = preparation_.elsewhere && preparation_.elsewhere.takes(raw.pixels());
+  if (!is_elsewhere_) is_elsewhere_ = preparation_.is_elsewhere(raw.pixels());
   return *is_elsewhere_;
 }
 
@@ -262,8 +261,7 @@ std::optional<RawView> PreparedFrames::added_up(int frame, const Progress& progr
 std::optional<RawView> PreparedFrames::next(int frame, const Progress& progress) {
   if (time_filter_) return added_up(frame, progress);
   const std::optional<RawView> raw = measured(frame, progress);
-  const bool is_there = raw && preparation_.average > 1 && is_elsewhere(*raw);
-  return is_there ? frame_elsewhere(*raw) : raw;
+  return raw && is_elsewhere(*raw) ? frame_elsewhere(*raw) : raw;
 }
 
 void PreparedFrames::decode(

@@ -31,6 +31,10 @@ struct Preparation {
   bool needs_frames() const {
     return time_filter || filter || find_mixed || undistort || !stray_kernel.empty();
   }
+  /// Whether frames of so many pixels are made or added up elsewhere.
+  bool is_elsewhere(std::int64_t pixels) const {
+    return (time_filter || average > 1) && elsewhere && elsewhere.takes(pixels);
+  }
   /// Frames that come out of so many.
   int frames_of(int recorded) const { return (recorded + group() - 1) / group(); }
   /// Frames that one of those is made of.
