@@ -282,7 +282,8 @@ class DeviceFramesUnderWay {
   /// @return how many pixels were left to the Decoder
   /// @throws std::invalid_argument if none is under way; IoError as start()
   std::int64_t finish();
-  /// None is under way any more, and the next one is the first; planes are left as they are.
+  /// None is under way any more, and the next one is the first; planes are left as they are. To be
+  /// called where `frames` lost one, unless those before it are to be finished.
   void forget();
 
  private:

@@ -1,100 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Devices that fail half-way: functions of OpenCL stand here in front of the loader's own, and give
-// an error where a test says so.
+// Devices that fail half-way.
 #if __has_include(<CL/cl.h>)
-#include <dlfcn.h>
-#define CL_TARGET_OPENCL_VERSION 120
-#include <CL/cl.h>
-
 #include "device_setup.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
-
-namespace tofsmith {
-namespace {
-
-/// Which calls fail, of those that work on the device.
-struct Failure {
-  int first = std::numeric_limits<int>::max();
-  int last = std::numeric_limits<int>::max();
-  cl_int error = CL_SUCCESS;
-  int calls = 0;
-
-  /// The error of the next call.
-  cl_int next() {
-    const int call = calls++;
-    return call >= first && call <= last ? error : CL_SUCCESS;
-  }
-};
-Failure failure;
-
-template <typename Function>
-Function* real(const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
-}
-
-}  // namespace
-}  // namespace tofsmith
-
-#define REAL(function) tofsmith::real<decltype(function)>(#function)
-
-extern "C" {
-
-cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
-                              const size_t* offset, const size_t* global, const size_t* local,
-                              cl_uint waits, const cl_event* list, cl_event* event) {
-  if (const cl_int error = tofsmith::failure.next()) return error;
-  return REAL(clEnqueueNDRangeKernel)(queue, kernel, dimensions, offset, global, local, waits, list,
-                                      event);
-}
-
-cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem memory, cl_bool blocks, size_t offset,
-                           size_t bytes, void* to, cl_uint waits, const cl_event* list,
-                           cl_event* event) {
-  if (const cl_int error = tofsmith::failure.next()) return error;
-  return REAL(clEnqueueReadBuffer)(queue, memory, blocks, offset, bytes, to, waits, list, event);
-}
-
-cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem memory, cl_bool blocks, size_t offset,
-                            size_t bytes, const void* from, cl_uint waits, const cl_event* list,
-                            cl_event* event) {
-  if (const cl_int error = tofsmith::failure.next()) return error;
-  return REAL(clEnqueueWriteBuffer)(queue, memory, blocks, offset, bytes, from, waits, list, event);
-}
-
-cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem memory, const void* pattern,
-                           size_t pattern_bytes, size_t offset, size_t bytes, cl_uint waits,
-                           const cl_event* list, cl_event* event) {
-  if (const cl_int error = tofsmith::failure.next()) return error;
-  return REAL(clEnqueueFillBuffer)(queue, memory, pattern, pattern_bytes, offset, bytes, waits,
-                                   list, event);
-}
-
-cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t bytes, void* from,
-                      cl_int* error) {
-  *error = tofsmith::failure.next();
-  return *error ? nullptr : REAL(clCreateBuffer)(context, flags, bytes, from, error);
-}
-
-cl_int clEnqueueMarkerWithWaitList(cl_command_queue queue, cl_uint waits, const cl_event* list,
-                                   cl_event* event) {
-  if (const cl_int error = tofsmith::failure.next()) return error;
-  return REAL(clEnqueueMarkerWithWaitList)(queue, waits, list, event);
-}
-
-cl_int clEnqueueBarrierWithWaitList(cl_command_queue queue, cl_uint waits, const cl_event* list,
-                                    cl_event* event) {
-  if (const cl_int error = tofsmith::failure.next()) return error;
-  return REAL(clEnqueueBarrierWithWaitList)(queue, waits, list, event);
-}
-
-cl_int clFinish(cl_command_queue queue) {
-  if (const cl_int error = tofsmith::failure.next()) return error;
-  return REAL(clFinish)(queue);
-}
-
-}  // extern "C"
+#include "watched_opencl.hpp"
 
 namespace tofsmith {
 namespace {

@@ -154,7 +154,7 @@ bool may_overlap(const DecodeRequest& request, const DecodeTarget& target,
       request.filter &&
       (target.find_mixed || std::ranges::count(target.planes, DecodedPlane::averaged) > 0);
   return request.overlapped_by && target.frames > 1 && !target.find_mixed && !wants_filtered &&
-         (preparation.filters_with_decoder || preparation.is_elsewhere(pixels));
+         ((request.filter && request.filter_by) || preparation.is_elsewhere(pixels));
 }
 
 /// Progress over all frames, which says how fast they come.
