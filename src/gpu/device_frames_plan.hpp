@@ -18,7 +18,7 @@ struct DeviceFrames::Plan {
 
   /// A frame comes, of the size of those before; the one that is there is no more.
   void begin_frame(const RawView& raw, bool is_first);
-  /// Does steps on the device. Where it fails, all is forgotten.
+  /// Does steps on the device. What fails half-way is forgotten.
   template <typename Steps>
   auto on_device(const Steps& steps);
   void forget();
@@ -43,7 +43,11 @@ template <typename Steps>
 auto DeviceFrames::Plan::on_device(const Steps& steps) {
   try {
     return steps();
-  } catch (const IoError&) {
+  } catch (const InvalidArgument&) {
+    throw;  // nothing was begun
+  } catch (const Interrupted&) {
+    throw;  // what was added up is as it was
+  } catch (...) {
     forget();
     throw;
   }
