@@ -151,8 +151,7 @@ bool may_overlap(const DecodeRequest& request, const DecodeTarget& target,
                  const Preparation& preparation) {
   const std::int64_t pixels = std::int64_t{target.view.height} * target.view.width;
   const bool wants_filtered =
-      request.filter &&
-      (target.find_mixed || std::ranges::count(target.planes, DecodedPlane::averaged) > 0);
+      request.filter && std::ranges::count(target.planes, DecodedPlane::averaged) > 0;
   return request.overlapped_by && target.frames > 1 && !target.find_mixed && !wants_filtered &&
          ((request.filter && request.filter_by) || preparation.is_elsewhere(pixels));
 }
