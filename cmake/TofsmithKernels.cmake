@@ -25,7 +25,7 @@ endfunction()
 tofsmith_add_kernels(decode_kernels decode_tables.hpp decode_parameters.h numbers.cl bins.cl planes.cl)
 tofsmith_add_kernels(filter_kernels filter_tables.hpp decode_parameters.h numbers.cl filter_parameters.h
                      windows.cl slopes.cl)
-tofsmith_add_kernels(time_kernels device_past.hpp decode_parameters.h numbers.cl time_parameters.h time.cl)
+tofsmith_add_kernels(time_kernels device_time_filter.hpp decode_parameters.h numbers.cl time_parameters.h time.cl)
 tofsmith_add_kernels(mean_kernels device_means.hpp decode_parameters.h numbers.cl means.cl)
 tofsmith_add_kernels(capture_kernels device_capture.hpp decode_parameters.h numbers.cl random.cl
                      capture_parameters.h capture.cl)

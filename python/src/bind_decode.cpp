@@ -55,6 +55,10 @@ class BoundDecoder {
     return device_frames(name_, std::get<Decoder>(*any_).table(), time_filter, request.average > 1,
                          *on_device_);
   }
+  DeviceFramesUnderWay under_way_on_its_device(const DeviceFilter* filter,
+                                               DeviceFrames* frames) const {
+    return {*on_device_, filter, frames};
+  }
   void decode(DeviceFrames& frames, const DecodedView& decoded, const Progress& progress) const {
     frames.decode(*on_device_, decoded, progress);
   }
@@ -204,6 +208,7 @@ struct BoundRequest : DecodeRequest {
   std::optional<DeviceFilter> on_device;
   std::unique_ptr<const TimeFilter> its_time_filter;
   std::optional<DeviceFrames> frames;
+  std::optional<DeviceFramesUnderWay> under_way;
 
   bool has_frame() const { return frames && frames->has_frame(); }
 };
@@ -278,6 +283,12 @@ std::unique_ptr<BoundRequest> request_of(const BoundDecoder& decoder,
       else
         decoder.decode(*request.on_device, view, decoded, filtered, progress, left_out);
     };
+  }
+  if (decoder.is_on_device()) {
+    request.under_way.emplace(
+        decoder.under_way_on_its_device(request.on_device ? &*request.on_device : nullptr,
+                                        request.frames ? &*request.frames : nullptr));
+    request.overlapped_by = FramesUnderWay::of(*request.under_way);
   }
   return bound;
 }

@@ -68,7 +68,7 @@ void DeviceDecoder::Plan::start(DeviceTile& in, const FrameSource& frame, const 
 }
 
 std::int64_t DeviceDecoder::Plan::finish(DeviceTile& in, const FrameSource& frame,
-                                         const FramePart& part, const DecodedView& decoded) {
+                                         const FramePart& part, const DecodedView& decoded) const {
   const DecodedView planes = decoded.from(static_cast<std::size_t>(part.first));
   in.fetch(planes);
   const std::vector<std::int32_t> open = in.open_pixels();
@@ -80,7 +80,7 @@ std::int64_t DeviceDecoder::Plan::finish(DeviceTile& in, const FrameSource& fram
 void DeviceDecoder::Plan::decode_open_pixels_of(DeviceTile& in, const FrameSource& frame,
                                                 const FramePart& part,
                                                 const std::vector<std::int32_t>& open,
-                                                const DecodedView& planes) {
+                                                const DecodedView& planes) const {
   if (!frame.on_device)
     return std::visit(
         [&](const auto* data) {
@@ -96,7 +96,7 @@ void DeviceDecoder::Plan::decode_open_pixels_of(DeviceTile& in, const FrameSourc
   if (frame.means) {
     std::vector<std::int32_t> in_frame = open;
     for (std::int32_t& pixel : in_frame) pixel += static_cast<std::int32_t>(part.first);
-    exact = frame.means->numbers_of(in_frame);
+    exact = frame.means->numbers_of(in_frame, frame.mean);
     const float* const averaged = view.averaged;
     view = RawView::interleaved(exact.data(), 1, static_cast<int>(open.size()), measurements);
     view.averaged = averaged;

@@ -41,6 +41,12 @@ struct DeviceDecoder::Plan {
   /// Decodes pixels that are in the tile. @param planes  from the first of them on
   /// @return how many the decoder decoded
   std::int64_t decode_what_is_there(const DecodedView& planes);
+  /// Begins to decode a part in a tile: brings it there and starts its kernels.
+  static void start(DeviceTile& in, const FrameSource& frame, const FramePart& part,
+                    const DecodedView& planes);
+  /// Waits for it and brings its planes back. @return how many pixels the decoder decoded
+  std::int64_t finish(DeviceTile& in, const FrameSource& frame, const FramePart& part,
+                      const DecodedView& planes) const;
   /// Has the decoder decode pixels that are open to where they belong.
   /// @param numbers  a frame of one row of them
   void decode_open_pixels(const RawView& numbers, const std::vector<std::int32_t>& open,
@@ -56,12 +62,9 @@ struct DeviceDecoder::Plan {
 
  private:
   std::int64_t pixels_of_part(std::int64_t pixels) const;
-  void start(DeviceTile& in, const FrameSource& frame, const FramePart& part,
-             const DecodedView& planes);
-  std::int64_t finish(DeviceTile& in, const FrameSource& frame, const FramePart& part,
-                      const DecodedView& planes);
   void decode_open_pixels_of(DeviceTile& in, const FrameSource& frame, const FramePart& part,
-                             const std::vector<std::int32_t>& open, const DecodedView& planes);
+                             const std::vector<std::int32_t>& open,
+                             const DecodedView& planes) const;
 };
 
 }  // namespace tofsmith

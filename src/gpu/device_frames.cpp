@@ -3,46 +3,18 @@
 #include <string>
 
 #include "decode/output/shared/decoder_parts.hpp"
-#include "gpu/device_past.hpp"
-#include "gpu/frame_source.hpp"
+#include "gpu/device_frames_plan.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
-
-struct DeviceFrames::Plan {
-  Plan(const Device& device_, const DecodingTable& table_, const TimeFilter* time_filter,
-       const DeviceOptions& options_);
-
-  /// A frame comes, of the size of those before; the one that is there is no more.
-  void begin_frame(const RawView& raw, bool is_first);
-  /// Does work of a queue, all of it. What fails half-way is forgotten.
-  template <typename Steps>
-  void do_all(const DeviceQueue& queue, const Steps& steps);
-  void forget();
-  /// The frame that is there now.
-  FrameSource source();
-
-  Device device;
-  const DecodingTable& table;
-  DeviceOptions options;
-  std::optional<DeviceMeans> means;  // once there are any
-  std::optional<DevicePast> past;
-  RawView size;          // of the frames, no more
-  int frames_added = 0;  // to the next mean
-  bool has_frame = false;
-  std::vector<float> numbers, averaged;  // that were brought back
-  std::vector<double> exact_numbers;
-};
 
 DeviceFrames::Plan::Plan(const Device& device_, const DecodingTable& table_,
                          const TimeFilter* time_filter, const DeviceOptions& options_)
     : device(device_), table(table_), options(options_) {
   if (!time_filter) return;
-  require(time_filter->options().look_ahead == 0, "TimeFilterOptions::look_ahead",
-          time_filter->options().look_ahead, "must be 0 on a device");
   require(time_filter->measurements() == table.measurements(), "time filter's measurements",
           time_filter->measurements(), "must be those of the table");
-  past.emplace(device, state_of(*time_filter));
+  filter.emplace(device, state_of(*time_filter));
 }
 
 void DeviceFrames::Plan::begin_frame(const RawView& raw, bool is_first) {
@@ -58,26 +30,19 @@ void DeviceFrames::Plan::begin_frame(const RawView& raw, bool is_first) {
 
 void DeviceFrames::Plan::forget() {
   if (means) means->forget();
-  if (past) past->forget();
+  if (filter) filter->forget();
   frames_added = 0;
   has_frame = false;
 }
 
-template <typename Steps>
-void DeviceFrames::Plan::do_all(const DeviceQueue& queue, const Steps& steps) {
-  try {
-    steps();
-    queue.finish();
-  } catch (...) {
-    forget();
-    throw;
-  }
-}
-
 FrameSource DeviceFrames::Plan::source() {
   require(has_frame, "frame on the device", "none", "must be taken before");
-  if (past) return {.raw = size, .on_device = &past->result()};
-  return {.raw = size, .on_device = &means->result(), .means = &*means};
+  if (filter) return {.raw = size, .on_device = &filter->result(), .queue = &filter->queue()};
+  return {.raw = size,
+          .on_device = &means->result(),
+          .queue = &means->queue(),
+          .means = &*means,
+          .mean = means->mean()};
 }
 
 DeviceFrames::DeviceFrames(const Device& device, const DecodingTable& table,
@@ -93,10 +58,10 @@ bool DeviceFrames::takes(std::int64_t pixels) const { return pixels >= plan_->op
 
 void DeviceFrames::add(const RawView& raw) {
   Plan& plan = *plan_;
-  const bool is_first = plan.frames_added == 0 && !(plan.past && !plan.past->is_empty());
+  const bool is_first = plan.frames_added == 0 && !(plan.filter && !plan.filter->is_empty());
   plan.begin_frame(raw, is_first);
   if (!plan.means) plan.means.emplace(plan.device, plan.table.saturation_level);
-  plan.do_all(plan.means->queue(), [&] { plan.means->add(raw); });
+  plan.on_device([&] { plan.means->add(raw); });
   ++plan.frames_added;
 }
 
@@ -104,21 +69,33 @@ void DeviceFrames::take_mean(double averaged) {
   Plan& plan = *plan_;
   require(plan.frames_added > 0, "frames of a mean", plan.frames_added, "must be > 0");
   require(averaged > 0.0, "averaged", averaged, "must be > 0");
-  plan.do_all(plan.means->queue(), [&] { plan.means->finish(averaged); });
-  plan.frames_added = 0;
-  if (plan.past)
-    plan.do_all(plan.past->queue(),
-                [&] { plan.past->add(plan.means->result(), plan.size.height, plan.size.width); });
-  plan.has_frame = true;
+  plan.on_device([&] {
+    plan.means->finish(averaged);
+    plan.frames_added = 0;
+    if (!plan.filter) {
+      plan.has_frame = true;
+      return;
+    }
+    const DeviceQueue &of_means = plan.means->queue(), &of_filter = plan.filter->queue();
+    of_filter.follow(of_means.mark());
+    plan.has_frame = plan.filter->add(plan.means->result(), plan.size.height, plan.size.width);
+    of_means.follow(of_filter.mark());
+  });
 }
 
 void DeviceFrames::take(const RawView& raw) {
   Plan& plan = *plan_;
-  require(plan.past.has_value(), "time filter", "none",
+  require(plan.filter.has_value(), "time filter", "none",
           "is needed to take frames that are no means");
-  plan.begin_frame(raw, plan.past->is_empty());
-  plan.do_all(plan.past->queue(), [&] { plan.past->add(raw); });
-  plan.has_frame = true;
+  plan.begin_frame(raw, plan.filter->is_empty());
+  plan.on_device([&] { plan.has_frame = plan.filter->add(raw); });
+}
+
+bool DeviceFrames::take_end() {
+  Plan& plan = *plan_;
+  plan.has_frame = false;
+  if (plan.filter) plan.on_device([&] { plan.has_frame = plan.filter->add_end(); });
+  return plan.has_frame;
 }
 
 void DeviceFrames::forget() { plan_->forget(); }
@@ -126,44 +103,48 @@ void DeviceFrames::forget() { plan_->forget(); }
 bool DeviceFrames::has_frame() const { return plan_->has_frame; }
 
 RawView DeviceFrames::numbers() {
-  Plan& plan = *plan_;
-  const FrameSource source = plan.source();
+  return plan_->on_device([this] { return plan_->numbers_here(); });
+}
+
+RawView DeviceFrames::Plan::numbers_here() {
+  const FrameSource source = this->source();
   const auto pixels = static_cast<std::size_t>(source.pixels()),
-             count = pixels * static_cast<std::size_t>(plan.size.measurements);
-  const DeviceQueue& queue = source.means ? source.means->queue() : plan.past->queue();
-  plan.averaged.resize(pixels);
-  queue.download(*source.on_device->averaged(), pixels * sizeof(float), plan.averaged.data());
-  const int height = plan.size.height, width = plan.size.width, k = plan.size.measurements;
+             count = pixels * static_cast<std::size_t>(size.measurements);
+  averaged.resize(pixels);
+  source.queue->download(*source.on_device->averaged(), pixels * sizeof(float), averaged.data());
+  const int height = size.height, width = size.width, k = size.measurements;
   RawView view;
   if (source.means) {
-    plan.exact_numbers = source.means->numbers();
-    view = RawView::planar(plan.exact_numbers.data(), height, width, k);
+    exact_numbers = source.means->numbers();
+    view = RawView::planar(exact_numbers.data(), height, width, k);
   } else {
-    plan.numbers.resize(count);
-    queue.download(*source.on_device->numbers(), count * sizeof(float), plan.numbers.data());
-    view = RawView::planar(plan.numbers.data(), height, width, k);
+    numbers.resize(count);
+    source.queue->download(*source.on_device->numbers(), count * sizeof(float), numbers.data());
+    view = RawView::planar(numbers.data(), height, width, k);
   }
-  view.averaged = plan.averaged.data();
+  view.averaged = averaged.data();
   return view;
 }
 
 std::int64_t DeviceFrames::decode(const DeviceDecoder& decoder, const DecodedView& decoded,
                                   const Progress& progress) {
-  return decoder.decode_source(plan_->source(), plan_->device, decoded, progress);
+  return plan_->on_device(
+      [&] { return decoder.decode_source(plan_->source(), plan_->device, decoded, progress); });
 }
 
 std::int64_t DeviceFrames::decode(const DeviceFilter& filter, const DeviceDecoder& decoder,
                                   const DecodedView& decoded, FilteredFrame* filtered,
                                   const Progress& progress, const Image<std::uint8_t>& left_out) {
-  return filter.decode_source(plan_->source(), plan_->device, decoder, decoded, filtered, progress,
-                              left_out);
+  return plan_->on_device([&] {
+    return filter.decode_source(plan_->source(), plan_->device, decoder, decoded, filtered,
+                                progress, left_out);
+  });
 }
 
 std::optional<DeviceFrames> device_frames(std::string_view device, const DecodingTable& table,
                                           const TimeFilter* time_filter, bool makes_means,
                                           const DeviceDecoder& after) {
-  const bool cannot = (time_filter && time_filter->options().look_ahead > 0) ||
-                      (makes_means && !after.device().info().has_doubles);
+  const bool cannot = makes_means && !after.device().info().has_doubles;
   if ((!time_filter && !makes_means) || cannot) return std::nullopt;
   DeviceOptions options;
   if (device == "auto") options.min_pixels = auto_min_pixels_to_decode;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -30,8 +31,12 @@ class DeviceMeans {
 
   /// The mean, rounded to floats.
   const DeviceRaw& result() const { return result_; }
-  /// The mean of some pixels, K each, not rounded. @param pixels  of the frame
-  std::vector<double> numbers_of(const std::vector<std::int32_t>& pixels);
+  /// Which it is, for numbers_of().
+  int mean() const { return mean_; }
+  /// The next mean leaves the sums of this one alone; the one after it does not.
+  void keep_sums() { keeps_sums_ = true; }
+  /// A mean at some pixels, K each, not rounded. @param pixels  of the frame
+  std::vector<double> numbers_of(const std::vector<std::int32_t>& pixels, int mean);
   /// The same of all, one measurement after another.
   std::vector<double> numbers() const;
   const DeviceQueue& queue() const { return queue_; }
@@ -40,9 +45,17 @@ class DeviceMeans {
   DeviceQueue queue_;
   DeviceKernel add_to_sums_, write_means_, gather_means_;
   float clipped_;
-  std::int32_t pixels_ = 0, measurements_ = 0, frames_ = 0, frames_of_mean_ = 0;
+  /// What a mean is made of.
+  struct Sums {
+    std::int32_t pixels = 0, frames = 0;
+    DeviceMemory memory;
+  };
+  std::int32_t measurements_ = 0, frames_ = 0;
+  int mean_ = 0;
+  bool keeps_sums_ = false;
+  std::array<Sums, 2> sums_;  // the second once some were kept
   DeviceRaw frame_, result_;
-  DeviceMemory sums_, wanted_, gathered_;
+  DeviceMemory wanted_, gathered_;
 };
 
 }  // namespace tofsmith

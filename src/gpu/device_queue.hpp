@@ -38,6 +38,11 @@ struct DeviceKernel {
   DeviceHandle handle = no_handle();
 };
 
+/// A point in the work of a queue.
+struct DeviceMark {
+  DeviceHandle handle = no_handle();
+};
+
 /// What a backend does: work of a device, one piece after another. Every call throws IoError if the
 /// device fails, OutOfDeviceMemory where it is for that.
 class DeviceQueue {
@@ -74,6 +79,10 @@ class DeviceQueue {
     set_all(kernel, arguments...);
     start(kernel, pixels, group);
   }
+  /// The work given so far, which the device begins with.
+  DeviceMark mark() const;
+  /// What comes next begins once that work, of another queue, is done. Nobody waits here.
+  void follow(const DeviceMark& mark) const;
   /// Has the device begin with what it was given.
   void flush() const;
   /// Waits until all work is done.

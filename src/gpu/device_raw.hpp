@@ -30,6 +30,8 @@ class DeviceRaw {
   void reserve_planes(const DeviceQueue& queue, std::int64_t pixels, int measurements,
                       RawNumber number = raw_float);
   void release();
+  /// Of a frame, at most.
+  static std::int64_t bytes_per_pixel(const RawView& raw) { return 4 * (raw.measurements + 1); }
 
   std::int64_t pixels() const { return tile_.pixels; }
   const TileParameters& tile() const { return tile_; }

@@ -9,17 +9,20 @@ namespace tofsmith {
 /// A frame to be filtered or decoded: numbers of this computer, or of the device.
 struct FrameSource {
   RawView raw;                           ///< of a frame on the device its size alone
-  const DeviceRaw* on_device = nullptr;  ///< all of it, means all; its work there is done
+  const DeviceRaw* on_device = nullptr;  ///< all of it
+  const DeviceQueue* queue = nullptr;    ///< whose work that is and changes it; null: it stays
   DeviceMeans* means = nullptr;          ///< of which that has the numbers, rounded
+  int mean = 0;                          ///< which of them, as DeviceMeans::mean()
 
   std::int64_t pixels() const { return raw.pixels(); }
-  /// Has pixels first .. first + count - 1 in `to`.
-  void bring(const DeviceQueue& queue, DeviceRaw& to, std::int64_t first,
+  /// Has pixels first .. first + count - 1 in `to`. What is on the device is copied there once its
+  /// work is done, and changes after that.
+  void bring(const DeviceQueue& to_queue, DeviceRaw& to, std::int64_t first,
              std::int64_t count) const {
-    if (on_device)
-      to.copy(queue, *on_device, raw.measurements, first, count);
-    else
-      to.upload(queue, raw, first, count);
+    if (!on_device) return to.upload(to_queue, raw, first, count);
+    if (queue) to_queue.follow(queue->mark());
+    to.copy(to_queue, *on_device, raw.measurements, first, count);
+    if (queue) queue->follow(to_queue.mark());
   }
 };
 

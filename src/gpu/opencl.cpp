@@ -262,6 +262,21 @@ void DeviceQueue::start(const DeviceKernel& kernel, const Extent& items,
         place_of(device_.info()), "starting a kernel");
 }
 
+DeviceMark DeviceQueue::mark() const {
+  cl_event event = nullptr;
+  const cl_int error = clEnqueueMarkerWithWaitList(queue_of(handle_), 0, nullptr, &event);
+  DeviceMark mark{handle_of<clReleaseEvent>(event)};
+  check(error, place_of(device_.info()), "marking work");
+  flush();  // else what follows may wait for ever
+  return mark;
+}
+
+void DeviceQueue::follow(const DeviceMark& mark) const {
+  const auto event = static_cast<cl_event>(mark.handle.get());
+  check(clEnqueueBarrierWithWaitList(queue_of(handle_), 1, &event, nullptr),
+        place_of(device_.info()), "having work follow other work");
+}
+
 void DeviceQueue::flush() const {
   check(clFlush(queue_of(handle_)), place_of(device_.info()), "starting kernels");
 }

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// A TimeFilter's steps, as time_kernel.cpp and time_filter_state.cpp do them. Compiled behind
+// A TimeFilter's steps, as time_kernel.cpp, time_filter_state.cpp and
+// time_filter_both_ways.cpp do them. Compiled behind
 // numbers.cl and time_parameters.h, with RANK, PATCH_REACH, CELL_SIDE and CELL_REACH. A work item
 // each has a pixel, or a cell. No product is added in one step, as none is on the processor.
 
@@ -102,8 +103,8 @@ float beyond_by(const struct TimeTest* test, float chi2) {
   return LARGER(0.0f, beyond);
 }
 
-kernel void weigh_past(const struct TimeParameters p, Floats averaged, Floats averaged_before,
-                       global float* planes) {
+kernel void weigh_side(const struct TimeParameters p, Floats averaged, Floats averaged_before,
+                       global float* planes, global float* weights) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
   if (x >= p.width || y >= p.height) return;
   const int pixel = y * p.width + x;
@@ -129,7 +130,7 @@ kernel void weigh_past(const struct TimeParameters p, Floats averaged, Floats av
   const float changed = (1.0f / past + 1.0f / n) / (float)MEASUREMENTS * beyond;
   const float stays = share * past / (1.0f + past * changed), most = p.max_weight * n;
   const float usable = time_plane(&p, planes, time_usable)[pixel];
-  time_plane(&p, planes, time_weight)[pixel] = usable > 0.0f ? SMALLER(stays, most) : p.none;
+  weights[pixel] = usable > 0.0f ? SMALLER(stays, most) : p.none;
   time_plane(&p, planes, time_unchanged)[pixel] = changed > 0.0f ? 0.0f : usable;
 }
 
@@ -173,7 +174,7 @@ kernel void find_cell_changes(const struct TimeParameters p, Floats cells, globa
 }
 
 kernel void weigh_by_cells(const struct TimeParameters p, Floats averaged, Floats averaged_before,
-                           Floats changes, global float* planes) {
+                           Floats changes, global float* weights) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
   if (x >= p.width || y >= p.height) return;
   const int pixel = y * p.width + x;
@@ -181,7 +182,6 @@ kernel void weigh_by_cells(const struct TimeParameters p, Floats averaged, Float
   // What so many pixels share is not less after they are added: their sum's noise counts.
   const float changed = changes[y / CELL_SIDE * p.cell_columns + x / CELL_SIDE] *
                         (1.0f / averaged_before[pixel] + 1.0f / n);
-  const Plane weights = time_plane(&p, planes, time_weight);
   const float weight = weights[pixel];
   if (weight > 0.0f) weights[pixel] = weight / (1.0f + weight * changed);
 }
@@ -196,10 +196,9 @@ float most_weight(const struct TimeParameters* p, Floats averaged, Floats averag
 
 /// The least share of the past that stays in the pixels of the row around each.
 kernel void find_shares(const struct TimeParameters p, Floats averaged, Floats averaged_before,
-                        global float* planes) {
+                        Floats weights, global float* planes) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
   if (x >= p.width || y >= p.height) return;
-  const Plane weights = time_plane(&p, planes, time_weight);
   const int last = min(x + PATCH_REACH, p.width - 1);
   float share = 1.0f;
   for (int i = max(x - PATCH_REACH, 0); i <= last; ++i) {
@@ -214,13 +213,12 @@ kernel void find_shares(const struct TimeParameters p, Floats averaged, Floats a
 
 /// The same of the rows around it: no pixel keeps much more than those beside it.
 kernel void weigh_by_shares(const struct TimeParameters p, Floats averaged, Floats averaged_before,
-                            global float* planes) {
+                            global float* planes, global float* weights) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
   if (x >= p.width || y >= p.height) return;
   const int pixel = y * p.width + x, last = min(y + PATCH_REACH, p.height - 1);
   const float most = most_weight(&p, averaged, averaged_before, pixel);
   const Plane shares = time_plane(&p, planes, time_share);
-  const Plane weights = time_plane(&p, planes, time_weight);
   float weight = weights[pixel];
   for (int i = max(y - PATCH_REACH, 0); i <= last; ++i) {
     const float at_most = shares[i * p.width + x] * most;
@@ -232,13 +230,13 @@ kernel void weigh_by_shares(const struct TimeParameters p, Floats averaged, Floa
 // ---- The next means.
 
 kernel void add_frame(const struct TimeParameters p, const struct TileParameters tile,
-                      global const uchar* raw_numbers, Floats averaged, global float* planes,
+                      global const uchar* raw_numbers, Floats averaged, Floats weights,
                       global float* means, global float* averaged_before) {
   const int x = (int)get_global_id(0), y = (int)get_global_id(1);
   if (x >= p.width || y >= p.height) return;
   const int pixel = y * p.width + x;
   const size_t pixels = (size_t)p.height * (size_t)p.width;
-  const float w = time_plane(&p, planes, time_weight)[pixel], n = averaged_of(averaged, pixel);
+  const float w = weights[pixel], n = averaged_of(averaged, pixel);
   const float share = w / (w + n);
   for (int k = 0; k < MEASUREMENTS; ++k) {
     const float now = raw_number(&tile, raw_numbers, pixel, k);
@@ -248,4 +246,32 @@ kernel void add_frame(const struct TimeParameters p, const struct TileParameters
   }
   const float both = (w + n) * (w + n) / (w * w / averaged_before[pixel] + n);
   averaged_before[pixel] = w > 0.0f ? both : n;
+}
+
+// ---- Frames that look ahead.
+
+/// A frame with what stays of both sides of it, in place of those after it. Neither side is tested
+/// against the other: what changes from one to the other cancels where both weigh the same.
+kernel void join_sides(const struct TimeParameters p, const struct TileParameters tile,
+                       global const uchar* raw_numbers, Floats averaged, Floats past_means,
+                       Floats past_averaged, Floats past_weights, global float* means,
+                       global float* future_averaged, Floats future_weights) {
+  const int x = (int)get_global_id(0), y = (int)get_global_id(1);
+  if (x >= p.width || y >= p.height) return;
+  const int pixel = y * p.width + x;
+  const float w_past = past_weights[pixel], w_future = future_weights[pixel];
+  const float n = averaged_of(averaged, pixel);
+  for (int k = 0; k < MEASUREMENTS; ++k) {
+    const float now = raw_number(&tile, raw_numbers, pixel, k);
+    const float before = mean_of(&p, past_means, pixel, k), after = mean_of(&p, means, pixel, k);
+    // Sides of no weight may hold what is no number.
+    const float d_past = w_past > 0.0f ? w_past * (before - now) : 0.0f;
+    const float d_future = w_future > 0.0f ? w_future * (after - now) : 0.0f;
+    const float both = now + (d_past + d_future) / (w_past + w_future + n);
+    time_plane(&p, means, k)[pixel] = w_past + w_future > 0.0f ? both : now;
+  }
+  const float of_past = w_past > 0.0f ? w_past * w_past / past_averaged[pixel] : 0.0f;
+  const float of_future = w_future > 0.0f ? w_future * w_future / future_averaged[pixel] : 0.0f;
+  const float squares = of_past + of_future, all = w_past + w_future + n;
+  future_averaged[pixel] = w_past + w_future > 0.0f ? all * all / (squares + n) : n;
 }

@@ -9,7 +9,6 @@ namespace tofsmith {
 
 /// Planes of a frame beside what was added up (H, W).
 enum TimePlane {
-  time_weight,      ///< of what was added to a pixel, in the next mean
   time_usable,      ///< 1 where both are measurements of light, else 0
   time_chi2,        ///< of the pixel itself
   time_unchanged,   ///< 1 where no test shows a change, else 0

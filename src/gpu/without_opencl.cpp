@@ -35,6 +35,8 @@ void DeviceQueue::set_bytes(const DeviceKernel&, unsigned, const void*, std::siz
   refuse();
 }
 void DeviceQueue::start(const DeviceKernel&, const Extent&, const Extent&) const { refuse(); }
+DeviceMark DeviceQueue::mark() const { refuse(); }
+void DeviceQueue::follow(const DeviceMark&) const { refuse(); }
 void DeviceQueue::flush() const { refuse(); }
 void DeviceQueue::finish() const { refuse(); }
 

@@ -1,89 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The tofsmith authors
 // SPDX-License-Identifier: Apache-2.0
-// Devices that fail half-way: functions of OpenCL stand here in front of the loader's own, and give
-// an error where a test says so.
+// Devices that fail half-way.
 #if __has_include(<CL/cl.h>)
-#include <dlfcn.h>
-#define CL_TARGET_OPENCL_VERSION 120
-#include <CL/cl.h>
-
 #include "device_setup.hpp"
 #include "rows_setup.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/simulate/depth_error.hpp"
-
-namespace tofsmith {
-namespace {
-
-/// Which calls fail, of those that work on the device.
-struct Failure {
-  int first = std::numeric_limits<int>::max();
-  int last = std::numeric_limits<int>::max();
-  cl_int error = CL_SUCCESS;
-  int calls = 0;
-
-  /// The error of the next call.
-  cl_int next() {
-    const int call = calls++;
-    return call >= first && call <= last ? error : CL_SUCCESS;
-  }
-};
-Failure failure;
-
-template <typename Function>
-Function* real(const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
-}
-
-}  // namespace
-}  // namespace tofsmith
-
-#define REAL(function) tofsmith::real<decltype(function)>(#function)
-
-extern "C" {
-
-cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
-                              const size_t* offset, const size_t* global, const size_t* local,
-                              cl_uint waits, const cl_event* list, cl_event* event) {
-  if (const cl_int error = tofsmith::failure.next()) return error;
-  return REAL(clEnqueueNDRangeKernel)(queue, kernel, dimensions, offset, global, local, waits, list,
-                                      event);
-}
-
-cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem memory, cl_bool blocks, size_t offset,
-                           size_t bytes, void* to, cl_uint waits, const cl_event* list,
-                           cl_event* event) {
-  if (const cl_int error = tofsmith::failure.next()) return error;
-  return REAL(clEnqueueReadBuffer)(queue, memory, blocks, offset, bytes, to, waits, list, event);
-}
-
-cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem memory, cl_bool blocks, size_t offset,
-                            size_t bytes, const void* from, cl_uint waits, const cl_event* list,
-                            cl_event* event) {
-  if (const cl_int error = tofsmith::failure.next()) return error;
-  return REAL(clEnqueueWriteBuffer)(queue, memory, blocks, offset, bytes, from, waits, list, event);
-}
-
-cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem memory, const void* pattern,
-                           size_t pattern_bytes, size_t offset, size_t bytes, cl_uint waits,
-                           const cl_event* list, cl_event* event) {
-  if (const cl_int error = tofsmith::failure.next()) return error;
-  return REAL(clEnqueueFillBuffer)(queue, memory, pattern, pattern_bytes, offset, bytes, waits,
-                                   list, event);
-}
-
-cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t bytes, void* from,
-                      cl_int* error) {
-  *error = tofsmith::failure.next();
-  return *error ? nullptr : REAL(clCreateBuffer)(context, flags, bytes, from, error);
-}
-
-cl_int clFinish(cl_command_queue queue) {
-  if (const cl_int error = tofsmith::failure.next()) return error;
-  return REAL(clFinish)(queue);
-}
-
-}  // extern "C"
+#include "watched_opencl.hpp"
 
 namespace tofsmith {
 namespace {
@@ -145,41 +68,65 @@ TEST_F(FailingDevice, IsAnErrorWhereverItFailsAndWorksAgainWhenItIsBack) {
 }
 
 TEST_F(FailingDevice, ForgetsFramesThatItAddedUpAndStartsAnewWhenItIsBack) {
-  const TimeFilter time_filter(setup_.decoder.table(), {.before_filter = true});
   const DeviceDecoder decoder(device(), setup_.decoder);
-  DeviceFrames frames(device(), setup_.decoder.table(), &time_filter);
-  const auto add_up = [&](Outputs& outputs) {
-    frames.forget();
-    frames.take(view());
-    if (device().info().has_doubles) {
-      frames.add(view());
-      frames.add(view());
-      frames.take_mean();
-    } else {
+  for (const int look_ahead : {0, 2}) {
+    const TimeFilter time_filter(setup_.decoder.table(),
+                                 {.before_filter = true, .look_ahead = look_ahead});
+    DeviceFrames frames(device(), setup_.decoder.table(), &time_filter);
+    const auto add_up = [&](Outputs& outputs) {
+      frames.forget();
       frames.take(view());
-    }
-    frames.decode(decoder, outputs.view());
-  };
-  Outputs expected(expected_.bin.size());
-  add_up(expected);
-  for (const cl_int error :
-       {CL_DEVICE_NOT_AVAILABLE, CL_OUT_OF_RESOURCES, CL_MEM_OBJECT_ALLOCATION_FAILURE})
-    for (int first = 0;; ++first) {
-      Outputs outputs(expected.bin.size());
-      failure = {.first = first, .error = error};
-      bool has_failed = false;
-      try {
-        add_up(outputs);
-      } catch (const IoError& lost) {
-        EXPECT_NE(std::string(lost.what()).find(device().info().name), std::string::npos);
-        has_failed = true;
+      if (device().info().has_doubles) {
+        frames.add(view());
+        frames.add(view());
+        frames.take_mean();
+      } else {
+        frames.take(view());
       }
-      ASSERT_EQ(has_failed, failure.calls > first);
-      failure = {};
-      if (!has_failed) break;
-      add_up(outputs);
-      expect_same(outputs, expected);
-    }
+      for (int waits = 0; waits < look_ahead; ++waits) EXPECT_TRUE(frames.take_end());
+      frames.decode(decoder, outputs.view());
+    };
+    Outputs expected(expected_.bin.size());
+    add_up(expected);
+    for (const cl_int error :
+         {CL_DEVICE_NOT_AVAILABLE, CL_OUT_OF_RESOURCES, CL_MEM_OBJECT_ALLOCATION_FAILURE})
+      for (int first = 0;; ++first) {
+        Outputs outputs(expected.bin.size());
+        failure = {.first = first, .error = error};
+        bool has_failed = false;
+        try {
+          add_up(outputs);
+        } catch (const IoError& lost) {
+          EXPECT_NE(std::string(lost.what()).find(device().info().name), std::string::npos);
+          has_failed = true;
+        }
+        ASSERT_EQ(has_failed, failure.calls > first);
+        failure = {};
+        if (!has_failed) break;
+        add_up(outputs);
+        expect_same(outputs, expected);
+      }
+  }
+}
+
+TEST_F(FailingDevice, HasNoFrameWaitingWhereOneWasLost) {
+  const TimeFilter time_filter(setup_.decoder.table(), {.look_ahead = 2});
+  DeviceFrames frames(device(), setup_.decoder.table(), &time_filter);
+  const auto expect_none = [&] {
+    EXPECT_FALSE(frames.has_frame());
+    failure = {};
+    EXPECT_FALSE(frames.take_end());
+  };
+  frames.take(view());
+  frames.take(view());
+  failure = {.first = 0, .error = CL_DEVICE_NOT_AVAILABLE};
+  EXPECT_THROW(frames.take_end(), IoError);
+  expect_none();
+  frames.take(view());
+  frames.take(view());
+  failure = {.first = 9, .error = CL_DEVICE_NOT_AVAILABLE};
+  EXPECT_THROW(frames.take(view()), IoError);
+  expect_none();
 }
 
 TEST_F(FailingDevice, HasNoFrameWhereOneWasLost) {

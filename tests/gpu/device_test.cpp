@@ -69,5 +69,25 @@ TEST_F(DeviceQueues, BringBackWhatTheyTook) {
   EXPECT_EQ(back, sent);
 }
 
+TEST_F(DeviceQueues, FollowOneAnotherWhereTheyAreTold) {
+  const DeviceQueue first(device()), second(device());
+  const DeviceKernel count =
+      first.kernel("kernel void count(global int* a) { a[get_global_id(0)] += 1; }", "", "count");
+  constexpr int items = 1 << 16, times = 50;
+  const std::size_t bytes = items * sizeof(std::int32_t);
+  const DeviceMemory a = first.allocate(bytes), b = first.allocate(bytes);
+  std::vector<std::int32_t> back(items);
+  for (int round = 1; round <= 5; ++round) {
+    if (round == 1) first.clear(a);
+    for (int i = 0; i < times; ++i) first.run(count, items, &a);
+    second.follow(first.mark());
+    second.copy(a, 0, b, 0, bytes);
+    first.follow(second.mark());  // what is copied changes after that
+    for (int i = 0; i < times; ++i) first.run(count, items, &a);
+    second.download(b, bytes, back.data());
+    EXPECT_EQ(back, std::vector<std::int32_t>(items, (2 * round - 1) * times));
+  }
+}
+
 }  // namespace
 }  // namespace tofsmith

@@ -191,6 +191,17 @@ TEST_F(DecodeRecording, AFrameHoldsThoseItLooksAheadToForAnyRange) {
   EXPECT_EQ(plane("farther-averaged.npy", 0), std::vector<float>(6 * 5, 3.0F));
 }
 
+TEST_F(DecodeRecording, NoMeanComesAfterTheLastToBeLookedAheadTo) {
+  DecodeRequest all = request("all.npy");
+  all.time_filter = TimeFilterOptions{.max_difference_sigma = 20.0, .look_ahead = 2};
+  all.average = 2;
+  all.stack = true;
+  all.outputs = {DecodedPlane::averaged};
+  EXPECT_EQ(decode_recording(all, decoder_).frames.size(), 2u);
+  for (std::size_t f = 0; f < 2; ++f)  // a mean of two and the frame that is left
+    EXPECT_EQ(plane("all-averaged.npy", f), std::vector<float>(6 * 5, 3.0F));
+}
+
 TEST_F(DecodeRecording, MeansOfEqualFramesAreTheFrameWithLessNoise) {
   RawFrames equal = raw_;
   const auto frame_size = static_cast<std::ptrdiff_t>(equal.values.size() / 3);

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Captures, filters and decoding on a device of OpenCL, where there is one."""
 
+import io
 import pickle
 
 import numpy as np
@@ -66,7 +67,9 @@ def test_a_device_adds_frames_up_as_the_processor(decoders, tmp_path):
     np.save(tmp_path / "raw.npy", np.concatenate([raw_frames(), raw_frames()]))
     cases = [{"time_filter": 8}, {"time_filter": 8, "filter": "light"}, {"average": 2},
              {"average": 2, "time_filter": 8, "mixed": "label"},
-             {"time_filter": {"max_frames": 8, "look_ahead": 1}}]
+             {"time_filter": {"max_frames": 8, "look_ahead": 1}},
+             {"time_filter": {"max_frames": 8, "look_ahead": 2}, "filter": "light"},
+             {"average": 2, "time_filter": {"max_frames": 8, "look_ahead": 9}}]
     for number, case in enumerate(cases):
         for name, decoder in zip(("here", "there"), decoders):
             decoder.decode_recording(tmp_path / "raw.npy", tmp_path / f"{name}{number}.npy",
@@ -74,6 +77,21 @@ def test_a_device_adds_frames_up_as_the_processor(decoders, tmp_path):
         for plane in ("", "-averaged"):
             np.testing.assert_allclose(np.load(tmp_path / f"there{number}{plane}.npy"),
                                        np.load(tmp_path / f"here{number}{plane}.npy"), rtol=1e-5)
+
+
+def test_a_device_adds_frames_of_streams_up_that_look_ahead(decoders, tmp_path):
+    raw = np.concatenate([raw_frames(), raw_frames()]).astype("<u2")
+    (tmp_path / "s.raw.toml").write_text("width = 40\nheight = 30\nmeasurements = 4\nbits = 16\n"
+                                         'layout = "interleaved"\n')
+    for case in {"average": 1}, {"average": 2}, {"filter": "light"}:
+        taken = [[], []]
+        for decoder, frames in zip(decoders, taken):
+            decoder.decode_stream(io.BytesIO(raw.tobytes()), frames.append, outputs=["depth"],
+                                  raw_format=tmp_path / "s.raw.toml",
+                                  time_filter={"max_frames": 8, "look_ahead": 3}, **case)
+        assert len(taken[0]) == len(taken[1]) == 4 // case.get("average", 1)
+        for expected, found in zip(*taken):
+            np.testing.assert_allclose(found["depth"], expected["depth"], rtol=1e-5)
 
 
 def test_a_device_captures_as_the_processor(decoders, tmp_path):

@@ -95,13 +95,20 @@ void check_range_fits(const std::filesystem::path& path, double range_m) {
                               range_m, largest_m));
 }
 
-/// How many rows are read and decoded at a time so that all buffers together fit.
-/// @throws IoError if a frame of this format, a frame to be filtered, or a single row, takes more
-int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target,
-                   const Preparation& preparation, double memory_bytes) {
+/// What buffers take, whatever the rows, and for each row that is read and decoded at a time.
+struct BufferBytes {
+  double whole, row;
+};
+
+double bytes_of_planes(const DecodeTarget& target, int rows) {
+  return static_cast<double>(bytes_per_pixel(target.needed_planes())) * target.view.width * rows;
+}
+
+BufferBytes buffer_bytes(const RawFramesReader& reader, const DecodeTarget& target,
+                         const Preparation& preparation) {
   const int height = target.view.height, width = target.view.width;
-  const double row_planes = static_cast<double>(bytes_per_pixel(target.needed_planes())) * width;
-  const bool in_rows = target.in_rows(), in_frames = preparation.needs_frames();
+  const double row_planes = bytes_of_planes(target, 1);
+  const bool in_rows = target.in_rows();
   double whole = static_cast<double>(reader.bytes_in_memory() + target.writing_bytes() +
                                      target.pixel_rays.bytes() +
                                      (target.undistortion ? target.undistortion->bytes() : 0)) +
@@ -110,7 +117,16 @@ int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target,
   double row =
       (reader.bytes_in_memory() > 0 ? 0.0 : 2.0 * static_cast<double>(reader.row_bytes())) +
       preparation.row_bytes(width, reader.measurements()) + (in_rows ? row_planes : 0.0);
-  if (in_frames) whole += row * height, row = 0.0;
+  if (preparation.needs_frames()) whole += row * height, row = 0.0;
+  return {whole, row};
+}
+
+/// How many rows are read and decoded at a time so that all buffers together fit.
+/// @throws IoError if a frame of this format, a frame to be filtered, or a single row, takes more
+int rows_at_a_time(const BufferBytes& bytes, const DecodeTarget& target,
+                   const Preparation& preparation, double memory_bytes) {
+  const int height = target.view.height, width = target.view.width;
+  const auto [whole, row] = bytes;
   if (whole + row > memory_bytes)
     throw IoError(
         target.path.string(),
@@ -120,12 +136,24 @@ int rows_at_a_time(const RawFramesReader& reader, const DecodeTarget& target,
             height, width, 1e-6 * (whole + row),
             preparation.filter || preparation.time_filter ? "filtered and " : "",
             1e-6 * memory_bytes,
-            in_frames ? "without filters, mixed and undistort they go in bands of rows; " : "",
-            in_rows ? "" : "; .npy is written row by row, with --stack every plane"));
+            preparation.needs_frames()
+                ? "without filters, mixed and undistort they go in bands of rows; "
+                : "",
+            target.in_rows() ? "" : "; .npy is written row by row, with --stack every plane"));
   // Larger bands are no faster: new memory costs more than another call.
   constexpr double comfortable_bytes = 32e6;
   const double rows = row > 0.0 ? std::min(memory_bytes - whole, comfortable_bytes) / row : height;
   return std::clamp(static_cast<int>(rows), 1, height);
+}
+
+/// Whether two frames may be under way: what of them is on a device, and planes of both here.
+bool may_overlap(const DecodeRequest& request, const DecodeTarget& target,
+                 const Preparation& preparation) {
+  const std::int64_t pixels = std::int64_t{target.view.height} * target.view.width;
+  const bool wants_filtered =
+      request.filter && std::ranges::count(target.planes, DecodedPlane::averaged) > 0;
+  return request.overlapped_by && target.frames > 1 && !target.find_mixed && !wants_filtered &&
+         ((request.filter && request.filter_by) || preparation.is_elsewhere(pixels));
 }
 
 /// Progress over all frames, which says how fast they come.
@@ -165,37 +193,58 @@ class Pace {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Decodes the target's frames in bands of at most `rows` rows.
-void decode_frames(const RawFramesReader& reader, const Preparation& preparation, int rows,
-                   const MappedDecoder& decoder, DecodeOutput& output, const Progress& progress,
-                   DecodedRecording& result) {
+/// How frames of a recording go.
+struct DecodeSteps {
+  int rows = 1;           ///< of a band, at most
+  bool overlaps = false;  ///< the next frame is begun before the one before is finished
+};
+
+/// Decodes the target's frames.
+void decode_frames(const RawFramesReader& reader, const Preparation& preparation,
+                   const DecodeSteps& steps, const MappedDecoder& decoder, DecodeOutput& output,
+                   const Progress& progress, DecodedRecording& result) {
   const DecodeTarget& target = output.target();
   const int height = target.view.height, width = target.view.width;
-  const bool in_rows = target.in_rows();
-  DecodedPlanes planes(target.needed_planes(), in_rows ? rows : height, width);
+  std::vector<DecodedPlanes> planes(
+      steps.overlaps ? 2 : 1,
+      DecodedPlanes(target.needed_planes(), target.in_rows() ? steps.rows : height, width));
   const std::vector<Band> bands =
-      bands_of(target.first_frame, target.first_frame + target.frames, height, rows);
+      bands_of(target.first_frame, target.first_frame + target.frames, height, steps.rows);
   ReadAhead recorded(reader, bands_to_read(preparation, reader.frames(), bands));
   PreparedFrames input([&] { return recorded.next(); }, decoder.table(), preparation,
                        reader.frames());
   const Pace pace(progress, target);
   StatusCounts statuses;
-  for (const Band& band : bands) {
-    const Progress here = pace.of_band(band, result.pixels);
-    report(here, 0.0, "reading");
-    decode_next(input, decoder, band, target, planes, here);
-    if (target.undistortion) planes.undistort(*target.undistortion, target.as_z);
+  const auto take = [&](const Band& band, DecodedPlanes& decoded) {
+    if (target.undistortion) decoded.undistort(*target.undistortion, target.as_z);
     const std::int64_t pixels = std::int64_t{band.rows} * width;
     if (target.count_statuses)
-      statuses.add(std::span(planes.statuses().pixels)
+      statuses.add(std::span(decoded.statuses().pixels)
                        .subspan(target.first_pixel(band), static_cast<std::size_t>(pixels)));
-    output.take(band.frame, band.first_row, band.rows, planes);
+    output.take(band.frame, band.first_row, band.rows, decoded);
     result.pixels += pixels;
     result.seconds = pace.seconds();
-    if (band.first_row + band.rows < height) continue;
+    if (band.first_row + band.rows < height) return;
     result.frames.push_back(std::exchange(statuses, {}));
     if (!target.stack) result.files.push_back(target.frame_path(band.frame));
+  };
+  const auto finish = [&](std::size_t i) {
+    finish_first(decoder, bands[i], target, planes[i % 2]);
+    take(bands[i], planes[i % 2]);
+  };
+  if (steps.overlaps) decoder.overlapped().forget();
+  for (std::size_t i = 0; i < bands.size(); ++i) {
+    const Progress here = pace.of_band(bands[i], result.pixels);
+    report(here, 0.0, "reading");
+    if (steps.overlaps) {
+      start_next(input, decoder, bands[i], planes[i % 2], here);
+      if (i > 0) finish(i - 1);
+    } else {
+      decode_next(input, decoder, bands[i], target, planes[0], here);
+      take(bands[i], planes[0]);
+    }
   }
+  if (steps.overlaps) finish(bands.size() - 1);
   output.finish();
   if (target.stack) result.files = target.paths();
   result.seconds = pace.seconds();
@@ -236,7 +285,12 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
   DecodeOutput output(std::move(asked));
   const DecodeTarget& target = output.target();
   const Preparation preparation = preparation_of(request);
-  const int rows = rows_at_a_time(reader, target, preparation, 1e6 * request.memory_mb);
+  const double memory_bytes = 1e6 * request.memory_mb;
+  const BufferBytes bytes = buffer_bytes(reader, target, preparation);
+  DecodeSteps steps{.rows = rows_at_a_time(bytes, target, preparation, memory_bytes)};
+  steps.overlaps =
+      may_overlap(request, target, preparation) && steps.rows == reader.height() &&
+      bytes.whole + bytes.row * steps.rows + bytes_of_planes(target, steps.rows) <= memory_bytes;
 
   result.height = reader.height();
   result.width = reader.width();
@@ -245,7 +299,7 @@ void decode_recording(const DecodeRequest& request, const AnyDecoder& decoder,
   result.frame_count = target.frames;
   result.outputs = target.planes;
   if (const auto note = electrons_note(reader, table)) result.notes.push_back(*note);
-  decode_frames(reader, preparation, rows, mapped, output, progress, result);
+  decode_frames(reader, preparation, steps, mapped, output, progress, result);
   if (const auto note = no_depth_note(result.total())) result.notes.push_back(*note);
 }
 

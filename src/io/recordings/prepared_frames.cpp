@@ -69,11 +69,15 @@ double Preparation::frame_bytes(int recorded, int height, int width, int measure
   constexpr double bytes_to_find_mixed = 4 * sizeof(float) + 3;
   const int threads = working_threads();
   std::size_t bytes = 0;
-  if (time_filter) {
+  const bool is_there = is_elsewhere(std::int64_t{height} * width);
+  if (time_filter && !is_there) {
     TimeFilterOptions within = *time_filter;  // never more frames wait than there are
     within.look_ahead = std::min(within.look_ahead, frames_of(recorded) - 1);
     bytes += TimeFilter::memory_bytes(within, height, width, measurements, threads);
   }
+  if (time_filter && is_there && wants_numbers)
+    bytes += sizeof(float) * static_cast<std::size_t>(height) * static_cast<std::size_t>(width) *
+             static_cast<std::size_t>(measurements + 1);
   if (filter) bytes += Filter::memory_bytes(*filter, height, width, measurements, threads);
   if (!stray_kernel.empty())
     bytes += static_cast<std::size_t>(
@@ -178,11 +182,13 @@ std::optional<RawView> PreparedFrames::bracketed(const Progress& progress) {
   return merged_.view();
 }
 
-/// A band of frame `frame` as it is read or, of several, as their mean.
+/// A band of frame `frame` as it is read or, of several, as their mean; of one that is made
+/// elsewhere, its size.
 std::optional<RawView> PreparedFrames::measured(int frame, const Progress& progress) {
   if (!preparation_.hdr.empty()) return bracketed(progress);
   if (preparation_.average == 1) return read();
   const int frames = frames_of_mean(preparation_, recorded_, frame);
+  if (frames <= 0) return std::nullopt;  // after the last
   RawView last;
   for (int i = 0; i < frames; ++i) {
     report(progress, static_cast<double>(i) / frames, "averaging");
@@ -199,13 +205,12 @@ std::optional<RawView> PreparedFrames::measured(int frame, const Progress& progr
   }
   if (!is_elsewhere(last)) return sums_.means(preparation_.averaged);
   preparation_.elsewhere.take_mean(preparation_.averaged);
-  return frame_elsewhere(last);
+  return last;
 }
 
 /// All frames of a recording are, or none.
 bool PreparedFrames::is_elsewhere(const RawView& raw) {
-  if (!is_elsewhere_)
-    is_elsewhere_ = preparation_.elsewhere && preparation_.elsewhere.takes(raw.pixels());
+  if (!is_elsewhere_) is_elsewhere_ = preparation_.is_elsewhere(raw.pixels());
   return *is_elsewhere_;
 }
 
@@ -214,6 +219,18 @@ RawView PreparedFrames::frame_elsewhere(const RawView& raw) const {
   if (preparation_.wants_numbers) return preparation_.elsewhere.numbers();
   return RawView::interleaved(static_cast<const float*>(nullptr), raw.height, raw.width,
                               raw.measurements);
+}
+
+/// What comes of the next frame or, after the last, of those that wait.
+std::optional<RawView> PreparedFrames::added_elsewhere(const std::optional<RawView>& raw) {
+  const FramesElsewhere& elsewhere = preparation_.elsewhere;
+  if (raw) {
+    frame_size_ = RawView::interleaved(static_cast<const float*>(nullptr), raw->height, raw->width,
+                                       raw->measurements);
+    if (preparation_.average == 1) elsewhere.take(*raw);  // means are there since they were made
+  }
+  const bool has_frame = raw ? elsewhere.has_frame() : elsewhere.take_end();
+  return has_frame ? std::optional(frame_elsewhere(frame_size_)) : std::nullopt;
 }
 
 /// Frame `frame` with what is the same in those around it.
@@ -226,21 +243,15 @@ std::optional<RawView> PreparedFrames::added_up(int frame, const Progress& progr
   for (std::size_t step = 0; frames_added_ <= frame; ++step) {
     const Progress here = parts[std::min(step, steps - 1)];
     const std::optional<RawView> raw = has_ended_ ? std::nullopt : measured(frames_read_, here);
-    if (raw && is_elsewhere(*raw)) {
+    if (raw)
       ++frames_read_;
-      const bool is_mean = preparation_.average > 1;  // those were added there as they were made
-      if (!is_mean) preparation_.elsewhere.take(*raw);
-      added = is_mean ? raw : frame_elsewhere(*raw);
-    } else if (raw) {
-      ++frames_read_;
-      added = time_filter_->add(*raw);
-    } else if (is_elsewhere_.value_or(false)) {
-      return std::nullopt;
-    } else {
+    else
       has_ended_ = true;
-      added = time_filter_->add_end();
-      if (!added) break;
-    }
+    if (raw ? is_elsewhere(*raw) : is_elsewhere_.value_or(false))
+      added = added_elsewhere(raw);
+    else
+      added = raw ? time_filter_->add(*raw) : time_filter_->add_end();
+    if (!added && has_ended_) break;
     if (added) ++frames_added_;
     report(here, 1.0, "filtering");
   }
@@ -248,7 +259,9 @@ std::optional<RawView> PreparedFrames::added_up(int frame, const Progress& progr
 }
 
 std::optional<RawView> PreparedFrames::next(int frame, const Progress& progress) {
-  return time_filter_ ? added_up(frame, progress) : measured(frame, progress);
+  if (time_filter_) return added_up(frame, progress);
+  const std::optional<RawView> raw = measured(frame, progress);
+  return raw && is_elsewhere(*raw) ? frame_elsewhere(*raw) : raw;
 }
 
 void PreparedFrames::decode(

@@ -31,6 +31,10 @@ struct Preparation {
   bool needs_frames() const {
     return time_filter || filter || find_mixed || undistort || !stray_kernel.empty();
   }
+  /// Whether frames of so many pixels are made or added up elsewhere.
+  bool is_elsewhere(std::int64_t pixels) const {
+    return (time_filter || average > 1) && elsewhere && elsewhere.takes(pixels);
+  }
   /// Frames that come out of so many.
   int frames_of(int recorded) const { return (recorded + group() - 1) / group(); }
   /// Frames that one of those is made of.
@@ -108,6 +112,7 @@ class PreparedFrames {
   std::optional<RawView> read();
   std::optional<RawView> bracketed(const Progress& progress);
   std::optional<RawView> added_up(int frame, const Progress& progress);
+  std::optional<RawView> added_elsewhere(const std::optional<RawView>& raw);
   bool is_elsewhere(const RawView& raw);
   RawView frame_elsewhere(const RawView& raw) const;
 
@@ -125,6 +130,7 @@ class PreparedFrames {
   int frames_read_ = 0, frames_added_ = 0;  // into time_filter_, and that came out of it
   bool has_ended_ = false;
   std::optional<bool> is_elsewhere_;  // once the first frame is there
+  RawView frame_size_;                // of those that are added up elsewhere, no more
   std::optional<Filter> filter_;
   FilteredFrame filtered_;
 };
