@@ -99,25 +99,12 @@ void RecordingDevice::take(DecodeRequest& request) {
     time_filter_ = std::make_unique<const TimeFilter>(decoder_.table(), *options);
   frames_ =
       device_frames(name_, decoder_.table(), time_filter_.get(), request.average > 1, on_device_);
-  if (frames_) request.frames_by = FramesElsewhere::of(*frames_);
-  request.decode_by = [this](const RawView& raw, const DecodedView& decoded,
-                             const Progress& progress) {
-    if (frames_ && frames_->has_frame())
-      frames_->decode(on_device_, decoded, progress);
-    else
-      on_device_.decode(raw, decoded, progress);
-  };
-  if (!request.filter) return;
-  filter_ = std::make_unique<const Filter>(decoder_.table(), *request.filter);
-  filter_on_device_ = device_filter(name_, *filter_, &on_device_);
-  request.filter_by = [this](const RawView& raw, const DecodedView& decoded,
-                             FilteredFrame* filtered, const Progress& progress,
-                             const Image<std::uint8_t>& left_out) {
-    if (frames_ && frames_->has_frame())
-      frames_->decode(*filter_on_device_, on_device_, decoded, filtered, progress, left_out);
-    else
-      filter_on_device_->decode(raw, on_device_, decoded, filtered, progress, left_out);
-  };
+  if (request.filter) {
+    filter_ = std::make_unique<const Filter>(decoder_.table(), *request.filter);
+    filter_on_device_ = device_filter(name_, *filter_, &on_device_);
+  }
+  decode_on(on_device_, filter_on_device_ ? &*filter_on_device_ : nullptr,
+            frames_ ? &*frames_ : nullptr, request);
 }
 
 std::optional<RecordingDevice> DeviceArguments::device_for(const AnyDecoder& decoder) const {

@@ -55,23 +55,7 @@ class BoundDecoder {
     return device_frames(name_, std::get<Decoder>(*any_).table(), time_filter, request.average > 1,
                          *on_device_);
   }
-  DeviceFramesUnderWay under_way_on_its_device(const DeviceFilter* filter,
-                                               DeviceFrames* frames) const {
-    return {*on_device_, filter, frames};
-  }
-  void decode(DeviceFrames& frames, const DecodedView& decoded, const Progress& progress) const {
-    frames.decode(*on_device_, decoded, progress);
-  }
-  void decode(DeviceFrames& frames, const DeviceFilter& filter, const DecodedView& decoded,
-              FilteredFrame* filtered, const Progress& progress,
-              const Image<std::uint8_t>& left_out) const {
-    frames.decode(filter, *on_device_, decoded, filtered, progress, left_out);
-  }
-  void decode(const DeviceFilter& filter, const RawView& raw, const DecodedView& decoded,
-              FilteredFrame* filtered, const Progress& progress,
-              const Image<std::uint8_t>& left_out) const {
-    filter.decode(raw, *on_device_, decoded, filtered, progress, left_out);
-  }
+  const DeviceDecoder& on_device() const { return *on_device_; }  ///< if it is
 
  private:
   std::unique_ptr<const AnyDecoder> any_;  // stays where the device's looks for it
@@ -183,8 +167,8 @@ void decode(const BoundDecoder& decoder, const py::array& raw_numbers, bool is_p
       const RawView& frame = raw.frames[f];
       const auto filter_and_decode = [&](const UnfilteredPixels& unfiltered, const Progress& here) {
         if (on_device) {
-          decoder.decode(*on_device, frame, decoded, marking ? &filtered : nullptr, here,
-                         unfiltered.mixed);
+          on_device->decode(frame, decoder.on_device(), decoded, marking ? &filtered : nullptr,
+                            here, unfiltered.mixed);
         } else {
           const ProgressParts of_both(here, {8.0, 1.0});  // about
           filter->apply(frame, filtered, of_both[0], unfiltered.mixed);
@@ -209,8 +193,6 @@ struct BoundRequest : DecodeRequest {
   std::unique_ptr<const TimeFilter> its_time_filter;
   std::optional<DeviceFrames> frames;
   std::optional<DeviceFramesUnderWay> under_way;
-
-  bool has_frame() const { return frames && frames->has_frame(); }
 };
 
 std::unique_ptr<BoundRequest> request_of(const BoundDecoder& decoder,
@@ -219,13 +201,6 @@ std::unique_ptr<BoundRequest> request_of(const BoundDecoder& decoder,
                                          const py::dict& values) {
   auto bound = std::make_unique<BoundRequest>();
   BoundRequest& request = *bound;
-  request.decode_by = [&](const RawView& view, const DecodedView& decoded,
-                          const Progress& progress) {
-    if (request.has_frame())
-      decoder.decode(*request.frames, decoded, progress);
-    else
-      decoder.decode(view, decoded, progress);
-  };
   std::string raw_format, mixed, offset_map, gain_map, stray_light, rays;
   std::vector<std::string> outputs;
   bool overwrite = false;
@@ -266,30 +241,25 @@ std::unique_ptr<BoundRequest> request_of(const BoundDecoder& decoder,
   request.policy = policy_of(overwrite);
   for (const std::string& plane : outputs) request.outputs.push_back(parse_decoded_plane(plane));
   request.lens = rays.empty() ? to_optional_lens(lens) : std::optional(Lens{.rays = rays});
-  if (decoder.is_on_device()) {
-    if (const std::optional<TimeFilterOptions> options = time_filter_of(request))
-      request.its_time_filter = std::make_unique<const TimeFilter>(table_of(decoder), *options);
-    request.frames = decoder.frames_on_its_device(request, request.its_time_filter.get());
-    if (request.frames) request.frames_by = FramesElsewhere::of(*request.frames);
+  if (!decoder.is_on_device()) {
+    request.decode_by = [&decoder](const RawView& view, const DecodedView& decoded,
+                                   const Progress& progress) {
+      decoder.decode(view, decoded, progress);
+    };
+    return bound;
   }
-  if (request.filter && decoder.is_on_device()) {
+  if (const std::optional<TimeFilterOptions> options = time_filter_of(request))
+    request.its_time_filter = std::make_unique<const TimeFilter>(table_of(decoder), *options);
+  request.frames = decoder.frames_on_its_device(request, request.its_time_filter.get());
+  if (request.filter) {
     request.its_filter = std::make_unique<const Filter>(table_of(decoder), *request.filter);
     request.on_device.emplace(decoder.on_its_device(*request.its_filter));
-    request.filter_by = [&](const RawView& view, const DecodedView& decoded,
-                            FilteredFrame* filtered, const Progress& progress,
-                            const Image<std::uint8_t>& left_out) {
-      if (request.has_frame())
-        decoder.decode(*request.frames, *request.on_device, decoded, filtered, progress, left_out);
-      else
-        decoder.decode(*request.on_device, view, decoded, filtered, progress, left_out);
-    };
   }
-  if (decoder.is_on_device()) {
-    request.under_way.emplace(
-        decoder.under_way_on_its_device(request.on_device ? &*request.on_device : nullptr,
-                                        request.frames ? &*request.frames : nullptr));
-    request.overlapped_by = FramesUnderWay::of(*request.under_way);
-  }
+  const DeviceFilter* filter = request.on_device ? &*request.on_device : nullptr;
+  DeviceFrames* frames = request.frames ? &*request.frames : nullptr;
+  decode_on(decoder.on_device(), filter, frames, request);
+  request.under_way.emplace(decoder.on_device(), filter, frames);
+  request.overlapped_by = FramesUnderWay::of(*request.under_way);
   return bound;
 }
 

@@ -178,6 +178,33 @@ struct DecodeRequest {
   std::vector<std::string> other_inputs;  ///< files that were read too: no output replaces them
 };
 
+/// Has a device do the work of a request.
+/// @param decoder  a DeviceDecoder
+/// @param filter   a DeviceFilter; null: the request has none
+/// @param frames   a DeviceFrames, which makes means and adds frames up; null: the processor does
+/// All must outlive the request.
+template <typename OnDevice, typename Filters, typename Frames>
+void decode_on(const OnDevice& decoder, const Filters* filter, Frames* frames,
+               DecodeRequest& request) {
+  if (frames) request.frames_by = FramesElsewhere::of(*frames);
+  request.decode_by = [&decoder, frames](const RawView& raw, const DecodedView& decoded,
+                                         const Progress& progress) {
+    if (frames && frames->has_frame())
+      frames->decode(decoder, decoded, progress);
+    else
+      decoder.decode(raw, decoded, progress);
+  };
+  if (!filter) return;
+  request.filter_by = [&decoder, filter, frames](const RawView& raw, const DecodedView& decoded,
+                                                 FilteredFrame* filtered, const Progress& progress,
+                                                 const Image<std::uint8_t>& left_out) {
+    if (frames && frames->has_frame())
+      frames->decode(*filter, decoder, decoded, filtered, progress, left_out);
+    else
+      filter->decode(raw, decoder, decoded, filtered, progress, left_out);
+  };
+}
+
 /// The request's filter in time as it is used: before a filter in space, if there is one.
 std::optional<TimeFilterOptions> time_filter_of(const DecodeRequest& request);
 
