@@ -119,6 +119,10 @@ TEST_F(DeviceTrialsOf, GiveTheErrorsOfTheProcessor) {
                     1e-5 * b.circular_mde_m.value + 0.5 * b.circular_mde_m.standard_error);
         EXPECT_NEAR(a.linear_mde_m.value, b.linear_mde_m.value,
                     1e-5 * b.linear_mde_m.value + 0.5 * b.linear_mde_m.standard_error);
+        EXPECT_NEAR(a.circular_rmse_m.value, b.circular_rmse_m.value,
+                    1e-5 * b.circular_rmse_m.value + 0.5 * b.circular_rmse_m.standard_error);
+        EXPECT_NEAR(a.linear_rmse_m.value, b.linear_rmse_m.value,
+                    1e-5 * b.linear_rmse_m.value + 0.5 * b.linear_rmse_m.standard_error);
         EXPECT_NEAR(a.linear_mde_m.standard_error, b.linear_mde_m.standard_error,
                     0.1 * b.linear_mde_m.standard_error);
         EXPECT_NEAR(a.outlier_rate.value, b.outlier_rate.value, 2e-4);
