@@ -37,7 +37,7 @@ std::optional<BrokenRule> why_no_row_design(const Camera& camera, int rows);
 /// In a tenth of the light lobes may be taken for the right one that no longer count in the light
 /// asked for, and of two sets that err alike in that one may collapse. So sets are bettered for
 /// both as well; of those within 3 % of the least error by Monte Carlo that is taken whose error
-/// times the 0.03rd power of the error in a tenth of the light is least.
+/// times the 0.02nd power of the error in a tenth of the light is least.
 std::vector<Candidate> row_candidates(const Camera& camera, int rows, const DesignOptions& options,
                                       const Progress& progress);
 
