@@ -195,7 +195,7 @@ _means = ("linear", "circular", "linear_rmse", "circular_rmse")
 
 
 def report_of(values: dict[str, Any], camera: Camera) -> DepthErrorReport:
-    means = {name: DepthErrorMean(**values.pop(name)) for name in _means}
+    means: dict[str, Any] = {name: DepthErrorMean(**values.pop(name)) for name in _means}
     return DepthErrorReport(**values, **means, kind=camera.operating.error)
 
 
