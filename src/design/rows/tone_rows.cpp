@@ -323,7 +323,7 @@ int by_effort(int count, const DesignOptions& options) {
 
 /// The index of the set to take: by ever more trials of ever fewer sets.
 std::size_t chosen_of(const ToneSearch& search, const std::vector<ToneCode>& codes,
-                      const Camera& camera, int trials, std::uint64_t seed,
+                      const Camera& camera, const DesignOptions& options,
                       const Progress& progress) {
   struct Judged {
     std::size_t index;
@@ -332,13 +332,13 @@ std::size_t chosen_of(const ToneSearch& search, const std::vector<ToneCode>& cod
   };
   const auto by_score = [](const Judged& a, const Judged& b) { return a.score() < b.score(); };
   const auto by_error = [](const Judged& a, const Judged& b) { return a.error_m < b.error_m; };
-  const std::int64_t points = std::ssize(camera.operating.points());
+  const auto points = static_cast<int>(camera.operating.points().size());
   const auto error_m = [&](std::size_t index, const Camera& on, int times) {
-    const EvaluateOptions options{
-        .trials = std::max<std::int64_t>(trials, std::int64_t{times} * trials / points),
-        .seed = seed,
-        .bounds = false};
-    return geometric_mean_error_m(evaluate(search.code_set(codes[index]), on, options),
+    const int trials = by_effort(times * options.search_trials / points, options);
+    const EvaluateOptions judging{.trials = std::max(options.search_trials, trials),
+                                  .seed = search_seed(options),
+                                  .bounds = false};
+    return geometric_mean_error_m(evaluate(search.code_set(codes[index]), on, judging),
                                   camera.operating.error);
   };
   const Camera dim = in_share_of_light(camera, dim_share);
@@ -426,8 +426,7 @@ std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOp
   keep_best(codes, 2 * judged_sets, dim_weight);
 
   // 3. The one to take, by other random numbers than the judge's.
-  const ToneCode& tones =
-      codes[chosen_of(search, codes, camera, options.search_trials, seed, parts[2])];
+  const ToneCode& tones = codes[chosen_of(search, codes, camera, options, parts[2])];
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   CodeSet code = search.code_set(tones);
   code.provenance.method = "optimize";
