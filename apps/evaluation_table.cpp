@@ -85,17 +85,21 @@ std::string evaluation_csv(const std::vector<EvaluatedCode>& codes) {
   const bool compared = is_compared_with_zncc(codes);
   std::string text = fmt::format(
       "code,signal_e_per_s,ambient_e_per_s,linear_mde_m,linear_se_m,circular_mde_m,circular_se_m,"
-      "outlier_rate,cramer_rao_mae_m,receiver_bound_mae_m,direct_tof_bound_mae_m{}\n",
+      "linear_rmse_m,linear_rmse_se_m,circular_rmse_m,circular_rmse_se_m,outlier_rate,"
+      "cramer_rao_mae_m,receiver_bound_mae_m,direct_tof_bound_mae_m{}\n",
       compared ? ",zncc_linear_mde_m,zncc_circular_mde_m" : "");
   for (const EvaluatedCode& code : codes)
     for (std::size_t i = 0; i < code.error.points.size(); ++i) {
       const PointDepthError& p = code.error.points[i];
-      text +=
-          fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},{}",
-                      csv_field(code.error.code), p.point.signal_e_per_s, p.point.ambient_e_per_s,
-                      p.linear_mde_m.value, p.linear_mde_m.standard_error, p.circular_mde_m.value,
-                      p.circular_mde_m.standard_error, p.outlier_rate.value, p.cramer_rao_mae_m,
-                      bound_field(p.receiver_bound_mae_m), bound_field(p.direct_tof_bound_mae_m));
+      text += fmt::format(
+          "{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},"
+          "{:.9g},{:.9g},{},{}",
+          csv_field(code.error.code), p.point.signal_e_per_s, p.point.ambient_e_per_s,
+          p.linear_mde_m.value, p.linear_mde_m.standard_error, p.circular_mde_m.value,
+          p.circular_mde_m.standard_error, p.linear_rmse_m.value, p.linear_rmse_m.standard_error,
+          p.circular_rmse_m.value, p.circular_rmse_m.standard_error, p.outlier_rate.value,
+          p.cramer_rao_mae_m, bound_field(p.receiver_bound_mae_m),
+          bound_field(p.direct_tof_bound_mae_m));
       if (compared)
         text += fmt::format(",{:.9g},{:.9g}", code.zncc_error->points[i].linear_mde_m.value,
                             code.zncc_error->points[i].circular_mde_m.value);

@@ -5,14 +5,17 @@
 they compare: N = 1024 time bins at 5 MHz, a photon total of 1000, a response exp(-(t / sigma)^2),
 no limit on the light or a peak of P of all photons in a bin (the response then twice).
 
-    benchmarks/rows.py [--tofsmith build/apps/tofsmith] [--rows 8] [--trials 4000] [--cells 0,1,..]
+    benchmarks/rows.py [--tofsmith build/apps/tofsmith] [--rows 8] [--trials 20000] [--cells 0,1,..]
                        [--codes FOLDER ..]
+    benchmarks/rows.py --gated          8 exposures of one tap in place of rows, 100 photons in all
     benchmarks/rows.py --least SIGMA    the least Cramer-Rao bounds of 4, 5 and 6 tones; needs NumPy
 
-Mean absolute circular errors [mm] by zero-mean normalized cross-correlation. `learned` and `gates`
-are what others measured of learned codes and of codes of separate exposures turned into rows;
-`histogram` is the bound of all 1024 bins with our light. With --codes, codes of yours are judged on
-the same trials: FOLDER/SIGMA-P-RATIO/light.npy and rows.npy, as in 10-none-1 or 5-.015-.1.
+Circular errors [mm] by zero-mean normalized cross-correlation, mean absolute and, as rms, root mean
+square ones. `learned` and `gates` are mean absolute errors that others measured of learned codes and
+of codes of separate exposures turned into rows; `histogram` is the bound of all 1024 bins with our
+light; at a tenth of the light ours stand beside a truncated Fourier series. With --codes, codes of
+yours are judged on the same trials: FOLDER/SIGMA-P-RATIO/light.npy and rows.npy, as in 10-none-1 or
+5-.015-.1.
 """
 
 import argparse
@@ -43,7 +46,7 @@ CELLS = [
 ASKED = .93  # of the better of learned and gates
 
 
-def camera_toml(sigma_bins, peak, signal_to_background, photons):
+def camera_toml(sigma_bins, peak, signal_to_background, photons, readout="rows"):
     """The response exp(-(t / sigma)^2) is a Gaussian that falls by 3 dB at its cut-off."""
     sigma_s = sigma_bins / (SAMPLES * FREQUENCY_HZ)
     cutoff_hz = math.sqrt(.5 * math.log(2)) / (math.pi * sigma_s)
@@ -52,7 +55,7 @@ def camera_toml(sigma_bins, peak, signal_to_background, photons):
     again = "" if peak is None else f"impulse_response = {response}\n"
     return (f"fundamental_frequency_hz = {FREQUENCY_HZ}\nexposure_s = 1\nsamples = {SAMPLES}\n"
             f"[light]\npeak_factor = {peak_factor}\nimpulse_response = {response}\n"
-            f'[sensor]\nreadout = "rows"\nread_noise_e = 0\n{again}'
+            f'[sensor]\nreadout = "{readout}"\nread_noise_e = 0\n{again}'
             f"[operating]\nsignal_e_per_s = [{photons}]\n"
             f"ambient_e_per_s = [{photons / signal_to_background}]\nerror = \"circular\"\n")
 
@@ -64,12 +67,15 @@ def run(tool, *arguments):
     return json.loads(done.stdout)
 
 
-def errors_mm(tool, codes, camera, arguments):
-    """Circular error and bound of the full histogram of each code, on the same trials."""
-    found = run(tool, "evaluate", *codes, "--camera", str(camera), "--trials",
-                str(arguments.trials), "--seed", "11", "--method", arguments.method)
-    return [(1e3 * report["circular"]["geometric_mean_m"],
-             1e3 * report["points"][0]["receiver_bound_mae_m"]) for report in found["codes"]]
+def errors_of(report):
+    """Mean absolute and root mean square circular error [mm]."""
+    return [1e3 * report[kind]["geometric_mean_m"] for kind in ("circular", "circular_rmse")]
+
+
+def judged(tool, codes, camera, arguments):
+    """The reports of codes, on the same trials."""
+    return run(tool, "evaluate", *codes, "--camera", str(camera), "--trials", str(arguments.trials),
+               "--seed", "11", "--method", arguments.method)["codes"]
 
 
 def codes_of(folders, name):
@@ -116,32 +122,17 @@ def least_bounds(sigma_bins):
             print(f"  {2 * number} rows: {least:.2f} mm, tones {best}")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--tofsmith", default="build/apps/tofsmith")
-    parser.add_argument("--rows", type=int, default=8)
-    parser.add_argument("--photons", type=float, default=1000)
-    parser.add_argument("--trials", type=int, default=4000)
-    parser.add_argument("--effort", default="1")
-    parser.add_argument("--method", default="zncc", choices=["zncc", "ml"])
-    parser.add_argument("--cells", default="", help="numbers of cells, from 0; all")
-    parser.add_argument("--codes", nargs="*", default=[], help="folders of codes of yours")
-    parser.add_argument("--least", type=float, metavar="SIGMA", help="bounds of all sets of tones")
-    arguments = parser.parse_args()
-    if arguments.least:
-        least_bounds(arguments.least)
-        return
-    tool = arguments.tofsmith
-    chosen = [int(c) for c in arguments.cells.split(",") if c] or range(len(CELLS))
-
-    print("sigma  P      S/B  asked    ours  of asked  learned gates  histogram  seconds  yours")
+def compare_rows(tool, chosen, photons, arguments):
+    print("sigma  P      S/B  asked    ours of asked    rms  learned gates  histogram  "
+          "a tenth: ours  Fourier  seconds  yours (rms)")
     met = count = 0
     with tempfile.TemporaryDirectory() as folder:
         for cell in chosen:
             sigma, peak, learned, gates = CELLS[cell]
             for i, ratio in enumerate(RATIOS):
-                camera = Path(folder) / f"{cell}-{i}.toml"
-                camera.write_text(camera_toml(sigma, peak, ratio, arguments.photons))
+                camera, dim = (Path(folder) / f"{cell}-{i}{end}.toml" for end in ("", "-dim"))
+                camera.write_text(camera_toml(sigma, peak, ratio, photons))
+                dim.write_text(camera_toml(sigma, peak, ratio, photons / 10))
                 out = Path(folder) / f"{cell}-{i}"
                 begin = time.monotonic()
                 run(tool, "design", str(camera), "--method", "optimize", "--exposures",
@@ -149,16 +140,66 @@ def main():
                     str(out))
                 seconds = time.monotonic() - begin
                 name = f"{sigma}-{peak or 'none'}-{ratio}".replace("0.", ".")
-                yours = codes_of(arguments.codes, name)
-                code = out / "codes" / f"tones-k{arguments.rows}.code.json"
-                (ours, histogram), *others = errors_mm(tool, [str(code), *yours], camera, arguments)
+                code = str(out / "codes" / f"tones-k{arguments.rows}.code.json")
+                own, *others = judged(tool, [code, *codes_of(arguments.codes, name)], camera,
+                                      arguments)
+                ours, rms = errors_of(own)
+                histogram = 1e3 * own["points"][0]["receiver_bound_mae_m"]
+                at_a_tenth = [errors_of(report)[0] for report in
+                              judged(tool, [code, f"fourier-k{arguments.rows}"], dim, arguments)]
                 asked = ASKED * min(learned[i], gates[i])
                 met, count = met + (ours <= asked), count + 1
-                print(f"{sigma:5} {peak or 'none':>5} {ratio:5} {asked:6.1f} {ours:7.2f}  "
-                      f"{ours / asked:8.2f}   {learned[i]:6.1f} {gates[i]:6.1f} "
-                      f"{histogram:9.2f}  {seconds:8.1f}  "
-                      + " ".join(f"{error:.2f}" for error, _ in others), flush=True)
+                print(f"{sigma:5} {peak or 'none':>5} {ratio:5} {asked:6.1f} {ours:7.2f} "
+                      f"{ours / asked:8.3f} {rms:6.1f}   {learned[i]:6.1f} {gates[i]:6.1f} "
+                      f"{histogram:9.2f} {at_a_tenth[0]:14.1f} {at_a_tenth[1]:8.1f} {seconds:8.1f}  "
+                      + " ".join("{:.2f} ({:.1f})".format(*errors_of(r)) for r in others),
+                      flush=True)
     print(f"{met} of {count} cells as asked")
+
+
+def compare_gated(tool, chosen, photons, arguments):
+    """Codes of eight exposures that share the light, on the cameras without a limit on it."""
+    hamiltonian = "hamiltonian-k5"  # switches at thirtieths of the period
+    print("sigma  S/B    ours     rms  Hamiltonian K = 5     rms  best family      seconds")
+    with tempfile.TemporaryDirectory() as folder:
+        for cell in (c for c in chosen if CELLS[c][1] is None):
+            sigma = CELLS[cell][0]
+            for ratio in RATIOS:
+                camera = Path(folder) / f"{cell}-{ratio}.toml"
+                camera.write_text(camera_toml(sigma, None, ratio, photons, "separate"))
+                begin = time.monotonic()
+                design = run(tool, "design", str(camera), "--exposures", "8", "--effort",
+                             arguments.effort, "--trials", str(arguments.trials))["codes"]
+                seconds = time.monotonic() - begin
+                ours = min(errors_of(code) for code in design if code["method"] == "optimize")
+                family, its_name = min((errors_of(code)[0], code["name"]) for code in design
+                                       if code["method"] == "family")
+                fits = run(tool, "evaluate", hamiltonian, "--camera", str(camera), "--set",
+                           "samples=1020", "--trials", str(arguments.trials))["codes"][0]
+                print("{:5} {:5} {:7.1f} {:7.1f} {:18.1f} {:7.1f}  {:7.1f} {:10} {:6.1f}".format(
+                    sigma, ratio, *ours, *errors_of(fits), family, its_name, seconds), flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--tofsmith", default="build/apps/tofsmith")
+    parser.add_argument("--rows", type=int, default=8)
+    parser.add_argument("--photons", type=float, help="1000; with --gated 100")
+    parser.add_argument("--trials", type=int, default=20000)
+    parser.add_argument("--effort", default="1")
+    parser.add_argument("--method", default="zncc", choices=["zncc", "ml"])
+    parser.add_argument("--cells", default="", help="numbers of cells, from 0; all")
+    parser.add_argument("--codes", nargs="*", default=[], help="folders of codes of yours")
+    parser.add_argument("--gated", action="store_true", help="separate exposures of one tap")
+    parser.add_argument("--least", type=float, metavar="SIGMA", help="bounds of all sets of tones")
+    arguments = parser.parse_args()
+    if arguments.least:
+        least_bounds(arguments.least)
+        return
+    tool = arguments.tofsmith
+    chosen = [int(c) for c in arguments.cells.split(",") if c] or range(len(CELLS))
+    compare = compare_gated if arguments.gated else compare_rows
+    compare(tool, chosen, arguments.photons or (100 if arguments.gated else 1000), arguments)
 
 
 if __name__ == "__main__":

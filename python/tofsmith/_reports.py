@@ -53,6 +53,8 @@ class DepthErrorReport:
         Mean of the absolute difference of decoded and true depth [m], and its standard error.
     circular_mde_m, circular_se_m : ndarray
         Of the shorter way round the range [m].
+    linear_rmse_m, linear_rmse_se_m, circular_rmse_m, circular_rmse_se_m : ndarray
+        Roots of the mean squares of both, and their standard errors [m].
     point_trials : ndarray of int64
         Trials made at each point.
     outlier_rate : ndarray
@@ -61,6 +63,9 @@ class DepthErrorReport:
         Bounds of the code, of any code on the camera, of the camera's light [m]; docs/bounds.md.
         0 where there is none, as without impulse responses.
     linear, circular : DepthErrorMean
+        Of mean absolute errors.
+    linear_rmse, circular_rmse : DepthErrorMean
+        Of root mean square errors.
     kind : str
         Which of the two the camera asks for: linear or circular, its `operating.error`.
     """
@@ -81,12 +86,18 @@ class DepthErrorReport:
     linear_se_m: FloatArray
     circular_mde_m: FloatArray
     circular_se_m: FloatArray
+    linear_rmse_m: FloatArray
+    linear_rmse_se_m: FloatArray
+    circular_rmse_m: FloatArray
+    circular_rmse_se_m: FloatArray
     outlier_rate: FloatArray
     cramer_rao_mae_m: FloatArray
     receiver_bound_mae_m: FloatArray
     direct_tof_bound_mae_m: FloatArray
     linear: DepthErrorMean
     circular: DepthErrorMean
+    linear_rmse: DepthErrorMean
+    circular_rmse: DepthErrorMean
     kind: str
 
     def of(self, kind: str) -> DepthErrorMean:
@@ -180,16 +191,16 @@ class GeneratorLoss:
         return self.uncalibrated.of(kind).geometric_mean_m / self.nominal.of(kind).geometric_mean_m
 
 
+_means = ("linear", "circular", "linear_rmse", "circular_rmse")
+
+
 def report_of(values: dict[str, Any], camera: Camera) -> DepthErrorReport:
-    linear = DepthErrorMean(**values.pop("linear"))
-    circular = DepthErrorMean(**values.pop("circular"))
-    return DepthErrorReport(
-        **values, linear=linear, circular=circular, kind=camera.operating.error
-    )
+    means: dict[str, Any] = {name: DepthErrorMean(**values.pop(name)) for name in _means}
+    return DepthErrorReport(**values, **means, kind=camera.operating.error)
 
 
 def fields_of(report: DepthErrorReport) -> dict[str, Any]:
     """What report_of() makes the report of again."""
-    fields = vars(report) | {"linear": vars(report.linear), "circular": vars(report.circular)}
+    fields = vars(report) | {name: vars(getattr(report, name)) for name in _means}
     del fields["kind"]
     return fields

@@ -26,7 +26,8 @@ class SweepResults:
     ----------
     columns : dict of ndarray
         item, code, one per axis of the sweep, and signal_e_per_s, ambient_e_per_s, linear_mde_m,
-        linear_se_m, circular_mde_m, circular_se_m, outlier_rate, cramer_rao_mae_m,
+        linear_se_m, circular_mde_m, circular_se_m, linear_rmse_m, linear_rmse_se_m,
+        circular_rmse_m, circular_rmse_se_m, outlier_rate, cramer_rao_mae_m,
         receiver_bound_mae_m, direct_tof_bound_mae_m.
     items, finished, failed, pending : int, optional
         Of a store: how far the sweep has come.

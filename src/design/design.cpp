@@ -13,6 +13,7 @@
 #include "design/judge.hpp"
 #include "design/optimize/design_problem.hpp"
 #include "design/optimize/optimized_code.hpp"
+#include "design/rows/dim_light.hpp"
 #include "design/rows/tone_rows.hpp"
 #include "tofsmith/core/error.hpp"
 
@@ -195,6 +196,9 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
 
   // 3. Judge all with the same fresh random numbers and pick by the camera's depth error.
   judge_candidates(camera, options, result, parts[1]);
+  if (camera.sensor.readout == Readout::rows)
+    if (auto note = dim_light_note(camera, result, options))
+      result.explanation.push_back(std::move(*note));
   report(progress, 1.0, "done");
   return result;
 }

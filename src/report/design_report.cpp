@@ -210,8 +210,12 @@ KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
 
 /// Why the winner won. A table, whose cells are set as they are: the names in them are users'.
 Table explanation(const DesignResult& result, DepthErrorKind kind) {
-  constexpr std::array questions = {"What does it beat?", "Why so many exposures?",
-                                    "What limits it?", "And with multipath?"};
+  using Questions = std::vector<const char*>;
+  const Questions questions =
+      result.winner().code.is_rows()
+          ? Questions{"What does it beat?", "What limits it?", "And in dimmer light?"}
+          : Questions{"What does it beat?", "Why so many exposures?", "What limits it?",
+                      "And with multipath?"};
   Table table{.caption = "Why this code.", .columns = {{"question"}, {"answer"}}};
   if (kind == DepthErrorKind::linear)
     table.caption +=

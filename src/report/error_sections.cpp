@@ -109,21 +109,24 @@ std::vector<std::size_t> by_error(std::span<const DepthErrorRow> codes, DepthErr
 Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> codes,
                        const std::vector<std::size_t>& order, std::size_t best) {
   const DepthErrorReport& first = *codes[0].error;
-  Table table{
-      .id = "comparison",
-      .caption = fmt::format("Depth error over {} operating points (geometric means; the last but "
-                             "one column is the arithmetic mean of the circular error), {} trials "
-                             "each, N = {}, true depths {}; ± is one standard error. Outliers are "
-                             "circular errors beyond {:.2g} m.",
-                             first.points.size(), first.trials, camera.samples,
-                             true_depths_in_words(camera), first.outlier_threshold_m),
-      .columns = {{"code"},
-                  {"made by"},
-                  {"K", true},
-                  {"linear (mm)", true},
-                  {"circular (mm)", true},
-                  {"arithmetic (mm)", true},
-                  {"outliers (%)", true}}};
+  Table table{.id = "comparison",
+              .caption = fmt::format(
+                  "Depth error over {} operating points (geometric means; \"arithmetic\" is "
+                  "the arithmetic mean of the circular error), {} trials each, N = {}, "
+                  "true depths {}; ± is one standard error. Errors are mean absolute "
+                  "ones, in columns of rms root mean square ones, which count rare large "
+                  "errors most. Outliers are circular errors beyond {:.2g} m.",
+                  first.points.size(), first.trials, camera.samples, true_depths_in_words(camera),
+                  first.outlier_threshold_m),
+              .columns = {{"code"},
+                          {"made by"},
+                          {"K", true},
+                          {"linear (mm)", true},
+                          {"circular (mm)", true},
+                          {"arithmetic (mm)", true},
+                          {"linear rms (mm)", true},
+                          {"circular rms (mm)", true},
+                          {"outliers (%)", true}}};
   for (const std::size_t i : order) {
     const DepthErrorReport& e = *codes[i].error;
     double outliers = 0.0;
@@ -132,7 +135,8 @@ Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> code
     table.rows.push_back(
         {e.code, codes[i].method, fmt::format("{}", e.measurements),
          estimate_mm_text(e.linear.geometric_mean_m), estimate_mm_text(e.circular.geometric_mean_m),
-         estimate_mm_text(e.circular.mean_m),
+         estimate_mm_text(e.circular.mean_m), estimate_mm_text(e.linear_rmse.geometric_mean_m),
+         estimate_mm_text(e.circular_rmse.geometric_mean_m),
          fmt::format("{:.1f}", 100 * outliers / static_cast<double>(e.points.size()))});
   }
   return table;

@@ -16,6 +16,14 @@ Estimate mean_of_sum(double sum, double squared_differences, std::int64_t trials
   return {sum * per_trial, std::sqrt(squared_differences) * per_trial};
 }
 
+/// The root of a mean of squares, its standard error to first order.
+Estimate root_mean_square(const PairSums& sums, std::int64_t trials, double scale) {
+  const Estimate mean = mean_of_sum(sums.of_squares(), sums.squared_product, trials, 1.0);
+  if (!(mean.value > 0.0)) return {};
+  const double root = std::sqrt(mean.value);
+  return {scale * root, scale * mean.standard_error / (2.0 * root)};
+}
+
 DepthErrorMean mean_over_points(const std::vector<PointDepthError>& points,
                                 Estimate PointDepthError::*error) {
   std::vector<Estimate> errors;
@@ -101,23 +109,24 @@ int refine(const DepthTrials& trials, const AdaptiveTrials& plan, double thresho
 }  // namespace
 
 void ErrorSums::merge(const ErrorSums& other) {
-  sums.linear += other.sums.linear;
-  sums.circular += other.sums.circular;
-  sums.outliers += other.sums.outliers;
-  sums.linear_squares += other.sums.linear_squares;
-  sums.circular_squares += other.sums.circular_squares;
-  sums.outlier_squares += other.sums.outlier_squares;
+  sums.merge(other.sums);
   trials += other.trials;
 }
 
 Estimate ErrorSums::linear(double bin_m) const {
-  return mean_of_sum(sums.linear, sums.linear_squares, trials, bin_m);
+  return mean_of_sum(sums.linear.sum, sums.linear.squared_difference, trials, bin_m);
 }
 Estimate ErrorSums::circular(double bin_m) const {
-  return mean_of_sum(sums.circular, sums.circular_squares, trials, bin_m);
+  return mean_of_sum(sums.circular.sum, sums.circular.squared_difference, trials, bin_m);
+}
+Estimate ErrorSums::linear_rms(double bin_m) const {
+  return root_mean_square(sums.linear, trials, bin_m);
+}
+Estimate ErrorSums::circular_rms(double bin_m) const {
+  return root_mean_square(sums.circular, trials, bin_m);
 }
 Estimate ErrorSums::outlier_rate() const {
-  return mean_of_sum(sums.outliers, sums.outlier_squares, trials, 1.0);
+  return mean_of_sum(sums.outliers, sums.outlier_squared_difference, trials, 1.0);
 }
 
 std::vector<ErrorSums> sum_errors(const DepthTrials& trials, std::span<const TrialRound> rounds,
@@ -159,12 +168,16 @@ DepthErrorReport trial_errors(const DepthTrials& trials, const CodeSet& code, co
     error.trials = sums.trials;
     error.linear_mde_m = sums.linear(bin_m);
     error.circular_mde_m = sums.circular(bin_m);
+    error.linear_rmse_m = sums.linear_rms(bin_m);
+    error.circular_rmse_m = sums.circular_rms(bin_m);
     error.outlier_rate = sums.outlier_rate();
     result.trials = std::max(result.trials, sums.trials);
     result.points.push_back(error);
   }
   result.linear = mean_over_points(result.points, &PointDepthError::linear_mde_m);
   result.circular = mean_over_points(result.points, &PointDepthError::circular_mde_m);
+  result.linear_rmse = mean_over_points(result.points, &PointDepthError::linear_rmse_m);
+  result.circular_rmse = mean_over_points(result.points, &PointDepthError::circular_rmse_m);
   return result;
 }
 

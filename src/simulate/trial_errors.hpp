@@ -6,8 +6,8 @@
 
 namespace tofsmith {
 
-/// Sums of errors over trials in pairs of neighbouring slices: means, and their variance (collapsed
-/// strata).
+/// Sums of errors over trials in pairs of neighbouring slices: means of errors and of their
+/// squares, and the variance of both (collapsed strata).
 struct ErrorSums {
   TileSums sums;
   std::int64_t trials = 0;
@@ -15,6 +15,8 @@ struct ErrorSums {
   void merge(const ErrorSums& other);
   Estimate linear(double bin_m) const;
   Estimate circular(double bin_m) const;
+  Estimate linear_rms(double bin_m) const;
+  Estimate circular_rms(double bin_m) const;
   Estimate outlier_rate() const;
 };
 

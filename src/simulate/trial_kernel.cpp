@@ -213,16 +213,33 @@ void read_out(const TapConversion& sensor, const float* max_e, int taps, int tri
     }
 }
 
-/// Sum of values in pairs, and of the squares of differences in pairs.
-struct PairSums {
-  DoubleVector sum, squares;
+/// PairSums, a pair in every lane.
+struct PairVectors {
+  DoubleVector sum, squared_difference, squared_sum, squared_product;
+
+  explicit PairVectors(DoubleVector zero)
+      : sum(zero), squared_difference(zero), squared_sum(zero), squared_product(zero) {}
 
   HWY_INLINE void add(DoubleVector even, DoubleVector odd) {
-    const DoubleVector difference = hn::Sub(even, odd);
-    sum = hn::Add(sum, hn::Add(even, odd));
-    squares = hn::MulAdd(difference, difference, squares);
+    const DoubleVector difference = hn::Sub(even, odd), both = hn::Add(even, odd);
+    const DoubleVector product = hn::Mul(difference, both);
+    sum = hn::Add(sum, both);
+    squared_difference = hn::MulAdd(difference, difference, squared_difference);
+    squared_sum = hn::MulAdd(both, both, squared_sum);
+    squared_product = hn::MulAdd(product, product, squared_product);
+  }
+  PairSums total() const {
+    const Doubles d;
+    const auto all_lanes = [&](DoubleVector v) { return hn::GetLane(hn::SumOfLanes(d, v)); };
+    return {all_lanes(sum), all_lanes(squared_difference), all_lanes(squared_sum),
+            all_lanes(squared_product)};
   }
 };
+
+PairSums pair(double a, double b) {
+  const double difference = a - b, both = a + b, product = difference * both;
+  return {both, difference * difference, both * both, product * product};
+}
 
 TileSums sums(const double* true_bin, const double* decoded_bin, int trials, double samples,
               double threshold_bin) {
@@ -230,14 +247,18 @@ TileSums sums(const double* true_bin, const double* decoded_bin, int trials, dou
   const int lanes = lanes_of(d);
   const DoubleVector zero = hn::Zero(d), all_samples = hn::Set(d, samples);
   const DoubleVector threshold = hn::Set(d, threshold_bin), one = hn::Set(d, 1.0);
-  PairSums linear{zero, zero}, circular{zero, zero}, outliers{zero, zero};
+  PairVectors linear(zero), circular(zero);
+  DoubleVector outliers = zero, outlier_squares = zero;
   const auto add = [&](DoubleVector even, DoubleVector odd) {
     const DoubleVector even_c = hn::Min(even, hn::Sub(all_samples, even));
     const DoubleVector odd_c = hn::Min(odd, hn::Sub(all_samples, odd));
     linear.add(even, odd);
     circular.add(even_c, odd_c);
-    outliers.add(hn::IfThenElseZero(hn::Gt(even_c, threshold), one),
-                 hn::IfThenElseZero(hn::Gt(odd_c, threshold), one));
+    const DoubleVector even_o = hn::IfThenElseZero(hn::Gt(even_c, threshold), one);
+    const DoubleVector odd_o = hn::IfThenElseZero(hn::Gt(odd_c, threshold), one);
+    const DoubleVector difference = hn::Sub(even_o, odd_o);
+    outliers = hn::Add(outliers, hn::Add(even_o, odd_o));
+    outlier_squares = hn::MulAdd(difference, difference, outlier_squares);
   };
   int i = 0;
   for (; i + 2 * lanes <= trials; i += 2 * lanes) {
@@ -246,24 +267,14 @@ TileSums sums(const double* true_bin, const double* decoded_bin, int trials, dou
     hn::LoadInterleaved2(d, decoded_bin + i, found_even, found_odd);
     add(hn::Abs(hn::Sub(found_even, true_even)), hn::Abs(hn::Sub(found_odd, true_odd)));
   }
-  TileSums total;
-  total.linear = hn::GetLane(hn::SumOfLanes(d, linear.sum));
-  total.circular = hn::GetLane(hn::SumOfLanes(d, circular.sum));
-  total.outliers = hn::GetLane(hn::SumOfLanes(d, outliers.sum));
-  total.linear_squares = hn::GetLane(hn::SumOfLanes(d, linear.squares));
-  total.circular_squares = hn::GetLane(hn::SumOfLanes(d, circular.squares));
-  total.outlier_squares = hn::GetLane(hn::SumOfLanes(d, outliers.squares));
+  TileSums total{linear.total(), circular.total(), hn::GetLane(hn::SumOfLanes(d, outliers)),
+                 hn::GetLane(hn::SumOfLanes(d, outlier_squares))};
   for (; i + 1 < trials; i += 2) {
     const double a = std::abs(decoded_bin[i] - true_bin[i]);
     const double b = std::abs(decoded_bin[i + 1] - true_bin[i + 1]);
     const double a_c = std::min(a, samples - a), b_c = std::min(b, samples - b);
     const double a_o = a_c > threshold_bin ? 1.0 : 0.0, b_o = b_c > threshold_bin ? 1.0 : 0.0;
-    total.linear += a + b;
-    total.circular += a_c + b_c;
-    total.outliers += a_o + b_o;
-    total.linear_squares += (a - b) * (a - b);
-    total.circular_squares += (a_c - b_c) * (a_c - b_c);
-    total.outlier_squares += (a_o - b_o) * (a_o - b_o);
+    total.merge({pair(a, b), pair(a_c, b_c), a_o + b_o, (a_o - b_o) * (a_o - b_o)});
   }
   return total;
 }
@@ -281,6 +292,20 @@ HWY_EXPORT(plane);
 HWY_EXPORT(expect);
 HWY_EXPORT(read_out);
 HWY_EXPORT(sums);
+
+void PairSums::merge(const PairSums& other) {
+  sum += other.sum;
+  squared_difference += other.squared_difference;
+  squared_sum += other.squared_sum;
+  squared_product += other.squared_product;
+}
+
+void TileSums::merge(const TileSums& other) {
+  linear.merge(other.linear);
+  circular.merge(other.circular);
+  outliers += other.outliers;
+  outlier_squared_difference += other.outlier_squared_difference;
+}
 
 PlaneNoise::PlaneNoise(const TrialModel& model, const PlaneMap& map, double ambient_e_per_s)
     : rank(static_cast<int>(map.weight.rows())),

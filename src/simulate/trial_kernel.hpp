@@ -66,11 +66,24 @@ void expect_electrons(const TrialModel& model, const std::vector<float>& mean_fl
 void read_out_taps(const TrialModel& model, const std::vector<float>& max_e, int trials,
                    TrialTile& tile);
 
-/// Sums over a tile whose order follows depth.
+/// Sums over pairs of neighbours a, b = 2 i, 2 i + 1 in trials whose order follows depth.
+struct PairSums {
+  double sum = 0.0;                 ///< of a + b
+  double squared_difference = 0.0;  ///< of (a - b)^2
+  double squared_sum = 0.0;         ///< of (a + b)^2
+  double squared_product = 0.0;     ///< of (a^2 - b^2)^2
+
+  void merge(const PairSums& other);
+  /// Of a^2 + b^2.
+  double of_squares() const { return 0.5 * (squared_difference + squared_sum); }
+};
+
+/// Sums of errors and, of no more than a mean, of outliers.
 struct TileSums {
-  double linear = 0.0, circular = 0.0, outliers = 0.0;
-  /// Of squared differences between neighbours (2 i, 2 i + 1).
-  double linear_squares = 0.0, circular_squares = 0.0, outlier_squares = 0.0;
+  PairSums linear, circular;
+  double outliers = 0.0, outlier_squared_difference = 0.0;
+
+  void merge(const TileSums& other);
 };
 
 /// Errors [bin] of an even number of trials.

@@ -29,13 +29,18 @@ struct PointColumn {
   double (*of)(const PointDepthError&);
 };
 
-constexpr std::array<PointColumn, 10> point_columns = {{
+constexpr std::array<PointColumn, 14> point_columns = {{
     {"signal_e_per_s", [](const PointDepthError& p) { return p.point.signal_e_per_s; }},
     {"ambient_e_per_s", [](const PointDepthError& p) { return p.point.ambient_e_per_s; }},
     {"linear_mde_m", [](const PointDepthError& p) { return p.linear_mde_m.value; }},
     {"linear_se_m", [](const PointDepthError& p) { return p.linear_mde_m.standard_error; }},
     {"circular_mde_m", [](const PointDepthError& p) { return p.circular_mde_m.value; }},
     {"circular_se_m", [](const PointDepthError& p) { return p.circular_mde_m.standard_error; }},
+    {"linear_rmse_m", [](const PointDepthError& p) { return p.linear_rmse_m.value; }},
+    {"linear_rmse_se_m", [](const PointDepthError& p) { return p.linear_rmse_m.standard_error; }},
+    {"circular_rmse_m", [](const PointDepthError& p) { return p.circular_rmse_m.value; }},
+    {"circular_rmse_se_m",
+     [](const PointDepthError& p) { return p.circular_rmse_m.standard_error; }},
     {"outlier_rate", [](const PointDepthError& p) { return p.outlier_rate.value; }},
     {"cramer_rao_mae_m", [](const PointDepthError& p) { return p.cramer_rao_mae_m; }},
     {"receiver_bound_mae_m",

@@ -23,15 +23,19 @@ class Evaluate(CommandLineTest):
         mean = {"geometric_mean_m", "geometric_mean_se_m", "mean_m", "mean_se_m"}
         for code in document["codes"]:
             self.assertEqual(list(code), ["name", "exposures", "taps", "measurements", "samples",
-                                          "rotation_bin", "linear", "circular", "points"])
-            self.assertEqual(set(code["linear"]), mean)
-            self.assertEqual(set(code["circular"]), mean)
+                                          "rotation_bin", "linear", "circular", "linear_rmse",
+                                          "circular_rmse", "points"])
+            for name in ("linear", "circular", "linear_rmse", "circular_rmse"):
+                self.assertEqual(set(code[name]), mean)
             self.assertEqual(len(code["points"]), 25)
             for point in code["points"]:
                 self.assertEqual(list(point), [
                     "signal_e_per_s", "ambient_e_per_s", "linear_mde_m", "linear_se_m",
-                    "circular_mde_m", "circular_se_m", "outlier_rate", "cramer_rao_mae_m",
+                    "circular_mde_m", "circular_se_m", "linear_rmse_m", "linear_rmse_se_m",
+                    "circular_rmse_m", "circular_rmse_se_m", "outlier_rate", "cramer_rao_mae_m",
                     "receiver_bound_mae_m", "direct_tof_bound_mae_m"])
+                for kind in ("linear", "circular"):  # Jensen's inequality
+                    self.assertLessEqual(point[f"{kind}_mde_m"], point[f"{kind}_rmse_m"])
                 self.assertLessEqual(point["receiver_bound_mae_m"], point["cramer_rao_mae_m"])
                 self.assertLessEqual(point["direct_tof_bound_mae_m"],
                                      point["receiver_bound_mae_m"])

@@ -258,7 +258,8 @@ TEST_F(DeviceTrialsOf, GiveTheErrorsOfTheProcessor) {
         EXPECT_EQ(a.outlier_rate.value, b.outlier_rate.value);
         const double rounding = device().info().divides_as_processor ? 0.0 : 1e-6;
         for (const auto error :
-             {&PointDepthError::linear_mde_m, &PointDepthError::circular_mde_m}) {
+             {&PointDepthError::linear_mde_m, &PointDepthError::circular_mde_m,
+              &PointDepthError::linear_rmse_m, &PointDepthError::circular_rmse_m}) {
           EXPECT_NEAR((a.*error).value, (b.*error).value, rounding * (b.*error).value);
           EXPECT_NEAR((a.*error).standard_error, (b.*error).standard_error,
                       rounding * (b.*error).value);

@@ -55,6 +55,9 @@ void expect_same_error(const DepthErrorReport& a, const DepthErrorReport& b) {
   for (std::size_t i = 0; i < a.points.size(); ++i) {
     EXPECT_EQ(a.points[i].point, b.points[i].point);
     EXPECT_EQ(a.points[i].circular_mde_m.value, b.points[i].circular_mde_m.value);
+    EXPECT_EQ(a.points[i].linear_rmse_m.value, b.points[i].linear_rmse_m.value);
+    EXPECT_EQ(a.points[i].circular_rmse_m.standard_error,
+              b.points[i].circular_rmse_m.standard_error);
     EXPECT_EQ(a.points[i].outlier_rate.value, b.points[i].outlier_rate.value);
     EXPECT_EQ(a.points[i].cramer_rao_mae_m, b.points[i].cramer_rao_mae_m);
     EXPECT_EQ(a.points[i].receiver_bound_mae_m, b.points[i].receiver_bound_mae_m);

@@ -22,13 +22,15 @@ Keys keys_of(const json& object) {
   return keys;
 }
 
-const Keys code_keys{"name",         "exposures", "taps",     "measurements", "samples",
-                     "rotation_bin", "linear",    "circular", "points"};
+const Keys code_keys{"name",        "exposures",     "taps",   "measurements",
+                     "samples",     "rotation_bin",  "linear", "circular",
+                     "linear_rmse", "circular_rmse", "points"};
 const Keys mean_keys{"geometric_mean_m", "geometric_mean_se_m", "mean_m", "mean_se_m"};
-const Keys point_keys{"signal_e_per_s",        "ambient_e_per_s",  "linear_mde_m",
-                      "linear_se_m",           "circular_mde_m",   "circular_se_m",
-                      "outlier_rate",          "cramer_rao_mae_m", "receiver_bound_mae_m",
-                      "direct_tof_bound_mae_m"};
+const Keys point_keys{"signal_e_per_s",       "ambient_e_per_s",       "linear_mde_m",
+                      "linear_se_m",          "circular_mde_m",        "circular_se_m",
+                      "linear_rmse_m",        "linear_rmse_se_m",      "circular_rmse_m",
+                      "circular_rmse_se_m",   "outlier_rate",          "cramer_rao_mae_m",
+                      "receiver_bound_mae_m", "direct_tof_bound_mae_m"};
 
 TEST(EvaluationDocument, HasExactlyTheKeysOfTheContract) {
   const Camera camera = small_camera("paper-5f0");
@@ -51,10 +53,16 @@ TEST(EvaluationDocument, HasExactlyTheKeysOfTheContract) {
   EXPECT_EQ(code["rotation_bin"], 7);
   EXPECT_EQ(keys_of(code["linear"]), mean_keys);
   EXPECT_EQ(keys_of(code["circular"]), mean_keys);
+  EXPECT_EQ(keys_of(code["linear_rmse"]), mean_keys);
+  EXPECT_EQ(keys_of(code["circular_rmse"]), mean_keys);
   ASSERT_EQ(code["points"].size(), 2u);
   EXPECT_EQ(keys_of(code["points"][0]), point_keys);
   EXPECT_TRUE(code["points"][0]["cramer_rao_mae_m"].is_null()) << "JSON has no infinity";
   EXPECT_EQ(code["points"][1]["linear_mde_m"], codes[0].error.points[1].linear_mde_m.value);
+  EXPECT_EQ(code["points"][1]["circular_rmse_se_m"],
+            codes[0].error.points[1].circular_rmse_m.standard_error);
+  EXPECT_EQ(code["linear_rmse"]["geometric_mean_m"],
+            codes[0].error.linear_rmse.geometric_mean_m.value);
 }
 
 TEST(EvaluationDocument, BoundsThatAreNoneAreNull) {
@@ -93,15 +101,17 @@ TEST(EvaluationDocument, SetsWhatZnccMakesOfTheSameTrialsBesideMaximumLikelihood
   const json& entry = document["codes"][0];
   EXPECT_EQ(keys_of(entry), expected);
   const json& zncc = entry["zncc"];
-  EXPECT_EQ(keys_of(zncc),
-            (Keys{"linear", "circular", "linear_ratio", "circular_ratio", "points"}));
+  EXPECT_EQ(keys_of(zncc), (Keys{"linear", "circular", "linear_rmse", "circular_rmse",
+                                 "linear_ratio", "circular_ratio", "points"}));
   EXPECT_EQ(keys_of(zncc["linear"]), mean_keys);
   EXPECT_EQ(zncc["circular"]["geometric_mean_m"],
             evaluated.zncc_error->circular.geometric_mean_m.value);
   ASSERT_EQ(zncc["points"].size(), 2u);
-  EXPECT_EQ(keys_of(zncc["points"][0]), (Keys{"signal_e_per_s", "ambient_e_per_s", "linear_mde_m",
-                                              "linear_se_m", "circular_mde_m", "circular_se_m",
-                                              "outlier_rate", "linear_ratio", "circular_ratio"}));
+  EXPECT_EQ(
+      keys_of(zncc["points"][0]),
+      (Keys{"signal_e_per_s", "ambient_e_per_s", "linear_mde_m", "linear_se_m", "circular_mde_m",
+            "circular_se_m", "linear_rmse_m", "linear_rmse_se_m", "circular_rmse_m",
+            "circular_rmse_se_m", "outlier_rate", "linear_ratio", "circular_ratio"}));
   const json &own = entry["points"][1], &other = zncc["points"][1];
   EXPECT_DOUBLE_EQ(other["circular_ratio"].get<double>() * other["circular_mde_m"].get<double>(),
                    own["circular_mde_m"].get<double>());

@@ -174,14 +174,18 @@ TEST(Evaluate, MeansAreOverThePoints) {
   const DepthErrorReport result =
       evaluate(build_family("hamiltonian-k3", camera), camera, {.trials = 1000});
   ASSERT_EQ(result.points.size(), 4u);
-  double sum = 0.0, log_sum = 0.0;
+  double sum = 0.0, log_sum = 0.0, rms_sum = 0.0;
   for (const PointDepthError& p : result.points) {
     sum += p.linear_mde_m.value;
     log_sum += std::log(p.circular_mde_m.value);
+    rms_sum += p.circular_rmse_m.value;
+    EXPECT_LE(p.circular_mde_m.value, p.circular_rmse_m.value);
+    EXPECT_LE(p.circular_rmse_m.value, p.linear_rmse_m.value);
     EXPECT_LE(p.circular_mde_m.value, p.linear_mde_m.value);
     EXPECT_LT(p.receiver_bound_mae_m, p.cramer_rao_mae_m);
   }
   EXPECT_NEAR(result.linear.mean_m.value, sum / 4, 1e-12);
+  EXPECT_NEAR(result.circular_rmse.mean_m.value, rms_sum / 4, 1e-12);
   EXPECT_NEAR(result.of(DepthErrorKind::circular).geometric_mean_m.value, std::exp(log_sum / 4),
               1e-12);
 }

@@ -7,8 +7,10 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 #include "each_target.hpp"
+#include "rows_setup.hpp"
 #include "simulate/noise.hpp"
 #include "simulate/trial_errors.hpp"
 
@@ -254,6 +256,9 @@ TEST(AdaptiveTrials, SameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(one.points[p].linear_mde_m.value, three.points[p].linear_mde_m.value);
     EXPECT_EQ(one.points[p].linear_mde_m.standard_error,
               three.points[p].linear_mde_m.standard_error);
+    EXPECT_EQ(one.points[p].linear_rmse_m.value, three.points[p].linear_rmse_m.value);
+    EXPECT_EQ(one.points[p].circular_rmse_m.standard_error,
+              three.points[p].circular_rmse_m.standard_error);
   }
 }
 
@@ -274,6 +279,102 @@ TEST(AdaptiveTrials, StandardErrorsAreHonest) {
   const Estimate truth = evaluate(code, camera, {.trials = 200000}).points[0].linear_mde_m;
   EXPECT_NEAR(values.mean(), truth.value,
               4 * std::hypot(values.standard_error(), truth.standard_error) + 0.01 * truth.value);
+}
+
+TEST(RootMeanSquare, IsThatOfThePlainSquares) {
+  for (const std::int64_t count : {1000, 1022}) {
+    const Camera camera = camera_at(2e3, 1e3);
+    const ForwardModel model(build_family("hamiltonian-k4", camera), camera);
+    for_each_target([&] {
+      const DepthTrials trials(model, camera, {.trials = count});
+      const ErrorSums sums = sum_errors(trials, trials.first_rounds(), 3.0, {}).front();
+      const Positions positions = positions_of(trials, count, count, trials_per_tile);
+      double linear = 0.0, circular = 0.0, linear_scatter = 0.0, circular_scatter = 0.0;
+      for (std::size_t t = 0; t < positions.truth.size(); t += 2) {
+        double squares[2][2];
+        for (std::size_t i = 0; i < 2; ++i) {
+          const double error = std::abs(positions.found[t + i] - positions.truth[t + i]);
+          squares[0][i] = error * error;
+          squares[1][i] = std::pow(std::min(error, camera.samples - error), 2);
+        }
+        linear += squares[0][0] + squares[0][1];
+        circular += squares[1][0] + squares[1][1];
+        linear_scatter += std::pow(squares[0][0] - squares[0][1], 2);
+        circular_scatter += std::pow(squares[1][0] - squares[1][1], 2);
+      }
+      const auto n = static_cast<double>(count);
+      const auto expect = [n](const Estimate& found, double sum, double scatter) {
+        const double root = std::sqrt(sum / n);
+        EXPECT_NEAR(found.value, 2.0 * root, 1e-9 * root);
+        EXPECT_NEAR(found.standard_error, std::sqrt(scatter) / n / root, 1e-9 * root);
+      };
+      expect(sums.linear_rms(2.0), linear, linear_scatter);
+      expect(sums.circular_rms(2.0), circular, circular_scatter);
+    });
+  }
+}
+
+TEST(RootMeanSquare, OfNormalErrorsIsTheRootOfHalfPiTimesTheMean) {
+  const Camera camera = camera_at(1e5, 1e2);
+  const PointDepthError error =
+      evaluate(build_family("sinusoid-k4", camera), camera, {.trials = 40000}).points[0];
+  // The deviation depends on depth by a few per cent: that raises the ratio by the square of it.
+  EXPECT_NEAR(error.circular_rmse_m.value / error.circular_mde_m.value,
+              std::sqrt(std::numbers::pi / 2), 0.02);
+}
+
+TEST(RootMeanSquare, TheStatedStandardErrorIsTheSpreadOverSeeds) {
+  struct Case {
+    double signal_e_per_s;
+    std::int64_t trials;
+    double target;
+    bool is_poisson;
+  };
+  // Wraps decide the linear error, wrong lobes the circular one of dim light; rounds are merged.
+  for (const Case& its :
+       {Case{3e3, 600, 0.0, false}, Case{3e4, 400, 0.0, true}, Case{3e3, 200, 0.1, false}}) {
+    SCOPED_TRACE(testing::Message() << its.signal_e_per_s << " e/s, target " << its.target);
+    Camera camera = camera_at(its.signal_e_per_s, 1e3);
+    if (its.is_poisson) camera.sensor.noise = NoiseModel::poisson;
+    const CodeSet code = build_family("hamiltonian-k3", camera);
+    RunningStatistics linear, circular, linear_variance, circular_variance;
+    for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+      const PointDepthError error = evaluate(code, camera,
+                                             {.trials = its.trials,
+                                              .seed = seed,
+                                              .target_standard_error = its.target,
+                                              .bounds = false})
+                                        .points[0];
+      linear.add(error.linear_rmse_m.value);
+      circular.add(error.circular_rmse_m.value);
+      linear_variance.add(std::pow(error.linear_rmse_m.standard_error, 2));
+      circular_variance.add(std::pow(error.circular_rmse_m.standard_error, 2));
+    }
+    const PointDepthError truth =
+        evaluate(code, camera, {.trials = 400000, .seed = 999, .bounds = false}).points[0];
+    const auto expect = [](const RunningStatistics& values, const RunningStatistics& variance,
+                           const Estimate& is) {
+      // A variance of 200 values is known to about 1 part in 8 where they are normal. The root is
+      // low by the variance over twice itself, to first order.
+      EXPECT_NEAR(variance.mean() / values.variance(), 1.0, 0.45);
+      EXPECT_NEAR(values.mean() + values.variance() / (2 * is.value), is.value,
+                  4 * std::hypot(values.standard_error(), is.standard_error) + 0.01 * is.value);
+    };
+    expect(linear, linear_variance, truth.linear_rmse_m);
+    expect(circular, circular_variance, truth.circular_rmse_m);
+  }
+}
+
+TEST(RootMeanSquare, OfRowsIsThatOfTheirErrors) {
+  // So few photons that some depths are wrong by far.
+  Camera camera = rows_camera(120, 15, 30);
+  camera.sensor.noise = NoiseModel::poisson;
+  const CodeSet code = build_family("fourier-k6", camera);
+  const PointDepthError error = evaluate(code, camera, {.trials = 4000}).points[0];
+  const PointDepthError again = evaluate(code, camera, {.trials = 4000, .seed = 2}).points[0];
+  EXPECT_GT(error.circular_rmse_m.value, 1.3 * error.circular_mde_m.value);
+  EXPECT_NEAR(error.circular_rmse_m.value, again.circular_rmse_m.value,
+              4 * joint(error.circular_rmse_m, again.circular_rmse_m));
 }
 
 TEST(AdaptiveTrials, RefuseTargetsThatMakeNoSense) {
@@ -312,6 +413,7 @@ TEST(DepthTrials, RunElsewhereGiveTheSameSums) {
   EXPECT_EQ(a.linear.mean_m.value, b.linear.mean_m.value);
   EXPECT_EQ(a.linear.mean_m.standard_error, b.linear.mean_m.standard_error);
   EXPECT_EQ(a.circular.mean_m.value, b.circular.mean_m.value);
+  EXPECT_EQ(a.linear_rmse.mean_m.value, b.linear_rmse.mean_m.value);
   const TrialsBy not_there = [](const DepthTrials&) { return TrialRunner(); };
   EXPECT_EQ(evaluate(code, camera, options, {}, not_there).linear.mean_m.value,
             b.linear.mean_m.value);

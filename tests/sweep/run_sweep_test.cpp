@@ -32,6 +32,8 @@ TEST(RunSweep, FindsWhatEvaluateFinds) {
   EXPECT_EQ(found.point, is.point);
   EXPECT_EQ(found.linear_mde_m.value, is.linear_mde_m.value);
   EXPECT_EQ(found.circular_mde_m.standard_error, is.circular_mde_m.standard_error);
+  EXPECT_EQ(found.linear_rmse_m.value, is.linear_rmse_m.value);
+  EXPECT_EQ(found.circular_rmse_m.standard_error, is.circular_rmse_m.standard_error);
   EXPECT_EQ(found.cramer_rao_mae_m, is.cramer_rao_mae_m);
 }
 

@@ -153,6 +153,7 @@ export class ErrorsView {
           return [
             `signal ${rateText(p.signal_e_per_s)}, ambient ${rateText(p.ambient_e_per_s)} e/s`,
             `error ${errorText(p[`${kind}_mde_m`], p[`${kind}_se_m`])} mm`,
+            `root mean square ${errorText(p[`${kind}_rmse_m`], p[`${kind}_rmse_se_m`])} mm`,
             `outliers ${shortText(100 * p.outlier_rate, 3)} %`,
             `Cramer-Rao ${shortText(1e3 * p.cramer_rao_mae_m, 4)} mm`
           ];

@@ -66,6 +66,8 @@ struct PointDepthError {
   std::int64_t trials = 0;        ///< made
   Estimate linear_mde_m;          ///< mean |decoded - true|
   Estimate circular_mde_m;        ///< mean of the shorter way round the range
+  Estimate linear_rmse_m;         ///< root of the mean square of the linear error
+  Estimate circular_rmse_m;       ///< of the circular error
   Estimate outlier_rate;          ///< share of circular errors beyond the threshold
   double cramer_rao_mae_m = 0.0;  ///< CramerRaoBound of the code
   /// ReceiverBound of the camera, with the code's exposures; of rows, HistogramBound of their
@@ -83,6 +85,8 @@ auto fields_of(ConstOrNot<PointDepthError> auto& p) {
                     Field("trials", p.trials, FieldMark::apart),
                     Field("linear_mde_m", p.linear_mde_m, "finite and >= 0"),
                     Field("circular_mde_m", p.circular_mde_m, "finite and >= 0"),
+                    Field("linear_rmse_m", p.linear_rmse_m, "finite and >= 0"),
+                    Field("circular_rmse_m", p.circular_rmse_m, "finite and >= 0"),
                     Field("outlier_rate", p.outlier_rate, "in [0, 1]", FieldMark::without_error),
                     Field("cramer_rao_mae_m", p.cramer_rao_mae_m, ">= 0", FieldMark::bound),
                     Field("receiver_bound_mae_m", p.receiver_bound_mae_m, ">= 0", FieldMark::bound,
@@ -91,7 +95,7 @@ auto fields_of(ConstOrNot<PointDepthError> auto& p) {
                           FieldMark::bound, FieldMark::may_be_null));
 }
 
-/// One figure for all operating points.
+/// One figure for all operating points, of what is known of each.
 struct DepthErrorMean {
   Estimate geometric_mean_m;
   Estimate mean_m;
@@ -113,8 +117,9 @@ struct DepthErrorReport {
   int points_short_of_target = 0;  ///< that reached max_trials first
   std::uint64_t seed = 0;
   double outlier_threshold_m = 0.0;
-  DepthErrorMean linear, circular;
-  std::vector<PointDepthError> points;  ///< in the order of OperatingRange::points()
+  DepthErrorMean linear, circular;            ///< of mean absolute errors
+  DepthErrorMean linear_rmse, circular_rmse;  ///< of root mean square errors
+  std::vector<PointDepthError> points;        ///< in the order of OperatingRange::points()
 
   const DepthErrorMean& of(DepthErrorKind kind) const {
     return kind == DepthErrorKind::linear ? linear : circular;
@@ -129,7 +134,8 @@ auto fields_of(ConstOrNot<DepthErrorReport> auto& r) {
       Field("points_short_of_target", r.points_short_of_target, FieldMark::apart),
       Field("seed", r.seed, FieldMark::apart),
       Field("outlier_threshold_m", r.outlier_threshold_m, FieldMark::apart),
-      Field("linear", r.linear), Field("circular", r.circular), Field("points", r.points));
+      Field("linear", r.linear), Field("circular", r.circular), Field("linear_rmse", r.linear_rmse),
+      Field("circular_rmse", r.circular_rmse), Field("points", r.points));
 }
 
 class DepthTrials;  ///< of the implementation

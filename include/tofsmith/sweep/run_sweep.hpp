@@ -198,7 +198,7 @@ class SweepStore {
 };
 
 /// Changes whenever the same settings give other results, so that old stores are not trusted.
-inline constexpr int sweep_result_version = 2;
+inline constexpr int sweep_result_version = 3;
 
 /// One depth error to find.
 struct WorkItem {

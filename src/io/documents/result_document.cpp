@@ -24,6 +24,8 @@ Json zncc_json(const DepthErrorReport& report, const DepthErrorReport& zncc) {
   Json entry = {
       {"linear", fields_json(zncc.linear)},
       {"circular", fields_json(zncc.circular)},
+      {"linear_rmse", fields_json(zncc.linear_rmse)},
+      {"circular_rmse", fields_json(zncc.circular_rmse)},
       {"linear_ratio", over(report.linear.geometric_mean_m, zncc.linear.geometric_mean_m)},
       {"circular_ratio", over(report.circular.geometric_mean_m, zncc.circular.geometric_mean_m)},
       {"points", Json::array()}};
