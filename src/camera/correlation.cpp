@@ -88,6 +88,29 @@ Eigen::VectorXd cell_values(const StepFunction& function, int cells) {
   return values;
 }
 
+/// How far a waveform goes up and down within a period.
+double variation(const Waveform& waveform) {
+  if (waveform.is_binary())
+    return 2.0 * waveform.level() * static_cast<double>(waveform.on_intervals().size());
+  const Eigen::VectorXd x = waveform.samples();
+  return (x - circular_shift(x, 1)).cwiseAbs().sum();
+}
+
+/// The last harmonic of the transfer that counts: all others together are rounding. Harmonic n of a
+/// waveform is at most variation / (2 pi n).
+int last_that_counts(const Waveform& d, const Waveform& m, const Eigen::VectorXcd& transfer) {
+  constexpr double rounding = 1e-15;
+  const double allowed = rounding * d.mean() * m.mean() / (variation(d) * variation(m));
+  double left_out = 0.0;
+  Eigen::Index n = transfer.size() - 1;
+  for (; n > 0; --n) {
+    const double larger = std::abs(transfer[n].real()) + std::abs(transfer[n].imag());
+    left_out += 2.0 * larger / std::pow(2.0 * std::numbers::pi * static_cast<double>(n), 2);
+    if (!(left_out <= allowed)) break;
+  }
+  return static_cast<int>(n);
+}
+
 }  // namespace
 
 CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Waveform& modulation) {
@@ -125,10 +148,10 @@ CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Wav
 
 CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Waveform& modulation,
                                          const Eigen::VectorXcd& transfer) {
-  const int highest = static_cast<int>(transfer.size()) - 1;
+  const int highest = last_that_counts(demodulation, modulation, transfer);
   harmonics_ = demodulation.harmonics(highest)
                    .cwiseProduct(modulation.harmonics(highest).conjugate())
-                   .cwiseProduct(transfer);
+                   .cwiseProduct(transfer.head(highest + 1));
 }
 
 CorrelationFunction CorrelationFunction::moved(double delay, bool reversed) const {
