@@ -88,6 +88,39 @@ Eigen::VectorXd cell_values(const StepFunction& function, int cells) {
   return values;
 }
 
+/// Value at `position` in [0, 1) behind corner i of a function that is straight between corners.
+double between_corners(const std::vector<double>& corners, const std::vector<double>& values,
+                       std::size_t i, double position) {
+  const bool last = i + 1 == corners.size();
+  const double end = last ? 1.0 + corners[0] : corners[i + 1];
+  const double value_at_end = last ? values[0] : values[i + 1];
+  const double share = (position - corners[i]) / (end - corners[i]);
+  return values[i] + share * (value_at_end - values[i]);
+}
+
+/// How far a waveform goes up and down within a period.
+double variation(const Waveform& waveform) {
+  if (waveform.is_binary())
+    return 2.0 * waveform.level() * static_cast<double>(waveform.on_intervals().size());
+  const Eigen::VectorXd x = waveform.samples();
+  return (x - circular_shift(x, 1)).cwiseAbs().sum();
+}
+
+/// The last harmonic of the transfer that counts: all others together are rounding. Harmonic n of a
+/// waveform is at most variation / (2 pi n).
+int last_that_counts(const Waveform& d, const Waveform& m, const Eigen::VectorXcd& transfer) {
+  constexpr double rounding = 1e-15;
+  const double allowed = rounding * d.mean() * m.mean() / (variation(d) * variation(m));
+  double left_out = 0.0;
+  Eigen::Index n = transfer.size() - 1;
+  for (; n > 0; --n) {
+    const double larger = std::abs(transfer[n].real()) + std::abs(transfer[n].imag());
+    left_out += 2.0 * larger / std::pow(2.0 * std::numbers::pi * static_cast<double>(n), 2);
+    if (!(left_out <= allowed)) break;
+  }
+  return static_cast<int>(n);
+}
+
 }  // namespace
 
 CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Waveform& modulation) {
@@ -125,10 +158,10 @@ CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Wav
 
 CorrelationFunction::CorrelationFunction(const Waveform& demodulation, const Waveform& modulation,
                                          const Eigen::VectorXcd& transfer) {
-  const int highest = static_cast<int>(transfer.size()) - 1;
+  const int highest = last_that_counts(demodulation, modulation, transfer);
   harmonics_ = demodulation.harmonics(highest)
                    .cwiseProduct(modulation.harmonics(highest).conjugate())
-                   .cwiseProduct(transfer);
+                   .cwiseProduct(transfer.head(highest + 1));
 }
 
 CorrelationFunction CorrelationFunction::moved(double delay, bool reversed) const {
@@ -157,19 +190,20 @@ double CorrelationFunction::operator()(double u) const {
   }
   const double position = wrap(u, 1.0);
   const auto after = std::upper_bound(corners_.begin(), corners_.end(), position);
-  const auto i = static_cast<std::size_t>(after - corners_.begin()) - 1;
-  const bool last = i + 1 == corners_.size();
-  const double end = last ? 1.0 + corners_[0] : corners_[i + 1];
-  const double value_at_end = last ? values_[0] : values_[i + 1];
-  const double share = (position - corners_[i]) / (end - corners_[i]);
-  return values_[i] + share * (value_at_end - values_[i]);
+  return between_corners(corners_, values_, static_cast<std::size_t>(after - corners_.begin()) - 1,
+                         position);
 }
 
 Eigen::VectorXd CorrelationFunction::table(int points) const {
   require(points >= 1, "points", points, "must be >= 1");
   Eigen::VectorXd values(points);
   if (harmonics_.size() == 0) {
-    for (int j = 0; j < points; ++j) values[j] = (*this)(static_cast<double>(j) / points);
+    std::size_t corner = 0;
+    for (int j = 0; j < points; ++j) {
+      const double position = static_cast<double>(j) / points;
+      while (corner + 1 < corners_.size() && corners_[corner + 1] <= position) ++corner;
+      values[j] = between_corners(corners_, values_, corner, position);
+    }
     return values;
   }
   // Harmonics above points/2 fold onto lower ones: exact at the points of the table.

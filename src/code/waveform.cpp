@@ -33,6 +33,21 @@ std::vector<OnInterval> unrolled(const std::vector<OnInterval>& on) {
   return pieces;
 }
 
+/// Adds sign exp(-2 pi i n t) to sum n, in blocks: that of a block's first times those of 0, 1, ..
+void add_turns(double t, double sign, Eigen::ArrayXcd& sums) {
+  constexpr Eigen::Index block = 64;
+  const auto turn = [&](Eigen::Index n) {
+    return std::polar(1.0, -2 * pi * wrap(static_cast<double>(n) * t, 1.0));
+  };
+  const Eigen::Index count = sums.size();
+  Eigen::ArrayXcd within(std::min(block, count));
+  for (Eigen::Index n = 0; n < within.size(); ++n) within[n] = turn(n);
+  for (Eigen::Index first = 0; first < count; first += block) {
+    const Eigen::Index size = std::min(block, count - first);
+    sums.segment(first, size) += sign * turn(first) * within.head(size);
+  }
+}
+
 double on_time(const std::vector<OnInterval>& on) {
   double sum = 0.0;
   for (const OnInterval& interval : on) sum += interval.fall - interval.rise;
@@ -141,27 +156,29 @@ Eigen::VectorXd Waveform::cell_averages(int samples) const {
 }
 
 Eigen::VectorXcd Waveform::harmonics(int highest) const {
-  using namespace std::complex_literals;
   Eigen::VectorXcd result = Eigen::VectorXcd::Zero(highest + 1);
   result[0] = mean();
   if (is_binary()) {
-    for (const OnInterval& interval : on_)
-      for (int n = 1; n <= highest; ++n)
-        result[n] += level_ *
-                     (std::polar(1.0, -2 * pi * n * interval.rise) -
-                      std::polar(1.0, -2 * pi * n * interval.fall)) /
-                     (2i * pi * static_cast<double>(n));
+    Eigen::ArrayXcd turns = Eigen::ArrayXcd::Zero(highest + 1);
+    for (const OnInterval& interval : on_) {
+      add_turns(interval.rise, 1.0, turns);
+      add_turns(interval.fall, -1.0, turns);
+    }
+    for (int n = 1; n <= highest; ++n)
+      result[n] = level_ / (2 * pi * n) * std::complex<double>(turns[n].imag(), -turns[n].real());
     return result;
   }
   const int size = static_cast<int>(samples_.size());
   Eigen::VectorXcd spectrum;
   PeriodicTransform(size).forward(samples_, spectrum);
-  for (int n = 1; n <= highest; ++n) {
-    const int k = n % size;
+  // Each sample is held over its cell: sin(x) / x exp(-i x) with x = pi n / size.
+  Eigen::VectorXcd held(size);
+  for (int k = 0; k < size; ++k) {
     const std::complex<double> dft = k <= size / 2 ? spectrum[k] : std::conj(spectrum[size - k]);
-    const double x = pi * n / size;  // each sample is held over its cell
-    result[n] = dft / static_cast<double>(size) * (std::sin(x) / x) * std::polar(1.0, -x);
+    const double x = pi * k / size;
+    held[k] = dft * std::sin(x) * std::polar(1.0, -x) / pi;
   }
+  for (int n = 1; n <= highest; ++n) result[n] = held[n % size] / static_cast<double>(n);
   return result;
 }
 

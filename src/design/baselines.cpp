@@ -84,6 +84,19 @@ std::optional<std::string> why_not_comparable(const CodeSet& code, const Camera&
   return why_no_depth(code, camera);
 }
 
+/// The first of the codes that has the waveforms of code i. Entries of an atlas share some.
+std::size_t first_like(const std::vector<CodeSet>& codes, std::size_t i) {
+  const auto alike = [&](const CodeSet& code) {
+    if (code.taps() != codes[i].taps() || code.exposures() != codes[i].exposures()) return false;
+    for (int e = 0; e < code.exposures(); ++e)
+      if (code.modulation(e) != codes[i].modulation(e)) return false;
+    for (int k = 0; k < code.measurements(); ++k)
+      if (code.demodulation(k) != codes[i].demodulation(k)) return false;
+    return true;
+  };
+  return static_cast<std::size_t>(std::find_if(codes.begin(), codes.end(), alike) - codes.begin());
+}
+
 /// Lets a code compete as it is, if it can. What tells no depth is left out by the judge.
 void add_baseline(CodeSet code, const std::string& method, const Camera& camera,
                   DesignResult& result) {
@@ -163,10 +176,12 @@ std::vector<CodeSet> contending_atlas_codes(const Camera& camera, const DesignOp
   std::vector<const CodeSet*> comparable(codes.size(), nullptr);
   parallel_for(std::ssize(codes), [&](std::int64_t i) {
     const auto at = static_cast<std::size_t>(i);
-    if (!why_no_depth(codes[at], camera)) comparable[at] = &codes[at];
+    if (first_like(codes, at) == at && !why_no_depth(codes[at], camera))
+      comparable[at] = &codes[at];
   });
-  const std::vector<double> errors_m =
+  std::vector<double> errors_m =
       first_errors_m(comparable, camera, trials_per_point(camera), search_seed(options));
+  for (std::size_t i = 0; i < codes.size(); ++i) errors_m[i] = errors_m[first_like(codes, i)];
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < codes.size(); ++i)
     if (errors_m[i] < infinity) order.push_back(i);

@@ -98,6 +98,25 @@ TEST(CorrelationFunction, OfManySamplesIsThatOfTheirSharedGrid) {
   EXPECT_NEAR(CorrelationFunction(huge, huge)(0.0), huge.samples().squaredNorm() / 65536, 1e-9);
 }
 
+TEST(CorrelationFunction, HarmonicsThatAreLeftOutAreRounding) {
+  const Camera camera = built_in_camera("paper-10f0");
+  constexpr int highest = 4096;
+  const Eigen::VectorXcd transfer = camera.transfer(highest);
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    RandomStream random(12, i);
+    const Waveform d = random_waveform(random), m = random_waveform(random);
+    const Eigen::VectorXcd all =
+        d.harmonics(highest).cwiseProduct(m.harmonics(highest).conjugate()).cwiseProduct(transfer);
+    const CorrelationFunction function(d, m, transfer);
+    for (const double u : {0.0, 0.1234, 0.77}) {
+      double expected = all[0].real();
+      for (int n = 1; n <= highest; ++n)
+        expected += 2.0 * (all[n] * std::polar(1.0, 2 * M_PI * wrap(n * u, 1.0))).real();
+      EXPECT_NEAR(function(u), expected, 1e-13) << i;
+    }
+  }
+}
+
 TEST(CorrelationFunction, RefusesSwitchingTimesThatWouldTakeGigabytes) {
   std::vector<OnInterval> on;
   for (int i = 0; i < 8000; ++i) on.push_back({(i + 0.3 + 1e-5 * i) / 8000.1, (i + 0.7) / 8000.1});

@@ -34,6 +34,30 @@ TEST(Waveform, HarmonicsAgreeWithFineSamples) {
   EXPECT_LT((exact - fine).cwiseAbs().maxCoeff(), 1e-7);
 }
 
+TEST(Waveform, HarmonicsAreIntegralsUpToThousands) {
+  const Waveform switching = random_binary(4);
+  const Waveform sampled = Waveform::sampled(switching.cell_averages(60));
+  std::vector<OnInterval> cells;  // of the sampled one: its values for a cell each
+  for (int k = 0; k < 60; ++k) cells.push_back({k / 60.0, (k + 1) / 60.0});
+  const Eigen::VectorXcd of_switching = switching.harmonics(2100),
+                         of_sampled = sampled.harmonics(2100);
+  for (const int n : {1, 59, 60, 63, 64, 65, 500, 2048, 2100}) {
+    const auto integral = [&](double rise, double fall) {
+      const double turns = 2 * M_PI * n;
+      return (std::polar(1.0, -turns * rise) - std::polar(1.0, -turns * fall)) /
+             std::complex<double>(0.0, turns);
+    };
+    std::complex<double> expected = 0.0, expected_sampled = 0.0;
+    for (const OnInterval& on : switching.on_intervals())
+      expected += switching.level() * integral(on.rise, on.fall);
+    for (std::size_t k = 0; k < cells.size(); ++k)
+      expected_sampled +=
+          sampled.samples()[static_cast<Eigen::Index>(k)] * integral(cells[k].rise, cells[k].fall);
+    EXPECT_LT(std::abs(of_switching[n] - expected), 1e-14) << n;
+    EXPECT_LT(std::abs(of_sampled[n] - expected_sampled), 1e-14) << n;
+  }
+}
+
 TEST(Waveform, ComplementAddsToOneEverywhere) {
   for (std::uint64_t i = 0; i < 20; ++i) {
     Waveform w = random_binary(i);

@@ -166,8 +166,8 @@ float with_room_for(double value, int integers) {
 }  // namespace
 
 OutputKernel::OutputKernel(const DecodingTable& table, const AmbientProjection& projection,
-                           const DecodeOptions& options)
-    : records_(table, projection) {
+                           const DecodeOptions& options, bool only_positions)
+    : records_(table, projection, !only_positions) {
   const double bin_m = table.bin_m();
   const ExpectedNoise noise(table);
   const double ambient2 = projection.ambient.squaredNorm();

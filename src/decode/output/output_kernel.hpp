@@ -42,8 +42,9 @@ struct MatchedTile {
 /// processor: products and sums are rounded one by one.
 class OutputKernel {
  public:
+  /// @param only_positions  `write` is not going to be asked for anything: less to prepare
   OutputKernel(const DecodingTable& table, const AmbientProjection& projection,
-               const DecodeOptions& options);
+               const DecodeOptions& options, bool only_positions = false);
 
   const BinRecords& records() const { return records_; }
   const OutputConstants& constants() const { return constants_; }

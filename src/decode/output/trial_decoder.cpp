@@ -29,7 +29,7 @@ TrialDecoder::Zncc::Zncc(const DecodingTable& table, const AmbientProjection& pr
                          std::int64_t trials)
     : plane_map(plane_map_of(table, projection)),
       matcher(table, projection, trials < trials_worth_cells(projection.rank(), table.samples())),
-      outputs(table, projection, {}) {}
+      outputs(table, projection, {}, /*only_positions=*/true) {}
 
 TrialDecoder::TrialDecoder(DecodeMethod method, DecodingTable table, UnwrapWeights unwrap_weights,
                            std::int64_t trials)

@@ -133,6 +133,8 @@ void search_rows(const ArcTable& table, const float* plane, int stride, const fl
 void search(const ArcTable& table, const float* plane, int stride, const float* error, int pixels,
             std::int32_t* row) {
   switch (table.rank()) {
+    case 4:
+      return search_rows<4>(table, plane, stride, error, pixels, row);
     case 5:
       return search_rows<5>(table, plane, stride, error, pixels, row);
     case 6:

@@ -31,8 +31,8 @@ class RecordBuilder {
         noise_(table) {}
 
   /// @param record  of the bin
-  /// @param chords  all chords
-  void fill(std::int32_t n, float* record, RecordTable& chords) const {
+  /// @param chords  all chords, where they are wanted
+  void fill(std::int32_t n, float* record, RecordTable* chords) const {
     const Eigen::VectorXd p = point(n);
     const double length2 = p.squaredNorm();
     if (length2 == 0.0) return;
@@ -44,14 +44,15 @@ class RecordBuilder {
 
     const std::int32_t samples = table_.samples();
     const std::int32_t before = (n + samples - 1) % samples, after = (n + 1) % samples;
-    const std::int32_t at_bin = ChordLayout::first_row(n) + ChordLayout::at_bin;
-    store(depth_noise_at(p, 0.5 * (point(after) - point(before)), shot),
-          chords.row(at_bin) + ChordLayout::depth_noise);
     fill_side(n, before, record + layout_.left(), record + layout_.turn());
     fill_side(n, after, record + layout_.right(), record + layout_.turn() + 1);
+    if (!chords) return;
+    const std::int32_t at_bin = ChordLayout::first_row(n) + ChordLayout::at_bin;
+    store(depth_noise_at(p, 0.5 * (point(after) - point(before)), shot),
+          chords->row(at_bin) + ChordLayout::depth_noise);
     for (int quarter = 0; quarter < ChordLayout::quarters; ++quarter) {
-      fill_chord(n, before, quarter, chords.row(at_bin - 1 - quarter));
-      fill_chord(n, after, quarter, chords.row(at_bin + 1 + quarter));
+      fill_chord(n, before, quarter, chords->row(at_bin - 1 - quarter));
+      fill_chord(n, after, quarter, chords->row(at_bin + 1 + quarter));
     }
   }
 
@@ -120,7 +121,8 @@ RecordTable::RecordTable(std::int32_t rows, int fields)
   std::fill_n(values_.get(), size_, 0.0f);
 }
 
-BinRecords::BinRecords(const DecodingTable& table, const AmbientProjection& projection)
+BinRecords::BinRecords(const DecodingTable& table, const AmbientProjection& projection,
+                       bool with_chords)
     : layout{projection.rank(), table.measurements()},
       records(table.samples(), layout.end()),
       chords(ChordLayout::first_row(table.samples()), ChordLayout::fields),
@@ -135,7 +137,7 @@ BinRecords::BinRecords(const DecodingTable& table, const AmbientProjection& proj
     store(projection.curve.row(current).normalized(), directions.row(n));
   }
   for (std::int32_t n = 0; n < table.samples(); ++n) {
-    builder.fill(n, records.row(n), chords);
+    builder.fill(n, records.row(n), with_chords ? &chords : nullptr);
     std::copy_n(directions.row(n), layout.rank, records.row(n) + layout.direction());
   }
 }

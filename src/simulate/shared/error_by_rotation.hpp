@@ -28,8 +28,8 @@ class ErrorByRotation {
     jumps_[0] += error;
     // The origin, put at bin r, parts the two if low < r <= high.
     const double longer = samples - 2.0 * error;
-    jumps_[static_cast<std::size_t>(std::floor(low)) + 1] += longer;
-    if (high < samples - 1.0) jumps_[static_cast<std::size_t>(std::floor(high)) + 1] -= longer;
+    jumps_[static_cast<std::size_t>(low) + 1] += longer;
+    if (high < samples - 1.0) jumps_[static_cast<std::size_t>(high) + 1] -= longer;
   }
   void merge(const ErrorByRotation& other) {
     for (std::size_t r = 0; r < jumps_.size(); ++r) jumps_[r] += other.jumps_[r];

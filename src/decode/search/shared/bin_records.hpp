@@ -88,7 +88,8 @@ inline constexpr int max_record_fields =
 
 /// All that depends on the bin alone, in single precision, computed in double.
 struct BinRecords {
-  BinRecords(const DecodingTable& table, const AmbientProjection& projection);
+  /// @param with_chords  else those stay 0: positions on chords do not need them
+  BinRecords(const DecodingTable& table, const AmbientProjection& projection, bool with_chords);
 
   RecordLayout layout;
   RecordTable records;     ///< of every bin
