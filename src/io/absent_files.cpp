@@ -42,6 +42,11 @@ CodeSet parse_code_csv(std::string_view /*text*/, std::string_view file, bool /*
   refuse_file(std::string(file), "the text of a .json file");
 }
 
+CodeSet read_code_arrays(const std::filesystem::path& light, const std::filesystem::path& /*gates*/,
+                         const TapLayout& /*layout*/) {
+  refuse_file(light.string(), "the text of a .json file");
+}
+
 CodeSet read_rows(const std::filesystem::path& path) {
   refuse_file(path.string(), "the text of a .json file");
 }
