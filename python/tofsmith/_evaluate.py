@@ -66,7 +66,7 @@ def evaluate(
     device : str, optional
         What runs the trials: "cpu"; "gpu", the first one; "auto", that or else the processor, which
         few trials are left to; a number or part of a name of the devices of OpenCL, which must have
-        doubles. Not the processor for zncc alone; the same figures. See docs/gpu.md.
+        doubles. Devices run zncc alone, with the same figures. See docs/gpu.md.
     progress : callable, optional
 
     Raises

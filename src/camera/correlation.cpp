@@ -102,7 +102,7 @@ double between_corners(const std::vector<double>& corners, const std::vector<dou
 double variation(const Waveform& waveform) {
   if (waveform.is_binary())
     return 2.0 * waveform.level() * static_cast<double>(waveform.on_intervals().size());
-  const Eigen::VectorXd x = waveform.samples();
+  const Eigen::VectorXd& x = waveform.samples();
   return (x - circular_shift(x, 1)).cwiseAbs().sum();
 }
 

@@ -41,6 +41,8 @@ bool DeviceFramesUnderWay::Plan::starts_beside(Slot& slot, const RawView& raw) c
   if (!is_there && !filter) return false;
   FrameSource source{.raw = raw};
   if (is_there) source = frames->plan_->source();
+  require(decoding().decoder.measurements() == source.raw.measurements, "decoder's measurements",
+          decoding().decoder.measurements(), "must be those of the frame");
   if (!slot.tile)
     slot.tile = std::make_unique<DeviceTile>(decoder.device(), decoding().decoder,
                                              decoding().options.use_doubles);

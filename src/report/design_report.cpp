@@ -210,12 +210,11 @@ KeyNumbers headline(const DesignResult& result, DepthErrorKind kind) {
 
 /// Why the winner won. A table, whose cells are set as they are: the names in them are users'.
 Table explanation(const DesignResult& result, DepthErrorKind kind) {
-  using Questions = std::vector<const char*>;
-  const Questions questions =
-      result.winner().code.is_rows()
-          ? Questions{"What does it beat?", "What limits it?", "And in dimmer light?"}
-          : Questions{"What does it beat?", "Why so many exposures?", "What limits it?",
-                      "And with multipath?"};
+  std::vector<const char*> questions{"What does it beat?"};
+  if (!result.winner().code.is_rows()) questions.push_back("Why so many exposures?");
+  questions.push_back("What limits it?");
+  if (result.winner().multipath) questions.push_back("And with multipath?");
+  if (result.winner().code.is_rows()) questions.push_back("And in dimmer light?");
   Table table{.caption = "Why this code.", .columns = {{"question"}, {"answer"}}};
   if (kind == DepthErrorKind::linear)
     table.caption +=

@@ -91,7 +91,8 @@ TEST(RowDesign, SaysWhereAStandardCodeHoldsOutLonger) {
   ASSERT_TRUE(note);
   EXPECT_THAT(*note, testing::HasSubstr("S = 100 e/s"));
   EXPECT_THAT(*note, testing::HasSubstr("fourier-k8"));
-  EXPECT_THAT(*note, testing::HasSubstr("operating.signal_e_per_s = [100, 1000]"));
+  EXPECT_THAT(*note, testing::HasSubstr("operating.signal_e_per_s = [100, 1000] and "
+                                        "operating.ambient_e_per_s = [100, 1000]"));
   // Asked for with the baselines left out, nothing is compared.
   result.candidates.erase(result.candidates.begin());
   result.best = 0;

@@ -271,6 +271,10 @@ TEST_F(DeviceFramesUnderWayOf, AreTwoAndNoMoreOfOneDevice) {
   const Filter filter(setup_.decoder.table());
   const DeviceFilter elsewhere(Device::all().front(), filter);
   EXPECT_THROW(DeviceFramesUnderWay(work.decoder, &elsewhere, nullptr), InvalidArgument);
+  RawView fewer = view(0);
+  --fewer.measurements;
+  EXPECT_THAT([&] { work.under_way->start(fewer, outputs.view()); },
+              ThrowsMessage<InvalidArgument>(HasSubstr("must be those of the frame")));
 }
 
 }  // namespace

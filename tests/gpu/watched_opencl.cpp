@@ -51,6 +51,19 @@ cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem memory, const void* pa
                                    list, event);
 }
 
+cl_int clEnqueueCopyBuffer(cl_command_queue queue, cl_mem from, cl_mem to, size_t from_offset,
+                           size_t to_offset, size_t bytes, cl_uint waits, const cl_event* list,
+                           cl_event* event) {
+  if (const cl_int error = tofsmith::failure.next()) return error;
+  return REAL(clEnqueueCopyBuffer)(queue, from, to, from_offset, to_offset, bytes, waits, list,
+                                   event);
+}
+
+cl_int clFlush(cl_command_queue queue) {
+  if (const cl_int error = tofsmith::failure.next()) return error;
+  return REAL(clFlush)(queue);
+}
+
 cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t bytes, void* from,
                       cl_int* error) {
   *error = tofsmith::failure.next();

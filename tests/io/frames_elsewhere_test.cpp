@@ -242,6 +242,33 @@ TEST_F(OverlappedFramesTest, LeaveNothingHalfWrittenWhereTheDeviceFails) {
   EXPECT_EQ(decode_recording(overlapped("stack.npy", in_turns), decoder_).frames.size(), 3u);
 }
 
+TEST_F(OverlappedFramesTest, StopWithTheFramesThatGoingAloneWouldHaveWritten) {
+  FramesInTurns in_turns{std::get<Decoder>(decoder_)};
+  for (const double stop_at : {0.1, 0.5, 2.0}) {
+    std::vector<std::size_t> written;
+    for (const bool overlaps : {false, true}) {
+      DecodeRequest asked = overlapped("frame.npz", in_turns);
+      asked.policy = OutputPolicy::overwrite;
+      if (!overlaps) asked.overlapped_by = {};
+      DecodedRecording result;
+      double last = 0.0;
+      const auto progress = [&](double fraction, std::string_view) {
+        EXPECT_GE(fraction, last);
+        last = fraction;
+        return fraction < stop_at;
+      };
+      if (stop_at <= 1.0) {
+        EXPECT_THROW(decode_recording(asked, decoder_, progress, result), Interrupted);
+      } else {
+        decode_recording(asked, decoder_, progress, result);
+        if (overlaps) EXPECT_EQ(last, 1.0);
+      }
+      written.push_back(result.files.size());
+    }
+    EXPECT_EQ(written[0], written[1]) << stop_at;
+  }
+}
+
 TEST_F(FramesElsewhereTest, HasMeansMadeWhereTheRequestSays) {
   DecodeRequest means = request("means.npy");
   means.average = 2;

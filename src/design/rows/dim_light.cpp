@@ -23,13 +23,15 @@ Camera in_share_of_light(Camera camera, double share) {
 std::optional<std::string> dim_light_note(const Camera& camera, const DesignResult& result,
                                           const DesignOptions& options) {
   constexpr int max_trials = 4000;
-  constexpr double share = 0.1, standard_errors = 3.0;
+  constexpr double standard_errors = 3.0;
   const DepthErrorKind kind = camera.operating.error;
-  std::vector<double> signal = camera.operating.signal_e_per_s;
+  std::vector<double> signal = camera.operating.signal_e_per_s,
+                      ambient = camera.operating.ambient_e_per_s;
   std::sort(signal.begin(), signal.end());
+  std::sort(ambient.begin(), ambient.end());
   Camera dim = camera;
   dim.operating.signal_e_per_s = {signal.front()};
-  dim = in_share_of_light(dim, share);
+  dim = in_share_of_light(dim, dim_share);
   const auto error_of = [&](const CodeSet& code) {
     const EvaluateOptions judging{
         .trials = std::min(options.trials, max_trials), .seed = options.seed, .bounds = false};
@@ -48,14 +50,14 @@ std::optional<std::string> dim_light_note(const Camera& camera, const DesignResu
   if (its.value - least.value <=
       standard_errors * std::hypot(its.standard_error, least.standard_error))
     return std::nullopt;
-  signal.insert(signal.begin(), dim.operating.signal_e_per_s.front());
+  signal.insert(signal.begin(), dim_share * signal.front());
+  if (ambient.front() > 0.0) ambient.insert(ambient.begin(), dim_share * ambient.front());
   return fmt::format(
       "In a tenth of its dimmest light (S = {:g} e/s, with a tenth of the ambient light) it errs "
-      "by "
-      "{} mm, {} by {} mm: where light may be that dim, ask for both, "
-      "operating.signal_e_per_s = [{:g}].",
+      "by {} mm, {} by {} mm: where light may be that dim, ask for both, "
+      "operating.signal_e_per_s = [{:g}] and operating.ambient_e_per_s = [{:g}].",
       signal.front(), plain_number(1e3 * its.value, 3), best->code.name(),
-      plain_number(1e3 * least.value, 3), fmt::join(signal, ", "));
+      plain_number(1e3 * least.value, 3), fmt::join(signal, ", "), fmt::join(ambient, ", "));
 }
 
 }  // namespace tofsmith

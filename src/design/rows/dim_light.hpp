@@ -9,6 +9,9 @@
 
 namespace tofsmith {
 
+/// The dimmer light that rows should hold out in, as a share of what they are asked for.
+inline constexpr double dim_share = 0.1;
+
 /// A camera in so many times its light.
 Camera in_share_of_light(Camera camera, double share);
 

@@ -35,11 +35,12 @@ constexpr int rounds_of_light = 12;
 
 /// Sets should hold out in dimmer light too, where lobes count that do not in the light asked for.
 /// A hundredth more error in that is worth 40 % less in a tenth of it; 3 % are the most.
-constexpr double dim_share = 0.1, dim_weight = 0.02, max_loss = 1.03;
+constexpr double dim_weight = 0.02, max_loss = 1.03;
 
 /// Monte Carlo that sets are chosen by: trials are so many times DesignOptions::search_trials, of
 /// all operating points together, of all sets and then of the best.
 constexpr int first_trials = 5, dim_trials = 2;
+constexpr std::int64_t most_trials = 4'000'000'000;  // that evaluate() takes
 struct FinalRound {
   std::size_t sets;
   int trials;
@@ -314,11 +315,11 @@ void keep_best(std::vector<ToneCode>& codes, int count, double weight) {
   codes = std::move(kept);
 }
 
-int by_effort(int count, const DesignOptions& options) {
+std::int64_t by_effort(double count, const DesignOptions& options) {
   // The starts of a search say how long it may take.
   const double effort =
       static_cast<double>(options.optimize.starts) / static_cast<double>(OptimizeOptions().starts);
-  return std::max(1, static_cast<int>(std::lround(count * effort)));
+  return std::max<std::int64_t>(1, std::llround(count * effort));
 }
 
 /// The index of the set to take: by ever more trials of ever fewer sets.
@@ -334,10 +335,12 @@ std::size_t chosen_of(const ToneSearch& search, const std::vector<ToneCode>& cod
   const auto by_error = [](const Judged& a, const Judged& b) { return a.error_m < b.error_m; };
   const auto points = static_cast<int>(camera.operating.points().size());
   const auto error_m = [&](std::size_t index, const Camera& on, int times) {
-    const int trials = by_effort(times * options.search_trials / points, options);
-    const EvaluateOptions judging{.trials = std::max(options.search_trials, trials),
-                                  .seed = search_seed(options),
-                                  .bounds = false};
+    const double trials = static_cast<double>(times) * options.search_trials / points;
+    const EvaluateOptions judging{
+        .trials = std::clamp<std::int64_t>(by_effort(trials, options), options.search_trials,
+                                           most_trials),
+        .seed = search_seed(options),
+        .bounds = false};
     return geometric_mean_error_m(evaluate(search.code_set(codes[index]), on, judging),
                                   camera.operating.error);
   };
@@ -396,7 +399,8 @@ std::vector<Candidate> row_candidates(const Camera& on, int rows, const DesignOp
 
   // 1. Sets of tones at random, each with its light.
   std::vector<ToneCode> codes;
-  const int drawn = by_effort(drawn_sets, options), bettered = by_effort(bettered_sets, options);
+  const auto drawn = static_cast<int>(by_effort(drawn_sets, options)),
+             bettered = static_cast<int>(by_effort(bettered_sets, options));
   for (int i = 0; i < drawn; ++i) {
     RandomStream random(seed, static_cast<std::uint64_t>(i), 0);
     codes.push_back(search.code_of(search.draw(random), random));

@@ -236,13 +236,9 @@ bool decode_next(PreparedFrames& input, const MappedDecoder& decoder, const Band
   return true;
 }
 
-bool start_next(PreparedFrames& input, const MappedDecoder& decoder, const Band& band,
-                DecodedPlanes& planes, const Progress& progress) {
-  const std::optional<RawView> raw = input.next(band.frame, progress);
-  if (!raw) return false;
-  decoder.overlapped().start(*raw, planes.view());
-  planes.keep_averaged(*raw, 0);
-  return true;
+void start_decoding(const RawView& raw, const MappedDecoder& decoder, DecodedPlanes& planes) {
+  decoder.overlapped().start(raw, planes.view());
+  planes.keep_averaged(raw, 0);
 }
 
 void finish_first(const MappedDecoder& decoder, const Band& band, const DecodeTarget& target,

@@ -79,8 +79,8 @@ bool decode_next(PreparedFrames& input, const MappedDecoder& decoder, const Band
                  const DecodeTarget& target, DecodedPlanes& planes, const Progress& progress);
 
 /// The same in two steps, of bands that are frames, by what has two of them under way.
-bool start_next(PreparedFrames& input, const MappedDecoder& decoder, const Band& band,
-                DecodedPlanes& planes, const Progress& progress);
+/// @param raw  of PreparedFrames::next()
+void start_decoding(const RawView& raw, const MappedDecoder& decoder, DecodedPlanes& planes);
 void finish_first(const MappedDecoder& decoder, const Band& band, const DecodeTarget& target,
                   DecodedPlanes& planes);
 

@@ -205,9 +205,10 @@ void decode_frames(const RawFramesReader& reader, const Preparation& preparation
                    const Progress& progress, DecodedRecording& result) {
   const DecodeTarget& target = output.target();
   const int height = target.view.height, width = target.view.width;
-  std::vector<DecodedPlanes> planes(
-      steps.overlaps ? 2 : 1,
-      DecodedPlanes(target.needed_planes(), target.in_rows() ? steps.rows : height, width));
+  std::vector<DecodedPlanes> planes;
+  planes.reserve(2);
+  while (planes.size() < (steps.overlaps ? 2U : 1U))
+    planes.emplace_back(target.needed_planes(), target.in_rows() ? steps.rows : height, width);
   const std::vector<Band> bands =
       bands_of(target.first_frame, target.first_frame + target.frames, height, steps.rows);
   ReadAhead recorded(reader, bands_to_read(preparation, reader.frames(), bands));
@@ -228,18 +229,30 @@ void decode_frames(const RawFramesReader& reader, const Preparation& preparation
     result.frames.push_back(std::exchange(statuses, {}));
     if (!target.stack) result.files.push_back(target.frame_path(band.frame));
   };
+  // All of the band before is written before a later one fails, or progress stops.
   const auto finish = [&](std::size_t i) {
+    const Progress here = pace.of_band(bands[i], result.pixels);
     finish_first(decoder, bands[i], target, planes[i % 2]);
     take(bands[i], planes[i % 2]);
+    report(here, 1.0, "decoding");
   };
   if (steps.overlaps) decoder.overlapped().forget();
   for (std::size_t i = 0; i < bands.size(); ++i) {
-    const Progress here = pace.of_band(bands[i], result.pixels);
-    report(here, 0.0, "reading");
     if (steps.overlaps) {
-      start_next(input, decoder, bands[i], planes[i % 2], here);
+      std::optional<RawView> raw;
+      try {
+        const Progress here = pace.of_band(bands[i], result.pixels);
+        report(here, 0.0, "reading");
+        raw = input.next(bands[i].frame, here);
+      } catch (...) {
+        if (i > 0) finish(i - 1);
+        throw;
+      }
+      start_decoding(raw.value(), decoder, planes[i % 2]);
       if (i > 0) finish(i - 1);
     } else {
+      const Progress here = pace.of_band(bands[i], result.pixels);
+      report(here, 0.0, "reading");
       decode_next(input, decoder, bands[i], target, planes[0], here);
       take(bands[i], planes[0]);
     }
