@@ -261,7 +261,9 @@ TEST_F(OverlappedFramesTest, StopWithTheFramesThatGoingAloneWouldHaveWritten) {
         EXPECT_THROW(decode_recording(asked, decoder_, progress, result), Interrupted);
       } else {
         decode_recording(asked, decoder_, progress, result);
-        if (overlaps) EXPECT_EQ(last, 1.0);
+        if (overlaps) {
+          EXPECT_EQ(last, 1.0);
+        }
       }
       written.push_back(result.files.size());
     }
