@@ -114,7 +114,7 @@ Table comparison_table(const Camera& camera, std::span<const DepthErrorRow> code
                   "Depth error over {} operating points (geometric means; \"arithmetic\" is "
                   "the arithmetic mean of the circular error), {} trials each, N = {}, "
                   "true depths {}; ± is one standard error. Errors are mean absolute "
-                  "ones, in columns of rms root mean square ones, which count rare large "
+                  "ones, those in columns called rms root mean square ones, which count rare large "
                   "errors most. Outliers are circular errors beyond {:.2g} m.",
                   first.points.size(), first.trials, camera.samples, true_depths_in_words(camera),
                   first.outlier_threshold_m),
