@@ -145,13 +145,12 @@ kernel void draw_measurements(const struct TrialParameters parameters, Floats ta
   const int trial = (int)get_global_id(0);
   const struct TrialParameters* p = &parameters;
   if (trial >= p->trials) return;
-  const uint4 words = trial_words(p, 0u, trial);
-  const struct Place place = place_depth(p, tables, words, trial);
-  true_bins[trial] = place.bin;
   const bool has_rows = p->row_points >= 0;
   float normals[TAPS + 1], raw[MEASUREMENTS];
-  draw_normals(p, trial, words, has_rows ? MEASUREMENTS : p->taps, normals);
-  const float signal = draw_signal(p, trial);
+  const struct Trial begun = begin_trial(p, tables, trial, has_rows ? MEASUREMENTS : p->taps,
+                                         normals, true_bins);
+  const struct Place place = begun.place;
+  const float signal = begun.signal;
 
   struct Doubt doubt;
   doubt.margin = p->margin;

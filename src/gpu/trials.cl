@@ -127,6 +127,24 @@ void add_plane_noise(float* covariance, const float* normals, float* q) {
   }
 }
 
+/// Where the depth of a trial lies, and the signal of its light.
+struct Trial {
+  struct Place place;
+  float signal;
+};
+
+/// Begins a trial, with so many normals: its true position [bin] is written.
+struct Trial begin_trial(const struct TrialParameters* p, Floats tables, int trial, int count,
+                         float* normals, global double* true_bins) {
+  const uint4 words = trial_words(p, 0u, trial);
+  struct Trial begun;
+  begun.place = place_depth(p, tables, words, trial);
+  true_bins[trial] = begun.place.bin;
+  draw_normals(p, trial, words, count, normals);
+  begun.signal = draw_signal(p, trial);
+  return begun;
+}
+
 /// True positions [bin] of trials, and where their measurements lie in the plane, coordinate after
 /// coordinate. Each is of one measurement.
 kernel void draw_in_plane(const struct TrialParameters parameters, Floats tables,
@@ -134,19 +152,15 @@ kernel void draw_in_plane(const struct TrialParameters parameters, Floats tables
   const int trial = (int)get_global_id(0);
   const struct TrialParameters* p = &parameters;
   if (trial >= p->trials) return;
-  const uint4 words = trial_words(p, 0u, trial);
-  const struct Place place = place_depth(p, tables, words, trial);
-  true_bins[trial] = place.bin;
   float normals[RANK + 1];
-  draw_normals(p, trial, words, RANK, normals);
-  const float signal = draw_signal(p, trial);
+  const struct Trial begun = begin_trial(p, tables, trial, RANK, normals, true_bins);
 
   const int pairs = RANK * (RANK + 1) / 2;
   float q[RANK], covariance[RANK * (RANK + 1) / 2];
   for (int j = 0; j < RANK; ++j) q[j] = tables[p->offsets + j];
   for (int i = 0; i < pairs; ++i) covariance[i] = tables[p->covariances + i];
   for (int k = 0; k < p->taps; ++k) {
-    const struct Electrons e = electrons_of_tap(p, tables, place, signal, k);
+    const struct Electrons e = electrons_of_tap(p, tables, begun.place, begun.signal, k);
     for (int j = 0; j < RANK; ++j)
       q[j] = product_plus(e.mean, tables[p->weights + k * RANK + j], q[j]);
     for (int i = 0; i < pairs; ++i)

@@ -14,13 +14,16 @@
 namespace tofsmith {
 namespace {
 
-Camera small_camera() {
-  Camera camera = rows_camera(120, 1000, 3000);
+/// Judged by circular errors, with so short light.
+Camera camera_of(int samples, double signal_e, double ambient_e, double cutoff_hz) {
+  Camera camera = rows_camera(samples, signal_e, ambient_e);
   camera.light.peak_factor = 12;
-  camera.light.impulse_response.cutoff_hz = 60e6;
+  camera.light.impulse_response.cutoff_hz = cutoff_hz;
   camera.operating.error = DepthErrorKind::circular;
   return camera;
 }
+
+Camera small_camera() { return camera_of(120, 1000, 3000, 60e6); }
 
 DesignOptions quick(int rows) {
   DesignOptions options = with_effort({}, 0.1);
@@ -56,13 +59,7 @@ TEST(RowDesign, LightKeepsToItsPeakAndMean) {
 }
 
 /// 240 bins, of which the response passes the 20th harmonic by half.
-Camera camera_of_many_lobes() {
-  Camera camera = rows_camera(240, 1000, 1000);
-  camera.light.peak_factor = 12;
-  camera.light.impulse_response.cutoff_hz = 100e6;
-  camera.operating.error = DepthErrorKind::circular;
-  return camera;
-}
+Camera camera_of_many_lobes() { return camera_of(240, 1000, 1000, 100e6); }
 
 TEST(RowDesign, HoldsOutInATenthOfTheLight) {
   const Camera camera = camera_of_many_lobes(), dim = in_share_of_light(camera, 0.1);
