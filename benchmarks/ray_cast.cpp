@@ -3,7 +3,6 @@
 // Rays per second of one core on a bumpy ball of 1280 triangles that fills the view, beside what
 // bounds it from above, Embree's own packet search on the same rays alone, and the reference that
 // tries every triangle.
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "generated_meshes.hpp"
+#include "io/meshes/embree.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/io/mesh_file.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
@@ -83,9 +83,6 @@ class EmbreeAlone {
   std::size_t hits() const {
     alignas(32) std::array<int, 8> active;
     active.fill(-1);
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     std::size_t count = 0;
     for (std::size_t begin = 0; begin + 8 <= directions_.size(); begin += 8) {
       RTCRayHit8 bundle{};
@@ -97,7 +94,7 @@ class EmbreeAlone {
         bundle.ray.mask[lane] = ~0u;
         bundle.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
       }
-      rtcIntersect8(active.data(), scene_, &context, &bundle);
+      tofsmith::intersect_coherent(active.data(), scene_, bundle);
       for (const unsigned id : bundle.hit.geomID) count += id != RTC_INVALID_GEOMETRY_ID;
     }
     return count;

@@ -155,11 +155,8 @@ void MeshCaster::trace(std::span<const Ray> rays, std::span<NearestHit> nearest,
     active[lane] = -1;
     any = true;
   }
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   while (any) {
-    rtcIntersect8(active.data(), scene_.get(), &context, &bundle);
+    intersect_coherent(active.data(), scene_.get(), bundle);
     any = false;
     for (std::size_t lane = 0; lane < rays.size(); ++lane) {
       if (!active[lane]) continue;

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
@@ -11,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "io/meshes/embree.hpp"
 #include "tofsmith/scene/ray_caster.hpp"
 
 namespace tofsmith {

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// Embree 3 (Debian 12) and 4 (Debian 13) differ in the query of a packet of rays. CMake looks for
+// version 4 first, too.
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+namespace tofsmith {
+
+/// Finds the nearest hit of each active ray (-1; others 0) of a packet of similar rays.
+inline void intersect_coherent(const int* active, RTCScene scene, RTCRayHit8& packet) {
+#if RTC_VERSION_MAJOR >= 4
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcIntersect8(active, scene, &packet, &arguments);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect8(active, scene, &context, &packet);
+#endif
+}
+
+}  // namespace tofsmith
