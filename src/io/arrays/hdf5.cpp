@@ -134,7 +134,8 @@ NpyShape shape_of(hid_t dataset) {
 /// Data sets of numbers with two to four axes. Links to other files are not followed.
 std::vector<Listed> list_datasets(hid_t file) {
   std::vector<Listed> found;
-  const auto look = [](hid_t root, const char* name, const H5O_info_t* info, void* data) -> herr_t {
+  // The type of `info` is H5O_info_t in HDF5 1.10 and H5O_info1_t from 1.12 on.
+  const auto look = [](hid_t root, const char* name, const auto* info, void* data) -> herr_t {
     constexpr std::size_t most = 1000;
     auto& list = *static_cast<std::vector<Listed>*>(data);
     if (info->type != H5O_TYPE_DATASET) return 0;
