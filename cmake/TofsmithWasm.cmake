@@ -37,5 +37,6 @@ foreach(library IN ITEMS Eigen3::Eigen hwy::hwy fmt::fmt nlohmann_json::nlohmann
   target_link_libraries(${library} INTERFACE tofsmith_wasm_headers)
 endforeach()
 add_library(Threads::Threads INTERFACE IMPORTED GLOBAL)  # all work is done in one thread
+set(HWY_INCLUDE_DIR "${wasm_headers}")
 set(RANDOM123_INCLUDE_DIR "${wasm_headers}")
 set(TOFSMITH_HAS_TBB OFF)

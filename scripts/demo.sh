@@ -38,16 +38,16 @@ if [[ -z "$output" ]]; then
   set -- -o "$output" "$@"
 fi
 
-# Kernels are compiled once for each instruction set: of the vector ones, this machine's alone.
-targets_of_others() {
-  local flags others=HWY_SSSE3
+# Compiles vector kernels for this machine's instruction set only.
+own_target() {
+  local flags target=SSE4
   flags=" $(grep -m 1 '^flags' /proc/cpuinfo || true) "
   if [[ "$flags" == *" avx512bw "* && "$flags" == *" avx512vl "* ]]; then
-    others='(HWY_SSSE3|HWY_SSE4|HWY_AVX2)'
+    target=AVX3
   elif [[ "$flags" == *" avx2 "* && "$flags" == *" fma "* ]]; then
-    others='(HWY_SSSE3|HWY_SSE4|HWY_AVX3)'
+    target=AVX2
   fi
-  printf '%s' "$others"
+  printf '%s' "$target"
 }
 
 install_packages build
@@ -56,7 +56,7 @@ use_debian_tools
 echo "Building tofsmith in $build"
 cmake --log-level=WARNING -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DTOFSMITH_BUILD_APPS=ON -DTOFSMITH_BUILD_TESTS=OFF -DTOFSMITH_BUILD_BENCHMARKS=OFF \
-  -DTOFSMITH_UNITY=ON -DTOFSMITH_DISABLED_TARGETS="$(targets_of_others)"
+  -DTOFSMITH_UNITY=ON -DTOFSMITH_TARGETS="$(own_target)"
 cmake --build "$build"
 
 tofsmith="$build/apps/tofsmith"
