@@ -14,9 +14,11 @@ package that it does not name, and that is not only declarations, is an error.
 
 import argparse
 import datetime
+import fnmatch
 import hashlib
 import json
 import pathlib
+import platform
 import re
 import subprocess
 import sys
@@ -31,6 +33,7 @@ DECLARATIONS = re.compile(
     r"libc6-dev|linux-libc-dev|libcrypt-dev|libpng-dev|zlib1g-dev|libzip-dev|libhdf5-dev|"
     r"libsqlite3-dev|liblxi-dev|libtirpc-dev|libopenmpi-dev|libfftw3-dev|libpython3\.\d+-dev|"
     r"opencl-c-headers|python3-numpy")
+DISTRIBUTION = platform.freedesktop_os_release().get("VERSION_CODENAME", "debian")
 SPDX_NAMES = {"Expat": "MIT", "BSD-2-clause": "BSD-2-Clause", "BSD-3-clause": "BSD-3-Clause"}
 
 
@@ -45,7 +48,7 @@ def spdx_licence(debian):
 
 
 def known_licences(copyright_file):
-    """The licence of each thing that a paragraph of the copyright file names."""
+    """The licence of each thing that a paragraph of the copyright file names; `*` is a wildcard."""
     licences = {}
     for paragraph in copyright_file.read_text().split("\n\n"):
         files = re.match(r"Files: (.*)", paragraph)
@@ -53,6 +56,12 @@ def known_licences(copyright_file):
         for name in files[1].split() if files and licence else []:
             licences[name] = spdx_licence(licence[1])
     return licences
+
+
+def licence_of(name, licences):
+    """The declared licence of a Debian package, or None."""
+    return next((licence for pattern, licence in licences.items()
+                 if fnmatch.fnmatchcase(native(name), pattern)), None)
 
 
 def headers_of(build, component):
@@ -140,7 +149,7 @@ def package(identifier, name, version, licence, source=None):
         item["externalRefs"] = [{
             "referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl",
             "referenceLocator": f"pkg:deb/debian/{name}@{version.replace('+', '%2B').replace(':', '%3A')}"
-                                f"?distro=bookworm&upstream={source.replace('+', '%2B')}"}]
+                                f"?distro={DISTRIBUTION}&upstream={source.replace('+', '%2B')}"}]
     return item
 
 
@@ -152,7 +161,7 @@ def bill_of_materials(arguments):
         compiled_in["python3-plotly"] = [version, "python-plotly"]
         licences["python3-plotly"] = licences["plotly.js"]
     unknown = [name for name in compiled_in
-               if native(name) not in licences and not DECLARATIONS.fullmatch(native(name))]
+               if not licence_of(name, licences) and not DECLARATIONS.fullmatch(native(name))]
     if unknown:
         sys.exit(f"make_sbom.py: {arguments.component} is compiled from headers of "
                  f"{', '.join(unknown)}; name each in cmake/debian/copyright, with its licence, or "
@@ -161,11 +170,11 @@ def bill_of_materials(arguments):
     packages, relationships = [own], [("SPDXRef-DOCUMENT", "DESCRIBES", own)]
     for relation, found in (("CONTAINS", compiled_in), ("DEPENDS_ON", owners(libraries_of(arguments.elf)))):
         for name, (version, source) in found.items():
-            if relation == "CONTAINS" and native(name) not in licences:
+            if relation == "CONTAINS" and not licence_of(name, licences):
                 continue
             identifier = f"{relation.lower().replace('_', '-')}-{name.replace('+', 'p')}"
             packages.append(package(identifier, name, version,
-                                    licences.get(native(name), "NOASSERTION"), source))
+                                    licence_of(name, licences) or "NOASSERTION", source))
             relationships.append(("SPDXRef-Package", relation, packages[-1]))
     document = {
         "spdxVersion": "SPDX-2.3", "dataLicense": "CC0-1.0", "SPDXID": "SPDXRef-DOCUMENT",
