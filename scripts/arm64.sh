@@ -39,6 +39,7 @@ done
 build=$(realpath -m "${directory:-$root/build-arm64}")
 libraries=$build/root
 mirror=${TOFSMITH_DEBIAN_MIRROR:-http://deb.debian.org/debian}
+release=$(debian_release)
 
 install_packages arm64
 use_debian_tools
@@ -56,7 +57,7 @@ if [[ ! -e $libraries/complete ]]; then
   rm -rf "$build/apt" "$libraries"
   mkdir -p "$build"/apt/{lists,archives}/partial "$libraries"
   : >"$build/apt/status"
-  echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror bookworm main" \
+  echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror ${release:-${tofsmith_releases##* }} main" \
     >"$build/apt/sources.list"
   apt_of_arm64 update
   mapfile -t packages < <(packages_of arm64_libraries)

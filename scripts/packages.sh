@@ -9,6 +9,15 @@
 #                                                     install what is missing
 #   scripts/packages.sh --list GROUP                  print the names, one a line
 
+# Debian releases on which tofsmith is tested, the newest last.
+tofsmith_releases='bookworm trixie'
+# Packages whose names differ between them. The lists below use the names of the first column.
+packages_by_release='
+name           bookworm           trixie
+libclang-rt    libclang-rt-14-dev libclang-rt-19-dev
+libstdc++      libstdc++-12-dev   libstdc++-14-dev
+'
+
 # The component core alone: codes, cameras, decoding and simulation.
 packages_core=(
   g++ cmake ninja-build pkgconf
@@ -90,7 +99,7 @@ packages_check=(
 # scripts/fuzz.sh.
 packages_fuzz=(
   "${packages_build[@]}"
-  clang libclang-rt-14-dev
+  clang libclang-rt
 )
 
 # scripts/arm64.sh: what compiles and runs for Arm here; and, from Debian for arm64, what core and its
@@ -104,7 +113,7 @@ packages_package_arm64=(
   librandom123-dev libtbb-dev:arm64 libhwy-dev:arm64 libfmt-dev:arm64
 )
 packages_arm64_libraries=(
-  libc6-dev libstdc++-12-dev libeigen3-dev libtbb-dev libhwy-dev libfmt-dev librandom123-dev
+  libc6-dev libstdc++ libeigen3-dev libtbb-dev libhwy-dev libfmt-dev librandom123-dev
   libgtest-dev libgmock-dev nlohmann-json3-dev
 )
 
@@ -113,8 +122,35 @@ tofsmith_die() {
   exit 1
 }
 
-# The packages of one group, one a line.
+# Where scripts/test_release.sh keeps the Debian root of a release.
+release_root() { printf '%s' "${TOFSMITH_ROOTS:-${XDG_CACHE_HOME:-$HOME/.cache}/tofsmith-roots}/$1"; }
+
+# The code name of this system if tofsmith is tested on it, otherwise nothing.
+debian_release() (
+  # shellcheck source=/dev/null
+  source /etc/os-release 2>/dev/null || return 0
+  [[ "${ID:-}" == debian && " $tofsmith_releases " == *" ${VERSION_CODENAME:-} "* ]] || return 0
+  printf '%s' "$VERSION_CODENAME"
+)
+
+# Packages on standard input, by their names in a release.
+named_in_release() {
+  awk -v release="$1" -v table="$packages_by_release" '
+    BEGIN { rows = split(table, row, "\n")
+            for (r = 1; r <= rows; ++r) {
+              columns = split(row[r], cell, " ")
+              if (cell[1] == "name") for (c = 1; c <= columns; ++c) if (cell[c] == release) wanted = c
+              if (columns) name[cell[1]] = cell[wanted] } }
+    { print ($1 in name) ? name[$1] : $1 }'
+}
+
+# The packages of one group by their names in this release, otherwise in the newest one, one a line.
 packages_of() {
+  local release
+  release=$(debian_release)
+  list_group "$1" | named_in_release "${release:-${tofsmith_releases##* }}"
+}
+list_group() {
   case "$1" in
     core) printf '%s\n' "${packages_core[@]}" ;;
     gpu) printf '%s\n' "${packages_gpu[@]}" ;;
@@ -148,9 +184,14 @@ missing_packages() {
 install_packages() {
   local group=$1 list
   list=$(packages_of "$group")
-  command -v dpkg-query >/dev/null ||
-    tofsmith_die "installs packages on Debian only; elsewhere, install the counterparts of:
-$(paste -sd' ' <<<"$list")"
+  if [[ -z "$(debian_release)" ]]; then
+    echo "tofsmith is tested on Debian ($tofsmith_releases), not on this system. Required packages, by their Debian names:
+$(paste -sd' ' <<<"$list")" >&2
+    if ! command -v dpkg-query >/dev/null; then
+      echo "Without dpkg, they cannot be checked here. Continuing: CMake reports what is missing." >&2
+      return 0
+    fi
+  fi
 
   local -a missing
   mapfile -t missing < <(missing_packages <<<"$list")
@@ -175,7 +216,7 @@ apt-get install --no-install-recommends ${missing[*]}"
     printf 'apt-get update failed; trying with the package lists as they are\n' >&2
   "${apt[@]}" install --no-install-recommends "${missing[@]}" </dev/null ||
     tofsmith_die "apt-get could not install: ${missing[*]}
-See its messages above; tofsmith is built on Debian 12 (bookworm)."
+See its messages above; tofsmith is tested on Debian ($tofsmith_releases)."
 }
 
 # A python3, a cmake or libraries of another origin (pyenv, conda) may come first on PATH, and CMake
