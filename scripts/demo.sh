@@ -5,6 +5,7 @@
 # Installs what is missing, builds tofsmith, runs its main job and says where the report is.
 #
 #   scripts/demo.sh [-o DIR] [--depth FILE --image FILE] [options of `tofsmith demo`]
+#   scripts/demo.sh --build-only                   builds the command line and runs nothing
 #
 # The output goes to ./demo-output unless -o names another directory.
 set -euo pipefail
@@ -32,6 +33,8 @@ if [[ " $* " == *" -h "* || " $* " == *" --help "* ]]; then
   sed -n '/^# Installs/,/^# The output/s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
   exit 0
 fi
+build_only=''
+if [[ "${1:-}" == --build-only ]]; then build_only=yes && shift; fi
 output=$(output_directory "$@")
 if [[ -z "$output" ]]; then
   output="$PWD/demo-output"
@@ -58,6 +61,7 @@ cmake --log-level=WARNING -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Rel
   -DTOFSMITH_BUILD_APPS=ON -DTOFSMITH_BUILD_TESTS=OFF -DTOFSMITH_BUILD_BENCHMARKS=OFF \
   -DTOFSMITH_UNITY=ON -DTOFSMITH_TARGETS="$(own_target)"
 cmake --build "$build"
+[[ -z "$build_only" ]] || exit 0
 
 tofsmith="$build/apps/tofsmith"
 [[ -x "$tofsmith" ]] || tofsmith_die "the build made no $tofsmith"
