@@ -95,7 +95,7 @@ class OptionReader {
     // A bool must be one; a text is no list.
     py::detail::make_caster<Value> caster;
     if (!caster.load(given, !std::is_same_v<Value, bool>)) wrong_type(name, given, needed<Value>());
-    field = py::detail::cast_op<Value&>(caster);
+    field = Value(py::detail::cast_op<Value&>(caster));  // a copy assigned makes GCC 14 warn
     return *this;
   }
   /// A field that a function makes of a text.

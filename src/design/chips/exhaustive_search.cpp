@@ -51,7 +51,7 @@ class FirstTapLister {
     for (ChipWord word = free; word > previous; word = (word - 1) & free) {
       if (rules_.equal_duty && std::popcount(word) != duty) continue;
       if (kind_[word] < first) continue;
-      current_.taps[static_cast<std::size_t>(tap)] = word;
+      current_.taps.at(static_cast<std::size_t>(tap)) = word;  // [] makes GCC 14 warn
       choose(tap + 1, free & ~word, word);
     }
   }

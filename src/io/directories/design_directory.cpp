@@ -80,7 +80,7 @@ std::string design_key(const Camera& camera, DesignOptions options) {
   // Codes are judged afresh, and are called by how many exposures they have.
   options.trials = 0;
   options.outlier_threshold_m = 0.0;
-  if (!options.exposures.empty()) options.exposures = {0};
+  if (!options.exposures.empty()) options.exposures.assign(1, 0);  // = {0} makes GCC 14 warn
   std::string key = TOFSMITH_VERSION + camera_to_json(self_contained(camera));
   append_key(key, options);
   return fmt::format("{:016x}", fnv1a_64(key));
