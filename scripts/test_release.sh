@@ -17,7 +17,7 @@
 #
 #   --fresh    remove the root first, then make a new one without any further package
 #   --keep     update the clone of the last run, with its builds, instead of cloning again
-#   --ccache   use the compiler cache of the calling user; otherwise none is used
+#   --ccache   use a compiler cache, which is kept in the root; otherwise none is used
 #   --remove   remove the root, and do nothing else
 #
 # The root is ~/.cache/tofsmith-roots/RELEASE, or RELEASE in the directory TOFSMITH_ROOTS. It is made
@@ -91,12 +91,11 @@ apt-config dump 2>/dev/null | grep -E '^Acquire::(https?::|Check-|Retries|ForceI
 # Runs a command in the root. Its mounts and processes end with it.
 enter() {
   # shellcheck disable=SC2016  # $place belongs to the inner shell
-  place="$place" cache="$cache" unshare --mount --propagation private --pid --fork --kill-child \
+  place="$place" unshare --mount --propagation private --pid --fork --kill-child \
     bash -c 'set -e
       mount -t proc proc "$place/proc"
       mount --rbind /dev "$place/dev"
       mount --rbind /sys "$place/sys"
-      [[ -z "$cache" ]] || mount --bind "$cache" "$place/root/.cache/ccache"
       exec chroot "$place" "$@"' enter \
     env -i "${environment[@]}" sh -c 'cd /root && exec "$@"' sh "$@" 9>&-
 }
@@ -105,14 +104,10 @@ environment=(HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/
 for variable in CI CMAKE_BUILD_PARALLEL_LEVEL OPENBLAS_CORETYPE OPENBLAS_L2_SIZE; do
   [[ -z "${!variable:-}" ]] || environment+=("$variable=${!variable}")
 done
-cache=''
-if [[ -n "$ccache" ]]; then
-  [[ -x "$place/usr/bin/ccache" ]] ||
-    enter sh -c 'apt-get -q update && apt-get -q -y install --no-install-recommends ccache' >/dev/null
-  cache=${CCACHE_DIR:-$HOME/.cache/ccache}
-  mkdir -p "$cache" "$place/root/.cache/ccache"
-else
+if [[ -z "$ccache" ]]; then
   environment+=(CCACHE_DISABLE=1)
+elif [[ ! -x "$place/usr/bin/ccache" ]]; then
+  enter sh -c 'apt-get -q update && apt-get -q -y install --no-install-recommends ccache' >/dev/null
 fi
 ((${#command[@]})) || { echo "The root is $place" && exit 0; }
 

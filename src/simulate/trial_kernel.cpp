@@ -230,7 +230,7 @@ struct PairVectors {
   }
   PairSums total() const {
     const Doubles d;
-    const auto all_lanes = [&](DoubleVector v) { return hn::GetLane(hn::SumOfLanes(d, v)); };
+    const auto all_lanes = [&](DoubleVector v) { return sum_of_lanes(d, v); };
     return {all_lanes(sum), all_lanes(squared_difference), all_lanes(squared_sum),
             all_lanes(squared_product)};
   }
@@ -267,8 +267,8 @@ TileSums sums(const double* true_bin, const double* decoded_bin, int trials, dou
     hn::LoadInterleaved2(d, decoded_bin + i, found_even, found_odd);
     add(hn::Abs(hn::Sub(found_even, true_even)), hn::Abs(hn::Sub(found_odd, true_odd)));
   }
-  TileSums total{linear.total(), circular.total(), hn::GetLane(hn::SumOfLanes(d, outliers)),
-                 hn::GetLane(hn::SumOfLanes(d, outlier_squares))};
+  TileSums total{linear.total(), circular.total(), sum_of_lanes(d, outliers),
+                 sum_of_lanes(d, outlier_squares)};
   for (; i + 1 < trials; i += 2) {
     const double a = std::abs(decoded_bin[i] - true_bin[i]);
     const double b = std::abs(decoded_bin[i + 1] - true_bin[i + 1]);

@@ -36,6 +36,18 @@ HWY_INLINE int lanes_of(Tag tag = {}) {
 HWY_INLINE Vector all(float value) { return hn::Set(Floats(), value); }
 HWY_INLINE DoubleVector all(double value) { return hn::Set(Doubles(), value); }
 
+/// Returns the sum of all N lanes, added by halves: lane i + N/2 to lane i, then i + N/4, and so
+/// on. The order of hn::SumOfLanes differs between versions of Highway.
+template <typename Tag>
+HWY_INLINE hn::TFromD<Tag> sum_of_lanes(Tag, hn::Vec<Tag> lanes) {
+  if constexpr (hn::MaxLanes(Tag()) == 1) {
+    return hn::GetLane(lanes);
+  } else {
+    const hn::Half<Tag> half;  // HWY_SCALAR has no hn::UpperHalf, hence the lookup by argument
+    return sum_of_lanes(half, hn::Add(hn::LowerHalf(half, lanes), UpperHalf(half, lanes)));
+  }
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace tofsmith

@@ -171,8 +171,7 @@ void add_gradient_of(const DepthElectrons& electrons, const Eigen::VectorXd& con
         by_ambient_e = hn::MulAdd(by_variance, all(electrons.shot_ambient[i]), by_ambient_e);
       }
     }
-    by_lights[l] = {hn::GetLane(hn::SumOfLanes(d, by_signal_e)),
-                    hn::GetLane(hn::SumOfLanes(d, by_ambient_e))};
+    by_lights[l] = {sum_of_lanes(d, by_signal_e), sum_of_lanes(d, by_ambient_e)};
   }
   for (std::size_t i = 0; i < measurements; ++i) {
     by.ambient[static_cast<Eigen::Index>(i)] += sum_of_lanes(by_ambient, i);

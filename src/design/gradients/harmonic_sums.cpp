@@ -139,8 +139,8 @@ void add_of(const double* periods, const double* weights, HarmonicFunctions& gra
           by_cosine = hn::MulAdd(w, hn::Load(d, turns.cosine + k * harmonic_block + p), by_cosine);
           by_sine = hn::MulAdd(w, hn::Load(d, turns.sine + k * harmonic_block + p), by_sine);
         }
-        gradient.real[gradient.at(first + k, f)] += hn::GetLane(hn::SumOfLanes(d, by_cosine));
-        gradient.imag[gradient.at(first + k, f)] -= hn::GetLane(hn::SumOfLanes(d, by_sine));
+        gradient.real[gradient.at(first + k, f)] += sum_of_lanes(d, by_cosine);
+        gradient.imag[gradient.at(first + k, f)] -= sum_of_lanes(d, by_sine);
       }
     }
   }

@@ -161,8 +161,8 @@ HWY_INLINE void weigh_chords(const DecodingCurveOf<Value>& curve, const SoftQues
     total = hn::Add(total, share);
     error_total = hn::MulAdd(share, error, error_total);
   }
-  sums[0] = hn::GetLane(hn::SumOfLanes(d, total));
-  sums[1] = hn::GetLane(hn::SumOfLanes(d, error_total));
+  sums[0] = sum_of_lanes(d, total);
+  sums[1] = sum_of_lanes(d, error_total);
 }
 
 /// Gradient of the expected error by the matches b_j of every chord's two ends (scratch) and, added
@@ -258,7 +258,7 @@ HWY_INLINE void differentiate_matches(const DecodingCurveOf<Value>& curve, const
       sum = hn::MulAdd(by_match, hn::Load(d, points + j), sum);
       hn::Store(hn::MulAdd(by_match, electron, hn::Load(d, by_points + j)), d, by_points + j);
     }
-    by_electrons[r] = hn::GetLane(hn::SumOfLanes(d, sum));
+    by_electrons[r] = sum_of_lanes(d, sum);
   }
 }
 
