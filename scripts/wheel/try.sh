@@ -22,10 +22,10 @@ env/bin/python3 "$here/smoke.py"
 
 PATH="$place/env/bin:$PATH"
 tofsmith --version
-tofsmith simulate table-top --code hamiltonian-k4 --signal 1e5 --width 64 --height 48 --seed 1 -o raw.npz
-tofsmith decode raw.npz --code hamiltonian-k4 -o depth.exr
+tofsmith simulate table-top --code hamiltonian-k4 --signal 1e5 --width 64 --height 48 --seed 1 -o captured.npz
+tofsmith decode captured.npz --code hamiltonian-k4 -o decoded.exr
 tofsmith design paper-10f0 --effort 0 -o designed >design.log
-[[ -s depth.exr && -s designed/report.html ]]
+[[ -s decoded.exr && -s designed/report.html ]]
 tofsmith lab -o lab.html 2>lab.log || grep -q 'there is no page' lab.log
 env/bin/pip uninstall -q -y tofsmith
 ! compgen -G 'env/lib/python3*/site-packages/tofsmith*' || { echo "pip uninstall left files" >&2 && exit 1; }
