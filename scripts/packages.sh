@@ -5,7 +5,7 @@
 # The Debian packages of the project, in one place. Sourced by the other scripts; run by hand it
 # installs what is missing of the groups named:
 #
-#   scripts/packages.sh core|gpu|design|build|python|lab|package|test|docs|benchmark|check|fuzz|arm64 ..
+#   scripts/packages.sh core|gpu|design|build|python|lab|package|wheel|test|docs|benchmark|check|fuzz|arm64 ..
 #                                                     install what is missing
 #   scripts/packages.sh --list GROUP                  print the names, one a line
 
@@ -67,12 +67,18 @@ packages_package=(
   liblxi-dev libtirpc-dev    # generators by VXI-11
   dpkg-dev file              # what a package depends on
 )
+# scripts/wheel.sh: a wheel without MPI, OpenCL and VXI-11.
+packages_wheel=(
+  "${packages_python[@]}"
+  patchelf
+)
 packages_test=(
   "${packages_python[@]}"
   libgtest-dev libgmock-dev
   libopenmpi-dev openmpi-bin                 # sweeps of several ranks
   pocl-opencl-icd                            # OpenCL on the processor
   python3-pytest mypy                        # the Python package
+  patchelf                                   # wheels
   python3-h5py                               # writes what .h5 readers must read
   python3-opencv                             # distorts as lenses must
   python3-cvxopt                             # an independent solver of the sub-problem
@@ -159,6 +165,7 @@ list_group() {
     python) printf '%s\n' "${packages_python[@]}" ;;
     lab) printf '%s\n' "${packages_lab[@]}" ;;
     package) printf '%s\n' "${packages_package[@]}" ;;
+    wheel) printf '%s\n' "${packages_wheel[@]}" ;;
     test) printf '%s\n' "${packages_test[@]}" ;;
     docs) printf '%s\n' "${packages_docs[@]}" ;;
     benchmark) printf '%s\n' "${packages_benchmark[@]}" ;;
@@ -167,7 +174,7 @@ list_group() {
     arm64) printf '%s\n' "${packages_arm64[@]}" ;;
     package_arm64) printf '%s\n' "${packages_package_arm64[@]}" ;;
     arm64_libraries) printf '%s\n' "${packages_arm64_libraries[@]}" ;;
-    *) tofsmith_die "no package group '$1'; there are core, gpu, design, build, python, lab, package, test, docs, benchmark, check, fuzz and arm64" ;;
+    *) tofsmith_die "no package group '$1'; there are core, gpu, design, build, python, lab, package, wheel, test, docs, benchmark, check, fuzz and arm64" ;;
   esac
 }
 
@@ -219,6 +226,21 @@ apt-get install --no-install-recommends ${missing[*]}"
 See its messages above; tofsmith is tested on Debian ($tofsmith_releases)."
 }
 
+# apt-get with lists, cache and installed packages of its own in a folder, so that it can fetch packages
+# of another architecture or release without changing the system.
+private_apt() { # FOLDER ARCHITECTURE RELEASE ARGUMENTS ...
+  local folder=$1 architecture=$2 release=$3
+  shift 3
+  mkdir -p "$folder"/{lists,archives}/partial
+  [[ -e $folder/status ]] || : >"$folder/status"
+  echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] ${TOFSMITH_DEBIAN_MIRROR:-http://deb.debian.org/debian} $release main" \
+    >"$folder/sources.list"
+  apt-get -q -y -o APT::Architecture="$architecture" -o APT::Architectures="$architecture" \
+    -o Dir::Etc::sourcelist="$folder/sources.list" -o Dir::Etc::sourceparts=/dev/null \
+    -o Dir::State="$folder" -o Dir::State::status="$folder/status" -o Dir::Cache="$folder" \
+    -o Debug::NoLocking=1 -o APT::Sandbox::User=root "$@" </dev/null
+}
+
 # A python3, a cmake or libraries of another origin (pyenv, conda) may come first on PATH, and CMake
 # searches beside what it finds there. What we installed is what we use.
 use_debian_tools() {
@@ -227,9 +249,9 @@ use_debian_tools() {
 
 if [[ "${BASH_SOURCE[0]}" == "$0" ]]; then
   set -euo pipefail
-  (($#)) || tofsmith_die "which group? core, gpu, design, build, python, lab, package, test, docs, benchmark or check"
+  (($#)) || tofsmith_die "which group? core, gpu, design, build, python, lab, package, wheel, test, docs, benchmark or check"
   if [[ "$1" == --list ]]; then
-    packages_of "${2:?which group? core, gpu, design, build, python, lab, package, test, docs, benchmark or check}"
+    packages_of "${2:?which group? core, gpu, design, build, python, lab, package, wheel, test, docs, benchmark or check}"
   else
     for group in "$@"; do
       install_packages "$group"
