@@ -11,23 +11,15 @@
 #include <cstdlib>
 
 #include "core/shared/random.hpp"
+#include "random_cameras.hpp"
 #include "tofsmith/design/design.hpp"
 
 namespace {
 
 using namespace tofsmith;
 
-double between(RandomStream& random, double low, double high) {
-  return low + (high - low) * random.uniform();
-}
-
-double log_between(RandomStream& random, double low, double high) {
-  return std::exp(between(random, std::log(low), std::log(high)));
-}
-
-bool one_in(RandomStream& random, int n) { return random.uniform() * n < 1.0; }
-
-Camera random_camera(std::uint64_t seed, std::uint64_t index) {
+/// A camera as the trade has them: much narrower than random_camera(), which takes any values.
+Camera random_usual_camera(std::uint64_t seed, std::uint64_t index) {
   RandomStream random(seed, index);
   Camera camera = built_in_camera("paper-10f0");
   camera.name = fmt::format("random-{}", index + 1);
@@ -67,7 +59,7 @@ int main(int argc, char** argv) {
   double log_gain = 0.0;
   fmt::print("winner of `design` beside the best baseline, mm, fresh trials\n");
   for (int i = 0; i < cameras; ++i) {
-    const Camera camera = random_camera(seed, static_cast<std::uint64_t>(i));
+    const Camera camera = random_usual_camera(seed, static_cast<std::uint64_t>(i));
     const DepthErrorKind kind = camera.operating.error;
     DesignOptions options;
     options.trials = 10000;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "code/shared/on_intervals.hpp"
 #include "core/shared/periodic.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
@@ -214,15 +215,7 @@ Waveform Waveform::delayed(double periods) const {
       interval.rise = wrap(interval.rise + periods, 1.0);
       interval.fall = interval.rise + width;
     }
-    std::sort(moved.begin(), moved.end(),
-              [](const OnInterval& a, const OnInterval& b) { return a.rise < b.rise; });
-    // Rounding may make neighbours that touched overlap by one unit in the last place.
-    for (std::size_t i = 0; i < moved.size(); ++i) {
-      const bool last = i + 1 == moved.size();
-      const double next_rise = last ? moved[0].rise + 1.0 : moved[i + 1].rise;
-      if (moved[i].fall > next_rise && moved[i].fall < next_rise + 1e-12) moved[i].fall = next_rise;
-    }
-    return binary(std::move(moved), level_);
+    return binary(within_period(std::move(moved)), level_);
   }
   const double shift = periods * static_cast<double>(samples_.size());
   require(std::abs(shift - std::round(shift)) < 1e-6, "delay", periods,
@@ -244,8 +237,7 @@ Waveform Waveform::complement() const {
     const double rise = wrap(on_[i].fall, 1.0);
     off.push_back({rise, rise + (next_rise - on_[i].fall)});
   }
-  std::sort(off.begin(), off.end(),
-            [](const OnInterval& a, const OnInterval& b) { return a.rise < b.rise; });
+  off = within_period(std::move(off));
   return off.empty() ? constant(0.0) : binary(std::move(off), 1.0);
 }
 
@@ -278,9 +270,7 @@ Waveform square_wave(int frequency, double begin) {
     const double rise = wrap(begin + static_cast<double>(i) / frequency, 1.0);
     on.push_back({rise, rise + 0.5 / frequency});
   }
-  std::sort(on.begin(), on.end(),
-            [](const OnInterval& a, const OnInterval& b) { return a.rise < b.rise; });
-  return Waveform::binary(std::move(on));
+  return Waveform::binary(within_period(std::move(on)));
 }
 
 }  // namespace tofsmith

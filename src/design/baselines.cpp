@@ -106,12 +106,18 @@ void add_baseline(CodeSet code, const std::string& method, const Camera& camera,
   result.candidates.push_back({.code = std::move(code), .method = method});
 }
 
-/// The first few of many names, and how many there are beside.
-std::string brief_list(const std::vector<std::string>& names) {
+/// The first few of many names, and the number of the others, which are `kind`.
+std::string brief_list(const std::vector<std::string>& names, const char* kind) {
   constexpr std::size_t listed = 4;
   if (names.size() <= listed + 1) return fmt::format("{}", fmt::join(names, ", "));
-  return fmt::format("{} and {} other standard codes",
-                     fmt::join(names.begin(), names.begin() + listed, ", "), names.size() - listed);
+  return fmt::format("{} and {} other {}", fmt::join(names.begin(), names.begin() + listed, ", "),
+                     names.size() - listed, kind);
+}
+
+/// Notes, once for each reason, which contenders of a kind cannot compete.
+void leave_out(DesignResult& result, const Contenders& contenders, const char* kind) {
+  for (const auto& [reason, names] : contenders.left_out)
+    leave_out(result, brief_list(names, kind), reason);
 }
 
 }  // namespace
@@ -166,37 +172,46 @@ Contenders contending_families(const std::vector<std::string>& names, const Came
   return found;
 }
 
-std::vector<CodeSet> contending_atlas_codes(const Camera& camera, const DesignOptions& options) {
+Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& options) {
   constexpr std::size_t max_of_exposures = 3;
+  Contenders found;
   if (options.atlas_cameras == 0 || options.method == DesignMethod::factorize ||
       options.method == DesignMethod::search)
-    return {};
+    return found;
   const std::vector<CodeSet> codes =
       nearest_atlas_codes(code_atlas(), camera, options.exposures, options.atlas_cameras);
+  std::vector<std::optional<std::string>> reasons(codes.size());
   std::vector<const CodeSet*> comparable(codes.size(), nullptr);
   parallel_for(std::ssize(codes), [&](std::int64_t i) {
     const auto at = static_cast<std::size_t>(i);
-    if (first_like(codes, at) == at && !why_no_depth(codes[at], camera))
-      comparable[at] = &codes[at];
+    if (first_like(codes, at) != at) return;
+    reasons[at] = why_not_comparable(codes[at], camera);
+    if (!reasons[at]) comparable[at] = &codes[at];
   });
   std::vector<double> errors_m =
       first_errors_m(comparable, camera, trials_per_point(camera), search_seed(options));
   for (std::size_t i = 0; i < codes.size(); ++i) errors_m[i] = errors_m[first_like(codes, i)];
+  const auto note = [](const std::string& name, std::vector<std::string>& names) {
+    if (names.empty() || names.back() != name) names.push_back(name);  // it comes fitted, and as is
+  };
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < codes.size(); ++i)
-    if (errors_m[i] < infinity) order.push_back(i);
+    if (reasons[i])
+      note(codes[i].name(), found.left_out[*reasons[i]]);
+    else if (errors_m[i] < infinity)
+      order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return errors_m[a] < errors_m[b]; });
   std::map<int, std::size_t> of_exposures;
-  std::vector<CodeSet> contenders;
   for (const std::size_t i : order)
-    if (of_exposures[codes[i].exposures()]++ < max_of_exposures) contenders.push_back(codes[i]);
-  return contenders;
+    if (of_exposures[codes[i].exposures()]++ < max_of_exposures) found.codes.push_back(codes[i]);
+  return found;
 }
 
-void add_atlas_codes(const std::vector<CodeSet>& contenders, DesignResult& result) {
-  for (std::size_t i = 0; i < std::min(max_atlas_codes, contenders.size()); ++i)
-    result.candidates.push_back({.code = contenders[i], .method = "atlas"});
+void add_atlas_codes(const Contenders& contenders, DesignResult& result) {
+  for (std::size_t i = 0; i < std::min(max_atlas_codes, contenders.codes.size()); ++i)
+    result.candidates.push_back({.code = contenders.codes[i], .method = "atlas"});
+  leave_out(result, contenders, "codes of the atlas");
 }
 
 void add_baselines(const Camera& camera, const DesignOptions& options,
@@ -211,8 +226,7 @@ void add_baselines(const Camera& camera, const DesignOptions& options,
     Contenders others =
         contending_families(other_families(camera, options), camera, search_seed(options));
     for (CodeSet& code : others.codes) add_baseline(std::move(code), "family", camera, result);
-    for (const auto& [reason, names] : others.left_out)
-      leave_out(result, brief_list(names), reason);
+    leave_out(result, others, "standard codes");
   }
   if (camera.sensor.taps >= 3)
     for (const StandardCode& standard : standard_chip_codes(camera, samples_of_standard_codes))

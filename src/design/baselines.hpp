@@ -24,7 +24,7 @@ void add_baselines(const Camera& camera, const DesignOptions& options,
 /// frequencies that the band passes, 30 f0 at most; none for three taps or more.
 std::vector<std::string> other_families(const Camera& camera, const DesignOptions& options);
 
-/// Families that may be the best on a camera, and why others are not among them.
+/// Codes that may be the best on a camera, and why others are not among them.
 struct Contenders {
   std::vector<CodeSet> codes;                                ///< the best first
   std::map<std::string, std::vector<std::string>> left_out;  ///< names by reason
@@ -34,11 +34,11 @@ struct Contenders {
 Contenders contending_families(const std::vector<std::string>& names, const Camera& camera,
                                std::uint64_t seed);
 
-/// Of the codes that the nearest cameras of the atlas lend, by few trials those that err least,
-/// best first, three at most of each number of exposures; none where options want none.
-std::vector<CodeSet> contending_atlas_codes(const Camera& camera, const DesignOptions& options);
+/// The codes of the nearest cameras of the atlas that have the least errors by few trials, best
+/// first, at most three of each number of exposures; none where options ask for none.
+Contenders contending_atlas_codes(const Camera& camera, const DesignOptions& options);
 
-/// Lets the best four of them compete.
-void add_atlas_codes(const std::vector<CodeSet>& contenders, DesignResult& result);
+/// Adds the best four of them as candidates, and notes which cannot compete.
+void add_atlas_codes(const Contenders& contenders, DesignResult& result);
 
 }  // namespace tofsmith

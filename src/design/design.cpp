@@ -179,11 +179,11 @@ DesignResult design(const Camera& camera, const DesignOptions& options, const Pr
       serves(DesignMethod::factorize, why_not_factorizable(camera, options), options, result))
     targets = targets_for(camera, options);
   add_baselines(camera, options, targets, result);
-  const std::vector<CodeSet> atlas_codes = contending_atlas_codes(camera, options);
-  add_atlas_codes(atlas_codes, result);
+  const Contenders atlas = contending_atlas_codes(camera, options);
+  add_atlas_codes(atlas, result);
 
   // 2. Design codes. What is there by then is where the direct optimization starts.
-  const std::vector<Task> tasks = tasks_for(camera, options, targets, atlas_codes, result);
+  const std::vector<Task> tasks = tasks_for(camera, options, targets, atlas.codes, result);
   std::vector<double> efforts;
   for (const Task& task : tasks) efforts.push_back(task.effort);
   const ProgressParts parts(progress, {80, 20});

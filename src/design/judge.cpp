@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "camera/shared/depth_prior.hpp"
+#include "design/baselines.hpp"
 #include "design/explanation.hpp"
 #include "design/optimize/two_return_limit.hpp"
 #include "simulate/shared/camera_bounds.hpp"
@@ -19,17 +20,62 @@ namespace tofsmith {
 
 namespace {
 
+/// The measurements of an exposure.
+int measurements_per_exposure(const Sensor& sensor) {
+  return sensor.readout == Readout::difference ? 1 : sensor.taps;
+}
+
+/// Why no code at all measures depth on a camera on which every candidate was left out: the
+/// camera's own reason where it is known, else the reasons of the first candidates.
+BrokenRule why_no_candidate(const Camera& camera, const DesignOptions& options,
+                            const std::vector<std::string>& left_out) {
+  if (camera.light.peak_factor <= 1.0)
+    return broken("light.peak_factor", camera.light.peak_factor,
+                  "allows only constant light, which measures no depth");
+  const std::size_t listed = camera.exposure_s.each_s.size();
+  const std::size_t ordered = camera.playback ? camera.playback->order.size() : 0;
+  if (listed > 0 && ordered > 0 && listed != ordered)
+    return broken("number of exposure_s", listed,
+                  fmt::format("must equal the {} exposures of playback.order", ordered));
+  const bool has_rows = camera.sensor.readout == Readout::rows;
+  const std::size_t exposures = has_rows ? 0 : std::max(listed, ordered);
+  const char* const which = listed > 0 ? "number of exposure_s" : "number of playback.order";
+  const auto measurements = static_cast<int>(exposures) * measurements_per_exposure(camera.sensor);
+  if (exposures > 0 && measurements < (camera.sensor.subtracts() ? 2 : 3))
+    return broken(which, exposures,
+                  fmt::format("gives {} measurement{}; signal, ambient light and depth are three "
+                              "unknowns",
+                              measurements, measurements == 1 ? "" : "s"));
+  if (options.method == DesignMethod::atlas && (exposures > 0 || camera.sensor.taps > 2)) {
+    constexpr const char* none =
+        "no known code of so many measures depth on this camera; a design with an effort above 0 "
+        "searches for one";
+    return exposures > 0 ? broken(which, exposures, none)
+                         : broken("sensor.taps", camera.sensor.taps, none);
+  }
+  constexpr std::size_t told = 3;
+  std::string reasons = fmt::format(
+      "{}",
+      fmt::join(left_out.begin(),
+                left_out.begin() + static_cast<std::ptrdiff_t>(std::min(told, left_out.size())),
+                "; "));
+  if (left_out.size() > told)
+    reasons += fmt::format("; and {} more reasons", left_out.size() - told);
+  return broken("codes that measure depth", "none",
+                fmt::format("no candidate can be used on this camera: {}", reasons));
+}
+
 /// A target may be such that no choice of pairs can tell depth: that is a result, not a failure.
-void leave_out_what_tells_no_depth(const Camera& camera, DesignResult& result) {
+void leave_out_what_tells_no_depth(const Camera& camera, const DesignOptions& options,
+                                   DesignResult& result) {
   std::erase_if(result.candidates, [&](const Candidate& c) {
     const std::optional<std::string> reason = why_no_depth(c.code, camera);
     if (!reason) return false;
     const std::string message = c.message.empty() ? "" : fmt::format(" ({})", c.message);
-    result.left_out.push_back(fmt::format("{}{}: {}", c.code.name(), message, *reason));
+    leave_out(result, c.code.name() + message, *reason);
     return true;
   });
-  require(!result.candidates.empty(), "target", fmt::format("{}", fmt::join(result.left_out, "; ")),
-          "no designed code measures depth, and no baseline is playable on the camera");
+  if (result.candidates.empty()) require(why_no_candidate(camera, options, result.left_out));
 }
 
 /// Judges a candidate with random numbers it was not chosen by, at its best origin if asked.
@@ -120,12 +166,13 @@ void require_judgeable(const Camera& camera, const DesignOptions& options) {
 
 std::optional<std::string> why_no_depth(const CodeSet& code, const Camera& camera) {
   if (auto reason = why_not_playable(code, camera)) return reason;
-  return why_not_decodable(make_decoding_table(ForwardModel(code, camera), camera));
+  const Camera judged = judged_camera(camera);
+  return why_not_decodable(make_decoding_table(ForwardModel(code, judged), judged));
 }
 
 void judge_candidates(const Camera& camera, const DesignOptions& options, DesignResult& result,
                       const Progress& progress) {
-  leave_out_what_tells_no_depth(camera, result);
+  leave_out_what_tells_no_depth(camera, options, result);
   CameraBounds bounds(camera);
   const ProgressParts parts(progress, {90, options.robust ? 0.0 : 10.0});  // the winner: at last
   const ProgressParts of_candidates(parts[0], result.candidates.size());

@@ -127,7 +127,7 @@ class CodePool {
     parallel_for_blocks(std::ssize(codes), 1, [&](IndexRange block) {
       for (std::int64_t k = block.begin; k < block.end; ++k) {
         const auto i = static_cast<std::size_t>(k);
-        if (!why_not_playable(*codes[i], camera))
+        if (!why_no_depth(*codes[i], camera))
           errors_m[i] = error_of(*codes[i], camera, std::max(1000, options_.trials / 10));
       }
     });

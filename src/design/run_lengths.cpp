@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "code/shared/on_intervals.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
@@ -121,11 +122,9 @@ Waveform RunLengths::waveform(const Eigen::VectorXd& parameters, double shortest
     interval.rise = wrap(interval.rise, 1.0);
     interval.fall = interval.rise + width;
   }
-  std::sort(on.begin(), on.end(),
-            [](const OnInterval& a, const OnInterval& b) { return a.rise < b.rise; });
   // Where a short pulse was dropped, the rest may not emit more than the peak.
   const double level = shortest_duty_ > 0.0 ? 1.0 / std::max(duty, shortest_duty_) : 1.0;
-  return Waveform::binary(std::move(on), level);
+  return Waveform::binary(within_period(std::move(on)), level);
 }
 
 }  // namespace tofsmith

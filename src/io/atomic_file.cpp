@@ -12,16 +12,17 @@
 #include <atomic>
 #include <cerrno>
 #include <charconv>
-#include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <system_error>
 
 #include "core/shared/hash.hpp"
+#include "io/shared/process_identity.hpp"
 #include "tofsmith/core/error.hpp"
 
 namespace tofsmith {
@@ -42,31 +43,36 @@ fs::path directory_of(const fs::path& target) {
   return target.has_parent_path() ? target.parent_path() : fs::path(".");
 }
 
-/// What hidden files of this machine begin with: others may share the directory.
-const std::string& hidden_prefix() {
-  static const std::string prefix = [] {
-    char host[256] = {};
-    if (::gethostname(host, sizeof(host) - 1) != 0) host[0] = '\0';
-    return fmt::format(".tofsmith-{:08x}-", fnv1a_64(host) & 0xffffffffu);
-  }();
-  return prefix;
+/// The beginning of the names of hidden files of processes that are numbered together: others, of
+/// other machines and containers, may share the directory.
+std::string hidden_prefix(const std::string& machine) {
+  return fmt::format(".tofsmith-{:016x}-", fnv1a_64(machine));
 }
 
 struct CloseDirectory {
   void operator()(DIR* directory) const { ::closedir(directory); }
 };
 
-/// The process that a hidden file of this machine is of; 0: it is none.
-pid_t owner_of(std::string_view name) {
-  if (!name.starts_with(hidden_prefix())) return 0;
-  pid_t owner = 0;
-  const char* const begin = name.data() + hidden_prefix().size();
-  const auto [end, error] = std::from_chars(begin, name.data() + name.size(), owner);
-  return error == std::errc() && end != name.data() + name.size() && *end == '-' ? owner : 0;
+/// The process that writes a hidden file, "PREFIX" "NUMBER-START-COUNTER"; none: its name has
+/// another prefix or form.
+std::optional<ProcessIdentity> owner_of(std::string_view name, const std::string& machine) {
+  const std::string prefix = hidden_prefix(machine);
+  if (!name.starts_with(prefix)) return std::nullopt;
+  name.remove_prefix(prefix.size());
+  ProcessIdentity owner{.machine = machine};
+  const char* const end = name.data() + name.size();
+  const auto [after, error] = std::from_chars(name.data(), end, owner.number);
+  if (error != std::errc() || owner.number <= 0 || after == end || *after != '-')
+    return std::nullopt;
+  name.remove_prefix(static_cast<std::size_t>(after + 1 - name.data()));
+  const std::size_t dash = name.find('-');
+  if (dash == std::string_view::npos) return std::nullopt;
+  owner.start = name.substr(0, dash);
+  return owner;
 }
 
-/// Takes away what processes that were killed have left in a directory. Each is looked at once.
-void remove_leftovers(const fs::path& directory) {
+/// Removes the hidden files of processes that were killed. Looks once at each directory.
+void remove_leftovers(const fs::path& directory, const ProcessIdentity& own) {
   static std::mutex mutex;
   static std::set<fs::path> seen;
   std::error_code ignored;
@@ -79,9 +85,8 @@ void remove_leftovers(const fs::path& directory) {
   const std::unique_ptr<DIR, CloseDirectory> listing(::opendir(directory.c_str()));
   if (!listing) return;
   while (const dirent* const entry = ::readdir(listing.get())) {
-    const pid_t owner = owner_of(entry->d_name);
-    if (owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH)
-      fs::remove(directory / entry->d_name, ignored);
+    const std::optional<ProcessIdentity> owner = owner_of(entry->d_name, own.machine);
+    if (owner && is_surely_gone(*owner, own)) fs::remove(directory / entry->d_name, ignored);
   }
 }
 
@@ -133,10 +138,11 @@ void AtomicFile::create_temporary() {
   static std::atomic<unsigned> counter{0};
   std::string extension = target_.extension().string();
   if (extension.size() > 32) extension.clear();  // a name has at most 255 bytes
-  remove_leftovers(directory_of(target_));
+  const ProcessIdentity own = ProcessIdentity::own();
+  remove_leftovers(directory_of(target_), own);
   do {
-    temporary_ = directory_of(target_) /
-                 fmt::format("{}{}-{}{}", hidden_prefix(), ::getpid(), counter++, extension);
+    temporary_ = directory_of(target_) / fmt::format("{}{}-{}-{}{}", hidden_prefix(own.machine),
+                                                     own.number, own.start, counter++, extension);
     descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   } while (descriptor_ < 0 && errno == EEXIST);  // left behind by a killed run
   if (descriptor_ < 0)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "code/shared/on_intervals.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/simulate/robustness.hpp"
 
@@ -92,48 +93,6 @@ PerturbedCamera with_everything(const Camera& camera, const RobustnessOptions& o
   return perturbed;
 }
 
-/// Whether two pulses leave no gap worth the name between them.
-bool overlap(const OnInterval& first, const OnInterval& second) {
-  constexpr double rounding = 1e-12;
-  return second.rise <= first.fall + rounding;
-}
-
-OnInterval merged(const OnInterval& a, const OnInterval& b) {
-  return {std::min(a.rise, b.rise), std::max(a.fall, b.fall)};
-}
-
-/// Moved by whole periods so that it rises in [0, 1).
-OnInterval within_period(OnInterval pulse) {
-  double periods = std::floor(pulse.rise);
-  if (pulse.rise - periods >= 1.0) periods += 1.0;  // just below 0
-  return {std::max(0.0, pulse.rise - periods), pulse.fall - periods};
-}
-
-/// Pulses of a new length about their old centres; those that overlap become one.
-Waveform with_pulses(const Waveform& modulation, double stretch, double level) {
-  std::vector<OnInterval> on;
-  for (const OnInterval& pulse : modulation.on_intervals()) {
-    const double centre = 0.5 * (pulse.rise + pulse.fall);
-    const double half = 0.5 * stretch * (pulse.fall - pulse.rise);
-    OnInterval longer{centre - half, centre + half};
-    for (; !on.empty() && overlap(on.back(), longer); on.pop_back())
-      longer = merged(on.back(), longer);
-    on.push_back(longer);
-  }
-  // The last pulse may run into the first of the next period.
-  while (on.size() > 1) {
-    const OnInterval next{on.front().rise + 1.0, on.front().fall + 1.0};
-    if (!overlap(on.back(), next)) break;
-    on.back() = merged(on.back(), next);
-    on.erase(on.begin());
-  }
-  if (on.front().fall - on.front().rise >= 1.0 - 1e-12) return Waveform::constant(level);
-  std::transform(on.begin(), on.end(), on.begin(), within_period);
-  std::sort(on.begin(), on.end(),
-            [](const OnInterval& a, const OnInterval& b) { return a.rise < b.rise; });
-  return Waveform::binary(std::move(on), level);
-}
-
 /// Deviations from the mean scaled so that the peak is `factor` times what it was.
 Waveform with_depth_of_modulation(const Waveform& modulation, double factor) {
   const double mean = modulation.mean(), peak = modulation.peak();
@@ -149,7 +108,8 @@ Waveform with_peak(const Waveform& modulation, double peak) {
   if (peak == 1.0) return modulation;
   if (!modulation.is_binary()) return with_depth_of_modulation(modulation, peak);
   if (modulation.on_intervals().empty()) return modulation;
-  return with_pulses(modulation, 1.0 / peak, modulation.level() * peak);
+  return Waveform::binary(stretched(modulation.on_intervals(), 1.0 / peak),
+                          modulation.level() * peak);
 }
 
 /// On the points of a clock; light within its average power.

@@ -111,11 +111,13 @@ RobustnessReport robustness(const CodeSet& code, const Camera& on, const Robustn
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     const Camera& actual = cameras[i].camera;
     const CodeSet actual_code = perturbed_code(code, cameras[i]);
+    if (why_not_playable(actual_code, actual)) continue;
     const ForwardModel model(actual_code, actual);
     const DecodingTable table = make_decoding_table(model, actual);
+    const DecodingTable& calibrated = why_not_decodable(table) ? said_table : table;
     report.perturbed.push_back(
         {.name = cameras[i].name,
-         .calibrated_m = judge.error_m(actual_code, actual, model, table, parts[2 * i + 1]),
+         .calibrated_m = judge.error_m(actual_code, actual, model, calibrated, parts[2 * i + 1]),
          .uncalibrated_m =
              judge.error_m(actual_code, actual, model, said_table, parts[2 * i + 2])});
   }

@@ -7,12 +7,12 @@ namespace tofsmith {
 bool WorkerWatch::may_live(SqliteDatabase& database, const std::string& id) {
   if (id.empty()) return false;
   if (id == own_.id) return true;
-  SqliteStatement query = database.prepare(
-      "SELECT host, machine, process, process_start, beat FROM workers WHERE id = ?");
+  SqliteStatement query =
+      database.prepare("SELECT machine, process, process_start, beat FROM workers WHERE id = ?");
   if (!query.bind(1, id).step()) return false;
-  const WorkerIdentity worker{id, query.text(0), query.text(1), query.integer(2), query.text(3)};
-  const std::int64_t beat = query.integer(4);
-  if (is_surely_gone(worker, own_)) return false;
+  const ProcessIdentity worker{query.text(0), query.integer(1), query.text(2)};
+  const std::int64_t beat = query.integer(3);
+  if (is_surely_gone(worker, own_.process)) return false;
 
   const Clock::time_point now = Clock::now();
   const auto [seen, is_new] = seen_.try_emplace(id, Seen{beat, now});
@@ -25,11 +25,9 @@ void SweepStore::State::register_worker() {
   // Those that are surely gone leave no row behind: what is theirs is free then.
   std::vector<std::string> gone;
   SqliteStatement workers =
-      database().prepare("SELECT id, host, machine, process, process_start FROM workers");
+      database().prepare("SELECT id, machine, process, process_start FROM workers");
   while (workers.step())
-    if (is_surely_gone({workers.text(0), workers.text(1), workers.text(2), workers.integer(3),
-                        workers.text(4)},
-                       watch.own()))
+    if (is_surely_gone({workers.text(1), workers.integer(2), workers.text(3)}, watch.own().process))
       gone.push_back(workers.text(0));
   SqliteStatement remove = database().prepare("DELETE FROM workers WHERE id = ?");
   for (const std::string& id : gone) remove.bind(1, id).run();
@@ -39,9 +37,9 @@ void SweepStore::State::register_worker() {
       .prepare("INSERT INTO workers VALUES (?, ?, ?, ?, ?, 0)")
       .bind(1, own.id)
       .bind(2, own.host)
-      .bind(3, own.machine)
-      .bind(4, own.process)
-      .bind(5, own.process_start)
+      .bind(3, own.process.machine)
+      .bind(4, own.process.number)
+      .bind(5, own.process.start)
       .run();
   transaction.commit();
   is_registered = true;

@@ -6,8 +6,9 @@
 
 #include <array>
 #include <cstring>
+#include <numbers>
 
-#include "decode_setup.hpp"
+#include "output_setup.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/parallel.hpp"
 #include "tofsmith/core/units.hpp"
@@ -236,6 +237,31 @@ TEST(DecodeOptions, NamesTheFieldTheValueAndTheRule) {
   }
   options = {.low_signal_sigma = -1.0};
   EXPECT_THROW(options.validate(), std::invalid_argument);
+}
+
+TEST(Decoder, RecoversDepthsFromTwoMeasurementsWhereAmbientLightCancels) {
+  constexpr int samples = 120, pixels = 2 * pixels_per_tile + 7;
+  Eigen::MatrixXd circle(samples, 2);
+  for (int n = 0; n < samples; ++n) {
+    const double angle = 2.0 * std::numbers::pi * n / samples;
+    circle.row(n) << std::cos(angle), std::sin(angle);
+  }
+  DecodingTable table = make_decoding_table(circle, 10.0);
+  table.ambient_gain.setZero();
+  const Decoder decoder(table);
+  std::vector<float> raw;
+  for (int i = 0; i < pixels; ++i)
+    for (int k = 0; k < 2; ++k) raw.push_back(static_cast<float>(1000.0 * circle(i % samples, k)));
+  for_each_target([&] {
+    Outputs all(pixels);
+    decoder.decode(RawView::interleaved(raw.data(), 1, pixels, 2), all.view());
+    Outputs bins(pixels);
+    decoder.decode(RawView::interleaved(raw.data(), 1, pixels, 2), bins.view(1));
+    for (std::size_t i = 0; i < pixels; ++i) {
+      EXPECT_EQ(all.bin[i], static_cast<int>(i) % samples);
+      EXPECT_EQ(bins.bin[i], static_cast<int>(i) % samples);
+    }
+  });
 }
 
 }  // namespace

@@ -275,5 +275,53 @@ TEST(Atlas, OfExposuresTheBestStays) {
   EXPECT_EQ(best[1].of, circular.of);
 }
 
+TEST(Atlas, CodesOfEveryCameraCanBeFittedToEveryPeak) {
+  for (const double peak_factor : {1.2, 2.0, 3.0, 5.0, 7.5, 15.0, 25.0, 40.0})
+    for (const AtlasEntry& entry : code_atlas()) {
+      const CodeSet fitted = fitted_to_peak(entry.code, entry.of.peak_factor, peak_factor);
+      EXPECT_LE(fitted.peak(), peak_factor * (1 + 1e-9)) << entry.code.name();
+    }
+}
+
+/// The paper's power-limited camera, on few samples and at few light levels.
+Camera power_limited() {
+  Camera camera = small_camera("paper-30x");
+  camera.light.peak_factor = 5.0;
+  return camera;
+}
+
+/// Two taps whose difference is read, and gates of any duty: ambient light cancels in few codes.
+Camera analog_difference() {
+  Camera camera = small_camera("paper-10f0");
+  const double f0_hz = camera.fundamental_frequency_hz;
+  camera.light.peak_factor = 25.0;
+  camera.light.impulse_response.f_max_hz = 3 * f0_hz;
+  camera.sensor.impulse_response.f_max_hz = 13 * f0_hz;
+  camera.sensor.taps = 2;
+  camera.sensor.binary = false;
+  camera.sensor.readout = Readout::difference;
+  camera.operating.signal_e_per_s = {1e5};
+  camera.operating.ambient_e_per_s = {1e6};
+  return camera;
+}
+
+TEST(Design, GivesACodeWhereCodesOfTheAtlasCannotBeUsed) {
+  DesignOptions options = with_effort({}, 0.0);
+  options.trials = 1000;
+  options.baselines = {"sinusoid-k4", "hamiltonian-k4"};
+  for (const Camera& camera : {power_limited(), analog_difference()}) {
+    const DesignResult result = design(camera, options);
+    EXPECT_EQ(why_not_playable(result.winner().code, camera), std::nullopt);
+  }
+}
+
+TEST(Design, WithConstantLightIsRefusedForThatReason) {
+  Camera camera = small_camera("paper-10f0");
+  camera.light.peak_factor = 1.0;
+  EXPECT_THAT([&] { design(camera, with_effort({}, 0.0)); },
+              ThrowsMessage<InvalidArgument>(
+                  "light.peak_factor = 1; allows only constant light, which measures no depth"));
+}
+
 }  // namespace
 }  // namespace tofsmith

@@ -4,7 +4,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <signal.h>
+#include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -159,6 +161,98 @@ TEST(AtomicFile, WhatAKilledProcessLeftGoesWithTheNextFile) {
   AtomicFile running(directory / "b.txt", refuse);
   EXPECT_EQ(directory.files(), 2);  // ours, and the other machine's
   EXPECT_TRUE(std::filesystem::exists(directory / ".tofsmith-of-another-machine-1-0.txt"));
+}
+
+/// The hidden file of a process that has ended, renamed as `changed` makes its name.
+template <typename Change>
+std::filesystem::path leftover(const TemporaryDirectory& directory, const Change& change) {
+  int ends[2];
+  EXPECT_EQ(pipe(ends), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    const AtomicFile file(directory / "a.txt", refuse);
+    const std::string name = file.temporary_path().filename();
+    EXPECT_EQ(write(ends[1], name.data(), name.size()), std::ssize(name));
+    kill(getpid(), SIGKILL);
+  }
+  int status = 0;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  char name[256];
+  const ssize_t length = read(ends[0], name, sizeof(name));
+  close(ends[0]);
+  close(ends[1]);
+  const std::string was(name, static_cast<std::size_t>(std::max<ssize_t>(length, 0)));
+  const std::filesystem::path changed = directory / change(was);
+  std::filesystem::rename(directory / was, changed);
+  return changed;
+}
+
+TEST(AtomicFile, WhatMayBelongToALiveProcessOfAnotherContainerStays) {
+  const TemporaryDirectory directory;
+  // The same process number, in another namespace of numbers on a machine of the same name.
+  const std::filesystem::path other = leftover(directory, [](std::string name) {
+    char& digit = name[std::string(".tofsmith-").size()];
+    digit = digit == '0' ? '1' : '0';
+    return name;
+  });
+  const AtomicFile running(directory / "b.txt", refuse);
+  EXPECT_TRUE(std::filesystem::exists(other));
+}
+
+TEST(AtomicFile, WhatAnEarlierProcessOfTheSameNumberLeftGoes) {
+  const TemporaryDirectory directory;
+  const std::filesystem::path earlier = leftover(directory, [](const std::string& name) {
+    const std::size_t number = name.find('-', std::string(".tofsmith-").size()) + 1;
+    return name.substr(0, number) + std::to_string(getpid()) + name.substr(name.find('-', number));
+  });
+  const AtomicFile running(directory / "b.txt", refuse);
+  EXPECT_FALSE(std::filesystem::exists(earlier));
+}
+
+/// Runs `body` as process `number` of a new namespace of process numbers that has its own /proc.
+/// False: this system does not allow that.
+template <typename Body>
+bool run_in_other_namespace(pid_t number, const Body& body) {
+  const pid_t outer = fork();
+  if (outer == 0) {
+    if (unshare(CLONE_NEWPID | CLONE_NEWNS) != 0) _exit(77);
+    const pid_t first = fork();
+    if (first == 0) {
+      if (mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
+          mount("proc", "/proc", "proc", 0, nullptr) != 0)
+        _exit(77);
+      for (;;) {
+        const pid_t child = fork();
+        if (child == 0) {
+          if (getpid() == number) body();
+          _exit(0);
+        }
+        waitpid(child, nullptr, 0);
+        if (child >= number) _exit(child == number ? 0 : 77);
+      }
+    }
+    int status = 0;
+    waitpid(first, &status, 0);
+    _exit(WIFEXITED(status) ? WEXITSTATUS(status) : 1);
+  }
+  int status = 0;
+  EXPECT_EQ(waitpid(outer, &status, 0), outer);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+TEST(AtomicFile, ProcessesOfTwoNamespacesOnOneVolumeLeaveTheirFilesToEachOther) {
+  const TemporaryDirectory directory;
+  pid_t unused = 2;  // here, so that it looks dead
+  while (kill(unused, 0) == 0 || errno != ESRCH) ++unused;
+  // Its file stays: from here nobody can know whether a process of another namespace has ended.
+  const bool allowed = run_in_other_namespace(unused, [&] {
+    const AtomicFile writing(directory / "a.txt", refuse);
+    kill(getpid(), SIGKILL);
+  });
+  if (!allowed) GTEST_SKIP() << "needs the right to make namespaces";
+  EXPECT_EQ(directory.files(), 1);
+  const AtomicFile here(directory / "b.txt", refuse);
+  EXPECT_EQ(directory.files(), 2);
 }
 
 TEST(AtomicFile, TemporaryPathMayBeReplacedByALibrary) {

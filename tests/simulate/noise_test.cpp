@@ -119,6 +119,12 @@ TEST(PixelNoise, DifferencesAreOfNeighbouringBuckets) {
   EXPECT_EQ(raw[1], -4.0);
 }
 
+TEST(PixelNoise, IsNotThatOfTheGenerator) {
+  Sensor sensor;
+  sensor.generator = Generator{.edge_grid_s = 1.0 / (7e6 * 12)};  // of a camera of 7 MHz
+  EXPECT_NO_THROW(PixelNoise{sensor});
+}
+
 TEST(PixelNoise, RefusesSettingsThatMakeNoSense) {
   Sensor sensor;
   sensor.full_well_e = -1.0;

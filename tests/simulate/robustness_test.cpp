@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tofsmith/code/families.hpp"
@@ -192,6 +193,41 @@ TEST(Robustness, CalibratedIsTheDepthErrorOfThePerturbedCamera) {
     EXPECT_LE(report.perturbed[i].calibrated_m.value, report.worst_calibrated_m().value);
     EXPECT_LE(report.perturbed[i].uncalibrated_m.value, report.worst_uncalibrated_m().value);
   }
+}
+
+/// Two measurements, in which ambient light cancels where the taps are equal.
+CodeSet two_differences(const Camera& camera) {
+  const Waveform light = rectangular_pulse(0.1);
+  const auto gate = [](double begin) { return square_wave(1, begin); };
+  return CodeSet::create("two", camera.samples, 2, {light, light},
+                         {gate(0.0), gate(0.5), gate(0.25), gate(0.75)});
+}
+
+TEST(Robustness, WhereAPerturbedCameraMeasuresNoDepthTheDecoderIsTheNominalOne) {
+  Camera camera = small_camera();
+  camera.sensor.taps = 2;
+  camera.sensor.readout = Readout::difference;
+  camera.operating.ambient_e_per_s = {1e7};
+  const RobustnessReport report = robustness(two_differences(camera), camera, {.trials = 1000});
+  const auto mismatched =
+      std::find_if(report.perturbed.begin(), report.perturbed.end(),
+                   [](const PerturbedError& p) { return p.name.starts_with("tap mismatch"); });
+  ASSERT_NE(mismatched, report.perturbed.end());
+  EXPECT_EQ(mismatched->calibrated_m.value, mismatched->uncalibrated_m.value);
+  EXPECT_GT(mismatched->calibrated_m.value, report.nominal_m.value);
+}
+
+TEST(Robustness, LeavesOutPerturbationsThatTheGeneratorCannotPlay) {
+  Camera camera = small_camera();
+  camera.light.generator = Generator{.sample_rate_hz = 12 * camera.fundamental_frequency_hz};
+  // The first point is played while the pulse covers its middle, at 0.5 / 12 of the period.
+  const CodeSet code = code_of(camera, Waveform::binary({{0.499 / 12, 0.6 / 12}}, 15.0));
+  ASSERT_EQ(why_not_playable(code, camera), std::nullopt);
+  std::vector<std::string> names;
+  for (const PerturbedError& p : robustness(code, camera, {.trials = 1000}).perturbed)
+    names.push_back(p.name);
+  EXPECT_EQ(std::count(names.begin(), names.end(), "peak power -10 %"), 1);
+  EXPECT_EQ(std::count(names.begin(), names.end(), "peak power +10 %"), 0);
 }
 
 TEST(Robustness, ADecoderThatBelievesAWrongCameraErrs) {

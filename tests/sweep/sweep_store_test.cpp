@@ -96,9 +96,9 @@ void give_all_to(const std::filesystem::path& path, const std::string& machine,
 TEST(SweepStore, TakesOverFromAProcessOfThisMachineThatIsGone) {
   const TemporaryDirectory directory;
   SweepStore store = with_items(directory / "s.sqlite");
-  const WorkerIdentity own = WorkerIdentity::own();
+  const ProcessIdentity own = ProcessIdentity::own();
   if (own.machine.empty()) GTEST_SKIP() << "this system does not tell";
-  give_all_to(directory / "s.sqlite", own.machine, own.process);  // started at another time
+  give_all_to(directory / "s.sqlite", own.machine, own.number);  // started at another time
   EXPECT_THAT(store.claim(keys, 1), ElementsAre(ClaimAnswer::ours));
 }
 

@@ -84,7 +84,9 @@ CodeSet perturbed_code(const CodeSet& code, const PerturbedCamera& perturbed);
 /// Depth error on a perturbed camera: geometric mean over its operating points [m].
 struct PerturbedError {
   std::string name;
-  Estimate calibrated_m;    ///< by a decoder that knows the perturbed camera
+  /// By a decoder that knows the perturbed camera; where the code measures no depth on that camera,
+  /// for example because mismatched taps let ambient light through, as uncalibrated_m.
+  Estimate calibrated_m;
   Estimate uncalibrated_m;  ///< by one that believes the camera to be what it was said to be
 };
 /// Its fields (core/fields.hpp).
@@ -117,7 +119,8 @@ auto fields_of(ConstOrNot<RobustnessReport> auto& r) {
                     Field("perturbed", r.perturbed, InDocuments{"perturbations"}));
 }
 
-/// Judges a code on the perturbations of its camera.
+/// Judges a code on the perturbations of its camera. Perturbations that change the code to one that
+/// the camera cannot use are left out, such as pulses too short for the light's generator.
 /// @throws std::invalid_argument if the camera or the options are invalid, the code does not fit or
 ///         the method cannot decode it; Interrupted if progress says so
 /// @note same bits for any number of threads

@@ -176,7 +176,7 @@ void project_rank(const ProjectionView& view, const TileSource& source, int pixe
     else
       project_interleaved<Rank, ForOutputs, 4>(view, source.data, vectors, tile);
     done = vectors * lanes;
-  } else if (source.data && source.pixel_stride == k_count) {
+  } else if (source.data && source.pixel_stride == k_count && k_count > row_length) {
     const int vectors = pixels / lanes;
     if (k_count == 5)
       project_strided<Rank, ForOutputs, 5>(view, source.data, vectors, tile);

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "code/shared/on_intervals.hpp"
 #include "design/judge.hpp"
 #include "design/shortest_run.hpp"
 #include "design/suggested_exposures.hpp"
@@ -68,32 +69,6 @@ std::vector<const AtlasEntry*> nearest_entries(std::vector<const AtlasEntry*> en
   return kept;
 }
 
-/// Pulses `factor` times as long about their middles; those that meet become one.
-std::vector<OnInterval> stretched(const std::vector<OnInterval>& on, double factor) {
-  std::vector<OnInterval> longer;
-  for (const OnInterval& pulse : on) {
-    const double middle = 0.5 * (pulse.rise + pulse.fall);
-    const double half = 0.5 * factor * (pulse.fall - pulse.rise);
-    if (!longer.empty() && middle - half <= longer.back().fall)
-      longer.back().fall = std::max(longer.back().fall, middle + half);
-    else
-      longer.push_back({middle - half, middle + half});
-  }
-  // The last may reach the first of the next period.
-  while (longer.size() > 1 && longer.back().fall >= longer.front().rise + 1.0) {
-    longer.back().fall = std::max(longer.back().fall, longer.front().fall + 1.0);
-    longer.erase(longer.begin());
-  }
-  if (longer.front().fall - longer.front().rise >= 1.0) return {{0.0, 1.0}};
-  for (OnInterval& pulse : longer) {
-    const double periods = std::floor(pulse.rise);
-    pulse = {pulse.rise - periods, pulse.fall - periods};
-  }
-  std::sort(longer.begin(), longer.end(),
-            [](const OnInterval& a, const OnInterval& b) { return a.rise < b.rise; });
-  return longer;
-}
-
 Waveform fitted_light(const Waveform& light, double from_peak_factor, double to_peak_factor) {
   constexpr double whole = 0.98;  // of the peak: what uses less does so for a reason
   const double level = light.level();
@@ -146,9 +121,6 @@ std::vector<CodeSet> nearest_atlas_codes(const std::vector<AtlasEntry>& atlas, c
          std::find(exposures.begin(), exposures.end(), entry.of.exposures) != exposures.end()))
       by_exposures[entry.of.exposures].push_back(&entry);
   const AtlasPlace place = place_of(camera.light.peak_factor, effective_bandwidth_f0(camera));
-  const auto add = [&](const CodeSet& code) {
-    if (!why_not_playable(code, camera) && keeps_shortest_run(code, camera)) codes.push_back(code);
-  };
   for (const auto& [of_exposures, entries] : by_exposures) {
     std::vector<const AtlasEntry*> near = nearest_entries(entries, place, cameras);
     std::stable_partition(near.begin(), near.end(), [&](const AtlasEntry* entry) {
@@ -157,8 +129,8 @@ std::vector<CodeSet> nearest_atlas_codes(const std::vector<AtlasEntry>& atlas, c
     for (const AtlasEntry* entry : near) {
       const CodeSet code = entry->code.resampled(camera.samples);
       const CodeSet to_peak = fitted_to_peak(code, entry->of.peak_factor, camera.light.peak_factor);
-      add(to_peak);
-      if (to_peak.peak() != code.peak()) add(code);
+      codes.push_back(to_peak);
+      if (code.peak() < to_peak.peak()) codes.push_back(code);
     }
   }
   return codes;

@@ -18,10 +18,11 @@ double effective_bandwidth_f0(const Camera& camera);
 /// whole of one peak factor has the whole of another.
 CodeSet fitted_to_peak(const CodeSet& code, double from_peak_factor, double to_peak_factor);
 
-/// Codes of the atlas that a camera can play, for each number of exposures (or those asked for) of
-/// the nearest cameras of as many taps: by the distance of log peak and log effective bandwidth,
-/// within what the atlas covers, for either kind of error, as they are and fitted to the camera's
-/// peak. Those for the camera's own kind of error come first, the nearest of them first.
+/// Codes of the atlas for each number of exposures (or those asked for) of the nearest cameras of
+/// as many taps, none of a higher peak than the camera's: by the distance of log peak and log
+/// effective bandwidth, within what the atlas covers, for either kind of error, as they are and
+/// fitted to the camera's peak. Those for the camera's own kind of error come first, the nearest of
+/// them first.
 std::vector<CodeSet> nearest_atlas_codes(const std::vector<AtlasEntry>& atlas, const Camera& camera,
                                          const std::vector<int>& exposures, int cameras);
 

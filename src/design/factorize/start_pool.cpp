@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "code/shared/on_intervals.hpp"
 #include "core/shared/random.hpp"
 #include "tofsmith/core/error.hpp"
 #include "tofsmith/core/units.hpp"
@@ -22,9 +23,7 @@ Waveform centred_pulses(int count, double spacing, double duty) {
     const double rise = wrap(centre - 0.5 * duty / count, 1.0);
     on.push_back({rise, rise + duty / count});
   }
-  std::sort(on.begin(), on.end(),
-            [](const OnInterval& a, const OnInterval& b) { return a.rise < b.rise; });
-  return Waveform::binary(std::move(on), 1.0 / duty);
+  return Waveform::binary(within_period(std::move(on)), 1.0 / duty);
 }
 
 PairCandidate candidate(const PairModel& model, WaveformPair pair, std::string name) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "code/shared/on_intervals.hpp"
 #include "tofsmith/core/units.hpp"
 
 namespace tofsmith {
@@ -43,9 +44,7 @@ Waveform SwitchedLabels::waveform(int wanted, double level) const {
     on.push_back({rise, rise + length(i)});
   }
   if (on.empty()) return Waveform::constant(0.0);
-  std::sort(on.begin(), on.end(),
-            [](const OnInterval& a, const OnInterval& b) { return a.rise < b.rise; });
-  return Waveform::binary(std::move(on), level);
+  return Waveform::binary(within_period(std::move(on)), level);
 }
 
 Waveform light_waveform(const SwitchedLabels& light) {

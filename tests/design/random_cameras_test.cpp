@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The tofsmith authors
+// SPDX-License-Identifier: Apache-2.0
+// A design for any camera gives a code, or a refusal that names the camera's own reason.
+//
+//   TOFSMITH_ALL_RANDOM_CAMERAS=1 test_design --gtest_filter='RandomCameras.*'
+//
+// tries 1000 cameras without effort and 50 at the default effort; otherwise a fixed share of them.
+#include "random_cameras.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "tofsmith/core/error.hpp"
+#include "tofsmith/design/design.hpp"
+
+namespace tofsmith {
+namespace {
+
+constexpr std::uint64_t seed = 1;
+
+bool all_are_tried() { return std::getenv("TOFSMITH_ALL_RANDOM_CAMERAS") != nullptr; }
+
+/// Settings that alone can keep every code from measuring depth.
+bool names_a_physical_reason(const std::string& field) {
+  for (const char* known : {"light.peak_factor", "number of exposure_s", "number of playback.order",
+                            "sensor.taps", "codes that measure depth"})
+    if (field == known) return true;
+  return false;
+}
+
+void expect_a_code_or_a_reason(std::uint64_t index, double effort) {
+  const Camera camera = random_camera(seed, index);
+  SCOPED_TRACE(camera.name);
+  ASSERT_NO_THROW(camera.validate());
+  DesignOptions options = with_effort({}, effort);
+  options.trials = 1000;
+  // Looking for contenders among all standard codes takes seconds.
+  if (index % 16 != 0) options.baselines = {"sinusoid-k3", "square-k4", "hamiltonian-k4"};
+  try {
+    const DesignResult result = design(camera, options);
+    EXPECT_EQ(why_not_playable(result.winner().code, camera), std::nullopt);
+    for (const Candidate& c : result.candidates)
+      EXPECT_TRUE(std::isfinite(c.error.circular.geometric_mean_m.value)) << c.code.name();
+  } catch (const InvalidArgument& refusal) {
+    EXPECT_TRUE(names_a_physical_reason(refusal.field())) << refusal.what();
+    EXPECT_LT(std::string(refusal.what()).size(), 700u) << refusal.what();
+  }
+}
+
+TEST(RandomCameras, GetACodeOrAReasonWithoutEffort) {
+  const std::uint64_t cameras = 1000, step = all_are_tried() ? 1 : 13;
+  for (std::uint64_t i = 0; i < cameras; i += step) expect_a_code_or_a_reason(i, 0.0);
+}
+
+TEST(RandomCameras, GetACodeOrAReasonAtTheDefaultEffort) {
+  const std::uint64_t first = 1000, cameras = 50, step = all_are_tried() ? 1 : 25;
+  for (std::uint64_t i = 0; i < cameras; i += step) expect_a_code_or_a_reason(first + i, 1.0);
+}
+
+}  // namespace
+}  // namespace tofsmith
